@@ -1,0 +1,26 @@
+// What goes wrong for a caller's reason. Each kind has a documented exit code (design: exit codes of the CLI).
+// A failed simulation is not an error but a status (sim/tracking.hpp); a bug of ours is an assertion.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace armwright {
+
+enum class ErrorKind {
+  usage,     // a wrong flag, name or configuration; exit code 2
+  bad_data,  // an input file (URDF, test cases, design, journal) that cannot be used; exit code 4
+  busy,      // another process writes this folder; exit code 5
+  io,        // the operating system refused to read or write; exit code 74
+};
+
+class Error : public std::runtime_error {
+ public:
+  Error(ErrorKind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
+  ErrorKind kind() const { return kind_; }
+
+ private:
+  ErrorKind kind_;
+};
+
+}  // namespace armwright

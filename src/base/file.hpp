@@ -1,0 +1,21 @@
+// Whole files, read with a size limit and written so that a reader sees the old content or the new, never a mixture.
+// Every failure is an Error{io} that names the path and the operating system's reason.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace armwright {
+
+// Error{bad_data} if the file is larger than `limit_bytes`.
+std::string read_file(const std::filesystem::path& path, std::size_t limit_bytes);
+
+// Writes a temporary file beside `path`, syncs it, renames it over `path` and syncs the folder.
+void write_file_atomically(const std::filesystem::path& path, std::string_view content);
+
+// As mkdir -p; an Error{io} says which folder could not be made and why.
+void make_folder(const std::filesystem::path& path);
+
+}  // namespace armwright

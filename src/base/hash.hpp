@@ -1,0 +1,16 @@
+// Content hashes (SHA-256, FIPS 180-4) and record checksums (CRC-32, ISO 3309), both from system libraries.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace armwright {
+
+std::array<std::uint8_t, 32> calc_sha256(std::string_view bytes);
+std::string calc_sha256_hex(std::string_view bytes);
+std::uint32_t calc_crc32(std::string_view bytes);
+
+}  // namespace armwright

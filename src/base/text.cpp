@@ -1,0 +1,140 @@
+#include "base/text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+
+namespace armwright {
+namespace {
+
+std::size_t calc_edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) {
+    for (std::size_t j = 0; j <= b.size(); ++j) {
+      if (i == 0 || j == 0) {
+        d[i][j] = i + j;
+        continue;
+      }
+      const std::size_t substitution = d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, substitution});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+      }
+    }
+  }
+  return d[a.size()][b.size()];
+}
+
+// Length of the valid UTF-8 sequence at the start of `text`, 0 if there is none.
+std::size_t utf8_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const std::size_t length = byte(0) < 0x80                       ? 1
+                             : byte(0) >= 0xC2 && byte(0) < 0xE0  ? 2
+                             : byte(0) >= 0xE0 && byte(0) < 0xF0  ? 3
+                             : byte(0) >= 0xF0 && byte(0) <= 0xF4 ? 4
+                                                                  : 0;
+  if (length == 0 || length > text.size()) {
+    return 0;
+  }
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(i) & 0xC0) != 0x80) {
+      return 0;
+    }
+  }
+  const bool overlong = (byte(0) == 0xE0 && byte(1) < 0xA0) || (byte(0) == 0xF0 && byte(1) < 0x90);
+  const bool not_a_character =
+      (byte(0) == 0xED && byte(1) >= 0xA0) || (byte(0) == 0xF4 && byte(1) >= 0x90);
+  const bool c1_control = byte(0) == 0xC2 && byte(1) < 0xA0;
+  return overlong || not_a_character || c1_control ? 0 : length;
+}
+
+}  // namespace
+
+std::optional<std::string> find_nearest(std::string_view name,
+                                        std::span<const std::string> candidates) {
+  constexpr std::size_t kLongestName = 64;  // the distance costs length x length; nobody mistypes more
+  if (name.size() > kLongestName) {
+    return std::nullopt;
+  }
+  std::optional<std::string> nearest;
+  std::size_t best = 0;
+  for (const std::string& candidate : candidates) {
+    const std::size_t distance = calc_edit_distance(name, candidate);
+    const std::size_t near = std::max<std::size_t>(1, std::max(name.size(), candidate.size()) / 3);
+    if (distance <= near && (!nearest || distance < best)) {
+      nearest = candidate;
+      best = distance;
+    }
+  }
+  return nearest;
+}
+
+std::string describe_unknown(std::string_view what, std::string_view name,
+                             std::span<const std::string> valid) {
+  const auto nearest = find_nearest(name, valid);
+  return fmt::format("unknown {} '{}'{} Valid: {}", what, sanitize(name),
+                     nearest ? fmt::format("; did you mean '{}'?", *nearest) : ".",
+                     valid.empty() ? "(none)" : join(valid, ", "));
+}
+
+std::optional<double> parse_finite(std::string_view text) {
+  if (!text.empty() && text.front() == '+') {
+    text.remove_prefix(1);  // from_chars takes no plus sign, people write one
+    if (!text.empty() && text.front() == '-') {
+      return std::nullopt;
+    }
+  }
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) {
+    return std::nullopt;
+  }
+  return value;
+}
+
+std::optional<long long> parse_integer(std::string_view text) {
+  long long value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) {
+    return std::nullopt;
+  }
+  return value;
+}
+
+std::vector<std::string> split(std::string_view text, char separator) {
+  std::vector<std::string> parts;
+  while (true) {
+    const std::size_t at = text.find(separator);
+    parts.emplace_back(text.substr(0, at));
+    if (at == std::string_view::npos) {
+      return parts;
+    }
+    text.remove_prefix(at + 1);
+  }
+}
+
+std::string join(std::span<const std::string> parts, std::string_view separator) {
+  return fmt::format("{}", fmt::join(parts, separator));
+}
+
+std::string format_exact(double value) {
+  return fmt::format("{}", value);
+}
+
+std::string sanitize(std::string_view text) {
+  std::string clean;
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    const bool printable =
+        length > 1 || (length == 1 && static_cast<unsigned char>(text[0]) >= 0x20 && text[0] != 0x7F);
+    const std::size_t taken = std::max<std::size_t>(length, 1);
+    clean += printable ? std::string(text.substr(0, taken)) : "?";
+    text.remove_prefix(taken);
+  }
+  return clean;
+}
+
+}  // namespace armwright

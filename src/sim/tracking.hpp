@@ -1,0 +1,137 @@
+// The tracking task and what a simulation of it yields. Everything that is the same for every design on a test case (number of
+// steps, target angles) is computed once, in a TargetTable; engines add the physics.
+//
+// Timeline: segment k takes ceil((t_m + rest) / h) control periods and its clock starts anew; the controllers are not reset
+// between segments. In each period: target angles from the moving target at the END of the period, efforts from the angles at
+// its start, then the plant is stepped `substeps` times with the effort held. The positional error of point k is the
+// largest |tip - target| at the ends of periods with t_m <= t <= t_m + rest; a case's error is the mean over its points
+// (from the second on, unless the first is counted).
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/controller.hpp"
+#include "sim/kinematics.hpp"
+#include "sim/reference_signal.hpp"
+#include "sim/robot_model.hpp"
+#include "sim/test_case.hpp"
+
+namespace armwright {
+
+struct PhysicsSettings {
+  double gravity_m_per_s2 = 9.80665;
+  int substeps = 1;   // plant steps in a control period, the effort held. The published gains need exactly 1.
+  double erp = 0.25;  // ODE: share of a joint's position error corrected in a step (thesis: damping 1/25 s)
+  double cfm = 0;     // ODE: constraint softness
+};
+
+struct TrackingTask {
+  SignalShape signal = SignalShape::complex;
+  double speed_m_per_s = 1.5;                  // v, nominal average speed
+  double distance_limit_m = 0.9;               // shorter moves are slowed down by distance / limit; 0: none are
+  double trapezoid_acceleration_m_per_s2 = 15;
+  double rest_s = 0.5;
+  double control_period_s = 0.01;              // h
+  bool count_first_point = false;
+  bool ik_bug = false;
+  double load_kg = 0;
+  PhysicsSettings physics;
+};
+
+// What is designed: one controller and effort limits a joint.
+struct JointDrive {
+  std::vector<double> gains;  // in the order of the controller's GainSpecs
+  EffortLimits limits;
+};
+struct ArmDesign {
+  std::string controller = "pid";
+  std::vector<JointDrive> joints;
+};
+// Sum over the joints of max(-min, max): the thesis's total torque magnitude (N m).
+double calc_total_torque_n_m(const ArmDesign& design);
+
+// One segment of the timeline.
+struct Segment {
+  Eigen::Vector3d from_m, to_m;
+  int first_step = 0;
+  int steps = 0;
+  int window_start = 0;  // first step (within the segment) whose end lies in the measuring window
+  double duration_s = 0; // t_m
+};
+
+// The targets of one test case under one task: the same for every design.
+struct TargetTable {
+  std::vector<Segment> segments;
+  std::size_t joints = 0;
+  int steps = 0;
+  std::vector<double> start_rad;   // posture at rest at the beginning, one angle a joint
+  std::vector<double> angles_rad;  // steps x joints, row-major: target at the end of each control period
+  std::string unreachable;         // not empty: no simulation is possible, and why
+
+  std::span<const double> angles(int step) const {
+    return {angles_rad.data() + static_cast<std::size_t>(step) * joints, joints};
+  }
+  std::size_t size_bytes() const;
+};
+
+// The robot with its load and the task, ready to make target tables and to be simulated. Immutable.
+class TrackingSetup {
+ public:
+  TrackingSetup(const RobotModel& robot, const TrackingTask& task);
+  const RobotModel& robot() const { return robot_; }  // the load included
+  const TrackingTask& task() const { return task_; }
+  TargetTable make_targets(const TestCase& test_case) const;
+  // Where the target is at the end of a step: for error series and trajectories.
+  Eigen::Vector3d calc_target_position(const Segment& segment, int step_in_segment) const;
+
+ private:
+  ReferenceSignal make_signal(double distance_m) const;
+  RobotModel robot_;
+  TrackingTask task_;
+  ElbowUpKinematics kinematics_;
+};
+
+enum class SimulationStatus : std::uint8_t { ok, cut_off, diverged, unreachable };
+const char* to_string(SimulationStatus status);
+
+struct RecordingOptions {
+  bool error_series = false;  // |tip - target| at the end of every control period
+  bool trajectory = false;
+};
+
+struct TrajectorySample {
+  double time_s;
+  std::vector<double> q_rad, target_rad, effort_n_m;
+  Eigen::Vector3d tip_m, target_m;
+};
+
+struct TrackingResult {
+  SimulationStatus status = SimulationStatus::ok;
+  std::string reason;                 // for every status but ok
+  int steps = 0;                      // control periods simulated
+  std::vector<double> point_error_m;  // points 1..n, as far as they were reached; after a cut-off or divergence in training
+                                      // the rest is filled with the cut-off error
+  double mean_error_m = 0;            // the case's error; meaningful for ok and, under a cut-off policy, for cut_off and diverged
+  std::vector<double> peak_effort_n_m, rms_effort_n_m, saturated_share;  // one a joint
+  double energy_j = 0;                // positive mechanical work of all joints, sum of max(0, effort x rotation)
+  std::vector<double> error_series_m;          // on request
+  std::vector<TrajectorySample> trajectory;    // on request
+};
+
+// One simulation: a design on a test case.
+struct TrackingJob {
+  const ArmDesign* design = nullptr;
+  const TargetTable* targets = nullptr;
+  // Training only: a case whose error exceeds this is abandoned; that point and the rest count as this error.
+  double cutoff_m = std::numeric_limits<double>::infinity();
+  RecordingOptions recording;
+};
+
+}  // namespace armwright
