@@ -1,0 +1,82 @@
+#include "problems/design_file.hpp"
+
+#include <fmt/format.h>
+
+#include "base/config.hpp"
+#include "base/text.hpp"
+#include "problems/config_files.hpp"
+
+namespace armwright {
+namespace {
+
+std::string quote(std::string_view text) {
+  std::string quoted = "\"";
+  for (const char c : sanitize(text)) {
+    if (c == '"' || c == '\\') {
+      quoted += '\\';
+    }
+    quoted += c;
+  }
+  return quoted + '"';
+}
+
+PublishedResult read_published(const ConfigTable& table) {
+  PublishedResult published;
+  published.label = table.get_string("label");
+  published.problem = table.get_string("problem");
+  if (table.has("set")) {
+    published.overrides = table.get_strings("set");
+  }
+  if (table.has("error_m")) {
+    published.error_m = table.get_number("error_m", {.lower = 0, .lower_open = true});
+  }
+  published.where = table.get_string("where", "");
+  return published;
+}
+
+}  // namespace
+
+DesignFile load_design(std::string_view name_or_path) {
+  const auto path = resolve_config("designs", name_or_path);
+  const ConfigTable table = ConfigTable::load(path);
+  DesignFile file;
+  file.name = table.get_string("name", path.stem().string());
+  file.title = table.get_string("title", "");
+  file.source = table.get_string("source", "");
+  file.design.controller = table.get_choice("controller", controller_names(), "pid");
+  const ControllerRow& controller = find_controller(file.design.controller);
+  for (const ConfigTable& joint : table.get_tables("joint")) {
+    file.joint_names.push_back(joint.get_string("name", ""));
+    JointDrive drive;
+    for (const GainSpec& gain : controller.gains) {
+      drive.gains.push_back(joint.get_number(gain.key, {.lower = 0}));
+    }
+    drive.limits.min_n_m = joint.get_number("effort_min_n_m", {.upper = 0});
+    drive.limits.max_n_m = joint.get_number("effort_max_n_m", {.lower = 0});
+    file.design.joints.push_back(std::move(drive));
+  }
+  for (const ConfigTable& published : table.get_tables_or_empty("published")) {
+    file.published.push_back(read_published(published));
+  }
+  table.refuse_unknown();
+  return file;
+}
+
+std::string to_toml(const DesignFile& file) {
+  const ControllerRow& controller = find_controller(file.design.controller);
+  std::string text = fmt::format("name = {}\ntitle = {}\nsource = {}\ncontroller = {}\n",
+                                 quote(file.name), quote(file.title), quote(file.source),
+                                 quote(file.design.controller));
+  for (std::size_t i = 0; i < file.design.joints.size(); ++i) {
+    const JointDrive& joint = file.design.joints[i];
+    text += fmt::format("\n[[joint]]\nname = {}\n", quote(file.joint_names.at(i)));
+    for (std::size_t g = 0; g < controller.gains.size(); ++g) {
+      text += fmt::format("{} = {}\n", controller.gains[g].key, format_exact(joint.gains.at(g)));
+    }
+    text += fmt::format("effort_min_n_m = {}\neffort_max_n_m = {}\n",
+                        format_exact(joint.limits.min_n_m), format_exact(joint.limits.max_n_m));
+  }
+  return text;
+}
+
+}  // namespace armwright

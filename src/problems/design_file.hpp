@@ -1,0 +1,39 @@
+// Designs as TOML files: the controllers' gains and the effort limits of every joint, and, for published ones, what was reported of
+// them under which conditions.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/tracking.hpp"
+
+namespace armwright {
+
+// One published evaluation of a design.
+struct PublishedResult {
+  std::string label;                   // "A.10 with the 20 kg load"
+  std::string problem;                 // shipped problem that it was evaluated on
+  std::vector<std::string> overrides;  // KEY=VALUE, on top of the problem
+  std::optional<double> error_m;       // nothing: the source gives no number
+  std::string where;                   // "thesis, Fig. 6.13"
+};
+
+struct DesignFile {
+  std::string name;
+  std::string title;
+  std::string source;
+  std::vector<std::string> joint_names;
+  ArmDesign design;
+  std::vector<PublishedResult> published;
+};
+
+// Reads a shipped design by name or a file by path. Error{usage} names file, line, field, value and what is allowed.
+DesignFile load_design(std::string_view name_or_path);
+
+// The design as a file that load_design reads back bit for bit.
+std::string to_toml(const DesignFile& file);
+
+}  // namespace armwright

@@ -1,0 +1,258 @@
+#include "problems/problem_loader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/config.hpp"
+#include "base/error.hpp"
+#include "base/file.hpp"
+#include "base/hash.hpp"
+#include "base/text.hpp"
+#include "problems/analytic.hpp"
+#include "problems/config_files.hpp"
+#include "problems/design_file.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr std::size_t kInputLimit_bytes = std::size_t{8} << 20;
+constexpr std::int64_t kMostCases = 1'000'000;
+
+TrackingTask read_task(const ConfigTable& table, const ConfigTable& physics) {
+  TrackingTask task;
+  task.signal = find_signal(table.get_choice("signal", signal_names(), "complex"));
+  task.speed_m_per_s = table.get_number_or("speed_m_per_s", task.speed_m_per_s,
+                                           {.lower = 0.01, .upper = 100});
+  task.distance_limit_m =
+      table.get_number_or("distance_limit_m", task.distance_limit_m, {.lower = 0, .upper = 100});
+  task.trapezoid_acceleration_m_per_s2 =
+      table.get_number_or("trapezoid_acceleration_m_per_s2", task.trapezoid_acceleration_m_per_s2,
+                          {.lower = 0, .upper = 1e6, .lower_open = true});
+  task.rest_s = table.get_number_or("rest_s", task.rest_s, {.lower = 0, .upper = 60});
+  task.control_period_s =
+      table.get_number_or("control_period_s", task.control_period_s, {.lower = 1e-5, .upper = 0.1});
+  task.count_first_point = table.get_bool_or("count_first_point", task.count_first_point);
+  task.ik_bug = table.get_bool_or("ik_bug", task.ik_bug);
+  task.load_kg = table.get_number_or("load_kg", task.load_kg, {.lower = 0, .upper = 1000});
+
+  PhysicsSettings& p = task.physics;
+  p.gravity_m_per_s2 =
+      physics.get_number_or("gravity_m_per_s2", p.gravity_m_per_s2, {.lower = 0, .upper = 1000});
+  p.substeps = static_cast<int>(physics.get_integer_or("substeps", p.substeps, 1, 1000));
+  p.erp = physics.get_number_or("erp", p.erp, {.lower = 0, .upper = 1});
+  p.cfm = physics.get_number_or("cfm", p.cfm, {.lower = 0, .upper = 1});
+  return task;
+}
+
+WorkspaceSphere read_workspace(const ConfigTable& table) {
+  WorkspaceSphere sphere;
+  if (table.has("centre_m")) {
+    const auto centre = table.get_numbers("centre_m", {.lower = -1000, .upper = 1000});
+    if (centre.size() != 3) {
+      table.refuse("centre_m", "it must be three numbers: x, y and z in metres");
+    }
+    sphere.centre_m = {centre[0], centre[1], centre[2]};
+  }
+  sphere.radius_m = table.get_number_or("radius_m", sphere.radius_m, {.lower = 1e-3, .upper = 100});
+  sphere.shortest_move_m = table.get_number_or("shortest_move_m", sphere.shortest_move_m,
+                                               {.lower = 1e-6, .upper = 2 * sphere.radius_m});
+  sphere.points = static_cast<int>(table.get_integer_or("points", sphere.points, 3, 10000));
+  return sphere;
+}
+
+TrackingObjective read_objective(const ConfigTable& table) {
+  static const std::vector<std::string> kinds = {"error", "error_and_torque"};
+  TrackingObjective objective;
+  objective.with_torque = table.get_choice("kind", kinds, "error") == "error_and_torque";
+  const Range positive{.lower = 0, .upper = 1e12, .lower_open = true};
+  objective.torque_weight = table.get_number_or("torque_weight", 1, {.lower = 0, .upper = 1e6});
+  objective.error_scale_m = table.get_number_or("error_scale_m", objective.error_scale_m, positive);
+  objective.torque_scale_n_m =
+      table.get_number_or("torque_scale_n_m", objective.torque_scale_n_m, positive);
+  return objective;
+}
+
+// "p", "i", "d", "effort_min", "effort_max", for every joint or for those with a [[variables.joint]] of their own.
+std::vector<DesignParameter> read_parameters(const ConfigTable& table, const TrackingConfig& config) {
+  const ControllerRow& controller = find_controller(config.start.controller);
+  std::vector<std::string> valid;
+  for (const GainSpec& gain : controller.gains) {
+    valid.push_back(gain.name);
+  }
+  valid.insert(valid.end(), {"effort_min", "effort_max"});
+  const auto read_names = [&](const ConfigTable& where) {
+    const auto names = where.get_strings("optimize");
+    for (auto name = names.begin(); name != names.end(); ++name) {
+      if (std::find(valid.begin(), valid.end(), *name) == valid.end()) {
+        where.refuse("optimize", describe_unknown("design parameter", *name, valid));
+      }
+      if (std::find(names.begin(), name, *name) != name) {
+        where.refuse("optimize", fmt::format("'{}' stands there twice; name it once", *name));
+      }
+    }
+    return names;
+  };
+  const std::size_t joints = config.robot.joint_count();
+  std::vector<std::vector<std::string>> chosen(joints, table.has("optimize") ? read_names(table)
+                                                                             : valid);
+  std::vector<std::string> joint_names;
+  for (const Joint& joint : config.robot.joints) {
+    joint_names.push_back(joint.name);
+  }
+  for (const ConfigTable& joint : table.get_tables_or_empty("joint")) {
+    const std::string name = joint.get_choice("name", joint_names);
+    const auto found = std::find(joint_names.begin(), joint_names.end(), name);
+    chosen[static_cast<std::size_t>(found - joint_names.begin())] = read_names(joint);
+  }
+  std::vector<DesignParameter> parameters;
+  for (std::size_t joint = 0; joint < joints; ++joint) {
+    for (std::size_t i = 0; i < valid.size(); ++i) {
+      if (std::find(chosen[joint].begin(), chosen[joint].end(), valid[i]) == chosen[joint].end()) {
+        continue;
+      }
+      DesignParameter parameter;
+      parameter.joint = joint;
+      parameter.kind = i < controller.gains.size()    ? DesignParameter::Kind::gain
+                       : i == controller.gains.size() ? DesignParameter::Kind::effort_min
+                                                      : DesignParameter::Kind::effort_max;
+      parameter.gain = i;
+      parameters.push_back(parameter);
+    }
+  }
+  if (parameters.empty()) {
+    table.refuse("optimize", "at least one design parameter of one joint must be optimized");
+  }
+  return parameters;
+}
+
+CaseSets read_sets(const ConfigTable& table) {
+  CaseSets sets;
+  const auto read_name = [&](std::string_view key, std::string_view prefix, std::string& name) {
+    name = table.get_string(key, name);
+    if (name.rfind(prefix, 0) != 0 || name.size() == prefix.size()) {
+      table.refuse(key, fmt::format("a {} set must be named {}ID, as in {}1", key, prefix, prefix));
+    }
+  };
+  read_name("training", "train/", sets.training);
+  read_name("validation", "validation/", sets.validation);
+  read_name("test", "test/", sets.test);
+  sets.validation_cases = static_cast<int>(
+      table.get_integer_or("validation_cases", sets.validation_cases, 1, kMostCases));
+  sets.test_cases =
+      static_cast<int>(table.get_integer_or("test_cases", sets.test_cases, 1, kMostCases));
+  return sets;
+}
+
+Schedule read_schedule(const ConfigTable& table) {
+  static const std::vector<std::string> kinds = {"fixed", "fresh"};
+  Schedule schedule;
+  schedule.fresh = table.get_choice("kind", kinds, "fixed") == "fresh";
+  schedule.cases = static_cast<int>(table.get_integer_or("cases", 1, 1, kMostCases));
+  return schedule;
+}
+
+PublishedWinner read_published(const ConfigTable& table) {
+  PublishedWinner published;
+  if (table.has("error_m")) {
+    published.error_m = table.get_number("error_m", {.lower = 0, .lower_open = true});
+  }
+  if (table.has("total_torque_n_m")) {
+    published.total_torque_n_m =
+        table.get_number("total_torque_n_m", {.lower = 0, .lower_open = true});
+  }
+  published.design = table.get_string("design", "");
+  published.where = table.get_string("where", "");
+  return published;
+}
+
+void add_input(LoadedProblem& loaded, const std::filesystem::path& file) {
+  loaded.input_hashes[file.filename().string()] = calc_sha256_hex(read_file(file, kInputLimit_bytes));
+}
+
+void load_tracking(const ConfigTable& table, LoadedProblem& loaded) {
+  TrackingConfig config;
+  config.name = loaded.name;
+  config.summary = loaded.title;
+  const ConfigTable robot = table.get_table("robot");
+  const auto urdf = resolve_config("robots", robot.get_string("urdf"));
+  config.robot = load_urdf(urdf);
+  add_input(loaded, urdf);
+
+  const ConfigTable physics = table.get_table_or_empty("physics");
+  config.engine = physics.get_choice("engine", engine_names(), "ode");
+  config.task = read_task(table.get_table_or_empty("task"), physics);
+  config.workspace = read_workspace(table.get_table_or_empty("workspace"));
+  config.objective = read_objective(table.get_table_or_empty("objective"));
+  config.cutoff_error_m = table.get_table_or_empty("training")
+                              .get_number_or("cutoff_error_m", config.cutoff_error_m,
+                                             {.lower = kFailureError_m, .upper = 1e6});
+
+  const ConfigTable variables = table.get_table("variables");
+  const std::string start = variables.get_string("start");
+  config.start = load_design(start).design;
+  add_input(loaded, resolve_config("designs", start));
+  config.bounds_factor = variables.get_number_or("bounds_factor", config.bounds_factor,
+                                                 {.lower = 1, .upper = 1e9, .lower_open = true});
+  if (config.start.joints.size() != config.robot.joint_count()) {
+    variables.refuse("start", fmt::format("the design has {} joints and the robot {}; name a design "
+                                          "made for this robot",
+                                          config.start.joints.size(), config.robot.joint_count()));
+  }
+  config.parameters = read_parameters(variables, config);
+  loaded.tracking = std::make_shared<TrackingProblem>(std::move(config));
+  loaded.problem = loaded.tracking;
+
+  if (table.has("sweep")) {
+    const ConfigTable sweep = table.get_table("sweep");
+    loaded.sweep = {sweep.get_string("parameter"), sweep.get_numbers("values"),
+                    sweep.get_string("design")};
+  }
+}
+
+void load_analytic(const ConfigTable& table, LoadedProblem& loaded) {
+  const ConfigTable function = table.get_table("function");
+  const std::string name = function.get_choice("name", analytic_names());
+  const auto dimension = static_cast<int>(function.get_integer_or("dimension", 10, 1, 1000));
+  loaded.problem = make_analytic(name, dimension);
+  loaded.sets.validation_cases = 1;  // a function has no cases to tell apart
+  loaded.sets.test_cases = 1;
+}
+
+}  // namespace
+
+LoadedProblem load_problem(std::string_view name_or_path, std::span<const std::string> overrides) {
+  const auto path = resolve_config("problems", name_or_path);
+  const ConfigTable table = ConfigTable::load(path, overrides);
+  LoadedProblem loaded;
+  loaded.name = path.stem().string();
+  loaded.title = table.get_string("title", loaded.name);
+  table.get_string("description", "");
+  loaded.schedule = read_schedule(table.get_table_or_empty("schedule"));
+  loaded.sets = read_sets(table.get_table_or_empty("sets"));
+  const ConfigTable run = table.get_table_or_empty("run");
+  loaded.optimizer = run.get_string("optimizer", "ga");
+  loaded.budget = run.get_integer_or("budget", 10000, 0, 1'000'000'000'000);
+  loaded.published = read_published(table.get_table_or_empty("published"));
+
+  static const std::vector<std::string> kinds = {"tracking", "analytic"};
+  if (table.get_choice("kind", kinds) == "tracking") {
+    load_tracking(table, loaded);
+  } else {
+    load_analytic(table, loaded);
+  }
+  table.refuse_unknown();
+  loaded.resolved_json = table.to_json();
+  return loaded;
+}
+
+std::vector<ProblemTitle> list_problems() {
+  std::vector<ProblemTitle> titles;
+  for (const std::string& name : list_configs("problems")) {
+    const ConfigTable table = ConfigTable::load(resolve_config("problems", name));
+    titles.push_back({name, table.get_string("title", "")});
+  }
+  return titles;
+}
+
+}  // namespace armwright

@@ -1,0 +1,41 @@
+#include "problems/target_cache.hpp"
+
+namespace armwright {
+
+std::shared_ptr<const TargetTable> TargetCache::get(const TrackingSetup& setup, const TestSet& set,
+                                                    std::uint64_t number) {
+  const Key key(set.name(), number);
+  std::shared_ptr<Entry> entry;
+  {
+    const std::lock_guard lock(mutex_);
+    auto& slot = entries_[key];
+    if (!slot) {
+      slot = std::make_shared<Entry>();
+      oldest_first_.push_back(key);
+    }
+    entry = slot;
+  }
+  std::call_once(entry->once, [&] {
+    entry->table = setup.make_targets(set.make_case(number));
+    ++computed_;
+  });
+  {
+    const std::lock_guard lock(mutex_);
+    if (!entry->counted) {
+      entry->counted = true;
+      size_bytes_ += entry->table.size_bytes();
+    }
+    while (size_bytes_ > limit_bytes_ && oldest_first_.size() > 1) {
+      const auto oldest = entries_.find(oldest_first_.front());
+      if (!oldest->second->counted) {
+        break;  // still being computed by another thread
+      }
+      size_bytes_ -= oldest->second->table.size_bytes();
+      entries_.erase(oldest);
+      oldest_first_.pop_front();
+    }
+  }
+  return {entry, &entry->table};
+}
+
+}  // namespace armwright

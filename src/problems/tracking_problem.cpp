@@ -1,0 +1,273 @@
+#include "problems/tracking_problem.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr std::size_t kTargetCache_bytes = std::size_t{512} << 20;
+
+// What simulate() puts into a case's metrics before the peaks and root-mean-squares of the joints' efforts.
+enum CaseMetric : std::size_t { kEnergy, kSaturation, kFirstJointMetric };
+
+double& get_parameter(ArmDesign& design, const DesignParameter& parameter) {
+  JointDrive& joint = design.joints[parameter.joint];
+  switch (parameter.kind) {
+    case DesignParameter::Kind::effort_min:
+      return joint.limits.min_n_m;
+    case DesignParameter::Kind::effort_max:
+      return joint.limits.max_n_m;
+    case DesignParameter::Kind::gain:
+      break;
+  }
+  return joint.gains[parameter.gain];
+}
+
+DecisionVariable make_variable(const TrackingConfig& config, const DesignParameter& parameter) {
+  const std::string& joint = config.robot.joints[parameter.joint].name;
+  DecisionVariable variable;
+  switch (parameter.kind) {
+    case DesignParameter::Kind::gain: {
+      const GainSpec& gain = find_controller(config.start.controller).gains[parameter.gain];
+      variable.name = joint + "." + gain.name;
+      variable.unit = gain.unit;
+      break;
+    }
+    case DesignParameter::Kind::effort_min:
+      variable.name = joint + ".effort_min";
+      variable.unit = "N m";
+      break;
+    case DesignParameter::Kind::effort_max:
+      variable.name = joint + ".effort_max";
+      variable.unit = "N m";
+      break;
+  }
+  ArmDesign start = config.start;
+  variable.start = get_parameter(start, parameter);
+  if (variable.start == 0) {
+    throw Error(ErrorKind::usage,
+                fmt::format("problem {}: {} starts at 0, but a variable spans a factor around its "
+                            "start value; start it elsewhere or do not optimize it",
+                            config.name, variable.name));
+  }
+  variable.scale = Scale::logarithmic;
+  const auto [lower, upper] = std::minmax(variable.start / config.bounds_factor,
+                                          variable.start * config.bounds_factor);
+  variable.lower = lower;
+  variable.upper = upper;
+  return variable;
+}
+
+ProblemDescription make_description(const TrackingConfig& config) {
+  ProblemDescription description;
+  description.name = config.name;
+  description.summary = config.summary;
+  description.cost_unit = "simulated test case";
+  for (const DesignParameter& parameter : config.parameters) {
+    description.variables.push_back(make_variable(config, parameter));
+  }
+  description.objectives = {config.objective.with_torque ? Quantity{"error and torque", "1"}
+                                                         : Quantity{"error", "m"}};
+  description.metrics = {{"error", "m"}, {"total_torque", "N m"}, {"failures", "1"},
+                         {"energy", "J"}, {"saturated_share", "1"}};
+  for (const Joint& joint : config.robot.joints) {
+    description.metrics.push_back({joint.name + ".peak_effort", "N m"});
+    description.metrics.push_back({joint.name + ".rms_effort", "N m"});
+  }
+  return description;
+}
+
+CaseOutcome make_outcome(const TrackingResult& result, bool training) {
+  CaseOutcome outcome;
+  outcome.reason = result.reason;
+  switch (result.status) {
+    case SimulationStatus::ok:
+    case SimulationStatus::cut_off:  // an ordinary, bad result of training: the error counts as the limit from there on
+      break;
+    case SimulationStatus::diverged:
+      outcome.status = EvaluationStatus::diverged;
+      outcome.has_error = training;  // in training it counts like a cut-off; nowhere else does a number stand for it
+      break;
+    case SimulationStatus::unreachable:
+      outcome.status = EvaluationStatus::unreachable;
+      outcome.has_error = false;
+      return outcome;
+  }
+  outcome.error = outcome.has_error ? result.mean_error_m : 0;
+  const double joints = static_cast<double>(result.saturated_share.size());
+  double saturation = 0;
+  for (const double share : result.saturated_share) {
+    saturation += share / joints;
+  }
+  outcome.metrics = {result.energy_j, saturation};
+  for (std::size_t i = 0; i < result.peak_effort_n_m.size(); ++i) {
+    outcome.metrics.push_back(result.peak_effort_n_m[i]);
+    outcome.metrics.push_back(result.rms_effort_n_m[i]);
+  }
+  return outcome;
+}
+
+}  // namespace
+
+TrackingProblem::TrackingProblem(TrackingConfig config)
+    : config_(std::move(config)),
+      setup_(config_.robot, config_.task),
+      engine_(make_engine(config_.engine)),
+      targets_(kTargetCache_bytes) {
+  check_design(config_.start);
+  description_ = make_description(config_);
+}
+
+void TrackingProblem::check_design(const ArmDesign& design) const {
+  if (design.joints.size() != config_.robot.joint_count()) {
+    throw Error(ErrorKind::usage,
+                fmt::format("the design has {} joints, the robot {} of problem {} has {}; use a design "
+                            "made for this robot",
+                            design.joints.size(), config_.robot.name, config_.name,
+                            config_.robot.joint_count()));
+  }
+}
+
+void TrackingProblem::add_set(const TestSet& set) {
+  sets_.insert_or_assign(set.name(), set);
+}
+
+TestSet TrackingProblem::get_set(const std::string& name) const {
+  const auto found = sets_.find(name);
+  return found != sets_.end() ? found->second : TestSet::make_generated(name, config_.workspace);
+}
+
+ArmDesign TrackingProblem::make_design(std::span<const double> x) const {
+  ArmDesign design = config_.start;
+  for (std::size_t i = 0; i < config_.parameters.size(); ++i) {
+    get_parameter(design, config_.parameters[i]) = x[i];
+  }
+  return design;
+}
+
+std::vector<double> TrackingProblem::make_vector(const ArmDesign& design) const {
+  check_design(design);
+  ArmDesign copy = design;
+  std::vector<double> x;
+  for (const DesignParameter& parameter : config_.parameters) {
+    x.push_back(get_parameter(copy, parameter));
+  }
+  return x;
+}
+
+std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs) const {
+  std::vector<ArmDesign> designs;
+  designs.reserve(jobs.size());  // no reallocation: the jobs below point into it
+  std::vector<std::shared_ptr<const TargetTable>> tables;
+  std::vector<TrackingJob> tracking;
+  std::map<std::string, TestSet> sets;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    const CaseJob& job = jobs[i];
+    if (i == 0 || job.x.data() != jobs[i - 1].x.data()) {
+      designs.push_back(make_design(job.x));
+    }
+    auto set = sets.find(job.block->set);
+    if (set == sets.end()) {
+      set = sets.emplace(job.block->set, get_set(job.block->set)).first;
+    }
+    tables.push_back(targets_.get(setup_, set->second, job.number));
+    TrackingJob one;
+    one.design = &designs.back();
+    one.targets = tables.back().get();
+    if (job.block->role == CaseRole::training) {
+      one.cutoff_m = config_.cutoff_error_m;
+    }
+    tracking.push_back(one);
+  }
+  const auto results = engine_->simulate(setup_, tracking);
+  std::vector<CaseOutcome> outcomes;
+  outcomes.reserve(jobs.size());
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    outcomes.push_back(make_outcome(results[i], jobs[i].block->role == CaseRole::training));
+  }
+  return outcomes;
+}
+
+TrackingResult TrackingProblem::track(const ArmDesign& design, const TestSet& set,
+                                      std::uint64_t number, RecordingOptions recording) const {
+  check_design(design);
+  const auto table = targets_.get(setup_, set, number);
+  TrackingJob job;
+  job.design = &design;
+  job.targets = table.get();
+  job.recording = recording;
+  return std::move(engine_->simulate(setup_, {&job, 1}).front());
+}
+
+Evaluation TrackingProblem::aggregate(std::span<const double> x,
+                                      std::span<const CaseOutcome> outcomes) const {
+  Evaluation evaluation;
+  const std::size_t joints = config_.robot.joint_count();
+  std::vector<double> sums(kFirstJointMetric + 2 * joints);
+  double error = 0;
+  double failures = 0;
+  double numbers = 0;
+  for (const CaseOutcome& outcome : outcomes) {
+    if (outcome.status != EvaluationStatus::ok && evaluation.status == EvaluationStatus::ok) {
+      evaluation.status = outcome.status;
+      evaluation.reason = outcome.reason;
+    }
+    if (!outcome.has_error) {
+      evaluation.case_errors.push_back(std::numeric_limits<double>::quiet_NaN());
+      ++evaluation.failed_cases;
+      ++failures;
+      continue;
+    }
+    evaluation.case_errors.push_back(outcome.error);
+    error += outcome.error;
+    failures += outcome.error > kFailureError_m ? 1 : 0;
+    ++numbers;
+    sums[kEnergy] += outcome.metrics[kEnergy];
+    sums[kSaturation] += outcome.metrics[kSaturation];
+    for (std::size_t i = kFirstJointMetric; i < sums.size(); i += 2) {
+      sums[i] = std::max(sums[i], outcome.metrics[i]);
+      sums[i + 1] += outcome.metrics[i + 1];
+    }
+  }
+  if (numbers == 0) {
+    return evaluation;
+  }
+  error /= numbers;
+  const double torque = calc_total_torque_n_m(make_design(x));
+  const TrackingObjective& objective = config_.objective;
+  evaluation.objectives = {objective.with_torque
+                               ? error / objective.error_scale_m +
+                                     objective.torque_weight * torque / objective.torque_scale_n_m
+                               : error};
+  evaluation.metrics = {error, torque, failures, sums[kEnergy] / numbers,
+                        sums[kSaturation] / numbers};
+  for (std::size_t i = kFirstJointMetric; i < sums.size(); i += 2) {
+    evaluation.metrics.push_back(sums[i]);
+    evaluation.metrics.push_back(sums[i + 1] / numbers);
+  }
+  return evaluation;
+}
+
+std::vector<double> TrackingProblem::penalty_objectives() const {
+  // Ten times the error of a design that is cut off at once on every case, and as much torque as the box allows.
+  const double error = 10 * config_.cutoff_error_m;
+  if (!config_.objective.with_torque) {
+    return {error};
+  }
+  ArmDesign strongest = config_.start;
+  for (const DesignParameter& parameter : config_.parameters) {
+    if (parameter.kind != DesignParameter::Kind::gain) {
+      get_parameter(strongest, parameter) *= config_.bounds_factor;
+    }
+  }
+  return {error / config_.objective.error_scale_m + config_.objective.torque_weight *
+                                                        calc_total_torque_n_m(strongest) /
+                                                        config_.objective.torque_scale_n_m};
+}
+
+}  // namespace armwright

@@ -1,0 +1,88 @@
+// The thesis's problem: tune the controllers and effort limits of an arm so that its tip follows a moving target. Objectives:
+//   error              e, the mean over the cases of the case's positional error (m)
+//   error_and_torque   e / e_0 + w tau / tau_0, tau = sum over the joints of max(-min, max) effort limit (thesis eq. of section 6.3)
+// Decision variables: any of the controllers' gains and effort limits of any joints, in natural units, bounded by a factor around
+// the start values, sign kept; what is not a variable keeps its start value.
+#pragma once
+
+#include <limits>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "problems/problem.hpp"
+#include "problems/target_cache.hpp"
+#include "sim/physics_engine.hpp"
+#include "sim/tracking.hpp"
+
+namespace armwright {
+
+// A case whose error exceeds this counts as failed in every summary (the arm lost its target).
+inline constexpr double kFailureError_m = 0.1;
+
+struct TrackingObjective {
+  bool with_torque = false;
+  double torque_weight = 0;          // w
+  double error_scale_m = 0.0058;     // e_0: the thesis's Q1 winner
+  double torque_scale_n_m = 963686;  // tau_0: the same
+};
+
+// One number of the design that is optimized.
+struct DesignParameter {
+  enum class Kind { gain, effort_min, effort_max };
+  std::size_t joint = 0;
+  Kind kind = Kind::gain;
+  std::size_t gain = 0;  // which one, for a gain
+};
+
+struct TrackingConfig {
+  std::string name;
+  std::string summary;
+  RobotModel robot;
+  TrackingTask task;
+  WorkspaceSphere workspace;
+  std::string engine = "ode";
+  double cutoff_error_m = 1.0;  // training only
+  TrackingObjective objective;
+  ArmDesign start;
+  std::vector<DesignParameter> parameters;
+  double bounds_factor = 100;
+};
+
+class TrackingProblem final : public Problem {
+ public:
+  explicit TrackingProblem(TrackingConfig config);
+
+  const ProblemDescription& description() const override { return description_; }
+  std::vector<CaseOutcome> simulate(std::span<const CaseJob> jobs) const override;
+  Evaluation aggregate(std::span<const double> x,
+                       std::span<const CaseOutcome> outcomes) const override;
+  std::vector<double> penalty_objectives() const override;
+
+  // Makes a finite set (a file of test cases) available under its name. Before the first evaluation only.
+  void add_set(const TestSet& set);
+  TestSet get_set(const std::string& name) const;
+
+  ArmDesign make_design(std::span<const double> x) const;
+  std::vector<double> make_vector(const ArmDesign& design) const;  // the variables of a design; bounds are not checked
+  // A design on one case, without cut-off, with whatever recording is asked for. Error{usage} if the design is for another robot.
+  TrackingResult track(const ArmDesign& design, const TestSet& set, std::uint64_t number,
+                       RecordingOptions recording = {}) const;
+  void check_design(const ArmDesign& design) const;
+
+  const TrackingConfig& config() const { return config_; }
+  const TrackingSetup& setup() const { return setup_; }
+  const TargetCache& targets() const { return targets_; }
+
+ private:
+  TrackingConfig config_;
+  TrackingSetup setup_;
+  ProblemDescription description_;
+  std::unique_ptr<PhysicsEngine> engine_;
+  std::map<std::string, TestSet> sets_;
+  mutable TargetCache targets_;
+};
+
+}  // namespace armwright

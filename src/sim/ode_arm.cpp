@@ -1,0 +1,200 @@
+#include "sim/ode_arm.hpp"
+
+#include <fmt/format.h>
+#include <ode/ode.h>
+
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <vector>
+
+namespace armwright {
+namespace {
+
+constexpr double kFarthest_m = 1e3;
+constexpr double kFastest_rad_per_s = 1e6;
+
+// ODE reports trouble through process-wide handlers and then aborts the process; ours throw instead, and the world that was being
+// stepped is discarded by its owner.
+[[noreturn]] void throw_ode_message(int number, const char* format, va_list arguments) {
+  char text[512];
+  std::vsnprintf(text, sizeof text, format, arguments);
+  throw DivergenceError(fmt::format("ODE stopped (message {}): {}", number, text));
+}
+
+// Owns the library's global state; made before the first world and destroyed at the end of the process.
+class OdeLibrary {
+ public:
+  OdeLibrary() {
+    dInitODE2(dInitFlagManualThreadCleanup);
+    dSetErrorHandler(throw_ode_message);
+    dSetDebugHandler(throw_ode_message);
+  }
+  ~OdeLibrary() { dCloseODE(); }
+  OdeLibrary(const OdeLibrary&) = delete;
+  OdeLibrary& operator=(const OdeLibrary&) = delete;
+};
+
+// ODE keeps data per thread; this frees it when the thread ends.
+class OdeThread {
+ public:
+  OdeThread() { dAllocateODEDataForThread(dAllocateMaskAll); }
+  ~OdeThread() { dCleanupODEAllDataForThread(); }
+  OdeThread(const OdeThread&) = delete;
+  OdeThread& operator=(const OdeThread&) = delete;
+};
+
+void prepare_ode_on_this_thread() {
+  static const OdeLibrary library;
+  thread_local const OdeThread thread;
+}
+
+struct WorldDeleter {
+  void operator()(dxWorld* world) const { dWorldDestroy(world); }  // its bodies and joints go with it
+};
+
+}  // namespace
+
+struct OdeArm::World {
+  const RobotModel* model;
+  double gravity;
+  std::unique_ptr<dxWorld, WorldDeleter> world;
+  std::vector<dBodyID> bodies;
+  std::vector<dJointID> hinges;
+  std::vector<double> start_rad;
+  Eigen::Vector3d tip_in_body_m;
+
+  void check() const {
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      const dReal* position = dBodyGetPosition(bodies[i]);
+      const dReal* spin = dBodyGetAngularVel(bodies[i]);
+      const double distance = std::abs(position[0]) + std::abs(position[1]) + std::abs(position[2]);
+      const double rate = std::abs(spin[0]) + std::abs(spin[1]) + std::abs(spin[2]);
+      if (distance < kFarthest_m && rate < kFastest_rad_per_s) {  // false for NaN too
+        continue;
+      }
+      throw DivergenceError(fmt::format(
+          "joint {} ({}): its link is {:.3g} m from the base and turns at {:.3g} rad/s", i + 1,
+          model->joints[i].name, distance, rate));
+    }
+  }
+};
+
+OdeArm::OdeArm(const RobotModel& model, std::span<const double> q_rad,
+               const PhysicsSettings& physics)
+    : world_(std::make_unique<World>()) {
+  prepare_ode_on_this_thread();
+  World& w = *world_;
+  w.model = &model;
+  w.gravity = physics.gravity_m_per_s2;
+  w.world.reset(dWorldCreate());
+  dWorldSetGravity(w.world.get(), 0, 0, -physics.gravity_m_per_s2);
+  dWorldSetERP(w.world.get(), physics.erp);
+  dWorldSetCFM(w.world.get(), physics.cfm);
+  dWorldSetAutoDisableFlag(w.world.get(), 0);
+  w.start_rad.assign(q_rad.begin(), q_rad.end());
+
+  const auto poses = calc_link_poses(model, q_rad);
+  for (std::size_t i = 0; i < model.joint_count(); ++i) {
+    const Inertial& inertial = model.links[i].inertial;
+    const Eigen::Vector3d com = poses[i] * inertial.com_m;
+    const Eigen::Matrix3d rotation = poses[i].linear();
+    const Eigen::Matrix3d& inertia = inertial.inertia_kg_m2;
+
+    const dBodyID body = dBodyCreate(w.world.get());
+    dMass mass;
+    dMassSetParameters(&mass, inertial.mass_kg, 0, 0, 0, inertia(0, 0), inertia(1, 1),
+                       inertia(2, 2), inertia(0, 1), inertia(0, 2), inertia(1, 2));
+    dBodySetMass(body, &mass);
+    dBodySetPosition(body, com.x(), com.y(), com.z());
+    dMatrix3 r = {};
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) {
+        r[4 * row + column] = rotation(row, column);
+      }
+    }
+    dBodySetRotation(body, r);
+    dBodySetGyroscopicMode(body, 1);
+
+    const dJointID hinge = dJointCreateHinge(w.world.get(), nullptr);
+    dJointAttach(hinge, body, i == 0 ? nullptr : w.bodies.back());
+    const Eigen::Vector3d anchor = poses[i].translation();
+    const Eigen::Vector3d axis = rotation * model.joints[i].axis;
+    dJointSetHingeAnchor(hinge, anchor.x(), anchor.y(), anchor.z());
+    dJointSetHingeAxis(hinge, axis.x(), axis.y(), axis.z());
+    w.bodies.push_back(body);
+    w.hinges.push_back(hinge);
+  }
+  w.tip_in_body_m = model.tip_pose.translation() - model.links.back().inertial.com_m;
+}
+
+OdeArm::~OdeArm() = default;
+
+void OdeArm::step(std::span<const double> effort_n_m, double dt_s) {
+  World& w = *world_;
+  for (std::size_t i = 0; i < w.hinges.size(); ++i) {
+    if (!std::isfinite(effort_n_m[i])) {
+      throw DivergenceError(fmt::format("joint {} ({}): its controller asks for a non-finite effort",
+                                        i + 1, w.model->joints[i].name));
+    }
+    dJointAddHingeTorque(w.hinges[i], effort_n_m[i]);
+  }
+  dWorldStep(w.world.get(), dt_s);
+  w.check();
+}
+
+void OdeArm::read_angles(std::span<double> q_rad) const {
+  for (std::size_t i = 0; i < world_->hinges.size(); ++i) {
+    // ODE counts from the posture in which the hinge was attached.
+    q_rad[i] = wrap_angle(world_->start_rad[i] + dJointGetHingeAngle(world_->hinges[i]));
+  }
+}
+
+void OdeArm::read_rates(std::span<double> qd_rad_per_s) const {
+  for (std::size_t i = 0; i < world_->hinges.size(); ++i) {
+    qd_rad_per_s[i] = dJointGetHingeAngleRate(world_->hinges[i]);
+  }
+}
+
+Eigen::Vector3d OdeArm::tip_position_m() const {
+  const dBodyID body = world_->bodies.back();
+  const dReal* p = dBodyGetPosition(body);
+  const dReal* r = dBodyGetRotation(body);
+  const Eigen::Vector3d& tip = world_->tip_in_body_m;
+  Eigen::Vector3d world;
+  for (int row = 0; row < 3; ++row) {
+    world[row] = p[row] + r[4 * row] * tip.x() + r[4 * row + 1] * tip.y() + r[4 * row + 2] * tip.z();
+  }
+  return world;
+}
+
+Eigen::Vector3d OdeArm::com_position_m(std::size_t link) const {
+  const dReal* p = dBodyGetPosition(world_->bodies[link]);
+  return {p[0], p[1], p[2]};
+}
+
+double OdeArm::calc_kinetic_energy_j() const {
+  double energy = 0;
+  for (std::size_t i = 0; i < world_->bodies.size(); ++i) {
+    const Inertial& inertial = world_->model->links[i].inertial;
+    const dReal* v = dBodyGetLinearVel(world_->bodies[i]);
+    const dReal* omega = dBodyGetAngularVel(world_->bodies[i]);
+    dVector3 local;
+    dBodyVectorFromWorld(world_->bodies[i], omega[0], omega[1], omega[2], local);
+    const Eigen::Vector3d spin(local[0], local[1], local[2]);
+    const Eigen::Vector3d speed(v[0], v[1], v[2]);
+    energy += 0.5 * inertial.mass_kg * speed.squaredNorm() +
+              0.5 * spin.dot(inertial.inertia_kg_m2 * spin);
+  }
+  return energy;
+}
+
+double OdeArm::calc_potential_energy_j() const {
+  double energy = 0;
+  for (std::size_t i = 0; i < world_->bodies.size(); ++i) {
+    energy += world_->model->links[i].inertial.mass_kg * world_->gravity * com_position_m(i).z();
+  }
+  return energy;
+}
+
+}  // namespace armwright

@@ -1,0 +1,112 @@
+// One tracking simulation, written once for every engine that steps a single arm: the timeline, the controllers and the measures.
+// `Arm` needs step(effort, dt), read_angles(q) and tip_position_m(), and throws DivergenceError when it cannot go on.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/ode_arm.hpp"
+#include "sim/tracking.hpp"
+
+namespace armwright {
+
+class TrackingLoop {
+ public:
+  TrackingLoop(const TrackingSetup& setup, const TrackingJob& job);
+
+  template <class Arm>
+  TrackingResult run(Arm& arm);
+
+ private:
+  template <class Arm>
+  void step(Arm& arm, std::span<const double> targets);
+  template <class Arm>
+  void record(const Arm& arm, const Segment& segment, int step);
+  void abandon(SimulationStatus status, std::string reason);
+  void finish();
+
+  const TrackingSetup& setup_;
+  const TrackingJob& job_;
+  double period_s_;
+  double substep_s_;
+  std::vector<std::unique_ptr<Controller>> controllers_;
+  std::vector<double> q_, q_before_, effort_;
+  std::vector<double> saturated_steps_;
+  TrackingResult result_;
+};
+
+template <class Arm>
+void TrackingLoop::step(Arm& arm, std::span<const double> targets) {
+  for (std::size_t i = 0; i < q_.size(); ++i) {
+    effort_[i] = controllers_[i]->step(targets[i], q_[i], period_s_);
+  }
+  for (int substep = 0; substep < setup_.task().physics.substeps; ++substep) {
+    arm.step(effort_, substep_s_);
+  }
+  q_.swap(q_before_);
+  arm.read_angles(q_);
+  ++result_.steps;
+  for (std::size_t i = 0; i < q_.size(); ++i) {
+    const double magnitude = std::abs(effort_[i]);
+    result_.peak_effort_n_m[i] = std::max(result_.peak_effort_n_m[i], magnitude);
+    result_.rms_effort_n_m[i] += magnitude * magnitude;
+    saturated_steps_[i] += controllers_[i]->saturated() ? 1 : 0;
+    result_.energy_j += std::max(0.0, effort_[i] * wrap_angle(q_[i] - q_before_[i]));
+  }
+}
+
+template <class Arm>
+void TrackingLoop::record(const Arm& arm, const Segment& segment, int step) {
+  const Eigen::Vector3d tip = arm.tip_position_m();
+  const Eigen::Vector3d target = setup_.calc_target_position(segment, step);
+  if (job_.recording.error_series) {
+    result_.error_series_m.push_back((tip - target).norm());
+  }
+  if (job_.recording.trajectory) {
+    const auto targets = job_.targets->angles(segment.first_step + step);
+    result_.trajectory.push_back({result_.steps * period_s_, q_,
+                                  std::vector<double>(targets.begin(), targets.end()), effort_, tip,
+                                  target});
+  }
+}
+
+template <class Arm>
+TrackingResult TrackingLoop::run(Arm& arm) {
+  const bool recording = job_.recording.error_series || job_.recording.trajectory;
+  try {
+    arm.read_angles(q_);
+    for (const Segment& segment : job_.targets->segments) {
+      double worst_squared = 0;
+      for (int k = 0; k < segment.steps; ++k) {
+        step(arm, job_.targets->angles(segment.first_step + k));
+        if (k >= segment.window_start) {
+          worst_squared =
+              std::max(worst_squared, (arm.tip_position_m() - segment.to_m).squaredNorm());
+        }
+        if (recording) {
+          record(arm, segment, k);
+        }
+        if (worst_squared > job_.cutoff_m * job_.cutoff_m) {
+          abandon(SimulationStatus::cut_off,
+                  fmt::format("cut off at point {} ({:.2f} s): the error exceeds {} m",
+                              result_.point_error_m.size() + 1, result_.steps * period_s_,
+                              job_.cutoff_m));
+          finish();
+          return std::move(result_);
+        }
+      }
+      result_.point_error_m.push_back(std::sqrt(worst_squared));
+    }
+  } catch (const DivergenceError& error) {
+    abandon(SimulationStatus::diverged,
+            fmt::format("diverged at {:.2f} s, on the way to point {}: {}",
+                        (result_.steps + 1) * period_s_, result_.point_error_m.size() + 1,
+                        error.what()));
+  }
+  finish();
+  return std::move(result_);
+}
+
+}  // namespace armwright
