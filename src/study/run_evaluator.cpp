@@ -1,0 +1,279 @@
+#include "study/run_evaluator.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <mutex>
+#include <numeric>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+
+namespace armwright {
+namespace {
+
+bool same_bits(std::span<const double> a, std::span<const double> b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+}
+
+bool is_feasible(const Evaluation& evaluation) {
+  return !evaluation.objectives.empty() &&
+         std::all_of(evaluation.constraint_values.begin(), evaluation.constraint_values.end(),
+                     [](double g) { return g <= 0; });
+}
+
+}  // namespace
+
+RunEvaluator::RunEvaluator(const RunPlan& plan, CaseRunner& runner, StopSignal& stop,
+                           Journal& journal, std::vector<EvaluationRecord> recorded,
+                           RunObserver& observer)
+    : plan_(plan), runner_(runner), stop_(stop), journal_(journal), observer_(observer) {
+  for (EvaluationRecord& record : recorded) {
+    recorded_.resize(std::max<std::size_t>(recorded_.size(), record.index + 1));
+    const std::uint64_t index = record.index;
+    recorded_[index] = std::move(record);
+  }
+  block_.role = CaseRole::training;
+  block_.set = plan.problem.sets.training;
+  block_.numbers.resize(static_cast<std::size_t>(plan.schedule.cases));
+  std::iota(block_.numbers.begin(), block_.numbers.end(), std::uint64_t{0});
+}
+
+const ProblemDescription& RunEvaluator::problem() const {
+  return plan_.problem.problem->description();
+}
+
+bool RunEvaluator::stopped() const {
+  return stopped_ || budget_spent_ || stop_.reason() != StopReason::none;
+}
+
+std::int64_t RunEvaluator::remaining() const {
+  return (plan_.budget - static_cast<std::int64_t>(counts_.cases)) / plan_.schedule.cases;
+}
+
+void RunEvaluator::begin_generation() {
+  if (stopped()) {
+    return;
+  }
+  if (plan_.schedule.fresh) {
+    const std::uint64_t first = counts_.generations * block_.numbers.size();
+    std::iota(block_.numbers.begin(), block_.numbers.end(), first);
+    if (incumbent_) {
+      candidates_.push_back(*incumbent_);
+      incumbent_.reset();
+    }
+  }
+  ++counts_.generations;
+}
+
+void RunEvaluator::recommend(std::span<const double> x) {
+  if (stopped()) {
+    return;
+  }
+  const EvaluationRecord request = make_request(x);
+  candidates_.push_back({request.x, 0, counts_.generations, true, 0});
+}
+
+EvaluationRecord RunEvaluator::make_request(std::span<const double> x) const {
+  const auto& variables = problem().variables;
+  if (x.size() != variables.size()) {
+    throw Error(ErrorKind::usage,
+                fmt::format("optimizer '{}' asked for a point of {} numbers; problem {} has {} "
+                            "decision variables",
+                            plan_.optimizer, x.size(), plan_.problem.name, variables.size()));
+  }
+  EvaluationRecord request;
+  request.generation = counts_.generations;
+  request.cases = block_;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    // A coordinate that is no number at all goes to the start value: there is no nearest point inside.
+    const double inside = std::isnan(x[i])
+                              ? variables[i].start
+                              : std::clamp(x[i], variables[i].lower, variables[i].upper);
+    request.clipped = request.clipped || !(inside == x[i]);
+    request.x.push_back(inside);
+  }
+  return request;
+}
+
+void RunEvaluator::check_replay(const EvaluationRecord& request,
+                                const EvaluationRecord& recorded) const {
+  std::string difference;
+  if (recorded.cases.numbers != request.cases.numbers || recorded.cases.set != request.cases.set) {
+    difference = "its training cases differ";
+  } else if (!same_bits(recorded.x, request.x)) {
+    difference = "the decision vector differs";
+    for (std::size_t i = 0; i < std::min(request.x.size(), recorded.x.size()); ++i) {
+      if (!same_bits({&request.x[i], 1}, {&recorded.x[i], 1})) {
+        difference = fmt::format("{} was {} and is now {}", problem().variables[i].name,
+                                 format_exact(recorded.x[i]), format_exact(request.x[i]));
+        break;
+      }
+    }
+  } else if (recorded.generation != request.generation || recorded.clipped != request.clipped) {
+    difference = "its generation or clipping differs";
+  }
+  if (!difference.empty()) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("evaluation {} of the journal is not what optimizer '{}' asks for now: {}. "
+                            "The run was made by another version, machine or plugin; resume it there, "
+                            "or start a new run with --new",
+                            recorded.index, plan_.optimizer, difference));
+  }
+}
+
+std::vector<Score> RunEvaluator::evaluate(std::span<const std::vector<double>> points) {
+  if (stopped()) {
+    return {};
+  }
+  const auto allowed = static_cast<std::size_t>(std::max<std::int64_t>(0, remaining()));
+  if (points.size() > allowed) {
+    points = points.first(allowed);
+    budget_spent_ = true;
+  }
+  std::vector<EvaluationRecord> requests;
+  std::vector<std::size_t> missing;
+  std::uint64_t replayed = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EvaluationRecord request = make_request(points[i]);
+    request.index = counts_.evaluations + i;
+    if (request.index < recorded_.size() && recorded_[request.index]) {
+      check_replay(request, *recorded_[request.index]);
+      request.evaluation = std::move(recorded_[request.index]->evaluation);
+      recorded_[request.index].reset();
+      ++replayed;
+    } else {
+      missing.push_back(i);
+    }
+    requests.push_back(std::move(request));
+  }
+
+  std::vector<CandidateJob> jobs;
+  for (const std::size_t i : missing) {
+    jobs.push_back({requests[i].x, &requests[i].cases});
+  }
+  std::mutex mutex;
+  std::uint64_t finished = replayed;
+  const std::uint64_t cases_each = block_.numbers.size();
+  const auto evaluations = runner_.run(jobs, [&](std::size_t job, const Evaluation& evaluation) {
+    EvaluationRecord& request = requests[missing[job]];
+    request.evaluation = evaluation;
+    journal_.append(request);
+    const std::lock_guard lock(mutex);
+    ++finished;
+    report(finished * cases_each, replayed * cases_each);
+  });
+  journal_.flush();
+
+  // A stop can leave holes; the optimizer learns the results before the first, and a resumed run evaluates only the holes.
+  std::size_t complete = points.size();
+  for (std::size_t job = 0; job < missing.size(); ++job) {
+    if (!evaluations[job]) {
+      complete = missing[job];
+      stopped_ = true;
+      break;
+    }
+  }
+  counts_.replayed += replayed;
+  std::vector<Score> scores(complete);
+  for (std::size_t i = 0; i < complete; ++i) {
+    take(requests[i], scores[i]);
+  }
+  if (remaining() <= 0) {
+    budget_spent_ = true;
+  }
+  report(0, 0);
+  return scores;
+}
+
+void RunEvaluator::take(const EvaluationRecord& record, Score& score) {
+  ++counts_.evaluations;
+  counts_.cases += record.cases.numbers.size();
+  counts_.clipped += record.clipped ? 1 : 0;
+  counts_.failed += record.evaluation.status == EvaluationStatus::ok ? 0 : 1;
+  consider(record);
+  const Evaluation& evaluation = record.evaluation;
+  score.status = evaluation.status;
+  score.clipped = record.clipped;
+  score.residuals = evaluation.residuals;
+  score.constraint_values = evaluation.constraint_values;
+  score.objectives = evaluation.objectives;
+  if (score.objectives.empty()) {
+    score.objectives = plan_.problem.problem->penalty_objectives();
+    score.constraint_values.assign(problem().constraints.size(), 0);
+  }
+}
+
+void RunEvaluator::consider(const EvaluationRecord& record) {
+  if (!is_feasible(record.evaluation)) {
+    return;
+  }
+  const double objective = record.evaluation.objectives.front();
+  if (incumbent_ && incumbent_->training_objective <= objective) {
+    return;
+  }
+  incumbent_ = Candidate{record.x, record.index, record.generation, false, objective};
+  if (!plan_.schedule.fresh) {
+    candidates_.push_back(*incumbent_);
+  }
+}
+
+void RunEvaluator::report(std::uint64_t more_cases, std::uint64_t more_replayed) {
+  const std::uint64_t cases_each = block_.numbers.size();
+  Progress progress;
+  progress.done = counts_.cases + more_cases;
+  progress.total = static_cast<std::uint64_t>(plan_.budget) / cases_each * cases_each;
+  progress.replayed = counts_.replayed * cases_each + more_replayed;
+  progress.generation = counts_.generations;
+  const Candidate* shown = incumbent_              ? &*incumbent_
+                           : !candidates_.empty() ? &candidates_.back()
+                                                   : nullptr;
+  if (shown != nullptr) {
+    progress.best_objective = shown->training_objective;
+  }
+  observer_.on_progress(progress);
+}
+
+std::vector<Candidate> RunEvaluator::select_candidates() const {
+  std::vector<Candidate> candidates = candidates_;
+  if (plan_.schedule.fresh && incumbent_) {
+    candidates.push_back(*incumbent_);  // the last generation's best
+  }
+  const auto known = [](const std::vector<Candidate>& chosen, const Candidate& candidate) {
+    return std::any_of(chosen.begin(), chosen.end(),
+                       [&](const Candidate& other) { return same_bits(other.x, candidate.x); });
+  };
+  std::vector<Candidate> chosen;
+  for (auto candidate = candidates.rbegin();
+       candidate != candidates.rend() && std::ssize(chosen) < plan_.selection.last; ++candidate) {
+    if (!known(chosen, *candidate)) {
+      chosen.push_back(*candidate);
+    }
+  }
+  std::vector<Candidate> by_objective;
+  std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(by_objective),
+               [](const Candidate& candidate) { return !candidate.recommended; });
+  std::stable_sort(by_objective.begin(), by_objective.end(),
+                   [](const Candidate& a, const Candidate& b) {
+                     return a.training_objective < b.training_objective;
+                   });
+  std::vector<Candidate> best;
+  for (const Candidate& candidate : by_objective) {
+    if (std::ssize(best) == plan_.selection.best) {
+      break;
+    }
+    if (!known(best, candidate)) {
+      best.push_back(candidate);
+    }
+  }
+  std::copy_if(best.begin(), best.end(), std::back_inserter(chosen),
+               [&](const Candidate& candidate) { return !known(chosen, candidate); });
+  std::stable_sort(chosen.begin(), chosen.end(), [](const Candidate& a, const Candidate& b) {
+    return a.generation != b.generation ? a.generation < b.generation
+                                        : a.evaluation < b.evaluation;
+  });
+  return chosen;
+}
+
+}  // namespace armwright

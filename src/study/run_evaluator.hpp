@@ -1,0 +1,92 @@
+// The run's Evaluator: counts the budget exactly (a batch is cut where it ends, whole candidates only), clips points to the bounds and
+// counts that, supplies the training cases, answers from the journal what a former process has evaluated already, journals the
+// rest as it finishes, and remembers the points worth judging.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "optimizers/evaluator.hpp"
+#include "study/case_runner.hpp"
+#include "study/journal.hpp"
+#include "study/run_plan.hpp"
+
+namespace armwright {
+
+// A design that may become the winner.
+struct Candidate {
+  std::vector<double> x;
+  std::uint64_t evaluation = 0;  // of the training evaluation that made it one; unused for a recommendation
+  std::uint64_t generation = 0;
+  bool recommended = false;      // named by the optimizer; it has no training objective of its own
+  double training_objective = 0;
+};
+
+struct RunCounts {
+  std::uint64_t evaluations = 0;
+  std::uint64_t cases = 0;      // charged to the budget
+  std::uint64_t replayed = 0;   // evaluations answered from the journal
+  std::uint64_t clipped = 0;    // points asked for outside the bounds
+  std::uint64_t failed = 0;     // evaluations whose status is not ok
+  std::uint64_t generations = 0;
+};
+
+struct Progress {
+  enum class Phase { training, validation, test } phase = Phase::training;
+  std::uint64_t done = 0;   // cases
+  std::uint64_t total = 0;
+  std::uint64_t replayed = 0;  // of the cases done, those from the journal
+  std::uint64_t generation = 0;
+  double best_objective = std::numeric_limits<double>::quiet_NaN();  // fixed: the incumbent's; fresh: the last generation's best
+};
+
+// What a run tells while it goes on. Calls come from any thread, one at a time.
+class RunObserver {
+ public:
+  virtual ~RunObserver() = default;
+  virtual void on_progress(const Progress& progress) = 0;
+  virtual void on_message(const std::string& message) = 0;
+};
+
+class RunEvaluator final : public Evaluator {
+ public:
+  RunEvaluator(const RunPlan& plan, CaseRunner& runner, StopSignal& stop, Journal& journal,
+               std::vector<EvaluationRecord> recorded, RunObserver& observer);
+
+  const ProblemDescription& problem() const override;
+  std::vector<Score> evaluate(std::span<const std::vector<double>> points) override;
+  bool stopped() const override;
+  std::int64_t remaining() const override;
+  void begin_generation() override;
+  void recommend(std::span<const double> x) override;
+
+  bool budget_spent() const { return budget_spent_; }
+  const RunCounts& counts() const { return counts_; }
+  // The designs to judge on the validation set, oldest first, no two the same.
+  std::vector<Candidate> select_candidates() const;
+
+ private:
+  EvaluationRecord make_request(std::span<const double> x) const;
+  void check_replay(const EvaluationRecord& request, const EvaluationRecord& recorded) const;
+  void take(const EvaluationRecord& record, Score& score);
+  void consider(const EvaluationRecord& record);
+  void report(std::uint64_t more_cases, std::uint64_t more_replayed);
+
+  const RunPlan& plan_;
+  CaseRunner& runner_;
+  StopSignal& stop_;
+  Journal& journal_;
+  RunObserver& observer_;
+  std::vector<std::optional<EvaluationRecord>> recorded_;  // by index
+  bool budget_spent_ = false;
+  bool stopped_ = false;
+  RunCounts counts_;
+  CaseBlock block_;
+  std::optional<Candidate> incumbent_;       // fixed: best so far; fresh: best of this generation
+  std::vector<Candidate> candidates_;        // fixed: all improvements; fresh: bests of generations and recommendations
+};
+
+}  // namespace armwright

@@ -1,0 +1,91 @@
+#include "study/run_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+
+json to_json_value(const OptionValue& value) {
+  return std::visit([](const auto& v) { return json(v); }, value);
+}
+
+}  // namespace
+
+void check_plan(const RunPlan& plan) {
+  const OptimizerRow& row = find_optimizer(plan.optimizer);
+  if (plan.schedule.fresh && !row.capabilities.generations) {
+    throw Error(ErrorKind::usage,
+                fmt::format("optimizer '{}' has no generations, so new training cases for every "
+                            "generation (schedule fresh) mean nothing to it; use --schedule fixed:K, "
+                            "which evaluates every candidate on the same K cases",
+                            plan.optimizer));
+  }
+  if (plan.budget < 0) {
+    throw Error(ErrorKind::usage, fmt::format("--budget is {}; it must be >= 0", plan.budget));
+  }
+}
+
+std::string to_json(const RunPlan& plan) {
+  json options = json::object();
+  for (const auto& [name, value] : plan.options.values()) {
+    options[name] = to_json_value(value);
+  }
+  const json run = {
+      {"optimizer", plan.optimizer},
+      {"options", options},
+      {"seed", plan.seed},
+      {"budget", plan.budget},
+      {"schedule",
+       {{"kind", plan.schedule.fresh ? "fresh" : "fixed"}, {"cases", plan.schedule.cases}}},
+      {"selection", {{"last", plan.selection.last}, {"best", plan.selection.best}}},
+  };
+  const json whole = {{"problem", json::parse(plan.problem.resolved_json)},
+                      {"inputs", plan.problem.input_hashes},
+                      {"run", run}};
+  return whole.dump(2);
+}
+
+std::vector<std::string> describe_differences(const std::string& recorded_json,
+                                              const std::string& now_json) {
+  const json recorded = json::parse(recorded_json).flatten();
+  const json now = json::parse(now_json).flatten();
+  std::vector<std::string> differences;
+  const auto name = [](std::string pointer) {
+    pointer.erase(0, 1);
+    for (char& c : pointer) {
+      c = c == '/' ? '.' : c;
+    }
+    return sanitize(pointer);
+  };
+  for (const auto& [key, value] : recorded.items()) {
+    if (!now.contains(key)) {
+      differences.push_back(fmt::format("{}: recorded {}, now absent", name(key), value.dump()));
+    } else if (now[key] != value) {
+      differences.push_back(
+          fmt::format("{}: recorded {}, now {}", name(key), value.dump(), now[key].dump()));
+    }
+  }
+  for (const auto& [key, value] : now.items()) {
+    if (!recorded.contains(key)) {
+      differences.push_back(fmt::format("{}: recorded absent, now {}", name(key), value.dump()));
+    }
+  }
+  return differences;
+}
+
+std::string make_run_name(const RunPlan& plan) {
+  std::string optimizer = plan.optimizer;
+  for (char& c : optimizer) {
+    c = c == ':' || c == '/' ? '-' : c;
+  }
+  return fmt::format("{}-{}-seed{}", plan.problem.name, optimizer, plan.seed);
+}
+
+}  // namespace armwright

@@ -1,0 +1,42 @@
+// All that determines a run's result: problem, optimizer with its options, seed, budget, schedule, and how the winner is chosen.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "optimizers/optimizer.hpp"
+#include "problems/problem_loader.hpp"
+
+namespace armwright {
+
+// Which of a run's designs are judged on the validation set; the best of them there is the winner and meets the test set.
+struct Selection {
+  int last = 20;  // the last N different incumbents (fresh schedule: bests of generations and recommendations)
+  int best = 5;   // and the N with the best training objective
+};
+
+struct RunPlan {
+  LoadedProblem problem;
+  std::string optimizer;
+  Options options;
+  std::uint64_t seed = 1;
+  std::int64_t budget = 0;  // simulated training cases
+  Schedule schedule;
+  Selection selection;
+};
+
+// Checks what no single part can: optimizer against schedule and problem. Throws Error{usage}.
+void check_plan(const RunPlan& plan);
+
+// The plan as JSON text with sorted keys; equal texts give bit-identical runs on the same machine and version.
+std::string to_json(const RunPlan& plan);
+
+// One line a difference: "run.seed: recorded 1, now 2". Empty if the texts say the same.
+std::vector<std::string> describe_differences(const std::string& recorded_json,
+                                              const std::string& now_json);
+
+// "q1-complex-ga-seed1"
+std::string make_run_name(const RunPlan& plan);
+
+}  // namespace armwright
