@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <span>
 #include <vector>
 
@@ -20,10 +21,10 @@ Eigen::Vector3d calc_tip_position(const RobotModel& model, std::span<const doubl
 // the common plane (the y component of its base link vector, thesis Table B.1).
 inline constexpr double kIkBugOffset_m = 0.1225;
 
-// Closed-form inverse kinematics of a palletising arm: a vertical first axis, then three parallel horizontal axes whose links
-// and tip all lie in one vertical plane through the first axis. Elbow up, the last link pointing straight down (thesis
-// section 5.1). With a and c the lengths of joint 3-4 and joint 2-3, p1 the shoulder, p3 the wrist, f and e its horizontal and
-// vertical distance from the shoulder, b = hypot(e, f):
+// Closed-form inverse kinematics of a palletising arm: a vertical first axis (the world's z axis), then three parallel horizontal
+// ones (at angle zero along y), the tip in the vertical plane through the first axis; links may lie beside that plane as long as
+// the tip does not. Elbow up, the last link pointing straight down (thesis section 5.1). With a and c the lengths of joint 3-4 and
+// joint 2-3, p1 the shoulder, p3 the wrist, f and e its horizontal and vertical distance from the shoulder, b = hypot(e, f):
 //   beta = acos((b^2 + c^2 - a^2) / 2bc) at the shoulder, gamma = acos((a^2 + c^2 - b^2) / 2ac) at the elbow,
 //   elevation of link 1 = atan2(e, f) + beta, elevation of elbow-wrist = elevation of link 1 - (pi - gamma).
 class ElbowUpKinematics {
@@ -45,6 +46,7 @@ class ElbowUpKinematics {
   Wrist calc_wrist(const Eigen::Vector3d& target_m) const;
 
   bool ik_bug_;
+  std::array<double, 4> sign_;  // -1 where a joint's axis is the opposite of +z (the first) or +y (the others)
   double shoulder_radius_m_;   // g: of joint 2 from the first axis
   double shoulder_height_m_;   // h
   double upper_arm_m_;         // c
