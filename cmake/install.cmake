@@ -1,0 +1,31 @@
+# What `cmake --install` lays down: the program and its configurations, and the rooms below it as a CMake package with their headers, so
+# that plugins and other programs can build on them. The cli room is the program's inside and stays out.
+include(CMakePackageConfigHelpers)
+
+set(ARMWRIGHT_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/armwright)
+set(ARMWRIGHT_PACKAGE_ROOMS ${ARMWRIGHT_ROOMS})
+list(FILTER ARMWRIGHT_PACKAGE_ROOMS INCLUDE REGEX ".")
+list(REMOVE_ITEM ARMWRIGHT_PACKAGE_ROOMS cli)
+
+install(TARGETS armwright RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(DIRECTORY configs/ DESTINATION ${CMAKE_INSTALL_DATADIR}/armwright/configs)
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} OPTIONAL)
+
+foreach(room IN LISTS ARMWRIGHT_PACKAGE_ROOMS)
+  install(TARGETS armwright_${room} EXPORT armwrightTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  # Headers name each other by room ("base/error.hpp"); the targets carry the folder that makes this work.
+  install(DIRECTORY src/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/armwright FILES_MATCHING PATTERN "*.hpp")
+endforeach()
+install(EXPORT armwrightTargets NAMESPACE armwright:: DESTINATION ${ARMWRIGHT_CMAKE_DIR})
+
+configure_package_config_file(cmake/armwrightConfig.cmake.in ${PROJECT_BINARY_DIR}/armwrightConfig.cmake
+                              INSTALL_DESTINATION ${ARMWRIGHT_CMAKE_DIR})
+# Before 1.0 a minor version may break what a plugin was built against.
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/armwrightConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/armwrightConfig.cmake ${PROJECT_BINARY_DIR}/armwrightConfigVersion.cmake
+        DESTINATION ${ARMWRIGHT_CMAKE_DIR})
+
+if(ARMWRIGHT_BUILD_TESTS)
+  add_subdirectory(tests/package)
+endif()
