@@ -1,0 +1,42 @@
+// What a run has found, as recorded in result.json. Nothing in it depends on time, threads or interruptions: a resumed run and an
+// uninterrupted one write the same bytes.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "study/run_evaluator.hpp"
+#include "study/summary.hpp"
+
+namespace armwright {
+
+// A candidate and what the validation set says of it.
+struct JudgedCandidate {
+  Candidate candidate;
+  Evaluation validation;
+};
+
+struct RunResult {
+  std::string problem;
+  std::string optimizer;
+  std::uint64_t seed = 1;
+  std::string end_reason;  // "budget" or "optimizer finished"
+  RunCounts counts;        // `replayed` is not recorded
+  std::vector<JudgedCandidate> judged;
+  std::optional<std::size_t> winner;  // index into judged; nothing if nothing feasible was found
+  Evaluation test;                    // the winner's
+  ErrorSummary test_summary;
+  std::vector<std::string> variable_names;
+  std::vector<std::string> metric_names;
+  std::string objective_name;
+  std::string objective_unit;
+  std::string test_set;
+  PublishedWinner published;
+};
+
+std::string to_json(const RunResult& result);
+RunResult parse_result(const std::string& json, const std::filesystem::path& file);
+
+}  // namespace armwright
