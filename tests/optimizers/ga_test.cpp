@@ -206,6 +206,27 @@ TEST(Ga, WithoutOperatorsOnlyTheFittestSurvive) {
   }
 }
 
+TEST(Ga, BothParentsMayBeTheSameIndividual) {
+  // Two individuals with equal chances, and a child is the mean of its parents: each parent is
+  // drawn from both of them, so the child is the mean of the two in half of the cases and a copy of
+  // one in the others.
+  const auto problem = make_analytic("sphere", 5);
+  constexpr int kRuns = 2000;
+  int means = 0;
+  for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
+    MemoryEvaluator evaluator(*problem, {.budget = 3});
+    run(evaluator,
+        {"population=2", "elite=0", "tournament_probability=0.5", "crossover_probability=1",
+         "crossover_extent=0", "mutation_probability=0"},
+        seed);
+    const Entry& child = evaluator.trace()[2];
+    const bool is_copy = child.asked == evaluator.trace()[0].evaluated ||
+                         child.asked == evaluator.trace()[1].evaluated;
+    means += is_copy ? 0 : 1;
+  }
+  EXPECT_NEAR(means / double{kRuns}, 0.5, 4 * std::sqrt(0.25 / kRuns));  // four standard deviations
+}
+
 TEST(Ga, LinearVariablesCanChangeTheirSign) {
   const FunctionProblem problem({{"v", "", -5, 5, 0, Scale::linear}},
                                 [](std::span<const double> x, std::uint64_t) { return x[0]; });

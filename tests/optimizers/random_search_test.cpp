@@ -24,7 +24,7 @@ std::vector<double> draw(const DecisionVariable& variable, int count) {
 
 TEST(RandomSearch, LinearCoordinatesAreUniform) {
   std::vector<double> shares;
-  for (const double value : draw({"v", "", -3, 5, 0, Scale::linear}, 20000)) {
+  for (const double value : draw({"v", "", -3, 5, 0, Scale::linear}, 200000)) {
     shares.push_back((value + 3) / 8);
   }
   EXPECT_LT(calc_kolmogorov_smirnov(shares), kKolmogorovSmirnovBound);
@@ -32,7 +32,7 @@ TEST(RandomSearch, LinearCoordinatesAreUniform) {
 
 TEST(RandomSearch, LogarithmicCoordinatesAreUniformInTheLogarithm) {
   std::vector<double> shares;
-  for (const double value : draw({"v", "", 0.5, 5000, 1, Scale::logarithmic}, 20000)) {
+  for (const double value : draw({"v", "", 0.5, 5000, 1, Scale::logarithmic}, 200000)) {
     shares.push_back(std::log(value / 0.5) / std::log(1e4));
   }
   EXPECT_LT(calc_kolmogorov_smirnov(shares), kKolmogorovSmirnovBound);
@@ -40,7 +40,7 @@ TEST(RandomSearch, LogarithmicCoordinatesAreUniformInTheLogarithm) {
 
 TEST(RandomSearch, NegativeLogarithmicCoordinatesKeepTheirSign) {
   std::vector<double> shares;
-  for (const double value : draw({"v", "", -2e6, -200, -2e4, Scale::logarithmic}, 20000)) {
+  for (const double value : draw({"v", "", -2e6, -200, -2e4, Scale::logarithmic}, 200000)) {
     ASSERT_GE(value, -2e6);
     ASSERT_LE(value, -200);
     shares.push_back(std::log(value / -200) / std::log(1e4));
