@@ -27,8 +27,12 @@ PublishedResult read_published(const ConfigTable& table) {
   if (table.has("set")) {
     published.overrides = table.get_strings("set");
   }
+  const Range positive{.lower = 0, .lower_open = true};
   if (table.has("error_m")) {
-    published.error_m = table.get_number("error_m", {.lower = 0, .lower_open = true});
+    published.error_m = table.get_number("error_m", positive);
+  }
+  if (table.has("total_torque_n_m")) {
+    published.total_torque_n_m = table.get_number("total_torque_n_m", positive);
   }
   published.where = table.get_string("where", "");
   return published;

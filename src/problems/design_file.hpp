@@ -18,6 +18,7 @@ struct PublishedResult {
   std::string problem;                 // shipped problem that it was evaluated on
   std::vector<std::string> overrides;  // KEY=VALUE, on top of the problem
   std::optional<double> error_m;       // nothing: the source gives no number
+  std::optional<double> total_torque_n_m;
   std::string where;                   // "thesis, Fig. 6.13"
 };
 

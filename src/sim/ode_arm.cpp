@@ -49,6 +49,11 @@ void prepare_ode_on_this_thread() {
   thread_local const OdeThread thread;
 }
 
+// Worlds share one default threading implementation without locks, so that stepping two of them in two threads corrupts its
+// job list. Each world gets its own, single-threaded one; it must outlive the world.
+struct ThreadingDeleter {
+  void operator()(dxThreadingImplementation* threading) const { dThreadingFreeImplementation(threading); }
+};
 struct WorldDeleter {
   void operator()(dxWorld* world) const { dWorldDestroy(world); }  // its bodies and joints go with it
 };
@@ -58,6 +63,7 @@ struct WorldDeleter {
 struct OdeArm::World {
   const RobotModel* model;
   double gravity;
+  std::unique_ptr<dxThreadingImplementation, ThreadingDeleter> threading;
   std::unique_ptr<dxWorld, WorldDeleter> world;
   std::vector<dBodyID> bodies;
   std::vector<dJointID> hinges;
@@ -87,7 +93,10 @@ OdeArm::OdeArm(const RobotModel& model, std::span<const double> q_rad,
   World& w = *world_;
   w.model = &model;
   w.gravity = physics.gravity_m_per_s2;
+  w.threading.reset(dThreadingAllocateSelfThreadedImplementation());
   w.world.reset(dWorldCreate());
+  dWorldSetStepThreadingImplementation(
+      w.world.get(), dThreadingImplementationGetFunctions(w.threading.get()), w.threading.get());
   dWorldSetGravity(w.world.get(), 0, 0, -physics.gravity_m_per_s2);
   dWorldSetERP(w.world.get(), physics.erp);
   dWorldSetCFM(w.world.get(), physics.cfm);
