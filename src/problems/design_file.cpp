@@ -68,9 +68,9 @@ DesignFile load_design(std::string_view name_or_path) {
 
 std::string to_toml(const DesignFile& file) {
   const ControllerRow& controller = find_controller(file.design.controller);
-  std::string text = fmt::format("name = {}\ntitle = {}\nsource = {}\ncontroller = {}\n",
-                                 quote(file.name), quote(file.title), quote(file.source),
-                                 quote(file.design.controller));
+  std::string text =
+      fmt::format("name = {}\ntitle = {}\nsource = {}\ncontroller = {}\n", quote(file.name),
+                  quote(file.title), quote(file.source), quote(file.design.controller));
   for (std::size_t i = 0; i < file.design.joints.size(); ++i) {
     const JointDrive& joint = file.design.joints[i];
     text += fmt::format("\n[[joint]]\nname = {}\n", quote(file.joint_names.at(i)));
