@@ -48,7 +48,7 @@ struct Joint {
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();           // unit vector in the joint's frame
   double lower_rad = 0;  // -inf and +inf for a continuous joint
   double upper_rad = 0;
-  double speed_limit_rad_per_s = 0;
+  double speed_limit_rad_per_s = 0;  // both +inf for a continuous joint without <limit>
   double effort_limit_n_m = 0;
 };
 
@@ -62,17 +62,21 @@ struct RobotModel {
   std::size_t joint_count() const { return joints.size(); }
 };
 
-// Reads and validates a URDF. The chain runs from the root link to the only leaf; a leaf without mass reached by a fixed
-// joint is the tool centre point. Throws Error{bad_data} "FILE:LINE: what is wrong, what is allowed" for: a file over 8 MiB or
-// nested deeper than 64; anything that is not a finite number where one belongs; a moving link without mass; mass <= 0; an
-// inertia that is not symmetric positive definite or violates the triangle inequality of principal moments; a zero axis;
-// lower > upper; speed or effort limits < 0; a branching chain; any joint type but revolute, continuous and fixed; all that
-// urdfdom itself refuses.
+// Reads and validates a URDF. The chain runs from the root link to the only leaf. The leaf's frame is the tool centre point: it is
+// usually a link without mass on a fixed joint; if the leaf is itself the last moving link, the tip is that link's origin. Of a
+// URDF are used: inertial, visual, joint origins, axes and limits; collision shapes and extensions are not read.
+// Throws Error{bad_data} "FILE:LINE: what is wrong, what is allowed" for: a file over 8 MiB or nested deeper than 64; document
+// types; anything that is not a finite number where one belongs; misspelt elements and attributes; xacro; names used twice; a moving
+// link without mass; mass <= 0; an inertia that is not symmetric positive definite or violates the triangle inequality of principal
+// moments; a zero axis; lower > upper; speed or effort limits < 0; joint damping, friction and mimic (they are not simulated); a
+// branching chain; any joint type but revolute, continuous and fixed; no moving joint; all that urdfdom itself refuses.
+// load_urdf(): Error{io} if the file cannot be read.
 RobotModel load_urdf(const std::filesystem::path& file);
 RobotModel parse_urdf(std::string_view xml, const std::string& name);
 
 // A steel block on the flange: `mass_kg` as a box of 0.16825 x 0.16825 x 0.09 m (the thesis's load, section 6.4) whose short
 // side points along the last link, its centre 45 mm beyond the tip. Other masses keep the shape and scale the density.
+// Error{usage} unless the mass is finite and >= 0; Error{bad_data} if the tip lies in the last joint, which leaves no direction.
 RobotModel add_load(RobotModel model, double mass_kg);
 
 }  // namespace armwright
