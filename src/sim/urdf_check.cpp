@@ -23,6 +23,20 @@ constexpr double kTriangleTolerance = 1e-3;
 // An axis shorter than this has no direction worth the name.
 constexpr double kShortestAxis = 1e-6;
 
+std::string explain(const tinyxml2::XMLDocument& document) {
+  switch (document.ErrorID()) {
+    case tinyxml2::XML_ERROR_MISMATCHED_ELEMENT:
+      return "an element is closed by another name, or not at all";
+    case tinyxml2::XML_ERROR_PARSING_ATTRIBUTE:
+      return "an attribute is malformed or given twice; they are written name=\"value\"";
+    case tinyxml2::XML_ERROR_PARSING_TEXT:
+    case tinyxml2::XML_ERROR_EMPTY_DOCUMENT:
+      return "it has no elements; a URDF has one <robot> element";
+    default:
+      return document.ErrorName();
+  }
+}
+
 // One pass over the document that validates and writes side by side.
 class Checker {
  public:
@@ -32,7 +46,7 @@ class Checker {
     tinyxml2::XMLDocument document;
     if (document.Parse(xml.data(), xml.size()) != tinyxml2::XML_SUCCESS) {
       fail_urdf(name_, std::max(1, document.ErrorLineNum()),
-                fmt::format("is not well-formed XML ({})", document.ErrorName()));
+                fmt::format("is not well-formed XML: {}", explain(document)));
     }
     const XMLElement* robot = document.RootElement();
     if (robot == nullptr) {
@@ -70,6 +84,9 @@ class Checker {
                      {"name", "version"});
     out_.OpenElement("robot");
     write("name", xml_.get_text(robot, "name"));
+    if (robot.Attribute("version") != nullptr) {
+      write("version", xml_.get_text(robot, "version"));
+    }
     collect_colors(robot);
     std::vector<UrdfLink> links;
     for (const XMLElement* e = robot.FirstChildElement("link"); e != nullptr;

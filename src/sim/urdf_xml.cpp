@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "base/text.hpp"
 #include "sim/urdf.hpp"
@@ -49,15 +48,10 @@ void UrdfXml::check_names(const XMLElement& element, const std::vector<std::stri
     }
     check_spelling(*child, fmt::format("element in <{}>", element.Name()), child->Name(), children);
   }
-  std::set<std::string_view> seen;
   for (const tinyxml2::XMLAttribute* attribute = element.FirstAttribute(); attribute != nullptr;
        attribute = attribute->Next()) {
     check_spelling(element, fmt::format("attribute of <{}>", element.Name()), attribute->Name(),
                    attributes);
-    if (!seen.insert(attribute->Name()).second) {
-      fail(element, fmt::format("<{}> has the attribute {} twice", element.Name(),
-                                shorten(attribute->Name())));
-    }
   }
 }
 

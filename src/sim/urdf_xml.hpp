@@ -24,8 +24,8 @@ class UrdfXml {
   void set_context(std::string where) { where_ = std::move(where); }
   [[noreturn]] void fail(const tinyxml2::XMLElement& element, const std::string& what) const;
 
-  // Refuses what looks like a misspelt name of a child or attribute, xacro, and attributes given
-  // twice. Other extensions of URDF pass; they stay unread.
+  // Refuses what looks like a misspelt name of a child or attribute, and xacro. Other extensions of
+  // URDF pass; they stay unread.
   void check_names(const tinyxml2::XMLElement& element, const std::vector<std::string>& children,
                    const std::vector<std::string>& attributes) const;
 

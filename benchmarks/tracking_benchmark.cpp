@@ -1,0 +1,156 @@
+// What the tracking simulation costs beside the physics engine alone, and how evaluations scale
+// over cores. Every ratio is measured within one run, both sides by turns, so that a machine that
+// slows down slows down both.
+#include <benchmark/benchmark.h>
+#include <ode/ode.h>
+
+#include <algorithm>
+#include <chrono>
+#include <numeric>
+#include <vector>
+
+#include "problems/design_file.hpp"
+#include "problems/problem_loader.hpp"
+#include "sim/ode_arm.hpp"
+#include "study/case_runner.hpp"
+
+namespace armwright {
+namespace {
+
+double measure_s(const auto& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double calc_median(std::vector<double> values) {
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// The same bodies and hinges in plain ODE, driven by recorded efforts and nothing else.
+void replay_in_bare_ode(const RobotModel& model, std::span<const double> start_rad,
+                        const std::vector<TrajectorySample>& recorded, double dt_s) {
+  const dWorldID world = dWorldCreate();
+  dWorldSetGravity(world, 0, 0, -9.80665);
+  dWorldSetERP(world, 0.25);
+  dWorldSetCFM(world, 0);
+  dWorldSetAutoDisableFlag(world, 0);
+  const auto poses = calc_link_poses(model, start_rad);
+  std::vector<dJointID> hinges;
+  dBodyID parent = nullptr;
+  for (std::size_t i = 0; i < model.joint_count(); ++i) {
+    const Inertial& inertial = model.links[i].inertial;
+    const Eigen::Matrix3d& inertia = inertial.inertia_kg_m2;
+    const Eigen::Matrix3d rotation = poses[i].linear();
+    const Eigen::Vector3d com = poses[i] * inertial.com_m;
+    const Eigen::Vector3d anchor = poses[i].translation();
+    const Eigen::Vector3d axis = rotation * model.joints[i].axis;
+    const dBodyID body = dBodyCreate(world);
+    dMass mass;
+    dMassSetParameters(&mass, inertial.mass_kg, 0, 0, 0, inertia(0, 0), inertia(1, 1),
+                       inertia(2, 2), inertia(0, 1), inertia(0, 2), inertia(1, 2));
+    dBodySetMass(body, &mass);
+    dBodySetPosition(body, com.x(), com.y(), com.z());
+    dMatrix3 r = {};
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) {
+        r[4 * row + column] = rotation(row, column);
+      }
+    }
+    dBodySetRotation(body, r);
+    const dJointID hinge = dJointCreateHinge(world, nullptr);
+    dJointAttach(hinge, body, parent);
+    dJointSetHingeAnchor(hinge, anchor.x(), anchor.y(), anchor.z());
+    dJointSetHingeAxis(hinge, axis.x(), axis.y(), axis.z());
+    hinges.push_back(hinge);
+    parent = body;
+  }
+  for (const TrajectorySample& sample : recorded) {
+    for (std::size_t i = 0; i < hinges.size(); ++i) {
+      dJointAddHingeTorque(hinges[i], sample.effort_n_m[i]);
+    }
+    dWorldStep(world, dt_s);
+  }
+  benchmark::DoNotOptimize(dBodyGetPosition(parent)[0]);
+  dWorldDestroy(world);
+}
+
+void BM_WholeTrackingAgainstBareOde(benchmark::State& state) {
+  const LoadedProblem problem = load_problem(state.range(0) == 0 ? "q1-complex" : "q2-e6");
+  const ArmDesign design = load_design(problem.published.design).design;
+  const TestSet set = problem.tracking->get_set("test/2");
+  const TrackingSetup& setup = problem.tracking->setup();
+  const TargetTable targets = setup.make_targets(set.make_case(0));
+  const TrackingResult recorded =
+      problem.tracking->track(design, set, 0, {.error_series = false, .trajectory = true});
+  const auto engine = make_engine("ode");
+  TrackingJob job;
+  job.design = &design;
+  job.targets = &targets;
+
+  std::vector<double> whole, bare, ratio;
+  for (auto _ : state) {
+    whole.push_back(measure_s([&] {
+      benchmark::DoNotOptimize(engine->simulate(setup, {&job, 1}));
+    }));
+    bare.push_back(measure_s([&] {
+      replay_in_bare_ode(setup.robot(), targets.start_rad, recorded.trajectory,
+                         setup.task().control_period_s);
+    }));
+    ratio.push_back(whole.back() / bare.back());
+  }
+  state.counters["whole_ns_per_step"] = 1e9 * calc_median(whole) / targets.steps;
+  state.counters["bare_ns_per_step"] = 1e9 * calc_median(bare) / targets.steps;
+  state.counters["ratio"] = calc_median(ratio);
+  state.SetLabel(problem.name);
+}
+BENCHMARK(BM_WholeTrackingAgainstBareOde)
+    ->Arg(0)
+    ->Arg(1)
+    ->Iterations(150)
+    ->Unit(benchmark::kMillisecond);
+
+void BM_InverseKinematicsOfOneCase(benchmark::State& state) {
+  const LoadedProblem problem = load_problem("q1-complex");
+  const TrackingSetup& setup = problem.tracking->setup();
+  const TestCase test_case = problem.tracking->get_set("test/2").make_case(0);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(setup.make_targets(test_case));
+  }
+}
+BENCHMARK(BM_InverseKinematicsOfOneCase)->Unit(benchmark::kMicrosecond);
+
+// A generation of the genetic algorithm: 35 designs on one new case, on one thread and on two.
+void BM_GenerationOnTwoCoresAgainstOne(benchmark::State& state) {
+  const LoadedProblem problem = load_problem("q1-complex");
+  const auto x = problem.tracking->make_vector(load_design("table-a5").design);
+  StopSignal stop;
+  ThreadPool one(1);
+  ThreadPool two(2);
+  std::uint64_t number = 0;
+  const auto evaluate_generation = [&](ThreadPool& pool) {
+    const CaseBlock block{CaseRole::training, "train/1", {number++}};
+    const std::vector<CandidateJob> candidates(35, CandidateJob{x, &block});
+    CaseRunner(*problem.problem, pool, stop).run(candidates, [](std::size_t, const Evaluation&) {});
+  };
+  std::vector<double> speedup, serial, parallel;
+  const std::uint64_t computed_before = problem.tracking->targets().computed();
+  for (auto _ : state) {
+    serial.push_back(measure_s([&] { evaluate_generation(one); }));
+    parallel.push_back(measure_s([&] { evaluate_generation(two); }));
+    speedup.push_back(serial.back() / parallel.back());
+  }
+  state.counters["speedup"] = calc_median(speedup);
+  state.counters["evaluations_per_s_on_two"] = 35 / calc_median(parallel);
+  state.counters["inverse_kinematics_per_generation"] =
+      static_cast<double>(problem.tracking->targets().computed() - computed_before) /
+      static_cast<double>(number);
+}
+BENCHMARK(BM_GenerationOnTwoCoresAgainstOne)->Iterations(30)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace armwright
+
+BENCHMARK_MAIN();

@@ -1,0 +1,69 @@
+// What tests of whole runs share: a folder that goes away, a silent observer, small plans.
+#pragma once
+
+#include <stdlib.h>
+
+#include <filesystem>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "study/run.hpp"
+
+namespace armwright {
+
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "armwright-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) {
+      throw std::runtime_error("cannot make a temporary folder");
+    }
+    path_ = name;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+class SilentObserver : public RunObserver {
+ public:
+  void on_progress(const Progress& progress) override {
+    const std::lock_guard lock(mutex_);
+    last = progress;
+  }
+  void on_message(const std::string& message) override { messages.push_back(message); }
+  Progress last;
+  std::vector<std::string> messages;
+
+ private:
+  std::mutex mutex_;
+};
+
+// A short run of the thesis's problem: few cases to judge on, small populations.
+inline RunPlan make_small_plan(const std::string& optimizer = "ga", std::int64_t budget = 40) {
+  RunPlan plan;
+  plan.problem = load_problem(
+      "q1-complex", std::vector<std::string>{"workspace.points=4", "sets.validation_cases=3",
+                                             "sets.test_cases=4"});
+  plan.optimizer = optimizer;
+  const std::vector<std::string> options =
+      optimizer == "ga" ? std::vector<std::string>{"population=8"} : std::vector<std::string>{};
+  plan.options = Options::parse(optimizer, find_optimizer(optimizer).options, options);
+  plan.budget = budget;
+  plan.schedule = plan.problem.schedule;
+  if (!find_optimizer(optimizer).capabilities.generations) {
+    plan.schedule = {.fresh = false, .cases = 2};
+  }
+  return plan;
+}
+
+}  // namespace armwright

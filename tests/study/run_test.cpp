@@ -1,0 +1,311 @@
+// Whole runs in one process: exact budgets, schedules, results that depend on neither threads nor
+// interruptions, refusals.
+#include "study/run.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+
+#include "base/error.hpp"
+#include "base/file.hpp"
+#include "study/judge.hpp"
+#include "study/run_folder.hpp"
+#include "study/run_support.hpp"
+
+namespace armwright {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+class RunTest : public testing::Test {
+ protected:
+  std::optional<RunResult> run(const RunPlan& plan, const std::string& folder, unsigned jobs = 2) {
+    StopSignal stop;
+    return execute_run({plan, temporary_ / folder, jobs, {"armwright", "optimize"}}, stop,
+                       observer_);
+  }
+  JournalContent read(const std::string& folder) {
+    return read_journal(temporary_ / folder / "journal");
+  }
+  std::string read_result(const std::string& folder) {
+    return read_file(temporary_ / folder / "result.json", 1 << 24);
+  }
+  std::string error_of(const auto& work) {
+    try {
+      work();
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "(no error)";
+  }
+
+  TemporaryFolder temporary_;
+  SilentObserver observer_;
+};
+
+bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+void expect_same_evaluations(const JournalContent& a, const JournalContent& b) {
+  ASSERT_EQ(a.training.size(), b.training.size());
+  for (std::size_t i = 0; i < a.training.size(); ++i) {
+    EXPECT_EQ(a.training[i].index, b.training[i].index);
+    EXPECT_EQ(a.training[i].generation, b.training[i].generation);
+    EXPECT_EQ(a.training[i].cases.numbers, b.training[i].cases.numbers);
+    EXPECT_TRUE(same_bits(a.training[i].x, b.training[i].x)) << i;
+    EXPECT_TRUE(
+        same_bits(a.training[i].evaluation.objectives, b.training[i].evaluation.objectives));
+    EXPECT_TRUE(
+        same_bits(a.training[i].evaluation.case_errors, b.training[i].evaluation.case_errors));
+    EXPECT_TRUE(same_bits(a.training[i].evaluation.metrics, b.training[i].evaluation.metrics));
+  }
+}
+
+TEST_F(RunTest, AFreshScheduleMovesOnWithEveryGeneration) {
+  const auto result = run(make_small_plan("ga", 40), "a");
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->counts.evaluations, 40u);
+  EXPECT_EQ(result->counts.cases, 40u);
+  EXPECT_EQ(result->counts.generations, 5u);
+  EXPECT_EQ(result->end_reason, "budget");
+  for (const EvaluationRecord& record : read("a").training) {
+    EXPECT_EQ(record.generation, record.index / 8 + 1);
+    EXPECT_EQ(record.cases.numbers, std::vector<std::uint64_t>{record.generation - 1});
+    EXPECT_EQ(record.cases.set, "train/1");
+  }
+}
+
+TEST_F(RunTest, ABatchIsCutWhereTheBudgetEndsAndOnlyWholeCandidatesAreEvaluated) {
+  RunPlan plan = make_small_plan("ga", 19);
+  plan.schedule.cases = 2;  // 9 whole candidates of two cases; one case of the budget stays unused
+  const auto result = run(plan, "a");
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->counts.evaluations, 9u);
+  EXPECT_EQ(result->counts.cases, 18u);
+  EXPECT_EQ(read("a").training.size(), 9u);
+}
+
+TEST_F(RunTest, AZeroBudgetEndsWithoutAWinner) {
+  const auto result = run(make_small_plan("ga", 0), "a");
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->counts.evaluations, 0u);
+  EXPECT_FALSE(result->winner);
+}
+
+TEST_F(RunTest, AFixedScheduleJudgesTheImprovements) {
+  const auto result = run(make_small_plan("random", 60), "a");
+  ASSERT_TRUE(result && result->winner);
+  double best = std::numeric_limits<double>::infinity();
+  std::size_t improvements = 0;
+  for (const EvaluationRecord& record : read("a").training) {
+    EXPECT_EQ(record.cases.numbers, (std::vector<std::uint64_t>{0, 1}));
+    if (record.evaluation.objectives.front() < best) {
+      best = record.evaluation.objectives.front();
+      ++improvements;
+    }
+  }
+  EXPECT_EQ(result->judged.size(), improvements);
+  EXPECT_EQ(result->judged.back().candidate.training_objective, best);
+}
+
+TEST_F(RunTest, TheWinnerIsTheBestOnTheValidationSetAndItsTestIsComplete) {
+  const auto result = run(make_small_plan(), "a");
+  ASSERT_TRUE(result && result->winner);
+  const double winner = result->judged[*result->winner].validation.objectives.front();
+  for (const JudgedCandidate& judged : result->judged) {
+    EXPECT_EQ(judged.validation.case_errors.size(), 3u);
+    EXPECT_LE(winner, judged.validation.objectives.front());
+  }
+  EXPECT_EQ(result->test.case_errors.size(), 4u);
+  EXPECT_EQ(result->test_summary.cases, 4u);
+  for (const auto* file : {"result.json", "winner.toml", "convergence.csv", "results.sqlite",
+                           "winner-trajectory.csv", "manifest.json", "journal"}) {
+    EXPECT_TRUE(std::filesystem::exists(temporary_ / "a" / file)) << file;
+  }
+}
+
+TEST_F(RunTest, ResultsDoNotDependOnTheNumberOfThreads) {
+  run(make_small_plan(), "one", 1);
+  run(make_small_plan(), "two", 2);
+  run(make_small_plan(), "five", 5);
+  expect_same_evaluations(read("one"), read("two"));
+  expect_same_evaluations(read("one"), read("five"));
+  EXPECT_EQ(read_result("one"), read_result("two"));
+  EXPECT_EQ(read_result("one"), read_result("five"));
+}
+
+TEST_F(RunTest, AnotherSeedIsAnotherRun) {
+  RunPlan other = make_small_plan();
+  other.seed = 2;
+  run(make_small_plan(), "one");
+  run(other, "two");
+  EXPECT_FALSE(same_bits(read("one").training[0].x, read("two").training[0].x));
+}
+
+// Stops a run after a number of cases, as Ctrl-C would.
+class StoppingObserver final : public SilentObserver {
+ public:
+  StoppingObserver(StopSignal& stop, std::uint64_t after) : stop_(stop), after_(after) {}
+  void on_progress(const Progress& progress) override {
+    if (progress.done - progress.replayed >= after_) {
+      stop_.request(StopReason::interrupted);
+    }
+  }
+
+ private:
+  StopSignal& stop_;
+  std::uint64_t after_;
+};
+
+TEST_F(RunTest, ARunStoppedEveryFewCasesEndsAsAnUninterruptedOne) {
+  for (const std::string optimizer : {"ga", "random"}) {
+    const std::string whole = optimizer + "-whole";
+    const std::string pieces = optimizer + "-pieces";
+    run(make_small_plan(optimizer), whole);
+    int starts = 0;
+    for (bool done = false; !done; ++starts) {
+      ASSERT_LT(starts, 100);
+      StopSignal stop;
+      StoppingObserver observer(stop, 5);
+      done = execute_run({make_small_plan(optimizer), temporary_ / pieces, 2, {}}, stop, observer)
+                 .has_value();
+    }
+    EXPECT_GT(starts, 5) << "the run was never interrupted";
+    expect_same_evaluations(read(whole), read(pieces));
+    EXPECT_EQ(read_result(whole), read_result(pieces)) << optimizer;
+  }
+}
+
+TEST_F(RunTest, ATimeLimitStopsResumably) {
+  StopSignal stop;
+  stop.set_deadline(StopSignal::Clock::now());
+  EXPECT_FALSE(execute_run({make_small_plan(), temporary_ / "a", 2, {}}, stop, observer_));
+  EXPECT_EQ(stop.reason(), StopReason::time_limit);
+  EXPECT_TRUE(run(make_small_plan(), "a"));
+}
+
+TEST_F(RunTest, ACompleteRunIsShownAndNotRunAgain) {
+  const auto first = run(make_small_plan(), "a");
+  const auto size = std::filesystem::file_size(temporary_ / "a" / "journal");
+  const auto second = run(make_small_plan(), "a");
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(to_json(*first), to_json(*second));
+  EXPECT_EQ(std::filesystem::file_size(temporary_ / "a" / "journal"), size);
+  EXPECT_THAT(observer_.messages.back(), HasSubstr("this run is complete; use --new"));
+}
+
+TEST_F(RunTest, TheResultIsRebuiltFromTheJournal) {
+  run(make_small_plan(), "a");
+  const std::string before = read_result("a");
+  const auto size = std::filesystem::file_size(temporary_ / "a" / "journal");
+  for (const auto* file : {"result.json", "winner.toml", "results.sqlite"}) {
+    std::filesystem::remove(temporary_ / "a" / file);
+  }
+  const auto again = run(make_small_plan(), "a");
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->counts.replayed, again->counts.evaluations);
+  EXPECT_EQ(read_result("a"), before);
+  EXPECT_EQ(std::filesystem::file_size(temporary_ / "a" / "journal"), size);
+}
+
+TEST_F(RunTest, AnotherConfigurationIsRefusedWithTheDifference) {
+  run(make_small_plan(), "a");
+  RunPlan other = make_small_plan();
+  other.budget = 48;
+  other.problem = load_problem(
+      "q1-complex", std::vector<std::string>{"workspace.points=4", "sets.validation_cases=3",
+                                             "sets.test_cases=4", "task.speed_m_per_s=2"});
+  EXPECT_THAT(
+      error_of([&] { run(other, "a"); }),
+      AllOf(HasSubstr("holds a run with another configuration"),
+            HasSubstr("run.budget: recorded 40, now 48"),
+            HasSubstr("problem.task.speed_m_per_s: recorded 1.5, now 2"), HasSubstr("--new")));
+}
+
+TEST_F(RunTest, AReplayThatDiffersNamesTheEvaluation) {
+  run(make_small_plan(), "a");
+  std::filesystem::remove(temporary_ / "a" / "result.json");
+  // A journal of another seed under this run's manifest: what another version of an optimizer would
+  // look like.
+  RunPlan other = make_small_plan();
+  other.seed = 7;
+  run(other, "b");
+  std::filesystem::copy_file(temporary_ / "b" / "journal", temporary_ / "a" / "journal",
+                             std::filesystem::copy_options::overwrite_existing);
+  EXPECT_THAT(
+      error_of([&] { run(make_small_plan(), "a"); }),
+      AllOf(HasSubstr("evaluation 0 of the journal is not what optimizer 'ga' asks for now"),
+            HasSubstr("joint_1."), HasSubstr("start a new run with --new")));
+}
+
+TEST_F(RunTest, AFreshScheduleNeedsGenerations) {
+  RunPlan plan = make_small_plan("random");
+  plan.schedule.fresh = true;
+  EXPECT_THAT(error_of([&] { run(plan, "a"); }),
+              AllOf(HasSubstr("'random' has no generations"), HasSubstr("--schedule fixed:K")));
+}
+
+TEST_F(RunTest, ATornJournalIsMendedAndTheRunGoesOn) {
+  run(make_small_plan(), "whole");
+  run(make_small_plan(), "torn");
+  std::filesystem::remove(temporary_ / "torn" / "result.json");
+  const auto journal = temporary_ / "torn" / "journal";
+  std::filesystem::resize_file(journal, std::filesystem::file_size(journal) / 2);
+  ASSERT_TRUE(run(make_small_plan(), "torn"));
+  expect_same_evaluations(read("whole"), read("torn"));
+  EXPECT_EQ(read_result("whole"), read_result("torn"));
+}
+
+TEST_F(RunTest, ADamagedManifestOrResultIsNamed) {
+  run(make_small_plan(), "a");
+  std::ofstream(temporary_ / "a" / "result.json") << "{}";
+  EXPECT_THAT(error_of([&] { run(make_small_plan(), "a"); }),
+              HasSubstr("result.json: is not a result that armwright wrote"));
+  std::ofstream(temporary_ / "a" / "manifest.json") << "{";
+  EXPECT_THAT(error_of([&] { run(make_small_plan(), "a"); }),
+              HasSubstr("manifest.json: is not a manifest that armwright wrote"));
+}
+
+TEST_F(RunTest, AResultReadsBackTheSame) {
+  const auto result = run(make_small_plan(), "a");
+  ASSERT_TRUE(result);
+  EXPECT_EQ(to_json(parse_result(read_result("a"), "result.json")), to_json(*result));
+}
+
+TEST_F(RunTest, FoldersAreNumberedAndNeverReused) {
+  EXPECT_EQ(choose_run_folder(temporary_ / "", "name", true), temporary_ / "name");
+  std::filesystem::create_directories(temporary_ / "name");
+  EXPECT_EQ(choose_run_folder(temporary_ / "", "name", false), temporary_ / "name");
+  EXPECT_EQ(choose_run_folder(temporary_ / "", "name", true), temporary_ / "name-002");
+  std::filesystem::create_directories(temporary_ / "name-002");
+  EXPECT_EQ(choose_run_folder(temporary_ / "", "name", true), temporary_ / "name-003");
+}
+
+Evaluation make_judgement(double objective, int failed_cases = 0, double violation = 0) {
+  Evaluation evaluation;
+  evaluation.objectives = {objective};
+  evaluation.constraint_values = {violation};
+  evaluation.failed_cases = failed_cases;
+  return evaluation;
+}
+
+TEST(ChooseWinner, FewerFailedCasesThenFeasibilityThenTheObjective) {
+  std::vector<JudgedCandidate> judged(4);
+  judged[0].validation = make_judgement(1.0, 2);
+  judged[1].validation = make_judgement(5.0);
+  judged[2].validation = make_judgement(4.0, 0, 0.1);
+  judged[3].validation = make_judgement(4.5);
+  EXPECT_EQ(Judge::choose_winner(judged), std::optional<std::size_t>(3));
+  judged.resize(1);
+  EXPECT_EQ(Judge::choose_winner(judged), std::optional<std::size_t>(0));
+  judged[0].validation = Evaluation{};  // no case yielded a number
+  EXPECT_EQ(Judge::choose_winner(judged), std::nullopt);
+}
+
+}  // namespace
+}  // namespace armwright
