@@ -297,6 +297,7 @@ TEST_F(TestCaseFile, BrokenJsonIsRefusedByLine) {
       {two_lines + "[[1,2,3],[1,2,", "3: is not valid JSON: syntax error"},
       {two_lines + "[[1,2,3],[1,2,4]]]}\n\n}", "5: is not valid JSON: syntax error"},
       {"{\"cases\": [[[1,2,3],[1,2,4]],]}", "1: is not valid JSON: syntax error"},
+      {"{\"cases\":\n\"a\nb\"}", "2: is not valid JSON: syntax error"},  // at the end of line 2
       {"{", "1: is not valid JSON: syntax error"},
       {"{\"\xff\": 1}", "1: is not valid JSON: syntax error"},
       {"{\"a\": \"" + std::string(100000, 'x'), "1: is not valid JSON: syntax error"},
