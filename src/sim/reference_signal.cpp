@@ -51,7 +51,7 @@ ReferenceSignal::ReferenceSignal(SignalShape shape, double distance_m, double sp
     // The plateau ds = a t_a (t_m - t_a) solved for t_a, in the form that does not cancel where a
     // is large.
     const double rest_s2 = duration_s_ * duration_s_ - 4 * distance_m_ / acceleration_m_per_s2;
-    if (rest_s2 >= 0) {
+    if (rest_s2 >= 0.05) {
       acceleration_m_per_s2_ = acceleration_m_per_s2;
       ramp_up_s_ = 2 * distance_m_ / acceleration_m_per_s2 / (duration_s_ + std::sqrt(rest_s2));
     } else {
@@ -73,7 +73,7 @@ double ReferenceSignal::calc_distance(double t_s) const {
     case SignalShape::step:
       return distance_m_;
     case SignalShape::ramp:
-      return std::min(speed_m_per_s_ * t_s, distance_m_);  // v t_m may round to above ds
+      return speed_m_per_s_ * t_s;  // before t_m it cannot round to above ds
     case SignalShape::trapezoid:
       if (t_s <= ramp_up_s_) {
         return 0.5 * a * t_s * t_s;

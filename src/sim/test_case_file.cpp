@@ -17,9 +17,8 @@ namespace armwright {
 namespace {
 
 constexpr std::size_t kLargestFile_bytes = std::size_t{256} << 20;
-constexpr std::size_t kDeepestNesting =
-    8;                               // the cases need 4; the rest is for keys that are ignored
-constexpr double kFarthest_m = 100;  // no arm reaches that far, but millimetres do
+constexpr std::size_t kDeepestNesting = 8;  // the cases need 4, the rest is for ignored keys
+constexpr double kFarthest_m = 100;         // no arm reaches that far, but millimetres do
 constexpr std::string_view kHeader = "case,point,x_m,y_m,z_m";
 
 [[noreturn]] void refuse(const std::string& where, const std::string& what) {

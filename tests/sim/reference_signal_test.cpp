@@ -147,6 +147,19 @@ TEST(ReferenceSignal, StepIsThereAtOnce) {
   EXPECT_EQ(signal.calc_distance(7.0), 0.7);
 }
 
+// v t_m is not always ds in floating point.
+TEST(ReferenceSignal, RampsArriveExactlyWhateverTheRounding) {
+  int rounded = 0;
+  for (int i = 1; i <= 1000; ++i) {
+    const double distance_m = 0.0017 * i;
+    const ReferenceSignal signal(SignalShape::ramp, distance_m, 1.3, kAcceleration);
+    ASSERT_EQ(signal.calc_distance(signal.duration_s()), distance_m);
+    ASSERT_LE(signal.calc_distance(std::nextafter(signal.duration_s(), 0.0)), distance_m);
+    rounded += 1.3 * signal.duration_s() != distance_m;
+  }
+  EXPECT_GT(rounded, 0);  // else this test sees nothing
+}
+
 TEST(ReferenceSignal, RampIsSpeedTimesTime) {
   const ReferenceSignal signal(SignalShape::ramp, 1.2, 1.5, kAcceleration);
   EXPECT_NEAR(signal.calc_distance(0.3), 0.45, rounding(1.2));
@@ -222,6 +235,8 @@ TEST(ReferenceSignal, TrapezoidFallsBackToTriangularWhereItsAccelerationIsTooSma
     ASSERT_NEAR(above.calc_distance(t_s), expected_m, 0.6 * std::sqrt(kExcess)) << t_s;
     largest_m = std::max(largest_m, std::abs(far_above.calc_distance(t_s) - expected_m));
   }
+  const ReferenceSignal little_above(SignalShape::trapezoid, 0.6, 1.5, 16.5);
+  EXPECT_NEAR(little_above.calc_distance(0.05), 0.5 * 16.5 * 0.0025, rounding(0.6));
   // At 30 m/s^2, t_a = 0.2 (1 - sqrt(1/2)): well ahead of the triangular signal at that time.
   const double ramp_up_s = 0.2 * (1 - std::sqrt(0.5));
   EXPECT_GE(largest_m, 0.99 * 0.5 * 15 * ramp_up_s * ramp_up_s);

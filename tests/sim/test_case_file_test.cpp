@@ -209,13 +209,11 @@ TEST_F(TestCaseFile, MalformedCsvIsRefusedByLine) {
       {kHeader + "1,0,1,2,3\n", "2: is case 1, point 0; it must be case 0, point 0" + in_order},
       {kHeader + "0,1,1,2,3\n", "2: is case 0, point 1; it must be case 0, point 0" + in_order},
       {head + "1,0,1,2,3\n2,0,1,2,3\n2,1,1,2,4\n",
-       "4: case 1, point 0 ends a case of 1 points; a case must have at least 2: the start and "
-       "where "
-       "to go"},
+       "4: case 1, point 0 is its only one; a case must have at least 2 points: the start and "
+       "where to go"},
       {head + "1,0,1,2,3\n",
-       "4: case 1, point 0 ends a case of 1 points; a case must have at least 2: the start and "
-       "where "
-       "to go"},
+       "4: case 1, point 0 is its only one; a case must have at least 2 points: the start and "
+       "where to go"},
       {head + "1,0,1,2,3\n1,1,2,2,3\n1,2,2,2,3\n1,3,2,2,4\n",
        "6: case 1, point 2 is where the point before is; each point must differ from the one "
        "before "
@@ -299,6 +297,7 @@ TEST_F(TestCaseFile, BrokenJsonIsRefusedByLine) {
       {two_lines + "[[1,2,3],[1,2,", "3: is not valid JSON: syntax error"},
       {two_lines + "[[1,2,3],[1,2,4]]]}\n\n}", "5: is not valid JSON: syntax error"},
       {"{\"cases\": [[[1,2,3],[1,2,4]],]}", "1: is not valid JSON: syntax error"},
+      {"{\"cases\":\n\"a\nb\"}", "2: is not valid JSON: syntax error"},  // at the end of line 2
       {"{", "1: is not valid JSON: syntax error"},
       {"{\"\xff\": 1}", "1: is not valid JSON: syntax error"},
       {"{\"a\": \"" + std::string(100000, 'x'), "1: is not valid JSON: syntax error"},
