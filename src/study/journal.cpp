@@ -272,7 +272,10 @@ class Journal::Writer {
   }
 
   void write_buffer(Clock::time_point now = Clock::now()) {
-    if (buffer_.empty() || !error_.empty()) {
+    if (!error_.empty()) {
+      buffer_.clear();  // never to be written; left there, it would keep the writing thread busy
+    }
+    if (buffer_.empty()) {
       return;
     }
     last_write_ = now;

@@ -2,15 +2,34 @@
 // threads.
 #include <signal.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <functional>
 #include <thread>
 
 #include "journal_test_support.hpp"
 #include "study/journal.hpp"
+
+namespace {
+std::atomic<int> sync_count = 0;
+std::atomic<int> sync_error = 0;  // what the next syncs fail with
+}  // namespace
+
+// Takes the place of the C library's in this program: whether data was synced cannot be seen
+// otherwise, nor made to fail.
+extern "C" int fdatasync(int fd) {
+  ++sync_count;
+  if (sync_error != 0) {
+    errno = sync_error;
+    return -1;
+  }
+  return static_cast<int>(::syscall(SYS_fdatasync, fd));
+}
 
 namespace armwright {
 namespace {
@@ -79,6 +98,59 @@ TEST(JournalFaults, RecordsReachTheSystemWithoutFlush) {
   }
   EXPECT_TRUE(wait_until([&] { return read_journal(file).training.size() == 100; }));
   expect_first_records(read_journal(file), 100);
+}
+
+TEST(JournalFaults, RecordsReachTheDiskInTheBackgroundAndAtClose) {
+  const TemporaryFolder folder;
+  JournalContent content;
+  Journal journal(folder / "journal", content);
+  for (std::uint64_t i = 0; i < 2; ++i) {
+    const int before = sync_count;
+    journal.append(make_record(i));
+    EXPECT_TRUE(wait_until([&] { return sync_count > before; })) << "record " << i;
+  }
+  const int before = sync_count;
+  journal.append(make_record(2));
+  journal.close();
+  EXPECT_GT(sync_count, before);
+}
+
+TEST(JournalFaults, ADiskThatCannotSyncIsTold) {
+  const TemporaryFolder folder;
+  for (const bool closing : {false, true}) {
+    const auto file = folder / (closing ? "closing" : "background");
+    JournalContent content;
+    Journal journal(file, content);
+    sync_error = EIO;
+    journal.append(make_record(0));
+    std::string message;
+    const auto told = [&](const std::function<void()>& action) {
+      try {
+        action();
+      } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::io);
+        message = error.what();
+      }
+      return !message.empty();
+    };
+    if (closing) {
+      told([&] { journal.close(); });
+    } else {
+      // Appending all the time, so that records lie in the buffer when the error comes.
+      wait_until([&] { return told([&] { journal.append(make_record(1)); }); });
+    }
+    sync_error = 0;
+    EXPECT_THAT(message,
+                StartsWith(file.string() + ": cannot sync it to the disk: Input/output error"));
+  }
+}
+
+TEST(JournalFaults, AFileSystemWithoutSyncIsAccepted) {
+  const TemporaryFolder folder;
+  sync_error = EINVAL;  // what such file systems say
+  write_journal(folder / "journal", 2);
+  sync_error = 0;
+  expect_first_records(read_journal(folder / "journal"), 2);
 }
 
 TEST(JournalFaults, WhatWasFlushedSurvivesSigkill) {
@@ -173,7 +245,7 @@ TEST(JournalFaults, AFullDiskLosesNothingThatWasWrittenWhole) {
   }
 }
 
-TEST(JournalFaults, AnErrorInTheBackgroundIsTold) {
+TEST(JournalFaults, AnErrorIsToldWithoutAFlush) {
   const TemporaryFolder folder;
   const auto file = folder / "journal";
   JournalContent content;
