@@ -103,6 +103,47 @@ TEST(HostileConfig, KeysBeyondAsciiNeedQuotes) {
   EXPECT_EQ(ConfigTable::parse("\"ŭ\" = 'é' # ž\n", "q1.toml").get_string("ŭ"), "é");
 }
 
+TEST(HostileConfig, AHeaderNeedsAName) {
+  EXPECT_EQ(refusal_of("x = 1\n[#a]\n"),
+            "q1.toml:2: expected the name of a table behind '[', saw '#'");
+  EXPECT_EQ(refusal_of("[[ .a]]\n"), "q1.toml:1: expected the name of a table behind '[', saw '.'");
+  EXPECT_EQ(refusal_of("[\na]\n"), "q1.toml:1: expected the name of a table behind '[', saw '?'");
+  EXPECT_EQ(refusal_of("[ ]\n"),
+            "q1.toml:1: Error while parsing table header: tables with blank bare keys are "
+            "explicitly prohibited");
+}
+
+TEST(HostileConfig, AStringBeginsWhereItCan) {
+  for (const std::string toml :
+       {"x = 2'ﻷ'\n", "x = [1 'ŭ']\n", "[a] 'b' = 1\n", "x = {a = 1 \"ŭ\" = 2}\n"}) {
+    EXPECT_EQ(refusal_of(toml), "q1.toml:1: a quote stands where no string can begin");
+  }
+  EXPECT_EQ(
+      ConfigTable::parse(
+          "  'a'.\"b\" = [ 'c', \n 'd',\n\t'e' ]\nf = {'g' = 'h', 'i' = 1}\n['j'.'k']\n", "q1.toml")
+          .to_json(),
+      R"({"a":{"b":["c","d","e"]},"f":{"g":"h","i":1},"j":{"k":{}}})");
+}
+
+TEST(HostileConfig, ALetterBeyondAsciiDoesNotFollowABackslash) {
+  const std::string message =
+      "a letter beyond ASCII behind a backslash; write the text without this backslash";
+  EXPECT_EQ(refusal_of("x = 1\ny = \"\"\"\na \\\n  ž\"\"\"\n"), "q1.toml:4: " + message);
+  EXPECT_EQ(refusal_of("x = \"\\ž\"\n"), "q1.toml:1: " + message);
+  EXPECT_EQ(ConfigTable::parse("x = \"\"\"ž \\\n  a\"\"\"\n", "q1.toml").get_string("x"), "ž a");
+  EXPECT_EQ(ConfigTable::parse("x = '\\ž'\n", "q1.toml").get_string("x"), "\\ž");
+  EXPECT_EQ(ConfigTable::parse("x = \"\\\\ž\"\n", "q1.toml").get_string("x"), "\\ž");
+}
+
+TEST(HostileConfig, ADateNeedsItsTimeBehindTheT) {
+  EXPECT_EQ(refusal_of("x = 1\ny = 1979-05-27T.5:\n"),
+            "q1.toml:2: expected a time behind the date");
+  EXPECT_EQ(
+      ConfigTable::parse("x = [1979-05-27T07:32:00Z, 1979-05-27, 07:32:00]\nTt = 1\n", "q1.toml")
+          .to_json(),
+      R"({"Tt":1,"x":["1979-05-27T07:32:00Z","1979-05-27","07:32:00"]})");
+}
+
 TEST(HostileConfig, AByteOrderMarkIsSkipped) {
   EXPECT_EQ(ConfigTable::parse("\xef\xbb\xbfx = 1\n", "q1.toml").get_number("x"), 1);
 }
