@@ -1,6 +1,8 @@
 // The look at a TOML text before the parser sees it. It follows strings, comments and brackets
 // exactly as far as the text is valid; behind the first syntax error it may misjudge, but there the
 // parser stops as well.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "base/config_tree.hpp"
@@ -158,6 +160,7 @@ class Scanner {
         break;
       case ']':
       case '}':
+        check_closing(c);
         close();
         break;
       default:
@@ -206,6 +209,12 @@ class Scanner {
     if (!is_bare_key(first) && first != "\"" && first != "'" && first != "]") {
       fail({&source_, line_},
            "expected the name of a table behind '[', saw '" + shorten(first) + "'");
+    }
+  }
+
+  void check_closing(char c) const {
+    if (c == '}' && (previous_ == ',' || previous_ == '[')) {
+      fail({&source_, line_}, fmt::format("'}}' stands directly behind '{}'", previous_));
     }
   }
 

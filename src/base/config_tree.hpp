@@ -67,8 +67,9 @@ std::shared_ptr<const Document> parse_document(std::string_view toml, const std:
                                                std::span<const std::string> overrides);
 
 // Refuses what toml++ 3.3.0 does not report but runs into, undefined behaviour or a stack overflow:
-// text deeper than kDepthLimit, a header without a name, a date with no time behind its T, invalid
-// UTF-8, and characters beyond ASCII where it takes them for keys or blanks. Error{usage} at the
+// text deeper than kDepthLimit, a header without a name, a brace where a value is due, a date with
+// no time behind its T, invalid UTF-8, and characters beyond ASCII where it takes them for keys or
+// blanks. Error{usage} at the
 // line where it stands.
 void check_text(const Source& source);
 

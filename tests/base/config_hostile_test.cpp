@@ -144,6 +144,11 @@ TEST(HostileConfig, ADateNeedsItsTimeBehindTheT) {
       R"({"Tt":1,"x":["1979-05-27T07:32:00Z","1979-05-27","07:32:00"]})");
 }
 
+TEST(HostileConfig, ABraceDoesNotStandForAValue) {
+  EXPECT_EQ(refusal_of("x = [1,\n}]\n"), "q1.toml:2: '}' stands directly behind ','");
+  EXPECT_EQ(refusal_of("x = [ }\n"), "q1.toml:1: '}' stands directly behind '['");
+}
+
 TEST(HostileConfig, AByteOrderMarkIsSkipped) {
   EXPECT_EQ(ConfigTable::parse("\xef\xbb\xbfx = 1\n", "q1.toml").get_number("x"), 1);
 }
