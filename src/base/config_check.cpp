@@ -201,7 +201,8 @@ class Scanner {
   }
 
   void check_header_name() const {
-    const std::size_t next = text_.find_first_not_of(" \t[", at_);
+    const bool array = text_.substr(at_).starts_with("[[");
+    const std::size_t next = text_.find_first_not_of(" \t", at_ + (array ? 2 : 1));
     if (next == std::string_view::npos || !is_ascii(text_[next])) {
       return;  // the parser, or this scanner, says what is wrong
     }

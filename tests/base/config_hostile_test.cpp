@@ -107,6 +107,7 @@ TEST(HostileConfig, AHeaderNeedsAName) {
   EXPECT_EQ(refusal_of("x = 1\n[#a]\n"),
             "q1.toml:2: expected the name of a table behind '[', saw '#'");
   EXPECT_EQ(refusal_of("[[ .a]]\n"), "q1.toml:1: expected the name of a table behind '[', saw '.'");
+  EXPECT_EQ(refusal_of("[[[a]]]\n"), "q1.toml:1: expected the name of a table behind '[', saw '['");
   EXPECT_EQ(refusal_of("[\na]\n"), "q1.toml:1: expected the name of a table behind '[', saw '?'");
   EXPECT_EQ(refusal_of("[ ]\n"),
             "q1.toml:1: Error while parsing table header: tables with blank bare keys are "
