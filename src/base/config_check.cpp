@@ -1,6 +1,8 @@
 // The look at a TOML text before the parser sees it. It follows strings, comments and brackets
 // exactly as far as the text is valid; behind the first syntax error it may misjudge, but there the
 // parser stops as well.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "base/config_tree.hpp"
@@ -23,8 +25,10 @@ class Scanner {
       if (c == '#') {
         skip_to(std::min(text_.find('\n', at_), text_.size()));
       } else if (c == '"' || c == '\'') {
+        check_string_may_begin();
         line_is_blank_ = false;
         skip_string(c);
+        previous_ = c;
       } else if (!is_ascii(c)) {
         refuse_stray_character();
       } else {
@@ -71,6 +75,14 @@ class Scanner {
                                 "anything else needs quotes");
   }
 
+  // Elsewhere the parser looks on into the string before it refuses it, and takes its letters for
+  // what they are not.
+  void check_string_may_begin() const {
+    if (!line_is_blank_ && std::string_view("=,[{.").find(previous_) == std::string_view::npos) {
+      fail({&source_, line_}, "a quote stands where no string can begin");
+    }
+  }
+
   void skip_string(char quote) {
     const std::string_view rest = text_.substr(at_);
     const std::string three(3, quote);
@@ -90,6 +102,7 @@ class Scanner {
   std::size_t find_end(std::size_t from, std::string_view closing) const {
     while (from < text_.size()) {
       if (text_[from] == '\\' && closing[0] == '"') {
+        check_escape(from);
         from += 2;
       } else if (text_.substr(from).starts_with(closing)) {
         return from + closing.size();
@@ -100,6 +113,17 @@ class Scanner {
       }
     }
     return text_.size();
+  }
+
+  // Behind a backslash at the end of a line the parser skips blanks, and beyond ASCII it does not
+  // know what is one.
+  void check_escape(std::size_t backslash) const {
+    const std::size_t next = text_.find_first_not_of(" \t\r\n", backslash + 1);
+    if (next != std::string_view::npos && !is_ascii(text_[next])) {
+      const auto lines = std::count(text_.begin() + at_, text_.begin() + next, '\n');
+      fail({&source_, line_ + lines},
+           "a letter beyond ASCII behind a backslash; write the text without this backslash");
+    }
   }
 
   void follow(char c) {
@@ -126,18 +150,24 @@ class Scanner {
         key_depth_ = 0;
         dots_ = 0;
         break;
+      case 'T':
+      case 't':
+        check_time_follows_date();
+        break;
       case '[':
       case '{':
         open();
         break;
       case ']':
       case '}':
+        check_closing(c);
         close();
         break;
       default:
         break;
     }
     line_is_blank_ = false;
+    previous_ = c;
     if (header_depth_ + open_depth_ + key_depth_ + dots_ > kDepthLimit) {
       fail({&source_, line_}, "tables and arrays nest deeper than " + std::to_string(kDepthLimit) +
                                   " levels (each dot in a key is one)");
@@ -148,12 +178,45 @@ class Scanner {
     if (line_is_blank_ && brackets_.empty()) {
       in_header_ = true;
       header_depth_ = 0;
+      check_header_name();
     } else if (!in_header_) {
       brackets_.push_back(key_depth_ + 1);
       open_depth_ += brackets_.back();
     }
     key_depth_ = 0;
     dots_ = 0;
+  }
+
+  void check_time_follows_date() const {
+    constexpr std::string_view kDate = "0000-00-00";
+    if (at_ < kDate.size()) {
+      return;
+    }
+    const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+    std::string before(text_.substr(at_ - kDate.size(), kDate.size()));
+    std::replace_if(before.begin(), before.end(), is_digit, '0');
+    if (before == kDate && (at_ + 1 == text_.size() || !is_digit(text_[at_ + 1]))) {
+      fail({&source_, line_}, "expected a time behind the date");
+    }
+  }
+
+  void check_header_name() const {
+    const bool array = text_.substr(at_).starts_with("[[");
+    const std::size_t next = text_.find_first_not_of(" \t", at_ + (array ? 2 : 1));
+    if (next == std::string_view::npos || !is_ascii(text_[next])) {
+      return;  // the parser, or this scanner, says what is wrong
+    }
+    const std::string_view first = text_.substr(next, 1);
+    if (!is_bare_key(first) && first != "\"" && first != "'" && first != "]") {
+      fail({&source_, line_},
+           "expected the name of a table behind '[', saw '" + shorten(first) + "'");
+    }
+  }
+
+  void check_closing(char c) const {
+    if (c == '}' && (previous_ == ',' || previous_ == '[')) {
+      fail({&source_, line_}, fmt::format("'}}' stands directly behind '{}'", previous_));
+    }
   }
 
   void close() {
@@ -173,6 +236,7 @@ class Scanner {
   std::size_t at_ = 0;
   std::size_t line_ = 1;
   bool line_is_blank_ = true;
+  char previous_ = '\0';  // the last character that is no blank, if the line has one
   bool in_header_ = false;
   std::size_t header_depth_ = 0;       // of the [table] the current line belongs to
   std::vector<std::size_t> brackets_;  // the levels each open bracket adds, its dotted key included

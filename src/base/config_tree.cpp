@@ -199,8 +199,9 @@ class Loader {
                                       extends.describe(), chain));
     }
     if (chain_.size() > kExtendsLimit) {
-      fail(extends.place, fmt::format("extends is {}; at most {} files may extend each other: {}",
-                                      extends.describe(), kExtendsLimit, chain));
+      fail(extends.place,
+           fmt::format("extends is {}; at most {} files may be extended in a row: {}",
+                       extends.describe(), kExtendsLimit, chain));
     }
     const std::filesystem::path folder = file.parent_path();
     std::error_code ignored;  // a file that exists and cannot be read is reported when it is read

@@ -66,9 +66,11 @@ std::shared_ptr<const Document> load_document(const std::filesystem::path& file,
 std::shared_ptr<const Document> parse_document(std::string_view toml, const std::string& name,
                                                std::span<const std::string> overrides);
 
-// Refuses what would crash the parser (toml++ 3.3.0) instead of being reported by it: text deeper
-// than kDepthLimit, invalid UTF-8, and characters beyond ASCII outside strings and comments.
-// Error{usage} at the line where it stands.
+// Refuses what toml++ 3.3.0 does not report but runs into, undefined behaviour or a stack overflow:
+// text deeper than kDepthLimit, a header without a name, a brace where a value is due, a date with
+// no time behind its T, invalid UTF-8, and characters beyond ASCII where it takes them for keys or
+// blanks. Error{usage} at the
+// line where it stands.
 void check_text(const Source& source);
 
 // "task" and "speed_m_per_s" as "task.speed_m_per_s"; a key that TOML wants quoted is quoted, a

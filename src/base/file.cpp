@@ -41,6 +41,24 @@ class Descriptor {
   int fd_;
 };
 
+// Takes a half-written file away again, unless it was renamed into place.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(std::filesystem::path path) : path_(std::move(path)) {}
+  ~TemporaryFile() {
+    if (!path_.empty()) {
+      ::unlink(path_.c_str());
+    }
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+  void release() { path_.clear(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
 }  // namespace
 
 std::string read_file(const std::filesystem::path& path, std::size_t limit_bytes) {
@@ -68,27 +86,29 @@ std::string read_file(const std::filesystem::path& path, std::size_t limit_bytes
 }
 
 void write_file_atomically(const std::filesystem::path& path, std::string_view content) {
-  const std::filesystem::path temporary = path.string() + ".new";
-  Descriptor file(temporary, O_WRONLY | O_CREAT | O_TRUNC, "write it");
+  const std::filesystem::path new_path = path.string() + ".new";
+  Descriptor file(new_path, O_WRONLY | O_CREAT | O_TRUNC, "write it");
+  TemporaryFile temporary(new_path);
   while (!content.empty()) {
     const ssize_t put = ::write(file.get(), content.data(), content.size());
     if (put < 0 && errno == EINTR) {
       continue;
     }
     if (put < 0) {
-      fail("write it", temporary, errno);
+      fail("write it", temporary.path(), errno);
     }
     content.remove_prefix(static_cast<std::size_t>(put));
   }
   if (::fsync(file.get()) != 0 && errno != EINVAL && errno != EROFS) {
-    fail("sync it to the disk", temporary, errno);
+    fail("sync it to the disk", temporary.path(), errno);
   }
   if (file.close() != 0) {
-    fail("close it", temporary, errno);
+    fail("close it", temporary.path(), errno);
   }
-  if (::rename(temporary.c_str(), path.c_str()) != 0) {
+  if (::rename(temporary.path().c_str(), path.c_str()) != 0) {
     fail("put it in place", path, errno);
   }
+  temporary.release();
   const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
   const Descriptor directory(folder, O_RDONLY | O_DIRECTORY, "open its folder");
   ::fsync(
@@ -98,7 +118,8 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view c
 void make_folder(const std::filesystem::path& path) {
   std::error_code error;
   std::filesystem::create_directories(path, error);
-  if (error || !std::filesystem::is_directory(path)) {
+  std::error_code unknown;
+  if (error || !std::filesystem::is_directory(path, unknown)) {
     fail("create this folder", path, error ? error.value() : ENOTDIR);
   }
 }

@@ -2,8 +2,8 @@
 
 #include <Random123/philox.h>
 
+#include <cassert>
 #include <cmath>
-#include <cstring>
 
 #include "base/hash.hpp"
 
@@ -37,10 +37,12 @@ double RandomStream::uniform() {
 }
 
 double RandomStream::uniform(double lower, double upper) {
-  return lower + (upper - lower) * uniform();
+  const double number = lower + (upper - lower) * uniform();
+  return number < upper ? number : std::nextafter(upper, lower);  // the sum may round up to `upper`
 }
 
 std::uint64_t RandomStream::below(std::uint64_t n) {
+  assert(n >= 1);
   const std::uint64_t rejected =
       (0 - n) % n;  // 2^64 mod n values at the bottom would bias the remainder
   std::uint64_t number = next_u64();

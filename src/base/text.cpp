@@ -51,6 +51,19 @@ std::size_t utf8_length(std::string_view text) {
   return overlong || not_a_character || c1_control ? 0 : length;
 }
 
+template <typename Number>
+std::optional<Number> parse_whole(std::string_view text) {
+  if (text.starts_with('+') && !text.starts_with("+-")) {
+    text.remove_prefix(1);  // from_chars takes no plus sign, people write one
+  }
+  Number value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) {
+    return std::nullopt;
+  }
+  return value;
+}
+
 }  // namespace
 
 std::optional<std::string> find_nearest(std::string_view name,
@@ -84,27 +97,12 @@ std::string describe_unknown(std::string_view what, std::string_view name,
 }
 
 std::optional<double> parse_finite(std::string_view text) {
-  if (!text.empty() && text.front() == '+') {
-    text.remove_prefix(1);  // from_chars takes no plus sign, people write one
-    if (!text.empty() && text.front() == '-') {
-      return std::nullopt;
-    }
-  }
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) {
-    return std::nullopt;
-  }
-  return value;
+  const auto value = parse_whole<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 std::optional<long long> parse_integer(std::string_view text) {
-  long long value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) {
-    return std::nullopt;
-  }
-  return value;
+  return parse_whole<long long>(text);
 }
 
 std::vector<std::string> split(std::string_view text, char separator) {

@@ -1,0 +1,336 @@
+#include "base/config.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <clocale>
+#include <limits>
+#include <locale>
+#include <nlohmann/json.hpp>
+
+#include "base/expect_error.hpp"
+
+namespace armwright {
+namespace {
+
+const std::vector<std::string> kKinds = {"ga", "random"};
+
+ConfigTable parse(std::string_view toml) {
+  return ConfigTable::parse(toml, "q1.toml");
+}
+
+TEST(Config, HandsOutEveryType) {
+  const ConfigTable config = parse(R"(
+name = "Žitný\t1"
+kind = 'ga'
+speed_m_per_s = 2.5
+count = 3
+mass_kg = 3
+enabled = true
+gains = [1, 2.5, -3e-2]
+tags = ["a", "b"]
+empty = []
+[task]
+x = 1
+[[joints]]
+y = 2
+[[joints]]
+y = 3
+)");
+  EXPECT_EQ(config.get_string("name"), "Žitný\t1");
+  EXPECT_EQ(config.get_choice("kind", kKinds), "ga");
+  EXPECT_EQ(config.get_number("speed_m_per_s"), 2.5);
+  EXPECT_EQ(config.get_number("mass_kg"), 3.0);  // an integer is a number too
+  EXPECT_EQ(config.get_integer("count", 1, 3), 3);
+  EXPECT_TRUE(config.get_bool("enabled"));
+  EXPECT_EQ(config.get_numbers("gains"), (std::vector<double>{1, 2.5, -0.03}));
+  EXPECT_EQ(config.get_strings("tags"), (std::vector<std::string>{"a", "b"}));
+  EXPECT_TRUE(config.get_numbers("empty").empty());
+  EXPECT_TRUE(config.get_strings("empty").empty());
+  EXPECT_TRUE(config.get_tables("empty").empty());
+  EXPECT_EQ(config.get_table("task").get_number("x"), 1);
+  const auto joints = config.get_tables("joints");
+  ASSERT_EQ(joints.size(), 2U);
+  EXPECT_EQ(joints[0].get_number("y"), 2);
+  EXPECT_EQ(joints[1].get_number("y"), 3);
+  config.refuse_unknown();
+}
+
+TEST(Config, ADefaultStandsForAMissingKeyOnly) {
+  const ConfigTable config = parse("x = 1\nname = 'a'\nbad = 'b'\n");
+  EXPECT_EQ(config.get_number_or("x", 7), 1);
+  EXPECT_EQ(config.get_number_or("y", 7), 7);
+  EXPECT_EQ(config.get_integer_or("x", 7, 0, 9), 1);
+  EXPECT_EQ(config.get_integer_or("n", 7, 0, 9), 7);
+  EXPECT_TRUE(config.get_bool_or("b", true));
+  EXPECT_EQ(config.get_string("name", "z"), "a");
+  EXPECT_EQ(config.get_string("title", "z"), "z");
+  EXPECT_EQ(config.get_choice("kind", kKinds, "ga"), "ga");
+  EXPECT_FALSE(config.get_table_or_empty("task").has("x"));
+  EXPECT_TRUE(config.get_tables_or_empty("joints").empty());
+  EXPECT_EQ(usage_error_of([&] { config.get_number_or("bad", 7); }),
+            "q1.toml:3: bad is 'b', a string; it must be a finite number");
+}
+
+TEST(Config, NamesFileLineFieldValueAndRange) {
+  const ConfigTable config =
+      parse("# a comment\n\n[task]\n\nspeed_m_per_s = -4 # too slow\nratio = 1.50\n");
+  const ConfigTable task = config.get_table("task");
+  const auto refusal = [&](const char* key, Range range) {
+    return usage_error_of([&] { task.get_number(key, range); });
+  };
+  EXPECT_EQ(refusal("speed_m_per_s", {.lower = 0, .lower_open = true}),
+            "q1.toml:5: task.speed_m_per_s is -4; it must be a finite number > 0");
+  EXPECT_EQ(refusal("speed_m_per_s", {.lower = 0}),
+            "q1.toml:5: task.speed_m_per_s is -4; it must be a finite number >= 0");
+  EXPECT_EQ(refusal("ratio", {.lower = 0, .upper = 1, .lower_open = true}),
+            "q1.toml:6: task.ratio is 1.50; it must be a finite number > 0 and <= 1");
+  EXPECT_EQ(refusal("ratio", {.upper = 0.1}),
+            "q1.toml:6: task.ratio is 1.50; it must be a finite number <= 0.1");
+}
+
+TEST(Config, TheEndsOfARangeBelongToItUnlessOpen) {
+  const ConfigTable config = parse("zero = 0\none = 1\n");
+  EXPECT_EQ(config.get_number("zero", {.lower = 0, .upper = 1}), 0);
+  EXPECT_EQ(config.get_number("one", {.lower = 0, .upper = 1}), 1);
+  EXPECT_EQ(usage_error_of([&] { config.get_number("zero", {.lower = 0, .lower_open = true}); }),
+            "q1.toml:1: zero is 0; it must be a finite number > 0");
+  EXPECT_EQ(config.get_integer("one", 1, 1), 1);
+  EXPECT_EQ(usage_error_of([&] { config.get_integer("one", 2, 9); }),
+            "q1.toml:2: one is 1; it must be an integer from 2 to 9");
+  EXPECT_EQ(usage_error_of(
+                [&] { config.get_integer("one", 2, std::numeric_limits<std::int64_t>::max()); }),
+            "q1.toml:2: one is 1; it must be an integer >= 2");
+  EXPECT_EQ(usage_error_of(
+                [&] { config.get_integer("one", std::numeric_limits<std::int64_t>::min(), 0); }),
+            "q1.toml:2: one is 1; it must be an integer <= 0");
+}
+
+TEST(Config, NamesTheTypeThatWasFound) {
+  const ConfigTable config = parse(R"(
+text = "fast"
+real = 2.0
+flag = true
+day = 1979-05-27
+list = [1, 2]
+inline = {x = 1}
+[table]
+)");
+  const auto as_number = [&](const char* key) {
+    return usage_error_of([&] { config.get_number(key); });
+  };
+  EXPECT_EQ(as_number("text"), "q1.toml:2: text is \"fast\", a string; it must be a finite number");
+  EXPECT_EQ(as_number("flag"), "q1.toml:4: flag is true, a boolean; it must be a finite number");
+  EXPECT_EQ(as_number("day"),
+            "q1.toml:5: day is 1979-05-27, a date or time; it must be a finite number");
+  EXPECT_EQ(as_number("list"), "q1.toml:6: list is [1, 2], an array; it must be a finite number");
+  EXPECT_EQ(as_number("inline"), "q1.toml:7: inline is a table; it must be a finite number");
+  EXPECT_EQ(as_number("table"), "q1.toml:8: table is a table; it must be a finite number");
+  EXPECT_EQ(usage_error_of([&] { config.get_integer("real", 0, 9); }),
+            "q1.toml:3: real is 2.0, a floating-point number; it must be an integer from 0 to 9");
+  EXPECT_EQ(usage_error_of([&] { config.get_bool("text"); }),
+            "q1.toml:2: text is \"fast\", a string; it must be true or false");
+  EXPECT_EQ(usage_error_of([&] { config.get_string("flag"); }),
+            "q1.toml:4: flag is true, a boolean; it must be a string");
+  EXPECT_EQ(usage_error_of([&] { config.get_table("flag"); }),
+            "q1.toml:4: flag is true, a boolean; it must be a table, [flag]");
+  EXPECT_EQ(usage_error_of([&] { config.get_tables("table"); }),
+            "q1.toml:8: table is a table; it must be an array of tables, [[table]]");
+  EXPECT_EQ(usage_error_of([&] { config.get_tables("list"); }),
+            "q1.toml:6: list[0] is 1, an integer; it must be a table");
+  EXPECT_EQ(usage_error_of([&] { config.get_numbers("flag"); }),
+            "q1.toml:4: flag is true, a boolean; it must be an array, each element of it a finite "
+            "number");
+  EXPECT_EQ(usage_error_of([&] { config.get_strings("list"); }),
+            "q1.toml:6: list[0] is 1, an integer; it must be a string");
+}
+
+TEST(Config, NamesTheElementOfAnArrayAndItsOwnLine) {
+  const ConfigTable config = parse("gains = [1,\n 2,\n -3]\n");
+  EXPECT_EQ(usage_error_of([&] { config.get_numbers("gains", {.lower = 0}); }),
+            "q1.toml:3: gains[2] is -3; it must be a finite number >= 0");
+  EXPECT_EQ(usage_error_of([&] { config.get_number("gains"); }),
+            "q1.toml:1: gains is an array of length 3; it must be a finite number");
+}
+
+TEST(Config, NamesTheTableOfAnArrayOfTables) {
+  const ConfigTable config = parse("[[arm.joints]]\nkp = 1\n[[arm.joints]]\nkp = -1\n");
+  const auto joints = config.get_table("arm").get_tables("joints");
+  EXPECT_EQ(usage_error_of([&] { joints[1].get_number("kp", {.lower = 0}); }),
+            "q1.toml:4: arm.joints[1].kp is -1; it must be a finite number >= 0");
+  EXPECT_EQ(usage_error_of([&] { joints[1].get_number("kd"); }),
+            "q1.toml:3: arm.joints[1].kd is missing; it must be a finite number");
+}
+
+TEST(Config, NamesTheTableOfAMissingKey) {
+  const ConfigTable config = parse("x = 1\n\n[task]\n[deep.er]\n");
+  EXPECT_EQ(
+      usage_error_of([&] { config.get_table("task").get_number("speed_m_per_s", {.lower = 0}); }),
+      "q1.toml:3: task.speed_m_per_s is missing; it must be a finite number >= 0");
+  EXPECT_EQ(usage_error_of([&] { config.get_string("name"); }),
+            "q1.toml:1: name is missing; it must be a string");
+  EXPECT_EQ(usage_error_of([&] { config.get_choice("kind", kKinds); }),
+            "q1.toml:1: kind is missing; it must be one of these strings: ga, random");
+  EXPECT_EQ(usage_error_of([&] { config.get_table("deep").get_integer("n", 1, 2); }),
+            "q1.toml:4: deep.n is missing; it must be an integer from 1 to 2");
+  EXPECT_EQ(usage_error_of(
+                [&] { config.get_table_or_empty("absent").get_table_or_empty("a").get_bool("b"); }),
+            "q1.toml:1: absent.a.b is missing; it must be true or false");
+}
+
+TEST(Config, AsksWhetherAMistypedKeyIsTheMissingOne) {
+  const ConfigTable task = parse("[task]\nsped = 1\n").get_table("task");
+  EXPECT_EQ(usage_error_of([&] { task.get_number("speed_m_per_s"); }),
+            "q1.toml:1: task.speed_m_per_s is missing; it must be a finite number (is task.sped in "
+            "q1.toml:2 "
+            "meant?)");
+}
+
+TEST(Config, ListsTheChoicesAndTheNearest) {
+  const ConfigTable config = parse("[optimizer]\nkind = \"gaa\"\nother = 3\n");
+  const ConfigTable optimizer = config.get_table("optimizer");
+  EXPECT_EQ(usage_error_of([&] { optimizer.get_choice("kind", kKinds); }),
+            "q1.toml:2: unknown optimizer.kind 'gaa'; did you mean 'ga'? Valid: ga, random");
+  EXPECT_EQ(
+      usage_error_of([&] { optimizer.get_choice("other", kKinds, "ga"); }),
+      "q1.toml:3: optimizer.other is 3, an integer; it must be one of these strings: ga, random");
+}
+
+TEST(Config, RefusesEveryKeyNobodyAskedFor) {
+  const ConfigTable config =
+      parse("[task]\nspeed_m_per_s = 1\nsped = 2\n\n[tsk]\nx = 1\n[[joints]]\na = 1\nzzz = 2\n");
+  const ConfigTable task = config.get_table("task");
+  task.get_number("speed_m_per_s");
+  task.has("optional");
+  task.get_number_or("limit_n_m", 1);
+  config.get_tables("joints")[0].get_number("a");
+  EXPECT_EQ(usage_error_of([&] { config.refuse_unknown(); }),
+            "q1.toml:3: unknown key task.sped; did you mean 'task.speed_m_per_s'? Valid here: "
+            "speed_m_per_s, "
+            "optional, limit_n_m\n"
+            "q1.toml:5: unknown key tsk; did you mean 'task'? Valid here: task, joints\n"
+            "q1.toml:9: unknown key joints[0].zzz. Valid here: a");
+}
+
+TEST(Config, ATableThatWasNeverFetchedIsUnknown) {
+  const ConfigTable config = parse("[task]\n[[joints]]\n");
+  EXPECT_EQ(usage_error_of([&] { config.refuse_unknown(); }),
+            "q1.toml:1: unknown key task. Valid here: (none)\nq1.toml:2: unknown key joints. Valid "
+            "here: (none)");
+  config.get_table("task");
+  config.get_tables_or_empty("joints");
+  config.refuse_unknown();
+}
+
+TEST(Config, WhatATableRefusesIsOnlyWhatLiesInIt) {
+  const ConfigTable config = parse("stray = 1\n[task]\nx = 1\n");
+  const ConfigTable task = config.get_table("task");
+  task.get_number("x");
+  task.refuse_unknown();
+  EXPECT_EQ(usage_error_of([&] { config.refuse_unknown(); }),
+            "q1.toml:1: unknown key stray. Valid here: task");
+}
+
+TEST(Config, ShowsOnlyTheFirstOfManyUnknownKeys) {
+  std::string toml;
+  for (int i = 0; i < 20; ++i) {
+    toml += fmt::format("k{} = 1\n", i);
+  }
+  const std::string message = usage_error_of([&] { parse(toml).refuse_unknown(); });
+  EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 8);
+  EXPECT_TRUE(message.starts_with("q1.toml:1: unknown key k0.")) << message;
+  EXPECT_TRUE(message.ends_with("\nand 12 more unknown keys")) << message;
+}
+
+TEST(Config, RefusesForReasonsOfTheCaller) {
+  const ConfigTable task = parse("[task]\nx = [1, 2]\n").get_table("task");
+  EXPECT_EQ(usage_error_of([&] { task.refuse("x", "it must have three elements"); }),
+            "q1.toml:2: task.x is [1, 2]; it must have three elements");
+  EXPECT_EQ(usage_error_of([&] { task.refuse("y", "x needs it"); }),
+            "q1.toml:1: task.y is missing; x needs it");
+}
+
+TEST(Config, MessagesArePrintableAndShort) {
+  const ConfigTable config = parse("\"a\\u001b[31m\" = 1\nlong = \"" + std::string(500, 'x') +
+                                   "\"\nescape = \"\\u001b[31m\"\nlines = '''a\nb'''\n");
+  EXPECT_EQ(
+      usage_error_of([&] { config.get_number("long"); }),
+      "q1.toml:2: long is \"" + std::string(59, 'x') + "..., a string; it must be a finite number");
+  EXPECT_EQ(usage_error_of([&] { config.get_choice("escape", kKinds); }),
+            "q1.toml:3: unknown escape '?[31m'. Valid: ga, random");
+  EXPECT_EQ(usage_error_of([&] { config.get_number("lines"); }),
+            "q1.toml:4: lines is '''a?b''', a string; it must be a finite number");
+  EXPECT_EQ(usage_error_of([&] { config.get_bool("a\x1b[31m"); }),
+            "q1.toml:1: \"a?[31m\" is 1, an integer; it must be true or false");
+}
+
+TEST(Config, FindsValuesBehindLettersBeyondAscii) {
+  const ConfigTable config = parse("a = { b = \"žluťoučký\", c = 12 }\r\n# ž\r\nd = 34\r\n");
+  EXPECT_EQ(usage_error_of([&] { config.get_table("a").get_bool("c"); }),
+            "q1.toml:1: a.c is 12, an integer; it must be true or false");
+  EXPECT_EQ(usage_error_of([&] { config.get_bool("d"); }),
+            "q1.toml:3: d is 34, an integer; it must be true or false");
+}
+
+TEST(Config, WritesCanonicalJson) {
+  const ConfigTable config = parse(R"(
+z = 1
+a = [0.1, 2.0, 1e300, -0.0, 3, true, 1979-05-27]
+big = 9007199254740993
+"key \"q\"" = "ž\u0001\n"
+[m.n]
+[[t]]
+y = 1
+x = {}
+)");
+  EXPECT_EQ(
+      config.to_json(),
+      "{\"a\":[0.1,2.0,1e+300,-0.0,3,true,\"1979-05-27\"],\"big\":9007199254740993,"
+      "\"key \\\"q\\\"\":\"ž\\u0001\\n\",\"m\":{\"n\":{}},\"t\":[{\"x\":{},\"y\":1}],\"z\":1}");
+  EXPECT_EQ(nlohmann::json::parse(config.to_json())["big"], 9007199254740993);
+  EXPECT_EQ(config.get_table("m").to_json(), "{\"n\":{}}");
+  EXPECT_EQ(parse("b = 1\na = 2\n").to_json(), parse("a = 0x2 # two\n\nb = 1").to_json());
+}
+
+// A locale's decimal comma must not reach the parser, neither through C++ streams nor through the C
+// library.
+class DecimalComma : public std::numpunct<char> {
+ protected:
+  char do_decimal_point() const override { return ','; }
+  char do_thousands_sep() const override { return '.'; }
+  std::string do_grouping() const override { return "\3"; }
+};
+
+void expect_numbers_read_and_written_with_a_point() {
+  const ConfigTable config = parse("x = 1234.5\nn = 1_234_567\n");
+  EXPECT_EQ(config.get_number("x"), 1234.5);
+  EXPECT_EQ(config.get_integer("n", 0, 10000000), 1234567);
+  EXPECT_EQ(config.to_json(), R"({"n":1234567,"x":1234.5})");
+  EXPECT_EQ(usage_error_of([&] { config.get_number("x", {.upper = 1000.5}); }),
+            "q1.toml:1: x is 1234.5; it must be a finite number <= 1000.5");
+}
+
+TEST(Config, IgnoresTheLocaleOfCppStreams) {
+  const std::locale before =
+      std::locale::global(std::locale(std::locale::classic(), new DecimalComma));
+  expect_numbers_read_and_written_with_a_point();
+  std::locale::global(before);
+}
+
+TEST(Config, IgnoresTheLocaleOfTheCLibrary) {
+  const char* found = nullptr;
+  for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "cs_CZ.UTF-8", "fr_FR.UTF-8", "de_DE"}) {
+    found = found == nullptr ? std::setlocale(LC_ALL, name) : found;
+  }
+  if (found == nullptr) {
+    GTEST_SKIP()
+        << "no locale with a decimal comma is installed (de_DE.UTF-8, cs_CZ.UTF-8, fr_FR.UTF-8)";
+  }
+  ASSERT_STREQ(std::localeconv()->decimal_point, ",");
+  expect_numbers_read_and_written_with_a_point();
+  std::setlocale(LC_ALL, "C");
+}
+
+}  // namespace
+}  // namespace armwright
