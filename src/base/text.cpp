@@ -63,7 +63,9 @@ std::optional<std::string> find_nearest(std::string_view name,
   std::size_t best = 0;
   for (const std::string& candidate : candidates) {
     const std::size_t distance = calc_edit_distance(name, candidate);
-    const std::size_t near = std::max<std::size_t>(1, std::max(name.size(), candidate.size()) / 3);
+    const std::size_t length = std::max(name.size(), candidate.size());
+    // A third, or one letter of two; one letter of one would have nothing in common.
+    const std::size_t near = length == 2 ? 1 : length / 3;
     if (distance <= near && (!nearest || distance < best)) {
       nearest = candidate;
       best = distance;

@@ -126,6 +126,9 @@ TestSet TestSet::load(const std::filesystem::path& file) {
 }
 
 TestSet TestSet::make_from_cases(std::vector<TestCase> cases) {
+  if (cases.empty()) {
+    throw Error(ErrorKind::bad_data, "test cases: there is none; a set must hold at least one");
+  }
   for (std::size_t i = 0; i < cases.size(); ++i) {
     if (const auto fault = find_fault(cases[i])) {
       throw Error(ErrorKind::bad_data,

@@ -211,8 +211,8 @@ struct CsvRow {
 CsvRow parse_row(const std::string& where, std::string_view line) {
   const auto fields = 1 + std::count(line.begin(), line.end(), ',');
   if (fields != 5) {
-    refuse(where, fmt::format("'{}' has {} fields; a row must have exactly 5: {}", quote(line),
-                              fields, kHeader));
+    refuse(where, fmt::format("a row must have exactly 5 fields: {}; '{}' has {}", kHeader,
+                              quote(line), fields));
   }
   const auto take_integer = [&](const char* column) {
     const std::string_view field = take_until(line, ',');
@@ -293,10 +293,9 @@ std::vector<TestCase> parse_csv(const std::string& name, std::string_view text) 
 std::optional<CaseFault> find_fault(const TestCase& test_case) {
   const auto& points_m = test_case.points_m;
   if (points_m.size() < 2) {
-    return CaseFault{points_m.empty() ? 0 : points_m.size() - 1,
-                     fmt::format("ends a case of {} points; a case must have at least 2: the start "
-                                 "and where to go",
-                                 points_m.size())};
+    return CaseFault{0, fmt::format("is {}; a case must have at least 2 points: the start and "
+                                    "where to go",
+                                    points_m.empty() ? "missing" : "its only one")};
   }
   for (std::size_t k = 0; k < points_m.size(); ++k) {
     for (const double coordinate_m : points_m[k]) {

@@ -1,0 +1,7 @@
+# Writes the commit and whether the tree differs from it; touches the header only when that changes.
+execute_process(COMMAND git -C ${SOURCE} describe --always --dirty --abbrev=12 --exclude=*
+                OUTPUT_VARIABLE state OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
+if(failed)
+  set(state "unknown")
+endif()
+file(CONFIGURE OUTPUT ${HEADER} CONTENT "#define ARMWRIGHT_GIT \"@state@\"\n" @ONLY)

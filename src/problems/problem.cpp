@@ -1,0 +1,33 @@
+#include "problems/problem.hpp"
+
+#include <cassert>
+
+namespace armwright {
+
+const char* to_string(EvaluationStatus status) {
+  switch (status) {
+    case EvaluationStatus::ok:
+      return "ok";
+    case EvaluationStatus::diverged:
+      return "diverged";
+    case EvaluationStatus::unreachable:
+      return "unreachable";
+    case EvaluationStatus::timed_out:
+      return "timed out";
+    case EvaluationStatus::failed:
+      return "failed";
+  }
+  assert(false && "an evaluation status without a name");
+  return "failed";
+}
+
+Evaluation Problem::evaluate(std::span<const double> x, const CaseBlock& block) const {
+  std::vector<CaseJob> jobs;
+  jobs.reserve(block.numbers.size());
+  for (const std::uint64_t number : block.numbers) {
+    jobs.push_back({x, &block, number});
+  }
+  return aggregate(x, simulate(jobs));
+}
+
+}  // namespace armwright

@@ -1,0 +1,397 @@
+#include "study/journal.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <condition_variable>
+#include <cstring>
+#include <mutex>
+#include <stdexcept>
+#include <string_view>
+#include <system_error>
+#include <thread>
+
+#include "base/error.hpp"
+#include "study/file_descriptor.hpp"
+#include "study/journal_format.hpp"
+#include "study/journal_reader.hpp"
+
+namespace armwright {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using journal_format::kFrameBytes;
+using journal_format::kMagic;
+
+// Half of what is promised (10 ms), so that a late wake-up does not break the promise.
+constexpr auto kWriteInterval = std::chrono::milliseconds(5);
+constexpr auto kSyncInterval = std::chrono::seconds(1);
+constexpr std::size_t kBufferBytes = 256
+                                     << 10;  // fits a core's L2 cache; larger writes gain nothing
+
+[[noreturn]] void fail_io(const std::filesystem::path& file, std::string_view doing, int error) {
+  throw Error(ErrorKind::io,
+              fmt::format("{}: cannot {}: {}", file.string(), doing, std::strerror(error)));
+}
+
+struct WriteResult {
+  std::size_t written = 0;
+  int error = 0;
+};
+
+WriteResult write_fully(int fd, std::string_view bytes) {
+  WriteResult result;
+  while (result.written < bytes.size()) {
+    const ssize_t put = ::write(fd, bytes.data() + result.written, bytes.size() - result.written);
+    if (put < 0 && errno == EINTR) {
+      continue;
+    }
+    if (put <= 0) {
+      result.error = put < 0 ? errno : EIO;
+      break;
+    }
+    result.written += static_cast<std::size_t>(put);
+  }
+  return result;
+}
+
+// Some file systems cannot sync; what they can do is then all there is to have.
+int sync_data(int fd) {
+  return ::fdatasync(fd) == 0 || errno == EINVAL || errno == EROFS ? 0 : errno;
+}
+
+// Makes the names of new files survive a power cut.
+void sync_folder_of(const std::filesystem::path& file) {
+  const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+  const FileDescriptor descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (descriptor.is_open()) {
+    ::fsync(descriptor.get());
+  }
+}
+
+// The bytes of the whole records at the beginning of `records[0, written)`.
+std::size_t count_whole_record_bytes(std::string_view records, std::size_t written) {
+  std::size_t whole = 0;
+  while (written - whole >= kFrameBytes) {
+    const auto frame = journal_format::decode_frame(records.substr(whole, kFrameBytes));
+    const std::size_t record_bytes = kFrameBytes + frame.payload_bytes;
+    if (record_bytes > written - whole) {
+      break;
+    }
+    whole += record_bytes;
+  }
+  return whole;
+}
+
+void copy_from(int source, std::uint64_t offset, int target,
+               const std::filesystem::path& source_name, const std::filesystem::path& target_name) {
+  std::string chunk(1 << 20, '\0');
+  while (true) {
+    const ssize_t got = ::pread(source, chunk.data(), chunk.size(), static_cast<off_t>(offset));
+    if (got < 0 && errno == EINTR) {
+      continue;
+    }
+    if (got < 0) {
+      fail_io(source_name, "read its torn end", errno);
+    }
+    if (got == 0) {
+      break;
+    }
+    const auto bytes = static_cast<std::size_t>(got);
+    if (const int error = write_fully(target, {chunk.data(), bytes}).error; error != 0) {
+      fail_io(target_name, "save the torn end of the journal in it", error);
+    }
+    offset += bytes;
+  }
+  if (const int error = sync_data(target); error != 0) {
+    fail_io(target_name, "sync it to the disk", error);
+  }
+}
+
+// Saves what lies behind `offset` in the first free "<file>.torn-N".
+void save_torn_end(int fd, std::uint64_t offset, const std::filesystem::path& file) {
+  for (int n = 1;; ++n) {
+    const std::filesystem::path name = fmt::format("{}.torn-{}", file.string(), n);
+    FileDescriptor target(::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644));
+    if (!target.is_open() && errno == EEXIST) {
+      continue;
+    }
+    if (!target.is_open()) {
+      fail_io(name, "save the torn end of the journal in it", errno);
+    }
+    try {
+      copy_from(fd, offset, target.get(), file, name);
+      if (target.close() != 0) {
+        fail_io(name, "close it", errno);
+      }
+    } catch (...) {
+      ::unlink(name.c_str());  // half a copy beside an untouched journal would only confuse
+      throw;
+    }
+    return;
+  }
+}
+
+}  // namespace
+
+// Two threads, both asleep unless there is something to do: one writes what append() left in the
+// buffer, the other syncs. A sync can take long on a slow disk, and records must reach the
+// operating system meanwhile.
+class Journal::Writer {
+ public:
+  Writer(const std::filesystem::path& file, JournalContent& content)
+      : file_(file),
+        fd_(::open(file.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC | O_NONBLOCK, 0644)) {
+    if (!fd_.is_open()) {
+      fail_io(file_, "open it for appending", errno);
+    }
+    JournalScan scan = scan_journal(fd_.get(), file_);
+    if (scan.content.torn_bytes != 0) {
+      save_torn_end(fd_.get(), scan.good_bytes, file_);
+      sync_folder_of(file_);
+      if (::ftruncate(fd_.get(), static_cast<off_t>(scan.good_bytes)) != 0) {
+        fail_io(file_, "cut off its torn end", errno);
+      }
+      unsynced_ = true;
+    }
+    good_bytes_ = scan.good_bytes;
+    ended_ = scan.content.ended;
+    if (good_bytes_ == 0) {
+      begin_file();
+    }
+    start_threads();
+    content = std::move(scan.content);
+  }
+
+  ~Writer() { stop_threads(); }
+
+  void append(const EvaluationRecord& record) {
+    const std::lock_guard lock(mutex_);
+    add(record);
+  }
+
+  void append(const EndRecord& record) {
+    const std::lock_guard lock(mutex_);
+    add(record);
+    ended_ = true;
+  }
+
+  void flush() {
+    const std::lock_guard lock(mutex_);
+    write_buffer();
+    throw_if_failed();
+  }
+
+  void close() {
+    stop_threads();
+    const std::lock_guard lock(mutex_);
+    if (!fd_.is_open()) {
+      return;
+    }
+    write_buffer();
+    if (error_.empty() && unsynced_) {
+      remember_error("sync it to the disk", sync_data(fd_.get()));
+    }
+    if (fd_.close() != 0) {
+      remember_error("close it", errno);
+    }
+    throw_if_failed();
+  }
+
+ private:
+  void begin_file() {
+    const WriteResult result = write_fully(fd_.get(), kMagic);
+    if (result.error != 0) {
+      fail_io(file_, "write it", result.error);
+    }
+    good_bytes_ = kMagic.size();
+    unsynced_ = true;
+    sync_folder_of(file_);
+  }
+
+  // A system that grants no more threads gets a journal that writes every record at once instead;
+  // see add().
+  void start_threads() {
+    try {
+      write_thread_ = std::thread([this] { write_loop(); });
+      sync_thread_ = std::thread([this] { sync_loop(); });
+    } catch (const std::system_error&) {
+      // has_threads_ stays false
+    }
+    const std::lock_guard lock(mutex_);
+    has_threads_ = write_thread_.joinable() && sync_thread_.joinable();
+  }
+
+  void stop_threads() {
+    {
+      const std::lock_guard lock(mutex_);
+      stopping_ = true;
+    }
+    write_wanted_.notify_all();
+    sync_wanted_.notify_all();
+    for (std::thread* const thread : {&write_thread_, &sync_thread_}) {
+      if (thread->joinable()) {
+        thread->join();
+      }
+    }
+  }
+
+  // Everything below is called with mutex_ held.
+
+  template <class Record>
+  void add(const Record& record) {
+    throw_if_failed();
+    if (!fd_.is_open()) {
+      throw std::logic_error("append to a closed journal");
+    }
+    if (ended_) {
+      throw std::logic_error("append to a journal whose run has ended");
+    }
+    try {
+      journal_format::encode(record, buffer_);
+    } catch (const Error& error) {
+      throw Error(error.kind(), fmt::format("{}: {}", file_.string(), error.what()));
+    }
+    const auto now = Clock::now();
+    if (!has_threads_ || now - last_write_ >= kWriteInterval || buffer_.size() > kBufferBytes) {
+      write_buffer(now);
+      if (!has_threads_ && unsynced_ && now - last_sync_ >= kSyncInterval) {
+        last_sync_ = now;
+        unsynced_ = false;
+        remember_error("sync it to the disk", sync_data(fd_.get()));
+      }
+      throw_if_failed();
+    } else if (writer_idle_) {
+      writer_idle_ = false;
+      write_wanted_.notify_one();
+    }
+  }
+
+  void write_buffer(Clock::time_point now = Clock::now()) {
+    if (buffer_.empty() || !error_.empty()) {
+      return;
+    }
+    last_write_ = now;
+    const WriteResult result = write_fully(fd_.get(), buffer_);
+    if (result.error != 0) {
+      good_bytes_ += count_whole_record_bytes(buffer_, result.written);
+      // Should this fail as well, the next opening finds a torn end and cuts it off.
+      [[maybe_unused]] const int cut = ::ftruncate(fd_.get(), static_cast<off_t>(good_bytes_));
+      remember_error("write it", result.error);
+    } else {
+      good_bytes_ += buffer_.size();
+      struct stat status {};
+      if (::fstat(fd_.get(), &status) == 0 && status.st_nlink == 0) {
+        error_ = fmt::format("{}: was deleted while the run was writing it", file_.string());
+      }
+    }
+    buffer_.clear();
+    if (!unsynced_) {
+      unsynced_ = true;
+      sync_wanted_.notify_one();
+    }
+  }
+
+  // Sticky: a record that failed may not be followed by others.
+  void remember_error(std::string_view doing, int error) {
+    if (error != 0 && error_.empty()) {
+      error_ = fmt::format(
+          "{}: cannot {}: {}; once this is put right, the same command resumes the "
+          "run from the records that are intact",
+          file_.string(), doing, std::strerror(error));
+    }
+  }
+
+  void throw_if_failed() const {
+    if (!error_.empty()) {
+      throw Error(ErrorKind::io, error_);
+    }
+  }
+
+  // The loops of the two threads.
+
+  void write_loop() {
+    std::unique_lock lock(mutex_);
+    while (!stopping_) {
+      if (buffer_.empty()) {
+        writer_idle_ = true;
+        write_wanted_.wait(lock, [this] { return stopping_ || !buffer_.empty(); });
+        writer_idle_ = false;
+        continue;
+      }
+      // add() writes by itself when the last write is that long ago, so no record in the buffer
+      // waits longer than this.
+      const auto due = last_write_ + kWriteInterval;
+      if (Clock::now() >= due) {
+        write_buffer();
+      } else {
+        write_wanted_.wait_until(lock, due, [this] { return stopping_; });
+      }
+    }
+  }
+
+  void sync_loop() {
+    std::unique_lock lock(mutex_);
+    while (true) {
+      sync_wanted_.wait(lock, [this] { return stopping_ || unsynced_; });
+      sync_wanted_.wait_until(lock, last_sync_ + kSyncInterval, [this] { return stopping_; });
+      if (stopping_) {
+        return;  // close() syncs
+      }
+      unsynced_ = false;
+      last_sync_ = Clock::now();
+      lock.unlock();
+      const int error = sync_data(fd_.get());
+      lock.lock();
+      remember_error("sync it to the disk", error);
+    }
+  }
+
+  const std::filesystem::path file_;
+  FileDescriptor fd_;
+  std::mutex mutex_;  // guards all that follows
+  std::condition_variable write_wanted_;
+  std::condition_variable sync_wanted_;
+  std::string buffer_;            // whole records
+  std::uint64_t good_bytes_ = 0;  // of the file: the magic and whole records
+  std::string error_;             // the first one, empty if there is none
+  bool ended_ = false;
+  bool unsynced_ = false;
+  bool writer_idle_ = false;
+  bool has_threads_ = false;
+  bool stopping_ = false;
+  Clock::time_point last_write_ = Clock::now();
+  Clock::time_point last_sync_ = Clock::now();
+  std::thread write_thread_;
+  std::thread sync_thread_;
+};
+
+Journal::Journal(const std::filesystem::path& file, JournalContent& content)
+    : writer_(std::make_unique<Writer>(file, content)) {}
+
+Journal::~Journal() {
+  try {
+    close();
+  } catch (const std::exception&) {
+    // As documented: who wants to know calls close().
+  }
+}
+
+void Journal::append(const EvaluationRecord& record) {
+  writer_->append(record);
+}
+void Journal::append(const EndRecord& record) {
+  writer_->append(record);
+}
+void Journal::flush() {
+  writer_->flush();
+}
+void Journal::close() {
+  writer_->close();
+}
+
+}  // namespace armwright

@@ -1,0 +1,125 @@
+#include "study/judge.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <mutex>
+#include <numeric>
+#include <tuple>
+
+namespace armwright {
+namespace {
+
+CaseBlock make_block(CaseRole role, const std::string& set, int cases) {
+  CaseBlock block{role, set, std::vector<std::uint64_t>(static_cast<std::size_t>(cases))};
+  std::iota(block.numbers.begin(), block.numbers.end(), std::uint64_t{0});
+  return block;
+}
+
+bool same_request(const EvaluationRecord& record, std::span<const double> x,
+                  const CaseBlock& block) {
+  return record.cases.role == block.role && record.cases.set == block.set &&
+         record.cases.numbers == block.numbers && record.x.size() == x.size() &&
+         std::memcmp(record.x.data(), x.data(), x.size_bytes()) == 0;
+}
+
+}  // namespace
+
+Judge::Judge(const RunPlan& plan, CaseRunner& runner, Journal& journal,
+             std::vector<EvaluationRecord> recorded, RunObserver& observer)
+    : plan_(plan),
+      runner_(runner),
+      journal_(journal),
+      recorded_(std::move(recorded)),
+      observer_(observer) {}
+
+std::optional<std::vector<Evaluation>> Judge::evaluate(
+    const std::vector<std::vector<double>>& designs, const CaseBlock& block,
+    Progress::Phase phase) {
+  std::vector<Evaluation> evaluations(designs.size());
+  std::vector<std::size_t> missing;
+  std::vector<CandidateJob> jobs;
+  for (std::size_t i = 0; i < designs.size(); ++i) {
+    const auto found = std::find_if(
+        recorded_.begin(), recorded_.end(),
+        [&](const EvaluationRecord& record) { return same_request(record, designs[i], block); });
+    if (found != recorded_.end()) {
+      evaluations[i] = found->evaluation;
+    } else {
+      missing.push_back(i);
+      jobs.push_back({designs[i], &block});
+    }
+  }
+  Progress progress;
+  progress.phase = phase;
+  progress.total = designs.size() * block.numbers.size();
+  progress.done = (designs.size() - missing.size()) * block.numbers.size();
+  progress.replayed = progress.done;
+  observer_.on_progress(progress);
+  std::mutex mutex;
+  const auto done = runner_.run(jobs, [&](std::size_t job, const Evaluation& evaluation) {
+    EvaluationRecord record;
+    record.index = missing[job];
+    record.x = designs[missing[job]];
+    record.cases = block;
+    record.evaluation = evaluation;
+    journal_.append(record);
+    const std::lock_guard lock(mutex);
+    progress.done += block.numbers.size();
+    observer_.on_progress(progress);
+  });
+  journal_.flush();
+  for (std::size_t job = 0; job < missing.size(); ++job) {
+    if (!done[job]) {
+      return std::nullopt;
+    }
+    evaluations[missing[job]] = *done[job];
+  }
+  return evaluations;
+}
+
+std::optional<std::vector<JudgedCandidate>> Judge::validate(std::vector<Candidate> candidates) {
+  const CaseSets& sets = plan_.problem.sets;
+  std::vector<std::vector<double>> designs;
+  for (const Candidate& candidate : candidates) {
+    designs.push_back(candidate.x);
+  }
+  auto evaluations =
+      evaluate(designs, make_block(CaseRole::validation, sets.validation, sets.validation_cases),
+               Progress::Phase::validation);
+  if (!evaluations) {
+    return std::nullopt;
+  }
+  std::vector<JudgedCandidate> judged;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    judged.push_back({std::move(candidates[i]), std::move((*evaluations)[i])});
+  }
+  return judged;
+}
+
+std::optional<std::size_t> Judge::choose_winner(const std::vector<JudgedCandidate>& judged) {
+  const auto rank = [](const JudgedCandidate& candidate) {
+    double violation = 0;
+    for (const double g : candidate.validation.constraint_values) {
+      violation += std::max(0.0, g);
+    }
+    return std::tuple(candidate.validation.failed_cases, violation,
+                      candidate.validation.objectives.front());
+  };
+  std::optional<std::size_t> winner;
+  for (std::size_t i = 0; i < judged.size(); ++i) {
+    if (!judged[i].validation.objectives.empty() &&
+        (!winner || rank(judged[i]) < rank(judged[*winner]))) {
+      winner = i;
+    }
+  }
+  return winner;
+}
+
+std::optional<Evaluation> Judge::test(const Candidate& winner) {
+  const CaseSets& sets = plan_.problem.sets;
+  auto evaluations =
+      evaluate({winner.x}, make_block(CaseRole::test, sets.test, sets.test_cases), Progress::Phase::test);
+  return evaluations ? std::optional(std::move(evaluations->front())) : std::nullopt;
+}
+
+}  // namespace armwright

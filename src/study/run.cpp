@@ -1,0 +1,137 @@
+#include "study/run.hpp"
+
+#include <fmt/format.h>
+
+#include "base/error.hpp"
+#include "base/file.hpp"
+#include "study/judge.hpp"
+#include "study/run_folder.hpp"
+#include "study/store.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr std::size_t kResultLimit_bytes = std::size_t{256} << 20;
+
+RunResult make_result(const RunPlan& plan) {
+  RunResult result;
+  const ProblemDescription& description = plan.problem.problem->description();
+  result.problem = plan.problem.name;
+  result.optimizer = plan.optimizer;
+  result.seed = plan.seed;
+  for (const DecisionVariable& variable : description.variables) {
+    result.variable_names.push_back(variable.name);
+  }
+  for (const Quantity& metric : description.metrics) {
+    result.metric_names.push_back(metric.name);
+  }
+  result.objective_name = description.objectives.front().name;
+  result.objective_unit = description.objectives.front().unit;
+  result.test_set = plan.problem.sets.test;
+  result.published = plan.problem.published;
+  return result;
+}
+
+void describe_start(const RunFolder& folder, const JournalContent& journal, RunObserver& observer) {
+  for (const std::string& warning : folder.warnings()) {
+    observer.on_message("warning: " + warning +
+                        "; if the results differ, resuming stops with an error");
+  }
+  if (journal.torn_bytes > 0) {
+    observer.on_message(fmt::format(
+        "warning: {}: cut {} bytes of an unfinished record off the end (kept beside it); what it held "
+        "is evaluated again",
+        folder.journal().string(), journal.torn_bytes));
+  }
+  if (!journal.training.empty()) {
+    observer.on_message(fmt::format("resuming: {} evaluations and {} judgements are recorded",
+                                    journal.training.size(), journal.judgements.size()));
+  }
+}
+
+}  // namespace
+
+std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop,
+                                     RunObserver& observer) {
+  const RunPlan& plan = request.plan;
+  check_plan(plan);
+  const auto optimizer = find_optimizer(plan.optimizer).make(plan.options);
+  const RunFolder folder(request.folder, plan, request.command_line);
+  if (std::filesystem::exists(folder.result())) {
+    observer.on_message(fmt::format("{}: this run is complete; use --new for another one",
+                                    folder.path().string()));
+    return load_result(folder.path());
+  }
+
+  JournalContent recorded;
+  Journal journal(folder.journal(), recorded);
+  describe_start(folder, recorded, observer);
+  ThreadPool pool(request.jobs);
+  CaseRunner runner(*plan.problem.problem, pool, stop);
+  RunEvaluator evaluator(plan, runner, stop, journal, std::move(recorded.training), observer);
+  optimizer->minimize(evaluator, plan.seed);
+  if (stop.requested()) {
+    journal.close();
+    return std::nullopt;
+  }
+
+  RunResult result = make_result(plan);
+  result.end_reason = evaluator.budget_spent() ? "budget" : "optimizer finished";
+  result.counts = evaluator.counts();
+  Judge judge(plan, runner, journal, std::move(recorded.judgements), observer);
+  auto judged = judge.validate(evaluator.select_candidates());
+  if (!judged) {
+    journal.close();
+    return std::nullopt;
+  }
+  result.judged = std::move(*judged);
+  result.winner = Judge::choose_winner(result.judged);
+  if (result.winner) {
+    auto test = judge.test(result.judged[*result.winner].candidate);
+    if (!test) {
+      journal.close();
+      return std::nullopt;
+    }
+    result.test = std::move(*test);
+    result.test_summary = summarize(result.test.case_errors);
+  }
+  if (!recorded.ended) {
+    journal.append(EndRecord{result.end_reason, result.counts.evaluations});
+  }
+  journal.close();
+  write_derived_files(folder, plan, result, read_journal(folder.journal()));
+  return result;
+}
+
+std::optional<std::vector<TrackingResult>> evaluate_design(const TrackingProblem& problem,
+                                                           const ArmDesign& design,
+                                                           const TestSet& set, std::uint64_t cases,
+                                                           unsigned jobs, StopSignal& stop) {
+  problem.check_design(design);
+  std::vector<TrackingResult> results(cases);
+  ThreadPool pool(jobs);
+  pool.run(results.size(), [&](std::size_t number) {
+    if (!stop.requested()) {
+      results[number] = problem.track(design, set, number);
+    }
+  });
+  return stop.requested() ? std::nullopt : std::optional(std::move(results));
+}
+
+RunResult load_result(const std::filesystem::path& folder) {
+  const auto file = folder / "result.json";
+  if (!std::filesystem::exists(folder / "manifest.json")) {
+    throw Error(ErrorKind::usage,
+                fmt::format("{}: is not the folder of a run (it has no manifest.json)",
+                            folder.string()));
+  }
+  if (!std::filesystem::exists(file)) {
+    throw Error(ErrorKind::usage,
+                fmt::format("{}: this run has not come to its end; start it again with the same command "
+                            "to go on where it was",
+                            folder.string()));
+  }
+  return parse_result(read_file(file, kResultLimit_bytes), file);
+}
+
+}  // namespace armwright

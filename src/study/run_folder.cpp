@@ -1,0 +1,104 @@
+#include "study/run_folder.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "base/error.hpp"
+#include "base/file.hpp"
+#include "base/text.hpp"
+#include "study/build_info.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kManifestLimit_bytes = std::size_t{16} << 20;
+constexpr int kFormat = 1;
+
+std::filesystem::path make_and_return(const std::filesystem::path& path) {
+  make_folder(path);
+  return path;
+}
+
+json make_manifest(const RunPlan& plan, std::span<const std::string> command_line) {
+  json words = json::array();
+  for (const std::string& word : command_line) {
+    words.push_back(sanitize(word));
+  }
+  const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  return {{"format", kFormat},
+          {"configuration", json::parse(to_json(plan))},
+          {"build", describe_build()},
+          {"command_line", words},
+          {"started", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now))}};
+}
+
+json read_manifest(const std::filesystem::path& file) {
+  try {
+    json manifest = json::parse(read_file(file, kManifestLimit_bytes));
+    if (manifest.at("format") != kFormat) {
+      throw std::runtime_error("its format is not the one this version reads");
+    }
+    manifest.at("configuration");
+    manifest.at("build");
+    return manifest;
+  } catch (const json::exception& error) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("{}: is not a manifest that armwright wrote ({}); choose another folder "
+                            "with --out, or --new",
+                            file.string(), error.what()));
+  } catch (const std::runtime_error& error) {
+    if (dynamic_cast<const Error*>(&error) != nullptr) {
+      throw;
+    }
+    throw Error(ErrorKind::bad_data, fmt::format("{}: {}", file.string(), error.what()));
+  }
+}
+
+}  // namespace
+
+RunFolder::RunFolder(const std::filesystem::path& path, const RunPlan& plan,
+                     std::span<const std::string> command_line)
+    : path_(make_and_return(path)), lock_(path) {
+  const auto file = path / "manifest.json";
+  if (!std::filesystem::exists(file)) {
+    if (std::filesystem::exists(journal())) {
+      throw Error(ErrorKind::bad_data,
+                  fmt::format("{}: holds a journal but no manifest.json, so nobody can tell what it is of; "
+                              "choose another folder with --out, or --new",
+                              path.string()));
+    }
+    write_file_atomically(file, make_manifest(plan, command_line).dump(2) + "\n");
+    return;
+  }
+  const json manifest = read_manifest(file);
+  const auto differences = describe_differences(manifest["configuration"].dump(), to_json(plan));
+  if (!differences.empty()) {
+    throw Error(ErrorKind::usage,
+                fmt::format("{} holds a run with another configuration:\n  {}\nGo on with the recorded "
+                            "one, or use --new or --out for another folder",
+                            path.string(), join(differences, "\n  ")));
+  }
+  for (const auto& [key, now] : describe_build()) {
+    const std::string recorded = manifest["build"].value(key, "(not recorded)");
+    if (recorded != now) {
+      warnings_.push_back(fmt::format("{} was '{}' when the run began and is '{}' now", key,
+                                      sanitize(recorded), now));
+    }
+  }
+}
+
+std::filesystem::path choose_run_folder(const std::filesystem::path& parent, const std::string& name,
+                                        bool fresh) {
+  std::filesystem::path folder = parent / name;
+  for (int number = 2; fresh && std::filesystem::exists(folder); ++number) {
+    folder = parent / fmt::format("{}-{:03}", name, number);
+  }
+  return folder;
+}
+
+}  // namespace armwright

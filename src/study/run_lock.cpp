@@ -1,0 +1,74 @@
+#include "study/run_lock.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <string>
+#include <string_view>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+
+namespace armwright {
+namespace {
+
+[[noreturn]] void fail_io(const std::filesystem::path& file, std::string_view doing, int error) {
+  throw Error(ErrorKind::io,
+              fmt::format("{}: cannot {}: {}", file.string(), doing, std::strerror(error)));
+}
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  if (::gethostname(name.data(), name.size() - 1) != 0 || name[0] == '\0') {
+    return "an unnamed host";
+  }
+  return name.data();
+}
+
+// What the holder has written, or a stand-in if it has not come to that yet.
+std::string read_holder(int fd) {
+  std::array<char, 512> text{};
+  const ssize_t got = ::pread(fd, text.data(), text.size(), 0);
+  std::string_view line(text.data(), got > 0 ? static_cast<std::size_t>(got) : 0);
+  line = line.substr(0, line.find('\n'));
+  return line.empty() ? "another process" : sanitize(line);
+}
+
+void write_holder(int fd, const std::filesystem::path& file) {
+  const std::string line = fmt::format("process {} on {}\n", ::getpid(), host_name());
+  if (::ftruncate(fd, 0) != 0) {
+    fail_io(file, "empty it", errno);
+  }
+  const ssize_t put = ::pwrite(fd, line.data(), line.size(), 0);
+  if (put != static_cast<ssize_t>(line.size())) {
+    fail_io(file, "write it", put < 0 ? errno : ENOSPC);
+  }
+}
+
+}  // namespace
+
+RunLock::RunLock(const std::filesystem::path& folder)
+    : fd_(::open((folder / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644)) {
+  const auto file = folder / "lock";
+  if (!fd_.is_open()) {
+    fail_io(file, "open it", errno);
+  }
+  while (::flock(fd_.get(), LOCK_EX | LOCK_NB) != 0) {
+    if (errno == EWOULDBLOCK) {
+      throw Error(ErrorKind::busy, fmt::format("{} is in use by {}; wait for it, stop it, or use "
+                                               "--out/--new for another folder",
+                                               folder.string(), read_holder(fd_.get())));
+    }
+    if (errno != EINTR) {
+      fail_io(file, "lock it (a folder on a local disk always can; choose one with --out)", errno);
+    }
+  }
+  write_holder(fd_.get(), file);
+}
+
+}  // namespace armwright

@@ -1,0 +1,193 @@
+#include "study/run_result.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "base/error.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kFormat = 1;
+
+json optional_to_json(const std::optional<double>& value) {
+  return value ? json(*value) : json(nullptr);
+}
+
+std::optional<double> optional_from_json(const json& value) {
+  return value.is_null() ? std::nullopt : std::optional(value.get<double>());
+}
+
+json errors_to_json(const std::vector<double>& errors) {
+  json list = json::array();
+  for (const double error : errors) {
+    list.push_back(std::isnan(error) ? json(nullptr) : json(error));
+  }
+  return list;
+}
+
+json evaluation_to_json(const Evaluation& evaluation) {
+  return {{"status", to_string(evaluation.status)},
+          {"reason", evaluation.reason},
+          {"objectives", evaluation.objectives},
+          {"constraint_values", evaluation.constraint_values},
+          {"metrics", evaluation.metrics},
+          {"failed_cases", evaluation.failed_cases},
+          {"case_errors", errors_to_json(evaluation.case_errors)}};
+}
+
+EvaluationStatus parse_status(const std::string& text) {
+  for (const auto status :
+       {EvaluationStatus::ok, EvaluationStatus::diverged, EvaluationStatus::unreachable,
+        EvaluationStatus::timed_out, EvaluationStatus::failed}) {
+    if (text == to_string(status)) {
+      return status;
+    }
+  }
+  throw std::runtime_error("unknown status '" + text + "'");
+}
+
+Evaluation evaluation_from_json(const json& j) {
+  Evaluation evaluation;
+  evaluation.status = parse_status(j.at("status"));
+  evaluation.reason = j.at("reason");
+  evaluation.objectives = j.at("objectives").get<std::vector<double>>();
+  evaluation.constraint_values = j.at("constraint_values").get<std::vector<double>>();
+  evaluation.metrics = j.at("metrics").get<std::vector<double>>();
+  evaluation.failed_cases = j.at("failed_cases");
+  for (const json& error : j.at("case_errors")) {
+    evaluation.case_errors.push_back(
+        error.is_null() ? std::numeric_limits<double>::quiet_NaN() : error.get<double>());
+  }
+  return evaluation;
+}
+
+json candidate_to_json(const JudgedCandidate& judged) {
+  const Candidate& candidate = judged.candidate;
+  json j = {{"x", candidate.x},
+            {"generation", candidate.generation},
+            {"validation", evaluation_to_json(judged.validation)}};
+  if (candidate.recommended) {
+    j["recommended"] = true;
+  } else {
+    j["evaluation"] = candidate.evaluation;
+    j["training_objective"] = candidate.training_objective;
+  }
+  return j;
+}
+
+JudgedCandidate candidate_from_json(const json& j) {
+  JudgedCandidate judged;
+  judged.candidate.x = j.at("x").get<std::vector<double>>();
+  judged.candidate.generation = j.at("generation");
+  judged.candidate.recommended = j.value("recommended", false);
+  if (!judged.candidate.recommended) {
+    judged.candidate.evaluation = j.at("evaluation");
+    judged.candidate.training_objective = j.at("training_objective");
+  }
+  judged.validation = evaluation_from_json(j.at("validation"));
+  return judged;
+}
+
+json summary_to_json(const ErrorSummary& summary) {
+  return {{"cases", summary.cases},
+          {"without_number", summary.without_number},
+          {"failures", summary.failures},
+          {"mean", optional_to_json(summary.mean)},
+          {"median", optional_to_json(summary.median)},
+          {"percentile_95", optional_to_json(summary.percentile_95)},
+          {"worst", optional_to_json(summary.worst)}};
+}
+
+}  // namespace
+
+std::string to_json(const RunResult& result) {
+  json judged = json::array();
+  for (const JudgedCandidate& candidate : result.judged) {
+    judged.push_back(candidate_to_json(candidate));
+  }
+  json j = {
+      {"format", kFormat},
+      {"problem", result.problem},
+      {"optimizer", result.optimizer},
+      {"seed", result.seed},
+      {"end_reason", result.end_reason},
+      {"counts",
+       {{"evaluations", result.counts.evaluations},
+        {"cases", result.counts.cases},
+        {"clipped", result.counts.clipped},
+        {"failed", result.counts.failed},
+        {"generations", result.counts.generations}}},
+      {"variables", result.variable_names},
+      {"metrics", result.metric_names},
+      {"objective", {{"name", result.objective_name}, {"unit", result.objective_unit}}},
+      {"candidates", judged},
+      {"winner", nullptr},
+      {"test_set", result.test_set},
+      {"published",
+       {{"error_m", optional_to_json(result.published.error_m)},
+        {"total_torque_n_m", optional_to_json(result.published.total_torque_n_m)},
+        {"design", result.published.design},
+        {"where", result.published.where}}},
+  };
+  if (result.winner) {
+    j["winner"] = {{"candidate", *result.winner},
+                   {"test", evaluation_to_json(result.test)},
+                   {"test_summary", summary_to_json(result.test_summary)}};
+  }
+  return j.dump(1) + "\n";
+}
+
+RunResult parse_result(const std::string& text, const std::filesystem::path& file) {
+  try {
+    const json j = json::parse(text);
+    if (j.at("format") != kFormat) {
+      throw std::runtime_error("its format is not the one this version reads");
+    }
+    RunResult result;
+    result.problem = j.at("problem");
+    result.optimizer = j.at("optimizer");
+    result.seed = j.at("seed");
+    result.end_reason = j.at("end_reason");
+    const json& counts = j.at("counts");
+    result.counts.evaluations = counts.at("evaluations");
+    result.counts.cases = counts.at("cases");
+    result.counts.clipped = counts.at("clipped");
+    result.counts.failed = counts.at("failed");
+    result.counts.generations = counts.at("generations");
+    result.variable_names = j.at("variables").get<std::vector<std::string>>();
+    result.metric_names = j.at("metrics").get<std::vector<std::string>>();
+    result.objective_name = j.at("objective").at("name");
+    result.objective_unit = j.at("objective").at("unit");
+    for (const json& candidate : j.at("candidates")) {
+      result.judged.push_back(candidate_from_json(candidate));
+    }
+    result.test_set = j.at("test_set");
+    const json& published = j.at("published");
+    result.published.error_m = optional_from_json(published.at("error_m"));
+    result.published.total_torque_n_m = optional_from_json(published.at("total_torque_n_m"));
+    result.published.design = published.at("design");
+    result.published.where = published.at("where");
+    if (!j.at("winner").is_null()) {
+      result.winner = j.at("winner").at("candidate").get<std::size_t>();
+      if (*result.winner >= result.judged.size()) {
+        throw std::runtime_error("its winner is not among its candidates");
+      }
+      result.test = evaluation_from_json(j.at("winner").at("test"));
+      result.test_summary = summarize(result.test.case_errors);
+    }
+    return result;
+  } catch (const std::exception& error) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("{}: is not a result that armwright wrote ({}); it can be rebuilt from the "
+                            "journal: remove it and start the run again",
+                            file.string(), error.what()));
+  }
+}
+
+}  // namespace armwright

@@ -1,0 +1,112 @@
+#include "study/store.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "base/file.hpp"
+#include "base/text.hpp"
+#include "problems/design_file.hpp"
+#include "study/database.hpp"
+
+namespace armwright {
+namespace {
+
+// With generations one row each, otherwise one row an improvement.
+std::string make_convergence_csv(const JournalContent& journal) {
+  struct Row {
+    std::uint64_t evaluations = 0, cases = 0, generation = 0, counted = 0;
+    double best = 0, sum = 0;
+  };
+  std::vector<Row> rows;
+  std::uint64_t cases = 0;
+  for (const EvaluationRecord& record : journal.training) {
+    cases += record.cases.numbers.size();
+    if (record.evaluation.objectives.empty()) {
+      continue;
+    }
+    const double objective = record.evaluation.objectives.front();
+    const bool same_generation =
+        record.generation > 0 && !rows.empty() && rows.back().generation == record.generation;
+    if (!same_generation) {
+      if (record.generation == 0 && !rows.empty() && objective >= rows.back().best) {
+        continue;
+      }
+      rows.push_back({.generation = record.generation, .best = objective});
+    }
+    Row& row = rows.back();
+    row.evaluations = record.index + 1;
+    row.cases = cases;
+    row.best = std::min(row.best, objective);
+    row.sum += objective;
+    ++row.counted;
+  }
+  std::string csv = "evaluations,cases,generation,best_objective,mean_objective\n";
+  for (const Row& row : rows) {
+    csv += fmt::format("{},{},{},{},{}\n", row.evaluations, row.cases, row.generation,
+                       format_exact(row.best),
+                       format_exact(row.sum / static_cast<double>(row.counted)));
+  }
+  return csv;
+}
+
+std::string make_winner_toml(const RunPlan& plan, const RunResult& result,
+                             const std::vector<double>& x) {
+  const TrackingProblem& tracking = *plan.problem.tracking;
+  DesignFile file;
+  file.name = make_run_name(plan);
+  file.title = fmt::format("Winner of {} on {}", plan.optimizer, plan.problem.name);
+  file.source = fmt::format("armwright optimize {} --optimizer {} --seed {} --budget {}",
+                            plan.problem.name, plan.optimizer, plan.seed, plan.budget);
+  file.design = tracking.make_design(x);
+  for (const Joint& joint : tracking.config().robot.joints) {
+    file.joint_names.push_back(joint.name);
+  }
+  std::string toml = to_toml(file);
+  if (result.test_summary.mean) {
+    toml = fmt::format("# Mean error on {} ({} cases): {} m, {} failed.\n", result.test_set,
+                       result.test_summary.cases, format_exact(*result.test_summary.mean),
+                       result.test_summary.failures) +
+           toml;
+  }
+  return toml;
+}
+
+}  // namespace
+
+std::string make_trajectory_csv(const TrackingProblem& problem, const TrackingResult& result) {
+  std::string csv = "time_s";
+  for (const Joint& joint : problem.config().robot.joints) {
+    csv += fmt::format(",{0}_q_rad,{0}_target_rad,{0}_effort_n_m", joint.name);
+  }
+  csv += ",tip_x_m,tip_y_m,tip_z_m,target_x_m,target_y_m,target_z_m,error_m\n";
+  for (const TrajectorySample& sample : result.trajectory) {
+    csv += format_exact(sample.time_s);
+    for (std::size_t i = 0; i < sample.q_rad.size(); ++i) {
+      csv += fmt::format(",{},{},{}", sample.q_rad[i], sample.target_rad[i], sample.effort_n_m[i]);
+    }
+    csv += fmt::format(",{},{},{},{},{},{},{}\n", sample.tip_m.x(), sample.tip_m.y(),
+                       sample.tip_m.z(), sample.target_m.x(), sample.target_m.y(),
+                       sample.target_m.z(), (sample.tip_m - sample.target_m).norm());
+  }
+  return csv;
+}
+
+void write_derived_files(const RunFolder& folder, const RunPlan& plan, const RunResult& result,
+                         const JournalContent& journal) {
+  const auto& path = folder.path();
+  write_file_atomically(path / "convergence.csv", make_convergence_csv(journal));
+  write_database(path / "results.sqlite", plan.problem.problem->description(), journal);
+  if (result.winner && plan.problem.tracking) {
+    const TrackingProblem& tracking = *plan.problem.tracking;
+    const auto& x = result.judged[*result.winner].candidate.x;
+    write_file_atomically(path / "winner.toml", make_winner_toml(plan, result, x));
+    const TrackingResult motion =
+        tracking.track(tracking.make_design(x), tracking.get_set(plan.problem.sets.test), 0,
+                       {.error_series = false, .trajectory = true});
+    write_file_atomically(path / "winner-trajectory.csv", make_trajectory_csv(tracking, motion));
+  }
+  write_file_atomically(folder.result(), to_json(result));
+}
+
+}  // namespace armwright

@@ -1,0 +1,176 @@
+// An Evaluator that lives in memory, for tests: exact budget with the last batch cut, clipping, a
+// trace of everything asked for, and faults on request (every k-th evaluation fails, an exception,
+// a stop). It keeps the Evaluator contract as strictly as the contract allows: a failed evaluation
+// shows the penalty, and no constraint values.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "optimizers/evaluator.hpp"
+
+namespace armwright {
+
+// A problem made of a function of the decision vector and the case number.
+class FunctionProblem : public Problem {
+ public:
+  using Function = std::function<double(std::span<const double>, std::uint64_t)>;
+
+  FunctionProblem(std::vector<DecisionVariable> variables, Function function)
+      : function_(std::move(function)) {
+    description_.name = "function";
+    description_.variables = std::move(variables);
+    description_.objectives = {{"f", ""}};
+    description_.cost_unit = "function evaluation";
+  }
+
+  const ProblemDescription& description() const override { return description_; }
+
+  std::vector<CaseOutcome> simulate(std::span<const CaseJob> jobs) const override {
+    std::vector<CaseOutcome> outcomes(jobs.size());
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+      outcomes[i].error = function_(jobs[i].x, jobs[i].number);
+    }
+    return outcomes;
+  }
+
+  Evaluation aggregate(std::span<const double> /*x*/,
+                       std::span<const CaseOutcome> outcomes) const override {
+    Evaluation evaluation;
+    double sum = 0;
+    for (const CaseOutcome& outcome : outcomes) {
+      evaluation.case_errors.push_back(outcome.error);
+      sum += outcome.error;
+    }
+    evaluation.objectives = {sum / static_cast<double>(outcomes.size())};
+    return evaluation;
+  }
+
+  std::vector<double> penalty_objectives() const override { return {1e12}; }
+
+ private:
+  Function function_;
+  ProblemDescription description_;
+};
+
+struct MemoryEvaluatorSettings {
+  std::int64_t budget = 0;  // evaluations
+  bool fresh =
+      false;  // every generation on a case of its own, counted from 0; otherwise case 0 always
+  std::int64_t fail_every = 0;          // evaluations number k, 2k, 3k, ... fail; 0: none
+  std::int64_t throw_at = 0;            // evaluation of this number (from 1) throws; 0: none
+  std::int64_t stop_after = INT64_MAX;  // the user stops it after so many evaluations
+};
+
+class MemoryEvaluator : public Evaluator {
+ public:
+  struct Entry {
+    std::vector<double> asked;
+    std::vector<double> evaluated;
+    Score score;
+    std::int64_t generation = 0;  // 0: none was begun
+
+    bool operator==(const Entry& other) const {
+      return asked == other.asked && evaluated == other.evaluated &&
+             generation == other.generation && score.objectives == other.score.objectives;
+    }
+  };
+
+  MemoryEvaluator(const Problem& problem, MemoryEvaluatorSettings settings)
+      : problem_(problem), settings_(settings) {}
+
+  const ProblemDescription& problem() const override { return problem_.description(); }
+
+  std::vector<Score> evaluate(std::span<const std::vector<double>> points) override {
+    if (stopped()) {
+      ++calls_after_stop_;
+      return {};
+    }
+    batch_sizes_.push_back(points.size());
+    std::vector<Score> scores;
+    for (const std::vector<double>& point : points) {
+      if (stopped()) {
+        break;
+      }
+      scores.push_back(evaluate_one(point));
+    }
+    return scores;
+  }
+
+  bool stopped() const override { return remaining() == 0; }
+
+  std::int64_t remaining() const override {
+    return std::min(settings_.budget, settings_.stop_after) -
+           static_cast<std::int64_t>(trace_.size());
+  }
+
+  void begin_generation() override { ++generations_; }
+  void recommend(std::span<const double> x) override {
+    recommended_.emplace_back(x.begin(), x.end());
+  }
+
+  const std::vector<Entry>& trace() const { return trace_; }
+  const std::vector<std::size_t>& batch_sizes() const { return batch_sizes_; }  // as asked for
+  const std::vector<std::vector<double>>& recommended() const { return recommended_; }
+  std::int64_t generations() const { return generations_; }
+  std::int64_t calls_after_stop() const { return calls_after_stop_; }
+
+  // The best objective of a feasible point that did not fail.
+  std::optional<double> best() const {
+    std::optional<double> best;
+    for (const Entry& entry : trace_) {
+      const bool usable =
+          entry.score.status == EvaluationStatus::ok &&
+          std::ranges::all_of(entry.score.constraint_values, [](double g) { return g <= 0; });
+      if (usable && (!best || entry.score.objectives[0] < *best)) {
+        best = entry.score.objectives[0];
+      }
+    }
+    return best;
+  }
+
+ private:
+  Score evaluate_one(const std::vector<double>& asked) {
+    const std::vector<DecisionVariable>& variables = problem().variables;
+    if (asked.size() != variables.size()) {
+      throw std::logic_error("a point of the wrong dimension was asked for");
+    }
+    const auto number = static_cast<std::int64_t>(trace_.size()) + 1;
+    if (number == settings_.throw_at) {
+      throw std::runtime_error("the evaluator is broken");
+    }
+    Entry entry{.asked = asked, .evaluated = asked, .score = {}, .generation = generations_};
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+      entry.evaluated[i] = std::clamp(asked[i], variables[i].lower, variables[i].upper);
+    }
+    entry.score.clipped = entry.evaluated != asked;
+    if (settings_.fail_every > 0 && number % settings_.fail_every == 0) {
+      entry.score.objectives = problem_.penalty_objectives();
+      entry.score.status = EvaluationStatus::diverged;
+    } else {
+      const auto case_number = static_cast<std::uint64_t>(settings_.fresh ? generations_ - 1 : 0);
+      const Evaluation evaluation =
+          problem_.evaluate(entry.evaluated, {CaseRole::training, "train/test", {case_number}});
+      entry.score.objectives = evaluation.objectives;
+      entry.score.constraint_values = evaluation.constraint_values;
+    }
+    trace_.push_back(entry);
+    return entry.score;
+  }
+
+  const Problem& problem_;
+  MemoryEvaluatorSettings settings_;
+  std::vector<Entry> trace_;
+  std::vector<std::size_t> batch_sizes_;
+  std::vector<std::vector<double>> recommended_;
+  std::int64_t generations_ = 0;
+  std::int64_t calls_after_stop_ = 0;
+};
+
+}  // namespace armwright

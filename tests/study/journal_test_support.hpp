@@ -1,0 +1,134 @@
+// What the tests of the journal share.
+#pragma once
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <bit>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "study/journal.hpp"
+
+namespace armwright::journal_testing {
+
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = std::filesystem::temp_directory_path() / "armwright-test-XXXXXX";
+    if (::mkdtemp(name.data()) == nullptr) {
+      throw std::runtime_error("cannot make a temporary folder");
+    }
+    path_ = name;
+  }
+  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+// A training record whose every field depends on its index.
+inline EvaluationRecord make_record(std::uint64_t index) {
+  const double i = static_cast<double>(index);
+  EvaluationRecord record;
+  record.index = index;
+  record.generation = index / 10;
+  record.x = {0.1 * i, -i, 1e-300};
+  record.clipped = index % 2 == 1;
+  record.cases = {CaseRole::training, "train/1", {index, index + 7}};
+  record.evaluation.status = EvaluationStatus::diverged;
+  record.evaluation.reason = "case " + std::to_string(index) + ": joint 2";
+  record.evaluation.objectives = {1.0 / (i + 3.0)};
+  record.evaluation.constraint_values = {-0.5 * i};
+  record.evaluation.case_errors = {i, std::numeric_limits<double>::quiet_NaN()};
+  record.evaluation.metrics = {2.0 * i, 3.0};
+  record.evaluation.residuals = {0.25, i};
+  record.evaluation.failed_cases = 1;
+  return record;
+}
+
+inline std::vector<std::uint64_t> bits(const std::vector<double>& numbers) {
+  std::vector<std::uint64_t> result;
+  for (const double number : numbers) {
+    result.push_back(std::bit_cast<std::uint64_t>(number));
+  }
+  return result;
+}
+
+inline void expect_same(const EvaluationRecord& got, const EvaluationRecord& wanted) {
+  SCOPED_TRACE("record " + std::to_string(wanted.index));
+  EXPECT_EQ(got.index, wanted.index);
+  EXPECT_EQ(got.generation, wanted.generation);
+  EXPECT_EQ(bits(got.x), bits(wanted.x));
+  EXPECT_EQ(got.clipped, wanted.clipped);
+  EXPECT_EQ(got.cases.role, wanted.cases.role);
+  EXPECT_EQ(got.cases.set, wanted.cases.set);
+  EXPECT_EQ(got.cases.numbers, wanted.cases.numbers);
+  EXPECT_EQ(got.evaluation.status, wanted.evaluation.status);
+  EXPECT_EQ(got.evaluation.reason, wanted.evaluation.reason);
+  EXPECT_EQ(bits(got.evaluation.objectives), bits(wanted.evaluation.objectives));
+  EXPECT_EQ(bits(got.evaluation.constraint_values), bits(wanted.evaluation.constraint_values));
+  EXPECT_EQ(bits(got.evaluation.case_errors), bits(wanted.evaluation.case_errors));
+  EXPECT_EQ(bits(got.evaluation.metrics), bits(wanted.evaluation.metrics));
+  EXPECT_EQ(bits(got.evaluation.residuals), bits(wanted.evaluation.residuals));
+  EXPECT_EQ(got.evaluation.failed_cases, wanted.evaluation.failed_cases);
+}
+
+// The training records are make_record(0) to make_record(count - 1).
+inline void expect_first_records(const JournalContent& content, std::size_t count) {
+  ASSERT_EQ(content.training.size(), count);
+  for (std::size_t i = 0; i < count; ++i) {
+    expect_same(content.training[i], make_record(i));
+  }
+}
+
+inline std::string read_bytes(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+inline void write_bytes(const std::filesystem::path& file, const std::string& bytes) {
+  std::ofstream stream(file, std::ios::binary);
+  stream << bytes;
+}
+
+// A journal of `count` records, and where each of them ends (the first entry: where they begin).
+inline std::vector<std::size_t> write_journal(const std::filesystem::path& file,
+                                              std::size_t count) {
+  JournalContent content;
+  Journal journal(file, content);
+  std::vector<std::size_t> ends = {std::filesystem::file_size(file)};
+  for (std::size_t i = 0; i < count; ++i) {
+    journal.append(make_record(i));
+    journal.flush();
+    ends.push_back(std::filesystem::file_size(file));
+  }
+  journal.close();
+  return ends;
+}
+
+// Runs `action` and gives the Error it throws; a test failure and a usage error saying so if it
+// throws none.
+template <class Action>
+Error catch_error(Action action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error;
+  }
+  ADD_FAILURE() << "no Error was thrown";
+  return Error(ErrorKind::usage, "no Error was thrown");
+}
+
+}  // namespace armwright::journal_testing
