@@ -51,10 +51,11 @@ Schedule parse_schedule(std::string_view text) {
   const auto parts = split(text, ':');
   const auto cases = parts.size() == 2 ? parse_integer(parts[1]) : std::nullopt;
   if (!cases || *cases < 1 || *cases > kMostCases || (parts[0] != "fresh" && parts[0] != "fixed")) {
-    refuse("--schedule", text,
-           fmt::format("fresh:K (the next K training cases for every generation) or fixed:K (always "
-                       "the first K), K from 1 to {}",
-                       kMostCases));
+    refuse(
+        "--schedule", text,
+        fmt::format("fresh:K (the next K training cases for every generation) or fixed:K (always "
+                    "the first K), K from 1 to {}",
+                    kMostCases));
   }
   return {parts[0] == "fresh", static_cast<int>(*cases)};
 }

@@ -1,5 +1,5 @@
-// Values on the command line, read strictly: every refusal names the flag, what was found and what is allowed (Error{usage}). And
-// the flags that several subcommands share.
+// Values on the command line, read strictly: every refusal names the flag, what was found and what
+// is allowed (Error{usage}). And the flags that several subcommands share.
 #pragma once
 
 #include <cstdint>

@@ -31,10 +31,11 @@ TestSet choose_set(const LoadedProblem& problem, const CaseOptions& options) {
 
 const TrackingProblem& require_tracking(const LoadedProblem& problem) {
   if (problem.tracking == nullptr) {
-    throw Error(ErrorKind::usage,
-                fmt::format("problem '{}' is an analytic function, on which no arm can be evaluated; "
-                            "choose a robot problem (armwright list problems)",
-                            problem.name));
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("problem '{}' is an analytic function, on which no arm can be evaluated; "
+                    "choose a robot problem (armwright list problems)",
+                    problem.name));
   }
   return *problem.tracking;
 }
@@ -42,13 +43,14 @@ const TrackingProblem& require_tracking(const LoadedProblem& problem) {
 ChosenCases choose_cases(const LoadedProblem& problem, const CaseOptions& options) {
   TestSet set = choose_set(problem, options);
   const auto usual = set.size().value_or(static_cast<std::uint64_t>(problem.sets.test_cases));
-  const auto count = options.cases.empty() ? usual
-                                           : static_cast<std::uint64_t>(parse_count(
-                                                 "--cases", options.cases, 1, kMostCases));
+  const auto count =
+      options.cases.empty()
+          ? usual
+          : static_cast<std::uint64_t>(parse_count("--cases", options.cases, 1, kMostCases));
   if (set.size() && count > *set.size()) {
-    throw Error(ErrorKind::usage, fmt::format("--cases is {}, but {} holds {}", count,
-                                              sanitize(options.test_cases),
-                                              format_count(*set.size(), "case")));
+    throw Error(ErrorKind::usage,
+                fmt::format("--cases is {}, but {} holds {}", count, sanitize(options.test_cases),
+                            format_count(*set.size(), "case")));
   }
   return {std::move(set), count};
 }
@@ -76,8 +78,8 @@ std::optional<DesignEvaluation> evaluate_with_progress(const TrackingProblem& pr
     for (std::uint64_t i = first; i < first + count; ++i) {
       part.push_back(cases.set.make_case(i));
     }
-    auto results = evaluate_design(problem, design, TestSet::make_from_cases(std::move(part)), count,
-                                   jobs, stop);
+    auto results = evaluate_design(problem, design, TestSet::make_from_cases(std::move(part)),
+                                   count, jobs, stop);
     if (!results) {
       return std::nullopt;
     }
@@ -110,7 +112,8 @@ void report_failures(const DesignEvaluation& evaluation, const std::string& what
     if (result.status == SimulationStatus::ok || ++found > kMostNamed) {
       continue;
     }
-    write_message(fmt::format("{}case {}: {}: {}", what, i, to_string(result.status), result.reason));
+    write_message(
+        fmt::format("{}case {}: {}: {}", what, i, to_string(result.status), result.reason));
   }
   if (found > kMostNamed) {
     write_message(fmt::format("{}and {} more cases without a number", what, found - kMostNamed));

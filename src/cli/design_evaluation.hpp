@@ -1,4 +1,5 @@
-// A given design on a set of test cases, with progress on stderr: what evaluate, sweep and reproduce have in common.
+// A given design on a set of test cases, with progress on stderr: what evaluate, sweep and
+// reproduce have in common.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +21,8 @@ struct ChosenCases {
 // Error{usage} if there are not so many cases.
 ChosenCases choose_cases(const LoadedProblem& problem, const CaseOptions& options);
 
-// The problem's tracking side; Error{usage} for an analytic function, which no arm's design can be evaluated on.
+// The problem's tracking side; Error{usage} for an analytic function, which no arm's design can be
+// evaluated on.
 const TrackingProblem& require_tracking(const LoadedProblem& problem);
 
 struct DesignEvaluation {

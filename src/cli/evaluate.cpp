@@ -19,6 +19,7 @@
 #include "cli/table.hpp"
 #include "cli/terminal.hpp"
 #include "problems/design_file.hpp"
+#include "study/store.hpp"
 
 namespace armwright {
 namespace {
@@ -68,8 +69,8 @@ std::string format_json(const EvaluatedDesign& evaluated) {
                 {"status", to_string(result.status)},
                 {"mean_error_m", to_json_value(get_error(result))},
                 {"point_error_m", json::array()},
-                {"energy_j", to_json_value(get_error(result) ? std::optional(result.energy_j)
-                                                             : std::nullopt)}};
+                {"energy_j",
+                 to_json_value(get_error(result) ? std::optional(result.energy_j) : std::nullopt)}};
     for (const double error : result.point_error_m) {
       one["point_error_m"].push_back(to_json_value(error));
     }
@@ -109,9 +110,9 @@ std::string format_csv(const DesignEvaluation& evaluation) {
   for (std::size_t i = 0; i < evaluation.results.size(); ++i) {
     const TrackingResult& result = evaluation.results[i];
     const auto error = get_error(result);
-    text += fmt::format("{},{},{},{}", i, to_string(result.status),
-                        error ? format_exact(*error) : "",
-                        error ? format_exact(result.energy_j) : "");
+    text +=
+        fmt::format("{},{},{},{}", i, to_string(result.status), error ? format_exact(*error) : "",
+                    error ? format_exact(result.energy_j) : "");
     for (std::size_t k = 0; k < points; ++k) {
       const bool known = k < result.point_error_m.size() && std::isfinite(result.point_error_m[k]);
       text += "," + (known ? format_exact(result.point_error_m[k]) : "");
@@ -165,10 +166,10 @@ std::string format_profile(const EvaluatedDesign& evaluated, const Style& style)
 std::string format_text(const EvaluatedDesign& evaluated, const Style& style) {
   const DesignEvaluation& evaluation = evaluated.evaluation;
   const ErrorSummary& summary = evaluation.summary;
-  std::string text = style.bold(fmt::format(
-      "{} on {}: the first {} of {}", sanitize(evaluated.design.name),
-      sanitize(evaluated.problem.name), format_count(summary.cases, "case"),
-      sanitize(evaluated.cases.set.name())));
+  std::string text =
+      style.bold(fmt::format("{} on {}: the first {} of {}", sanitize(evaluated.design.name),
+                             sanitize(evaluated.problem.name), format_count(summary.cases, "case"),
+                             sanitize(evaluated.cases.set.name())));
   text += "\n\n";
   const auto mm = [](std::optional<double> error_m) {
     return error_m ? format_mm(error_m) + " mm" : "-";
@@ -181,37 +182,11 @@ std::string format_text(const EvaluatedDesign& evaluated, const Style& style) {
   table.add_row({"failures", fmt::format("{} of {} ({} without a number)", summary.failures,
                                          summary.cases, summary.without_number)});
   table.add_row({"total torque", format_quantity(evaluation.total_torque_n_m, "N m")});
-  table.add_row({"mean energy", evaluation.mean_energy_j
-                                    ? format_quantity(*evaluation.mean_energy_j, "J")
-                                    : "-"});
+  table.add_row({"mean energy",
+                 evaluation.mean_energy_j ? format_quantity(*evaluation.mean_energy_j, "J") : "-"});
   text += table.format(style, 2) + "\n";
   return text + style.bold("Error against the length of the move") + "\n" +
          format_profile(evaluated, style);
-}
-
-std::string format_trajectory(const TrackingProblem& problem, const TrackingResult& result) {
-  std::string text = "time_s";
-  for (const char* quantity : {"q_{}_rad", "target_{}_rad", "effort_{}_n_m"}) {
-    for (const Joint& joint : problem.config().robot.joints) {
-      text += "," + quote_csv(fmt::format(fmt::runtime(quantity), joint.name));
-    }
-  }
-  text += ",tip_x_m,tip_y_m,tip_z_m,target_x_m,target_y_m,target_z_m,error_m\n";
-  for (const TrajectorySample& sample : result.trajectory) {
-    text += format_exact(sample.time_s);
-    for (const auto* values : {&sample.q_rad, &sample.target_rad, &sample.effort_n_m}) {
-      for (const double value : *values) {
-        text += "," + format_exact(value);
-      }
-    }
-    for (const Eigen::Vector3d* position : {&sample.tip_m, &sample.target_m}) {
-      for (const double coordinate : *position) {
-        text += "," + format_exact(coordinate);
-      }
-    }
-    text += "," + format_exact((sample.tip_m - sample.target_m).norm()) + "\n";
-  }
-  return text;
 }
 
 LoadedProblem load_its_problem(const EvaluateOptions& options, const DesignFile& design) {
@@ -220,10 +195,11 @@ LoadedProblem load_its_problem(const EvaluateOptions& options, const DesignFile&
     return load_problem(options.problem, overrides);
   }
   if (design.published.empty()) {
-    throw Error(ErrorKind::usage,
-                fmt::format("--problem is missing, and design '{}' does not say what it was made for; "
-                            "name one (armwright list problems)",
-                            sanitize(design.name)));
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("--problem is missing, and design '{}' does not say what it was made for; "
+                    "name one (armwright list problems)",
+                    sanitize(design.name)));
   }
   const PublishedResult& published = design.published.front();
   overrides.insert(overrides.begin(), published.overrides.begin(), published.overrides.end());
@@ -236,8 +212,9 @@ LoadedProblem load_its_problem(const EvaluateOptions& options, const DesignFile&
 
 int run_evaluate(const EvaluateOptions& options, Session& session) {
   if (options.trajectory.empty() != options.trajectory_case.empty()) {
-    throw Error(ErrorKind::usage,
-                "--trajectory FILE and --case N belong together: the trajectory is that of one case");
+    throw Error(
+        ErrorKind::usage,
+        "--trajectory FILE and --case N belong together: the trajectory is that of one case");
   }
   if (options.json + (options.csv == "-") + (options.trajectory == "-") > 1) {
     throw Error(ErrorKind::usage,
@@ -271,9 +248,9 @@ int run_evaluate(const EvaluateOptions& options, Session& session) {
     write_output(options.csv, format_csv(evaluated.evaluation));
   }
   if (!options.trajectory.empty()) {
-    const TrackingResult result = tracking.track(evaluated.design.design, evaluated.cases.set, traced,
-                                                 {.trajectory = true});
-    write_output(options.trajectory, format_trajectory(tracking, result));
+    const TrackingResult result =
+        tracking.track(evaluated.design.design, evaluated.cases.set, traced, {.trajectory = true});
+    write_output(options.trajectory, make_trajectory_csv(tracking, result));
   }
   if (options.json) {
     write_stdout(format_json(evaluated));
@@ -287,8 +264,8 @@ int run_evaluate(const EvaluateOptions& options, Session& session) {
 
 void add_evaluate(CLI::App& app, Session& session) {
   auto options = std::make_shared<EvaluateOptions>();
-  CLI::App* command = add_command(app, session, "evaluate",
-                                  "Evaluate a design on test cases, without optimization", kExamples);
+  CLI::App* command = add_command(
+      app, session, "evaluate", "Evaluate a design on test cases, without optimization", kExamples);
   command
       ->add_option("DESIGN", options->design,
                    "A design file, or the name of a shipped one (armwright list designs)")

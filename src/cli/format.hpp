@@ -8,7 +8,8 @@
 
 namespace armwright {
 
-// Four significant digits by default, without an exponent where that stays readable: 0.08241, 5.229, 963686, 1.2e-09.
+// Four significant digits by default, without an exponent where that stays readable:
+// 0.08241, 5.229, 963686, 1.2e-09.
 std::string format_significant(double value, int digits = 4);
 // A length in mm, without the unit: 0.000083 -> "0.083". "-" for what does not exist.
 std::string format_mm(std::optional<double> length_m);

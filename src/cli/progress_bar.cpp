@@ -85,8 +85,7 @@ void ProgressBar::on_progress(const Progress& progress) {
   const auto waited = now - last_shown_;
   if (first) {
     last_shown_ = now;
-  } else if (waited >= kLineInterval ||
-             (tenth > last_tenth_ && waited >= kShortestLineInterval)) {
+  } else if (waited >= kLineInterval || (tenth > last_tenth_ && waited >= kShortestLineInterval)) {
     write_line(progress, now);
     last_shown_ = now;
     last_tenth_ = tenth;
@@ -123,7 +122,8 @@ void ProgressBar::draw_bar(const Progress& progress, Clock::time_point now) {
   const std::string after =
       fmt::format(" {:3.0f} %  {}/{}{}{}", std::floor(100 * share), progress.done, progress.total,
                   describe_rate(progress, now), describe_search(progress, objective_));
-  const int width = get_width(Stream::error) - 1;  // a full last column would wrap on some terminals
+  const int width =
+      get_width(Stream::error) - 1;  // a full last column would wrap on some terminals
   const int room = width - static_cast<int>(before.size() + after.size()) - 2;
   std::string bar;
   if (room >= 5) {

@@ -1,4 +1,5 @@
-// Shows how far a run or an evaluation is, on stderr: one line redrawn in place on a terminal, plain lines elsewhere.
+// Shows how far a run or an evaluation is, on stderr: one line redrawn in place on a terminal,
+// plain lines elsewhere.
 #pragma once
 
 #include <chrono>

@@ -1,5 +1,6 @@
-// What one call of the program carries along, the exit codes, and the subcommands. Each subcommand has a file of its own: it adds
-// itself to the parser and leaves, when chosen, its work as an action.
+// What one call of the program carries along, the exit codes, and the subcommands. Each subcommand
+// has a file of its own: it adds itself to the parser and leaves, when chosen, its work as an
+// action.
 #pragma once
 
 #include <functional>

@@ -76,9 +76,10 @@ ChosenSweep choose_sweep(const SweepOptions& options, const LoadedProblem& probl
   }
   const auto demand = [&](bool there, const char* flag, const char* example) {
     if (!there) {
-      throw Error(ErrorKind::usage,
-                  fmt::format("{} is missing, and problem '{}' has no sweep of its own; for example {} {}",
-                              flag, problem.name, flag, example));
+      throw Error(
+          ErrorKind::usage,
+          fmt::format("{} is missing, and problem '{}' has no sweep of its own; for example {} {}",
+                      flag, problem.name, flag, example));
     }
   };
   demand(!chosen.parameter.empty(), "--parameter", "task.speed_m_per_s");
@@ -110,7 +111,9 @@ std::string format_json(const ChosenSweep& sweep, const std::vector<SweepRow>& r
                     {"worst_error_m", to_json_value(summary.worst)},
                     {"failures", summary.failures}});
   }
-  return json{{"parameter", sanitize(sweep.parameter)}, {"design", sanitize(sweep.design)}, {"rows", list}}
+  return json{{"parameter", sanitize(sweep.parameter)},
+              {"design", sanitize(sweep.design)},
+              {"rows", list}}
              .dump(1) +
          "\n";
 }
@@ -139,7 +142,8 @@ std::string format_text(const ChosenSweep& sweep, const std::vector<SweepRow>& r
       most = std::max(most, *mean);
     }
   }
-  // One character at least; what spans more than a decade fills the bar, less is shown with a decade's width.
+  // One character at least; what spans more than a decade fills the bar, less is shown with a
+  // decade's width.
   const double decades = std::max(1.0, std::log10(most / least));
   const auto make_bar = [&](std::optional<double> mean) {
     if (!mean || *mean <= 0) {
@@ -158,7 +162,8 @@ std::string format_text(const ChosenSweep& sweep, const std::vector<SweepRow>& r
     const ErrorSummary& summary = row.evaluation.summary;
     table.add_row({sanitize(row.value), format_mm(summary.mean), format_mm(summary.median),
                    format_mm(summary.worst),
-                   fmt::format("{} of {}", summary.failures, summary.cases), make_bar(summary.mean)});
+                   fmt::format("{} of {}", summary.failures, summary.cases),
+                   make_bar(summary.mean)});
   }
   return table.format(style);
 }
@@ -219,9 +224,9 @@ int run_sweep(const SweepOptions& options, Session& session) {
 
 void add_sweep(CLI::App& app, Session& session) {
   auto options = std::make_shared<SweepOptions>();
-  CLI::App* command =
-      add_command(app, session, "sweep",
-                  "Evaluate a design while one setting of the problem takes several values", kExamples);
+  CLI::App* command = add_command(
+      app, session, "sweep",
+      "Evaluate a design while one setting of the problem takes several values", kExamples);
   command
       ->add_option("PROBLEM", options->problem,
                    "A problem file, or the name of a shipped one (armwright list problems)")
@@ -234,7 +239,8 @@ void add_sweep(CLI::App& app, Session& session) {
   options->overrides.add_to(*command);
   options->cases.add_to(*command);
   options->jobs.add_to(*command);
-  auto* as_json = command->add_flag("--json", options->json, "Print the table as JSON")->group("Output");
+  auto* as_json =
+      command->add_flag("--json", options->json, "Print the table as JSON")->group("Output");
   command->add_option("--csv", options->csv, "Write the table as CSV; - is standard output")
       ->type_name("FILE")
       ->group("Output")

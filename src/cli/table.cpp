@@ -9,8 +9,9 @@ namespace {
 
 // Continuation bytes of UTF-8 take no room.
 std::size_t count_characters(std::string_view text) {
-  return static_cast<std::size_t>(std::count_if(
-      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
+  }));
 }
 
 }  // namespace
@@ -43,9 +44,9 @@ std::string Table::format(const Style& style, int indent) const {
   };
   std::string text;
   if (titled) {
-    text += style.bold(
-                format_line([&](std::size_t c) -> const std::string& { return columns_[c].title; })) +
-            '\n';
+    text += style.bold(format_line([&](std::size_t c) -> const std::string& {
+      return columns_[c].title;
+    })) + '\n';
   }
   for (const auto& row : rows_) {
     text += format_line([&](std::size_t c) -> const std::string& { return row[c]; }) + '\n';

@@ -1,5 +1,5 @@
-// What the standard streams are connected to, how text may be dressed for them, and writing to them. Results go to stdout, all else
-// to stderr.
+// What the standard streams are connected to, how text may be dressed for them, and writing to
+// them. Results go to stdout, all else to stderr.
 #pragma once
 
 #include <string>
@@ -25,10 +25,12 @@ class Style {
   bool on_;
 };
 
-// `choice` is always, never or auto: on a terminal that is not dumb, unless NO_COLOR is set (no-color.org).
+// `choice` is always, never or auto: on a terminal that is not dumb, unless NO_COLOR is set
+// (no-color.org).
 Style make_style(Stream stream, std::string_view choice);
 
-struct BrokenPipe {};  // thrown when nobody reads our stdout any more: the end, but nothing to complain about
+struct BrokenPipe {
+};  // thrown when nobody reads our stdout any more: the end, but nothing to complain about
 
 // Error{io} if the text cannot be written; BrokenPipe.
 void write_stdout(std::string_view text);
