@@ -1,9 +1,11 @@
-// Strict reading of TOML. A ConfigTable hands out each value with its type and range checked and remembers what was asked
-// for; what is left over is unknown and refused, with the nearest valid key. Every message reads FILE:LINE: field is VALUE;
-// it must be ALLOWED. Hostile files (size, depth, non-finite numbers; toml++ 3.3.0 crashes on some) are refused beforehand.
+// Strict reading of TOML. A ConfigTable hands out each value with its type and range checked and
+// remembers what was asked for; what is left over is unknown and refused, with the nearest valid
+// key. Every message reads FILE:LINE: field is VALUE; it must be ALLOWED. Hostile files (size,
+// depth, non-finite numbers; toml++ 3.3.0 crashes on some) are refused beforehand.
 //
-// Inheritance: a top-level `extends = "other"` names a file of the same folder (without .toml) that is read first; tables
-// merge, anything else replaces. Overrides ("task.speed_m_per_s=2") come last and are named as such in messages.
+// Inheritance: a top-level `extends = "other"` names a file of the same folder (without .toml) that
+// is read first; tables merge, anything else replaces. Overrides ("task.speed_m_per_s=2") come last
+// and are named as such in messages.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +28,8 @@ struct Range {
 
 class ConfigTable {
  public:
-  // `overrides` are KEY=VALUE texts with dotted keys; VALUE is TOML, or a bare word taken as a string.
+  // `overrides` are KEY=VALUE texts with dotted keys; VALUE is TOML, or a bare word taken as a
+  // string.
   static ConfigTable load(const std::filesystem::path& file,
                           std::span<const std::string> overrides = {});
   // For tests and for text that is not in a file; `name` stands where messages name the file.
@@ -35,7 +38,8 @@ class ConfigTable {
 
   bool has(std::string_view key) const;
 
-  // Required values. Each throws Error{usage} if the key is missing, of another type or out of range.
+  // Required values. Each throws Error{usage} if the key is missing, of another type or out of
+  // range.
   std::string get_string(std::string_view key) const;
   std::string get_choice(std::string_view key, std::span<const std::string> valid) const;
   double get_number(std::string_view key, Range range = {}) const;  // integers count as numbers
@@ -46,7 +50,8 @@ class ConfigTable {
   ConfigTable get_table(std::string_view key) const;
   std::vector<ConfigTable> get_tables(std::string_view key) const;  // an array of tables
 
-  // The same with a default for a missing key (an empty table, for get_table_or_empty and get_tables_or_empty).
+  // The same with a default for a missing key (an empty table, for get_table_or_empty and
+  // get_tables_or_empty).
   std::string get_string(std::string_view key, std::string_view fallback) const;
   std::string get_choice(std::string_view key, std::span<const std::string> valid,
                          std::string_view fallback) const;
@@ -60,10 +65,11 @@ class ConfigTable {
   // Refuses every key, here and below, that nobody asked for.
   void refuse_unknown() const;
 
-  // An Error{usage} at this key: "FILE:LINE: KEY is VALUE; MUST". For checks that need more than a range.
+  // An Error{usage} at this key: "FILE:LINE: KEY is VALUE; MUST". For checks that need more than a
+  // range.
   [[noreturn]] void refuse(std::string_view key, std::string_view must) const;
 
-  const std::filesystem::path& file() const;      // the file that was loaded, not the ones it extends
+  const std::filesystem::path& file() const;  // the file that was loaded, not the ones it extends
   std::vector<std::filesystem::path> files() const;  // it and all it extends, for hashing
 
   // The resolved table as canonical JSON (sorted keys): what is recorded and compared on resume.

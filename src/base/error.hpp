@@ -1,5 +1,6 @@
-// What goes wrong for a caller's reason. Each kind has a documented exit code (design: exit codes of the CLI).
-// A failed simulation is not an error but a status (sim/tracking.hpp); a bug of ours is an assertion.
+// What goes wrong for a caller's reason. Each kind has a documented exit code (design: exit codes
+// of the CLI). A failed simulation is not an error but a status (sim/tracking.hpp); a bug of ours
+// is an assertion.
 #pragma once
 
 #include <stdexcept>

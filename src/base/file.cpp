@@ -91,7 +91,8 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view c
   }
   const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
   const Descriptor directory(folder, O_RDONLY | O_DIRECTORY, "open its folder");
-  ::fsync(directory.get());  // some file systems cannot sync a folder; the rename itself has succeeded
+  ::fsync(
+      directory.get());  // some file systems cannot sync a folder; the rename itself has succeeded
 }
 
 void make_folder(const std::filesystem::path& path) {

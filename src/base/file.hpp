@@ -1,5 +1,6 @@
-// Whole files, read with a size limit and written so that a reader sees the old content or the new, never a mixture.
-// Every failure is an Error{io} that names the path and the operating system's reason.
+// Whole files, read with a size limit and written so that a reader sees the old content or the new,
+// never a mixture. Every failure is an Error{io} that names the path and the operating system's
+// reason.
 #pragma once
 
 #include <cstddef>

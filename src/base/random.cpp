@@ -41,7 +41,8 @@ double RandomStream::uniform(double lower, double upper) {
 }
 
 std::uint64_t RandomStream::below(std::uint64_t n) {
-  const std::uint64_t rejected = (0 - n) % n;  // 2^64 mod n values at the bottom would bias the remainder
+  const std::uint64_t rejected =
+      (0 - n) % n;  // 2^64 mod n values at the bottom would bias the remainder
   std::uint64_t number = next_u64();
   while (number < rejected) {
     number = next_u64();

@@ -55,7 +55,8 @@ std::size_t utf8_length(std::string_view text) {
 
 std::optional<std::string> find_nearest(std::string_view name,
                                         std::span<const std::string> candidates) {
-  constexpr std::size_t kLongestName = 64;  // the distance costs length x length; nobody mistypes more
+  constexpr std::size_t kLongestName =
+      64;  // the distance costs length x length; nobody mistypes more
   if (name.size() > kLongestName) {
     return std::nullopt;
   }
@@ -131,7 +132,8 @@ std::string sanitize(std::string_view text) {
   while (!text.empty()) {
     const std::size_t length = utf8_length(text);
     const bool printable =
-        length > 1 || (length == 1 && static_cast<unsigned char>(text[0]) >= 0x20 && text[0] != 0x7F);
+        length > 1 ||
+        (length == 1 && static_cast<unsigned char>(text[0]) >= 0x20 && text[0] != 0x7F);
     const std::size_t taken = std::max<std::size_t>(length, 1);
     clean += printable ? std::string(text.substr(0, taken)) : "?";
     text.remove_prefix(taken);

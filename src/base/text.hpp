@@ -9,15 +9,19 @@
 
 namespace armwright {
 
-// The candidate nearest to `name` by Damerau-Levenshtein distance (optimal string alignment), or nothing if none is near
-// (more than a third of the letters differ). Ties go to the earlier candidate.
-std::optional<std::string> find_nearest(std::string_view name, std::span<const std::string> candidates);
+// The candidate nearest to `name` by Damerau-Levenshtein distance (optimal string alignment), or
+// nothing if none is near (more than a third of the letters differ). Ties go to the earlier
+// candidate.
+std::optional<std::string> find_nearest(std::string_view name,
+                                        std::span<const std::string> candidates);
 
-// "unknown optimizer 'gaa'; did you mean 'ga'? Valid: ga, random": one phrasing for every unknown name.
+// "unknown optimizer 'gaa'; did you mean 'ga'? Valid: ga, random": one phrasing for every unknown
+// name.
 std::string describe_unknown(std::string_view what, std::string_view name,
                              std::span<const std::string> valid);
 
-// The whole text as a number, or nothing: no blanks around it, no unit behind it, no comma. "nan" and "inf" are refused.
+// The whole text as a number, or nothing: no blanks around it, no unit behind it, no comma. "nan"
+// and "inf" are refused.
 std::optional<double> parse_finite(std::string_view text);
 std::optional<long long> parse_integer(std::string_view text);
 
@@ -27,7 +31,8 @@ std::string join(std::span<const std::string> parts, std::string_view separator)
 // The shortest decimal that reads back as exactly the same double.
 std::string format_exact(double value);
 
-// Printable UTF-8 for a terminal or a log: control characters (escape codes too) and invalid bytes become '?'.
+// Printable UTF-8 for a terminal or a log: control characters (escape codes too) and invalid bytes
+// become '?'.
 std::string sanitize(std::string_view text);
 
 }  // namespace armwright

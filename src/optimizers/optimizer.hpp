@@ -1,5 +1,6 @@
-// Optimizers as rows of one explicit table: name, what it can do, its options, and how to make one. An optimizer minimises through
-// the Evaluator it is handed and returns nothing; it is deterministic given its seed, whatever the number of threads.
+// Optimizers as rows of one explicit table: name, what it can do, its options, and how to make one.
+// An optimizer minimises through the Evaluator it is handed and returns nothing; it is
+// deterministic given its seed, whatever the number of threads.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,8 @@
 namespace armwright {
 
 struct Capabilities {
-  bool bounds = true;            // proposes points inside the box by itself (the evaluator clips all the same)
+  bool bounds =
+      true;  // proposes points inside the box by itself (the evaluator clips all the same)
   bool constraints = false;      // uses the constraint values
   bool multi_objective = false;  // uses more than the first objective
   bool batch = false;            // asks for several points at a time
@@ -38,10 +40,12 @@ struct OptionSpec {
   std::vector<std::string> choices = {};  // text: what is allowed; empty: anything
 };
 
-// Options that have been checked: every declared name has a value of the right type within its range.
+// Options that have been checked: every declared name has a value of the right type within its
+// range.
 class Options {
  public:
-  // `assignments` are KEY=VALUE texts. Error{usage} names the optimizer, the option, what was found and what is allowed.
+  // `assignments` are KEY=VALUE texts. Error{usage} names the optimizer, the option, what was found
+  // and what is allowed.
   static Options parse(std::string_view optimizer, std::span<const OptionSpec> specs,
                        std::span<const std::string> assignments);
 

@@ -3,13 +3,12 @@
 //
 // With z = x - s, i = 1..n, all on a box of equal sides, minimum 0 at x = s:
 //   sphere      sum z_i^2
-//   ellipsoid   sum 10^(6 (i-1)/(n-1)) z_i^2                          condition number 10^6 (n = 1:
-//   the sphere) rosenbrock  sum_{i<n} 100 (y_{i+1} - y_i^2)^2 + (1 - y_i)^2       with y = z + 1
-//   rastrigin   sum z_i^2 + 10 (1 - cos(2 pi z_i))                    a local minimum near every
-//   integer point
+//   ellipsoid   sum 10^(6 (i-1)/(n-1)) z_i^2, condition number 10^6 (n = 1: the sphere)
+//   rosenbrock  sum_{i<n} 100 (y_{i+1} - y_i^2)^2 + (1 - y_i)^2 with y = z + 1
+//   rastrigin   sum z_i^2 + 10 (1 - cos(2 pi z_i)), a local minimum near every integer point
 // and with four variables
 //   constrained the Rosen-Suzuki problem: convex, three inequality constraints (two active),
-//   minimum -44 at (0, 1, 2, -1)
+//               minimum -44 at (0, 1, 2, -1)
 //
 // The shift s_i = 4 (frac(i g) - 1/2), g = (sqrt(5) - 1)/2, lies in (-2, 2) and is the same for
 // every function. It moves the minimiser away from the centre of the box, from the start and from

@@ -47,7 +47,8 @@ std::filesystem::path resolve_config(std::string_view kind, std::string_view nam
       return path;
     }
     const auto shipped = find_config_folder() / kind / path;  // "irb.urdf" may name a shipped file
-    if (name_or_path.find('/') == std::string_view::npos && std::filesystem::is_regular_file(shipped)) {
+    if (name_or_path.find('/') == std::string_view::npos &&
+        std::filesystem::is_regular_file(shipped)) {
       return shipped;
     }
     throw Error(ErrorKind::usage, fmt::format("{}: there is no such file", sanitize(name_or_path)));

@@ -8,15 +8,18 @@
 
 namespace armwright {
 
-// The folder with robots/, problems/ and designs/: $ARMWRIGHT_CONFIGS if set, else ../share/armwright/configs seen from the running
-// program (the build tree and an installation look alike). Error{usage} says where it was looked for.
+// The folder with robots/, problems/ and designs/: $ARMWRIGHT_CONFIGS if set, else
+// ../share/armwright/configs seen from the running program (the build tree and an installation look
+// alike). Error{usage} says where it was looked for.
 std::filesystem::path find_config_folder();
 
-// What a user typed for a file of `kind` ("problems", "designs", "robots"): a path if it has a slash or the kind's
-// extension, otherwise the name of a shipped file. Error{usage} with the valid names and the nearest.
+// What a user typed for a file of `kind` ("problems", "designs", "robots"): a path if it has a
+// slash or the kind's extension, otherwise the name of a shipped file. Error{usage} with the valid
+// names and the nearest.
 std::filesystem::path resolve_config(std::string_view kind, std::string_view name_or_path);
 
-// Names of the shipped files of a kind, sorted; those that begin with an underscore are only there to be extended.
+// Names of the shipped files of a kind, sorted; those that begin with an underscore are only there
+// to be extended.
 std::vector<std::string> list_configs(std::string_view kind);
 
 }  // namespace armwright

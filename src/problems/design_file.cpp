@@ -27,8 +27,12 @@ PublishedResult read_published(const ConfigTable& table) {
   if (table.has("set")) {
     published.overrides = table.get_strings("set");
   }
+  const Range positive{.lower = 0, .lower_open = true};
   if (table.has("error_m")) {
-    published.error_m = table.get_number("error_m", {.lower = 0, .lower_open = true});
+    published.error_m = table.get_number("error_m", positive);
+  }
+  if (table.has("total_torque_n_m")) {
+    published.total_torque_n_m = table.get_number("total_torque_n_m", positive);
   }
   published.where = table.get_string("where", "");
   return published;
@@ -64,9 +68,9 @@ DesignFile load_design(std::string_view name_or_path) {
 
 std::string to_toml(const DesignFile& file) {
   const ControllerRow& controller = find_controller(file.design.controller);
-  std::string text = fmt::format("name = {}\ntitle = {}\nsource = {}\ncontroller = {}\n",
-                                 quote(file.name), quote(file.title), quote(file.source),
-                                 quote(file.design.controller));
+  std::string text =
+      fmt::format("name = {}\ntitle = {}\nsource = {}\ncontroller = {}\n", quote(file.name),
+                  quote(file.title), quote(file.source), quote(file.design.controller));
   for (std::size_t i = 0; i < file.design.joints.size(); ++i) {
     const JointDrive& joint = file.design.joints[i];
     text += fmt::format("\n[[joint]]\nname = {}\n", quote(file.joint_names.at(i)));

@@ -1,5 +1,5 @@
-// Designs as TOML files: the controllers' gains and the effort limits of every joint, and, for published ones, what was reported of
-// them under which conditions.
+// Designs as TOML files: the controllers' gains and the effort limits of every joint, and, for
+// published ones, what was reported of them under which conditions.
 #pragma once
 
 #include <filesystem>
@@ -18,7 +18,8 @@ struct PublishedResult {
   std::string problem;                 // shipped problem that it was evaluated on
   std::vector<std::string> overrides;  // KEY=VALUE, on top of the problem
   std::optional<double> error_m;       // nothing: the source gives no number
-  std::string where;                   // "thesis, Fig. 6.13"
+  std::optional<double> total_torque_n_m;
+  std::string where;  // "thesis, Fig. 6.13"
 };
 
 struct DesignFile {
@@ -30,7 +31,8 @@ struct DesignFile {
   std::vector<PublishedResult> published;
 };
 
-// Reads a shipped design by name or a file by path. Error{usage} names file, line, field, value and what is allowed.
+// Reads a shipped design by name or a file by path. Error{usage} names file, line, field, value and
+// what is allowed.
 DesignFile load_design(std::string_view name_or_path);
 
 // The design as a file that load_design reads back bit for bit.

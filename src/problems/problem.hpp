@@ -1,8 +1,10 @@
-// What every optimization problem looks like to the rest of the program: robots and analytic functions alike.
+// What every optimization problem looks like to the rest of the program: robots and analytic
+// functions alike.
 //
-// The work is cut along its unit of cost, the simulated test case: `simulate` takes any mixture of (decision vector, case) pairs
-// in any order, so that threads, ranks or SIMD lanes can share it out freely; `aggregate` makes one evaluation of a candidate's
-// case outcomes. Both are const, thread-safe and pure: a result depends on its own pair only.
+// The work is cut along its unit of cost, the simulated test case: `simulate` takes any mixture of
+// (decision vector, case) pairs in any order, so that threads, ranks or SIMD lanes can share it out
+// freely; `aggregate` makes one evaluation of a candidate's case outcomes. Both are const,
+// thread-safe and pure: a result depends on its own pair only.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +14,10 @@
 
 namespace armwright {
 
-enum class Scale { linear, logarithmic };  // logarithmic: bounds and start have one sign and are not zero
+enum class Scale {
+  linear,
+  logarithmic
+};  // logarithmic: bounds and start have one sign and are not zero
 
 struct DecisionVariable {
   std::string name;  // "joint_2.p"
@@ -33,7 +38,7 @@ struct ProblemDescription {
   std::string name;
   std::string summary;
   std::vector<DecisionVariable> variables;
-  std::vector<Quantity> objectives;   // at least one
+  std::vector<Quantity> objectives;  // at least one
   std::vector<Quantity> constraints;
   std::vector<Quantity> metrics;      // of an evaluation, beside the objectives
   std::string cost_unit;              // what one case is: "simulated test case"
@@ -42,7 +47,8 @@ struct ProblemDescription {
 
 enum class CaseRole : std::uint8_t { training, validation, test };
 
-// Which cases a candidate is evaluated on. In training a problem may cut hopeless cases off; in validation and test it never does.
+// Which cases a candidate is evaluated on. In training a problem may cut hopeless cases off; in
+// validation and test it never does.
 struct CaseBlock {
   CaseRole role = CaseRole::training;
   std::string set;  // "train/1"
@@ -54,7 +60,7 @@ enum class EvaluationStatus : std::uint8_t {
   diverged,     // at least one simulation diverged
   unreachable,  // at least one case has a target that the arm cannot reach
   timed_out,
-  failed,       // anything else; the reason says what
+  failed,  // anything else; the reason says what
 };
 const char* to_string(EvaluationStatus status);
 
@@ -66,9 +72,10 @@ struct CaseJob {
 
 struct CaseOutcome {
   EvaluationStatus status = EvaluationStatus::ok;
-  std::string reason;             // for every status but ok
-  double error = 0;               // the case's own error, finite whenever `has_error`
-  bool has_error = true;          // false: the simulation failed and, outside training, no number stands for it
+  std::string reason;  // for every status but ok
+  double error = 0;    // the case's own error, finite whenever `has_error`
+  bool has_error =
+      true;  // false: the simulation failed and, outside training, no number stands for it
   std::vector<double> metrics;    // the problem's own; `aggregate` knows what they mean
   std::vector<double> residuals;  // optional: what the error is made of
 };
@@ -78,10 +85,11 @@ struct Evaluation {
   std::string reason;                     // of the first case that is not ok
   std::vector<double> objectives;         // finite; empty if no case yielded a number
   std::vector<double> constraint_values;  // g, one a constraint; finite
-  std::vector<double> case_errors;        // one a case, in the block's order; a case without error: NaN, never shown as a number
-  std::vector<double> metrics;            // as described; finite, or empty with the objectives
-  std::vector<double> residuals;          // optional
-  int failed_cases = 0;                   // cases that yielded no error
+  std::vector<double> case_errors;  // one a case, in the block's order; a case without error: NaN,
+                                    // never shown as a number
+  std::vector<double> metrics;      // as described; finite, or empty with the objectives
+  std::vector<double> residuals;    // optional
+  int failed_cases = 0;             // cases that yielded no error
 };
 
 class Problem {
@@ -89,12 +97,14 @@ class Problem {
   virtual ~Problem() = default;
   virtual const ProblemDescription& description() const = 0;
 
-  // One outcome a job, in the jobs' order. Never throws for what a decision vector does; x lies within the bounds.
+  // One outcome a job, in the jobs' order. Never throws for what a decision vector does; x lies
+  // within the bounds.
   virtual std::vector<CaseOutcome> simulate(std::span<const CaseJob> jobs) const = 0;
   virtual Evaluation aggregate(std::span<const double> x,
                                std::span<const CaseOutcome> outcomes) const = 0;
 
-  // What an optimizer is told of an evaluation that yielded no objectives: finite and worse than any design that works.
+  // What an optimizer is told of an evaluation that yielded no objectives: finite and worse than
+  // any design that works.
   virtual std::vector<double> penalty_objectives() const = 0;
 
   // Both steps for one candidate on all cases of a block.

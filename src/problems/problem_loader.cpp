@@ -22,8 +22,8 @@ constexpr std::int64_t kMostCases = 1'000'000;
 TrackingTask read_task(const ConfigTable& table, const ConfigTable& physics) {
   TrackingTask task;
   task.signal = find_signal(table.get_choice("signal", signal_names(), "complex"));
-  task.speed_m_per_s = table.get_number_or("speed_m_per_s", task.speed_m_per_s,
-                                           {.lower = 0.01, .upper = 100});
+  task.speed_m_per_s =
+      table.get_number_or("speed_m_per_s", task.speed_m_per_s, {.lower = 0.01, .upper = 100});
   task.distance_limit_m =
       table.get_number_or("distance_limit_m", task.distance_limit_m, {.lower = 0, .upper = 100});
   task.trapezoid_acceleration_m_per_s2 =
@@ -73,8 +73,10 @@ TrackingObjective read_objective(const ConfigTable& table) {
   return objective;
 }
 
-// "p", "i", "d", "effort_min", "effort_max", for every joint or for those with a [[variables.joint]] of their own.
-std::vector<DesignParameter> read_parameters(const ConfigTable& table, const TrackingConfig& config) {
+// "p", "i", "d", "effort_min", "effort_max", for every joint or for those with a
+// [[variables.joint]] of their own.
+std::vector<DesignParameter> read_parameters(const ConfigTable& table,
+                                             const TrackingConfig& config) {
   const ControllerRow& controller = find_controller(config.start.controller);
   std::vector<std::string> valid;
   for (const GainSpec& gain : controller.gains) {
@@ -94,8 +96,8 @@ std::vector<DesignParameter> read_parameters(const ConfigTable& table, const Tra
     return names;
   };
   const std::size_t joints = config.robot.joint_count();
-  std::vector<std::vector<std::string>> chosen(joints, table.has("optimize") ? read_names(table)
-                                                                             : valid);
+  std::vector<std::vector<std::string>> chosen(joints,
+                                               table.has("optimize") ? read_names(table) : valid);
   std::vector<std::string> joint_names;
   for (const Joint& joint : config.robot.joints) {
     joint_names.push_back(joint.name);
@@ -167,7 +169,8 @@ PublishedWinner read_published(const ConfigTable& table) {
 }
 
 void add_input(LoadedProblem& loaded, const std::filesystem::path& file) {
-  loaded.input_hashes[file.filename().string()] = calc_sha256_hex(read_file(file, kInputLimit_bytes));
+  loaded.input_hashes[file.filename().string()] =
+      calc_sha256_hex(read_file(file, kInputLimit_bytes));
 }
 
 void load_tracking(const ConfigTable& table, LoadedProblem& loaded) {
@@ -195,9 +198,10 @@ void load_tracking(const ConfigTable& table, LoadedProblem& loaded) {
   config.bounds_factor = variables.get_number_or("bounds_factor", config.bounds_factor,
                                                  {.lower = 1, .upper = 1e9, .lower_open = true});
   if (config.start.joints.size() != config.robot.joint_count()) {
-    variables.refuse("start", fmt::format("the design has {} joints and the robot {}; name a design "
-                                          "made for this robot",
-                                          config.start.joints.size(), config.robot.joint_count()));
+    variables.refuse("start",
+                     fmt::format("the design has {} joints and the robot {}; name a design "
+                                 "made for this robot",
+                                 config.start.joints.size(), config.robot.joint_count()));
   }
   config.parameters = read_parameters(variables, config);
   loaded.tracking = std::make_shared<TrackingProblem>(std::move(config));
@@ -213,7 +217,9 @@ void load_tracking(const ConfigTable& table, LoadedProblem& loaded) {
 void load_analytic(const ConfigTable& table, LoadedProblem& loaded) {
   const ConfigTable function = table.get_table("function");
   const std::string name = function.get_choice("name", analytic_names());
-  const auto dimension = static_cast<int>(function.get_integer_or("dimension", 10, 1, 1000));
+  const AnalyticRow& row = find_analytic(name);
+  const auto dimension = static_cast<int>(function.get_integer_or(
+      "dimension", row.default_dimension, row.smallest_dimension, row.largest_dimension));
   loaded.problem = make_analytic(name, dimension);
   loaded.sets.validation_cases = 1;  // a function has no cases to tell apart
   loaded.sets.test_cases = 1;

@@ -1,5 +1,6 @@
-// From a name or a TOML file to a problem that is ready to run, with the settings that go with it. Everything is validated here, before
-// the first evaluation; messages name file, line, field, value and what is allowed.
+// From a name or a TOML file to a problem that is ready to run, with the settings that go with it.
+// Everything is validated here, before the first evaluation; messages name file, line, field, value
+// and what is allowed.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +17,8 @@
 
 namespace armwright {
 
-// Which training cases a candidate is evaluated on: the first K of the set, always; or the next K for every generation.
+// Which training cases a candidate is evaluated on: the first K of the set, always; or the next K
+// for every generation.
 struct Schedule {
   bool fresh = false;
   int cases = 1;  // K
@@ -49,15 +51,17 @@ struct LoadedProblem {
   std::string name;   // also of folders
   std::string title;  // one line
   std::shared_ptr<const Problem> problem;
-  std::shared_ptr<const TrackingProblem> tracking;  // the same object; null for an analytic function
+  std::shared_ptr<const TrackingProblem>
+      tracking;  // the same object; null for an analytic function
   Schedule schedule;
   CaseSets sets;
-  std::string optimizer;      // what `optimize` uses unless told otherwise
-  std::int64_t budget = 0;    // in cases, likewise
+  std::string optimizer;    // what `optimize` uses unless told otherwise
+  std::int64_t budget = 0;  // in cases, likewise
   PublishedWinner published;
   std::optional<SweepPlan> sweep;
-  std::string resolved_json;                     // the whole configuration after inheritance and overrides
-  std::map<std::string, std::string> input_hashes;  // file name -> SHA-256 of every file it was made from
+  std::string resolved_json;  // the whole configuration after inheritance and overrides
+  std::map<std::string, std::string>
+      input_hashes;  // file name -> SHA-256 of every file it was made from
 };
 
 // `overrides` are KEY=VALUE texts on top of the file ("task.speed_m_per_s=2").

@@ -1,4 +1,5 @@
-// Target tables of a task, computed once a test case however many designs and threads ask, and kept within a memory bound.
+// Target tables of a task, computed once a test case however many designs and threads ask, and kept
+// within a memory bound.
 #pragma once
 
 #include <atomic>
@@ -16,8 +17,8 @@ class TargetCache {
  public:
   explicit TargetCache(std::size_t limit_bytes) : limit_bytes_(limit_bytes) {}
 
-  // Thread-safe. Two threads that ask for the same case at the same time compute it once; the oldest tables go when the limit is
-  // reached (they live on as long as somebody holds them).
+  // Thread-safe. Two threads that ask for the same case at the same time compute it once; the
+  // oldest tables go when the limit is reached (they live on as long as somebody holds them).
   std::shared_ptr<const TargetTable> get(const TrackingSetup& setup, const TestSet& set,
                                          std::uint64_t number);
   std::uint64_t computed() const { return computed_; }  // tables made so far

@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::size_t kTargetCache_bytes = std::size_t{512} << 20;
 
-// What simulate() puts into a case's metrics before the peaks and root-mean-squares of the joints' efforts.
+// What simulate() puts into a case's metrics before the peaks and root-mean-squares of the joints'
+// efforts.
 enum CaseMetric : std::size_t { kEnergy, kSaturation, kFirstJointMetric };
 
 double& get_parameter(ArmDesign& design, const DesignParameter& parameter) {
@@ -56,8 +57,8 @@ DecisionVariable make_variable(const TrackingConfig& config, const DesignParamet
                             config.name, variable.name));
   }
   variable.scale = Scale::logarithmic;
-  const auto [lower, upper] = std::minmax(variable.start / config.bounds_factor,
-                                          variable.start * config.bounds_factor);
+  const auto [lower, upper] =
+      std::minmax(variable.start / config.bounds_factor, variable.start * config.bounds_factor);
   variable.lower = lower;
   variable.upper = upper;
   return variable;
@@ -73,8 +74,11 @@ ProblemDescription make_description(const TrackingConfig& config) {
   }
   description.objectives = {config.objective.with_torque ? Quantity{"error and torque", "1"}
                                                          : Quantity{"error", "m"}};
-  description.metrics = {{"error", "m"}, {"total_torque", "N m"}, {"failures", "1"},
-                         {"energy", "J"}, {"saturated_share", "1"}};
+  description.metrics = {{"error", "m"},
+                         {"total_torque", "N m"},
+                         {"failures", "1"},
+                         {"energy", "J"},
+                         {"saturated_share", "1"}};
   for (const Joint& joint : config.robot.joints) {
     description.metrics.push_back({joint.name + ".peak_effort", "N m"});
     description.metrics.push_back({joint.name + ".rms_effort", "N m"});
@@ -87,11 +91,13 @@ CaseOutcome make_outcome(const TrackingResult& result, bool training) {
   outcome.reason = result.reason;
   switch (result.status) {
     case SimulationStatus::ok:
-    case SimulationStatus::cut_off:  // an ordinary, bad result of training: the error counts as the limit from there on
+    case SimulationStatus::cut_off:  // an ordinary, bad result of training: the error counts as the
+                                     // limit from there on
       break;
     case SimulationStatus::diverged:
       outcome.status = EvaluationStatus::diverged;
-      outcome.has_error = training;  // in training it counts like a cut-off; nowhere else does a number stand for it
+      outcome.has_error = training;  // in training it counts like a cut-off; nowhere else does a
+                                     // number stand for it
       break;
     case SimulationStatus::unreachable:
       outcome.status = EvaluationStatus::unreachable;
@@ -125,11 +131,12 @@ TrackingProblem::TrackingProblem(TrackingConfig config)
 
 void TrackingProblem::check_design(const ArmDesign& design) const {
   if (design.joints.size() != config_.robot.joint_count()) {
-    throw Error(ErrorKind::usage,
-                fmt::format("the design has {} joints, the robot {} of problem {} has {}; use a design "
-                            "made for this robot",
-                            design.joints.size(), config_.robot.name, config_.name,
-                            config_.robot.joint_count()));
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("the design has {} joints, the robot {} of problem {} has {}; use a design "
+                    "made for this robot",
+                    design.joints.size(), config_.robot.name, config_.name,
+                    config_.robot.joint_count()));
   }
 }
 
@@ -254,7 +261,8 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
 }
 
 std::vector<double> TrackingProblem::penalty_objectives() const {
-  // Ten times the error of a design that is cut off at once on every case, and as much torque as the box allows.
+  // Ten times the error of a design that is cut off at once on every case, and as much torque as
+  // the box allows.
   const double error = 10 * config_.cutoff_error_m;
   if (!config_.objective.with_torque) {
     return {error};

@@ -1,8 +1,11 @@
-// The thesis's problem: tune the controllers and effort limits of an arm so that its tip follows a moving target. Objectives:
+// The thesis's problem: tune the controllers and effort limits of an arm so that its tip follows a
+// moving target. Objectives:
 //   error              e, the mean over the cases of the case's positional error (m)
-//   error_and_torque   e / e_0 + w tau / tau_0, tau = sum over the joints of max(-min, max) effort limit (thesis eq. of section 6.3)
-// Decision variables: any of the controllers' gains and effort limits of any joints, in natural units, bounded by a factor around
-// the start values, sign kept; what is not a variable keeps its start value.
+//   error_and_torque   e / e_0 + w tau / tau_0, tau the sum over the joints of max(-min, max)
+//                      of their effort limits (thesis section 6.3)
+// Decision variables: any of the controllers' gains and effort limits of any joints, in natural
+// units, bounded by a factor around the start values, sign kept; what is not a variable keeps its
+// start value.
 #pragma once
 
 #include <limits>
@@ -61,13 +64,16 @@ class TrackingProblem final : public Problem {
                        std::span<const CaseOutcome> outcomes) const override;
   std::vector<double> penalty_objectives() const override;
 
-  // Makes a finite set (a file of test cases) available under its name. Before the first evaluation only.
+  // Makes a finite set (a file of test cases) available under its name. Before the first evaluation
+  // only.
   void add_set(const TestSet& set);
   TestSet get_set(const std::string& name) const;
 
   ArmDesign make_design(std::span<const double> x) const;
-  std::vector<double> make_vector(const ArmDesign& design) const;  // the variables of a design; bounds are not checked
-  // A design on one case, without cut-off, with whatever recording is asked for. Error{usage} if the design is for another robot.
+  std::vector<double> make_vector(
+      const ArmDesign& design) const;  // the variables of a design; bounds are not checked
+  // A design on one case, without cut-off, with whatever recording is asked for. Error{usage} if
+  // the design is for another robot.
   TrackingResult track(const ArmDesign& design, const TestSet& set, std::uint64_t number,
                        RecordingOptions recording = {}) const;
   void check_design(const ArmDesign& design) const;

@@ -1,5 +1,6 @@
-// Joint controllers behind one interface, and the explicit table of them. A controller maps setpoint and measurement to an
-// effort once a control period; it knows no clock, no joint and no file.
+// Joint controllers behind one interface, and the explicit table of them. A controller maps
+// setpoint and measurement to an effort once a control period; it knows no clock, no joint and no
+// file.
 #pragma once
 
 #include <memory>
@@ -26,8 +27,10 @@ struct EffortLimits {
 };
 
 // A discrete PID with clamped output (thesis section 5.2.2):
-//   u = P e + I sum(e) h + D (e - e_prev) / h, clamped to [min, max]; e = setpoint - measurement wrapped to [-pi, pi].
-// Anti-windup: a step whose predecessor was clamped does not integrate. The derivative of the first step is zero.
+//   u = P e + I sum(e) h + D (e - e_prev) / h, clamped to [min, max],
+//   e = setpoint - measurement wrapped to [-pi, pi].
+// Anti-windup: a step whose predecessor was clamped does not integrate. The derivative of the first
+// step is zero.
 class PidController final : public Controller {
  public:
   PidController(double p_n_m_per_rad, double i_n_m_per_rad_s, double d_n_m_s_per_rad,

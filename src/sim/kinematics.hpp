@@ -17,26 +17,32 @@ double wrap_angle(double angle_rad);
 std::vector<Eigen::Isometry3d> calc_link_poses(const RobotModel& model, std::span<const double> q);
 Eigen::Vector3d calc_tip_position(const RobotModel& model, std::span<const double> q);
 
-// The thesis's error in the inverse kinematics, reproduced on request: it started link 1 at a point 122.5 mm to the side of
-// the common plane (the y component of its base link vector, thesis Table B.1).
+// The thesis's error in the inverse kinematics, reproduced on request: it started link 1 at a point
+// 122.5 mm to the side of the common plane (the y component of its base link vector, thesis Table
+// B.1).
 inline constexpr double kIkBugOffset_m = 0.1225;
 
-// Closed-form inverse kinematics of a palletising arm: a vertical first axis (the world's z axis), then three parallel horizontal
-// ones (at angle zero along y), the tip in the vertical plane through the first axis; links may lie beside that plane as long as
-// the tip does not. Elbow up, the last link pointing straight down (thesis section 5.1). With a and c the lengths of joint 3-4 and
-// joint 2-3, p1 the shoulder, p3 the wrist, f and e its horizontal and vertical distance from the shoulder, b = hypot(e, f):
-//   beta = acos((b^2 + c^2 - a^2) / 2bc) at the shoulder, gamma = acos((a^2 + c^2 - b^2) / 2ac) at the elbow,
-//   elevation of link 1 = atan2(e, f) + beta, elevation of elbow-wrist = elevation of link 1 - (pi - gamma).
+// Closed-form inverse kinematics of a palletising arm: a vertical first axis (the world's z axis),
+// then three parallel horizontal ones (at angle zero along y), the tip in the vertical plane
+// through the first axis; links may lie beside that plane as long as the tip does not. Elbow up,
+// the last link pointing straight down (thesis section 5.1). With a and c the lengths of joint 3-4
+// and joint 2-3, p1 the shoulder, p3 the wrist, f and e its horizontal and vertical distance from
+// the shoulder, b = hypot(e, f):
+//   beta = acos((b^2 + c^2 - a^2) / 2bc) at the shoulder,
+//   gamma = acos((a^2 + c^2 - b^2) / 2ac) at the elbow,
+//   elevation of link 1 = atan2(e, f) + beta,
+//   elevation of elbow-wrist = elevation of link 1 - (pi - gamma).
 class ElbowUpKinematics {
  public:
-  // Reads its dimensions from the model. Error{bad_data} names what the robot lacks where it is not of this kind.
-  // `ik_bug` computes f and b from a shoulder moved sideways by kIkBugOffset_m.
+  // Reads its dimensions from the model. Error{bad_data} names what the robot lacks where it is not
+  // of this kind. `ik_bug` computes f and b from a shoulder moved sideways by kIkBugOffset_m.
   explicit ElbowUpKinematics(const RobotModel& model, bool ik_bug = false);
 
   // The four joint angles for a tip at `target_m`; false (and q untouched) if it is out of reach.
   bool solve(const Eigen::Vector3d& target_m, std::span<double, 4> q) const;
 
-  // "target (x, y, z) m is out of reach: the wrist would be B m from the shoulder, possible is MIN to MAX m".
+  // "target (x, y, z) m is out of reach: the wrist would be B m from the shoulder, possible is MIN
+  // to MAX m".
   std::string describe_unreachable(const Eigen::Vector3d& target_m) const;
 
  private:
@@ -46,7 +52,8 @@ class ElbowUpKinematics {
   Wrist calc_wrist(const Eigen::Vector3d& target_m) const;
 
   bool ik_bug_;
-  std::array<double, 4> sign_;  // -1 where a joint's axis is the opposite of +z (the first) or +y (the others)
+  std::array<double, 4>
+      sign_;  // -1 where a joint's axis is the opposite of +z (the first) or +y (the others)
   double shoulder_radius_m_;   // g: of joint 2 from the first axis
   double shoulder_height_m_;   // h
   double upper_arm_m_;         // c

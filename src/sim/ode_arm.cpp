@@ -14,15 +14,16 @@ namespace {
 constexpr double kFarthest_m = 1e3;
 constexpr double kFastest_rad_per_s = 1e6;
 
-// ODE reports trouble through process-wide handlers and then aborts the process; ours throw instead, and the world that was being
-// stepped is discarded by its owner.
+// ODE reports trouble through process-wide handlers and then aborts the process; ours throw
+// instead, and the world that was being stepped is discarded by its owner.
 [[noreturn]] void throw_ode_message(int number, const char* format, va_list arguments) {
   char text[512];
   std::vsnprintf(text, sizeof text, format, arguments);
   throw DivergenceError(fmt::format("ODE stopped (message {}): {}", number, text));
 }
 
-// Owns the library's global state; made before the first world and destroyed at the end of the process.
+// Owns the library's global state; made before the first world and destroyed at the end of the
+// process.
 class OdeLibrary {
  public:
   OdeLibrary() {
@@ -49,8 +50,18 @@ void prepare_ode_on_this_thread() {
   thread_local const OdeThread thread;
 }
 
+// Worlds share one default threading implementation without locks, so that stepping two of them in
+// two threads corrupts its job list. Each world gets its own, single-threaded one; it must outlive
+// the world.
+struct ThreadingDeleter {
+  void operator()(dxThreadingImplementation* threading) const {
+    dThreadingFreeImplementation(threading);
+  }
+};
 struct WorldDeleter {
-  void operator()(dxWorld* world) const { dWorldDestroy(world); }  // its bodies and joints go with it
+  void operator()(dxWorld* world) const {
+    dWorldDestroy(world);
+  }  // its bodies and joints go with it
 };
 
 }  // namespace
@@ -58,6 +69,7 @@ struct WorldDeleter {
 struct OdeArm::World {
   const RobotModel* model;
   double gravity;
+  std::unique_ptr<dxThreadingImplementation, ThreadingDeleter> threading;
   std::unique_ptr<dxWorld, WorldDeleter> world;
   std::vector<dBodyID> bodies;
   std::vector<dJointID> hinges;
@@ -73,9 +85,9 @@ struct OdeArm::World {
       if (distance < kFarthest_m && rate < kFastest_rad_per_s) {  // false for NaN too
         continue;
       }
-      throw DivergenceError(fmt::format(
-          "joint {} ({}): its link is {:.3g} m from the base and turns at {:.3g} rad/s", i + 1,
-          model->joints[i].name, distance, rate));
+      throw DivergenceError(
+          fmt::format("joint {} ({}): its link is {:.3g} m from the base and turns at {:.3g} rad/s",
+                      i + 1, model->joints[i].name, distance, rate));
     }
   }
 };
@@ -87,7 +99,10 @@ OdeArm::OdeArm(const RobotModel& model, std::span<const double> q_rad,
   World& w = *world_;
   w.model = &model;
   w.gravity = physics.gravity_m_per_s2;
+  w.threading.reset(dThreadingAllocateSelfThreadedImplementation());
   w.world.reset(dWorldCreate());
+  dWorldSetStepThreadingImplementation(
+      w.world.get(), dThreadingImplementationGetFunctions(w.threading.get()), w.threading.get());
   dWorldSetGravity(w.world.get(), 0, 0, -physics.gravity_m_per_s2);
   dWorldSetERP(w.world.get(), physics.erp);
   dWorldSetCFM(w.world.get(), physics.cfm);
@@ -134,8 +149,9 @@ void OdeArm::step(std::span<const double> effort_n_m, double dt_s) {
   World& w = *world_;
   for (std::size_t i = 0; i < w.hinges.size(); ++i) {
     if (!std::isfinite(effort_n_m[i])) {
-      throw DivergenceError(fmt::format("joint {} ({}): its controller asks for a non-finite effort",
-                                        i + 1, w.model->joints[i].name));
+      throw DivergenceError(
+          fmt::format("joint {} ({}): its controller asks for a non-finite effort", i + 1,
+                      w.model->joints[i].name));
     }
     dJointAddHingeTorque(w.hinges[i], effort_n_m[i]);
   }
@@ -163,7 +179,8 @@ Eigen::Vector3d OdeArm::tip_position_m() const {
   const Eigen::Vector3d& tip = world_->tip_in_body_m;
   Eigen::Vector3d world;
   for (int row = 0; row < 3; ++row) {
-    world[row] = p[row] + r[4 * row] * tip.x() + r[4 * row + 1] * tip.y() + r[4 * row + 2] * tip.z();
+    world[row] =
+        p[row] + r[4 * row] * tip.x() + r[4 * row + 1] * tip.y() + r[4 * row + 2] * tip.z();
   }
   return world;
 }

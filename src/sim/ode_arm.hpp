@@ -1,8 +1,10 @@
-// A serial arm in an ODE world of its own: one body a link, one hinge a joint, the base fixed. Steps with dWorldStep (semi-implicit
-// Euler in maximal coordinates). Repeatable bit for bit and independent of what other threads simulate.
+// A serial arm in an ODE world of its own: one body a link, one hinge a joint, the base fixed.
+// Steps with dWorldStep (semi-implicit Euler in maximal coordinates). Repeatable bit for bit and
+// independent of what other threads simulate.
 //
-// Details that are part of published results: hinges are attached (child, parent) in that order, bodies are created in
-// the start posture, gyroscopic mode is on, no damping, no auto-disable, no collisions, no joint stops.
+// Details that are part of published results: hinges are attached (child, parent) in that order,
+// bodies are created in the start posture, gyroscopic mode is on, no damping, no auto-disable, no
+// collisions, no joint stops.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,11 +32,12 @@ class OdeArm {
   OdeArm(const OdeArm&) = delete;
   OdeArm& operator=(const OdeArm&) = delete;
 
-  // Advances by dt_s with one effort (N m) a joint. Throws DivergenceError, naming the joint, once a link is more than 1 km away,
-  // turns faster than 1e6 rad/s or has no finite state: far beyond any arm that is merely out of control.
+  // Advances by dt_s with one effort (N m) a joint. Throws DivergenceError, naming the joint, once
+  // a link is more than 1 km away, turns faster than 1e6 rad/s or has no finite state: far beyond
+  // any arm that is merely out of control.
   void step(std::span<const double> effort_n_m, double dt_s);
 
-  void read_angles(std::span<double> q_rad) const;        // in [-pi, pi]
+  void read_angles(std::span<double> q_rad) const;  // in [-pi, pi]
   void read_rates(std::span<double> qd_rad_per_s) const;
   Eigen::Vector3d tip_position_m() const;
   Eigen::Vector3d com_position_m(std::size_t link) const;

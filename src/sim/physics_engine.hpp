@@ -1,5 +1,6 @@
-// Physics engines behind one interface, and the explicit table of them. An engine simulates a batch of (design, test case)
-// jobs; results do not depend on the batch a job is in, on the thread or on what ran before.
+// Physics engines behind one interface, and the explicit table of them. An engine simulates a batch
+// of (design, test case) jobs; results do not depend on the batch a job is in, on the thread or on
+// what ran before.
 #pragma once
 
 #include <memory>
@@ -15,7 +16,8 @@ namespace armwright {
 class PhysicsEngine {
  public:
   virtual ~PhysicsEngine() = default;
-  // Thread-safe. A simulation that fails is a status in its result; exceptions are for bugs and lack of memory.
+  // Thread-safe. A simulation that fails is a status in its result; exceptions are for bugs and
+  // lack of memory.
   virtual std::vector<TrackingResult> simulate(const TrackingSetup& setup,
                                                std::span<const TrackingJob> jobs) const = 0;
 };

@@ -1,8 +1,9 @@
-// How the target moves from one trajectory point to the next: the distance s(t) covered after t seconds (thesis section 5.2.3).
-// All reach the distance ds at t_m = ds / v, v the average speed, and stay there.
+// How the target moves from one trajectory point to the next: the distance s(t) covered after t
+// seconds (thesis section 5.2.3). All reach the distance ds at t_m = ds / v, v the average speed,
+// and stay there.
 //   step        s = ds
 //   ramp        s = v t
-//   trapezoid   constant acceleration a, plateau, deceleration; falls back to triangular where a is too small
+//   trapezoid   constant acceleration a, plateau, deceleration; triangular where a is too small
 //   triangular  accelerates half of the time, decelerates the other half
 //   complex     speed rises linearly to 2.5 v at 0.4 t_m, then decays quadratically:
 //               s = 25 v^2 t^2 / (8 ds) before, s = ds - 125 (ds - v t)^3 / (54 ds^2) after
@@ -16,8 +17,8 @@ namespace armwright {
 
 enum class SignalShape { step, ramp, trapezoid, triangular, complex };
 
-const std::vector<std::string>& signal_names();        // in the order of the enum
-SignalShape find_signal(const std::string& name);      // the name must be one of signal_names()
+const std::vector<std::string>& signal_names();    // in the order of the enum
+SignalShape find_signal(const std::string& name);  // the name must be one of signal_names()
 
 class ReferenceSignal {
  public:
@@ -33,7 +34,7 @@ class ReferenceSignal {
   double distance_m_;
   double speed_m_per_s_;
   double duration_s_;
-  double ramp_up_s_ = 0;      // trapezoid: how long it accelerates
+  double ramp_up_s_ = 0;              // trapezoid: how long it accelerates
   double acceleration_m_per_s2_ = 0;  // trapezoid and triangular: the one used
 };
 

@@ -1,9 +1,11 @@
-// Test cases: the points that the arm's tip has to reach, one after the other. A generated case is a pure function of the name
-// of its set ("train/1", "validation/1", "test/2") and its number; sets can also be files.
+// Test cases: the points that the arm's tip has to reach, one after the other. A generated case is
+// a pure function of the name of its set ("train/1", "validation/1", "test/2") and its number; sets
+// can also be files.
 //
-// Generation (thesis section 5.3.6): start at the sphere's centre; point 1 on the surface in a random direction; point 2
-// opposite; then for k = 3..n a uniformly random direction at distance ds_k from the point before, redrawn until the
-// point lies inside the sphere. ds_1 = r, ds_k = 2r (s_min / 2r)^((k-2)/(n-2)).
+// Generation (thesis section 5.3.6): start at the sphere's centre; point 1 on the surface in a
+// random direction; point 2 opposite; then for k = 3..n a uniformly random direction at distance
+// ds_k from the point before, redrawn until the point lies inside the sphere. ds_1 = r, ds_k = 2r
+// (s_min / 2r)^((k-2)/(n-2)).
 #pragma once
 
 #include <Eigen/Core>
@@ -38,14 +40,14 @@ TestCase make_test_case(std::string_view set_name, std::uint64_t number,
 class TestSet {
  public:
   static TestSet make_generated(std::string name, const WorkspaceSphere& sphere);
-  // JSON {"cases": [[[x,y,z], ...], ...]} in metres or CSV with the header case,point,x_m,y_m,z_m. The name is "file:" and the
-  // content hash. Error{bad_data} names file, case and point.
+  // JSON {"cases": [[[x,y,z], ...], ...]} in metres or CSV with the header case,point,x_m,y_m,z_m.
+  // The name is "file:" and the content hash. Error{bad_data} names file, case and point.
   static TestSet load(const std::filesystem::path& file);
   static TestSet make_from_cases(std::vector<TestCase> cases);
 
   const std::string& name() const { return name_; }
-  std::optional<std::uint64_t> size() const;         // nothing: endless
-  TestCase make_case(std::uint64_t number) const;    // number < size()
+  std::optional<std::uint64_t> size() const;       // nothing: endless
+  TestCase make_case(std::uint64_t number) const;  // number < size()
 
  private:
   TestSet(std::string name, const WorkspaceSphere& sphere);
@@ -57,7 +59,8 @@ class TestSet {
 std::string to_json(std::span<const TestCase> cases);
 std::string to_csv(std::span<const TestCase> cases);
 
-// SHA-256 over the coordinates' bits: equal for equal cases whatever file or generator they came from.
+// SHA-256 over the coordinates' bits: equal for equal cases whatever file or generator they came
+// from.
 std::string calc_content_hash(std::span<const TestCase> cases);
 
 }  // namespace armwright

@@ -10,7 +10,8 @@
 namespace armwright {
 namespace {
 
-// Times are multiples of the control period up to rounding: t_m + rest = 1.1 s is 110 periods of 0.01 s, not 111.
+// Times are multiples of the control period up to rounding: t_m + rest = 1.1 s is 110 periods of
+// 0.01 s, not 111.
 constexpr double kTimeTolerance = 1e-9;  // in control periods
 
 int calc_steps_covering(double duration_s, double period_s) {

@@ -1,11 +1,13 @@
-// The tracking task and what a simulation of it yields. Everything that is the same for every design on a test case (number of
-// steps, target angles) is computed once, in a TargetTable; engines add the physics.
+// The tracking task and what a simulation of it yields. Everything that is the same for every
+// design on a test case (number of steps, target angles) is computed once, in a TargetTable;
+// engines add the physics.
 //
-// Timeline: segment k takes ceil((t_m + rest) / h) control periods and its clock starts anew; the controllers are not reset
-// between segments. In each period: target angles from the moving target at the END of the period, efforts from the angles at
-// its start, then the plant is stepped `substeps` times with the effort held. The positional error of point k is the
-// largest |tip - target| at the ends of periods with t_m <= t <= t_m + rest; a case's error is the mean over its points
-// (from the second on, unless the first is counted).
+// Timeline: segment k takes ceil((t_m + rest) / h) control periods and its clock starts anew; the
+// controllers are not reset between segments. In each period: target angles from the moving target
+// at the END of the period, efforts from the angles at its start, then the plant is stepped
+// `substeps` times with the effort held. The positional error of point k is the largest |tip -
+// target| at the ends of periods with t_m <= t <= t_m + rest; a case's error is the mean over its
+// points (from the second on, unless the first is counted).
 #pragma once
 
 #include <Eigen/Core>
@@ -27,18 +29,20 @@ namespace armwright {
 
 struct PhysicsSettings {
   double gravity_m_per_s2 = 9.80665;
-  int substeps = 1;   // plant steps in a control period, the effort held. The published gains need exactly 1.
-  double erp = 0.25;  // ODE: share of a joint's position error corrected in a step (thesis: damping 1/25 s)
-  double cfm = 0;     // ODE: constraint softness
+  int substeps =
+      1;  // plant steps in a control period, the effort held. The published gains need exactly 1.
+  double erp =
+      0.25;  // ODE: share of a joint's position error corrected in a step (thesis: damping 1/25 s)
+  double cfm = 0;  // ODE: constraint softness
 };
 
 struct TrackingTask {
   SignalShape signal = SignalShape::complex;
-  double speed_m_per_s = 1.5;                  // v, nominal average speed
-  double distance_limit_m = 0.9;               // shorter moves are slowed down by distance / limit; 0: none are
+  double speed_m_per_s = 1.5;     // v, nominal average speed
+  double distance_limit_m = 0.9;  // shorter moves are slowed down by distance / limit; 0: none are
   double trapezoid_acceleration_m_per_s2 = 15;
   double rest_s = 0.5;
-  double control_period_s = 0.01;              // h
+  double control_period_s = 0.01;  // h
   bool count_first_point = false;
   bool ik_bug = false;
   double load_kg = 0;
@@ -62,8 +66,8 @@ struct Segment {
   Eigen::Vector3d from_m, to_m;
   int first_step = 0;
   int steps = 0;
-  int window_start = 0;  // first step (within the segment) whose end lies in the measuring window
-  double duration_s = 0; // t_m
+  int window_start = 0;   // first step (within the segment) whose end lies in the measuring window
+  double duration_s = 0;  // t_m
 };
 
 // The targets of one test case under one task: the same for every design.
@@ -71,9 +75,10 @@ struct TargetTable {
   std::vector<Segment> segments;
   std::size_t joints = 0;
   int steps = 0;
-  std::vector<double> start_rad;   // posture at rest at the beginning, one angle a joint
-  std::vector<double> angles_rad;  // steps x joints, row-major: target at the end of each control period
-  std::string unreachable;         // not empty: no simulation is possible, and why
+  std::vector<double> start_rad;  // posture at rest at the beginning, one angle a joint
+  std::vector<double>
+      angles_rad;           // steps x joints, row-major: target at the end of each control period
+  std::string unreachable;  // not empty: no simulation is possible, and why
 
   std::span<const double> angles(int step) const {
     return {angles_rad.data() + static_cast<std::size_t>(step) * joints, joints};
@@ -114,22 +119,25 @@ struct TrajectorySample {
 
 struct TrackingResult {
   SimulationStatus status = SimulationStatus::ok;
-  std::string reason;                 // for every status but ok
-  int steps = 0;                      // control periods simulated
-  std::vector<double> point_error_m;  // points 1..n, as far as they were reached; after a cut-off or divergence in training
-                                      // the rest is filled with the cut-off error
-  double mean_error_m = 0;            // the case's error; meaningful for ok and, under a cut-off policy, for cut_off and diverged
+  std::string reason;  // for every status but ok
+  int steps = 0;       // control periods simulated
+  std::vector<double>
+      point_error_m;  // points 1..n, as far as they were reached; after a cut-off or divergence in
+                      // training the rest is filled with the cut-off error
+  double mean_error_m = 0;  // the case's error; meaningful for ok and, under a cut-off policy, for
+                            // cut_off and diverged
   std::vector<double> peak_effort_n_m, rms_effort_n_m, saturated_share;  // one a joint
-  double energy_j = 0;                // positive mechanical work of all joints, sum of max(0, effort x rotation)
-  std::vector<double> error_series_m;          // on request
-  std::vector<TrajectorySample> trajectory;    // on request
+  double energy_j = 0;  // positive mechanical work of all joints, sum of max(0, effort x rotation)
+  std::vector<double> error_series_m;        // on request
+  std::vector<TrajectorySample> trajectory;  // on request
 };
 
 // One simulation: a design on a test case.
 struct TrackingJob {
   const ArmDesign* design = nullptr;
   const TargetTable* targets = nullptr;
-  // Training only: a case whose error exceeds this is abandoned; that point and the rest count as this error.
+  // Training only: a case whose error exceeds this is abandoned; that point and the rest count as
+  // this error.
   double cutoff_m = std::numeric_limits<double>::infinity();
   RecordingOptions recording;
 };

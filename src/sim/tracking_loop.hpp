@@ -1,5 +1,6 @@
-// One tracking simulation, written once for every engine that steps a single arm: the timeline, the controllers and the measures.
-// `Arm` needs step(effort, dt), read_angles(q) and tip_position_m(), and throws DivergenceError when it cannot go on.
+// One tracking simulation, written once for every engine that steps a single arm: the timeline, the
+// controllers and the measures. `Arm` needs step(effort, dt), read_angles(q) and tip_position_m(),
+// and throws DivergenceError when it cannot go on.
 #pragma once
 
 #include <fmt/format.h>

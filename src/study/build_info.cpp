@@ -1,13 +1,11 @@
 #include "study/build_info.hpp"
 
+#include <fmt/format.h>
 #include <sqlite3.h>
 #include <unistd.h>
 
 #include <Eigen/Core>
-#include <fmt/format.h>
-
 #include <fstream>
-
 
 #include "base/text.hpp"
 #include "git_state.hpp"
@@ -47,8 +45,8 @@ std::map<std::string, std::string> describe_build() {
       {"host", read_host_name()},
       {"ode", ARMWRIGHT_ODE_VERSION},
       {"urdfdom", ARMWRIGHT_URDFDOM_VERSION},
-      {"eigen", fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
-                            EIGEN_MINOR_VERSION)},
+      {"eigen",
+       fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
       {"sqlite", sqlite3_libversion()},
   };
 }

@@ -7,7 +7,8 @@
 namespace armwright {
 
 std::string get_version();  // "0.1.0"
-// version, git, compiler, build_type, cpu, host, and the versions of ODE, urdfdom, Eigen and SQLite.
+// version, git, compiler, build_type, cpu, host, and the versions of ODE, urdfdom, Eigen and
+// SQLite.
 std::map<std::string, std::string> describe_build();
 
 }  // namespace armwright

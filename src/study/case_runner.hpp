@@ -1,5 +1,6 @@
-// Fans evaluations out over threads, one simulated case at a time, so that one candidate on many cases uses all cores as well as many
-// candidates on one. Results do not depend on the number of threads.
+// Fans evaluations out over threads, one simulated case at a time, so that one candidate on many
+// cases uses all cores as well as many candidates on one. Results do not depend on the number of
+// threads.
 #pragma once
 
 #include <functional>
@@ -23,10 +24,12 @@ class CaseRunner {
   CaseRunner(const Problem& problem, ThreadPool& pool, StopSignal& stop)
       : problem_(problem), pool_(pool), stop_(stop) {}
 
-  // Called once for each finished candidate, from the thread that finished it, as soon as its last case is done.
+  // Called once for each finished candidate, from the thread that finished it, as soon as its last
+  // case is done.
   using OnDone = std::function<void(std::size_t candidate, const Evaluation& evaluation)>;
 
-  // One evaluation a candidate, in order; nothing for those that a stop left unfinished. Rethrows what `on_done` throws.
+  // One evaluation a candidate, in order; nothing for those that a stop left unfinished. Rethrows
+  // what `on_done` throws.
   std::vector<std::optional<Evaluation>> run(std::span<const CandidateJob> candidates,
                                              const OnDone& on_done);
 

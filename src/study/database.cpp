@@ -32,7 +32,9 @@ class Database {
     check(code);
   }
 
-  void execute(const char* sql) { check(sqlite3_exec(handle_.get(), sql, nullptr, nullptr, nullptr)); }
+  void execute(const char* sql) {
+    check(sqlite3_exec(handle_.get(), sql, nullptr, nullptr, nullptr));
+  }
 
   void check(int code) const {
     if (code != SQLITE_OK && code != SQLITE_DONE && code != SQLITE_ROW) {
@@ -72,9 +74,8 @@ class Insert {
     return *this;
   }
   Insert& operator<<(double number) {  // NaN becomes NULL
-    database_.check(std::isnan(number)
-                        ? sqlite3_bind_null(statement_.get(), ++column_)
-                        : sqlite3_bind_double(statement_.get(), ++column_, number));
+    database_.check(std::isnan(number) ? sqlite3_bind_null(statement_.get(), ++column_)
+                                       : sqlite3_bind_double(statement_.get(), ++column_, number));
     return *this;
   }
   void run() {

@@ -1,7 +1,9 @@
-// A run's journal as an SQLite file, for queries. Derived: it can be removed and rebuilt at any time.
+// A run's journal as an SQLite file, for queries. Derived: it can be removed and rebuilt at any
+// time.
 //   variable(position, name, unit, lower, upper, start)
-//   evaluation(role, number, generation, status, reason, clipped, set_name, first_case, cases, objective, x, metrics)
-//     role: training, validation or test; x and metrics are JSON arrays in the order of `variable` and `metric`
+//   evaluation(role, number, generation, status, reason, clipped, set_name, first_case, cases,
+//              objective, x, metrics)
+//     role: training, validation or test; x and metrics: JSON arrays in the order of those tables
 //   metric(position, name, unit)
 //   case_error(role, number, case_number, error)     error is NULL where a simulation yielded none
 #pragma once

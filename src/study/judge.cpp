@@ -117,8 +117,8 @@ std::optional<std::size_t> Judge::choose_winner(const std::vector<JudgedCandidat
 
 std::optional<Evaluation> Judge::test(const Candidate& winner) {
   const CaseSets& sets = plan_.problem.sets;
-  auto evaluations =
-      evaluate({winner.x}, make_block(CaseRole::test, sets.test, sets.test_cases), Progress::Phase::test);
+  auto evaluations = evaluate({winner.x}, make_block(CaseRole::test, sets.test, sets.test_cases),
+                              Progress::Phase::test);
   return evaluations ? std::optional(std::move(evaluations->front())) : std::nullopt;
 }
 

@@ -1,5 +1,6 @@
-// Chooses the winner, for every optimizer alike: the candidates meet the validation set, the best of them the test set. Neither is
-// charged to the budget, and nothing is cut off there. What a former process has judged already is taken from the journal.
+// Chooses the winner, for every optimizer alike: the candidates meet the validation set, the best
+// of them the test set. Neither is charged to the budget, and nothing is cut off there. What a
+// former process has judged already is taken from the journal.
 #pragma once
 
 #include <optional>
@@ -18,7 +19,8 @@ class Judge {
 
   // One judgement a candidate, or nothing if stopped.
   std::optional<std::vector<JudgedCandidate>> validate(std::vector<Candidate> candidates);
-  // The winner: fewest cases without number, then feasible, then the best first objective; nothing if none has an objective.
+  // The winner: fewest cases without number, then feasible, then the best first objective; nothing
+  // if none has an objective.
   static std::optional<std::size_t> choose_winner(const std::vector<JudgedCandidate>& judged);
   // The winner on the test set, or nothing if stopped.
   std::optional<Evaluation> test(const Candidate& winner);

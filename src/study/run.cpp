@@ -38,10 +38,11 @@ void describe_start(const RunFolder& folder, const JournalContent& journal, RunO
                         "; if the results differ, resuming stops with an error");
   }
   if (journal.torn_bytes > 0) {
-    observer.on_message(fmt::format(
-        "warning: {}: cut {} bytes of an unfinished record off the end (kept beside it); what it held "
-        "is evaluated again",
-        folder.journal().string(), journal.torn_bytes));
+    observer.on_message(
+        fmt::format("warning: {}: cut {} bytes of an unfinished record off the end (kept beside "
+                    "it); what it held "
+                    "is evaluated again",
+                    folder.journal().string(), journal.torn_bytes));
   }
   if (!journal.training.empty()) {
     observer.on_message(fmt::format("resuming: {} evaluations and {} judgements are recorded",
@@ -58,8 +59,8 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   const auto optimizer = find_optimizer(plan.optimizer).make(plan.options);
   const RunFolder folder(request.folder, plan, request.command_line);
   if (std::filesystem::exists(folder.result())) {
-    observer.on_message(fmt::format("{}: this run is complete; use --new for another one",
-                                    folder.path().string()));
+    observer.on_message(
+        fmt::format("{}: this run is complete; use --new for another one", folder.path().string()));
     return load_result(folder.path());
   }
 
@@ -121,15 +122,16 @@ std::optional<std::vector<TrackingResult>> evaluate_design(const TrackingProblem
 RunResult load_result(const std::filesystem::path& folder) {
   const auto file = folder / "result.json";
   if (!std::filesystem::exists(folder / "manifest.json")) {
-    throw Error(ErrorKind::usage,
-                fmt::format("{}: is not the folder of a run (it has no manifest.json)",
-                            folder.string()));
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("{}: is not the folder of a run (it has no manifest.json)", folder.string()));
   }
   if (!std::filesystem::exists(file)) {
-    throw Error(ErrorKind::usage,
-                fmt::format("{}: this run has not come to its end; start it again with the same command "
-                            "to go on where it was",
-                            folder.string()));
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("{}: this run has not come to its end; start it again with the same command "
+                    "to go on where it was",
+                    folder.string()));
   }
   return parse_result(read_file(file, kResultLimit_bytes), file);
 }

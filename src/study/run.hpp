@@ -1,5 +1,6 @@
-// One run from plan to result: optimize, judge the candidates on the validation set, judge the winner on the test set, derive the
-// tables. Resumable at any moment: start it again with the same plan and folder.
+// One run from plan to result: optimize, judge the candidates on the validation set, judge the
+// winner on the test set, derive the tables. Resumable at any moment: start it again with the same
+// plan and folder.
 #pragma once
 
 #include <filesystem>
@@ -16,12 +17,12 @@ namespace armwright {
 struct RunRequest {
   RunPlan plan;
   std::filesystem::path folder;
-  unsigned jobs = 1;                       // threads
-  std::vector<std::string> command_line;   // for the manifest
+  unsigned jobs = 1;                      // threads
+  std::vector<std::string> command_line;  // for the manifest
 };
 
-// The result, or nothing if `stop` ended the run early; everything evaluated so far is in the journal then.
-// A run that has ended already is not run again: its recorded result is returned.
+// The result, or nothing if `stop` ended the run early; everything evaluated so far is in the
+// journal then. A run that has ended already is not run again: its recorded result is returned.
 std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop,
                                      RunObserver& observer);
 
@@ -31,7 +32,8 @@ std::optional<std::vector<TrackingResult>> evaluate_design(const TrackingProblem
                                                            const TestSet& set, std::uint64_t cases,
                                                            unsigned jobs, StopSignal& stop);
 
-// The result recorded in a folder. Error{usage} if the folder is no run or its run has not ended, saying how to go on.
+// The result recorded in a folder. Error{usage} if the folder is no run or its run has not ended,
+// saying how to go on.
 RunResult load_result(const std::filesystem::path& folder);
 
 }  // namespace armwright

@@ -87,7 +87,8 @@ EvaluationRecord RunEvaluator::make_request(std::span<const double> x) const {
   request.generation = counts_.generations;
   request.cases = block_;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    // A coordinate that is no number at all goes to the start value: there is no nearest point inside.
+    // A coordinate that is no number at all goes to the start value: there is no nearest point
+    // inside.
     const double inside = std::isnan(x[i])
                               ? variables[i].start
                               : std::clamp(x[i], variables[i].lower, variables[i].upper);
@@ -115,11 +116,12 @@ void RunEvaluator::check_replay(const EvaluationRecord& request,
     difference = "its generation or clipping differs";
   }
   if (!difference.empty()) {
-    throw Error(ErrorKind::bad_data,
-                fmt::format("evaluation {} of the journal is not what optimizer '{}' asks for now: {}. "
-                            "The run was made by another version, machine or plugin; resume it there, "
-                            "or start a new run with --new",
-                            recorded.index, plan_.optimizer, difference));
+    throw Error(
+        ErrorKind::bad_data,
+        fmt::format("evaluation {} of the journal is not what optimizer '{}' asks for now: {}. "
+                    "The run was made by another version, machine or plugin; resume it there, "
+                    "or start a new run with --new",
+                    recorded.index, plan_.optimizer, difference));
   }
 }
 
@@ -166,7 +168,8 @@ std::vector<Score> RunEvaluator::evaluate(std::span<const std::vector<double>> p
   });
   journal_.flush();
 
-  // A stop can leave holes; the optimizer learns the results before the first, and a resumed run evaluates only the holes.
+  // A stop can leave holes; the optimizer learns the results before the first, and a resumed run
+  // evaluates only the holes.
   std::size_t complete = points.size();
   for (std::size_t job = 0; job < missing.size(); ++job) {
     if (!evaluations[job]) {
@@ -201,7 +204,7 @@ void RunEvaluator::take(const EvaluationRecord& record, Score& score) {
   score.objectives = evaluation.objectives;
   if (score.objectives.empty()) {
     score.objectives = plan_.problem.problem->penalty_objectives();
-    score.constraint_values.assign(problem().constraints.size(), 0);
+    score.constraint_values.clear();
   }
 }
 
@@ -226,9 +229,9 @@ void RunEvaluator::report(std::uint64_t more_cases, std::uint64_t more_replayed)
   progress.total = static_cast<std::uint64_t>(plan_.budget) / cases_each * cases_each;
   progress.replayed = counts_.replayed * cases_each + more_replayed;
   progress.generation = counts_.generations;
-  const Candidate* shown = incumbent_              ? &*incumbent_
+  const Candidate* shown = incumbent_             ? &*incumbent_
                            : !candidates_.empty() ? &candidates_.back()
-                                                   : nullptr;
+                                                  : nullptr;
   if (shown != nullptr) {
     progress.best_objective = shown->training_objective;
   }
@@ -270,8 +273,7 @@ std::vector<Candidate> RunEvaluator::select_candidates() const {
   std::copy_if(best.begin(), best.end(), std::back_inserter(chosen),
                [&](const Candidate& candidate) { return !known(chosen, candidate); });
   std::stable_sort(chosen.begin(), chosen.end(), [](const Candidate& a, const Candidate& b) {
-    return a.generation != b.generation ? a.generation < b.generation
-                                        : a.evaluation < b.evaluation;
+    return a.generation != b.generation ? a.generation < b.generation : a.evaluation < b.evaluation;
   });
   return chosen;
 }

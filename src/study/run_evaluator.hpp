@@ -1,6 +1,7 @@
-// The run's Evaluator: counts the budget exactly (a batch is cut where it ends, whole candidates only), clips points to the bounds and
-// counts that, supplies the training cases, answers from the journal what a former process has evaluated already, journals the
-// rest as it finishes, and remembers the points worth judging.
+// The run's Evaluator: counts the budget exactly (a batch is cut where it ends, whole candidates
+// only), clips points to the bounds and counts that, supplies the training cases, answers from the
+// journal what a former process has evaluated already, journals the rest as it finishes, and
+// remembers the points worth judging.
 #pragma once
 
 #include <cstdint>
@@ -19,28 +20,31 @@ namespace armwright {
 // A design that may become the winner.
 struct Candidate {
   std::vector<double> x;
-  std::uint64_t evaluation = 0;  // of the training evaluation that made it one; unused for a recommendation
+  std::uint64_t evaluation =
+      0;  // of the training evaluation that made it one; unused for a recommendation
   std::uint64_t generation = 0;
-  bool recommended = false;      // named by the optimizer; it has no training objective of its own
+  bool recommended = false;  // named by the optimizer; it has no training objective of its own
   double training_objective = 0;
 };
 
 struct RunCounts {
   std::uint64_t evaluations = 0;
-  std::uint64_t cases = 0;      // charged to the budget
-  std::uint64_t replayed = 0;   // evaluations answered from the journal
-  std::uint64_t clipped = 0;    // points asked for outside the bounds
-  std::uint64_t failed = 0;     // evaluations whose status is not ok
+  std::uint64_t cases = 0;     // charged to the budget
+  std::uint64_t replayed = 0;  // evaluations answered from the journal
+  std::uint64_t clipped = 0;   // points asked for outside the bounds
+  std::uint64_t failed = 0;    // evaluations whose status is not ok
   std::uint64_t generations = 0;
 };
 
 struct Progress {
   enum class Phase { training, validation, test } phase = Phase::training;
-  std::uint64_t done = 0;   // cases
+  std::uint64_t done = 0;  // cases
   std::uint64_t total = 0;
   std::uint64_t replayed = 0;  // of the cases done, those from the journal
   std::uint64_t generation = 0;
-  double best_objective = std::numeric_limits<double>::quiet_NaN();  // fixed: the incumbent's; fresh: the last generation's best
+  double best_objective =
+      std::numeric_limits<double>::quiet_NaN();  // fixed: the incumbent's; fresh: the last
+                                                 // generation's best
 };
 
 // What a run tells while it goes on. Calls come from any thread, one at a time.
@@ -85,8 +89,9 @@ class RunEvaluator final : public Evaluator {
   bool stopped_ = false;
   RunCounts counts_;
   CaseBlock block_;
-  std::optional<Candidate> incumbent_;       // fixed: best so far; fresh: best of this generation
-  std::vector<Candidate> candidates_;        // fixed: all improvements; fresh: bests of generations and recommendations
+  std::optional<Candidate> incumbent_;  // fixed: best so far; fresh: best of this generation
+  std::vector<Candidate>
+      candidates_;  // fixed: all improvements; fresh: bests of generations and recommendations
 };
 
 }  // namespace armwright

@@ -47,10 +47,11 @@ json read_manifest(const std::filesystem::path& file) {
     manifest.at("build");
     return manifest;
   } catch (const json::exception& error) {
-    throw Error(ErrorKind::bad_data,
-                fmt::format("{}: is not a manifest that armwright wrote ({}); choose another folder "
-                            "with --out, or --new",
-                            file.string(), error.what()));
+    throw Error(
+        ErrorKind::bad_data,
+        fmt::format("{}: is not a manifest that armwright wrote ({}); choose another folder "
+                    "with --out, or --new",
+                    file.string(), error.what()));
   } catch (const std::runtime_error& error) {
     if (dynamic_cast<const Error*>(&error) != nullptr) {
       throw;
@@ -67,10 +68,11 @@ RunFolder::RunFolder(const std::filesystem::path& path, const RunPlan& plan,
   const auto file = path / "manifest.json";
   if (!std::filesystem::exists(file)) {
     if (std::filesystem::exists(journal())) {
-      throw Error(ErrorKind::bad_data,
-                  fmt::format("{}: holds a journal but no manifest.json, so nobody can tell what it is of; "
-                              "choose another folder with --out, or --new",
-                              path.string()));
+      throw Error(
+          ErrorKind::bad_data,
+          fmt::format("{}: holds a journal but no manifest.json, so nobody can tell what it is of; "
+                      "choose another folder with --out, or --new",
+                      path.string()));
     }
     write_file_atomically(file, make_manifest(plan, command_line).dump(2) + "\n");
     return;
@@ -78,10 +80,11 @@ RunFolder::RunFolder(const std::filesystem::path& path, const RunPlan& plan,
   const json manifest = read_manifest(file);
   const auto differences = describe_differences(manifest["configuration"].dump(), to_json(plan));
   if (!differences.empty()) {
-    throw Error(ErrorKind::usage,
-                fmt::format("{} holds a run with another configuration:\n  {}\nGo on with the recorded "
-                            "one, or use --new or --out for another folder",
-                            path.string(), join(differences, "\n  ")));
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("{} holds a run with another configuration:\n  {}\nGo on with the recorded "
+                    "one, or use --new or --out for another folder",
+                    path.string(), join(differences, "\n  ")));
   }
   for (const auto& [key, now] : describe_build()) {
     const std::string recorded = manifest["build"].value(key, "(not recorded)");
@@ -92,8 +95,8 @@ RunFolder::RunFolder(const std::filesystem::path& path, const RunPlan& plan,
   }
 }
 
-std::filesystem::path choose_run_folder(const std::filesystem::path& parent, const std::string& name,
-                                        bool fresh) {
+std::filesystem::path choose_run_folder(const std::filesystem::path& parent,
+                                        const std::string& name, bool fresh) {
   std::filesystem::path folder = parent / name;
   for (int number = 2; fresh && std::filesystem::exists(folder); ++number) {
     folder = parent / fmt::format("{}-{:03}", name, number);

@@ -1,6 +1,7 @@
-// A run's folder: manifest.json (what was asked for, and by what it was made), journal (the truth), lock, and what was derived from the
-// journal: result.json, winner.toml, convergence.csv, results.sqlite, winner-trajectory.csv. Nothing is ever overwritten by another
-// run, and two processes never write one folder.
+// A run's folder: manifest.json (what was asked for, and by what it was made), journal (the truth),
+// lock, and what was derived from the journal: result.json, winner.toml, convergence.csv,
+// results.sqlite, winner-trajectory.csv. Nothing is ever overwritten by another run, and two
+// processes never write one folder.
 #pragma once
 
 #include <filesystem>
@@ -14,15 +15,17 @@ namespace armwright {
 
 class RunFolder {
  public:
-  // Creates the folder or opens it to resume: takes the lock, then writes the manifest or compares it. Error{busy}; Error{io};
-  // Error{usage} with every difference if the recorded configuration is not `plan`.
+  // Creates the folder or opens it to resume: takes the lock, then writes the manifest or compares
+  // it. Error{busy}; Error{io}; Error{usage} with every difference if the recorded configuration is
+  // not `plan`.
   RunFolder(const std::filesystem::path& path, const RunPlan& plan,
             std::span<const std::string> command_line);
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path journal() const { return path_ / "journal"; }
   std::filesystem::path result() const { return path_ / "result.json"; }
-  // Why a resumed run may not replay: recorded and present version, compiler or CPU differ. Empty if they do not.
+  // Why a resumed run may not replay: recorded and present version, compiler or CPU differ. Empty
+  // if they do not.
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
@@ -32,7 +35,7 @@ class RunFolder {
 };
 
 // results/NAME, or with `fresh` the first free of NAME, NAME-002, NAME-003, ...
-std::filesystem::path choose_run_folder(const std::filesystem::path& parent, const std::string& name,
-                                        bool fresh);
+std::filesystem::path choose_run_folder(const std::filesystem::path& parent,
+                                        const std::string& name, bool fresh);
 
 }  // namespace armwright

@@ -21,11 +21,12 @@ json to_json_value(const OptionValue& value) {
 void check_plan(const RunPlan& plan) {
   const OptimizerRow& row = find_optimizer(plan.optimizer);
   if (plan.schedule.fresh && !row.capabilities.generations) {
-    throw Error(ErrorKind::usage,
-                fmt::format("optimizer '{}' has no generations, so new training cases for every "
-                            "generation (schedule fresh) mean nothing to it; use --schedule fixed:K, "
-                            "which evaluates every candidate on the same K cases",
-                            plan.optimizer));
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("optimizer '{}' has no generations, so new training cases for every "
+                    "generation (schedule fresh) mean nothing to it; use --schedule fixed:K, "
+                    "which evaluates every candidate on the same K cases",
+                    plan.optimizer));
   }
   if (plan.budget < 0) {
     throw Error(ErrorKind::usage, fmt::format("--budget is {}; it must be >= 0", plan.budget));

@@ -1,4 +1,5 @@
-// All that determines a run's result: problem, optimizer with its options, seed, budget, schedule, and how the winner is chosen.
+// All that determines a run's result: problem, optimizer with its options, seed, budget, schedule,
+// and how the winner is chosen.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +11,11 @@
 
 namespace armwright {
 
-// Which of a run's designs are judged on the validation set; the best of them there is the winner and meets the test set.
+// Which of a run's designs are judged on the validation set; the best of them there is the winner
+// and meets the test set.
 struct Selection {
-  int last = 20;  // the last N different incumbents (fresh schedule: bests of generations and recommendations)
+  int last = 20;  // the last N different incumbents (fresh schedule: bests of generations and
+                  // recommendations)
   int best = 5;   // and the N with the best training objective
 };
 
@@ -29,7 +32,8 @@ struct RunPlan {
 // Checks what no single part can: optimizer against schedule and problem. Throws Error{usage}.
 void check_plan(const RunPlan& plan);
 
-// The plan as JSON text with sorted keys; equal texts give bit-identical runs on the same machine and version.
+// The plan as JSON text with sorted keys; equal texts give bit-identical runs on the same machine
+// and version.
 std::string to_json(const RunPlan& plan);
 
 // One line a difference: "run.seed: recorded 1, now 2". Empty if the texts say the same.

@@ -61,8 +61,8 @@ Evaluation evaluation_from_json(const json& j) {
   evaluation.metrics = j.at("metrics").get<std::vector<double>>();
   evaluation.failed_cases = j.at("failed_cases");
   for (const json& error : j.at("case_errors")) {
-    evaluation.case_errors.push_back(
-        error.is_null() ? std::numeric_limits<double>::quiet_NaN() : error.get<double>());
+    evaluation.case_errors.push_back(error.is_null() ? std::numeric_limits<double>::quiet_NaN()
+                                                     : error.get<double>());
   }
   return evaluation;
 }
@@ -183,10 +183,11 @@ RunResult parse_result(const std::string& text, const std::filesystem::path& fil
     }
     return result;
   } catch (const std::exception& error) {
-    throw Error(ErrorKind::bad_data,
-                fmt::format("{}: is not a result that armwright wrote ({}); it can be rebuilt from the "
-                            "journal: remove it and start the run again",
-                            file.string(), error.what()));
+    throw Error(
+        ErrorKind::bad_data,
+        fmt::format("{}: is not a result that armwright wrote ({}); it can be rebuilt from the "
+                    "journal: remove it and start the run again",
+                    file.string(), error.what()));
   }
 }
 

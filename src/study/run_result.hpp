@@ -1,5 +1,5 @@
-// What a run has found, as recorded in result.json. Nothing in it depends on time, threads or interruptions: a resumed run and an
-// uninterrupted one write the same bytes.
+// What a run has found, as recorded in result.json. Nothing in it depends on time, threads or
+// interruptions: a resumed run and an uninterrupted one write the same bytes.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,5 @@
-// Asks a run to come to a graceful, resumable end. Set from signal handlers and threads, polled wherever work is handed out.
+// Asks a run to come to a graceful, resumable end. Set from signal handlers and threads, polled
+// wherever work is handed out.
 #pragma once
 
 #include <atomic>

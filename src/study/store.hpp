@@ -1,5 +1,6 @@
-// What is derived from a run's journal for people and other programs to read: tables as CSV and SQLite, the winner as a design file and
-// as a recorded motion. All of it can be removed and rebuilt.
+// What is derived from a run's journal for people and other programs to read: tables as CSV and
+// SQLite, the winner as a design file and as a recorded motion. All of it can be removed and
+// rebuilt.
 #pragma once
 
 #include "study/journal.hpp"
@@ -8,7 +9,8 @@
 
 namespace armwright {
 
-// A recorded motion, a row a control period: time, each joint's angle, target and effort, tip, target and error.
+// A recorded motion, a row a control period: time, each joint's angle, target and effort, tip,
+// target and error.
 std::string make_trajectory_csv(const TrackingProblem& problem, const TrackingResult& result);
 
 // Writes result.json last, so that its presence says that the rest is there.
