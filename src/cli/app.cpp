@@ -1,0 +1,203 @@
+#include "cli/app.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <new>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "cli/session.hpp"
+#include "cli/terminal.hpp"
+#include "study/build_info.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr const char* kSummary =
+    "Tunes and designs robot arms by simulation, with interchangeable gradient-free optimizers.";
+
+constexpr const char* kFooter = R"(Examples:
+  armwright list problems                          # what can be optimized
+  armwright list optimizers ga                     # one optimizer and its options
+  armwright optimize q1-complex --seed 1           # tune the arm as the thesis did; resumes if interrupted
+  armwright evaluate table-a10 --problem q2-e6     # a published design on 500 test cases
+  armwright reproduce                              # the thesis's published results beside ours
+
+'armwright COMMAND --help' explains a command, with examples.
+
+Results go to standard output, progress and messages to standard error. NO_COLOR and --color are respected.
+
+Exit codes:
+  0    done
+  2    wrong use or configuration
+  3    done, but something failed (a case without a number, nothing feasible found)
+  4    an input file cannot be used
+  5    another process writes this folder
+  74   reading or writing failed
+  75   stopped by a time limit or SIGTERM; the same command resumes
+  130  interrupted (Ctrl-C); the same command resumes
+  1    a fault of armwright itself, or no memory left
+
+Environment: ARMWRIGHT_JOBS and ARMWRIGHT_SEED stand in for --jobs and --seed; ARMWRIGHT_CONFIGS names the folder of
+the shipped configuration.)";
+
+std::string describe_version() {
+  std::string text = "armwright " + get_version() + "\n";
+  for (const auto& [what, value] : describe_build()) {
+    if (what != "version") {
+      text += fmt::format("  {:<10} {}\n", what, value);
+    }
+  }
+  return text;
+}
+
+std::vector<std::string> list_commands(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    names.push_back(command->get_name());
+  }
+  return names;
+}
+
+std::vector<std::string> list_flags(const CLI::App& app) {
+  std::vector<std::string> flags;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) {
+      flags.push_back("--" + name);
+    }
+  }
+  return flags;
+}
+
+// The innermost subcommand that was named, and how it is called.
+const CLI::App& find_chosen(const CLI::App& app, std::string& name) {
+  name = app.get_name();
+  const CLI::App* chosen = &app;
+  while (!chosen->get_subcommands().empty()) {
+    chosen = chosen->get_subcommands().back();
+    name += " " + chosen->get_name();
+  }
+  return *chosen;
+}
+
+// What is wrong with the command line, better than the parser can say it.
+std::string describe_mistake(const CLI::App& app, const CLI::ParseError& error) {
+  std::string name;
+  const CLI::App& chosen = find_chosen(app, name);
+  const std::string see = fmt::format("\nSee '{} --help'", name);
+  const auto extras = app.remaining(true);
+  const auto flag = std::find_if(extras.begin(), extras.end(), [](const std::string& text) {
+    return text.size() > 1 && text[0] == '-';
+  });
+  const auto commands = list_commands(chosen);
+  if (!commands.empty() && !extras.empty() && flag != extras.begin()) {
+    return describe_unknown("command", extras.front(), commands) + see;
+  }
+  if (flag != extras.end()) {
+    const std::string typed = flag->substr(0, flag->find('='));
+    return describe_unknown("flag", typed, list_flags(chosen)) + see;
+  }
+  if (!commands.empty()) {
+    return fmt::format("a command is missing. Valid: {}", join(commands, ", ")) + see;
+  }
+  if (!extras.empty()) {
+    return fmt::format("unexpected argument '{}'", sanitize(extras.front())) + see;
+  }
+  return std::string(error.what()) + see;
+}
+
+int parse_and_run(CLI::App& app, Session& session, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    write_stdout(app.help());
+    return exit_code::kDone;
+  } catch (const CLI::CallForVersion&) {
+    write_stdout(describe_version());
+    return exit_code::kDone;
+  } catch (const CLI::ParseError& error) {
+    throw Error(ErrorKind::usage, describe_mistake(app, error));
+  }
+  const std::vector<std::string> choices = {"auto", "always", "never"};
+  if (std::find(choices.begin(), choices.end(), session.color) == choices.end()) {
+    throw Error(ErrorKind::usage, describe_unknown("--color", session.color, choices));
+  }
+  return session.action();
+}
+
+int get_exit_code(ErrorKind kind) {
+  switch (kind) {
+    case ErrorKind::usage:
+      return exit_code::kUsage;
+    case ErrorKind::bad_data:
+      return exit_code::kBadData;
+    case ErrorKind::busy:
+      return exit_code::kBusy;
+    case ErrorKind::io:
+      break;
+  }
+  return exit_code::kIo;
+}
+
+}  // namespace
+
+int get_stop_code(StopReason reason) {
+  return reason == StopReason::interrupted ? exit_code::kInterrupted : exit_code::kStopped;
+}
+
+const char* describe_stop(StopReason reason) {
+  switch (reason) {
+    case StopReason::interrupted:
+      return "interrupted";
+    case StopReason::terminated:
+      return "stopped by a signal";
+    case StopReason::time_limit:
+      return "stopped: the time limit is reached";
+    case StopReason::none:
+      break;
+  }
+  return "stopped";
+}
+
+int run_app(int argc, char** argv) {
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe shows as an error of write()
+  Session session;
+  try {
+    session.command_line.assign(argv, argv + argc);
+    CLI::App app(kSummary, "armwright");
+    app.set_version_flag("--version", std::string("asked for"),
+                         "Version, compiler, processor and libraries");
+    app.get_formatter()->column_width(30);
+    app.footer(kFooter);
+    app.require_subcommand(1);
+    add_list(app, session);
+    add_optimize(app, session);
+    add_evaluate(app, session);
+    add_sweep(app, session);
+    add_reproduce(app, session);
+    add_testset(app, session);
+    add_show(app, session);
+    return parse_and_run(app, session, argc, argv);
+  } catch (const BrokenPipe&) {
+    return exit_code::kIo;
+  } catch (const Error& error) {
+    write_message(std::string("error: ") + error.what());
+    return get_exit_code(error.kind());
+  } catch (const std::filesystem::filesystem_error& error) {
+    write_message(std::string("error: ") + error.what());
+    return exit_code::kIo;
+  } catch (const std::bad_alloc&) {
+    write_message("error: no memory left; fewer --jobs or a smaller problem need less");
+    return exit_code::kInternal;
+  } catch (const std::exception& error) {
+    write_message(std::string("error: a fault of armwright itself, please report it: ") +
+                  error.what());
+    return exit_code::kInternal;
+  }
+}
+
+}  // namespace armwright

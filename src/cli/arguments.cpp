@@ -1,0 +1,133 @@
+#include "cli/arguments.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <thread>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "cli/session.hpp"
+#include "sim/physics_engine.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr std::int64_t kMostJobs = 1024;
+
+[[noreturn]] void refuse(std::string_view flag, std::string_view text, std::string_view allowed) {
+  throw Error(ErrorKind::usage,
+              fmt::format("{} is '{}'; it must be {}", flag, sanitize(text), allowed));
+}
+
+}  // namespace
+
+std::int64_t parse_count(std::string_view flag, std::string_view text, std::int64_t lower,
+                         std::int64_t upper) {
+  const auto value = parse_integer(text);
+  if (!value || *value < lower || *value > upper) {
+    refuse(flag, text, fmt::format("an integer from {} to {}", lower, upper));
+  }
+  return *value;
+}
+
+double parse_duration_s(std::string_view flag, std::string_view text) {
+  constexpr double kLongest_s = 1e9;
+  double unit_s = 1;
+  std::string_view number = text;
+  if (!text.empty() && std::string_view("smh").find(text.back()) != std::string_view::npos) {
+    unit_s = text.back() == 's' ? 1 : text.back() == 'm' ? 60 : 3600;
+    number.remove_suffix(1);
+  }
+  const auto value = parse_finite(number);
+  if (!value || *value <= 0 || *value * unit_s > kLongest_s) {
+    refuse(flag, text, "a time above 0: seconds (90 or 90s), minutes (10m) or hours (2h)");
+  }
+  return *value * unit_s;
+}
+
+Schedule parse_schedule(std::string_view text) {
+  constexpr std::int64_t kMostCases = 1'000'000;
+  const auto parts = split(text, ':');
+  const auto cases = parts.size() == 2 ? parse_integer(parts[1]) : std::nullopt;
+  if (!cases || *cases < 1 || *cases > kMostCases || (parts[0] != "fresh" && parts[0] != "fixed")) {
+    refuse(
+        "--schedule", text,
+        fmt::format("fresh:K (the next K training cases for every generation) or fixed:K (always "
+                    "the first K), K from 1 to {}",
+                    kMostCases));
+  }
+  return {parts[0] == "fresh", static_cast<int>(*cases)};
+}
+
+CLI::App* add_command(CLI::App& parent, Session& session, const std::string& name,
+                      const std::string& description, const std::string& examples) {
+  CLI::App* command = parent.add_subcommand(name, description);
+  command->add_option("--color", session.color, "When to use colour: auto, always or never")
+      ->type_name("WHEN")
+      ->group("Output");
+  command->footer(examples);
+  return command;
+}
+
+void JobsOption::add_to(CLI::App& command) {
+  command
+      .add_option("--jobs,-j", text,
+                  "Threads that simulate; the results do not depend on it\n"
+                  "(default: all cores)")
+      ->type_name("N")
+      ->envname("ARMWRIGHT_JOBS");
+}
+
+unsigned JobsOption::get() const {
+  if (text.empty()) {
+    return std::max(1U, std::thread::hardware_concurrency());
+  }
+  return static_cast<unsigned>(parse_count("--jobs (ARMWRIGHT_JOBS)", text, 1, kMostJobs));
+}
+
+void OverrideOptions::add_to(CLI::App& command) {
+  command
+      .add_option("--set", set,
+                  "Change a setting of the problem, as in task.speed_m_per_s=2; repeatable.\n"
+                  "'armwright list problems NAME' shows all settings")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  command
+      .add_option("--engine", engine,
+                  "Physics engine, the same as --set physics.engine=NAME\n"
+                  "(armwright list engines)")
+      ->type_name("NAME");
+}
+
+std::vector<std::string> OverrideOptions::get() const {
+  std::vector<std::string> overrides = set;
+  if (!engine.empty()) {
+    const auto names = engine_names();
+    if (std::find(names.begin(), names.end(), engine) == names.end()) {
+      throw Error(ErrorKind::usage, describe_unknown("engine", engine, names));
+    }
+    overrides.push_back("physics.engine=" + engine);
+  }
+  return overrides;
+}
+
+void CaseOptions::add_to(CLI::App& command) {
+  auto* set = command
+                  .add_option("--test-set", test_set,
+                              "Generated test set: 2 is short for test/2 (default: the problem's)")
+                  ->type_name("ID");
+  command
+      .add_option("--test-cases", test_cases,
+                  "Test cases from a file instead: JSON {\"cases\": [[[x,y,z], ...], ...]} in\n"
+                  "metres, or CSV case,point,x_m,y_m,z_m")
+      ->type_name("FILE")
+      ->excludes(set);
+  command
+      .add_option("--cases", cases,
+                  "Use the first N cases (default: as many as the problem says, or all in\n"
+                  "the file)")
+      ->type_name("N");
+}
+
+}  // namespace armwright

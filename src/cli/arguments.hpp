@@ -1,0 +1,54 @@
+// Values on the command line, read strictly: every refusal names the flag, what was found and what
+// is allowed (Error{usage}). And the flags that several subcommands share.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "problems/problem_loader.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace armwright {
+
+struct Session;
+
+std::int64_t parse_count(std::string_view flag, std::string_view text, std::int64_t lower,
+                         std::int64_t upper);
+// "90", "90s", "10m", "1.5h"
+double parse_duration_s(std::string_view flag, std::string_view text);
+// "fresh:K" or "fixed:K"
+Schedule parse_schedule(std::string_view text);
+
+// A new subcommand with what all have: --color, and examples below its help.
+CLI::App* add_command(CLI::App& parent, Session& session, const std::string& name,
+                      const std::string& description, const std::string& examples);
+
+// --jobs and $ARMWRIGHT_JOBS.
+struct JobsOption {
+  std::string text;
+  void add_to(CLI::App& command);
+  unsigned get() const;  // all cores unless told otherwise
+};
+
+// --set and --engine: what is changed about a problem.
+struct OverrideOptions {
+  std::vector<std::string> set;
+  std::string engine;
+  void add_to(CLI::App& command);
+  std::vector<std::string> get() const;
+};
+
+// --test-set, --test-cases and --cases: what a design is evaluated on.
+struct CaseOptions {
+  std::string test_set;
+  std::string test_cases;
+  std::string cases;
+  void add_to(CLI::App& command);
+};
+
+}  // namespace armwright

@@ -1,0 +1,123 @@
+#include "cli/design_evaluation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "cli/format.hpp"
+#include "cli/terminal.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr std::int64_t kMostCases = 1'000'000;
+
+TestSet choose_set(const LoadedProblem& problem, const CaseOptions& options) {
+  if (!options.test_cases.empty()) {
+    return TestSet::load(options.test_cases);
+  }
+  const TrackingProblem& tracking = require_tracking(problem);
+  if (options.test_set.empty()) {
+    return tracking.get_set(problem.sets.test);
+  }
+  const bool complete = options.test_set.find('/') != std::string::npos;
+  return tracking.get_set(complete ? options.test_set : "test/" + options.test_set);
+}
+
+}  // namespace
+
+const TrackingProblem& require_tracking(const LoadedProblem& problem) {
+  if (problem.tracking == nullptr) {
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("problem '{}' is an analytic function, on which no arm can be evaluated; "
+                    "choose a robot problem (armwright list problems)",
+                    problem.name));
+  }
+  return *problem.tracking;
+}
+
+ChosenCases choose_cases(const LoadedProblem& problem, const CaseOptions& options) {
+  TestSet set = choose_set(problem, options);
+  const auto usual = set.size().value_or(static_cast<std::uint64_t>(problem.sets.test_cases));
+  const auto count =
+      options.cases.empty()
+          ? usual
+          : static_cast<std::uint64_t>(parse_count("--cases", options.cases, 1, kMostCases));
+  if (set.size() && count > *set.size()) {
+    throw Error(ErrorKind::usage,
+                fmt::format("--cases is {}, but {} holds {}", count, sanitize(options.test_cases),
+                            format_count(*set.size(), "case")));
+  }
+  return {std::move(set), count};
+}
+
+std::optional<double> get_error(const TrackingResult& result) {
+  return result.status == SimulationStatus::ok ? std::optional(result.mean_error_m) : std::nullopt;
+}
+
+std::optional<DesignEvaluation> evaluate_with_progress(const TrackingProblem& problem,
+                                                       const ArmDesign& design,
+                                                       const ChosenCases& cases, unsigned jobs,
+                                                       StopSignal& stop, RunObserver& observer,
+                                                       BarShare share) {
+  constexpr std::uint64_t kCasesPerJob = 10;  // between two looks at the progress
+  Progress progress;
+  progress.phase = Progress::Phase::test;
+  progress.done = share.done_before;
+  progress.total = share.total;
+  observer.on_progress(progress);
+  DesignEvaluation evaluation;
+  while (evaluation.results.size() < cases.count) {
+    const std::uint64_t first = evaluation.results.size();
+    const std::uint64_t count = std::min(cases.count - first, kCasesPerJob * jobs);
+    std::vector<TestCase> part;
+    for (std::uint64_t i = first; i < first + count; ++i) {
+      part.push_back(cases.set.make_case(i));
+    }
+    auto results = evaluate_design(problem, design, TestSet::make_from_cases(std::move(part)),
+                                   count, jobs, stop);
+    if (!results) {
+      return std::nullopt;
+    }
+    std::move(results->begin(), results->end(), std::back_inserter(evaluation.results));
+    progress.done = share.done_before + evaluation.results.size();
+    observer.on_progress(progress);
+  }
+  std::vector<double> errors;
+  double energy_j = 0;
+  double numbers = 0;
+  for (const TrackingResult& result : evaluation.results) {
+    const auto error = get_error(result);
+    errors.push_back(error.value_or(std::numeric_limits<double>::quiet_NaN()));
+    energy_j += error ? result.energy_j : 0;
+    numbers += error ? 1 : 0;
+  }
+  evaluation.summary = summarize(errors);
+  evaluation.total_torque_n_m = calc_total_torque_n_m(design);
+  if (numbers > 0) {
+    evaluation.mean_energy_j = energy_j / numbers;
+  }
+  return evaluation;
+}
+
+void report_failures(const DesignEvaluation& evaluation, const std::string& what) {
+  constexpr int kMostNamed = 5;
+  int found = 0;
+  for (std::size_t i = 0; i < evaluation.results.size(); ++i) {
+    const TrackingResult& result = evaluation.results[i];
+    if (result.status == SimulationStatus::ok || ++found > kMostNamed) {
+      continue;
+    }
+    write_message(
+        fmt::format("{}case {}: {}: {}", what, i, to_string(result.status), result.reason));
+  }
+  if (found > kMostNamed) {
+    write_message(fmt::format("{}and {} more cases without a number", what, found - kMostNamed));
+  }
+}
+
+}  // namespace armwright

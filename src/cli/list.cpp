@@ -1,0 +1,168 @@
+// armwright list: what there is to choose from, and one thing explained in full.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "cli/arguments.hpp"
+#include "cli/list_views.hpp"
+#include "cli/session.hpp"
+#include "cli/table.hpp"
+#include "cli/terminal.hpp"
+#include "sim/controller.hpp"
+#include "sim/physics_engine.hpp"
+#include "sim/reference_signal.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kExamples = R"(Examples:
+  armwright list problems                          # what can be optimized
+  armwright list problems q1-complex               # its variables, bounds and settings (for --set)
+  armwright list optimizers ga                     # what it is, can do, and its options (for --opt)
+  armwright list designs --json
+
+Terms: a problem is a robot with a task, or a function, to be minimised; an optimizer minimises it; a design is what
+comes out: the gains and effort limits of all joints. An engine does the physics, a signal says how the target moves
+between two points, a controller turns joint errors into efforts.)";
+
+// Kinds whose members are a name and a sentence.
+ListKind make_plain_kind(const std::string& name, std::vector<ListItem> (*list)()) {
+  const std::string what = name.substr(0, name.size() - 1);  // "engines" -> "engine"
+  const auto find = [what, list](const std::string& wanted) {
+    std::vector<std::string> names;
+    for (const ListItem& item : list()) {
+      if (item.name == wanted) {
+        return item;
+      }
+      names.push_back(item.name);
+    }
+    throw Error(ErrorKind::usage, describe_unknown(what, wanted, names));
+  };
+  const auto explain = [find](const std::string& wanted, const Style& style) {
+    const ListItem item = find(wanted);
+    return format_title(style, item.name, item.summary);
+  };
+  const auto explain_as_json = [find](const std::string& wanted) {
+    const ListItem item = find(wanted);
+    return json{{"name", item.name}, {"summary", item.summary}};
+  };
+  return {name, list, explain, explain_as_json};
+}
+
+std::vector<ListItem> list_engines() {
+  std::vector<ListItem> items;
+  for (const EngineRow& row : engine_table()) {
+    items.push_back({row.name, row.summary});
+  }
+  return items;
+}
+
+std::vector<ListItem> list_signals() {
+  // In the order of the names; physics and formulas are with the signals themselves.
+  constexpr const char* kMeanings[] = {
+      "the target jumps to the next point at once, and counts as reached after distance / speed",
+      "constant speed",
+      "constant acceleration, constant speed, constant deceleration",
+      "accelerates half of the time, decelerates the other half",
+      "the speed rises linearly to 2.5 times the average in 0.4 of the time, then decays "
+      "quadratically",
+  };
+  std::vector<ListItem> items;
+  for (std::size_t i = 0; i < signal_names().size(); ++i) {
+    items.push_back({signal_names()[i], i < std::size(kMeanings) ? kMeanings[i] : ""});
+  }
+  return items;
+}
+
+std::vector<ListItem> list_controllers() {
+  std::vector<ListItem> items;
+  for (const ControllerRow& row : controller_table()) {
+    std::vector<std::string> gains;
+    for (const GainSpec& gain : row.gains) {
+      gains.push_back(fmt::format("{} [{}]", gain.name, gain.unit));
+    }
+    items.push_back({row.name, fmt::format("{}; gains {}", row.summary, join(gains, ", "))});
+  }
+  return items;
+}
+
+std::vector<ListKind> list_kinds() {
+  return {make_problem_kind(),
+          make_optimizer_kind(),
+          make_robot_kind(),
+          make_plain_kind("engines", list_engines),
+          make_design_kind(),
+          make_plain_kind("signals", list_signals),
+          make_plain_kind("controllers", list_controllers)};
+}
+
+struct ListOptions {
+  std::string kind;
+  std::string name;
+  bool json = false;
+};
+
+ListKind find_kind(const std::string& name) {
+  std::vector<std::string> names;
+  for (const ListKind& kind : list_kinds()) {
+    if (kind.name == name) {
+      return kind;
+    }
+    names.push_back(kind.name);
+  }
+  throw Error(ErrorKind::usage, describe_unknown("kind", name, names));
+}
+
+int run_list(const ListOptions& options, const Session& session) {
+  const ListKind kind = find_kind(options.kind);
+  const Style style = make_style(Stream::out, session.color);
+  if (!options.name.empty()) {
+    write_stdout(options.json ? kind.explain_as_json(options.name).dump(1) + "\n"
+                              : kind.explain(options.name, style));
+    return exit_code::kDone;
+  }
+  const auto items = kind.list();
+  if (options.json) {
+    json list = json::array();
+    for (const ListItem& item : items) {
+      list.push_back({{"name", sanitize(item.name)}, {"summary", sanitize(item.summary)}});
+    }
+    write_stdout(list.dump(1) + "\n");
+    return exit_code::kDone;
+  }
+  Table table({{kind.name, false}, {"", false}});
+  for (const ListItem& item : items) {
+    table.add_row({sanitize(item.name), sanitize(item.summary)});
+  }
+  write_stdout(table.format(style));
+  return exit_code::kDone;
+}
+
+}  // namespace
+
+std::string format_title(const Style& style, const std::string& name, const std::string& summary) {
+  return style.bold(sanitize(name)) + (summary.empty() ? "" : ": " + sanitize(summary)) + "\n";
+}
+
+void add_list(CLI::App& app, Session& session) {
+  auto options = std::make_shared<ListOptions>();
+  CLI::App* command = add_command(
+      app, session, "list", "List problems, optimizers, robots, engines, designs, ...", kExamples);
+  command
+      ->add_option("KIND", options->kind,
+                   "problems, optimizers, robots, engines, designs, signals or controllers")
+      ->required();
+  command->add_option("NAME", options->name, "Explain this one in full");
+  command->add_flag("--json", options->json, "Print it as JSON")->group("Output");
+  command->callback([options, &session] {
+    session.action = [options, &session] { return run_list(*options, session); };
+  });
+}
+
+}  // namespace armwright

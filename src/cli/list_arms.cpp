@@ -1,0 +1,142 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "base/text.hpp"
+#include "cli/format.hpp"
+#include "cli/list_views.hpp"
+#include "cli/result_view.hpp"
+#include "cli/table.hpp"
+#include "problems/config_files.hpp"
+#include "problems/design_file.hpp"
+#include "sim/robot_model.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+
+std::vector<ListItem> list_robots() {
+  std::vector<ListItem> items;
+  for (const std::string& name : list_configs("robots")) {
+    const RobotModel robot = load_urdf(resolve_config("robots", name));
+    items.push_back({name, fmt::format("{} joints", robot.joint_count())});
+  }
+  return items;
+}
+
+std::string explain_robot(const std::string& name, const Style& style) {
+  const auto file = resolve_config("robots", name);
+  const RobotModel robot = load_urdf(file);
+  Table table({{"joint", false},
+               {"moves", false},
+               {"mass kg"},
+               {"lower deg"},
+               {"upper deg"},
+               {"speed rad/s"},
+               {"effort N m"}});
+  const auto degrees = [](double angle_rad) {
+    return std::isinf(angle_rad) ? std::string("none")
+                                 : fmt::format("{:.1f}", angle_rad * 180 / std::numbers::pi);
+  };
+  for (std::size_t i = 0; i < robot.joint_count(); ++i) {
+    const Joint& joint = robot.joints[i];
+    table.add_row({sanitize(joint.name), sanitize(robot.links[i].name),
+                   format_significant(robot.links[i].inertial.mass_kg), degrees(joint.lower_rad),
+                   degrees(joint.upper_rad), format_significant(joint.speed_limit_rad_per_s),
+                   format_significant(joint.effort_limit_n_m)});
+  }
+  return format_title(style, robot.name, file.string()) + "\n" + table.format(style);
+}
+
+json explain_robot_as_json(const std::string& name) {
+  const RobotModel robot = load_urdf(resolve_config("robots", name));
+  const auto finite = [](double value) {
+    return std::isfinite(value) ? json(value) : json(nullptr);
+  };
+  json joints = json::array();
+  for (std::size_t i = 0; i < robot.joint_count(); ++i) {
+    const Joint& joint = robot.joints[i];
+    joints.push_back({{"name", sanitize(joint.name)},
+                      {"link", sanitize(robot.links[i].name)},
+                      {"mass_kg", robot.links[i].inertial.mass_kg},
+                      {"lower_rad", finite(joint.lower_rad)},
+                      {"upper_rad", finite(joint.upper_rad)},
+                      {"speed_limit_rad_per_s", finite(joint.speed_limit_rad_per_s)},
+                      {"effort_limit_n_m", finite(joint.effort_limit_n_m)}});
+  }
+  return {{"name", sanitize(robot.name)}, {"joints", joints}};
+}
+
+std::vector<ListItem> list_designs() {
+  std::vector<ListItem> items;
+  for (const std::string& name : list_configs("designs")) {
+    items.push_back({name, load_design(name).title});
+  }
+  return items;
+}
+
+std::string explain_design(const std::string& name, const Style& style) {
+  const DesignFile file = load_design(name);
+  std::string text = format_title(style, file.name, file.title);
+  text += file.source.empty() ? "" : "  Source: " + sanitize(file.source) + "\n";
+  text += "\n" + format_design(file, style);
+  if (!file.published.empty()) {
+    Table table({{"published as", false},
+                 {"problem", false},
+                 {"with", false},
+                 {"error mm"},
+                 {"where", false}});
+    for (const PublishedResult& published : file.published) {
+      table.add_row({sanitize(published.label), sanitize(published.problem),
+                     sanitize(join(published.overrides, " ")), format_mm(published.error_m),
+                     sanitize(published.where)});
+    }
+    text += "\n" + table.format(style);
+  }
+  return text;
+}
+
+json explain_design_as_json(const std::string& name) {
+  const DesignFile file = load_design(name);
+  const ControllerRow& controller = find_controller(file.design.controller);
+  json joints = json::array();
+  for (std::size_t i = 0; i < file.design.joints.size(); ++i) {
+    const JointDrive& drive = file.design.joints[i];
+    json joint = {{"name", sanitize(file.joint_names.at(i))},
+                  {"effort_min_n_m", drive.limits.min_n_m},
+                  {"effort_max_n_m", drive.limits.max_n_m}};
+    for (std::size_t g = 0; g < drive.gains.size(); ++g) {
+      joint[controller.gains[g].key] = drive.gains[g];
+    }
+    joints.push_back(std::move(joint));
+  }
+  json published = json::array();
+  for (const PublishedResult& result : file.published) {
+    published.push_back({{"label", sanitize(result.label)},
+                         {"problem", sanitize(result.problem)},
+                         {"error_m", result.error_m ? json(*result.error_m) : json(nullptr)},
+                         {"where", sanitize(result.where)}});
+  }
+  return {{"name", sanitize(file.name)},
+          {"title", sanitize(file.title)},
+          {"source", sanitize(file.source)},
+          {"controller", file.design.controller},
+          {"total_torque_n_m", calc_total_torque_n_m(file.design)},
+          {"joints", joints},
+          {"published", published}};
+}
+
+}  // namespace
+
+ListKind make_robot_kind() {
+  return {"robots", list_robots, explain_robot, explain_robot_as_json};
+}
+
+ListKind make_design_kind() {
+  return {"designs", list_designs, explain_design, explain_design_as_json};
+}
+
+}  // namespace armwright

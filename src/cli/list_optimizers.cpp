@@ -1,0 +1,109 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/text.hpp"
+#include "cli/list_views.hpp"
+#include "cli/table.hpp"
+#include "optimizers/optimizer.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+
+std::vector<ListItem> list_items() {
+  std::vector<ListItem> items;
+  for (const OptimizerRow& row : optimizer_table()) {
+    items.push_back({row.name, row.summary});
+  }
+  return items;
+}
+
+const char* get_type(const OptionValue& value) {
+  constexpr const char* kNames[] = {"true or false", "integer", "number", "text"};
+  return kNames[value.index()];
+}
+
+std::string describe_range(const OptionSpec& option) {
+  if (!option.choices.empty()) {
+    return join(option.choices, ", ");
+  }
+  const bool number = std::holds_alternative<double>(option.fallback) ||
+                      std::holds_alternative<std::int64_t>(option.fallback);
+  return number ? fmt::format("{} to {}", option.lower, option.upper) : "";
+}
+
+std::vector<std::pair<std::string, bool>> list_capabilities(const Capabilities& c) {
+  return {{"bounds", c.bounds},
+          {"constraints", c.constraints},
+          {"multi_objective", c.multi_objective},
+          {"batch", c.batch},
+          {"noisy", c.noisy},
+          {"residuals", c.residuals},
+          {"stochastic", c.stochastic},
+          {"generations", c.generations}};
+}
+
+std::string explain_optimizer(const std::string& name, const Style& style) {
+  const OptimizerRow& row = find_optimizer(name);
+  std::string text = format_title(style, row.name, row.summary);
+  text += "  Source: " + row.source + "\n";
+  std::vector<std::string> able;
+  std::vector<std::string> unable;
+  for (const auto& [capability, has] : list_capabilities(row.capabilities)) {
+    (has ? able : unable).push_back(capability);
+  }
+  text += "  Capabilities: " + join(able, ", ") + " (not: " + join(unable, ", ") + ")\n";
+  text += row.capabilities.generations
+              ? "  Schedules: fresh:K (new training cases every generation) and fixed:K\n\n"
+              : "  Schedules: fixed:K only\n\n";
+  if (row.options.empty()) {
+    return text + "It has no options.\n";
+  }
+  Table table({{"option (for --opt)", false},
+               {"type", false},
+               {"default", false},
+               {"allowed", false},
+               {"meaning", false}});
+  for (const OptionSpec& option : row.options) {
+    table.add_row({option.name, get_type(option.fallback), to_text(option.fallback),
+                   describe_range(option), option.description});
+  }
+  return text + table.format(style);
+}
+
+json explain_optimizer_as_json(const std::string& name) {
+  const OptimizerRow& row = find_optimizer(name);
+  json options = json::array();
+  for (const OptionSpec& option : row.options) {
+    json one = {{"name", option.name},
+                {"type", get_type(option.fallback)},
+                {"default", std::visit([](const auto& v) { return json(v); }, option.fallback)},
+                {"meaning", option.description}};
+    if (!option.choices.empty()) {
+      one["choices"] = option.choices;
+    } else if (!describe_range(option).empty()) {
+      one["lower"] = option.lower;
+      one["upper"] = option.upper;
+    }
+    options.push_back(std::move(one));
+  }
+  json capabilities = json::object();
+  for (const auto& [capability, has] : list_capabilities(row.capabilities)) {
+    capabilities[capability] = has;
+  }
+  return {{"name", row.name},
+          {"summary", row.summary},
+          {"source", row.source},
+          {"capabilities", capabilities},
+          {"options", options}};
+}
+
+}  // namespace
+
+ListKind make_optimizer_kind() {
+  return {"optimizers", list_items, explain_optimizer, explain_optimizer_as_json};
+}
+
+}  // namespace armwright

@@ -1,0 +1,34 @@
+// The kinds of things that `list` knows: how to name them all, and how to explain one of them.
+#pragma once
+
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/terminal.hpp"
+
+namespace armwright {
+
+struct ListItem {
+  std::string name;
+  std::string summary;
+};
+
+struct ListKind {
+  std::string name;  // "optimizers"
+  std::function<std::vector<ListItem>()> list;
+  // Error{usage} with the valid names if there is none of that name.
+  std::function<std::string(const std::string& name, const Style& style)> explain;
+  std::function<nlohmann::json(const std::string& name)> explain_as_json;
+};
+
+ListKind make_problem_kind();
+ListKind make_optimizer_kind();
+ListKind make_robot_kind();
+ListKind make_design_kind();
+
+// "NAME: SUMMARY" as a first line.
+std::string format_title(const Style& style, const std::string& name, const std::string& summary);
+
+}  // namespace armwright

@@ -1,0 +1,246 @@
+// armwright optimize: one optimizer on one problem, resumable.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <limits>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "cli/arguments.hpp"
+#include "cli/format.hpp"
+#include "cli/progress_bar.hpp"
+#include "cli/result_view.hpp"
+#include "cli/session.hpp"
+#include "cli/signals.hpp"
+#include "cli/terminal.hpp"
+#include "study/run.hpp"
+#include "study/run_folder.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  armwright optimize q1-complex                    # as in the thesis: its genetic algorithm, seed 1
+  armwright optimize q2-e6 --optimizer ga --opt population=50 --seed 7 --budget 20000
+  armwright optimize q1-complex --schedule fixed:10 --time-limit 10m --out results/robust
+  armwright optimize my.toml --set task.load_kg=20 --set sets.test_cases=100 --json
+
+Interrupted by Ctrl-C, a time limit or a crash, the same command goes on where it was; a run that is complete is
+shown and not made again.
+
+Terms: the budget counts simulated test cases of training (one design on one case is 1). The schedule says on
+which cases a design is trained: fresh:K takes the next K of the training set for every generation, fixed:K always
+the first K. At the end the best designs are judged on the validation set, and the winner on the test set, neither
+charged to the budget. The seed feeds the optimizer's random choices; the same seed gives the same result on any
+number of threads.)";
+
+struct OptimizeOptions {
+  std::string problem;
+  std::string optimizer;
+  std::vector<std::string> opt;
+  std::string seed = "1";
+  std::string budget;
+  std::string schedule;
+  OverrideOptions overrides;
+  std::string validation_cases;
+  JobsOption jobs;
+  std::string time_limit;
+  std::string out;
+  bool another = false;
+  bool json = false;
+  bool quiet = false;
+
+  std::vector<std::string> get_overrides() const;
+};
+
+std::vector<std::string> OptimizeOptions::get_overrides() const {
+  constexpr std::int64_t kMostCases = 1'000'000;
+  std::vector<std::string> all = overrides.get();
+  if (!validation_cases.empty()) {
+    all.push_back(fmt::format("sets.validation_cases={}",
+                              parse_count("--validation-cases", validation_cases, 1, kMostCases)));
+  }
+  return all;
+}
+
+RunPlan make_plan(const OptimizeOptions& options) {
+  RunPlan plan;
+  plan.seed = static_cast<std::uint64_t>(parse_count("--seed (ARMWRIGHT_SEED)", options.seed, 0,
+                                                     std::numeric_limits<std::int64_t>::max()));
+  plan.problem = load_problem(options.problem, options.get_overrides());
+  plan.optimizer = options.optimizer.empty() ? plan.problem.optimizer : options.optimizer;
+  plan.options =
+      Options::parse(plan.optimizer, find_optimizer(plan.optimizer).options, options.opt);
+  plan.budget = options.budget.empty()
+                    ? plan.problem.budget
+                    : parse_count("--budget", options.budget, 0, 1'000'000'000'000);
+  plan.schedule =
+      options.schedule.empty() ? plan.problem.schedule : parse_schedule(options.schedule);
+  check_plan(plan);
+  return plan;
+}
+
+std::filesystem::path choose_folder(const OptimizeOptions& options, const RunPlan& plan) {
+  if (options.out.empty()) {
+    return choose_run_folder("results", make_run_name(plan), options.another);
+  }
+  auto path = std::filesystem::path(options.out).lexically_normal();
+  if (!path.has_filename()) {
+    path = path.parent_path();  // "results/mine/"
+  }
+  return choose_run_folder(path.parent_path(), path.filename().string(), options.another);
+}
+
+// The words that make or resume this run: as typed, but for what would lead to another folder or
+// seed the next time.
+std::vector<std::string> make_command(const OptimizeOptions& options, const Session& session,
+                                      const std::filesystem::path& folder) {
+  std::vector<std::string> words;
+  bool seed_typed = false;
+  const auto& typed = session.command_line;
+  for (std::size_t i = 0; i < typed.size(); ++i) {
+    if (options.another && (typed[i] == "--new" || typed[i].starts_with("--out="))) {
+      continue;
+    }
+    if (options.another && typed[i] == "--out") {
+      ++i;
+      continue;
+    }
+    seed_typed = seed_typed || typed[i] == "--seed" || typed[i].starts_with("--seed=");
+    words.push_back(typed[i]);
+  }
+  if (!seed_typed && options.seed != "1") {  // from the environment
+    words.insert(words.end(), {"--seed", options.seed});
+  }
+  if (options.another) {
+    words.insert(words.end(), {"--out", folder.string()});
+  }
+  return words;
+}
+
+void announce(const RunRequest& request) {
+  const RunPlan& plan = request.plan;
+  const bool known = std::filesystem::exists(request.folder / "manifest.json");
+  write_message(fmt::format("{}: {}", plan.problem.name, plan.problem.title));
+  write_message(fmt::format("optimizer {}, seed {}, budget {}, schedule {}:{}, {}", plan.optimizer,
+                            plan.seed,
+                            format_count(static_cast<unsigned long long>(plan.budget), "case"),
+                            plan.schedule.fresh ? "fresh" : "fixed", plan.schedule.cases,
+                            format_count(request.jobs, "thread")));
+  write_message(fmt::format("folder {} ({})", request.folder.string(), known ? "found" : "new"));
+}
+
+std::string describe_next(const OptimizeOptions& options, const std::filesystem::path& folder,
+                          const Style& style) {
+  const auto winner = folder / "winner.toml";
+  std::string text = "\n" + style.bold("Next") + "\n";
+  if (std::filesystem::exists(winner)) {
+    std::vector<std::string> words = {"armwright", "evaluate", winner.string(), "--problem",
+                                      options.problem};
+    for (const std::string& change : options.overrides.get()) {
+      words.insert(words.end(), {"--set", change});
+    }
+    words.insert(words.end(), {"--test-set", "3"});
+    text += "  " + sanitize(quote_command(words)) + "\n";
+  }
+  const std::vector<std::string> show = {"armwright", "show", folder.string()};
+  return text + "  " + sanitize(quote_command(show)) + "\n";
+}
+
+int run_optimize(const OptimizeOptions& options, Session& session) {
+  RunRequest request;
+  request.jobs = options.jobs.get();
+  if (!options.time_limit.empty()) {
+    const std::chrono::duration<double> limit(parse_duration_s("--time-limit", options.time_limit));
+    session.stop.set_deadline(StopSignal::Clock::now() +
+                              std::chrono::duration_cast<StopSignal::Clock::duration>(limit));
+  }
+  request.plan = make_plan(options);
+  request.folder = choose_folder(options, request.plan);
+  request.command_line = make_command(options, session, request.folder);
+  if (!options.quiet) {
+    announce(request);
+  }
+
+  catch_signals(session.stop);
+  ProgressBar bar(options.quiet, request.plan.problem.problem->description().objectives.front());
+  const auto result = execute_run(request, session.stop, bar);
+  bar.clear();
+  if (!result) {
+    write_message(fmt::format("{}; nothing is lost. To go on:\n{}",
+                              describe_stop(session.stop.reason()),
+                              quote_command(request.command_line)));
+    return get_stop_code(session.stop.reason());
+  }
+  if (options.json) {
+    write_stdout(to_json(*result));
+  } else {
+    const Style style = make_style(Stream::out, session.color);
+    write_stdout(describe_result(*result, request.folder, style) +
+                 describe_next(options, request.folder, style));
+  }
+  return get_result_code(*result);
+}
+
+}  // namespace
+
+void add_optimize(CLI::App& app, Session& session) {
+  auto options = std::make_shared<OptimizeOptions>();
+  CLI::App* command =
+      add_command(app, session, "optimize",
+                  "Let an optimizer loose on a problem; resumes where it was", kExamples);
+  command
+      ->add_option("PROBLEM", options->problem,
+                   "A problem file, or the name of a shipped one (armwright list problems)")
+      ->required();
+  command
+      ->add_option("--optimizer,-o", options->optimizer,
+                   "Who optimizes (armwright list optimizers; default: the problem's)")
+      ->type_name("NAME");
+  command
+      ->add_option("--opt", options->opt,
+                   "An option of the optimizer, as in population=50; repeatable\n"
+                   "(armwright list optimizers NAME)")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  command->add_option("--seed", options->seed, "Seed of the optimizer (default: 1)")
+      ->type_name("N")
+      ->envname("ARMWRIGHT_SEED");
+  command
+      ->add_option("--budget", options->budget,
+                   "Training cases to simulate (default: the problem's)")
+      ->type_name("CASES");
+  command
+      ->add_option("--schedule", options->schedule,
+                   "Which training cases: fresh:K or fixed:K (default: the problem's)")
+      ->type_name("KIND:K");
+  options->overrides.add_to(*command);
+  command
+      ->add_option("--validation-cases", options->validation_cases,
+                   "Cases on which the candidates for the win are judged (default: the\n"
+                   "problem's)")
+      ->type_name("N");
+  options->jobs.add_to(*command);
+  command
+      ->add_option("--time-limit", options->time_limit,
+                   "Stop, resumably, after a time: 90, 90s, 10m, 2h")
+      ->type_name("DURATION");
+  command
+      ->add_option("--out", options->out,
+                   "The run's folder (default: results/PROBLEM-OPTIMIZER-seedN)")
+      ->type_name("FOLDER")
+      ->group("Output");
+  command
+      ->add_flag("--new", options->another,
+                 "Another run beside one that is there: FOLDER-002, FOLDER-003, ...")
+      ->group("Output");
+  command->add_flag("--json", options->json, "Print the result as JSON")->group("Output");
+  command->add_flag("--quiet,-q", options->quiet, "No progress")->group("Output");
+  command->callback([options, &session] {
+    session.action = [options, &session] { return run_optimize(*options, session); };
+  });
+}
+
+}  // namespace armwright

@@ -1,0 +1,212 @@
+#include "cli/result_view.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/text.hpp"
+#include "cli/format.hpp"
+#include "cli/session.hpp"
+#include "cli/table.hpp"
+
+namespace armwright {
+namespace {
+
+struct RunFile {
+  const char* name;
+  const char* what;
+};
+constexpr RunFile kRunFiles[] = {
+    {"winner.toml", "the winner, for evaluate and sweep"},
+    {"winner-trajectory.csv", "its motion on the first test case"},
+    {"result.json", "all numbers of this result"},
+    {"convergence.csv", "the best value over the evaluations"},
+    {"results.sqlite", "every evaluation, as SQL tables"},
+    {"journal", "every evaluation, as it was made: resuming reads it"},
+    {"manifest.json", "what was asked for, and what it was made with"},
+};
+
+std::optional<double> get_metric(const RunResult& result, const std::string& name) {
+  const auto found = std::find(result.metric_names.begin(), result.metric_names.end(), name);
+  const auto at = static_cast<std::size_t>(found - result.metric_names.begin());
+  return at < result.test.metrics.size() ? std::optional(result.test.metrics[at]) : std::nullopt;
+}
+
+// Robot problems have cases with errors in metres; of a function there is only its value.
+bool is_tracking(const RunResult& result) {
+  return std::find(result.metric_names.begin(), result.metric_names.end(), "total_torque") !=
+         result.metric_names.end();
+}
+
+std::string format_vector(const RunResult& result, const std::vector<double>& x,
+                          const Style& style) {
+  Table table({{"variable", false}, {"value"}});
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    table.add_row({sanitize(result.variable_names.at(i)), format_significant(x[i], 6)});
+  }
+  return table.format(style, 2);
+}
+
+std::string format_winner(const RunResult& result, const std::filesystem::path& folder,
+                          const Style& style) {
+  const Candidate& winner = result.judged[*result.winner].candidate;
+  std::string origin = winner.recommended ? std::string("recommended by the optimizer")
+                                          : fmt::format("evaluation {}", winner.evaluation);
+  if (winner.generation > 0) {
+    origin += fmt::format(", generation {}", winner.generation);
+  }
+  const std::string title =
+      style.bold("Winner") + fmt::format(" ({}; the best of {} judged on the validation set)\n",
+                                         origin, format_count(result.judged.size(), "design"));
+  const auto file = folder / "winner.toml";
+  return title + (std::filesystem::exists(file) ? format_design(load_design(file.string()), style)
+                                                : format_vector(result, winner.x, style));
+}
+
+std::string format_tracking_test(const RunResult& result, const Style& style) {
+  const ErrorSummary& summary = result.test_summary;
+  const auto mm = [](std::optional<double> error_m) {
+    return error_m ? format_mm(error_m) + " mm" : "-";
+  };
+  Table table({{"", false}, {"", false}});
+  table.add_row({"mean error", mm(summary.mean)});
+  table.add_row({"median", mm(summary.median)});
+  table.add_row({"95 % below", mm(summary.percentile_95)});
+  table.add_row({"worst", mm(summary.worst)});
+  table.add_row({"failures", fmt::format("{} of {} ({} without a number)", summary.failures,
+                                         summary.cases, summary.without_number)});
+  if (const auto torque = get_metric(result, "total_torque")) {
+    table.add_row({"total torque", format_quantity(*torque, "N m")});
+  }
+  if (const auto energy = get_metric(result, "energy")) {
+    table.add_row({"mean energy", format_quantity(*energy, "J")});
+  }
+  if (result.objective_unit != "m" && !result.test.objectives.empty()) {
+    table.add_row({sanitize(result.objective_name),
+                   format_quantity(result.test.objectives.front(), result.objective_unit)});
+  }
+  return style.bold(fmt::format("On the test set {}", sanitize(result.test_set))) + "\n" +
+         table.format(style, 2);
+}
+
+std::string format_function_test(const RunResult& result, const Style& style) {
+  Table table({{"", false}, {"", false}});
+  if (!result.test.objectives.empty()) {
+    table.add_row({sanitize(result.objective_name),
+                   format_quantity(result.test.objectives.front(), result.objective_unit)});
+  }
+  for (std::size_t i = 0; i < result.test.constraint_values.size(); ++i) {
+    table.add_row({fmt::format("constraint {}", i + 1),
+                   format_significant(result.test.constraint_values[i]) + " (met where <= 0)"});
+  }
+  return table.format(style, 2);
+}
+
+std::string format_published(const RunResult& result, const Style& style) {
+  const PublishedWinner& published = result.published;
+  Table table({{"", false}, {"published"}, {"ours"}, {"ratio"}});
+  const auto add = [&](const char* name, std::optional<double> theirs, std::optional<double> ours,
+                       const char* unit) {
+    if (theirs) {
+      table.add_row({name, format_quantity(*theirs, unit),
+                     ours ? format_quantity(*ours, unit) : "-",
+                     ours ? format_significant(*ours / *theirs, 3) : "-"});
+    }
+  };
+  add("mean error", published.error_m, result.test_summary.mean, "m");
+  add("total torque", published.total_torque_n_m, get_metric(result, "total_torque"), "N m");
+  return style.bold("Beside the published winner") +
+         (published.where.empty() ? "" : fmt::format(" ({})", sanitize(published.where))) + "\n" +
+         table.format(style, 2);
+}
+
+}  // namespace
+
+std::string format_design(const DesignFile& design, const Style& style) {
+  const ControllerRow& controller = find_controller(design.design.controller);
+  std::vector<Column> columns = {{"joint", false}};
+  for (const GainSpec& gain : controller.gains) {
+    columns.push_back({fmt::format("{} [{}]", gain.name, gain.unit)});
+  }
+  columns.push_back({"min [N m]"});
+  columns.push_back({"max [N m]"});
+  Table table(std::move(columns));
+  for (std::size_t i = 0; i < design.design.joints.size(); ++i) {
+    const JointDrive& joint = design.design.joints[i];
+    std::vector<std::string> cells = {sanitize(design.joint_names.at(i))};
+    for (const double gain : joint.gains) {
+      cells.push_back(format_significant(gain, 6));
+    }
+    cells.push_back(format_significant(joint.limits.min_n_m, 6));
+    cells.push_back(format_significant(joint.limits.max_n_m, 6));
+    table.add_row(std::move(cells));
+  }
+  return table.format(style, 2);
+}
+
+std::string describe_result(const RunResult& result, const std::filesystem::path& folder,
+                            const Style& style) {
+  const RunCounts& counts = result.counts;
+  std::string text = style.bold(fmt::format("{}: {}, seed {}", sanitize(result.problem),
+                                            sanitize(result.optimizer), result.seed));
+  text += fmt::format("\n  {} on {}", format_count(counts.evaluations, "evaluation"),
+                      format_count(counts.cases, "case"));
+  if (counts.generations > 0) {
+    text += ", " + format_count(counts.generations, "generation");
+  }
+  text += fmt::format("; {} failed, {} clipped to the bounds; ended by: {}\n\n", counts.failed,
+                      counts.clipped, sanitize(result.end_reason));
+  if (!result.winner) {
+    text += style.red("No design worked, so there is no winner.") + "\n\n";
+  } else {
+    text += format_winner(result, folder, style) + "\n";
+    text += is_tracking(result) ? format_tracking_test(result, style)
+                                : format_function_test(result, style);
+    text += "\n";
+    if (result.published.error_m || result.published.total_torque_n_m) {
+      text += format_published(result, style) + "\n";
+    }
+  }
+  Table files({{"", false}, {"", false}});
+  for (const RunFile& file : kRunFiles) {
+    if (std::filesystem::exists(folder / file.name)) {
+      files.add_row({file.name, file.what});
+    }
+  }
+  return text + style.bold("Files in " + sanitize(folder.string())) + "\n" + files.format(style, 2);
+}
+
+std::string describe_judged(const RunResult& result, const Style& style) {
+  Table table({{"", false},
+               {"evaluation"},
+               {"generation"},
+               {"training"},
+               {"validation"},
+               {"without number"}});
+  for (std::size_t i = 0; i < result.judged.size(); ++i) {
+    const Candidate& candidate = result.judged[i].candidate;
+    const Evaluation& validation = result.judged[i].validation;
+    const auto value = [&](double objective) {
+      return format_quantity(objective, result.objective_unit);
+    };
+    table.add_row({result.winner == i ? "winner" : "",
+                   candidate.recommended ? "recommended" : fmt::format("{}", candidate.evaluation),
+                   candidate.generation > 0 ? fmt::format("{}", candidate.generation) : "-",
+                   candidate.recommended ? "-" : value(candidate.training_objective),
+                   validation.objectives.empty() ? "-" : value(validation.objectives.front()),
+                   fmt::format("{}", validation.failed_cases)});
+  }
+  return style.bold("Judged on the validation set") + "\n" + table.format(style, 2);
+}
+
+int get_result_code(const RunResult& result) {
+  const auto feasible = [](const Evaluation& evaluation) {
+    return std::all_of(evaluation.constraint_values.begin(), evaluation.constraint_values.end(),
+                       [](double g) { return g <= 0; });
+  };
+  const bool good =
+      result.winner && result.test_summary.without_number == 0 && feasible(result.test);
+  return good ? exit_code::kDone : exit_code::kFailed;
+}
+
+}  // namespace armwright

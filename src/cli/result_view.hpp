@@ -1,0 +1,28 @@
+// A run's result as optimize prints it at its end and show at any time.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "cli/terminal.hpp"
+#include "problems/design_file.hpp"
+#include "study/run_result.hpp"
+
+namespace armwright {
+
+// What was done, the winner, what the test set says of it, published numbers beside ours, and where
+// the files lie.
+std::string describe_result(const RunResult& result, const std::filesystem::path& folder,
+                            const Style& style);
+
+// The designs that were judged on the validation set, a line each.
+std::string describe_judged(const RunResult& result, const Style& style);
+
+// A design's gains and limits, a line a joint.
+std::string format_design(const DesignFile& design, const Style& style);
+
+// The exit code of a run that has come to its end: kFailed if it found nothing feasible or its
+// winner has cases without a number.
+int get_result_code(const RunResult& result);
+
+}  // namespace armwright

@@ -1,0 +1,51 @@
+// What one call of the program carries along, the exit codes, and the subcommands. Each subcommand
+// has a file of its own: it adds itself to the parser and leaves, when chosen, its work as an
+// action.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "study/stop.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace armwright {
+
+// Documented in --help.
+namespace exit_code {
+inline constexpr int kDone = 0;
+inline constexpr int kInternal = 1;  // a bug of ours, or no memory left
+inline constexpr int kUsage = 2;
+inline constexpr int kFailed = 3;  // done, but something failed
+inline constexpr int kBadData = 4;
+inline constexpr int kBusy = 5;
+inline constexpr int kIo = 74;
+inline constexpr int kStopped = 75;
+inline constexpr int kInterrupted = 130;
+}  // namespace exit_code
+
+struct Session {
+  std::vector<std::string> command_line;  // as typed, the program's name included
+  std::string color = "auto";
+  StopSignal stop;
+  std::function<int()> action;  // of the chosen subcommand; its result is the exit code
+};
+
+void add_list(CLI::App& app, Session& session);
+void add_optimize(CLI::App& app, Session& session);
+void add_evaluate(CLI::App& app, Session& session);
+void add_sweep(CLI::App& app, Session& session);
+void add_reproduce(CLI::App& app, Session& session);
+void add_testset(CLI::App& app, Session& session);
+void add_show(CLI::App& app, Session& session);
+
+// The exit code of a run or evaluation that was stopped.
+int get_stop_code(StopReason reason);
+// "interrupted", "time limit reached", ...
+const char* describe_stop(StopReason reason);
+
+}  // namespace armwright

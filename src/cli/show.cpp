@@ -1,0 +1,112 @@
+// armwright show: what a run's folder holds.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "base/error.hpp"
+#include "base/file.hpp"
+#include "base/text.hpp"
+#include "cli/arguments.hpp"
+#include "cli/format.hpp"
+#include "cli/result_view.hpp"
+#include "cli/session.hpp"
+#include "cli/terminal.hpp"
+#include "study/journal.hpp"
+#include "study/run.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kExamples = R"(Examples:
+  armwright show results/q1-complex-ga-seed1
+  armwright show results/q1-complex-ga-seed1 --json | jq .winner.test_summary
+
+Of a run that has not come to its end it says how far it is, and how to go on.)";
+
+struct ShowOptions {
+  std::string folder;
+  bool json = false;
+};
+
+struct UnfinishedRun {
+  std::uint64_t evaluations = 0;
+  std::uint64_t cases = 0;
+  std::uint64_t judgements = 0;
+  std::int64_t budget = 0;
+  std::vector<std::string> command_line;
+};
+
+UnfinishedRun read_unfinished(const std::filesystem::path& folder) {
+  constexpr std::size_t kLimit_bytes = std::size_t{16} << 20;
+  const auto file = folder / "manifest.json";
+  UnfinishedRun run;
+  try {
+    const json manifest = json::parse(read_file(file, kLimit_bytes));
+    run.command_line = manifest.at("command_line").get<std::vector<std::string>>();
+    run.budget = manifest.at("configuration").at("run").at("budget");
+  } catch (const json::exception& error) {
+    throw Error(ErrorKind::bad_data, fmt::format("{}: is not a manifest that armwright wrote ({})",
+                                                 file.string(), error.what()));
+  }
+  if (std::filesystem::exists(folder / "journal")) {
+    const JournalContent journal = read_journal(folder / "journal");
+    run.evaluations = journal.training.size();
+    run.judgements = journal.judgements.size();
+    for (const EvaluationRecord& record : journal.training) {
+      run.cases += record.cases.numbers.size();
+    }
+  }
+  return run;
+}
+
+int run_show(const ShowOptions& options, const Session& session) {
+  const std::filesystem::path folder = options.folder;
+  const bool a_run = std::filesystem::exists(folder / "manifest.json");
+  if (!a_run || std::filesystem::exists(folder / "result.json")) {
+    const RunResult result = load_result(folder);  // says so, if it is none
+    if (options.json) {
+      write_stdout(to_json(result));
+    } else {
+      const Style style = make_style(Stream::out, session.color);
+      write_stdout(describe_result(result, folder, style) + "\n" + describe_judged(result, style));
+    }
+    return get_result_code(result);
+  }
+  const UnfinishedRun run = read_unfinished(folder);
+  const std::string command = sanitize(quote_command(run.command_line));
+  if (options.json) {
+    const json state = {
+        {"finished", false},    {"evaluations", run.evaluations}, {"cases", run.cases},
+        {"budget", run.budget}, {"judgements", run.judgements},   {"resume", command}};
+    write_stdout(state.dump(1) + "\n");
+  } else {
+    write_stdout(
+        fmt::format("{}: this run has not come to its end\n"
+                    "  {} on {} of {} recorded, {}\n"
+                    "To go on:\n  {}\n",
+                    sanitize(folder.string()), format_count(run.evaluations, "evaluation"),
+                    run.cases, format_count(static_cast<unsigned long long>(run.budget), "case"),
+                    format_count(run.judgements, "judgement"), command));
+  }
+  return exit_code::kDone;
+}
+
+}  // namespace
+
+void add_show(CLI::App& app, Session& session) {
+  auto options = std::make_shared<ShowOptions>();
+  CLI::App* command =
+      add_command(app, session, "show", "Show the result of a run, or how far it is", kExamples);
+  command->add_option("FOLDER", options->folder, "The run's folder, as optimize named it")
+      ->required();
+  command->add_flag("--json", options->json, "Print it as JSON")->group("Output");
+  command->callback([options, &session] {
+    session.action = [options, &session] { return run_show(*options, session); };
+  });
+}
+
+}  // namespace armwright

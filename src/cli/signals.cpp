@@ -1,0 +1,52 @@
+#include "cli/signals.hpp"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <string_view>
+
+#include "cli/session.hpp"
+
+namespace armwright {
+namespace {
+
+// A signal handler reaches nothing but globals.
+std::atomic<StopSignal*> g_stop = nullptr;
+static_assert(std::atomic<StopSignal*>::is_always_lock_free);
+
+extern "C" void handle_signal(int number) {
+  const int saved = errno;
+  StopSignal& stop = *g_stop.load();
+  if (stop.reason() != StopReason::none) {
+    ::_exit(number == SIGINT ? exit_code::kInterrupted : exit_code::kStopped);
+  }
+  stop.request(number == SIGINT ? StopReason::interrupted : StopReason::terminated);
+  constexpr std::string_view kNotice =
+      "\narmwright: stopping when the simulations in progress are done; once more stops at once\n";
+  if (number == SIGINT) {
+    [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, kNotice.data(), kNotice.size());
+  }
+  errno = saved;
+}
+
+}  // namespace
+
+void catch_signals(StopSignal& stop) {
+  g_stop = &stop;
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction before {};
+    ::sigaction(number, nullptr, &before);
+    if (before.sa_handler == SIG_IGN) {
+      continue;
+    }
+    struct sigaction action {};
+    action.sa_handler = handle_signal;
+    action.sa_flags = SA_RESTART;
+    ::sigemptyset(&action.sa_mask);
+    ::sigaction(number, &action, nullptr);
+  }
+}
+
+}  // namespace armwright

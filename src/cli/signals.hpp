@@ -1,0 +1,13 @@
+// Ctrl-C (SIGINT), SIGTERM and SIGHUP as requests for a graceful, resumable end.
+#pragma once
+
+#include "study/stop.hpp"
+
+namespace armwright {
+
+// From now on these signals set `stop`, which must outlive the process's other threads; a second
+// one ends the process at once, with the exit code of an interruption. What the parent had set to
+// be ignored stays ignored (nohup, background jobs).
+void catch_signals(StopSignal& stop);
+
+}  // namespace armwright
