@@ -17,7 +17,7 @@ namespace {
 
 using journal_testing::catch_error;
 using journal_testing::read_bytes;
-using journal_testing::TemporaryFolder;
+
 using journal_testing::write_bytes;
 using ::testing::HasSubstr;
 

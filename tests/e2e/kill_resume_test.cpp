@@ -1,0 +1,74 @@
+// What the README promises of resuming, tested on the real program: a run killed with SIGKILL at random moments and started again each
+// time has the same evaluations and the same result, bit for bit, as one that nobody disturbed, on one thread or on two.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <chrono>
+#include <cstring>
+#include <thread>
+
+#include "base/random.hpp"
+#include "base/temporary_folder.hpp"
+#include "e2e/program.hpp"
+#include "study/journal.hpp"
+
+namespace armwright {
+namespace {
+
+std::vector<std::string> make_command(const std::string& out, const std::string& jobs) {
+  return {"optimize", "q1-complex",           "--budget", "1400",
+          "--set",    "sets.test_cases=20",   "--jobs",   jobs,
+          "--set",    "sets.validation_cases=5", "--out", out, "--quiet"};
+}
+
+bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+void expect_same_run(const std::filesystem::path& a, const std::filesystem::path& b) {
+  const JournalContent first = read_journal(a / "journal");
+  const JournalContent second = read_journal(b / "journal");
+  EXPECT_EQ(first.training.size(), 1400u);
+  ASSERT_EQ(first.training.size(), second.training.size());
+  for (std::size_t i = 0; i < first.training.size(); ++i) {
+    const EvaluationRecord& one = first.training[i];
+    const EvaluationRecord& other = second.training[i];
+    ASSERT_EQ(one.index, other.index);
+    ASSERT_TRUE(same_bits(one.x, other.x)) << i;
+    ASSERT_EQ(one.cases.numbers, other.cases.numbers) << i;
+    ASSERT_EQ(one.evaluation.status, other.evaluation.status) << i;
+    ASSERT_EQ(one.evaluation.reason, other.evaluation.reason) << i;
+    ASSERT_TRUE(same_bits(one.evaluation.objectives, other.evaluation.objectives)) << i;
+    ASSERT_TRUE(same_bits(one.evaluation.case_errors, other.evaluation.case_errors)) << i;
+    ASSERT_TRUE(same_bits(one.evaluation.metrics, other.evaluation.metrics)) << i;
+  }
+  for (const auto* file : {"result.json", "winner.toml", "convergence.csv", "winner-trajectory.csv"}) {
+    EXPECT_EQ(read_text(a / file), read_text(b / file)) << file;
+  }
+}
+
+TEST(KillAndResume, TenKillsAndAnyNumberOfThreadsChangeNothing) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(run_program(folder.path(), make_command("one", "1")).exit_code, 0);
+  ASSERT_EQ(run_program(folder.path(), make_command("two", "2")).exit_code, 0);
+  expect_same_run(folder / "one", folder / "two");
+
+  RandomStream random("test/kill-and-resume", 1);
+  int kills = 0;
+  while (kills < 10) {
+    Program program(folder.path(), make_command("killed", kills % 2 == 0 ? "2" : "1"));
+    const auto wait_ms = static_cast<long>(random.uniform(20, 300));
+    std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
+    ASSERT_TRUE(program.is_running()) << "the run ended before it could be killed ten times";
+    program.send(SIGKILL);
+    EXPECT_EQ(program.wait().exit_code, -SIGKILL);
+    ++kills;
+  }
+  const Outcome last = run_program(folder.path(), make_command("killed", "2"));
+  EXPECT_EQ(last.exit_code, 0) << last.err;
+  EXPECT_FALSE(read_journal(folder / "killed" / "journal").training.empty());
+  expect_same_run(folder / "one", folder / "killed");
+}
+
+}  // namespace
+}  // namespace armwright
