@@ -48,7 +48,7 @@ std::string describe_search(const Progress& progress, const Quantity& objective)
     text += fmt::format("  generation {}", progress.generation);
   }
   if (std::isfinite(progress.best_objective)) {
-    text += "  best " + format_quantity(progress.best_objective, objective.unit);
+    text += fmt::format("  best {}", format_quantity(progress.best_objective, objective.unit));
   }
   return text;
 }
@@ -132,7 +132,7 @@ void ProgressBar::draw_bar(const Progress& progress, Clock::time_point now) {
     bar = fmt::format("[{:#<{}}{:-<{}}]", "", full, "", length - full);
   }
   const std::string line = before + bar + after;
-  write_stderr("\r" + line.substr(0, static_cast<std::size_t>(std::max(width, 1))) + "\x1b[K");
+  write_stderr(fmt::format("\r{:.{}}\x1b[K", line, std::max(width, 1)));
   drawn_ = true;
 }
 
