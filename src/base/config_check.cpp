@@ -25,7 +25,7 @@ class Scanner {
       if (c == '#') {
         skip_to(std::min(text_.find('\n', at_), text_.size()));
       } else if (c == '"' || c == '\'') {
-        check_string_may_begin();
+        check_beginning(c);
         line_is_blank_ = false;
         skip_string(c);
         previous_ = c;
@@ -75,11 +75,17 @@ class Scanner {
                                 "anything else needs quotes");
   }
 
-  // Elsewhere the parser looks on into the string before it refuses it, and takes its letters for
-  // what they are not.
-  void check_string_may_begin() const {
-    if (!line_is_blank_ && std::string_view("=,[{.").find(previous_) == std::string_view::npos) {
-      fail({&source_, line_}, "a quote stands where no string can begin");
+  // A string, an array or a table in the middle of something else: the parser looks on into it
+  // before it refuses it, and takes its letters for what they are not.
+  void check_beginning(char c) const {
+    const bool may_begin =
+        in_value_
+            ? std::string_view("=,[").find(previous_) != std::string_view::npos
+            : line_is_blank_ || std::string_view(",[{.").find(previous_) != std::string_view::npos;
+    if (!may_begin) {
+      fail({&source_, line_},
+           fmt::format("{} stands where nothing can begin with it; is a comma or a quote missing?",
+                       c));
     }
   }
 
@@ -132,10 +138,13 @@ class Scanner {
         ++line_;
         line_is_blank_ = true;
         in_header_ = false;
+        in_value_ = in_value_ && !brackets_.empty();
         key_depth_ = 0;
         dots_ = 0;
         return;
       case ' ':
+        check_time_follows_date();
+        return;
       case '\t':
       case '\r':
         return;
@@ -143,10 +152,15 @@ class Scanner {
         ++dots_;
         break;
       case '=':
+        if (in_value_) {
+          fail({&source_, line_}, "= stands in a value; text needs quotes");
+        }
+        in_value_ = true;
         key_depth_ = dots_;
         dots_ = 0;
         break;
       case ',':
+        in_value_ = !brackets_.empty() && brackets_.back().kind == '[';
         key_depth_ = 0;
         dots_ = 0;
         break;
@@ -156,7 +170,7 @@ class Scanner {
         break;
       case '[':
       case '{':
-        open();
+        open(c);
         break;
       case ']':
       case '}':
@@ -174,28 +188,35 @@ class Scanner {
     }
   }
 
-  void open() {
+  void open(char c) {
     if (line_is_blank_ && brackets_.empty()) {
       in_header_ = true;
       header_depth_ = 0;
       check_header_name();
     } else if (!in_header_) {
-      brackets_.push_back(key_depth_ + 1);
-      open_depth_ += brackets_.back();
+      check_beginning(c);
+      brackets_.push_back({c, key_depth_ + 1});
+      open_depth_ += brackets_.back().levels;
+      in_value_ = c == '[';
     }
     key_depth_ = 0;
     dots_ = 0;
   }
 
+  // At the T or the blank behind what may be a date.
   void check_time_follows_date() const {
     constexpr std::string_view kDate = "0000-00-00";
-    if (at_ < kDate.size()) {
+    const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+    const auto shape = [&](std::size_t first, std::size_t length) {
+      std::string text(text_.substr(first, length));
+      std::replace_if(text.begin(), text.end(), is_digit, '0');
+      return text;
+    };
+    if (at_ < kDate.size() || shape(at_ - kDate.size(), kDate.size()) != kDate) {
       return;
     }
-    const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
-    std::string before(text_.substr(at_ - kDate.size(), kDate.size()));
-    std::replace_if(before.begin(), before.end(), is_digit, '0');
-    if (before == kDate && (at_ + 1 == text_.size() || !is_digit(text_[at_ + 1]))) {
+    const bool just_a_date = text_[at_] == ' ' && !shape(at_ + 1, 1).starts_with('0');
+    if (!just_a_date && shape(at_ + 1, 5) != "00:00") {
       fail({&source_, line_}, "expected a time behind the date");
     }
   }
@@ -224,12 +245,18 @@ class Scanner {
       header_depth_ = dots_ + 1;
       in_header_ = false;
     } else if (!brackets_.empty()) {
-      open_depth_ -= brackets_.back();
+      open_depth_ -= brackets_.back().levels;
       brackets_.pop_back();
+      in_value_ = true;
     }
     key_depth_ = 0;
     dots_ = 0;
   }
+
+  struct Bracket {
+    char kind;
+    std::size_t levels;  // of depth that it adds, those of its dotted key included
+  };
 
   const Source& source_;
   std::string_view text_;
@@ -238,11 +265,12 @@ class Scanner {
   bool line_is_blank_ = true;
   char previous_ = '\0';  // the last character that is no blank, if the line has one
   bool in_header_ = false;
-  std::size_t header_depth_ = 0;       // of the [table] the current line belongs to
-  std::vector<std::size_t> brackets_;  // the levels each open bracket adds, its dotted key included
-  std::size_t open_depth_ = 0;         // their sum
-  std::size_t key_depth_ = 0;          // dots of the key left of the last '='
-  std::size_t dots_ = 0;               // dots since the last delimiter
+  bool in_value_ = false;  // right of a '=' or in an array
+  std::vector<Bracket> brackets_;
+  std::size_t header_depth_ = 0;  // of the [table] the current line belongs to
+  std::size_t open_depth_ = 0;    // of all brackets_
+  std::size_t key_depth_ = 0;     // dots of the key left of the last '='
+  std::size_t dots_ = 0;          // dots since the last delimiter
 };
 
 }  // namespace

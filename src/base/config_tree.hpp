@@ -66,11 +66,10 @@ std::shared_ptr<const Document> load_document(const std::filesystem::path& file,
 std::shared_ptr<const Document> parse_document(std::string_view toml, const std::string& name,
                                                std::span<const std::string> overrides);
 
-// Refuses what toml++ 3.3.0 does not report but runs into, undefined behaviour or a stack overflow:
-// text deeper than kDepthLimit, a header without a name, a brace where a value is due, a date with
-// no time behind its T, invalid UTF-8, and characters beyond ASCII where it takes them for keys or
-// blanks. Error{usage} at the
-// line where it stands.
+// Refuses what toml++ 3.3.0 does not report but runs into, a stack overflow or undefined behaviour:
+// text deeper than kDepthLimit; characters beyond ASCII where it may take them for keys or blanks;
+// headers without a name, values that begin in the middle of others, dates with half a time (all
+// found by a fuzzer). Invalid UTF-8 as well. Error{usage} at the line where it stands.
 void check_text(const Source& source);
 
 // "task" and "speed_m_per_s" as "task.speed_m_per_s"; a key that TOML wants quoted is quoted, a

@@ -51,7 +51,7 @@ ReferenceSignal::ReferenceSignal(SignalShape shape, double distance_m, double sp
     // The plateau ds = a t_a (t_m - t_a) solved for t_a, in the form that does not cancel where a
     // is large.
     const double rest_s2 = duration_s_ * duration_s_ - 4 * distance_m_ / acceleration_m_per_s2;
-    if (rest_s2 >= 0.05) {
+    if (rest_s2 >= 0) {
       acceleration_m_per_s2_ = acceleration_m_per_s2;
       ramp_up_s_ = 2 * distance_m_ / acceleration_m_per_s2 / (duration_s_ + std::sqrt(rest_s2));
     } else {

@@ -114,11 +114,19 @@ TEST(HostileConfig, AHeaderNeedsAName) {
             "explicitly prohibited");
 }
 
-TEST(HostileConfig, AStringBeginsWhereItCan) {
+TEST(HostileConfig, ValuesBeginWhereTheyCan) {
   for (const std::string toml :
-       {"x = 2'ﻷ'\n", "x = [1 'ŭ']\n", "[a] 'b' = 1\n", "x = {a = 1 \"ŭ\" = 2}\n"}) {
-    EXPECT_EQ(refusal_of(toml), "q1.toml:1: a quote stands where no string can begin");
+       {"x = 2'ﻷ'\n", "x = [1 'ŭ']\n", "[a] 'b' = 1\n", "x = 1.'ŭ'\n", "x = [1\t'ŭ']"}) {
+    EXPECT_EQ(
+        refusal_of(toml),
+        "q1.toml:1: ' stands where nothing can begin with it; is a comma or a quote missing?");
   }
+  EXPECT_EQ(refusal_of("\nx = {a = 1 \"ŭ\" = 2}\n"),
+            "q1.toml:2: \" stands where nothing can begin with it; is a comma or a quote missing?");
+  EXPECT_EQ(refusal_of("x = -[\"ŭ\"]\n"),
+            "q1.toml:1: [ stands where nothing can begin with it; is a comma or a quote missing?");
+  EXPECT_EQ(refusal_of("x = 1\ny = 1='ŭ'\n"), "q1.toml:2: = stands in a value; text needs quotes");
+  EXPECT_EQ(refusal_of("x = [1, a = 2]\n"), "q1.toml:1: = stands in a value; text needs quotes");
   EXPECT_EQ(
       ConfigTable::parse(
           "  'a'.\"b\" = [ 'c', \n 'd',\n\t'e' ]\nf = {'g' = 'h', 'i' = 1}\n['j'.'k']\n", "q1.toml")
@@ -137,12 +145,15 @@ TEST(HostileConfig, ALetterBeyondAsciiDoesNotFollowABackslash) {
 }
 
 TEST(HostileConfig, ADateNeedsItsTimeBehindTheT) {
+  EXPECT_EQ(refusal_of("x = [1979-05-27 2]\n"), "q1.toml:1: expected a time behind the date");
   EXPECT_EQ(refusal_of("x = 1\ny = 1979-05-27T.5:\n"),
             "q1.toml:2: expected a time behind the date");
   EXPECT_EQ(
-      ConfigTable::parse("x = [1979-05-27T07:32:00Z, 1979-05-27, 07:32:00]\nTt = 1\n", "q1.toml")
+      ConfigTable::parse("x = [1979-05-27T07:32:00Z, 1979-05-27, 07:32:00, 1979-05-27 07:32:00, "
+                         "1979-05-27 ]\nTt = 1\n",
+                         "q1.toml")
           .to_json(),
-      R"({"Tt":1,"x":["1979-05-27T07:32:00Z","1979-05-27","07:32:00"]})");
+      R"({"Tt":1,"x":["1979-05-27T07:32:00Z","1979-05-27","07:32:00","1979-05-27 07:32:00","1979-05-27"]})");
 }
 
 TEST(HostileConfig, ABraceDoesNotStandForAValue) {

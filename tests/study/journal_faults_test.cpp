@@ -17,13 +17,17 @@
 
 namespace {
 std::atomic<int> sync_count = 0;
-std::atomic<int> sync_error = 0;  // what the next syncs fail with
+std::atomic<int> sync_error = 0;      // what the next syncs fail with
+std::atomic<bool> sync_held = false;  // syncs take until this is false again
 }  // namespace
 
 // Takes the place of the C library's in this program: whether data was synced cannot be seen
 // otherwise, nor made to fail.
 extern "C" int fdatasync(int fd) {
   ++sync_count;
+  while (sync_held) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
   if (sync_error != 0) {
     errno = sync_error;
     return -1;
@@ -143,6 +147,44 @@ TEST(JournalFaults, ADiskThatCannotSyncIsTold) {
     EXPECT_THAT(message,
                 StartsWith(file.string() + ": cannot sync it to the disk: Input/output error"));
   }
+}
+
+// Both need a sync of the background that hangs, as it may on a busy disk.
+TEST(JournalFaults, RecordsReachTheSystemDuringASlowSyncAndItsErrorIsTold) {
+  const TemporaryFolder folder;
+  const auto file = folder / "journal";
+  JournalContent content;
+  Journal journal(file, content);
+  sync_held = true;
+  sync_error = EIO;
+  const int before = sync_count;
+  journal.append(make_record(0));
+  EXPECT_TRUE(wait_until([&] { return sync_count > before; }));
+  for (std::uint64_t i = 1; i < 50; ++i) {
+    journal.append(make_record(i));
+  }
+  EXPECT_TRUE(wait_until([&] { return read_journal(file).training.size() == 50; }));
+
+  // Records that lie in the buffer when the error comes must not keep the writing thread, and with
+  // it the lock, busy.
+  for (std::uint64_t i = 50; i < 60; ++i) {
+    journal.append(make_record(i));
+  }
+  sync_held = false;
+  std::string message;
+  EXPECT_TRUE(wait_until([&] {
+    try {
+      journal.append(make_record(60));
+    } catch (const Error& error) {
+      message = error.what();
+    }
+    return !message.empty();
+  }));
+  sync_error = 0;
+  EXPECT_THAT(message, HasSubstr("cannot sync it to the disk: Input/output error"));
+  // By then the writing thread has come by; were it caught in a loop, this would never return.
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(catch_error([&] { journal.flush(); }).what(), message);
 }
 
 TEST(JournalFaults, AFileSystemWithoutSyncIsAccepted) {

@@ -297,6 +297,24 @@ TEST(Journal, HugeLengthsAreDamage) {
   }
 }
 
+// A record with a right checksum and bytes left over is not one that this version can have written.
+TEST(Journal, APayloadIsUsedUp) {
+  const TemporaryFolder folder;
+  const auto file = folder / "journal";
+  const auto ends = write_journal(file, 2);
+  std::string bytes = read_bytes(file);
+  const std::string payload = bytes.substr(ends[1] + 8) + '\0';
+  const auto length = static_cast<std::uint32_t>(payload.size());
+  const std::uint32_t checksum = calc_crc32(payload);
+  bytes.resize(ends[1]);
+  bytes.append(reinterpret_cast<const char*>(&length), 4);
+  bytes.append(reinterpret_cast<const char*>(&checksum), 4);
+  write_bytes(file, bytes + payload);
+  const JournalContent content = read_journal(file);
+  expect_first_records(content, 1);
+  EXPECT_EQ(content.torn_bytes, ends[2] + 1 - ends[1]);
+}
+
 TEST(Journal, RepeatedRecordsCountOnceAndContradictionsAreRefused) {
   const TemporaryFolder folder;
   const auto file = folder / "journal";

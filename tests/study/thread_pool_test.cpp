@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -70,6 +71,48 @@ TEST(ThreadPool, OneThreadRunsInOrderOnTheCaller) {
     order.push_back(i);
   });
   EXPECT_THAT(order, ::testing::ElementsAre(0, 1, 2, 3));
+}
+
+TEST(ThreadPool, WaitsForTheSlowestJob) {
+  ThreadPool pool(2);
+  const auto caller = std::this_thread::get_id();
+  std::atomic<int> arrived = 0;
+  std::atomic<bool> slow_job_ended = false;
+  pool.run(2, [&](std::size_t) {
+    ++arrived;
+    while (arrived < 2) {
+      std::this_thread::yield();
+    }
+    if (std::this_thread::get_id() != caller) {
+      // Long enough for the caller to come back too early, if it does not wait.
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      slow_job_ended = true;
+    }
+  });
+  EXPECT_TRUE(slow_job_ended);
+}
+
+// Of two jobs that both run, the lower one counts, whichever fails first.
+TEST(ThreadPool, TheOrderOfFailuresInTimeDoesNotMatter) {
+  ThreadPool pool(2);
+  for (const std::size_t later : {0, 1}) {
+    std::atomic<int> arrived = 0;
+    try {
+      pool.run(2, [&](std::size_t i) {
+        ++arrived;
+        while (arrived < 2) {
+          std::this_thread::yield();
+        }
+        if (i == later) {
+          std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        }
+        throw std::runtime_error("job " + std::to_string(i));
+      });
+      FAIL() << "nothing was thrown";
+    } catch (const std::runtime_error& error) {
+      EXPECT_STREQ(error.what(), "job 0");
+    }
+  }
 }
 
 // The lowest failing job decides for any number of threads, and all jobs below it are run.
