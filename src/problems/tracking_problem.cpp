@@ -57,8 +57,9 @@ DecisionVariable make_variable(const TrackingConfig& config, const DesignParamet
                             config.name, variable.name));
   }
   variable.scale = Scale::logarithmic;
+  // The list form returns values; the two-argument form would return references to the temporaries.
   const auto [lower, upper] =
-      std::minmax(variable.start / config.bounds_factor, variable.start * config.bounds_factor);
+      std::minmax({variable.start / config.bounds_factor, variable.start * config.bounds_factor});
   variable.lower = lower;
   variable.upper = upper;
   return variable;

@@ -1,38 +1,14 @@
-// What tests of whole runs share: a folder that goes away, a silent observer, small plans.
+// What tests of whole runs share: a silent observer, small plans.
 #pragma once
 
-#include <stdlib.h>
-
-#include <filesystem>
 #include <mutex>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "base/temporary_folder.hpp"
 #include "study/run.hpp"
 
 namespace armwright {
-
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "armwright-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) {
-      throw std::runtime_error("cannot make a temporary folder");
-    }
-    path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
 
 class SilentObserver : public RunObserver {
  public:
