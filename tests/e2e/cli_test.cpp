@@ -45,16 +45,16 @@ class Cli : public testing::Test {
 
 TEST_F(Cli, EveryCommandExplainsItselfWithAnExample) {
   for (const std::vector<std::string>& command : {std::vector<std::string>{},
-                                                 {"list"},
-                                                 {"optimize"},
-                                                 {"evaluate"},
-                                                 {"sweep"},
-                                                 {"reproduce"},
-                                                 {"testset"},
-                                                 {"testset", "export"},
-                                                 {"testset", "import"},
-                                                 {"testset", "hash"},
-                                                 {"show"}}) {
+                                                  {"list"},
+                                                  {"optimize"},
+                                                  {"evaluate"},
+                                                  {"sweep"},
+                                                  {"reproduce"},
+                                                  {"testset"},
+                                                  {"testset", "export"},
+                                                  {"testset", "import"},
+                                                  {"testset", "hash"},
+                                                  {"show"}}) {
     auto arguments = command;
     arguments.push_back("--help");
     const Outcome outcome = run(arguments);

@@ -161,6 +161,27 @@ TEST_F(CliOptimize, StopsAtATimeLimitAndNamesTheFolderOfANewRun) {
                               "--out results/sphere-ga-seed1-002")));
 }
 
+TEST_F(CliOptimize, TheBarFitsTheTerminalAndLosesWholePiecesOnly) {
+  const std::string shown = run_on_terminal(
+      folder_.path(), {"optimize", "sphere", "--budget", "100000000000", "--time-limit", "0.5s"},
+      {}, 40);
+  std::istringstream lines(shown);
+  int bars = 0;
+  for (std::string line; std::getline(lines, line, '\r');) {
+    const std::size_t end = line.find("\x1b[K");
+    if (end == std::string::npos || end == 0) {
+      continue;
+    }
+    line.resize(end);
+    EXPECT_LT(line.size(), 40) << line;
+    EXPECT_THAT(line, testing::MatchesRegex("(training)?( \\[[#-]+\\])? 0 %( [0-9]+/100000000000)?"
+                                            "(  [0-9.e+]+/s)?(  ETA [0-9:]+( s)?)?(  gen [0-9]+)?"
+                                            "(  best [0-9.e-]+)?"));
+    ++bars;
+  }
+  EXPECT_GE(bars, 2);  // the first is drawn at once, more every 0.1 s
+}
+
 TEST_F(CliOptimize, AFolderThatCannotBeMadeIsAnIoError) {
   std::ofstream(folder_.path() / "file") << "text";
   const Outcome outcome = run(sphere_ + std::vector<std::string>{"--out", "file/below"});

@@ -167,11 +167,11 @@ Outcome run_program(const std::filesystem::path& folder, const std::vector<std::
 
 std::string run_on_terminal(const std::filesystem::path& folder,
                             const std::vector<std::string>& arguments,
-                            const Environment& environment) {
+                            const Environment& environment, unsigned short columns) {
   int ours = -1;
   int theirs = -1;
   winsize size{};
-  size.ws_col = 100;
+  size.ws_col = columns;
   size.ws_row = 30;
   check(openpty(&ours, &theirs, nullptr, nullptr, &size) == 0 ? 0 : errno, "openpty");
   Spawn spawn;

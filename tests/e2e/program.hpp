@@ -55,10 +55,10 @@ class Program {
 Outcome run_program(const std::filesystem::path& folder, const std::vector<std::string>& arguments,
                     const Environment& environment = {});
 
-// The same on a terminal of 100 columns: what it shows there (stdout and stderr together).
+// The same on a terminal: what it shows there (stdout and stderr together).
 std::string run_on_terminal(const std::filesystem::path& folder,
                             const std::vector<std::string>& arguments,
-                            const Environment& environment = {});
+                            const Environment& environment = {}, unsigned short columns = 100);
 
 std::string read_text(const std::filesystem::path& file);
 
