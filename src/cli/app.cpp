@@ -46,7 +46,7 @@ Environment: ARMWRIGHT_JOBS and ARMWRIGHT_SEED stand in for --jobs and --seed; A
 the shipped configuration.)";
 
 std::string describe_version() {
-  std::string text = "armwright " + get_version() + "\n";
+  std::string text = fmt::format("armwright {}\n", get_version());
   for (const auto& [what, value] : describe_build()) {
     if (what != "version") {
       text += fmt::format("  {:<10} {}\n", what, value);
@@ -107,7 +107,13 @@ std::string describe_mistake(const CLI::App& app, const CLI::ParseError& error) 
   if (!extras.empty()) {
     return fmt::format("unexpected argument '{}'", sanitize(extras.front())) + see;
   }
-  return std::string(error.what()) + see;
+  const std::string what = error.what();
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
+    const std::string which = what.substr(0, what.find(':'));
+    return which + (what.ends_with("missing") ? " needs a value" : " is given more than once") +
+           see;
+  }
+  return what + see;
 }
 
 int parse_and_run(CLI::App& app, Session& session, int argc, char** argv) {

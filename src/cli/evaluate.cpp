@@ -115,7 +115,7 @@ std::string format_csv(const DesignEvaluation& evaluation) {
                     error ? format_exact(result.energy_j) : "");
     for (std::size_t k = 0; k < points; ++k) {
       const bool known = k < result.point_error_m.size() && std::isfinite(result.point_error_m[k]);
-      text += "," + (known ? format_exact(result.point_error_m[k]) : "");
+      text += fmt::format(",{}", known ? format_exact(result.point_error_m[k]) : "");
     }
     text += '\n';
   }

@@ -81,8 +81,8 @@ std::vector<ListItem> list_designs() {
 std::string explain_design(const std::string& name, const Style& style) {
   const DesignFile file = load_design(name);
   std::string text = format_title(style, file.name, file.title);
-  text += file.source.empty() ? "" : "  Source: " + sanitize(file.source) + "\n";
-  text += "\n" + format_design(file, style);
+  text += file.source.empty() ? "" : fmt::format("  Source: {}\n", sanitize(file.source));
+  text += fmt::format("\n{}", format_design(file, style));
   if (!file.published.empty()) {
     Table table({{"published as", false},
                  {"problem", false},
@@ -94,7 +94,7 @@ std::string explain_design(const std::string& name, const Style& style) {
                      sanitize(join(published.overrides, " ")), format_mm(published.error_m),
                      sanitize(published.where)});
     }
-    text += "\n" + table.format(style);
+    text += fmt::format("\n{}", table.format(style));
   }
   return text;
 }

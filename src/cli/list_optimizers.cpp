@@ -48,13 +48,13 @@ std::vector<std::pair<std::string, bool>> list_capabilities(const Capabilities& 
 std::string explain_optimizer(const std::string& name, const Style& style) {
   const OptimizerRow& row = find_optimizer(name);
   std::string text = format_title(style, row.name, row.summary);
-  text += "  Source: " + row.source + "\n";
+  text += fmt::format("  Source: {}\n", row.source);
   std::vector<std::string> able;
   std::vector<std::string> unable;
   for (const auto& [capability, has] : list_capabilities(row.capabilities)) {
     (has ? able : unable).push_back(capability);
   }
-  text += "  Capabilities: " + join(able, ", ") + " (not: " + join(unable, ", ") + ")\n";
+  text += fmt::format("  Capabilities: {} (not: {})\n", join(able, ", "), join(unable, ", "));
   text += row.capabilities.generations
               ? "  Schedules: fresh:K (new training cases every generation) and fixed:K\n\n"
               : "  Schedules: fixed:K only\n\n";

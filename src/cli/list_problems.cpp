@@ -50,7 +50,7 @@ std::string explain_problem(const std::string& name, const Style& style) {
   std::string text = format_title(style, loaded.name, loaded.title);
   if (settings.contains("description")) {
     for (const std::string& line : split(settings["description"].get<std::string>(), '\n')) {
-      text += "  " + sanitize(line) + "\n";
+      text += fmt::format("  {}\n", sanitize(line));
     }
   }
   text += "\n";

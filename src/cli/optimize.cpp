@@ -143,10 +143,10 @@ std::string describe_next(const OptimizeOptions& options, const std::filesystem:
       words.insert(words.end(), {"--set", change});
     }
     words.insert(words.end(), {"--test-set", "3"});
-    text += "  " + sanitize(quote_command(words)) + "\n";
+    text += fmt::format("  {}\n", sanitize(quote_command(words)));
   }
   const std::vector<std::string> show = {"armwright", "show", folder.string()};
-  return text + "  " + sanitize(quote_command(show)) + "\n";
+  return text + fmt::format("  {}\n", sanitize(quote_command(show)));
 }
 
 int run_optimize(const OptimizeOptions& options, Session& session) {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 #include "cli/format.hpp"
 #include "cli/terminal.hpp"
@@ -19,6 +21,7 @@ constexpr milliseconds kRedrawInterval{100};
 constexpr seconds kLineInterval{5};
 constexpr milliseconds kShortestLineInterval{500};  // however fast the tenths pass
 constexpr int kLongestBar = 30;
+constexpr int kShortestBar = 5;
 
 const char* to_string(Progress::Phase phase) {
   switch (phase) {
@@ -42,15 +45,30 @@ double calc_share(const Progress& progress) {
                                                  static_cast<double>(progress.total));
 }
 
-std::string describe_search(const Progress& progress, const Quantity& objective) {
+bool has_generations(const Progress& progress) {
+  return progress.generation > 0 && progress.phase == Progress::Phase::training;
+}
+
+// A piece of the bar's line; where it is too narrow, those with the highest rank go first.
+struct Piece {
   std::string text;
-  if (progress.generation > 0 && progress.phase == Progress::Phase::training) {
-    text += fmt::format("  generation {}", progress.generation);
+  int rank;
+};
+
+std::string join_what_fits(std::vector<Piece> pieces, std::size_t width) {
+  const auto calc_length = [&] {
+    return std::accumulate(pieces.begin(), pieces.end(), std::size_t{0},
+                           [](std::size_t sum, const Piece& p) { return sum + p.text.size(); });
+  };
+  while (pieces.size() > 1 && calc_length() > width) {
+    pieces.erase(std::max_element(pieces.begin(), pieces.end(),
+                                  [](const Piece& a, const Piece& b) { return a.rank < b.rank; }));
   }
-  if (std::isfinite(progress.best_objective)) {
-    text += "  best " + format_quantity(progress.best_objective, objective.unit);
+  std::string line;
+  for (const Piece& piece : pieces) {
+    line += piece.text;
   }
-  return text;
+  return line.substr(0, width);
 }
 
 }  // namespace
@@ -104,42 +122,69 @@ void ProgressBar::clear() {
   }
 }
 
-std::string ProgressBar::describe_rate(const Progress& progress, Clock::time_point now) const {
+std::optional<ProgressBar::Rate> ProgressBar::calc_rate(const Progress& progress,
+                                                        Clock::time_point now) const {
   constexpr double kLeast_s = 0.3;  // no rate from less
   const double elapsed_s = duration<double>(now - pace_.since).count();
   const auto simulated = static_cast<double>(count_simulated(progress) - pace_.simulated);
   if (elapsed_s < kLeast_s || simulated == 0) {
-    return "";
+    return std::nullopt;
   }
   const double rate = simulated / elapsed_s;
-  const double left_s = static_cast<double>(progress.total - progress.done) / rate;
-  return fmt::format("  {} cases/s  ETA {}", format_significant(rate, 3), format_duration(left_s));
+  return Rate{rate, static_cast<double>(progress.total - progress.done) / rate};
 }
 
 void ProgressBar::draw_bar(const Progress& progress, Clock::time_point now) {
   const double share = calc_share(progress);
-  const std::string before = fmt::format("{:<10} ", to_string(progress.phase));
-  const std::string after =
-      fmt::format(" {:3.0f} %  {}/{}{}{}", std::floor(100 * share), progress.done, progress.total,
-                  describe_rate(progress, now), describe_search(progress, objective_));
-  const int width =
-      get_width(Stream::error) - 1;  // a full last column would wrap on some terminals
-  const int room = width - static_cast<int>(before.size() + after.size()) - 2;
-  std::string bar;
-  if (room >= 5) {
+  const std::string phase = to_string(progress.phase);
+  std::vector<Piece> pieces = {
+      {fmt::format(" {:.0f} %", std::floor(100 * share)), 0},
+      {fmt::format(" {}/{}", progress.done, progress.total), 3},
+  };
+  if (const auto rate = calc_rate(progress, now)) {
+    pieces.push_back({fmt::format("  {}/s", format_significant(rate->cases_per_s, 3)), 5});
+    pieces.push_back({fmt::format("  ETA {}", format_duration(rate->left_s)), 2});
+  }
+  if (has_generations(progress)) {
+    pieces.push_back({fmt::format("  gen {}", progress.generation), 4});
+  }
+  if (std::isfinite(progress.best_objective)) {
+    pieces.push_back(
+        {fmt::format("  best {}", format_quantity(progress.best_objective, objective_.unit)), 1});
+  }
+  // A full last column would wrap on some terminals.
+  const auto width = static_cast<std::size_t>(std::max(get_width(Stream::error) - 1, 1));
+  const std::string after = join_what_fits(std::move(pieces), width);
+  std::string line = after;
+  if (phase.size() + after.size() <= width) {
+    const int room = static_cast<int>(width - phase.size() - after.size()) - 3;
     const int length = std::min(room, kLongestBar);
     const int full = static_cast<int>(share * length);
-    bar = fmt::format("[{:#<{}}{:-<{}}]", "", full, "", length - full);
+    line = phase +
+           (length >= kShortestBar ? fmt::format(" [{:#<{}}{:-<{}}]", "", full, "", length - full)
+                                   : "") +
+           after;
   }
-  const std::string line = before + bar + after;
-  write_stderr("\r" + line.substr(0, static_cast<std::size_t>(std::max(width, 1))) + "\x1b[K");
+  write_stderr(fmt::format("\r{}\x1b[K", line));
   drawn_ = true;
 }
 
 void ProgressBar::write_line(const Progress& progress, Clock::time_point now) {
-  write_stderr(fmt::format("{} {:.0f} %  {}/{}{}{}\n", to_string(progress.phase),
-                           std::floor(100 * calc_share(progress)), progress.done, progress.total,
-                           describe_rate(progress, now), describe_search(progress, objective_)));
+  std::string line =
+      fmt::format("{} {:.0f} %  {}/{}", to_string(progress.phase),
+                  std::floor(100 * calc_share(progress)), progress.done, progress.total);
+  if (const auto rate = calc_rate(progress, now)) {
+    line += fmt::format("  {} cases/s  ETA {}", format_significant(rate->cases_per_s, 3),
+                        format_duration(rate->left_s));
+  }
+  if (has_generations(progress)) {
+    line += fmt::format("  generation {}", progress.generation);
+  }
+  if (std::isfinite(progress.best_objective)) {
+    line += fmt::format("  best {}", format_quantity(progress.best_objective, objective_.unit));
+  }
+  line += '\n';
+  write_stderr(line);
 }
 
 }  // namespace armwright

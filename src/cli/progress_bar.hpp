@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
 
 #include "problems/problem.hpp"
@@ -32,7 +33,11 @@ class ProgressBar final : public RunObserver {
     Clock::time_point since;
     std::uint64_t simulated = 0;  // cases already done then, those from the journal not counted
   };
-  std::string describe_rate(const Progress& progress, Clock::time_point now) const;
+  struct Rate {
+    double cases_per_s;
+    double left_s;
+  };
+  std::optional<Rate> calc_rate(const Progress& progress, Clock::time_point now) const;
   void draw_bar(const Progress& progress, Clock::time_point now);
   void write_line(const Progress& progress, Clock::time_point now);
 

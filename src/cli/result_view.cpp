@@ -152,7 +152,7 @@ std::string describe_result(const RunResult& result, const std::filesystem::path
   text += fmt::format("\n  {} on {}", format_count(counts.evaluations, "evaluation"),
                       format_count(counts.cases, "case"));
   if (counts.generations > 0) {
-    text += ", " + format_count(counts.generations, "generation");
+    text += fmt::format(", {}", format_count(counts.generations, "generation"));
   }
   text += fmt::format("; {} failed, {} clipped to the bounds; ended by: {}\n\n", counts.failed,
                       counts.clipped, sanitize(result.end_reason));

@@ -1,0 +1,199 @@
+// Runs as a user meets them: made once, found again, interrupted, resumed, refused.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "e2e/program.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class CliOptimize : public testing::Test {
+ protected:
+  Outcome run(const std::vector<std::string>& arguments, const Environment& environment = {}) {
+    return run_program(folder_.path(), arguments, environment);
+  }
+  bool has(const std::string& file) { return std::filesystem::exists(folder_.path() / file); }
+  std::string read(const std::string& file) { return read_text(folder_.path() / file); }
+  // Until the run has recorded something; a run that ends before has failed.
+  void wait_for_records(const Program& program, const std::string& run_folder) {
+    const auto journal = folder_.path() / run_folder / "journal";
+    std::error_code ignored;
+    // A journal of nothing is 8 bytes long.
+    while (program.is_running() && !(std::filesystem::exists(journal, ignored) &&
+                                     std::filesystem::file_size(journal, ignored) > 8)) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    ASSERT_TRUE(program.is_running());
+  }
+  TemporaryFolder folder_;
+  const std::vector<std::string> sphere_ = {"optimize", "sphere", "--budget", "300"};
+};
+
+std::vector<std::string> operator+(std::vector<std::string> words,
+                                   const std::vector<std::string>& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+TEST_F(CliOptimize, MakesARunOnceAndFindsItAgain) {
+  const Outcome first = run(sphere_);
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_THAT(first.err,
+              AllOf(HasSubstr("optimizer ga, seed 1, budget 300 cases, schedule fixed:1"),
+                    HasSubstr("folder results/sphere-ga-seed1 (new)")));
+  EXPECT_THAT(first.out, AllOf(HasSubstr("300 evaluations on 300 cases"), HasSubstr("Winner"),
+                               HasSubstr("result.json"), HasSubstr("armwright show results/")));
+  const std::string recorded = read("results/sphere-ga-seed1/result.json");
+
+  const Outcome again = run(sphere_);
+  EXPECT_EQ(again.exit_code, 0);
+  EXPECT_THAT(again.err, HasSubstr("this run is complete; use --new for another one"));
+  EXPECT_EQ(again.out, first.out);
+
+  EXPECT_EQ(run(sphere_ + std::vector<std::string>{"--new"}).exit_code, 0);
+  EXPECT_EQ(read("results/sphere-ga-seed1-002/result.json"), recorded);
+  EXPECT_EQ(run(sphere_ + std::vector<std::string>{"--seed", "2"}).exit_code, 0);
+  EXPECT_TRUE(has("results/sphere-ga-seed2/result.json"));
+  EXPECT_NE(read("results/sphere-ga-seed2/result.json"), recorded);
+  EXPECT_EQ(run(sphere_, {{{"ARMWRIGHT_SEED", "5"}}, ""}).exit_code, 0);
+  EXPECT_TRUE(has("results/sphere-ga-seed5/result.json"));
+
+  EXPECT_EQ(run(sphere_ + std::vector<std::string>{"--json", "--quiet"}).out, recorded);
+  EXPECT_EQ(run({"show", "results/sphere-ga-seed1", "--json"}).out, recorded);
+  EXPECT_THAT(run({"show", "results/sphere-ga-seed1"}).out,
+              HasSubstr("Judged on the validation set"));
+}
+
+TEST_F(CliOptimize, RefusesToGoOnWithAnotherConfiguration) {
+  ASSERT_EQ(run(sphere_).exit_code, 0);
+  const Outcome outcome = run({"optimize", "sphere", "--budget", "301"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.out, IsEmpty());
+  EXPECT_THAT(outcome.err, HasSubstr("run.budget: recorded 300, now 301"));
+}
+
+TEST_F(CliOptimize, TunesTheArm) {
+  const Outcome outcome = run({"optimize", "q1-complex", "--budget", "70", "--validation-cases",
+                               "1", "--set", "sets.test_cases=2", "--quiet", "--out", "deep/q1/"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(
+      outcome.out,
+      AllOf(HasSubstr("p [N m/rad]"), HasSubstr("joint_4"), HasSubstr("total torque"),
+            HasSubstr("Beside the published winner (thesis, Table 6.1)"), HasSubstr("963686"),
+            HasSubstr("armwright evaluate deep/q1/winner.toml --problem q1-complex")));
+  const json result = json::parse(read("deep/q1/result.json"));
+  // The winner's design is the file that evaluate reads: the same cases give the same errors, bit
+  // for bit.
+  const Outcome evaluated = run({"evaluate", "deep/q1/winner.toml", "--problem", "q1-complex",
+                                 "--cases", "2", "--json", "--quiet"});
+  const json cases = json::parse(evaluated.out).at("cases");
+  EXPECT_EQ(cases[0].at("mean_error_m"), result.at("winner").at("test").at("case_errors")[0]);
+  EXPECT_EQ(cases[1].at("mean_error_m"), result.at("winner").at("test").at("case_errors")[1]);
+}
+
+TEST_F(CliOptimize, InterruptedItResumesToTheSameResult) {
+  // One thread, so that some seconds of work are ahead when the first record is seen; the reference
+  // uses two.
+  const std::vector<std::string> common = {"optimize", "q1-complex",         "--budget",
+                                           "350",      "--validation-cases", "1",
+                                           "--set",    "sets.test_cases=1",  "--out"};
+  Program interrupted(folder_.path(),
+                      common + std::vector<std::string>{"it's here", "--jobs", "1"});
+  wait_for_records(interrupted, "it's here");
+  interrupted.send(SIGINT);
+  const Outcome stopped = interrupted.wait();
+  ASSERT_EQ(stopped.exit_code, 130) << stopped.err;
+  EXPECT_THAT(stopped.out, IsEmpty());
+  const std::string command =
+      "armwright optimize q1-complex --budget 350 --validation-cases 1 --set sets.test_cases=1 "
+      "--out 'it'\\''s here' --jobs 1";
+  EXPECT_THAT(stopped.err, AllOf(HasSubstr("interrupted; nothing is lost"), HasSubstr(command)));
+  EXPECT_FALSE(has("it's here/result.json"));
+  EXPECT_THAT(run({"show", "it's here"}).out, AllOf(HasSubstr("has not come to its end"),
+                                                    HasSubstr("of 350 cases"), HasSubstr(command)));
+
+  const Outcome resumed = run(common + std::vector<std::string>{"it's here", "--jobs", "1"});
+  ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
+  EXPECT_THAT(resumed.err, HasSubstr("resuming: "));
+  const Outcome whole = run(common + std::vector<std::string>{"whole", "--jobs", "2"});
+  ASSERT_EQ(whole.exit_code, 0) << whole.err;
+  for (const char* file : {"result.json", "convergence.csv", "winner-trajectory.csv"}) {
+    EXPECT_EQ(read(std::string("it's here/") + file), read(std::string("whole/") + file)) << file;
+  }
+}
+
+TEST_F(CliOptimize, AFolderInUseAndATerminatedRun) {
+  const std::vector<std::string> endless = {"optimize", "q1-complex", "--budget", "1000000",
+                                            "--out",    "busy",       "--jobs",   "1"};
+  Program first(folder_.path(), endless);
+  wait_for_records(first, "busy");
+  const Outcome second = run(endless);
+  EXPECT_EQ(second.exit_code, 5);
+  EXPECT_THAT(second.err, HasSubstr("busy is in use by process "));
+  first.send(SIGTERM);
+  const Outcome stopped = first.wait();
+  EXPECT_EQ(stopped.exit_code, 75) << stopped.err;
+  EXPECT_THAT(stopped.err, HasSubstr("armwright optimize q1-complex --budget 1000000 --out busy"));
+}
+
+TEST_F(CliOptimize, StopsAtATimeLimitAndNamesTheFolderOfANewRun) {
+  ASSERT_EQ(run(sphere_).exit_code, 0);
+  const Outcome outcome =
+      run({"optimize", "sphere", "--budget", "100000000000", "--time-limit", "0.2s", "--new"},
+          {{{"ARMWRIGHT_SEED", "1"}}, ""});
+  EXPECT_EQ(outcome.exit_code, 75) << outcome.err;
+  EXPECT_THAT(outcome.err,
+              AllOf(HasSubstr("the time limit is reached"),
+                    HasSubstr("armwright optimize sphere --budget 100000000000 --time-limit 0.2s "
+                              "--out results/sphere-ga-seed1-002")));
+}
+
+TEST_F(CliOptimize, TheBarFitsTheTerminalAndLosesWholePiecesOnly) {
+  const std::string shown = run_on_terminal(
+      folder_.path(), {"optimize", "sphere", "--budget", "100000000000", "--time-limit", "0.5s"},
+      {}, 40);
+  std::istringstream lines(shown);
+  int bars = 0;
+  for (std::string line; std::getline(lines, line, '\r');) {
+    const std::size_t end = line.find("\x1b[K");
+    if (end == std::string::npos || end == 0) {
+      continue;
+    }
+    line.resize(end);
+    EXPECT_LT(line.size(), 40) << line;
+    EXPECT_THAT(line, testing::MatchesRegex("(training)?( \\[[#-]+\\])? 0 %( [0-9]+/100000000000)?"
+                                            "(  [0-9.e+]+/s)?(  ETA [0-9:]+( s)?)?(  gen [0-9]+)?"
+                                            "(  best [0-9.e-]+)?"));
+    ++bars;
+  }
+  EXPECT_GE(bars, 2);  // the first is drawn at once, more every 0.1 s
+}
+
+TEST_F(CliOptimize, AFolderThatCannotBeMadeIsAnIoError) {
+  std::ofstream(folder_.path() / "file") << "text";
+  const Outcome outcome = run(sphere_ + std::vector<std::string>{"--out", "file/below"});
+  EXPECT_EQ(outcome.exit_code, 74);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("file/below"), HasSubstr("Not a directory")));
+}
+
+TEST_F(CliOptimize, ShowRefusesWhatIsNoRun) {
+  const Outcome outcome = run({"show", "."});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("is not the folder of a run"));
+}
+
+}  // namespace
+}  // namespace armwright

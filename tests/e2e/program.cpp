@@ -1,0 +1,200 @@
+#include "e2e/program.hpp"
+
+#include <fcntl.h>
+#include <pty.h>
+#include <signal.h>
+#include <spawn.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <string_view>
+#include <system_error>
+
+namespace armwright {
+namespace {
+
+void check(int error, const char* doing) {
+  if (error != 0) {
+    throw std::system_error(error, std::generic_category(), doing);
+  }
+}
+
+std::vector<std::string> make_environment(const Environment& environment) {
+  std::vector<std::string> variables;
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    const std::string_view text = *variable;
+    if (!text.starts_with("ARMWRIGHT_") && !text.starts_with("NO_COLOR=") &&
+        !text.starts_with("TERM=")) {
+      variables.emplace_back(text);
+    }
+  }
+  variables.emplace_back("TERM=xterm");
+  for (const auto& [name, value] : environment.variables) {
+    variables.push_back(name + "=" + value);
+  }
+  return variables;
+}
+
+std::vector<char*> make_pointers(std::vector<std::string>& words) {
+  std::vector<char*> pointers;
+  for (std::string& word : words) {
+    pointers.push_back(word.data());
+  }
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
+int decode(int status) {
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+}
+
+// Starts it with the three streams as they are given: paths, or descriptors.
+class Spawn {
+ public:
+  Spawn() {
+    check(posix_spawn_file_actions_init(&actions_), "file_actions_init");
+    check(posix_spawnattr_init(&attributes_), "spawnattr_init");
+  }
+  ~Spawn() {
+    posix_spawn_file_actions_destroy(&actions_);
+    posix_spawnattr_destroy(&attributes_);
+  }
+  Spawn(const Spawn&) = delete;
+  Spawn& operator=(const Spawn&) = delete;
+
+  void open(int descriptor, const std::string& file, int flags) {
+    check(posix_spawn_file_actions_addopen(&actions_, descriptor, file.c_str(), flags, 0600),
+          "open");
+  }
+  void duplicate(int from, int to) {
+    check(posix_spawn_file_actions_adddup2(&actions_, from, to), "dup2");
+  }
+  int start(const std::filesystem::path& folder, const std::vector<std::string>& arguments,
+            const Environment& environment) {
+    check(posix_spawn_file_actions_addchdir_np(&actions_, folder.c_str()), "chdir");
+    sigset_t all;
+    sigset_t none;
+    sigfillset(&all);
+    sigdelset(&all, SIGKILL);
+    sigdelset(&all, SIGSTOP);
+    sigemptyset(&none);
+    check(posix_spawnattr_setsigdefault(&attributes_, &all), "setsigdefault");
+    check(posix_spawnattr_setsigmask(&attributes_, &none), "setsigmask");
+    check(posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK),
+          "setflags");
+    std::vector<std::string> words = {"armwright"};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<std::string> variables = make_environment(environment);
+    int pid = -1;
+    check(posix_spawn(&pid, ARMWRIGHT_BINARY, &actions_, &attributes_, make_pointers(words).data(),
+                      make_pointers(variables).data()),
+          "posix_spawn");
+    return pid;
+  }
+
+ private:
+  posix_spawn_file_actions_t actions_;
+  posix_spawnattr_t attributes_;
+};
+
+}  // namespace
+
+TemporaryFolder::TemporaryFolder() {
+  std::string pattern = std::filesystem::temp_directory_path() / "armwright-e2e-XXXXXX";
+  check(mkdtemp(pattern.data()) != nullptr ? 0 : errno, "mkdtemp");
+  path_ = pattern;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+Program::Program(const std::filesystem::path& folder, const std::vector<std::string>& arguments,
+                 const Environment& environment) {
+  static std::atomic<int> counter = 0;
+  files_ = folder / (".streams-" + std::to_string(++counter));
+  std::filesystem::create_directory(files_);
+  Spawn spawn;
+  spawn.open(STDIN_FILENO, "/dev/null", O_RDONLY);
+  const std::string out =
+      environment.out_file.empty() ? (files_ / "out").string() : environment.out_file;
+  spawn.open(STDOUT_FILENO, out, O_WRONLY | O_CREAT);
+  spawn.open(STDERR_FILENO, files_ / "err", O_WRONLY | O_CREAT);
+  pid_ = spawn.start(folder, arguments, environment);
+}
+
+Program::~Program() {
+  if (pid_ > 0) {
+    ::kill(pid_, SIGKILL);
+    ::waitpid(pid_, nullptr, 0);
+  }
+}
+
+void Program::send(int signal) const {
+  check(::kill(pid_, signal) == 0 ? 0 : errno, "kill");
+}
+
+bool Program::is_running() const {
+  siginfo_t info{};
+  check(
+      ::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 ? 0 : errno,
+      "waitid");
+  return info.si_pid == 0;
+}
+
+Outcome Program::wait() {
+  int status = 0;
+  while (::waitpid(pid_, &status, 0) < 0) {
+    if (errno != EINTR) {
+      check(errno, "waitpid");
+    }
+  }
+  pid_ = -1;
+  return {decode(status), read_text(files_ / "out"), read_text(files_ / "err")};
+}
+
+Outcome run_program(const std::filesystem::path& folder, const std::vector<std::string>& arguments,
+                    const Environment& environment) {
+  return Program(folder, arguments, environment).wait();
+}
+
+std::string run_on_terminal(const std::filesystem::path& folder,
+                            const std::vector<std::string>& arguments,
+                            const Environment& environment, unsigned short columns) {
+  int ours = -1;
+  int theirs = -1;
+  winsize size{};
+  size.ws_col = columns;
+  size.ws_row = 30;
+  check(openpty(&ours, &theirs, nullptr, nullptr, &size) == 0 ? 0 : errno, "openpty");
+  Spawn spawn;
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    spawn.duplicate(theirs, stream);
+  }
+  const int pid = spawn.start(folder, arguments, environment);
+  ::close(theirs);
+  std::string shown;
+  char buffer[4096];
+  // A terminal whose last program has gone answers with EIO.
+  for (ssize_t got = 0; (got = ::read(ours, buffer, sizeof buffer)) > 0;) {
+    shown.append(buffer, static_cast<std::size_t>(got));
+  }
+  ::close(ours);
+  ::waitpid(pid, nullptr, 0);
+  return shown;
+}
+
+std::string read_text(const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+}  // namespace armwright

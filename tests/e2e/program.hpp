@@ -1,0 +1,65 @@
+// Runs the real program as a user would, for end-to-end tests.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace armwright {
+
+// A folder of its own for each test, removed at its end.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+struct Outcome {
+  int exit_code = -1;  // -N: ended by signal N
+  std::string out;
+  std::string err;
+};
+
+struct Environment {
+  std::vector<std::pair<std::string, std::string>> variables;  // beside the test's own
+  std::string out_file;  // where stdout goes instead, "/dev/full"
+};
+
+// One running program. Its stdout and stderr go to files, so that it never waits for us; NO_COLOR,
+// TERM and all ARMWRIGHT_* of the test's own environment are kept from it, and no signal is ignored
+// or blocked.
+class Program {
+ public:
+  Program(const std::filesystem::path& folder, const std::vector<std::string>& arguments,
+          const Environment& environment = {});
+  ~Program();  // kills it if it still runs
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  void send(int signal) const;
+  bool is_running() const;
+  Outcome wait();
+
+ private:
+  std::filesystem::path files_;
+  int pid_ = -1;
+};
+
+Outcome run_program(const std::filesystem::path& folder, const std::vector<std::string>& arguments,
+                    const Environment& environment = {});
+
+// The same on a terminal: what it shows there (stdout and stderr together).
+std::string run_on_terminal(const std::filesystem::path& folder,
+                            const std::vector<std::string>& arguments,
+                            const Environment& environment = {}, unsigned short columns = 100);
+
+std::string read_text(const std::filesystem::path& file);
+
+}  // namespace armwright
