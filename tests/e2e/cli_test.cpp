@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "base/temporary_folder.hpp"
 #include "e2e/program.hpp"
 
 namespace armwright {

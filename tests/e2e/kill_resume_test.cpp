@@ -1,5 +1,6 @@
-// What the README promises of resuming, tested on the real program: a run killed with SIGKILL at random moments and started again each
-// time has the same evaluations and the same result, bit for bit, as one that nobody disturbed, on one thread or on two.
+// What the README promises of resuming, tested on the real program: a run killed with SIGKILL at
+// random moments and started again each time has the same evaluations and the same result, bit for
+// bit, as one that nobody disturbed, on one thread or on two.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -16,9 +17,13 @@ namespace armwright {
 namespace {
 
 std::vector<std::string> make_command(const std::string& out, const std::string& jobs) {
-  return {"optimize", "q1-complex",           "--budget", "1400",
-          "--set",    "sets.test_cases=20",   "--jobs",   jobs,
-          "--set",    "sets.validation_cases=5", "--out", out, "--quiet"};
+  return {"optimize", "q1-complex",
+          "--budget", "1400",
+          "--set",    "sets.test_cases=20",
+          "--jobs",   jobs,
+          "--set",    "sets.validation_cases=5",
+          "--out",    out,
+          "--quiet"};
 }
 
 bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
@@ -42,7 +47,8 @@ void expect_same_run(const std::filesystem::path& a, const std::filesystem::path
     ASSERT_TRUE(same_bits(one.evaluation.case_errors, other.evaluation.case_errors)) << i;
     ASSERT_TRUE(same_bits(one.evaluation.metrics, other.evaluation.metrics)) << i;
   }
-  for (const auto* file : {"result.json", "winner.toml", "convergence.csv", "winner-trajectory.csv"}) {
+  for (const auto* file :
+       {"result.json", "winner.toml", "convergence.csv", "winner-trajectory.csv"}) {
     EXPECT_EQ(read_text(a / file), read_text(b / file)) << file;
   }
 }

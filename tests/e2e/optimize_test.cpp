@@ -10,6 +10,7 @@
 #include <sstream>
 #include <thread>
 
+#include "base/temporary_folder.hpp"
 #include "e2e/program.hpp"
 
 namespace armwright {

@@ -105,17 +105,6 @@ class Spawn {
 
 }  // namespace
 
-TemporaryFolder::TemporaryFolder() {
-  std::string pattern = std::filesystem::temp_directory_path() / "armwright-e2e-XXXXXX";
-  check(mkdtemp(pattern.data()) != nullptr ? 0 : errno, "mkdtemp");
-  path_ = pattern;
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
-
 Program::Program(const std::filesystem::path& folder, const std::vector<std::string>& arguments,
                  const Environment& environment) {
   static std::atomic<int> counter = 0;
