@@ -58,7 +58,7 @@ DecisionVariable make_variable(const TrackingConfig& config, const DesignParamet
   }
   variable.scale = Scale::logarithmic;
   const auto [lower, upper] =
-      std::minmax(variable.start / config.bounds_factor, variable.start * config.bounds_factor);
+      std::minmax({variable.start / config.bounds_factor, variable.start * config.bounds_factor});
   variable.lower = lower;
   variable.upper = upper;
   return variable;
