@@ -11,13 +11,14 @@ namespace {
 
 std::string quote(std::string_view text) {
   std::string quoted = "\"";
-  for (const char c : sanitize(text)) {
+  for (const char c : text) {
     if (c == '"' || c == '\\') {
       quoted += '\\';
     }
-    quoted += c;
+    const auto code = static_cast<unsigned char>(c);
+    quoted += code < 0x20 || code == 0x7F ? fmt::format("\\u{:04X}", code) : std::string(1, c);
   }
-  return quoted + '"';
+  return sanitize(quoted) + '"';
 }
 
 PublishedResult read_published(const ConfigTable& table) {
