@@ -60,6 +60,9 @@ DesignFile load_design(std::string_view name_or_path) {
     drive.limits.max_n_m = joint.get_number("effort_max_n_m", {.lower = 0});
     file.design.joints.push_back(std::move(drive));
   }
+  if (file.design.joints.empty()) {
+    table.refuse("joint", "a design must have at least one joint, [[joint]]");
+  }
   for (const ConfigTable& published : table.get_tables_or_empty("published")) {
     file.published.push_back(read_published(published));
   }

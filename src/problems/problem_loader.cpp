@@ -62,7 +62,7 @@ WorkspaceSphere read_workspace(const ConfigTable& table) {
   try {
     TestSet::make_generated("test/1", sphere);
   } catch (const Error& error) {
-    table.refuse("shortest_move_m", error.what());
+    table.refuse(table.has("shortest_move_m") ? "shortest_move_m" : "radius_m", error.what());
   }
   return sphere;
 }
@@ -77,13 +77,11 @@ void check_length(const ConfigTable& table, const TrackingTask& task,
     periods += (duration_s + task.rest_s) / task.control_period_s;
   }
   if (periods > kMostPeriods) {
-    table.refuse(
-        table.has("control_period_s") ? "control_period_s" : "speed_m_per_s",
-        fmt::format("with {:.3g} m/s, a distance limit of {:.3g} m, {} points and {:.3g} s "
-                    "of rest a test case would take {:.3g} control periods of {:.3g} s; at "
-                    "most {:.3g} are possible",
-                    task.speed_m_per_s, task.distance_limit_m, sphere.points, task.rest_s, periods,
-                    task.control_period_s, kMostPeriods));
+    table.refuse(table.has("control_period_s") ? "control_period_s" : "speed_m_per_s",
+                 fmt::format("a test case would take {:.3g} control periods, possible are {:.3g}; "
+                             "raise control_period_s or speed_m_per_s, or lower distance_limit_m, "
+                             "rest_s or workspace.points",
+                             periods, kMostPeriods));
   }
 }
 
@@ -187,8 +185,9 @@ Schedule read_schedule(const ConfigTable& table) {
 // The file that a key names, looked for beside the configuration first.
 std::filesystem::path resolve_named(const ConfigTable& table, std::string_view key,
                                     std::string_view kind) {
+  const std::string name = table.get_string(key);
   try {
-    return resolve_config(kind, table.get_string(key), table.file().parent_path());
+    return resolve_config(kind, name, table.file().parent_path());
   } catch (const Error& error) {
     table.refuse(key, error.what());
   }

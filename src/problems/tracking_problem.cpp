@@ -54,7 +54,7 @@ DecisionVariable make_variable(const TrackingConfig& config, const DesignParamet
   if (variable.start == 0) {
     throw Error(ErrorKind::usage,
                 fmt::format("{} starts at 0, but a variable spans a factor around its start value; "
-                            "start it elsewhere or do not optimize it",
+                            "give it another value in the design or leave it out of 'optimize'",
                             variable.name));
   }
   variable.scale = Scale::logarithmic;
@@ -65,7 +65,8 @@ DecisionVariable make_variable(const TrackingConfig& config, const DesignParamet
   if (!std::isnormal(lower) || !std::isnormal(upper)) {
     throw Error(ErrorKind::usage,
                 fmt::format("{} starts at {} and would span {} to {}, which floating-point numbers "
-                            "cannot hold; start it elsewhere or lower the bounds_factor",
+                            "cannot hold; give it another value in the design or lower "
+                            "bounds_factor",
                             variable.name, variable.start, lower, upper));
   }
   return variable;
