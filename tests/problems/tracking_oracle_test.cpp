@@ -94,16 +94,17 @@ TEST_P(TrackingOracle, OverridesMakeTheSameTaskOfAnotherProblem) {
             shipped->track(design, cases, 0).point_error_m);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Designs, TrackingOracle,
-    testing::Values(OracleDesign{"A.5", "table-a5", "q1-complex"},
-                    OracleDesign{"A.6", "table-a6", "q1-triangular"},
-                    OracleDesign{"A.7", "table-a7", "q1-trapezoid"},
-                    OracleDesign{"A.8", "table-a8", "q1-ramp"},
-                    OracleDesign{"A.9", "table-a9", "q1-step", 1e-3},
-                    OracleDesign{"A.10", "table-a10", "q2-e6"},
-                    OracleDesign{"A.11", "table-a11", "q3-load"}),
-    [](const auto& parameters) { return "TableA" + parameters.param.label.substr(2); });
+INSTANTIATE_TEST_SUITE_P(Designs, TrackingOracle,
+                         testing::Values(OracleDesign{"A.5", "table-a5", "q1-complex"},
+                                         OracleDesign{"A.6", "table-a6", "q1-triangular"},
+                                         OracleDesign{"A.7", "table-a7", "q1-trapezoid"},
+                                         OracleDesign{"A.8", "table-a8", "q1-ramp"},
+                                         OracleDesign{"A.9", "table-a9", "q1-step", 1e-3},
+                                         OracleDesign{"A.10", "table-a10", "q2-e6"},
+                                         OracleDesign{"A.11", "table-a11", "q3-load"}),
+                         [](const auto& parameters) {
+                           return "TableA" + parameters.param.label.substr(2);
+                         });
 
 }  // namespace
 }  // namespace armwright
