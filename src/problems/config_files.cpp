@@ -15,6 +15,38 @@ std::string get_extension(std::string_view kind) {
   return kind == "robots" ? ".urdf" : ".toml";
 }
 
+std::string get_singular(std::string_view kind) {
+  return std::string(kind.substr(0, kind.size() - 1));  // "problems" -> "problem"
+}
+
+bool is_file(const std::filesystem::path& path) {
+  std::error_code ignored;  // a file that cannot even be looked at is as good as none
+  return std::filesystem::is_regular_file(path, ignored);
+}
+
+std::string describe_missing(std::string_view kind, const std::filesystem::path& path,
+                             const std::filesystem::path& beside) {
+  const std::string name = sanitize(path.string());
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {
+    return fmt::format("'{}' is a folder; name a {} file in it", name, get_extension(kind));
+  }
+  std::string text = fmt::format("there is no file '{}'", name);
+  if (path.is_relative()) {
+    text += beside.empty()
+                ? " in the current folder"
+                : fmt::format(" in {} or in the current folder", sanitize(beside.string()));
+  }
+  if (!path.has_parent_path()) {
+    text += fmt::format(", and no shipped {} has that name", get_singular(kind));
+    const auto nearest = find_nearest(path.stem().string(), list_configs(kind));
+    return nearest ? fmt::format("{}; did you mean '{}'?", text, *nearest) : text;
+  }
+  const std::string completed = path.string() + get_extension(kind);
+  return is_file(completed) ? fmt::format("{}; did you mean '{}'?", text, sanitize(completed))
+                            : text;
+}
+
 }  // namespace
 
 std::filesystem::path find_config_folder() {
@@ -39,28 +71,29 @@ std::filesystem::path find_config_folder() {
   return folder;
 }
 
-std::filesystem::path resolve_config(std::string_view kind, std::string_view name_or_path) {
+std::filesystem::path resolve_config(std::string_view kind, std::string_view name_or_path,
+                                     const std::filesystem::path& beside) {
   const std::string extension = get_extension(kind);
   const std::filesystem::path path(name_or_path);
-  if (name_or_path.find('/') != std::string_view::npos || path.extension() == extension) {
-    if (std::filesystem::is_regular_file(path)) {
-      return path;
+  const bool has_folder = name_or_path.find('/') != std::string_view::npos;
+  if (has_folder || path.extension() == extension) {
+    for (const auto& candidate : {beside / path, path}) {
+      if (is_file(candidate)) {
+        return candidate;
+      }
     }
-    const auto shipped = find_config_folder() / kind / path;  // "irb.urdf" may name a shipped file
-    if (name_or_path.find('/') == std::string_view::npos &&
-        std::filesystem::is_regular_file(shipped)) {
+    const auto shipped = has_folder ? path : find_config_folder() / kind / path;
+    if (!has_folder && is_file(shipped)) {  // "irb.urdf" may name a shipped file
       return shipped;
     }
-    throw Error(ErrorKind::usage, fmt::format("{}: there is no such file", sanitize(name_or_path)));
+    throw Error(ErrorKind::usage, describe_missing(kind, path, beside));
   }
-  const auto shipped = find_config_folder() / kind / (std::string(name_or_path) + extension);
   const auto names = list_configs(kind);
   if (std::find(names.begin(), names.end(), name_or_path) == names.end()) {
-    const std::string what(kind.substr(0, kind.size() - 1));  // "problems" -> "problem"
-    throw Error(ErrorKind::usage, describe_unknown(what, name_or_path, names) +
+    throw Error(ErrorKind::usage, describe_unknown(get_singular(kind), name_or_path, names) +
                                       fmt::format(" (or the path of a {} file)", extension));
   }
-  return shipped;
+  return find_config_folder() / kind / (std::string(name_or_path) + extension);
 }
 
 std::vector<std::string> list_configs(std::string_view kind) {

@@ -14,9 +14,11 @@ namespace armwright {
 std::filesystem::path find_config_folder();
 
 // What a user typed for a file of `kind` ("problems", "designs", "robots"): a path if it has a
-// slash or the kind's extension, otherwise the name of a shipped file. Error{usage} with the valid
-// names and the nearest.
-std::filesystem::path resolve_config(std::string_view kind, std::string_view name_or_path);
+// slash or the kind's extension, otherwise the name of a shipped file. A relative path is looked
+// for in `beside` first (the folder of the file that names it), then in the current folder, and
+// without a slash among the shipped files. Error{usage} with the valid names and the nearest.
+std::filesystem::path resolve_config(std::string_view kind, std::string_view name_or_path,
+                                     const std::filesystem::path& beside = {});
 
 // Names of the shipped files of a kind, sorted; those that begin with an underscore are only there
 // to be extended.

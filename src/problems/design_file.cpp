@@ -11,13 +11,14 @@ namespace {
 
 std::string quote(std::string_view text) {
   std::string quoted = "\"";
-  for (const char c : sanitize(text)) {
+  for (const char c : text) {
     if (c == '"' || c == '\\') {
       quoted += '\\';
     }
-    quoted += c;
+    const auto code = static_cast<unsigned char>(c);
+    quoted += code < 0x20 || code == 0x7F ? fmt::format("\\u{:04X}", code) : std::string(1, c);
   }
-  return quoted + '"';
+  return sanitize(quoted) + '"';
 }
 
 PublishedResult read_published(const ConfigTable& table) {
@@ -58,6 +59,9 @@ DesignFile load_design(std::string_view name_or_path) {
     drive.limits.min_n_m = joint.get_number("effort_min_n_m", {.upper = 0});
     drive.limits.max_n_m = joint.get_number("effort_max_n_m", {.lower = 0});
     file.design.joints.push_back(std::move(drive));
+  }
+  if (file.design.joints.empty()) {
+    table.refuse("joint", "a design must have at least one joint, [[joint]]");
   }
   for (const ConfigTable& published : table.get_tables_or_empty("published")) {
     file.published.push_back(read_published(published));

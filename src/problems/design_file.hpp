@@ -35,7 +35,7 @@ struct DesignFile {
 // what is allowed.
 DesignFile load_design(std::string_view name_or_path);
 
-// The design as a file that load_design reads back bit for bit.
+// The design as a file that load_design reads back bit for bit; without what was published of it.
 std::string to_toml(const DesignFile& file);
 
 }  // namespace armwright

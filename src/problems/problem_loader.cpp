@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::size_t kInputLimit_bytes = std::size_t{8} << 20;
 constexpr std::int64_t kMostCases = 1'000'000;
+constexpr double kMostPeriods = 1e7;  // of a test case: 320 MB of target angles; published: 3925
 
 TrackingTask read_task(const ConfigTable& table, const ConfigTable& physics) {
   TrackingTask task;
@@ -57,8 +58,31 @@ WorkspaceSphere read_workspace(const ConfigTable& table) {
   sphere.radius_m = table.get_number_or("radius_m", sphere.radius_m, {.lower = 1e-3, .upper = 100});
   sphere.shortest_move_m = table.get_number_or("shortest_move_m", sphere.shortest_move_m,
                                                {.lower = 1e-6, .upper = 2 * sphere.radius_m});
-  sphere.points = static_cast<int>(table.get_integer_or("points", sphere.points, 3, 10000));
+  sphere.points = static_cast<int>(table.get_integer_or("points", sphere.points, 3, 1000));
+  try {
+    TestSet::make_generated("test/1", sphere);
+  } catch (const Error& error) {
+    table.refuse(table.has("shortest_move_m") ? "shortest_move_m" : "radius_m", error.what());
+  }
   return sphere;
+}
+
+// Numbers that are each allowed, but together make a case that no memory holds.
+void check_length(const ConfigTable& table, const TrackingTask& task,
+                  const WorkspaceSphere& sphere) {
+  double periods = 0;
+  for (int k = 1; k <= sphere.points; ++k) {
+    const double duration_s =
+        std::max(sphere.calc_move_m(k), task.distance_limit_m) / task.speed_m_per_s;
+    periods += (duration_s + task.rest_s) / task.control_period_s;
+  }
+  if (periods > kMostPeriods) {
+    table.refuse(table.has("control_period_s") ? "control_period_s" : "speed_m_per_s",
+                 fmt::format("a test case would take {:.3g} control periods, possible are {:.3g}; "
+                             "raise control_period_s or speed_m_per_s, or lower distance_limit_m, "
+                             "rest_s or workspace.points",
+                             periods, kMostPeriods));
+  }
 }
 
 TrackingObjective read_objective(const ConfigTable& table) {
@@ -102,8 +126,13 @@ std::vector<DesignParameter> read_parameters(const ConfigTable& table,
   for (const Joint& joint : config.robot.joints) {
     joint_names.push_back(joint.name);
   }
+  std::vector<std::string> named;
   for (const ConfigTable& joint : table.get_tables_or_empty("joint")) {
     const std::string name = joint.get_choice("name", joint_names);
+    if (std::find(named.begin(), named.end(), name) != named.end()) {
+      joint.refuse("name", "another [[variables.joint]] has that name; put them together");
+    }
+    named.push_back(name);
     const auto found = std::find(joint_names.begin(), joint_names.end(), name);
     chosen[static_cast<std::size_t>(found - joint_names.begin())] = read_names(joint);
   }
@@ -128,8 +157,7 @@ std::vector<DesignParameter> read_parameters(const ConfigTable& table,
   return parameters;
 }
 
-CaseSets read_sets(const ConfigTable& table) {
-  CaseSets sets;
+CaseSets read_sets(const ConfigTable& table, CaseSets sets) {
   const auto read_name = [&](std::string_view key, std::string_view prefix, std::string& name) {
     name = table.get_string(key, name);
     if (name.rfind(prefix, 0) != 0 || name.size() == prefix.size()) {
@@ -154,6 +182,24 @@ Schedule read_schedule(const ConfigTable& table) {
   return schedule;
 }
 
+// The file that a key names, looked for beside the configuration first.
+std::filesystem::path resolve_named(const ConfigTable& table, std::string_view key,
+                                    std::string_view kind) {
+  const std::string name = table.get_string(key);
+  try {
+    return resolve_config(kind, name, table.file().parent_path());
+  } catch (const Error& error) {
+    table.refuse(key, error.what());
+  }
+}
+
+// The same for whoever reads the file later: a shipped name stays a name.
+std::string read_design_name(const ConfigTable& table, std::string_view key) {
+  const std::string name = table.get_string(key);
+  const auto path = resolve_named(table, key, "designs");
+  return path.stem() == name ? name : path.string();
+}
+
 PublishedWinner read_published(const ConfigTable& table) {
   PublishedWinner published;
   if (table.has("error_m")) {
@@ -163,9 +209,40 @@ PublishedWinner read_published(const ConfigTable& table) {
     published.total_torque_n_m =
         table.get_number("total_torque_n_m", {.lower = 0, .lower_open = true});
   }
-  published.design = table.get_string("design", "");
+  if (table.has("design")) {
+    published.design = read_design_name(table, "design");
+  }
   published.where = table.get_string("where", "");
   return published;
+}
+
+SweepPlan read_sweep(const ConfigTable& table, const TrackingProblem& problem) {
+  SweepPlan sweep;
+  sweep.parameter = table.get_string("parameter");
+  sweep.values = table.get_numbers("values");
+  if (sweep.values.empty()) {
+    table.refuse("values", "it must hold at least one number");
+  }
+  sweep.design = read_design_name(table, "design");
+  try {
+    problem.check_design(load_design(sweep.design).design);
+  } catch (const Error& error) {
+    table.refuse("design", error.what());
+  }
+  return sweep;
+}
+
+std::shared_ptr<const TrackingProblem> make_tracking(TrackingConfig config,
+                                                     const ConfigTable& variables,
+                                                     const std::filesystem::path& urdf) {
+  try {
+    return std::make_shared<TrackingProblem>(std::move(config));
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::usage) {
+      throw Error(error.kind(), fmt::format("{}: {}", urdf.string(), error.what()));
+    }
+    variables.refuse("start", error.what());
+  }
 }
 
 void add_input(LoadedProblem& loaded, const std::filesystem::path& file) {
@@ -178,23 +255,25 @@ void load_tracking(const ConfigTable& table, LoadedProblem& loaded) {
   config.name = loaded.name;
   config.summary = loaded.title;
   const ConfigTable robot = table.get_table("robot");
-  const auto urdf = resolve_config("robots", robot.get_string("urdf"));
+  const auto urdf = resolve_named(robot, "urdf", "robots");
   config.robot = load_urdf(urdf);
   add_input(loaded, urdf);
 
   const ConfigTable physics = table.get_table_or_empty("physics");
   config.engine = physics.get_choice("engine", engine_names(), "ode");
-  config.task = read_task(table.get_table_or_empty("task"), physics);
+  const ConfigTable task = table.get_table_or_empty("task");
+  config.task = read_task(task, physics);
   config.workspace = read_workspace(table.get_table_or_empty("workspace"));
+  check_length(task, config.task, config.workspace);
   config.objective = read_objective(table.get_table_or_empty("objective"));
   config.cutoff_error_m = table.get_table_or_empty("training")
                               .get_number_or("cutoff_error_m", config.cutoff_error_m,
                                              {.lower = kFailureError_m, .upper = 1e6});
 
   const ConfigTable variables = table.get_table("variables");
-  const std::string start = variables.get_string("start");
-  config.start = load_design(start).design;
-  add_input(loaded, resolve_config("designs", start));
+  const auto start = resolve_named(variables, "start", "designs");
+  config.start = load_design(start.string()).design;
+  add_input(loaded, start);
   config.bounds_factor = variables.get_number_or("bounds_factor", config.bounds_factor,
                                                  {.lower = 1, .upper = 1e9, .lower_open = true});
   if (config.start.joints.size() != config.robot.joint_count()) {
@@ -204,13 +283,10 @@ void load_tracking(const ConfigTable& table, LoadedProblem& loaded) {
                                  config.start.joints.size(), config.robot.joint_count()));
   }
   config.parameters = read_parameters(variables, config);
-  loaded.tracking = std::make_shared<TrackingProblem>(std::move(config));
+  loaded.tracking = make_tracking(std::move(config), variables, urdf);
   loaded.problem = loaded.tracking;
-
   if (table.has("sweep")) {
-    const ConfigTable sweep = table.get_table("sweep");
-    loaded.sweep = {sweep.get_string("parameter"), sweep.get_numbers("values"),
-                    sweep.get_string("design")};
+    loaded.sweep = read_sweep(table.get_table("sweep"), *loaded.tracking);
   }
 }
 
@@ -221,8 +297,6 @@ void load_analytic(const ConfigTable& table, LoadedProblem& loaded) {
   const auto dimension = static_cast<int>(function.get_integer_or(
       "dimension", row.default_dimension, row.smallest_dimension, row.largest_dimension));
   loaded.problem = make_analytic(name, dimension);
-  loaded.sets.validation_cases = 1;  // a function has no cases to tell apart
-  loaded.sets.test_cases = 1;
 }
 
 }  // namespace
@@ -234,19 +308,20 @@ LoadedProblem load_problem(std::string_view name_or_path, std::span<const std::s
   loaded.name = path.stem().string();
   loaded.title = table.get_string("title", loaded.name);
   table.get_string("description", "");
+  static const std::vector<std::string> kinds = {"tracking", "analytic"};
+  const bool analytic = table.get_choice("kind", kinds) == "analytic";
   loaded.schedule = read_schedule(table.get_table_or_empty("schedule"));
-  loaded.sets = read_sets(table.get_table_or_empty("sets"));
+  CaseSets usual;
+  if (analytic) {  // a function has no cases to tell apart
+    usual.validation_cases = 1;
+    usual.test_cases = 1;
+  }
+  loaded.sets = read_sets(table.get_table_or_empty("sets"), usual);
   const ConfigTable run = table.get_table_or_empty("run");
   loaded.optimizer = run.get_string("optimizer", "ga");
   loaded.budget = run.get_integer_or("budget", 10000, 0, 1'000'000'000'000);
   loaded.published = read_published(table.get_table_or_empty("published"));
-
-  static const std::vector<std::string> kinds = {"tracking", "analytic"};
-  if (table.get_choice("kind", kinds) == "tracking") {
-    load_tracking(table, loaded);
-  } else {
-    load_analytic(table, loaded);
-  }
+  analytic ? load_analytic(table, loaded) : load_tracking(table, loaded);
   table.refuse_unknown();
   loaded.resolved_json = table.to_json();
   return loaded;

@@ -1,6 +1,7 @@
 // From a name or a TOML file to a problem that is ready to run, with the settings that go with it.
 // Everything is validated here, before the first evaluation; messages name file, line, field, value
-// and what is allowed.
+// and what is allowed. Files that a problem names by a relative path are looked for beside it
+// first.
 #pragma once
 
 #include <filesystem>
@@ -61,7 +62,7 @@ struct LoadedProblem {
   std::optional<SweepPlan> sweep;
   std::string resolved_json;  // the whole configuration after inheritance and overrides
   std::map<std::string, std::string>
-      input_hashes;  // file name -> SHA-256 of every file it was made from
+      input_hashes;  // file name -> SHA-256 of every file that the configuration refers to
 };
 
 // `overrides` are KEY=VALUE texts on top of the file ("task.speed_m_per_s=2").

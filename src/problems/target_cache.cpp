@@ -11,7 +11,6 @@ std::shared_ptr<const TargetTable> TargetCache::get(const TrackingSetup& setup, 
     auto& slot = entries_[key];
     if (!slot) {
       slot = std::make_shared<Entry>();
-      oldest_first_.push_back(key);
     }
     entry = slot;
   }
@@ -23,13 +22,11 @@ std::shared_ptr<const TargetTable> TargetCache::get(const TrackingSetup& setup, 
     const std::lock_guard lock(mutex_);
     if (!entry->counted) {
       entry->counted = true;
+      oldest_first_.push_back(key);  // only now: one that cannot be made must not block the others
       size_bytes_ += entry->table.size_bytes();
     }
     while (size_bytes_ > limit_bytes_ && oldest_first_.size() > 1) {
       const auto oldest = entries_.find(oldest_first_.front());
-      if (!oldest->second->counted) {
-        break;  // still being computed by another thread
-      }
       size_bytes_ -= oldest->second->table.size_bytes();
       entries_.erase(oldest);
       oldest_first_.pop_front();

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 
 namespace armwright {
 namespace {
@@ -52,9 +53,9 @@ DecisionVariable make_variable(const TrackingConfig& config, const DesignParamet
   variable.start = get_parameter(start, parameter);
   if (variable.start == 0) {
     throw Error(ErrorKind::usage,
-                fmt::format("problem {}: {} starts at 0, but a variable spans a factor around its "
-                            "start value; start it elsewhere or do not optimize it",
-                            config.name, variable.name));
+                fmt::format("{} starts at 0, but a variable spans a factor around its start value; "
+                            "give it another value in the design or leave it out of 'optimize'",
+                            variable.name));
   }
   variable.scale = Scale::logarithmic;
   // The list form returns values; the two-argument form would return references to the temporaries.
@@ -62,6 +63,13 @@ DecisionVariable make_variable(const TrackingConfig& config, const DesignParamet
       std::minmax({variable.start / config.bounds_factor, variable.start * config.bounds_factor});
   variable.lower = lower;
   variable.upper = upper;
+  if (!std::isnormal(lower) || !std::isnormal(upper)) {
+    throw Error(ErrorKind::usage,
+                fmt::format("{} starts at {} and would span {} to {}, which floating-point numbers "
+                            "cannot hold; give it another value in the design or lower "
+                            "bounds_factor",
+                            variable.name, variable.start, lower, upper));
+  }
   return variable;
 }
 
@@ -147,7 +155,27 @@ void TrackingProblem::add_set(const TestSet& set) {
 
 TestSet TrackingProblem::get_set(const std::string& name) const {
   const auto found = sets_.find(name);
-  return found != sets_.end() ? found->second : TestSet::make_generated(name, config_.workspace);
+  if (found != sets_.end()) {
+    return found->second;
+  }
+  if (name.starts_with("file:")) {  // any other name generates cases, but never those of the file
+    throw Error(ErrorKind::usage,
+                fmt::format("problem {} has no test cases named {}; load the file they came from",
+                            config_.name, sanitize(name)));
+  }
+  return TestSet::make_generated(name, config_.workspace);
+}
+
+std::shared_ptr<const TargetTable> TrackingProblem::get_targets(const TestSet& set,
+                                                                std::uint64_t number) const {
+  auto table = targets_.get(setup_, set, number);
+  if (table->segments.size() < 2 && !config_.task.count_first_point) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("test set {}: case {} has 2 points, but the first after the start does "
+                            "not count (task.count_first_point is false); give it a third one",
+                            set.name(), number));
+  }
+  return table;
 }
 
 ArmDesign TrackingProblem::make_design(std::span<const double> x) const {
@@ -183,7 +211,7 @@ std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs
     if (set == sets.end()) {
       set = sets.emplace(job.block->set, get_set(job.block->set)).first;
     }
-    tables.push_back(targets_.get(setup_, set->second, job.number));
+    tables.push_back(get_targets(set->second, job.number));
     TrackingJob one;
     one.design = &designs.back();
     one.targets = tables.back().get();
@@ -204,7 +232,7 @@ std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs
 TrackingResult TrackingProblem::track(const ArmDesign& design, const TestSet& set,
                                       std::uint64_t number, RecordingOptions recording) const {
   check_design(design);
-  const auto table = targets_.get(setup_, set, number);
+  const auto table = get_targets(set, number);
   TrackingJob job;
   job.design = &design;
   job.targets = table.get();

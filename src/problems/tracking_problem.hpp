@@ -56,6 +56,8 @@ struct TrackingConfig {
 
 class TrackingProblem final : public Problem {
  public:
+  // Error{usage} if the design is for another robot or a variable has no bounds; Error{bad_data} if
+  // the robot does not suit the task.
   explicit TrackingProblem(TrackingConfig config);
 
   const ProblemDescription& description() const override { return description_; }
@@ -67,13 +69,15 @@ class TrackingProblem final : public Problem {
   // Makes a finite set (a file of test cases) available under its name. Before the first evaluation
   // only.
   void add_set(const TestSet& set);
+  // A set that was added, or the generated one of that name. Error{usage} for the name of a file
+  // that was not.
   TestSet get_set(const std::string& name) const;
 
   ArmDesign make_design(std::span<const double> x) const;
   std::vector<double> make_vector(
       const ArmDesign& design) const;  // the variables of a design; bounds are not checked
   // A design on one case, without cut-off, with whatever recording is asked for. Error{usage} if
-  // the design is for another robot.
+  // the design is for another robot, Error{bad_data} if the case has no point that counts.
   TrackingResult track(const ArmDesign& design, const TestSet& set, std::uint64_t number,
                        RecordingOptions recording = {}) const;
   void check_design(const ArmDesign& design) const;
@@ -83,6 +87,8 @@ class TrackingProblem final : public Problem {
   const TargetCache& targets() const { return targets_; }
 
  private:
+  std::shared_ptr<const TargetTable> get_targets(const TestSet& set, std::uint64_t number) const;
+
   TrackingConfig config_;
   TrackingSetup setup_;
   ProblemDescription description_;

@@ -1,0 +1,374 @@
+// What is shipped, against what the thesis says: every setting that makes a published number is
+// written out here a second time, because a wrong one would go unnoticed otherwise.
+#include <gmock/gmock.h>
+
+#include <bit>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "base/hash.hpp"
+#include "base/temporary_folder.hpp"
+#include "problems/analytic.hpp"
+#include "problems/config_files.hpp"
+#include "problems/design_file.hpp"
+#include "problems/problem_loader.hpp"
+
+namespace armwright {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::SizeIs;
+using testing::UnorderedElementsAre;
+
+constexpr std::int64_t kPopulation = 35;
+
+struct Experiment {
+  std::string name;
+  SignalShape signal = SignalShape::complex;
+  double distance_limit_m = 0.9;
+  bool ik_bug = true;
+  bool count_first_point = false;
+  double load_kg = 0;
+  std::string training = "train/1";
+  std::int64_t generations = 400;
+  std::optional<double> torque_weight = {};  // nothing: the error alone is minimised
+  PublishedWinner published = {};
+};
+
+void PrintTo(const Experiment& experiment, std::ostream* out) {
+  *out << experiment.name;
+}
+
+Experiment make_initial(std::string name, double limit_m, std::int64_t generations) {
+  return {.name = std::move(name),
+          .signal = SignalShape::triangular,
+          .distance_limit_m = limit_m,
+          .count_first_point = true,
+          .generations = generations};
+}
+
+Experiment make_q1(std::string name, SignalShape signal, double error_m, std::string design,
+                   std::optional<double> torque = {}, std::string where = "thesis, Fig. 6.4") {
+  return {.name = std::move(name),
+          .signal = signal,
+          .published = {error_m, torque, std::move(design), std::move(where)}};
+}
+
+Experiment make_q2(std::string name, double weight, double torque) {
+  return {.name = std::move(name),
+          .distance_limit_m = 1.6,
+          .training = "train/3",
+          .generations = 1000,
+          .torque_weight = weight,
+          .published = {{}, torque, "", "thesis, Table 6.4"}};
+}
+
+std::vector<Experiment> make_experiments() {
+  std::vector<Experiment> all = {
+      make_initial("initial", 0.9, 176),
+      make_initial("initial-0cm", 0, 253),
+      make_initial("initial-45cm", 0.45, 239),
+      make_initial("initial-90cm", 0.9, 176),
+      make_q1("q1-complex", SignalShape::complex, 0.0058, "table-a5", 963686, "thesis, Table 6.1"),
+      make_q1("q1-triangular", SignalShape::triangular, 0.0069, "table-a6"),
+      make_q1("q1-trapezoid", SignalShape::trapezoid, 0.0076, "table-a7"),
+      make_q1("q1-ramp", SignalShape::ramp, 0.0126, "table-a8"),
+      make_q1("q1-step", SignalShape::step, 0.0041, "table-a9"),
+      make_q2("q2-e1", 100, 22104),
+      make_q2("q2-e2", 100, 14963),
+      make_q2("q2-e3", 5, 18754),
+      make_q2("q2-e4", 1, 25455),
+      make_q2("q2-e5", 0.2, 42661),
+      make_q2("q2-e6", 1, 28927),
+  };
+  const auto find = [&](const std::string& name) -> Experiment& {
+    return *std::find_if(all.begin(), all.end(), [&](const auto& e) { return e.name == name; });
+  };
+  find("q2-e1").distance_limit_m = 0.9;
+  find("q2-e1").generations = 700;
+  find("q2-e2").generations = 700;
+  Experiment& e6 = find("q2-e6");
+  e6.ik_bug = false;
+  e6.published = {0.000083, 28927, "table-a10", "thesis, Fig. 6.13 and Table 6.4"};
+  Experiment q4 = e6;
+  q4.name = "q4-speed";
+  Experiment q3 = e6;
+  q3.name = "q3-load";
+  q3.load_kg = 20;
+  q3.published = {0.0027, 21603, "table-a11", "thesis, Fig. 6.15 and section 6.4.1"};
+  all.push_back(q3);
+  all.push_back(q4);
+  return all;
+}
+
+class ShippedExperiment : public testing::TestWithParam<Experiment> {};
+
+TEST_P(ShippedExperiment, HasTheSettingsOfTheThesis) {
+  const Experiment& expected = GetParam();
+  const LoadedProblem loaded = load_problem(expected.name);
+  EXPECT_EQ(loaded.name, expected.name);
+  EXPECT_THAT(loaded.title, testing::Not(IsEmpty()));
+  ASSERT_NE(loaded.tracking, nullptr);
+  EXPECT_EQ(loaded.problem, loaded.tracking);
+  const TrackingConfig& config = loaded.tracking->config();
+
+  const TrackingTask& task = config.task;
+  EXPECT_EQ(task.signal, expected.signal);
+  EXPECT_EQ(task.speed_m_per_s, 1.5);
+  EXPECT_EQ(task.distance_limit_m, expected.distance_limit_m);
+  EXPECT_EQ(task.trapezoid_acceleration_m_per_s2, 15);
+  EXPECT_EQ(task.rest_s, 0.5);
+  EXPECT_EQ(task.control_period_s, 0.01);
+  EXPECT_EQ(task.count_first_point, expected.count_first_point);
+  EXPECT_EQ(task.ik_bug, expected.ik_bug);
+  EXPECT_EQ(task.load_kg, expected.load_kg);
+  EXPECT_EQ(task.physics.gravity_m_per_s2, 9.80665);
+  EXPECT_EQ(task.physics.substeps, 1);
+  EXPECT_EQ(task.physics.erp, 0.25);
+  EXPECT_EQ(task.physics.cfm, 0);
+  EXPECT_EQ(config.engine, "ode");
+
+  EXPECT_EQ(config.workspace.centre_m, Eigen::Vector3d(1.4, 0, 0.9));
+  EXPECT_EQ(config.workspace.radius_m, 0.8);
+  EXPECT_EQ(config.workspace.shortest_move_m, 0.05);
+  EXPECT_EQ(config.workspace.points, 25);
+
+  EXPECT_EQ(config.objective.with_torque, expected.torque_weight.has_value());
+  if (expected.torque_weight) {
+    EXPECT_EQ(config.objective.torque_weight, *expected.torque_weight);
+    EXPECT_EQ(config.objective.error_scale_m, 0.0058);
+    EXPECT_EQ(config.objective.torque_scale_n_m, 963686);
+  }
+  EXPECT_EQ(config.cutoff_error_m, 1);
+
+  EXPECT_EQ(loaded.sets.training, expected.training);
+  EXPECT_EQ(loaded.sets.validation, "validation/1");
+  EXPECT_EQ(loaded.sets.test, "test/2");
+  EXPECT_EQ(loaded.sets.validation_cases, 100);
+  EXPECT_EQ(loaded.sets.test_cases, 500);
+  EXPECT_TRUE(loaded.schedule.fresh);
+  EXPECT_EQ(loaded.schedule.cases, 1);
+  EXPECT_EQ(loaded.optimizer, "ga");
+  EXPECT_EQ(loaded.budget, kPopulation * expected.generations);
+
+  EXPECT_EQ(loaded.published.error_m, expected.published.error_m);
+  EXPECT_EQ(loaded.published.total_torque_n_m, expected.published.total_torque_n_m);
+  EXPECT_EQ(loaded.published.design, expected.published.design);
+  EXPECT_EQ(loaded.published.where, expected.published.where);
+}
+
+TEST_P(ShippedExperiment, StartsAtTheBaseControllersWithEverythingVariable) {
+  const LoadedProblem loaded = load_problem(GetParam().name);
+  EXPECT_THAT(loaded.problem->description().variables, SizeIs(20));
+  EXPECT_EQ(loaded.tracking->config().bounds_factor, 100);
+  EXPECT_EQ(loaded.tracking->make_vector(loaded.tracking->config().start),
+            loaded.tracking->make_vector(load_design("table-a1").design));
+}
+
+TEST_P(ShippedExperiment, MovesTheArmOfTheThesis) {
+  const auto problem = load_problem(GetParam().name).tracking;
+  const RobotModel& robot = problem->setup().robot();
+  std::vector<double> masses_kg;
+  for (const Link& link : robot.links) {
+    masses_kg.push_back(link.inertial.mass_kg);
+  }
+  EXPECT_THAT(masses_kg,
+              ElementsAre(112.9, 266.3, 545.6, testing::DoubleEq(13.8 + GetParam().load_kg)));
+}
+
+TEST_P(ShippedExperiment, RecordsItsConfigurationAndWhatItWasMadeFrom) {
+  const LoadedProblem loaded = load_problem(GetParam().name);
+  const auto json = nlohmann::json::parse(loaded.resolved_json);
+  EXPECT_EQ(json.at("kind"), "tracking");
+  EXPECT_EQ(json.at("task").at("distance_limit_m"), GetParam().distance_limit_m);
+  EXPECT_EQ(json.at("sets").at("training"), GetParam().training);
+  EXPECT_FALSE(json.contains("extends"));
+  ASSERT_THAT(loaded.input_hashes, SizeIs(2));
+  for (const std::string name : {"robots/irb4600_40_255.urdf", "designs/table-a1.toml"}) {
+    const std::filesystem::path path = find_config_folder() / name;
+    std::ifstream stream(path, std::ios::binary);
+    const std::string content(std::istreambuf_iterator<char>(stream), {});
+    EXPECT_EQ(loaded.input_hashes.at(path.filename().string()), calc_sha256_hex(content));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ShippedExperiment, testing::ValuesIn(make_experiments()),
+                         [](const auto& parameters) {
+                           std::string name = parameters.param.name;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+TEST(ShippedProblems, AreAllKnownHere) {
+  std::vector<std::string> expected = analytic_names();
+  for (const Experiment& experiment : make_experiments()) {
+    expected.push_back(experiment.name);
+  }
+  EXPECT_THAT(list_configs("problems"), testing::UnorderedElementsAreArray(expected));
+  std::vector<std::string> listed;
+  for (const ProblemTitle& problem : list_problems()) {
+    EXPECT_EQ(problem.title, load_problem(problem.name).title);
+    EXPECT_NE(problem.title, problem.name);
+    listed.push_back(problem.name);
+  }
+  EXPECT_EQ(listed, list_configs("problems"));
+}
+
+TEST(ShippedProblems, OnlyQ4Sweeps) {
+  for (const std::string& name : list_configs("problems")) {
+    const auto sweep = load_problem(name).sweep;
+    ASSERT_EQ(sweep.has_value(), name == "q4-speed") << name;
+    if (sweep) {
+      EXPECT_EQ(sweep->parameter, "task.speed_m_per_s");
+      EXPECT_EQ(sweep->design, "table-a10");
+      EXPECT_THAT(sweep->values, ElementsAre(0.5, 0.75, 1, 1.25, 1.5, 1.75, 2, 2.25, 2.5, 2.75, 3));
+    }
+  }
+}
+
+TEST(ShippedProblems, AnalyticFunctionsHaveOneCase) {
+  for (const std::string& name : analytic_names()) {
+    SCOPED_TRACE(name);
+    const LoadedProblem loaded = load_problem(name);
+    EXPECT_EQ(loaded.tracking, nullptr);
+    EXPECT_EQ(loaded.problem->description().name, name);
+    EXPECT_THAT(loaded.problem->description().variables, SizeIs(name == "constrained" ? 4 : 10));
+    EXPECT_FALSE(loaded.schedule.fresh);
+    EXPECT_EQ(loaded.schedule.cases, 1);
+    EXPECT_EQ(loaded.sets.validation_cases, 1);
+    EXPECT_EQ(loaded.sets.test_cases, 1);
+    EXPECT_EQ(loaded.budget, 10000);
+    EXPECT_EQ(loaded.optimizer, "ga");
+    EXPECT_THAT(loaded.input_hashes, IsEmpty());
+  }
+  const std::vector<std::string> overrides = {"sets.test_cases=7", "function.dimension=3"};
+  const LoadedProblem changed = load_problem("sphere", overrides);
+  EXPECT_EQ(changed.sets.test_cases, 7);  // asked for, so done
+  EXPECT_THAT(changed.problem->description().variables, SizeIs(3));
+}
+
+TEST(ShippedDesigns, HaveTheTotalTorqueOfTheThesis) {
+  // Table 6.4 and section 6.4.1 print whole newton metres.
+  const std::map<std::string, double> published = {
+      {"table-a1", 85200}, {"table-a5", 963686}, {"table-a10", 28927}, {"table-a11", 21603}};
+  for (const auto& [name, torque] : published) {
+    EXPECT_NEAR(calc_total_torque_n_m(load_design(name).design), torque, 0.5) << name;
+  }
+  EXPECT_EQ(calc_total_torque_n_m(load_design("table-a1").design), 85200);
+}
+
+TEST(ShippedDesigns, AreThoseOfTheAppendixForThisArm) {
+  EXPECT_THAT(list_configs("designs"),
+              UnorderedElementsAre("table-a1", "table-a5", "table-a6", "table-a7", "table-a8",
+                                   "table-a9", "table-a10", "table-a11"));
+  for (const std::string& name : list_configs("designs")) {
+    SCOPED_TRACE(name);
+    const DesignFile file = load_design(name);
+    EXPECT_EQ(file.name, name);
+    EXPECT_THAT(file.title, testing::Not(IsEmpty()));
+    EXPECT_EQ(file.source, "thesis, Table A." + name.substr(7));
+    EXPECT_EQ(file.design.controller, "pid");
+    EXPECT_THAT(file.joint_names, ElementsAre("joint_1", "joint_2", "joint_3", "joint_4"));
+    load_problem("q1-complex").tracking->check_design(file.design);
+    for (const JointDrive& joint : file.design.joints) {
+      EXPECT_THAT(joint.gains, SizeIs(3));
+      EXPECT_LT(joint.limits.min_n_m, 0);
+      EXPECT_GT(joint.limits.max_n_m, 0);
+    }
+  }
+}
+
+TEST(ShippedDesigns, PublishedResultsNameProblemsThatLoad) {
+  std::vector<std::string> labels;
+  for (const std::string& name : list_configs("designs")) {
+    for (const PublishedResult& published : load_design(name).published) {
+      SCOPED_TRACE(published.label);
+      labels.push_back(published.label);
+      const LoadedProblem loaded = load_problem(published.problem, published.overrides);
+      ASSERT_NE(loaded.tracking, nullptr);
+      EXPECT_THAT(published.where, testing::Not(IsEmpty()));
+      if (published.overrides.empty()) {  // the design is the problem's winner
+        EXPECT_EQ(loaded.published.design, name);
+        EXPECT_EQ(loaded.published.error_m, published.error_m);
+      }
+      if (published.total_torque_n_m) {
+        EXPECT_NEAR(calc_total_torque_n_m(load_design(name).design), *published.total_torque_n_m,
+                    0.5);
+      }
+    }
+  }
+  EXPECT_THAT(labels, UnorderedElementsAre("A.5", "A.5, IK bug off", "A.6", "A.7", "A.8", "A.9",
+                                           "A.10 (E6)", "A.10 with the 20 kg load", "A.11 (Q3)"));
+}
+
+TEST(ShippedDesigns, OverridesOfPublishedResultsTakeEffect) {
+  const auto load = [](const std::string& design, std::size_t which) {
+    const PublishedResult published = load_design(design).published.at(which);
+    return load_problem(published.problem, published.overrides).tracking->config().task;
+  };
+  EXPECT_TRUE(load("table-a5", 0).ik_bug);
+  EXPECT_FALSE(load("table-a5", 1).ik_bug);
+  EXPECT_EQ(load("table-a10", 0).load_kg, 0);
+  EXPECT_EQ(load("table-a10", 1).load_kg, 20);
+  EXPECT_EQ(load_design("table-a10").published.at(1).error_m, 0.2699);  // thesis, Fig. 6.15
+}
+
+void expect_same_bits(const ArmDesign& a, const ArmDesign& b) {
+  const auto get_bits = [](const ArmDesign& design) {
+    std::vector<std::uint64_t> bits;
+    for (const JointDrive& joint : design.joints) {
+      for (const double gain : joint.gains) {
+        bits.push_back(std::bit_cast<std::uint64_t>(gain));
+      }
+      bits.push_back(std::bit_cast<std::uint64_t>(joint.limits.min_n_m));
+      bits.push_back(std::bit_cast<std::uint64_t>(joint.limits.max_n_m));
+    }
+    return bits;
+  };
+  EXPECT_EQ(a.controller, b.controller);
+  EXPECT_EQ(get_bits(a), get_bits(b));
+}
+
+DesignFile write_and_load(const DesignFile& file) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "written.toml";
+  std::ofstream(path, std::ios::binary) << to_toml(file);
+  return load_design(path.string());
+}
+
+TEST(DesignFiles, AreReadBackBitForBit) {
+  for (const std::string& name : list_configs("designs")) {
+    SCOPED_TRACE(name);
+    const DesignFile file = load_design(name);
+    const DesignFile again = write_and_load(file);
+    expect_same_bits(again.design, file.design);
+    EXPECT_EQ(again.name, file.name);
+    EXPECT_EQ(again.title, file.title);
+    EXPECT_EQ(again.source, file.source);
+    EXPECT_EQ(again.joint_names, file.joint_names);
+    EXPECT_THAT(again.published, IsEmpty());
+  }
+}
+
+TEST(DesignFiles, KeepNumbersThatNoShortDecimalHolds) {
+  DesignFile file = load_design("table-a1");
+  file.design.joints[0] = {{0.1 + 0.2, 1.0 / 3, 5e-324}, {-1e300, 123456789.123456789}};
+  file.design.joints[1] = {{1e15, 1e16, 9007199254740993e3}, {-0.5, 1.7976931348623157e308}};
+  file.design.joints[2] = {{2.2250738585072014e-308, 1e22, 4e18}, {0, 0}};
+  expect_same_bits(write_and_load(file).design, file.design);
+}
+
+TEST(DesignFiles, KeepTextsThatNeedQuoting) {
+  DesignFile file = load_design("table-a1");
+  file.title = "\"quoted\" \\ back\\slash # no comment\nsecond line\ttab \x1b[31m \x7f";
+  file.source = "Müller, Tabelle 3 – 20 °C";
+  file.joint_names[0] = "'''";
+  const DesignFile again = write_and_load(file);
+  EXPECT_EQ(again.title, file.title);
+  EXPECT_EQ(again.source, file.source);
+  EXPECT_EQ(again.joint_names, file.joint_names);
+}
+
+}  // namespace
+}  // namespace armwright
