@@ -1,0 +1,73 @@
+// A folder for configuration files that a test writes and then fails to load.
+#pragma once
+
+#include <fstream>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/expect_error.hpp"
+#include "base/temporary_folder.hpp"
+#include "problems/design_file.hpp"
+#include "problems/problem_loader.hpp"
+
+namespace armwright {
+
+class ProblemFolder {
+ public:
+  // base.toml is the least that makes a problem of the shipped arm.
+  ProblemFolder() {
+    write("base.toml",
+          "kind = \"tracking\"\n[robot]\nurdf = \"irb4600_40_255\"\n"
+          "[variables]\nstart = \"table-a1\"\n");
+  }
+
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_.path() / name, std::ios::binary) << text;
+  }
+  std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+
+  LoadedProblem load(const std::string& name, std::span<const std::string> overrides = {}) const {
+    return load_problem(path(name), overrides);
+  }
+
+  // What load_problem says to p.toml with this text; the folder left out of the message, so that
+  // it begins "p.toml:".
+  std::string refusal_of(const std::string& text,
+                         const std::vector<std::string>& overrides = {}) const {
+    write("p.toml", text);
+    return shorten(usage_error_of([&] { load("p.toml", overrides); }));
+  }
+  // The same for base.toml with this text in addition, which begins in line 2.
+  std::string refusal_of_base_with(const std::string& text) const {
+    return refusal_of("extends = \"base\"\n" + text);
+  }
+  std::string refusal_of_design(const std::string& text) const {
+    write("d.toml", text);
+    return shorten(usage_error_of([&] { load_design(path("d.toml")); }));
+  }
+
+  std::string shorten(std::string message) const {
+    const std::string folder = folder_.path().string();
+    for (std::size_t at = message.find(folder); at != std::string::npos;
+         at = message.find(folder, at)) {
+      const bool inside = message.compare(at + folder.size(), 1, "/") == 0;
+      message.replace(at, folder.size() + (inside ? 1 : 0), inside ? "" : "FOLDER");
+    }
+    return message;
+  }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+// One joint of a design file; any of its lines can be another one.
+inline std::string make_joint(const std::string& p = "p_n_m_per_rad = 300",
+                              const std::string& i = "i_n_m_per_rad_s = 2000",
+                              const std::string& d = "d_n_m_s_per_rad = 5",
+                              const std::string& least = "effort_min_n_m = -200",
+                              const std::string& most = "effort_max_n_m = 200") {
+  return "[[joint]]\n" + p + "\n" + i + "\n" + d + "\n" + least + "\n" + most + "\n";
+}
+
+}  // namespace armwright
