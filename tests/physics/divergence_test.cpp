@@ -1,0 +1,196 @@
+// Simulations that cannot go on: what is said of them, and that nothing else suffers.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "test_arms.hpp"
+#include "tracking_arms.hpp"
+
+namespace armwright::physics_test {
+namespace {
+
+using testing::Each;
+using testing::HasSubstr;
+using testing::MatchesRegex;
+using testing::StartsWith;
+
+const VectorXd kStart = (VectorXd(3) << 0.6, -0.9, 1.3).finished();
+
+std::string divergence_message(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const DivergenceError& error) {
+    return error.what();
+  }
+  return "(no error)";
+}
+
+// Steps until something is thrown, at most `steps` times.
+std::string step_until_divergence(const RobotModel& model, Eigen::Index joint, double effort_n_m,
+                                  int steps) {
+  OdeArm arm = make_arm(model, kStart);
+  VectorXd tau = VectorXd::Constant(3, 1.5);
+  tau[joint] = effort_n_m;
+  return divergence_message([&] {
+    for (int k = 0; k < steps; ++k) {
+      step(arm, tau, 0.01);
+    }
+  });
+}
+
+// All that can be read of an arm after half a second of general motion.
+VectorXd simulate_half_a_second() {
+  const RobotModel model = make_skew_arm();
+  OdeArm arm = make_arm(model, kStart);
+  for (int k = 0; k < 50; ++k) {
+    step(arm, VectorXd::LinSpaced(3, std::sin(k), -2), 0.01);
+  }
+  VectorXd all(11);
+  all << read_angles(arm, 3), read_rates(arm, 3), arm.tip_position_m(), arm.calc_kinetic_energy_j(),
+      arm.calc_potential_energy_j();
+  return all;
+}
+
+TEST(Divergence, ANonFiniteEffortNamesItsJoint) {
+  const RobotModel model = make_skew_arm();
+  const std::vector<std::string> names{"joint 1 (waist)", "joint 2 (shoulder)", "joint 3 (elbow)"};
+  for (const double effort_n_m :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+        -std::numeric_limits<double>::infinity()}) {
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      EXPECT_EQ(step_until_divergence(model, static_cast<Eigen::Index>(i), effort_n_m, 1),
+                names[i] + ": its controller asks for a non-finite effort");
+    }
+  }
+}
+
+// 1e160 squared overflows: an infinity appears inside the engine.
+TEST(Divergence, AbsurdEffortsAreCaughtAndNameAJoint) {
+  const RobotModel model = make_skew_arm();
+  for (const double effort_n_m : {1e12, -1e30, 1e100, 1e160, -1e160, 1e300}) {
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      EXPECT_THAT(
+          step_until_divergence(model, i, effort_n_m, 3),
+          testing::AnyOf(MatchesRegex("joint [123] \\((waist|shoulder|elbow)\\): its link is "
+                                      ".* m from the base and turns at .* rad/s"),
+                         StartsWith("ODE stopped (message ")))
+          << effort_n_m << " N m in joint " << i + 1;
+    }
+  }
+}
+
+// An arm that is merely out of control is not called diverged: 1000 N m spin the 0.04 kg m2 of the
+// last link up by 250 rad/s in every step.
+TEST(Divergence, AFastArmIsNotADivergedOne) {
+  const RobotModel model = make_skew_arm();
+  EXPECT_EQ(step_until_divergence(model, 2, 1000, 5), "(no error)");
+}
+
+TEST(Divergence, LeavesNoTraceInTheNextSimulation) {
+  const VectorXd fresh = simulate_half_a_second();
+  const RobotModel model = make_skew_arm();
+  for (const double effort_n_m : {1e12, 1e160, 1e300, std::numeric_limits<double>::quiet_NaN()}) {
+    OdeArm survivor = make_arm(model, kStart);  // lives on beside the one that blows up
+    EXPECT_NE(step_until_divergence(model, 1, effort_n_m, 3), "(no error)");
+    EXPECT_EQ(simulate_half_a_second(), fresh) << effort_n_m;
+    step(survivor, VectorXd::Constant(3, 1.5), 0.01);
+    EXPECT_TRUE(read_rates(survivor, 3).allFinite());
+    VectorXd elsewhere;
+    std::thread([&] { elsewhere = simulate_half_a_second(); }).join();
+    EXPECT_EQ(elsewhere, fresh) << effort_n_m;
+  }
+}
+
+// A thread that has seen a blow-up and one that has not do the same.
+TEST(Divergence, LeavesNoTraceInItsThread) {
+  const VectorXd fresh = simulate_half_a_second();
+  VectorXd after;
+  std::thread([&] {
+    EXPECT_NE(step_until_divergence(make_skew_arm(), 0, 1e160, 3), "(no error)");
+    after = simulate_half_a_second();
+  }).join();
+  EXPECT_EQ(after, fresh);
+}
+
+TEST(DivergedSimulation, IsAStatusWithTimeAndJoint) {
+  const TrackingSetup setup(load_irb4600(), {});
+  const TargetTable targets = setup.make_targets(make_case(1));
+  const TrackingResult result = simulate_one(setup, make_job(kExploding, targets));
+  EXPECT_EQ(result.status, SimulationStatus::diverged);
+  EXPECT_THAT(
+      result.reason,
+      MatchesRegex("diverged at 0\\.[0-9]+ s, on the way to point 1: joint [1-4] "
+                   "\\(joint_[1-4]\\): its link is .* m from the base and turns at .* rad/s"));
+  EXPECT_THAT(result.reason, HasSubstr("joint 4 (joint_4)"));
+  EXPECT_LT(result.steps, 100);
+  EXPECT_TRUE(result.point_error_m.empty());  // it reached none, and nobody asked to fill them
+  EXPECT_EQ(result.mean_error_m, 0);
+}
+
+TEST(DivergedSimulation, CountsAsTheCutOffErrorWhereThereIsOne) {
+  const TrackingSetup setup(load_irb4600(), {});
+  const TargetTable targets = setup.make_targets(make_case(1));
+  const double cutoff_m = 0.75;
+  const TrackingResult result = simulate_one(setup, make_job(kExploding, targets, cutoff_m));
+  EXPECT_EQ(result.status, SimulationStatus::diverged);
+  EXPECT_THAT(result.reason, StartsWith("diverged at "));
+  EXPECT_EQ(result.point_error_m.size(), 25u);
+  EXPECT_THAT(result.point_error_m, Each(cutoff_m));
+  EXPECT_EQ(result.mean_error_m, cutoff_m);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_TRUE(std::isfinite(result.peak_effort_n_m[i])) << i;
+    EXPECT_TRUE(std::isfinite(result.rms_effort_n_m[i])) << i;
+  }
+  EXPECT_TRUE(std::isfinite(result.energy_j));
+}
+
+// In a batch beside others, and before them.
+TEST(DivergedSimulation, LeavesTheOthersOfItsBatchAlone) {
+  const TrackingSetup setup(load_irb4600(), {});
+  const TargetTable targets = setup.make_targets(make_case(1, 4));
+  const TrackingResult alone = simulate_one(setup, make_job(kTableA5, targets));
+  ASSERT_EQ(alone.status, SimulationStatus::ok) << alone.reason;
+  const std::vector<TrackingJob> jobs{make_job(kTableA5, targets), make_job(kExploding, targets),
+                                      make_job(kTableA5, targets)};
+  const auto results = make_engine("ode")->simulate(setup, jobs);
+  ASSERT_EQ(results.size(), 3u);
+  expect_identical(results[0], alone);
+  EXPECT_EQ(results[1].status, SimulationStatus::diverged);
+  expect_identical(results[2], alone);
+}
+
+TEST(UnreachableTarget, IsAStatusThatNamesPointAndReach) {
+  const TrackingSetup setup(load_irb4600(), {});
+  TestCase far = make_case(1, 4);
+  far.points_m[3] = {2.9, 0.4, 1.1};
+  TestCase far_start = make_case(1, 4);
+  far_start.points_m[0] = {-0.3, 3.1, 0.4};
+  const TargetTable tables[] = {setup.make_targets(far), setup.make_targets(far_start),
+                                setup.make_targets(make_case(1, 4))};
+  const std::vector<TrackingJob> jobs{make_job(kTableA5, tables[0]), make_job(kTableA5, tables[1]),
+                                      make_job(kTableA5, tables[2])};
+  const auto results = make_engine("ode")->simulate(setup, jobs);
+  ASSERT_EQ(results.size(), 3u);
+  for (const int i : {0, 1}) {
+    EXPECT_EQ(results[i].status, SimulationStatus::unreachable);
+    EXPECT_EQ(results[i].steps, 0);
+    EXPECT_TRUE(results[i].point_error_m.empty());
+  }
+  // Joint 2-3 and 3-4: 1.095 m and hypot(1.270, 0.175) = 1.282 m.
+  EXPECT_THAT(
+      results[0].reason,
+      MatchesRegex("on the way to point 3: target \\(.*\\) m is out of reach: .*2\\.377.*"));
+  EXPECT_THAT(
+      results[1].reason,
+      MatchesRegex("start: target \\(-0\\.3, 3\\.1, 0\\.4\\) m is out of reach: .*2\\.377.*"));
+  EXPECT_EQ(results[2].status, SimulationStatus::ok);
+}
+
+}  // namespace
+}  // namespace armwright::physics_test

@@ -1,0 +1,107 @@
+// The thesis's arm, three of its designs and ways to run them, for the tests of whole simulations.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <initializer_list>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "sim/physics_engine.hpp"
+#include "sim/robot_model.hpp"
+#include "sim/test_case.hpp"
+#include "sim/tracking.hpp"
+
+namespace armwright::physics_test {
+
+inline RobotModel load_irb4600() {
+  return load_urdf(ARMWRIGHT_CONFIGS "/robots/irb4600_40_255.urdf");
+}
+
+struct DriveRow {
+  double p, i, d, min_n_m, max_n_m;
+};
+inline ArmDesign make_design(std::initializer_list<DriveRow> rows) {
+  ArmDesign design;
+  for (const DriveRow& row : rows) {
+    design.joints.push_back({{row.p, row.i, row.d}, {row.min_n_m, row.max_n_m}});
+  }
+  return design;
+}
+
+// Thesis, Tables A.1, A.5 and A.10.
+inline const ArmDesign kTableA1 = make_design({{45000, 150000, 7500, -20000, 20000},
+                                               {270000, 700000, 30000, -45000, 45000},
+                                               {30000, 100000, 5000, -20000, 20000},
+                                               {300, 2000, 5, -200, 200}});
+inline const ArmDesign kTableA5 = make_design({{976409, 310398, 9536.5, -49684.4, 393380},
+                                               {7847550, 14172800, 27433.3, -354273, 336598},
+                                               {623523, 5921.86, 5592.14, -214258, 72241.6},
+                                               {747.555, 3194.6, 4.01193, -502.821, 1775.12}});
+inline const ArmDesign kTableA10 = make_design({{864048, 202279, 10876.1, -7246.87, 7323.93},
+                                                {2810730, 7338360, 24059, -14943.4, 12499},
+                                                {1531200, 1426490, 4394.7, -5713.1, 4836.06},
+                                                {601.378, 13600.6, 3.48375, -946.889, 573.647}});
+// A last joint far beyond the edge of stability (P h^2 / J is about 2e5; 4 is the limit) that
+// nothing limits: its efforts grow without bound.
+inline const ArmDesign kExploding = make_design({{45000, 150000, 7500, -20000, 20000},
+                                                 {270000, 700000, 30000, -45000, 45000},
+                                                 {30000, 100000, 5000, -20000, 20000},
+                                                 {1e8, 2000, 5, -1e300, 1e300}});
+// Too weak to carry itself.
+inline const ArmDesign kLimp = make_design({{450, 1500, 75, -200, 200},
+                                            {2700, 7000, 300, -450, 450},
+                                            {300, 1000, 50, -200, 200},
+                                            {3, 20, 0.05, -2, 2}});
+
+// Q2's E6: the task of table A.10.
+inline TrackingTask make_e6_task() {
+  TrackingTask task;
+  task.distance_limit_m = 1.6;
+  return task;
+}
+
+inline TestCase make_case(std::uint64_t number, int points = 25) {
+  WorkspaceSphere sphere;
+  sphere.points = points;
+  return make_test_case("test/physics", number, sphere);
+}
+
+inline constexpr double kNever = std::numeric_limits<double>::infinity();
+
+inline TrackingJob make_job(const ArmDesign& design, const TargetTable& targets,
+                            double cutoff_m = kNever, RecordingOptions recording = {}) {
+  return {&design, &targets, cutoff_m, recording};
+}
+
+inline TrackingResult simulate_one(const TrackingSetup& setup, const TrackingJob& job) {
+  std::vector<TrackingResult> results = make_engine("ode")->simulate(setup, {&job, 1});
+  EXPECT_EQ(results.size(), 1u);
+  return std::move(results.at(0));
+}
+
+// Everything a result has, to the last bit.
+inline void expect_identical(const TrackingResult& a, const TrackingResult& b) {
+  EXPECT_EQ(a.status, b.status);
+  EXPECT_EQ(a.reason, b.reason);
+  EXPECT_EQ(a.steps, b.steps);
+  EXPECT_EQ(a.point_error_m, b.point_error_m);
+  EXPECT_EQ(a.mean_error_m, b.mean_error_m);
+  EXPECT_EQ(a.peak_effort_n_m, b.peak_effort_n_m);
+  EXPECT_EQ(a.rms_effort_n_m, b.rms_effort_n_m);
+  EXPECT_EQ(a.saturated_share, b.saturated_share);
+  EXPECT_EQ(a.energy_j, b.energy_j);
+  EXPECT_EQ(a.error_series_m, b.error_series_m);
+  ASSERT_EQ(a.trajectory.size(), b.trajectory.size());
+  for (std::size_t i = 0; i < a.trajectory.size(); ++i) {
+    EXPECT_EQ(a.trajectory[i].time_s, b.trajectory[i].time_s);
+    EXPECT_EQ(a.trajectory[i].q_rad, b.trajectory[i].q_rad);
+    EXPECT_EQ(a.trajectory[i].target_rad, b.trajectory[i].target_rad);
+    EXPECT_EQ(a.trajectory[i].effort_n_m, b.trajectory[i].effort_n_m);
+    EXPECT_EQ(a.trajectory[i].tip_m, b.trajectory[i].tip_m);
+    EXPECT_EQ(a.trajectory[i].target_m, b.trajectory[i].target_m);
+  }
+}
+
+}  // namespace armwright::physics_test
