@@ -51,6 +51,7 @@ DesignFile load_design(std::string_view name_or_path) {
   file.design.controller = table.get_choice("controller", controller_names(), "pid");
   const ControllerRow& controller = find_controller(file.design.controller);
   for (const ConfigTable& joint : table.get_tables("joint")) {
+    file.joint_names.push_back(joint.get_string("name", ""));
     // Every key is known before one is missed: a hint at a mistyped one then never names a right
     // one.
     for (const GainSpec& gain : controller.gains) {
@@ -58,7 +59,6 @@ DesignFile load_design(std::string_view name_or_path) {
     }
     joint.has("effort_min_n_m");
     joint.has("effort_max_n_m");
-    file.joint_names.push_back(joint.get_string("name", ""));
     JointDrive drive;
     for (const GainSpec& gain : controller.gains) {
       drive.gains.push_back(joint.get_number(gain.key, {.lower = 0}));
