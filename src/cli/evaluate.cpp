@@ -14,6 +14,7 @@
 #include "cli/design_evaluation.hpp"
 #include "cli/format.hpp"
 #include "cli/progress_bar.hpp"
+#include "cli/result_view.hpp"
 #include "cli/session.hpp"
 #include "cli/signals.hpp"
 #include "cli/table.hpp"
@@ -171,16 +172,7 @@ std::string format_text(const EvaluatedDesign& evaluated, const Style& style) {
                              sanitize(evaluated.problem.name), format_count(summary.cases, "case"),
                              sanitize(evaluated.cases.set.name())));
   text += "\n\n";
-  const auto mm = [](std::optional<double> error_m) {
-    return error_m ? format_mm(error_m) + " mm" : "-";
-  };
-  Table table({{"", false}, {"", false}});
-  table.add_row({"mean error", mm(summary.mean)});
-  table.add_row({"median", mm(summary.median)});
-  table.add_row({"95 % below", mm(summary.percentile_95)});
-  table.add_row({"worst", mm(summary.worst)});
-  table.add_row({"failures", fmt::format("{} of {} ({} without a number)", summary.failures,
-                                         summary.cases, summary.without_number)});
+  Table table = make_summary_table(summary);
   table.add_row({"total torque", format_quantity(evaluation.total_torque_n_m, "N m")});
   table.add_row({"mean energy",
                  evaluation.mean_energy_j ? format_quantity(*evaluation.mean_energy_j, "J") : "-"});

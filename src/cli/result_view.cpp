@@ -7,7 +7,6 @@
 #include "base/text.hpp"
 #include "cli/format.hpp"
 #include "cli/session.hpp"
-#include "cli/table.hpp"
 
 namespace armwright {
 namespace {
@@ -64,17 +63,7 @@ std::string format_winner(const RunResult& result, const std::filesystem::path& 
 }
 
 std::string format_tracking_test(const RunResult& result, const Style& style) {
-  const ErrorSummary& summary = result.test_summary;
-  const auto mm = [](std::optional<double> error_m) {
-    return error_m ? format_mm(error_m) + " mm" : "-";
-  };
-  Table table({{"", false}, {"", false}});
-  table.add_row({"mean error", mm(summary.mean)});
-  table.add_row({"median", mm(summary.median)});
-  table.add_row({"95 % below", mm(summary.percentile_95)});
-  table.add_row({"worst", mm(summary.worst)});
-  table.add_row({"failures", fmt::format("{} of {} ({} without a number)", summary.failures,
-                                         summary.cases, summary.without_number)});
+  Table table = make_summary_table(result.test_summary);
   if (const auto torque = get_metric(result, "total_torque")) {
     table.add_row({"total torque", format_quantity(*torque, "N m")});
   }
@@ -197,6 +186,20 @@ std::string describe_judged(const RunResult& result, const Style& style) {
                    fmt::format("{}", validation.failed_cases)});
   }
   return style.bold("Judged on the validation set") + "\n" + table.format(style, 2);
+}
+
+Table make_summary_table(const ErrorSummary& summary) {
+  const auto mm = [](std::optional<double> error_m) {
+    return error_m ? format_mm(error_m) + " mm" : "-";
+  };
+  Table table({{"", false}, {"", false}});
+  table.add_row({"mean error", mm(summary.mean)});
+  table.add_row({"median", mm(summary.median)});
+  table.add_row({"95 % below", mm(summary.percentile_95)});
+  table.add_row({"worst", mm(summary.worst)});
+  table.add_row({"failures", fmt::format("{} of {} ({} without a number)", summary.failures,
+                                         summary.cases, summary.without_number)});
+  return table;
 }
 
 int get_result_code(const RunResult& result) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "cli/table.hpp"
 #include "cli/terminal.hpp"
 #include "problems/design_file.hpp"
 #include "study/run_result.hpp"
@@ -20,6 +21,9 @@ std::string describe_judged(const RunResult& result, const Style& style);
 
 // A design's gains and limits, a line a joint.
 std::string format_design(const DesignFile& design, const Style& style);
+
+// Mean, median, 95th percentile, worst and failures, a row each; others may follow.
+Table make_summary_table(const ErrorSummary& summary);
 
 // The exit code of a run that has come to its end: kFailed if it found nothing feasible or its
 // winner has cases without a number.
