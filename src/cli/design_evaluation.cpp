@@ -112,8 +112,7 @@ void report_failures(const DesignEvaluation& evaluation, const std::string& what
     if (result.status == SimulationStatus::ok || ++found > kMostNamed) {
       continue;
     }
-    write_message(
-        fmt::format("{}case {}: {}: {}", what, i, to_string(result.status), result.reason));
+    write_message(fmt::format("{}case {}: {}", what, i, result.reason));
   }
   if (found > kMostNamed) {
     write_message(fmt::format("{}and {} more cases without a number", what, found - kMostNamed));

@@ -76,8 +76,8 @@ RunPlan make_plan(const OptimizeOptions& options) {
   plan.budget = options.budget.empty()
                     ? plan.problem.budget
                     : parse_count("--budget", options.budget, 0, 1'000'000'000'000);
-  plan.schedule =
-      options.schedule.empty() ? plan.problem.schedule : parse_schedule(options.schedule);
+  plan.schedule = options.schedule.empty() ? choose_schedule(plan.problem, plan.optimizer)
+                                           : parse_schedule(options.schedule);
   check_plan(plan);
   return plan;
 }
@@ -129,6 +129,12 @@ void announce(const RunRequest& request) {
                             format_count(static_cast<unsigned long long>(plan.budget), "case"),
                             plan.schedule.fresh ? "fresh" : "fixed", plan.schedule.cases,
                             format_count(request.jobs, "thread")));
+  if (plan.problem.schedule.fresh && !plan.schedule.fresh) {
+    write_message(
+        fmt::format("the problem's own schedule is fresh:{}, a new case for every "
+                    "generation; this run trains on the same cases throughout",
+                    plan.problem.schedule.cases));
+  }
   write_message(fmt::format("folder {} ({})", request.folder.string(), known ? "found" : "new"));
 }
 
@@ -214,7 +220,8 @@ void add_optimize(CLI::App& app, Session& session) {
       ->type_name("CASES");
   command
       ->add_option("--schedule", options->schedule,
-                   "Which training cases: fresh:K or fixed:K (default: the problem's)")
+                   "Which training cases: fresh:K or fixed:K (default: the problem's;\n"
+                   "fixed where an optimizer has no generations)")
       ->type_name("KIND:K");
   options->overrides.add_to(*command);
   command

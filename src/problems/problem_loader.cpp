@@ -174,12 +174,12 @@ CaseSets read_sets(const ConfigTable& table, CaseSets sets) {
   return sets;
 }
 
-Schedule read_schedule(const ConfigTable& table) {
+void read_schedule(const ConfigTable& table, LoadedProblem& loaded) {
   static const std::vector<std::string> kinds = {"fixed", "fresh"};
-  Schedule schedule;
-  schedule.fresh = table.get_choice("kind", kinds, "fixed") == "fresh";
-  schedule.cases = static_cast<int>(table.get_integer_or("cases", 1, 1, kMostCases));
-  return schedule;
+  loaded.schedule.fresh = table.get_choice("kind", kinds, "fixed") == "fresh";
+  loaded.schedule.cases = static_cast<int>(table.get_integer_or("cases", 1, 1, kMostCases));
+  loaded.fixed_cases =
+      static_cast<int>(table.get_integer_or("fixed_cases", loaded.fixed_cases, 1, kMostCases));
 }
 
 // The file that a key names, looked for beside the configuration first.
@@ -310,7 +310,7 @@ LoadedProblem load_problem(std::string_view name_or_path, std::span<const std::s
   table.get_string("description", "");
   static const std::vector<std::string> kinds = {"tracking", "analytic"};
   const bool analytic = table.get_choice("kind", kinds) == "analytic";
-  loaded.schedule = read_schedule(table.get_table_or_empty("schedule"));
+  read_schedule(table.get_table_or_empty("schedule"), loaded);
   CaseSets usual;
   if (analytic) {  // a function has no cases to tell apart
     usual.validation_cases = 1;

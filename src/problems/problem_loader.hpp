@@ -55,6 +55,7 @@ struct LoadedProblem {
   std::shared_ptr<const TrackingProblem>
       tracking;  // the same object; null for an analytic function
   Schedule schedule;
+  int fixed_cases = 5;  // K for optimizers without generations where the schedule is fresh
   CaseSets sets;
   std::string optimizer;    // what `optimize` uses unless told otherwise
   std::int64_t budget = 0;  // in cases, likewise

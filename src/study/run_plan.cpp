@@ -18,6 +18,13 @@ json to_json_value(const OptionValue& value) {
 
 }  // namespace
 
+Schedule choose_schedule(const LoadedProblem& problem, std::string_view optimizer) {
+  if (problem.schedule.fresh && !find_optimizer(optimizer).capabilities.generations) {
+    return {.fresh = false, .cases = problem.fixed_cases};
+  }
+  return problem.schedule;
+}
+
 void check_plan(const RunPlan& plan) {
   const OptimizerRow& row = find_optimizer(plan.optimizer);
   if (plan.schedule.fresh && !row.capabilities.generations) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "optimizers/optimizer.hpp"
@@ -28,6 +29,10 @@ struct RunPlan {
   Schedule schedule;
   Selection selection;
 };
+
+// The problem's own schedule; where that is fresh and the optimizer has no generations, the first
+// `fixed_cases` cases for every candidate.
+Schedule choose_schedule(const LoadedProblem& problem, std::string_view optimizer);
 
 // Checks what no single part can: optimizer against schedule and problem. Throws Error{usage}.
 void check_plan(const RunPlan& plan);

@@ -250,6 +250,13 @@ TEST_F(RunTest, AFreshScheduleNeedsGenerations) {
               AllOf(HasSubstr("'random' has no generations"), HasSubstr("--schedule fixed:K")));
 }
 
+TEST_F(RunTest, AnOptimizerWithoutGenerationsGetsFixedCases) {
+  const LoadedProblem problem = load_problem("q1-complex");
+  EXPECT_TRUE(choose_schedule(problem, "ga").fresh);
+  EXPECT_FALSE(choose_schedule(problem, "random").fresh);
+  EXPECT_EQ(choose_schedule(problem, "random").cases, 5);
+}
+
 TEST_F(RunTest, ATornJournalIsMendedAndTheRunGoesOn) {
   run(make_small_plan(), "whole");
   run(make_small_plan(), "torn");
