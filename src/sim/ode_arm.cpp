@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
+#include <mutex>
 #include <vector>
 
 namespace armwright {
@@ -58,6 +59,15 @@ struct ThreadingDeleter {
     dThreadingFreeImplementation(threading);
   }
 };
+// A step that ODE gave up leaves its jobs in the list of its threading implementation. Freeing that
+// is one more failed assertion, thrown in a destructor; using it again would run the old jobs. So
+// it is kept, some hundred bytes, until the process ends.
+void abandon(dxThreadingImplementation* threading) {
+  static std::mutex mutex;
+  static auto* const abandoned = new std::vector<dxThreadingImplementation*>;
+  const std::lock_guard lock(mutex);
+  abandoned->push_back(threading);
+}
 struct WorldDeleter {
   void operator()(dxWorld* world) const {
     dWorldDestroy(world);
@@ -155,7 +165,12 @@ void OdeArm::step(std::span<const double> effort_n_m, double dt_s) {
     }
     dJointAddHingeTorque(w.hinges[i], effort_n_m[i]);
   }
-  dWorldStep(w.world.get(), dt_s);
+  try {
+    dWorldStep(w.world.get(), dt_s);
+  } catch (const DivergenceError&) {
+    abandon(w.threading.release());
+    throw;
+  }
   w.check();
 }
 

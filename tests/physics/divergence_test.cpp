@@ -20,6 +20,7 @@ using testing::HasSubstr;
 using testing::MatchesRegex;
 using testing::StartsWith;
 
+constexpr double kLargest = std::numeric_limits<double>::max();
 const VectorXd kStart = (VectorXd(3) << 0.6, -0.9, 1.3).finished();
 
 std::string divergence_message(const std::function<void()>& action) {
@@ -70,10 +71,11 @@ TEST(Divergence, ANonFiniteEffortNamesItsJoint) {
   }
 }
 
-// 1e160 squared overflows: an infinity appears inside the engine.
+// 1e160 squared overflows; with the largest double the first step itself does, and the engine stops
+// in its middle.
 TEST(Divergence, AbsurdEffortsAreCaughtAndNameAJoint) {
   const RobotModel model = make_skew_arm();
-  for (const double effort_n_m : {1e12, -1e30, 1e100, 1e160, -1e160, 1e300}) {
+  for (const double effort_n_m : {1e12, -1e30, 1e100, 1e160, -1e160, 1e300, kLargest, -kLargest}) {
     for (Eigen::Index i = 0; i < 3; ++i) {
       EXPECT_THAT(
           step_until_divergence(model, i, effort_n_m, 3),
@@ -85,17 +87,43 @@ TEST(Divergence, AbsurdEffortsAreCaughtAndNameAJoint) {
   }
 }
 
-// An arm that is merely out of control is not called diverged: 1000 N m spin the 0.04 kg m2 of the
-// last link up by 250 rad/s in every step.
-TEST(Divergence, AFastArmIsNotADivergedOne) {
-  const RobotModel model = make_skew_arm();
-  EXPECT_EQ(step_until_divergence(model, 2, 1000, 5), "(no error)");
+// A link on an axis along y, kicked to a rate within one step (qd = h tau / J, exact from rest): an
+// arm that is merely out of control is not called diverged.
+std::string kick(double rate_rad_per_s, double h_s) {
+  const RobotModel model = make_pendulum({0, 1, 0});
+  const double inertia_kg_m2 =
+      ChainOracle(model, 0).calc(VectorXd::Zero(1), VectorXd::Zero(1)).mass(0, 0);
+  PhysicsSettings physics;
+  physics.gravity_m_per_s2 = 0;
+  OdeArm arm = make_arm(model, VectorXd::Constant(1, 0.7), physics);
+  return divergence_message(
+      [&] { step(arm, VectorXd::Constant(1, rate_rad_per_s * inertia_kg_m2 / h_s), h_s); });
+}
+
+// In a microsecond the link moves by less than a metre: the rate alone decides.
+TEST(Divergence, BeginsAtAMillionRadiansPerSecond) {
+  for (const double sign : {1.0, -1.0}) {
+    EXPECT_EQ(kick(sign * 0.99e6, 1e-6), "(no error)");
+    EXPECT_THAT(
+        kick(sign * 1.01e6, 1e-6),
+        MatchesRegex("joint 1 \\(pivot\\): its link is [0-9.]+ m from the base and turns at "
+                     "1\\.01e\\+06 rad/s"));
+  }
+}
+
+// The centre of mass is at most 0.34 m from the hinge and the distance that counts is |x| + |y| +
+// |z|, so that in 0.1 s and at 1e4 rad/s it gets 0.34 to 0.48 km away, at 1e5 rad/s 3.4 to 4.8 km.
+TEST(Divergence, BeginsAtAKilometre) {
+  EXPECT_EQ(kick(1e4, 0.1), "(no error)");
+  EXPECT_THAT(kick(1e5, 0.1), MatchesRegex("joint 1 \\(pivot\\): its link is .*e\\+03 m from the "
+                                           "base and turns at 1e\\+05 rad/s"));
 }
 
 TEST(Divergence, LeavesNoTraceInTheNextSimulation) {
   const VectorXd fresh = simulate_half_a_second();
   const RobotModel model = make_skew_arm();
-  for (const double effort_n_m : {1e12, 1e160, 1e300, std::numeric_limits<double>::quiet_NaN()}) {
+  for (const double effort_n_m :
+       {1e12, 1e160, 1e300, kLargest, std::numeric_limits<double>::quiet_NaN()}) {
     OdeArm survivor = make_arm(model, kStart);  // lives on beside the one that blows up
     EXPECT_NE(step_until_divergence(model, 1, effort_n_m, 3), "(no error)");
     EXPECT_EQ(simulate_half_a_second(), fresh) << effort_n_m;
@@ -112,7 +140,7 @@ TEST(Divergence, LeavesNoTraceInItsThread) {
   const VectorXd fresh = simulate_half_a_second();
   VectorXd after;
   std::thread([&] {
-    EXPECT_NE(step_until_divergence(make_skew_arm(), 0, 1e160, 3), "(no error)");
+    EXPECT_NE(step_until_divergence(make_skew_arm(), 0, kLargest, 3), "(no error)");
     after = simulate_half_a_second();
   }).join();
   EXPECT_EQ(after, fresh);
@@ -131,6 +159,22 @@ TEST(DivergedSimulation, IsAStatusWithTimeAndJoint) {
   EXPECT_LT(result.steps, 100);
   EXPECT_TRUE(result.point_error_m.empty());  // it reached none, and nobody asked to fill them
   EXPECT_EQ(result.mean_error_m, 0);
+}
+
+// Limits that leave joint 1 nothing but the largest double.
+TEST(DivergedSimulation, IsAStatusEvenIfTheEngineStopsInTheMiddleOfAStep) {
+  ArmDesign design = kTableA5;
+  design.joints[0] = {{1, 0, 0}, {kLargest, kLargest}};
+  const TrackingSetup setup(load_irb4600(), {});
+  const TargetTable targets = setup.make_targets(make_case(1, 4));
+  const std::vector<TrackingJob> jobs{make_job(kTableA5, targets), make_job(design, targets),
+                                      make_job(kTableA5, targets)};
+  const auto results = make_engine("ode")->simulate(setup, jobs);
+  ASSERT_EQ(results.size(), 3u);
+  EXPECT_EQ(results[1].status, SimulationStatus::diverged);
+  EXPECT_THAT(results[1].reason, StartsWith("diverged at "));
+  EXPECT_EQ(results[0].status, SimulationStatus::ok);
+  expect_identical(results[2], results[0]);
 }
 
 TEST(DivergedSimulation, CountsAsTheCutOffErrorWhereThereIsOne) {

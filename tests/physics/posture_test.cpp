@@ -12,10 +12,6 @@
 namespace armwright::physics_test {
 namespace {
 
-RobotModel load_irb4600() {
-  return load_urdf(ARMWRIGHT_CONFIGS "/robots/irb4600_40_255.urdf");
-}
-
 VectorXd make_vector(std::initializer_list<double> values) {
   VectorXd v(static_cast<Eigen::Index>(values.size()));
   std::copy(values.begin(), values.end(), v.begin());

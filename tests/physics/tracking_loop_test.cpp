@@ -90,6 +90,7 @@ TEST(TrackingLoop, StepsThePlantOnceAPeriodWithTheEffortForTheTargetAtItsEnd) {
 TEST(TrackingLoop, HoldsTheEffortOverSubsteps) {
   ScriptedRun run(make_task(4));
   ScriptedRun plain(make_task());
+  run.job.design = plain.job.design = &kTableA1;  // a controller that knows the time
   ScriptedArm arm, plain_arm;
   EXPECT_EQ(run(arm).steps, 2 * kSteps);
   plain(plain_arm);
