@@ -12,7 +12,7 @@ namespace armwright {
 
 class RandomStream {
  public:
-  // `name` says what the numbers are for ("train/1", "optimizer/ga/seed=1"); `index` picks one of
+  // `name` says what the numbers are for ("train/1", "optimizer/ga"); `index` picks one of
   // its 2^64 substreams.
   explicit RandomStream(std::string_view name, std::uint64_t index = 0);
 

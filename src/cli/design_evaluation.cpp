@@ -74,12 +74,7 @@ std::optional<DesignEvaluation> evaluate_with_progress(const TrackingProblem& pr
   while (evaluation.results.size() < cases.count) {
     const std::uint64_t first = evaluation.results.size();
     const std::uint64_t count = std::min(cases.count - first, kCasesPerJob * jobs);
-    std::vector<TestCase> part;
-    for (std::uint64_t i = first; i < first + count; ++i) {
-      part.push_back(cases.set.make_case(i));
-    }
-    auto results = evaluate_design(problem, design, TestSet::make_from_cases(std::move(part)),
-                                   count, jobs, stop);
+    auto results = evaluate_design(problem, design, cases.set, first, count, jobs, stop);
     if (!results) {
       return std::nullopt;
     }
@@ -96,7 +91,7 @@ std::optional<DesignEvaluation> evaluate_with_progress(const TrackingProblem& pr
     energy_j += error ? result.energy_j : 0;
     numbers += error ? 1 : 0;
   }
-  evaluation.summary = summarize(errors);
+  evaluation.summary = summarize(errors, kFailureError_m);
   evaluation.total_torque_n_m = calc_total_torque_n_m(design);
   if (numbers > 0) {
     evaluation.mean_energy_j = energy_j / numbers;

@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "cli/arguments.hpp"
 #include "cli/design_evaluation.hpp"
 #include "cli/format.hpp"
+#include "cli/json.hpp"
 #include "cli/progress_bar.hpp"
 #include "cli/result_view.hpp"
 #include "cli/session.hpp"
@@ -50,10 +50,6 @@ struct EvaluateOptions {
   std::string trajectory;
   std::string trajectory_case;
 };
-
-json to_json_value(std::optional<double> value) {
-  return value && std::isfinite(*value) ? json(*value) : json(nullptr);
-}
 
 struct EvaluatedDesign {
   DesignFile design;

@@ -126,12 +126,15 @@ std::optional<ProgressBar::Rate> ProgressBar::calc_rate(const Progress& progress
                                                         Clock::time_point now) const {
   constexpr double kLeast_s = 0.3;  // no rate from less
   const double elapsed_s = duration<double>(now - pace_.since).count();
-  const auto simulated = static_cast<double>(count_simulated(progress) - pace_.simulated);
-  if (elapsed_s < kLeast_s || simulated == 0) {
+  const auto simulated =
+      static_cast<double>(count_simulated(progress)) - static_cast<double>(pace_.simulated);
+  if (elapsed_s < kLeast_s || simulated <= 0) {
     return std::nullopt;
   }
   const double rate = simulated / elapsed_s;
-  return Rate{rate, static_cast<double>(progress.total - progress.done) / rate};
+  return Rate{rate, std::max(0.0, static_cast<double>(progress.total) -
+                                      static_cast<double>(progress.done)) /
+                        rate};
 }
 
 void ProgressBar::draw_bar(const Progress& progress, Clock::time_point now) {

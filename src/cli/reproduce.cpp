@@ -4,12 +4,12 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "cli/design_evaluation.hpp"
 #include "cli/format.hpp"
+#include "cli/json.hpp"
 #include "cli/progress_bar.hpp"
 #include "cli/session.hpp"
 #include "cli/signals.hpp"
@@ -172,10 +172,6 @@ std::string format_text(const std::vector<Reproduced>& rows, const Style& style)
                         format_significant(least, 3), format_significant(most, 3));
   }
   return text + "\n";
-}
-
-json to_json_value(std::optional<double> value) {
-  return value ? json(*value) : json(nullptr);
 }
 
 std::string format_json(const std::vector<Reproduced>& rows) {

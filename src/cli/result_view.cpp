@@ -133,6 +133,17 @@ std::string format_design(const DesignFile& design, const Style& style) {
   return table.format(style, 2);
 }
 
+std::string describe_no_winner(const RunResult& result) {
+  if (result.counts.evaluations == 0) {
+    return "Nothing was evaluated, so there is no winner.";
+  }
+  if (result.counts.feasible == 0 && !result.first_failure.empty()) {
+    return "No design worked, so there is no winner. The first failed with: " +
+           sanitize(result.first_failure);
+  }
+  return "No design met the constraints, so there is no winner.";
+}
+
 std::string describe_result(const RunResult& result, const std::filesystem::path& folder,
                             const Style& style) {
   const RunCounts& counts = result.counts;
@@ -146,7 +157,7 @@ std::string describe_result(const RunResult& result, const std::filesystem::path
   text += fmt::format("; {} failed, {} clipped to the bounds; ended by: {}\n\n", counts.failed,
                       counts.clipped, sanitize(result.end_reason));
   if (!result.winner) {
-    text += style.red("No design worked, so there is no winner.") + "\n\n";
+    text += style.red(describe_no_winner(result)) + "\n\n";
   } else {
     text += format_winner(result, folder, style) + "\n";
     text += is_tracking(result) ? format_tracking_test(result, style)

@@ -14,12 +14,14 @@ namespace {
 
 // A signal handler reaches nothing but globals.
 std::atomic<StopSignal*> g_stop = nullptr;
+std::atomic<bool> g_signalled = false;
 static_assert(std::atomic<StopSignal*>::is_always_lock_free);
+static_assert(std::atomic<bool>::is_always_lock_free);
 
 extern "C" void handle_signal(int number) {
   const int saved = errno;
   StopSignal& stop = *g_stop.load();
-  if (stop.reason() != StopReason::none) {
+  if (g_signalled.exchange(true)) {
     ::_exit(number == SIGINT ? exit_code::kInterrupted : exit_code::kStopped);
   }
   stop.request(number == SIGINT ? StopReason::interrupted : StopReason::terminated);

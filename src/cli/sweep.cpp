@@ -5,12 +5,12 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "cli/design_evaluation.hpp"
 #include "cli/format.hpp"
+#include "cli/json.hpp"
 #include "cli/progress_bar.hpp"
 #include "cli/session.hpp"
 #include "cli/signals.hpp"
@@ -92,10 +92,6 @@ ChosenSweep choose_sweep(const SweepOptions& options, const LoadedProblem& probl
                             sanitize(options.values)));
   }
   return chosen;
-}
-
-json to_json_value(std::optional<double> value) {
-  return value ? json(*value) : json(nullptr);
 }
 
 std::string format_json(const ChosenSweep& sweep, const std::vector<SweepRow>& rows) {
@@ -188,7 +184,10 @@ int run_sweep(const SweepOptions& options, Session& session) {
   catch_signals(session.stop);
   ProgressBar bar(options.quiet, {"error", "m"});
   std::vector<SweepRow> rows;
-  BarShare share{0, chosen.count * problems.size()};
+  BarShare share;
+  for (const LoadedProblem& problem : problems) {
+    share.total += choose_cases(problem, options.cases).count;
+  }
   for (std::size_t i = 0; i < problems.size(); ++i) {
     // A swept workspace changes the cases, and one problem's targets are of no use to the next.
     const ChosenCases cases = choose_cases(problems[i], options.cases);

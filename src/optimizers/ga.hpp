@@ -9,12 +9,11 @@
 // which are what the scores belong to.
 //
 // Our extensions, none of which touches an unconstrained problem on logarithmic variables:
-// - A variable of linear scale is mutated by adding, not by multiplying, so that zero is not a trap
-// and the sign can change. The step
-//   spans the same share of the box as the factor spans of a logarithmic box from base/100 to
-//   base*100.
+// - A variable of linear scale is mutated by adding, not by multiplying, so that zero is not a
+//   trap and the sign can change. The step spans the same share of the box as the factor spans of
+//   a logarithmic box from base/100 to base*100.
 // - Constraints: feasibility first (Deb 2000, An efficient constraint handling method for genetic
-// algorithms).
+//   algorithms).
 // - `generations` and `include_prototype` as options.
 // Limits: uses objective 0 only; constraint violations are added up as they are, in whatever units
 // the problem gives them. Crossover never leaves the span of the parents (extent <= 1/2), so an

@@ -1,5 +1,6 @@
 #include "problems/problem.hpp"
 
+#include <algorithm>
 #include <cassert>
 
 namespace armwright {
@@ -19,6 +20,12 @@ const char* to_string(EvaluationStatus status) {
   }
   assert(false && "an evaluation status without a name");
   return "failed";
+}
+
+bool is_feasible(const Evaluation& evaluation) {
+  return !evaluation.objectives.empty() &&
+         std::all_of(evaluation.constraint_values.begin(), evaluation.constraint_values.end(),
+                     [](double g) { return g <= 0; });
 }
 
 Evaluation Problem::evaluate(std::span<const double> x, const CaseBlock& block) const {

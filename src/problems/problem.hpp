@@ -92,6 +92,9 @@ struct Evaluation {
   int failed_cases = 0;             // cases that yielded no error
 };
 
+// It has objectives, and every constraint is met.
+bool is_feasible(const Evaluation& evaluation);
+
 class Problem {
  public:
   virtual ~Problem() = default;

@@ -306,6 +306,12 @@ LoadedProblem load_problem(std::string_view name_or_path, std::span<const std::s
   const ConfigTable table = ConfigTable::load(path, overrides);
   LoadedProblem loaded;
   loaded.name = path.stem().string();
+  if (sanitize(loaded.name) != loaded.name) {
+    throw Error(ErrorKind::usage,
+                fmt::format("{}: a problem is named after its file, and this name is not printable "
+                            "UTF-8; rename the file",
+                            sanitize(path.string())));
+  }
   loaded.title = table.get_string("title", loaded.name);
   table.get_string("description", "");
   static const std::vector<std::string> kinds = {"tracking", "analytic"};

@@ -5,9 +5,9 @@
 // Timeline: segment k takes ceil((t_m + rest) / h) control periods and its clock starts anew; the
 // controllers are not reset between segments. In each period: target angles from the moving target
 // at the END of the period, efforts from the angles at its start, then the plant is stepped
-// `substeps` times with the effort held. The positional error of point k is the largest |tip -
-// target| at the ends of periods with t_m <= t <= t_m + rest; a case's error is the mean over its
-// points (from the second on, unless the first is counted).
+// `substeps` times with the effort held. The positional error of point k is the largest
+// |tip - target| at the ends of periods from t_m to the end of the segment; a case's error is the
+// mean over its points (from the second on, unless the first is counted).
 #pragma once
 
 #include <Eigen/Core>

@@ -134,7 +134,7 @@ void write_database(const std::filesystem::path& file, const ProblemDescription&
   std::filesystem::remove(temporary);
   {
     Database database(temporary);
-    database.execute("PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF; BEGIN");
+    database.execute("PRAGMA journal_mode=OFF; PRAGMA synchronous=FULL; BEGIN");
     database.execute(kSchema);
     {
       Insert variable(database, "INSERT INTO variable VALUES (?,?,?,?,?,?)");

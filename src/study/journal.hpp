@@ -3,8 +3,8 @@
 //
 // Format (little-endian): the 8 bytes "AWJRNL01", then records of
 //   u32 payload length | u32 CRC-32 of the payload | payload
-// Payloads are self-describing: a record type byte and its fields (journal.cpp). Numbers are stored
-// as their bits.
+// Payloads are self-describing: a record type byte and its fields (journal_format.hpp). Numbers are
+// stored as their bits.
 //
 // Durability: append() hands a record over; it reaches the operating system at the latest 10 ms
 // later or at flush(), and the disk (fdatasync) at least once a second and at close(). Appending is
@@ -37,8 +37,8 @@ struct EvaluationRecord {
   Evaluation evaluation;
 };
 
-// The run has come to its end; written once, last. `reason` as in the manifest ("budget",
-// "converged").
+// The run has come to its end; written once, last. `reason` is "budget" or
+// "optimizer finished".
 struct EndRecord {
   std::string reason;
   std::uint64_t evaluations = 0;

@@ -4,11 +4,11 @@
 //   file       = "AWJRNL01" record*
 //   record     = u32 payload length | u32 CRC-32 of the payload | payload
 //   payload    = evaluation | end
-//   evaluation = u8 1 | u8 clipped | u8 role | u8 status | i32 failed_cases | u64 index | u64
-//   generation
+//   evaluation = u8 1 | u8 clipped | u8 role | u8 status | i32 failed_cases | u64 index
+//                | u64 generation
 //                | text set | list numbers (u64) | list x | text reason
-//                | list objectives | list constraint_values | list case_errors | list metrics |
-//                list residuals
+//                | list objectives | list constraint_values | list case_errors | list metrics
+//                | list residuals
 //   end        = u8 2 | u64 evaluations | text reason
 //   text       = u32 length | bytes          list = u32 count | 8 bytes each
 #pragma once

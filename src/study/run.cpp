@@ -28,6 +28,7 @@ RunResult make_result(const RunPlan& plan) {
   result.objective_name = description.objectives.front().name;
   result.objective_unit = description.objectives.front().unit;
   result.test_set = plan.problem.sets.test;
+  result.tracking = plan.problem.tracking != nullptr;
   result.published = plan.problem.published;
   return result;
 }
@@ -58,7 +59,7 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   check_plan(plan);
   const auto optimizer = find_optimizer(plan.optimizer).make(plan.options);
   const RunFolder folder(request.folder, plan, request.command_line);
-  if (std::filesystem::exists(folder.result())) {
+  if (are_derived_files_there(folder.path())) {
     observer.on_message(
         fmt::format("{}: this run is complete; use --new for another one", folder.path().string()));
     return load_result(folder.path());
@@ -69,17 +70,20 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   describe_start(folder, recorded, observer);
   ThreadPool pool(request.jobs);
   CaseRunner runner(*plan.problem.problem, pool, stop);
-  RunEvaluator evaluator(plan, runner, stop, journal, std::move(recorded.training), observer);
+  const bool ended = recorded.ended;
+  Judge judge(plan, runner, journal, std::move(recorded.judgements), observer);
+  RunEvaluator evaluator(plan, runner, stop, journal, std::move(recorded), observer);
   optimizer->minimize(evaluator, plan.seed);
   if (stop.requested()) {
     journal.close();
     return std::nullopt;
   }
+  evaluator.check_replay_complete();
 
   RunResult result = make_result(plan);
   result.end_reason = evaluator.budget_spent() ? "budget" : "optimizer finished";
   result.counts = evaluator.counts();
-  Judge judge(plan, runner, journal, std::move(recorded.judgements), observer);
+  result.first_failure = evaluator.first_failure();
   auto judged = judge.validate(evaluator.select_candidates());
   if (!judged) {
     journal.close();
@@ -94,9 +98,9 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
       return std::nullopt;
     }
     result.test = std::move(*test);
-    result.test_summary = summarize(result.test.case_errors);
+    result.test_summary = summarize(result.test.case_errors, get_failure_error(result));
   }
-  if (!recorded.ended) {
+  if (!ended) {
     journal.append(EndRecord{result.end_reason, result.counts.evaluations});
   }
   journal.close();
@@ -106,14 +110,15 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
 
 std::optional<std::vector<TrackingResult>> evaluate_design(const TrackingProblem& problem,
                                                            const ArmDesign& design,
-                                                           const TestSet& set, std::uint64_t cases,
-                                                           unsigned jobs, StopSignal& stop) {
+                                                           const TestSet& set, std::uint64_t first,
+                                                           std::uint64_t cases, unsigned jobs,
+                                                           StopSignal& stop) {
   problem.check_design(design);
   std::vector<TrackingResult> results(cases);
   ThreadPool pool(jobs);
-  pool.run(results.size(), [&](std::size_t number) {
+  pool.run(results.size(), [&](std::size_t i) {
     if (!stop.requested()) {
-      results[number] = problem.track(design, set, number);
+      results[i] = problem.track(design, set, first + i);
     }
   });
   return stop.requested() ? std::nullopt : std::optional(std::move(results));

@@ -17,19 +17,17 @@ bool same_bits(std::span<const double> a, std::span<const double> b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
 }
 
-bool is_feasible(const Evaluation& evaluation) {
-  return !evaluation.objectives.empty() &&
-         std::all_of(evaluation.constraint_values.begin(), evaluation.constraint_values.end(),
-                     [](double g) { return g <= 0; });
-}
-
 }  // namespace
 
 RunEvaluator::RunEvaluator(const RunPlan& plan, CaseRunner& runner, StopSignal& stop,
-                           Journal& journal, std::vector<EvaluationRecord> recorded,
-                           RunObserver& observer)
-    : plan_(plan), runner_(runner), stop_(stop), journal_(journal), observer_(observer) {
-  for (EvaluationRecord& record : recorded) {
+                           Journal& journal, JournalContent recorded, RunObserver& observer)
+    : plan_(plan),
+      runner_(runner),
+      stop_(stop),
+      journal_(journal),
+      observer_(observer),
+      journal_ended_(recorded.ended) {
+  for (EvaluationRecord& record : recorded.training) {
     recorded_.resize(std::max<std::size_t>(recorded_.size(), record.index + 1));
     const std::uint64_t index = record.index;
     recorded_[index] = std::move(record);
@@ -61,6 +59,7 @@ void RunEvaluator::begin_generation() {
     std::iota(block_.numbers.begin(), block_.numbers.end(), first);
     if (incumbent_) {
       candidates_.push_back(*incumbent_);
+      last_best_ = incumbent_->training_objective;
       incumbent_.reset();
     }
   }
@@ -116,12 +115,24 @@ void RunEvaluator::check_replay(const EvaluationRecord& request,
     difference = "its generation or clipping differs";
   }
   if (!difference.empty()) {
-    throw Error(
-        ErrorKind::bad_data,
-        fmt::format("evaluation {} of the journal is not what optimizer '{}' asks for now: {}. "
-                    "The run was made by another version, machine or plugin; resume it there, "
-                    "or start a new run with --new",
-                    recorded.index, plan_.optimizer, difference));
+    refuse_replay(recorded.index, difference);
+  }
+}
+
+void RunEvaluator::refuse_replay(std::uint64_t evaluation, const std::string& difference) const {
+  throw Error(
+      ErrorKind::bad_data,
+      fmt::format("evaluation {} of the journal is not what optimizer '{}' asks for now: {}. "
+                  "The run was made by another version, machine or plugin; resume it there, "
+                  "or start a new run with --new",
+                  evaluation, plan_.optimizer, difference));
+}
+
+void RunEvaluator::check_replay_complete() const {
+  for (const auto& record : recorded_) {
+    if (record) {
+      refuse_replay(record->index, "it is recorded, and no longer asked for");
+    }
   }
 }
 
@@ -149,6 +160,10 @@ std::vector<Score> RunEvaluator::evaluate(std::span<const std::vector<double>> p
       missing.push_back(i);
     }
     requests.push_back(std::move(request));
+  }
+
+  if (journal_ended_ && !missing.empty()) {
+    refuse_replay(requests[missing.front()].index, "the recorded run had ended before it");
   }
 
   std::vector<CandidateJob> jobs;
@@ -197,6 +212,10 @@ void RunEvaluator::take(const EvaluationRecord& record, Score& score) {
   counts_.failed += record.evaluation.status == EvaluationStatus::ok ? 0 : 1;
   consider(record);
   const Evaluation& evaluation = record.evaluation;
+  counts_.feasible += is_feasible(evaluation) ? 1 : 0;
+  if (evaluation.objectives.empty() && first_failure_.empty()) {
+    first_failure_ = evaluation.reason;
+  }
   score.status = evaluation.status;
   score.clipped = record.clipped;
   score.residuals = evaluation.residuals;
@@ -229,11 +248,10 @@ void RunEvaluator::report(std::uint64_t more_cases, std::uint64_t more_replayed)
   progress.total = static_cast<std::uint64_t>(plan_.budget) / cases_each * cases_each;
   progress.replayed = counts_.replayed * cases_each + more_replayed;
   progress.generation = counts_.generations;
-  const Candidate* shown = incumbent_             ? &*incumbent_
-                           : !candidates_.empty() ? &candidates_.back()
-                                                  : nullptr;
-  if (shown != nullptr) {
-    progress.best_objective = shown->training_objective;
+  if (incumbent_) {
+    progress.best_objective = incumbent_->training_objective;
+  } else if (last_best_) {
+    progress.best_objective = *last_best_;
   }
   observer_.on_progress(progress);
 }

@@ -33,6 +33,7 @@ struct RunCounts {
   std::uint64_t replayed = 0;  // evaluations answered from the journal
   std::uint64_t clipped = 0;   // points asked for outside the bounds
   std::uint64_t failed = 0;    // evaluations whose status is not ok
+  std::uint64_t feasible = 0;  // evaluations with objectives and every constraint met
   std::uint64_t generations = 0;
 };
 
@@ -58,7 +59,7 @@ class RunObserver {
 class RunEvaluator final : public Evaluator {
  public:
   RunEvaluator(const RunPlan& plan, CaseRunner& runner, StopSignal& stop, Journal& journal,
-               std::vector<EvaluationRecord> recorded, RunObserver& observer);
+               JournalContent recorded, RunObserver& observer);
 
   const ProblemDescription& problem() const override;
   std::vector<Score> evaluate(std::span<const std::vector<double>> points) override;
@@ -69,12 +70,18 @@ class RunEvaluator final : public Evaluator {
 
   bool budget_spent() const { return budget_spent_; }
   const RunCounts& counts() const { return counts_; }
+  // Why the first evaluation without objectives has none; empty if there is no such.
+  const std::string& first_failure() const { return first_failure_; }
+  // Once the optimizer has returned by itself: Error{bad_data} if the journal holds more
+  // evaluations than it asked for.
+  void check_replay_complete() const;
   // The designs to judge on the validation set, oldest first, no two the same.
   std::vector<Candidate> select_candidates() const;
 
  private:
   EvaluationRecord make_request(std::span<const double> x) const;
   void check_replay(const EvaluationRecord& request, const EvaluationRecord& recorded) const;
+  [[noreturn]] void refuse_replay(std::uint64_t evaluation, const std::string& difference) const;
   void take(const EvaluationRecord& record, Score& score);
   void consider(const EvaluationRecord& record);
   void report(std::uint64_t more_cases, std::uint64_t more_replayed);
@@ -87,11 +94,14 @@ class RunEvaluator final : public Evaluator {
   std::vector<std::optional<EvaluationRecord>> recorded_;  // by index
   bool budget_spent_ = false;
   bool stopped_ = false;
+  bool journal_ended_;
   RunCounts counts_;
+  std::string first_failure_;
   CaseBlock block_;
   std::optional<Candidate> incumbent_;  // fixed: best so far; fresh: best of this generation
-  std::vector<Candidate>
-      candidates_;  // fixed: all improvements; fresh: bests of generations and recommendations
+  std::optional<double> last_best_;     // fresh: the best objective of the generation before
+  // fixed: all improvements; fresh: bests of generations and recommendations
+  std::vector<Candidate> candidates_;
 };
 
 }  // namespace armwright

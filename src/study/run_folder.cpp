@@ -19,8 +19,23 @@ using nlohmann::json;
 constexpr std::size_t kManifestLimit_bytes = std::size_t{16} << 20;
 constexpr int kFormat = 1;
 
-std::filesystem::path make_and_return(const std::filesystem::path& path) {
+// Makes the folder, or accepts one that holds a run or nothing: a run's files must not replace
+// somebody else's of the same names.
+std::filesystem::path claim_folder(const std::filesystem::path& path) {
   make_folder(path);
+  if (std::filesystem::exists(path / "manifest.json")) {
+    return path;
+  }
+  for (const auto& entry : std::filesystem::directory_iterator(path)) {
+    const std::string name = entry.path().filename().string();
+    if (name != "lock" && name != "manifest.json.new") {  // what a kill at the very start leaves
+      throw Error(
+          ErrorKind::usage,
+          fmt::format("{}: holds '{}' but no manifest.json, so it is not the folder of a run; "
+                      "choose another with --out, or --new",
+                      path.string(), sanitize(name)));
+    }
+  }
   return path;
 }
 
@@ -64,16 +79,9 @@ json read_manifest(const std::filesystem::path& file) {
 
 RunFolder::RunFolder(const std::filesystem::path& path, const RunPlan& plan,
                      std::span<const std::string> command_line)
-    : path_(make_and_return(path)), lock_(path) {
+    : path_(claim_folder(path)), lock_(path) {
   const auto file = path / "manifest.json";
   if (!std::filesystem::exists(file)) {
-    if (std::filesystem::exists(journal())) {
-      throw Error(
-          ErrorKind::bad_data,
-          fmt::format("{}: holds a journal but no manifest.json, so nobody can tell what it is of; "
-                      "choose another folder with --out, or --new",
-                      path.string()));
-    }
     write_file_atomically(file, make_manifest(plan, command_line).dump(2) + "\n");
     return;
   }

@@ -15,7 +15,7 @@ namespace armwright {
 // Which of a run's designs are judged on the validation set; the best of them there is the winner
 // and meets the test set.
 struct Selection {
-  int last = 20;  // the last N different incumbents (fresh schedule: bests of generations and
+  int last = 40;  // the last N different incumbents (fresh schedule: bests of generations and
                   // recommendations)
   int best = 5;   // and the N with the best training objective
 };

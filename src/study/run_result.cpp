@@ -106,6 +106,10 @@ json summary_to_json(const ErrorSummary& summary) {
 
 }  // namespace
 
+double get_failure_error(const RunResult& result) {
+  return result.tracking ? kFailureError_m : std::numeric_limits<double>::infinity();
+}
+
 std::string to_json(const RunResult& result) {
   json judged = json::array();
   for (const JudgedCandidate& candidate : result.judged) {
@@ -116,12 +120,15 @@ std::string to_json(const RunResult& result) {
       {"problem", result.problem},
       {"optimizer", result.optimizer},
       {"seed", result.seed},
+      {"tracking", result.tracking},
       {"end_reason", result.end_reason},
+      {"first_failure", result.first_failure},
       {"counts",
        {{"evaluations", result.counts.evaluations},
         {"cases", result.counts.cases},
         {"clipped", result.counts.clipped},
         {"failed", result.counts.failed},
+        {"feasible", result.counts.feasible},
         {"generations", result.counts.generations}}},
       {"variables", result.variable_names},
       {"metrics", result.metric_names},
@@ -153,12 +160,15 @@ RunResult parse_result(const std::string& text, const std::filesystem::path& fil
     result.problem = j.at("problem");
     result.optimizer = j.at("optimizer");
     result.seed = j.at("seed");
+    result.tracking = j.at("tracking");
     result.end_reason = j.at("end_reason");
+    result.first_failure = j.at("first_failure");
     const json& counts = j.at("counts");
     result.counts.evaluations = counts.at("evaluations");
     result.counts.cases = counts.at("cases");
     result.counts.clipped = counts.at("clipped");
     result.counts.failed = counts.at("failed");
+    result.counts.feasible = counts.at("feasible");
     result.counts.generations = counts.at("generations");
     result.variable_names = j.at("variables").get<std::vector<std::string>>();
     result.metric_names = j.at("metrics").get<std::vector<std::string>>();
@@ -179,7 +189,7 @@ RunResult parse_result(const std::string& text, const std::filesystem::path& fil
         throw std::runtime_error("its winner is not among its candidates");
       }
       result.test = evaluation_from_json(j.at("winner").at("test"));
-      result.test_summary = summarize(result.test.case_errors);
+      result.test_summary = summarize(result.test.case_errors, get_failure_error(result));
     }
     return result;
   } catch (const std::exception& error) {

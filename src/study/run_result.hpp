@@ -23,9 +23,11 @@ struct RunResult {
   std::string optimizer;
   std::uint64_t seed = 1;
   std::string end_reason;  // "budget" or "optimizer finished"
-  RunCounts counts;        // `replayed` is not recorded
+  std::string
+      first_failure;  // why the first evaluation without objectives has none, if there is one
+  RunCounts counts;   // `replayed` is not recorded
   std::vector<JudgedCandidate> judged;
-  std::optional<std::size_t> winner;  // index into judged; nothing if nothing feasible was found
+  std::optional<std::size_t> winner;  // index into judged; nothing if none has an objective
   Evaluation test;                    // the winner's
   ErrorSummary test_summary;
   std::vector<std::string> variable_names;
@@ -33,8 +35,12 @@ struct RunResult {
   std::string objective_name;
   std::string objective_unit;
   std::string test_set;
+  bool tracking = false;  // the problem is an arm's
   PublishedWinner published;
 };
+
+// Above which error a test case has failed: kFailureError_m for an arm, never for a function.
+double get_failure_error(const RunResult& result);
 
 std::string to_json(const RunResult& result);
 RunResult parse_result(const std::string& json, const std::filesystem::path& file);

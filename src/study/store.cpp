@@ -8,11 +8,12 @@
 #include "base/text.hpp"
 #include "problems/design_file.hpp"
 #include "study/database.hpp"
+#include "study/run.hpp"
 
 namespace armwright {
 namespace {
 
-// With generations one row each, otherwise one row an improvement.
+// With generations one row each, otherwise one row an improvement; feasible evaluations only.
 std::string make_convergence_csv(const JournalContent& journal) {
   struct Row {
     std::uint64_t evaluations = 0, cases = 0, generation = 0, counted = 0;
@@ -22,7 +23,7 @@ std::string make_convergence_csv(const JournalContent& journal) {
   std::uint64_t cases = 0;
   for (const EvaluationRecord& record : journal.training) {
     cases += record.cases.numbers.size();
-    if (record.evaluation.objectives.empty()) {
+    if (!is_feasible(record.evaluation)) {
       continue;
     }
     const double objective = record.evaluation.objectives.front();
@@ -56,8 +57,8 @@ std::string make_winner_toml(const RunPlan& plan, const RunResult& result,
   DesignFile file;
   file.name = make_run_name(plan);
   file.title = fmt::format("Winner of {} on {}", plan.optimizer, plan.problem.name);
-  file.source = fmt::format("armwright optimize {} --optimizer {} --seed {} --budget {}",
-                            plan.problem.name, plan.optimizer, plan.seed, plan.budget);
+  file.source = fmt::format("armwright, {} with seed {}; the manifest.json of its run says all",
+                            plan.optimizer, plan.seed);
   file.design = tracking.make_design(x);
   for (const Joint& joint : tracking.config().robot.joints) {
     file.joint_names.push_back(joint.name);
@@ -90,6 +91,16 @@ std::string make_trajectory_csv(const TrackingProblem& problem, const TrackingRe
                        sample.target_m.z(), (sample.tip_m - sample.target_m).norm());
   }
   return csv;
+}
+
+bool are_derived_files_there(const std::filesystem::path& folder) {
+  const auto is_there = [&](const char* name) { return std::filesystem::exists(folder / name); };
+  if (!is_there("result.json") || !is_there("convergence.csv") || !is_there("results.sqlite")) {
+    return false;
+  }
+  const RunResult result = load_result(folder);
+  return !result.winner || !result.tracking ||
+         (is_there("winner.toml") && is_there("winner-trajectory.csv"));
 }
 
 void write_derived_files(const RunFolder& folder, const RunPlan& plan, const RunResult& result,

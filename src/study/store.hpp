@@ -13,6 +13,9 @@ namespace armwright {
 // target and error.
 std::string make_trajectory_csv(const TrackingProblem& problem, const TrackingResult& result);
 
+// Whether everything that write_derived_files() makes is there, so that nothing needs rebuilding.
+bool are_derived_files_there(const std::filesystem::path& folder);
+
 // Writes result.json last, so that its presence says that the rest is there.
 void write_derived_files(const RunFolder& folder, const RunPlan& plan, const RunResult& result,
                          const JournalContent& journal);

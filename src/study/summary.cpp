@@ -5,8 +5,6 @@
 #include <limits>
 #include <vector>
 
-#include "problems/tracking_problem.hpp"
-
 namespace armwright {
 namespace {
 
@@ -23,7 +21,7 @@ std::optional<double> calc_quantile(const std::vector<double>& sorted, double q)
 
 }  // namespace
 
-ErrorSummary summarize(std::span<const double> errors) {
+ErrorSummary summarize(std::span<const double> errors, double failure_error) {
   ErrorSummary summary;
   summary.cases = errors.size();
   std::vector<double> sorted;
@@ -36,7 +34,7 @@ ErrorSummary summarize(std::span<const double> errors) {
       continue;
     }
     sum += error;
-    summary.failures += error > kFailureError_m ? 1 : 0;
+    summary.failures += error > failure_error ? 1 : 0;
     sorted.push_back(error);
   }
   if (summary.without_number == summary.cases) {

@@ -212,7 +212,8 @@ TEST_F(Cli, AnUnreachableTargetIsNamedAndHasNoNumber) {
   const Outcome outcome = run({"evaluate", "table-a5", "--problem", "q1-complex", "--test-cases",
                                file, "--json", "--set", "task.count_first_point=true"});
   EXPECT_EQ(outcome.exit_code, 3);
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("case 1: on the way to point 1: target ("), HasSubstr("out of reach")));
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("case 1: on the way to point 1: target ("),
+                                 HasSubstr("out of reach")));
   const json answer = json::parse(outcome.out);
   EXPECT_EQ(answer["cases"][0].at("status"), "ok");
   EXPECT_EQ(answer["cases"][1].at("status"), "unreachable");

@@ -11,6 +11,7 @@
 
 #include "base/error.hpp"
 #include "base/file.hpp"
+#include "base/text.hpp"
 #include "study/judge.hpp"
 #include "study/run_folder.hpp"
 #include "study/run_support.hpp"
@@ -211,6 +212,96 @@ TEST_F(RunTest, TheResultIsRebuiltFromTheJournal) {
   EXPECT_EQ(again->counts.replayed, again->counts.evaluations);
   EXPECT_EQ(read_result("a"), before);
   EXPECT_EQ(std::filesystem::file_size(temporary_ / "a" / "journal"), size);
+}
+
+TEST_F(RunTest, ARemovedTableIsRebuiltThoughTheResultIsThere) {
+  run(make_small_plan(), "a");
+  for (const auto* file : {"results.sqlite", "winner-trajectory.csv"}) {
+    std::filesystem::remove(temporary_ / "a" / file);
+    ASSERT_TRUE(run(make_small_plan(), "a"));
+    EXPECT_TRUE(std::filesystem::exists(temporary_ / "a" / file)) << file;
+  }
+}
+
+TEST_F(RunTest, AFolderWithOtherFilesIsLeftAlone) {
+  std::filesystem::create_directories(temporary_ / "mine");
+  std::ofstream(temporary_ / "mine" / "winner.toml") << "precious";
+  EXPECT_THAT(
+      error_of([&] { run(make_small_plan(), "mine"); }),
+      HasSubstr("mine: holds 'winner.toml' but no manifest.json, so it is not the folder of "
+                "a run; choose another with --out"));
+  EXPECT_EQ(read_file(temporary_ / "mine" / "winner.toml", 100), "precious");
+  EXPECT_FALSE(std::filesystem::exists(temporary_ / "mine" / "lock"));
+}
+
+TEST_F(RunTest, AFunctionHasNoFailuresAndNoMetres) {
+  RunPlan plan;
+  plan.problem = load_problem("sphere");
+  plan.optimizer = "random";
+  plan.options = Options::parse("random", find_optimizer("random").options, {});
+  plan.budget = 20;
+  const auto result = run(plan, "a");
+  ASSERT_TRUE(result && result->winner);
+  EXPECT_GT(result->test_summary.mean.value(), 1.0);
+  EXPECT_EQ(result->test_summary.failures, 0u);
+  EXPECT_EQ(result->counts.feasible, 20u);
+}
+
+TEST_F(RunTest, ConvergenceCountsFeasibleEvaluationsOnly) {
+  RunPlan plan;
+  plan.problem = load_problem("constrained");
+  plan.optimizer = "random";
+  plan.options = Options::parse("random", find_optimizer("random").options, {});
+  plan.budget = 2000;
+  const auto result = run(plan, "a");
+  ASSERT_TRUE(result && result->winner);
+  double best = 0;
+  std::size_t infeasible_and_lower = 0;
+  for (const EvaluationRecord& record : read("a").training) {
+    if (is_feasible(record.evaluation)) {
+      best = std::min(best, record.evaluation.objectives.front());
+    }
+  }
+  for (const EvaluationRecord& record : read("a").training) {
+    infeasible_and_lower += record.evaluation.objectives.front() < best ? 1 : 0;
+  }
+  ASSERT_GT(infeasible_and_lower, 0u) << "the test needs lower values outside";
+  const std::string csv = read_file(temporary_ / "a" / "convergence.csv", 1 << 20);
+  const std::string last = csv.substr(csv.rfind('\n', csv.size() - 2) + 1);
+  EXPECT_THAT(last, HasSubstr("," + format_exact(best) + ","));
+}
+
+TEST_F(RunTest, ReasonsOfFailureReachTheResult) {
+  RunPlan plan = make_small_plan("ga", 16);
+  plan.problem = load_problem(
+      "q1-complex", std::vector<std::string>{"workspace.points=4", "workspace.centre_m=[5,0,1]"});
+  const auto result = run(plan, "a");
+  ASSERT_TRUE(result);
+  EXPECT_FALSE(result->winner);
+  EXPECT_EQ(result->counts.failed, 16u);
+  EXPECT_THAT(result->first_failure, HasSubstr("out of reach"));
+}
+
+TEST_F(RunTest, AJournalWithMoreThanIsAskedForIsRefused) {
+  run(make_small_plan("ga", 40), "long");
+  run(make_small_plan("ga", 24), "short");
+  std::filesystem::remove(temporary_ / "short" / "result.json");
+  std::filesystem::copy_file(temporary_ / "long" / "journal", temporary_ / "short" / "journal",
+                             std::filesystem::copy_options::overwrite_existing);
+  EXPECT_THAT(
+      error_of([&] { run(make_small_plan("ga", 24), "short"); }),
+      HasSubstr("evaluation 24 of the journal is not what optimizer 'ga' asks for now: it is "
+                "recorded, and no longer asked for"));
+}
+
+TEST_F(RunTest, AnEndedJournalIsNotContinued) {
+  run(make_small_plan("ga", 24), "short");
+  run(make_small_plan("ga", 40), "long");
+  std::filesystem::remove(temporary_ / "long" / "result.json");
+  std::filesystem::copy_file(temporary_ / "short" / "journal", temporary_ / "long" / "journal",
+                             std::filesystem::copy_options::overwrite_existing);
+  EXPECT_THAT(error_of([&] { run(make_small_plan("ga", 40), "long"); }),
+              HasSubstr("the recorded run had ended before it"));
 }
 
 TEST_F(RunTest, AnotherConfigurationIsRefusedWithTheDifference) {
