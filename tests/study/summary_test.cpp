@@ -15,7 +15,7 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 TEST(Summary, OfNothingHasNoNumbers) {
-  const ErrorSummary summary = summarize({}, kFailureError_m, kFailureError_m);
+  const ErrorSummary summary = summarize({}, kFailureError_m);
   EXPECT_EQ(summary.cases, 0U);
   EXPECT_EQ(summary.without_number, 0U);
   EXPECT_EQ(summary.failures, 0U);
@@ -26,7 +26,7 @@ TEST(Summary, OfNothingHasNoNumbers) {
 }
 
 TEST(Summary, OfOneCaseIsThatCase) {
-  const ErrorSummary summary = summarize(std::vector{0.0625}, kFailureError_m, kFailureError_m);
+  const ErrorSummary summary = summarize(std::vector{0.0625}, kFailureError_m);
   EXPECT_EQ(summary.cases, 1U);
   EXPECT_EQ(summary.mean, 0.0625);
   EXPECT_EQ(summary.median, 0.0625);
@@ -36,7 +36,7 @@ TEST(Summary, OfOneCaseIsThatCase) {
 
 TEST(Summary, OddNumberHasItsMiddleAsMedian) {
   const ErrorSummary summary =
-      summarize(std::vector{0.5, 0.125, 4.0, 0.25, 0.375}, kFailureError_m, kFailureError_m);
+      summarize(std::vector{0.5, 0.125, 4.0, 0.25, 0.375}, kFailureError_m);
   EXPECT_EQ(summary.mean, 1.05);  // 5.25 / 5, the sum exact
   EXPECT_EQ(summary.median, 0.375);
   // Position 0.95 (5 - 1) = 3.8 from 0: between 0.5 and 4, four fifths of the way.
@@ -45,8 +45,7 @@ TEST(Summary, OddNumberHasItsMiddleAsMedian) {
 }
 
 TEST(Summary, EvenNumberHasTheMeanOfTheMiddleTwoAsMedian) {
-  const ErrorSummary summary =
-      summarize(std::vector{8.0, 1.0, 2.0, 4.0}, kFailureError_m, kFailureError_m);
+  const ErrorSummary summary = summarize(std::vector{8.0, 1.0, 2.0, 4.0}, kFailureError_m);
   EXPECT_EQ(summary.mean, 3.75);
   EXPECT_EQ(summary.median, 3);
   // Position 0.95 (4 - 1) = 2.85: between 4 and 8.
@@ -59,7 +58,7 @@ TEST(Summary, PercentileThatFallsOnACaseIsThatCase) {
   for (int i = 0; i <= 100; ++i) {
     errors.push_back((i * 37) % 101);  // 0 to 100 in disorder
   }
-  const ErrorSummary summary = summarize(errors, kFailureError_m, kFailureError_m);
+  const ErrorSummary summary = summarize(errors, kFailureError_m);
   // 0.95 x 100 rounds to 95 or its neighbour in double precision; the neighbours' share is 1e-14.
   EXPECT_NEAR(*summary.percentile_95, 95, 1e-12);
   EXPECT_EQ(summary.median, 50);
@@ -70,15 +69,14 @@ TEST(Summary, FailuresAreCountedAboveTheLimitOnly) {
   const ErrorSummary summary =
       summarize(std::vector{kFailureError_m, std::nextafter(kFailureError_m, 1),
                             std::nextafter(kFailureError_m, 0), 3.0, kNone},
-                kFailureError_m, kFailureError_m);
+                kFailureError_m);
   EXPECT_EQ(summary.cases, 5U);
   EXPECT_EQ(summary.without_number, 1U);
   EXPECT_EQ(summary.failures, 3U);  // the one just above, the 3 m, the one without a number
 }
 
 TEST(Summary, CaseWithoutNumberCountsAsTheLargestOfAll) {
-  const ErrorSummary summary =
-      summarize(std::vector{kNone, 1.0, 3.0, 2.0, kNone}, kFailureError_m, kFailureError_m);
+  const ErrorSummary summary = summarize(std::vector{kNone, 1.0, 3.0, 2.0, kNone}, kFailureError_m);
   EXPECT_EQ(summary.cases, 5U);
   EXPECT_EQ(summary.without_number, 2U);
   EXPECT_EQ(summary.failures, 5U);
@@ -90,15 +88,13 @@ TEST(Summary, CaseWithoutNumberCountsAsTheLargestOfAll) {
 
 TEST(Summary, MedianNeedsBothItsNeighbours) {
   // 1 2 | - -: between 2 and a case without a number there is no number.
-  const ErrorSummary half =
-      summarize(std::vector{1.0, kNone, 2.0, kNone}, kFailureError_m, kFailureError_m);
+  const ErrorSummary half = summarize(std::vector{1.0, kNone, 2.0, kNone}, kFailureError_m);
   EXPECT_EQ(half.mean, 1.5);
   EXPECT_FALSE(half.median);
   // 1 2 3 -: the median lies between 2 and 3.
-  EXPECT_EQ(summarize(std::vector{3.0, 1.0, kNone, 2.0}, kFailureError_m, kFailureError_m).median,
-            2.5);
+  EXPECT_EQ(summarize(std::vector{3.0, 1.0, kNone, 2.0}, kFailureError_m).median, 2.5);
   // 1 - -: more than half are without.
-  EXPECT_FALSE(summarize(std::vector{kNone, 1.0, kNone}, kFailureError_m, kFailureError_m).median);
+  EXPECT_FALSE(summarize(std::vector{kNone, 1.0, kNone}, kFailureError_m).median);
 }
 
 TEST(Summary, PercentileToleratesWhatLiesAboveIt) {
@@ -108,13 +104,12 @@ TEST(Summary, PercentileToleratesWhatLiesAboveIt) {
     errors[i] = static_cast<double>(i);
   }
   errors.push_back(kNone);
-  EXPECT_NEAR(*summarize(errors, kFailureError_m, kFailureError_m).percentile_95, 38, 1e-12);
-  EXPECT_FALSE(summarize(errors, kFailureError_m, kFailureError_m).worst);
+  EXPECT_NEAR(*summarize(errors, kFailureError_m).percentile_95, 38, 1e-12);
+  EXPECT_FALSE(summarize(errors, kFailureError_m).worst);
 }
 
 TEST(Summary, AllWithoutNumberLeavesTheCountsOnly) {
-  const ErrorSummary summary =
-      summarize(std::vector{kNone, kNone, kNone}, kFailureError_m, kFailureError_m);
+  const ErrorSummary summary = summarize(std::vector{kNone, kNone, kNone}, kFailureError_m);
   EXPECT_EQ(summary.cases, 3U);
   EXPECT_EQ(summary.without_number, 3U);
   EXPECT_EQ(summary.failures, 3U);
@@ -126,10 +121,10 @@ TEST(Summary, AllWithoutNumberLeavesTheCountsOnly) {
 
 TEST(Summary, OrderDoesNotMatter) {
   std::vector<double> errors = {0.25, kNone, 0.5, 4, 0.125, 0.0625};  // sums of these are exact
-  const ErrorSummary first = summarize(errors, kFailureError_m, kFailureError_m);
+  const ErrorSummary first = summarize(errors, kFailureError_m);
   for (int turn = 0; turn < 6; ++turn) {
     std::rotate(errors.begin(), errors.begin() + 1, errors.end());
-    const ErrorSummary turned = summarize(errors, kFailureError_m, kFailureError_m);
+    const ErrorSummary turned = summarize(errors, kFailureError_m);
     EXPECT_EQ(turned.mean, first.mean);
     EXPECT_EQ(turned.median, first.median);
     EXPECT_EQ(turned.percentile_95, first.percentile_95);
