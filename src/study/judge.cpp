@@ -1,10 +1,14 @@
 #include "study/judge.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
 #include <mutex>
 #include <numeric>
 #include <tuple>
+
+#include "base/error.hpp"
 
 namespace armwright {
 namespace {
@@ -25,11 +29,12 @@ bool same_request(const EvaluationRecord& record, std::span<const double> x,
 }  // namespace
 
 Judge::Judge(const RunPlan& plan, CaseRunner& runner, Journal& journal,
-             std::vector<EvaluationRecord> recorded, RunObserver& observer)
+             std::vector<EvaluationRecord> recorded, bool journal_ended, RunObserver& observer)
     : plan_(plan),
       runner_(runner),
       journal_(journal),
       recorded_(std::move(recorded)),
+      journal_ended_(journal_ended),
       observer_(observer) {}
 
 std::optional<std::vector<Evaluation>> Judge::evaluate(
@@ -48,6 +53,13 @@ std::optional<std::vector<Evaluation>> Judge::evaluate(
       missing.push_back(i);
       jobs.push_back({designs[i], &block});
     }
+  }
+  if (journal_ended_ && !missing.empty()) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("the recorded run has ended, but judged other designs than those that "
+                            "would be judged now ({} on {} is missing). It was made by another "
+                            "version; resume it there, or start a new run with --new",
+                            missing.size() == 1 ? "one judgement" : "judgements", block.set));
   }
   Progress progress;
   progress.phase = phase;

@@ -15,7 +15,7 @@ namespace armwright {
 class Judge {
  public:
   Judge(const RunPlan& plan, CaseRunner& runner, Journal& journal,
-        std::vector<EvaluationRecord> recorded, RunObserver& observer);
+        std::vector<EvaluationRecord> recorded, bool journal_ended, RunObserver& observer);
 
   // One judgement a candidate, or nothing if stopped.
   std::optional<std::vector<JudgedCandidate>> validate(std::vector<Candidate> candidates);
@@ -33,6 +33,7 @@ class Judge {
   CaseRunner& runner_;
   Journal& journal_;
   std::vector<EvaluationRecord> recorded_;
+  bool journal_ended_;
   RunObserver& observer_;
 };
 

@@ -71,7 +71,7 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   ThreadPool pool(request.jobs);
   CaseRunner runner(*plan.problem.problem, pool, stop);
   const bool ended = recorded.ended;
-  Judge judge(plan, runner, journal, std::move(recorded.judgements), observer);
+  Judge judge(plan, runner, journal, std::move(recorded.judgements), ended, observer);
   RunEvaluator evaluator(plan, runner, stop, journal, std::move(recorded), observer);
   optimizer->minimize(evaluator, plan.seed);
   if (stop.requested()) {
