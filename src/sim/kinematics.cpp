@@ -54,6 +54,9 @@ double find_axis_sign(const RobotModel& model, std::size_t joint, const Eigen::I
 }  // namespace
 
 double wrap_angle(double angle_rad) {
+  if (std::abs(angle_rad) <= kPi) {
+    return angle_rad;  // exactly what the division below yields, without its cost
+  }
   return std::remainder(angle_rad, 2 * kPi);
 }
 
