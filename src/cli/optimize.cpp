@@ -138,12 +138,13 @@ void announce(const RunRequest& request) {
   write_message(fmt::format("folder {} ({})", request.folder.string(), known ? "found" : "new"));
 }
 
-std::string describe_next(const OptimizeOptions& options, const std::filesystem::path& folder,
-                          const Style& style) {
+// Commands to try next, with the program named as the user named it.
+std::string describe_next(const OptimizeOptions& options, const std::string& program,
+                          const std::filesystem::path& folder, const Style& style) {
   const auto winner = folder / "winner.toml";
   std::string text = "\n" + style.bold("Next") + "\n";
   if (std::filesystem::exists(winner)) {
-    std::vector<std::string> words = {"armwright", "evaluate", winner.string(), "--problem",
+    std::vector<std::string> words = {program, "evaluate", winner.string(), "--problem",
                                       options.problem};
     for (const std::string& change : options.overrides.get()) {
       words.insert(words.end(), {"--set", change});
@@ -151,7 +152,7 @@ std::string describe_next(const OptimizeOptions& options, const std::filesystem:
     words.insert(words.end(), {"--test-set", "3"});
     text += fmt::format("  {}\n", sanitize(quote_command(words)));
   }
-  const std::vector<std::string> show = {"armwright", "show", folder.string()};
+  const std::vector<std::string> show = {program, "show", folder.string()};
   return text + fmt::format("  {}\n", sanitize(quote_command(show)));
 }
 
@@ -185,7 +186,7 @@ int run_optimize(const OptimizeOptions& options, Session& session) {
   } else {
     const Style style = make_style(Stream::out, session.color);
     write_stdout(describe_result(*result, request.folder, style) +
-                 describe_next(options, request.folder, style));
+                 describe_next(options, session.command_line.front(), request.folder, style));
   }
   return get_result_code(*result);
 }
