@@ -14,10 +14,14 @@ std::shared_ptr<const TargetTable> TargetCache::get(const TrackingSetup& setup, 
     }
     entry = slot;
   }
-  std::call_once(entry->once, [&] {
-    entry->table = setup.make_targets(set.make_case(number));
-    ++computed_;
-  });
+  {
+    const std::lock_guard lock(entry->mutex);
+    if (!entry->made) {
+      entry->table = setup.make_targets(set.make_case(number));
+      entry->made = true;
+      ++computed_;
+    }
+  }
   {
     const std::lock_guard lock(mutex_);
     if (!entry->counted) {

@@ -25,7 +25,8 @@ class TargetCache {
 
  private:
   struct Entry {
-    std::once_flag once;
+    std::mutex mutex;   // held while the table is made: whoever else asks for it waits
+    bool made = false;  // not std::call_once, which does not agree everywhere with exceptions
     TargetTable table;
     bool counted = false;
   };
