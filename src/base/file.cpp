@@ -10,36 +10,18 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/file_descriptor.hpp"
 
 namespace armwright {
 namespace {
 
-[[noreturn]] void fail(std::string_view doing, const std::filesystem::path& path, int error) {
-  throw Error(ErrorKind::io,
-              fmt::format("{}: cannot {}: {}", path.string(), doing, std::strerror(error)));
+FileDescriptor open_file(const std::filesystem::path& path, int flags, std::string_view doing) {
+  const int fd = ::open(path.c_str(), flags | O_CLOEXEC, 0644);
+  if (fd < 0) {
+    fail_io(path, doing, errno);
+  }
+  return FileDescriptor(fd);
 }
-
-class Descriptor {
- public:
-  Descriptor(const std::filesystem::path& path, int flags, std::string_view doing)
-      : fd_(::open(path.c_str(), flags | O_CLOEXEC, 0644)) {
-    if (fd_ < 0) {
-      fail(doing, path, errno);
-    }
-  }
-  ~Descriptor() {
-    if (fd_ >= 0) {
-      ::close(fd_);
-    }
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int get() const { return fd_; }
-  int close() { return ::close(std::exchange(fd_, -1)); }
-
- private:
-  int fd_;
-};
 
 // Takes a half-written file away again, unless it was renamed into place.
 class TemporaryFile {
@@ -61,8 +43,13 @@ class TemporaryFile {
 
 }  // namespace
 
+void fail_io(const std::filesystem::path& path, std::string_view doing, int error) {
+  throw Error(ErrorKind::io,
+              fmt::format("{}: cannot {}: {}", path.string(), doing, std::strerror(error)));
+}
+
 std::string read_file(const std::filesystem::path& path, std::size_t limit_bytes) {
-  const Descriptor file(path, O_RDONLY, "open it");
+  const FileDescriptor file = open_file(path, O_RDONLY, "open it");
   std::string content;
   char buffer[1 << 16];
   while (true) {
@@ -71,7 +58,7 @@ std::string read_file(const std::filesystem::path& path, std::size_t limit_bytes
       continue;
     }
     if (got < 0) {
-      fail("read it", path, errno);
+      fail_io(path, "read it", errno);
     }
     if (got == 0) {
       return content;
@@ -87,7 +74,7 @@ std::string read_file(const std::filesystem::path& path, std::size_t limit_bytes
 
 void write_file_atomically(const std::filesystem::path& path, std::string_view content) {
   const std::filesystem::path new_path = path.string() + ".new";
-  Descriptor file(new_path, O_WRONLY | O_CREAT | O_TRUNC, "write it");
+  FileDescriptor file = open_file(new_path, O_WRONLY | O_CREAT | O_TRUNC, "write it");
   TemporaryFile temporary(new_path);
   while (!content.empty()) {
     const ssize_t put = ::write(file.get(), content.data(), content.size());
@@ -95,22 +82,22 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view c
       continue;
     }
     if (put < 0) {
-      fail("write it", temporary.path(), errno);
+      fail_io(temporary.path(), "write it", errno);
     }
     content.remove_prefix(static_cast<std::size_t>(put));
   }
   if (::fsync(file.get()) != 0 && errno != EINVAL && errno != EROFS) {
-    fail("sync it to the disk", temporary.path(), errno);
+    fail_io(temporary.path(), "sync it to the disk", errno);
   }
   if (file.close() != 0) {
-    fail("close it", temporary.path(), errno);
+    fail_io(temporary.path(), "close it", errno);
   }
   if (::rename(temporary.path().c_str(), path.c_str()) != 0) {
-    fail("put it in place", path, errno);
+    fail_io(path, "put it in place", errno);
   }
   temporary.release();
   const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-  const Descriptor directory(folder, O_RDONLY | O_DIRECTORY, "open its folder");
+  const FileDescriptor directory = open_file(folder, O_RDONLY | O_DIRECTORY, "open its folder");
   ::fsync(
       directory.get());  // some file systems cannot sync a folder; the rename itself has succeeded
 }
@@ -120,7 +107,7 @@ void make_folder(const std::filesystem::path& path) {
   std::filesystem::create_directories(path, error);
   std::error_code unknown;
   if (error || !std::filesystem::is_directory(path, unknown)) {
-    fail("create this folder", path, error ? error.value() : ENOTDIR);
+    fail_io(path, "create this folder", error ? error.value() : ENOTDIR);
   }
 }
 

@@ -10,6 +10,9 @@
 
 namespace armwright {
 
+// Throws Error{io} "PATH: cannot DOING: the operating system's reason" for an errno.
+[[noreturn]] void fail_io(const std::filesystem::path& path, std::string_view doing, int error);
+
 // Error{bad_data} if the file is larger than `limit_bytes`.
 std::string read_file(const std::filesystem::path& path, std::size_t limit_bytes);
 

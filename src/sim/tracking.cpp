@@ -66,7 +66,7 @@ Eigen::Vector3d TrackingSetup::calc_target_position(const Segment& segment,
   const double distance = move.norm();
   const double time = (step_in_segment + 1) * task_.control_period_s;
   if (time >= segment.duration_s) {
-    return segment.to_m;
+    return segment.to_m;  // the point itself, not the start plus a rounded move
   }
   return segment.from_m + move * (make_signal(distance).calc_distance(time) / distance);
 }
@@ -98,16 +98,8 @@ TargetTable TrackingSetup::make_targets(const TestCase& test_case) const {
   table.angles_rad.reserve(static_cast<std::size_t>(table.steps) * table.joints);
   for (std::size_t k = 0; k < table.segments.size(); ++k) {
     const Segment& segment = table.segments[k];
-    const Eigen::Vector3d move = segment.to_m - segment.from_m;
-    const double distance = move.norm();
-    const ReferenceSignal signal = make_signal(distance);
     for (int step = 0; step < segment.steps; ++step) {
-      const double time = (step + 1) * period;
-      // At rest the target is the point itself, not the start plus a rounded move.
-      const Eigen::Vector3d target =
-          time >= segment.duration_s
-              ? segment.to_m
-              : Eigen::Vector3d(segment.from_m + move * (signal.calc_distance(time) / distance));
+      const Eigen::Vector3d target = calc_target_position(segment, step);
       if (!kinematics_.solve(target, q)) {
         table.unreachable = fmt::format("on the way to point {}: {}", k + 1,
                                         kinematics_.describe_unreachable(target));

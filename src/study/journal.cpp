@@ -16,7 +16,8 @@
 #include <thread>
 
 #include "base/error.hpp"
-#include "study/file_descriptor.hpp"
+#include "base/file.hpp"
+#include "base/file_descriptor.hpp"
 #include "study/journal_format.hpp"
 #include "study/journal_reader.hpp"
 
@@ -32,11 +33,6 @@ constexpr auto kWriteInterval = std::chrono::milliseconds(5);
 constexpr auto kSyncInterval = std::chrono::seconds(1);
 constexpr std::size_t kBufferBytes = 256
                                      << 10;  // fits a core's L2 cache; larger writes gain nothing
-
-[[noreturn]] void fail_io(const std::filesystem::path& file, std::string_view doing, int error) {
-  throw Error(ErrorKind::io,
-              fmt::format("{}: cannot {}: {}", file.string(), doing, std::strerror(error)));
-}
 
 struct WriteResult {
   std::size_t written = 0;

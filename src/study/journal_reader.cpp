@@ -15,8 +15,9 @@
 #include <variant>
 
 #include "base/error.hpp"
+#include "base/file.hpp"
+#include "base/file_descriptor.hpp"
 #include "base/hash.hpp"
-#include "study/file_descriptor.hpp"
 #include "study/journal_format.hpp"
 
 namespace armwright {
@@ -29,11 +30,6 @@ using journal_format::kMaxPayloadBytes;
 using journal_format::kProbeBytes;
 using journal_format::Record;
 
-[[noreturn]] void fail_io(const std::filesystem::path& file, int error) {
-  throw Error(ErrorKind::io,
-              fmt::format("{}: cannot read it: {}", file.string(), std::strerror(error)));
-}
-
 // A file seen through a buffer: a journal may be larger than the memory its content needs twice
 // over.
 class Window {
@@ -41,7 +37,7 @@ class Window {
   Window(int fd, const std::filesystem::path& file) : fd_(fd), file_(file) {
     struct stat status {};
     if (::fstat(fd, &status) != 0) {
-      fail_io(file, errno);
+      fail_io(file, "read it", errno);
     }
     if (!S_ISREG(status.st_mode)) {
       throw Error(ErrorKind::io,
@@ -75,7 +71,7 @@ class Window {
         continue;
       }
       if (got < 0) {
-        fail_io(file_, errno);
+        fail_io(file_, "read it", errno);
       }
       if (got == 0) {
         throw Error(ErrorKind::io, fmt::format("{}: became shorter while it was read; is another "

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <mutex>
 #include <numeric>
 #include <tuple>
 
+#include "base/bits.hpp"
 #include "base/error.hpp"
 
 namespace armwright {
@@ -22,8 +22,7 @@ CaseBlock make_block(CaseRole role, const std::string& set, int cases) {
 bool same_request(const EvaluationRecord& record, std::span<const double> x,
                   const CaseBlock& block) {
   return record.cases.role == block.role && record.cases.set == block.set &&
-         record.cases.numbers == block.numbers && record.x.size() == x.size() &&
-         std::memcmp(record.x.data(), x.data(), x.size_bytes()) == 0;
+         record.cases.numbers == block.numbers && same_bits(record.x, x);
 }
 
 }  // namespace

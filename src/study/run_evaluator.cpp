@@ -3,22 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <mutex>
 #include <numeric>
 
+#include "base/bits.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
 
 namespace armwright {
-namespace {
-
-bool same_bits(std::span<const double> a, std::span<const double> b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
-}
-
-}  // namespace
-
 RunEvaluator::RunEvaluator(const RunPlan& plan, CaseRunner& runner, StopSignal& stop,
                            Journal& journal, JournalContent recorded, RunObserver& observer)
     : plan_(plan),

@@ -12,15 +12,11 @@
 #include <string_view>
 
 #include "base/error.hpp"
+#include "base/file.hpp"
 #include "base/text.hpp"
 
 namespace armwright {
 namespace {
-
-[[noreturn]] void fail_io(const std::filesystem::path& file, std::string_view doing, int error) {
-  throw Error(ErrorKind::io,
-              fmt::format("{}: cannot {}: {}", file.string(), doing, std::strerror(error)));
-}
 
 std::string host_name() {
   std::array<char, 256> name{};

@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-#include "study/file_descriptor.hpp"
+#include "base/file_descriptor.hpp"
 
 namespace armwright {
 

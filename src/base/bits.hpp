@@ -1,0 +1,13 @@
+// Equality of numbers bit by bit: NaN equals itself, and -0 is not +0.
+#pragma once
+
+#include <cstring>
+#include <span>
+
+namespace armwright {
+
+inline bool same_bits(std::span<const double> a, std::span<const double> b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+}
+
+}  // namespace armwright
