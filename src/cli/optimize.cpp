@@ -70,9 +70,9 @@ RunPlan make_plan(const OptimizeOptions& options) {
   plan.seed = static_cast<std::uint64_t>(parse_count("--seed (ARMWRIGHT_SEED)", options.seed, 0,
                                                      std::numeric_limits<std::int64_t>::max()));
   plan.problem = load_problem(options.problem, options.get_overrides());
-  plan.optimizer = options.optimizer.empty() ? plan.problem.optimizer : options.optimizer;
-  plan.options =
-      Options::parse(plan.optimizer, find_optimizer(plan.optimizer).options, options.opt);
+  plan.optimizer =
+      load_optimizer(options.optimizer.empty() ? plan.problem.optimizer : options.optimizer);
+  plan.options = Options::parse(plan.optimizer.name, plan.optimizer.options, options.opt);
   plan.budget = options.budget.empty()
                     ? plan.problem.budget
                     : parse_count("--budget", options.budget, 0, 1'000'000'000'000);
@@ -124,8 +124,8 @@ void announce(const RunRequest& request) {
   const RunPlan& plan = request.plan;
   const bool known = std::filesystem::exists(request.folder / "manifest.json");
   write_message(fmt::format("{}: {}", plan.problem.name, plan.problem.title));
-  write_message(fmt::format("optimizer {}, seed {}, budget {}, schedule {}:{}, {}", plan.optimizer,
-                            plan.seed,
+  write_message(fmt::format("optimizer {}, seed {}, budget {}, schedule {}:{}, {}",
+                            plan.optimizer.name, plan.seed,
                             format_count(static_cast<unsigned long long>(plan.budget), "case"),
                             plan.schedule.fresh ? "fresh" : "fixed", plan.schedule.cases,
                             format_count(request.jobs, "thread")));

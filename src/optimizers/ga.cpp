@@ -16,9 +16,10 @@ namespace {
 
 class GeneticAlgorithm : public Optimizer {
  public:
-  explicit GeneticAlgorithm(const Options& options)
+  // `elite_size` comes beside the options because ga:simple has no such option.
+  GeneticAlgorithm(const Options& options, std::int64_t elite_size)
       : population_size_(static_cast<std::size_t>(options.get_integer("population"))),
-        elite_size_(static_cast<std::size_t>(options.get_integer("elite"))),
+        elite_size_(static_cast<std::size_t>(elite_size)),
         generations_(options.get_integer("generations")),
         include_prototype_(options.get_bool("include_prototype")),
         tournament_probability_(options.get_number("tournament_probability")),
@@ -184,6 +185,8 @@ void mutate(Genome& genome, std::span<const DecisionVariable> variables,
   }
 }
 
+namespace {
+
 OptimizerRow make_ga_row() {
   const auto probability = [](std::string name, std::string description, double fallback) {
     return OptionSpec{.name = std::move(name),
@@ -248,9 +251,27 @@ OptimizerRow make_ga_row() {
                .upper = 1e9},
           },
       .make = [](const Options& options) -> std::unique_ptr<Optimizer> {
-        return std::make_unique<GeneticAlgorithm>(options);
+        return std::make_unique<GeneticAlgorithm>(options, options.get_integer("elite"));
       },
   };
+}
+
+OptimizerRow make_simple_ga_row() {
+  OptimizerRow row = make_ga_row();
+  row.name = "ga:simple";
+  row.summary = "The same without an elite: what the thesis's sources call the simple GA";
+  row.source = "Goldberg 1989, Genetic Algorithms in Search, Optimization and Machine Learning";
+  std::erase_if(row.options, [](const OptionSpec& option) { return option.name == "elite"; });
+  row.make = [](const Options& options) -> std::unique_ptr<Optimizer> {
+    return std::make_unique<GeneticAlgorithm>(options, 0);
+  };
+  return row;
+}
+
+}  // namespace
+
+std::vector<OptimizerRow> make_ga_rows() {
+  return {make_ga_row(), make_simple_ga_row()};
 }
 
 }  // namespace armwright

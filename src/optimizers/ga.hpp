@@ -30,7 +30,7 @@
 
 namespace armwright {
 
-OptimizerRow make_ga_row();
+std::vector<OptimizerRow> make_ga_rows();
 
 using Genome = std::vector<double>;
 

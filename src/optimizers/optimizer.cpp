@@ -7,7 +7,12 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "optimizers/ceres.hpp"
+#include "optimizers/cmaes.hpp"
 #include "optimizers/ga.hpp"
+#include "optimizers/latin_hypercube.hpp"
+#include "optimizers/nlopt.hpp"
+#include "optimizers/pagmo.hpp"
 #include "optimizers/random_search.hpp"
 
 namespace armwright {
@@ -125,7 +130,15 @@ std::string to_text(const OptionValue& value) {
 }
 
 const std::vector<OptimizerRow>& optimizer_table() {
-  static const std::vector<OptimizerRow> table = {make_ga_row(), make_random_search_row()};
+  static const std::vector<OptimizerRow> table = [] {
+    std::vector<OptimizerRow> rows;
+    for (const auto make_rows :
+         {make_ga_rows, make_cmaes_rows, make_ceres_rows, make_nlopt_rows, make_pagmo_rows,
+          make_random_search_rows, make_latin_hypercube_rows}) {
+      std::ranges::move(make_rows(), std::back_inserter(rows));
+    }
+    return rows;
+  }();
   return table;
 }
 
@@ -141,6 +154,32 @@ const OptimizerRow& find_optimizer(std::string_view name) {
     throw Error(ErrorKind::usage, describe_unknown("optimizer", name, optimizer_names()));
   }
   return *row;
+}
+
+OptimizerRow load_optimizer(std::string_view name) {
+  OptimizerRow row = find_optimizer(name);
+  if (!row.unavailable.empty()) {
+    throw Error(ErrorKind::usage,
+                fmt::format("optimizer '{}' is not available: {}", row.name, row.unavailable));
+  }
+  return row;
+}
+
+std::string explain_unsuitable(const OptimizerRow& row, const ProblemDescription& problem) {
+  const Requirements& required = row.requirements;
+  if (std::ssize(problem.objectives) < required.objectives) {
+    return fmt::format("it needs a problem of at least {} objectives, and this one has {}",
+                       required.objectives, problem.objectives.size());
+  }
+  if (std::ssize(problem.variables) < required.variables) {
+    return fmt::format("it needs a problem of at least {} decision variables, and this one has {}",
+                       required.variables, problem.variables.size());
+  }
+  if (required.residuals && !problem.has_residuals) {
+    return "it works on residuals, of whose squares the objective is the sum, and this problem "
+           "offers none";
+  }
+  return "";
 }
 
 }  // namespace armwright

@@ -1,12 +1,15 @@
-// Optimizers as rows of one explicit table: name, what it can do, its options, and how to make one.
-// An optimizer minimises through the Evaluator it is handed and returns nothing; it is
-// deterministic given its seed, whatever the number of threads.
+// Optimizers as rows: name, what it can do, its options, and how to make one. The shipped ones
+// stand in one explicit table; load_optimizer() makes a row of a user's plugin as well. An
+// optimizer minimises through the Evaluator it is handed and returns nothing; it is deterministic
+// given its seed, whatever the number of threads.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -26,6 +29,17 @@ struct Capabilities {
   bool residuals = false;        // uses the residual vector
   bool stochastic = false;       // uses its seed
   bool generations = false;      // declares generations, so that a `fresh` schedule can serve it
+  bool local = false;  // descends from the start and ends by itself: `multistart:` can restart it
+  bool sampling = false;  // learns nothing from what it has seen; no contest with random search
+  bool paced = false;     // divides the budget up beforehand: a larger one changes the run from its
+                          // beginning, not from its end
+};
+
+// What a problem must offer for an optimizer to make sense on it.
+struct Requirements {
+  int objectives = 1;
+  int variables = 1;
+  bool residuals = false;
 };
 
 using OptionValue = std::variant<bool, std::int64_t, double, std::string>;
@@ -60,10 +74,17 @@ class Options {
 };
 std::string to_text(const OptionValue& value);
 
+// The optimizer itself is at fault: it crashed, hung, broke its own word. The run keeps what was
+// evaluated and is marked as failed; every other exception out of minimize() is the evaluator's.
+class OptimizerFailure : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 class Optimizer {
  public:
   virtual ~Optimizer() = default;
-  // Returns when evaluator.stopped() or when it has nothing more to try.
+  // Returns when evaluator.stopped() or when it has nothing more to try. Throws OptimizerFailure,
+  // and whatever the evaluator throws.
   virtual void minimize(Evaluator& evaluator, std::uint64_t seed) = 0;
 };
 
@@ -73,11 +94,23 @@ struct OptimizerRow {
   std::string source;   // author, year, title
   Capabilities capabilities;
   std::vector<OptionSpec> options;
-  std::unique_ptr<Optimizer> (*make)(const Options& options);
+  std::function<std::unique_ptr<Optimizer>(const Options& options)> make;
+  Requirements requirements = {};
+  std::string unavailable = {};  // why it cannot be used here; empty if it can
+  std::map<std::string, std::string> input_hashes =
+      {};  // of a plugin: file -> SHA-256, so that a resumed run knows it again
 };
+
+// Why the optimizer cannot work on the problem; empty if it can.
+std::string explain_unsuitable(const OptimizerRow& row, const ProblemDescription& problem);
 
 const std::vector<OptimizerRow>& optimizer_table();
 std::vector<std::string> optimizer_names();
 const OptimizerRow& find_optimizer(std::string_view name);  // Error{usage} if there is none
+
+// What stands behind `--optimizer`: a name of the table, multistart:NAME, a shared library
+// (./libmine.so, or its name on the plugin path) or a process (exec:COMMAND). Error{usage} or
+// Error{bad_data} if there is none or it cannot be used.
+OptimizerRow load_optimizer(std::string_view name);
 
 }  // namespace armwright

@@ -46,12 +46,12 @@ double draw_coordinate(const DecisionVariable& variable, RandomStream& random) {
   return std::clamp(std::copysign(magnitude, variable.lower), variable.lower, variable.upper);
 }
 
-OptimizerRow make_random_search_row() {
-  return {
+std::vector<OptimizerRow> make_random_search_rows() {
+  return {{
       .name = "random",
       .summary = "Random search: independent points, uniform over the box",
       .source = "Brooks 1958, A discussion of random methods for seeking maxima",
-      .capabilities = {.bounds = true, .batch = true, .stochastic = true},
+      .capabilities = {.bounds = true, .batch = true, .stochastic = true, .sampling = true},
       .options = {{.name = "batch",
                    .description = "points asked for at a time; has no influence on the points",
                    .fallback = std::int64_t{32},
@@ -60,7 +60,7 @@ OptimizerRow make_random_search_row() {
       .make = [](const Options& options) -> std::unique_ptr<Optimizer> {
         return std::make_unique<RandomSearch>(options);
       },
-  };
+  }};
 }
 
 }  // namespace armwright

@@ -7,7 +7,7 @@
 
 namespace armwright {
 
-OptimizerRow make_random_search_row();
+std::vector<OptimizerRow> make_random_search_rows();
 
 // One coordinate: uniform between the bounds on the variable's own scale, never outside them.
 double draw_coordinate(const DecisionVariable& variable, RandomStream& random);

@@ -22,6 +22,17 @@ const char* to_string(EvaluationStatus status) {
   return "failed";
 }
 
+double calc_scalar(const ProblemDescription& problem, std::span<const double> objectives) {
+  if (problem.objective_weights.empty()) {
+    return objectives.front();
+  }
+  double sum = 0;
+  for (std::size_t i = 0; i < objectives.size(); ++i) {
+    sum += problem.objective_weights[i] * objectives[i];
+  }
+  return sum;
+}
+
 bool is_feasible(const Evaluation& evaluation) {
   return !evaluation.objectives.empty() &&
          std::all_of(evaluation.constraint_values.begin(), evaluation.constraint_values.end(),

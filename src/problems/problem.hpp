@@ -43,6 +43,12 @@ struct ProblemDescription {
   std::vector<Quantity> metrics;      // of an evaluation, beside the objectives
   std::string cost_unit;              // what one case is: "simulated test case"
   std::vector<double> known_optimum;  // analytic functions: a minimiser; empty if unknown
+  // Several objectives as one number, where one is needed: the sum of weight times objective. As
+  // many as objectives; empty: the first objective alone.
+  std::vector<double> objective_weights;
+  // Evaluations carry residuals: the (first) objective is the sum of their squares, or the
+  // logarithm of it.
+  bool has_residuals = false;
 };
 
 enum class CaseRole : std::uint8_t { training, validation, test };
@@ -91,6 +97,9 @@ struct Evaluation {
   std::vector<double> residuals;    // optional
   int failed_cases = 0;             // cases that yielded no error
 };
+
+// One number for what may be several objectives: their weighted sum.
+double calc_scalar(const ProblemDescription& problem, std::span<const double> objectives);
 
 // It has objectives, and every constraint is met.
 bool is_feasible(const Evaluation& evaluation);

@@ -17,7 +17,7 @@ RunResult make_result(const RunPlan& plan) {
   RunResult result;
   const ProblemDescription& description = plan.problem.problem->description();
   result.problem = plan.problem.name;
-  result.optimizer = plan.optimizer;
+  result.optimizer = plan.optimizer.name;
   result.seed = plan.seed;
   for (const DecisionVariable& variable : description.variables) {
     result.variable_names.push_back(variable.name);
@@ -57,7 +57,7 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
                                      RunObserver& observer) {
   const RunPlan& plan = request.plan;
   check_plan(plan);
-  const auto optimizer = find_optimizer(plan.optimizer).make(plan.options);
+  const auto optimizer = plan.optimizer.make(plan.options);
   const RunFolder folder(request.folder, plan, request.command_line);
   if (are_derived_files_there(folder.path())) {
     observer.on_message(

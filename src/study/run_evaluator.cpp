@@ -72,7 +72,7 @@ EvaluationRecord RunEvaluator::make_request(std::span<const double> x) const {
     throw Error(ErrorKind::usage,
                 fmt::format("optimizer '{}' asked for a point of {} numbers; problem {} has {} "
                             "decision variables",
-                            plan_.optimizer, x.size(), plan_.problem.name, variables.size()));
+                            plan_.optimizer.name, x.size(), plan_.problem.name, variables.size()));
   }
   EvaluationRecord request;
   request.generation = counts_.generations;
@@ -117,7 +117,7 @@ void RunEvaluator::refuse_replay(std::uint64_t evaluation, const std::string& di
       fmt::format("evaluation {} of the journal is not what optimizer '{}' asks for now: {}. "
                   "The run was made by another version, machine or plugin; resume it there, "
                   "or start a new run with --new",
-                  evaluation, plan_.optimizer, difference));
+                  evaluation, plan_.optimizer.name, difference));
 }
 
 void RunEvaluator::check_replay_complete() const {

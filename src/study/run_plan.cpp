@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
@@ -18,22 +19,27 @@ json to_json_value(const OptionValue& value) {
 
 }  // namespace
 
-Schedule choose_schedule(const LoadedProblem& problem, std::string_view optimizer) {
-  if (problem.schedule.fresh && !find_optimizer(optimizer).capabilities.generations) {
+Schedule choose_schedule(const LoadedProblem& problem, const OptimizerRow& optimizer) {
+  if (problem.schedule.fresh && !optimizer.capabilities.generations) {
     return {.fresh = false, .cases = problem.fixed_cases};
   }
   return problem.schedule;
 }
 
 void check_plan(const RunPlan& plan) {
-  const OptimizerRow& row = find_optimizer(plan.optimizer);
+  const OptimizerRow& row = plan.optimizer;
+  const std::string unsuitable = explain_unsuitable(row, plan.problem.problem->description());
+  if (!unsuitable.empty()) {
+    throw Error(ErrorKind::usage, fmt::format("optimizer '{}' cannot work on {}: {}", row.name,
+                                              plan.problem.name, unsuitable));
+  }
   if (plan.schedule.fresh && !row.capabilities.generations) {
     throw Error(
         ErrorKind::usage,
         fmt::format("optimizer '{}' has no generations, so new training cases for every "
                     "generation (schedule fresh) mean nothing to it; use --schedule fixed:K, "
                     "which evaluates every candidate on the same K cases",
-                    plan.optimizer));
+                    row.name));
   }
   if (plan.budget < 0) {
     throw Error(ErrorKind::usage, fmt::format("--budget is {}; it must be >= 0", plan.budget));
@@ -46,7 +52,7 @@ std::string to_json(const RunPlan& plan) {
     options[name] = to_json_value(value);
   }
   const json run = {
-      {"optimizer", plan.optimizer},
+      {"optimizer", plan.optimizer.name},
       {"options", options},
       {"seed", plan.seed},
       {"budget", plan.budget},
@@ -54,9 +60,10 @@ std::string to_json(const RunPlan& plan) {
        {{"kind", plan.schedule.fresh ? "fresh" : "fixed"}, {"cases", plan.schedule.cases}}},
       {"selection", {{"last", plan.selection.last}, {"best", plan.selection.best}}},
   };
-  const json whole = {{"problem", json::parse(plan.problem.resolved_json)},
-                      {"inputs", plan.problem.input_hashes},
-                      {"run", run}};
+  std::map<std::string, std::string> inputs = plan.problem.input_hashes;
+  inputs.insert(plan.optimizer.input_hashes.begin(), plan.optimizer.input_hashes.end());
+  const json whole = {
+      {"problem", json::parse(plan.problem.resolved_json)}, {"inputs", inputs}, {"run", run}};
   return whole.dump(2);
 }
 
@@ -89,10 +96,13 @@ std::vector<std::string> describe_differences(const std::string& recorded_json,
 }
 
 std::string make_run_name(const RunPlan& plan) {
-  std::string optimizer = plan.optimizer;
+  std::string optimizer = plan.optimizer.name;
   for (char& c : optimizer) {
-    c = c == ':' || c == '/' ? '-' : c;
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '_';
+    c = plain ? c : '-';
   }
+  // "./libmine.so" and "exec:python3 -u mine.py": neither hidden nor a path.
+  optimizer.erase(0, optimizer.find_first_not_of("-."));
   return fmt::format("{}-{}-seed{}", plan.problem.name, optimizer, plan.seed);
 }
 

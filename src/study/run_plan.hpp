@@ -22,7 +22,7 @@ struct Selection {
 
 struct RunPlan {
   LoadedProblem problem;
-  std::string optimizer;
+  OptimizerRow optimizer;
   Options options;
   std::uint64_t seed = 1;
   std::int64_t budget = 0;  // simulated training cases
@@ -32,7 +32,7 @@ struct RunPlan {
 
 // The problem's own schedule; where that is fresh and the optimizer has no generations, the first
 // `fixed_cases` cases for every candidate.
-Schedule choose_schedule(const LoadedProblem& problem, std::string_view optimizer);
+Schedule choose_schedule(const LoadedProblem& problem, const OptimizerRow& optimizer);
 
 // Checks what no single part can: optimizer against schedule and problem. Throws Error{usage}.
 void check_plan(const RunPlan& plan);

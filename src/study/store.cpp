@@ -56,9 +56,9 @@ std::string make_winner_toml(const RunPlan& plan, const RunResult& result,
   const TrackingProblem& tracking = *plan.problem.tracking;
   DesignFile file;
   file.name = make_run_name(plan);
-  file.title = fmt::format("Winner of {} on {}", plan.optimizer, plan.problem.name);
+  file.title = fmt::format("Winner of {} on {}", plan.optimizer.name, plan.problem.name);
   file.source = fmt::format("armwright, {} with seed {}; the manifest.json of its run says all",
-                            plan.optimizer, plan.seed);
+                            plan.optimizer.name, plan.seed);
   file.design = tracking.make_design(x);
   for (const Joint& joint : tracking.config().robot.joints) {
     file.joint_names.push_back(joint.name);

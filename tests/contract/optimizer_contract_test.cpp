@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "contract/memory_evaluator.hpp"
 #include "optimizers/optimizer.hpp"
 #include "problems/analytic.hpp"
+#include "study/memory_evaluator.hpp"
 
 namespace armwright {
 namespace {

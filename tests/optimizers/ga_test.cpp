@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "contract/memory_evaluator.hpp"
 #include "optimizers/kolmogorov_smirnov.hpp"
 #include "problems/analytic.hpp"
+#include "study/memory_evaluator.hpp"
 
 namespace armwright {
 namespace {

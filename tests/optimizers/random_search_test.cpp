@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "contract/memory_evaluator.hpp"
 #include "optimizers/kolmogorov_smirnov.hpp"
 #include "problems/analytic.hpp"
+#include "study/memory_evaluator.hpp"
 
 namespace armwright {
 namespace {

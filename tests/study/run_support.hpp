@@ -30,13 +30,13 @@ inline RunPlan make_small_plan(const std::string& optimizer = "ga", std::int64_t
   plan.problem = load_problem(
       "q1-complex", std::vector<std::string>{"workspace.points=4", "sets.validation_cases=3",
                                              "sets.test_cases=4"});
-  plan.optimizer = optimizer;
+  plan.optimizer = load_optimizer(optimizer);
   const std::vector<std::string> options =
       optimizer == "ga" ? std::vector<std::string>{"population=8"} : std::vector<std::string>{};
-  plan.options = Options::parse(optimizer, find_optimizer(optimizer).options, options);
+  plan.options = Options::parse(optimizer, plan.optimizer.options, options);
   plan.budget = budget;
   plan.schedule = plan.problem.schedule;
-  if (!find_optimizer(optimizer).capabilities.generations) {
+  if (!plan.optimizer.capabilities.generations) {
     plan.schedule = {.fresh = false, .cases = 2};
   }
   return plan;

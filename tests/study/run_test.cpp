@@ -237,8 +237,8 @@ TEST_F(RunTest, AFolderWithOtherFilesIsLeftAlone) {
 TEST_F(RunTest, AFunctionHasNoFailuresAndNoMetres) {
   RunPlan plan;
   plan.problem = load_problem("sphere");
-  plan.optimizer = "random";
-  plan.options = Options::parse("random", find_optimizer("random").options, {});
+  plan.optimizer = load_optimizer("random");
+  plan.options = Options::parse("random", plan.optimizer.options, {});
   plan.budget = 20;
   const auto result = run(plan, "a");
   ASSERT_TRUE(result && result->winner);
@@ -250,8 +250,8 @@ TEST_F(RunTest, AFunctionHasNoFailuresAndNoMetres) {
 TEST_F(RunTest, ConvergenceCountsFeasibleEvaluationsOnly) {
   RunPlan plan;
   plan.problem = load_problem("constrained");
-  plan.optimizer = "random";
-  plan.options = Options::parse("random", find_optimizer("random").options, {});
+  plan.optimizer = load_optimizer("random");
+  plan.options = Options::parse("random", plan.optimizer.options, {});
   plan.budget = 2000;
   const auto result = run(plan, "a");
   ASSERT_TRUE(result && result->winner);

@@ -1,0 +1,47 @@
+#include "optimizers/scalar_function.hpp"
+
+#include <algorithm>
+
+namespace armwright {
+
+OptionSpec make_constraint_weight_option() {
+  return {.name = "constraint_weight",
+          .description =
+              "the objective grows by this times the violation of the constraints, "
+              "which this optimizer does not know; without constraints no influence",
+          .fallback = 1000.0,
+          .lower = 0,
+          .upper = 1e12};
+}
+
+double calc_merit(const ProblemDescription& problem, const Score& score, double constraint_weight) {
+  double violation = 0;
+  for (const double g : score.constraint_values) {
+    violation += std::max(0.0, g);
+  }
+  return calc_scalar(problem, score.objectives) + constraint_weight * violation;
+}
+
+Score ScalarFunction::evaluate(std::span<const double> coordinates) {
+  const std::vector<double> point = space_.to_point(coordinates);
+  std::vector<Score> scores = evaluator_.evaluate({&point, 1});
+  if (scores.empty()) {
+    throw EvaluatorStopped{};
+  }
+  return std::move(scores.front());
+}
+
+std::vector<Score> ScalarFunction::evaluate_batch(
+    std::span<const std::vector<double>> coordinates) {
+  std::vector<std::vector<double>> points;
+  points.reserve(coordinates.size());
+  std::ranges::transform(coordinates, std::back_inserter(points),
+                         [this](const auto& one) { return space_.to_point(one); });
+  std::vector<Score> scores = evaluator_.evaluate(points);
+  if (scores.size() < points.size()) {
+    throw EvaluatorStopped{};
+  }
+  return scores;
+}
+
+}  // namespace armwright
