@@ -172,7 +172,9 @@ int run_optimize(const OptimizeOptions& options, Session& session) {
   }
 
   catch_signals(session.stop);
-  ProgressBar bar(options.quiet, request.plan.problem.problem->description().objectives.front());
+  const auto& objectives = request.plan.problem.problem->description().objectives;
+  ProgressBar bar(options.quiet,
+                  objectives.size() == 1 ? objectives.front() : Quantity{"weighted sum", "1"});
   const auto result = execute_run(request, session.stop, bar);
   bar.clear();
   if (!result) {

@@ -18,6 +18,7 @@ struct RunFile {
 constexpr RunFile kRunFiles[] = {
     {"winner.toml", "the winner, for evaluate and sweep"},
     {"winner-trajectory.csv", "its motion on the first test case"},
+    {"front.csv", "the designs on the front, with what the validation set says of them"},
     {"result.json", "all numbers of this result"},
     {"convergence.csv", "the best value over the evaluations"},
     {"results.sqlite", "every evaluation, as SQL tables"},
@@ -62,6 +63,12 @@ std::string format_winner(const RunResult& result, const std::filesystem::path& 
                                                 : format_vector(result, winner.x, style));
 }
 
+void add_target(const RunResult& result, Table& table) {
+  const Quantity target = get_target(result);
+  table.add_row(
+      {sanitize(target.name), format_quantity(calc_target(result, result.test), target.unit)});
+}
+
 std::string format_tracking_test(const RunResult& result, const Style& style) {
   Table table = make_summary_table(result.test_summary);
   if (const auto torque = get_metric(result, "total_torque")) {
@@ -70,9 +77,8 @@ std::string format_tracking_test(const RunResult& result, const Style& style) {
   if (const auto energy = get_metric(result, "energy")) {
     table.add_row({"mean energy", format_quantity(*energy, "J")});
   }
-  if (result.objective_unit != "m" && !result.test.objectives.empty()) {
-    table.add_row({sanitize(result.objective_name),
-                   format_quantity(result.test.objectives.front(), result.objective_unit)});
+  if (get_target(result).unit != "m" && !result.test.objectives.empty()) {
+    add_target(result, table);
   }
   return style.bold(fmt::format("On the test set {}", sanitize(result.test_set))) + "\n" +
          table.format(style, 2);
@@ -81,8 +87,7 @@ std::string format_tracking_test(const RunResult& result, const Style& style) {
 std::string format_function_test(const RunResult& result, const Style& style) {
   Table table({{"", false}, {"", false}});
   if (!result.test.objectives.empty()) {
-    table.add_row({sanitize(result.objective_name),
-                   format_quantity(result.test.objectives.front(), result.objective_unit)});
+    add_target(result, table);
   }
   for (std::size_t i = 0; i < result.test.constraint_values.size(); ++i) {
     table.add_row({fmt::format("constraint {}", i + 1),
@@ -156,6 +161,12 @@ std::string describe_result(const RunResult& result, const std::filesystem::path
   }
   text += fmt::format("; {} failed, {} clipped to the bounds; ended by: {}\n\n", counts.failed,
                       counts.clipped, sanitize(result.end_reason));
+  if (!result.failure.empty()) {
+    text +=
+        style.red("The optimizer failed: " + sanitize(result.failure)) +
+        "\nWhat it had asked for until then is kept and judged; the same command tries again from "
+        "there.\n\n";
+  }
   if (!result.winner) {
     text += style.red(describe_no_winner(result)) + "\n\n";
   } else {
@@ -187,13 +198,13 @@ std::string describe_judged(const RunResult& result, const Style& style) {
     const Candidate& candidate = result.judged[i].candidate;
     const Evaluation& validation = result.judged[i].validation;
     const auto value = [&](double objective) {
-      return format_quantity(objective, result.objective_unit);
+      return format_quantity(objective, get_target(result).unit);
     };
     table.add_row({result.winner == i ? "winner" : "",
                    candidate.recommended ? "recommended" : fmt::format("{}", candidate.evaluation),
                    candidate.generation > 0 ? fmt::format("{}", candidate.generation) : "-",
                    candidate.recommended ? "-" : value(candidate.training_objective),
-                   validation.objectives.empty() ? "-" : value(validation.objectives.front()),
+                   validation.objectives.empty() ? "-" : value(calc_target(result, validation)),
                    fmt::format("{}", validation.failed_cases)});
   }
   return style.bold("Judged on the validation set") + "\n" + table.format(style, 2);
@@ -218,8 +229,8 @@ int get_result_code(const RunResult& result) {
     return std::all_of(evaluation.constraint_values.begin(), evaluation.constraint_values.end(),
                        [](double g) { return g <= 0; });
   };
-  const bool good =
-      result.winner && result.test_summary.without_number == 0 && feasible(result.test);
+  const bool good = result.failure.empty() && result.winner &&
+                    result.test_summary.without_number == 0 && feasible(result.test);
   return good ? exit_code::kDone : exit_code::kFailed;
 }
 

@@ -49,7 +49,7 @@ class GeneticAlgorithm : public Optimizer {
       }
       std::vector<Fitness> fitness;
       for (const Score& score : scores) {
-        fitness.push_back(calc_fitness(score, evaluator.problem().constraints.size()));
+        fitness.push_back(calc_fitness(evaluator.problem(), score));
       }
       clamp(population, variables);
       population = make_next_population(population, fitness, variables, random);
@@ -110,9 +110,9 @@ class GeneticAlgorithm : public Optimizer {
 
 }  // namespace
 
-Fitness calc_fitness(const Score& score, std::size_t constraint_count) {
-  Fitness fitness{.violation = 0, .objective = score.objectives.front()};
-  if (score.constraint_values.size() < constraint_count) {
+Fitness calc_fitness(const ProblemDescription& problem, const Score& score) {
+  Fitness fitness{.violation = 0, .objective = calc_scalar(problem, score.objectives)};
+  if (score.constraint_values.size() < problem.constraints.size()) {
     fitness.violation = std::numeric_limits<double>::infinity();
   }
   for (const double g : score.constraint_values) {

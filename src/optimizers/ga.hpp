@@ -15,10 +15,10 @@
 // - Constraints: feasibility first (Deb 2000, An efficient constraint handling method for genetic
 //   algorithms).
 // - `generations` and `include_prototype` as options.
-// Limits: uses objective 0 only; constraint violations are added up as they are, in whatever units
-// the problem gives them. Crossover never leaves the span of the parents (extent <= 1/2), so an
-// optimum outside the first generation's span, a factor of 10 about the start, is approached by
-// mutations alone, which is slow.
+// Limits: several objectives count as their weighted sum; constraint violations are added up as
+// they are, in whatever units the problem gives them. Crossover never leaves the span of the
+// parents (extent <= 1/2), so an optimum outside the first generation's span, a factor of 10 about
+// the start, is approached by mutations alone, which is slow.
 #pragma once
 
 #include <cstddef>
@@ -50,7 +50,7 @@ struct MutationSettings {
   double factor = 1;       // the gene is multiplied by exp(U(-ln factor, ln factor))
 };
 
-Fitness calc_fitness(const Score& score, std::size_t constraint_count);
+Fitness calc_fitness(const ProblemDescription& problem, const Score& score);
 bool is_fitter(const Fitness& a, const Fitness& b);
 
 // Indices of the population, the fittest first; equals keep their order.

@@ -46,8 +46,8 @@ struct ProblemDescription {
   // Several objectives as one number, where one is needed: the sum of weight times objective. As
   // many as objectives; empty: the first objective alone.
   std::vector<double> objective_weights;
-  // Evaluations carry residuals: the (first) objective is the sum of their squares, or the
-  // logarithm of it.
+  // Evaluations carry residuals: calc_scalar() of the objectives is the sum of their squares, or
+  // the logarithm of that sum.
   bool has_residuals = false;
 };
 

@@ -86,9 +86,17 @@ void check_length(const ConfigTable& table, const TrackingTask& task,
 }
 
 TrackingObjective read_objective(const ConfigTable& table) {
-  static const std::vector<std::string> kinds = {"error", "error_and_torque"};
+  using Kind = TrackingObjective::Kind;
+  static const std::vector<std::string> kinds = {"error", "error_and_torque", "error_vs_torque"};
   TrackingObjective objective;
-  objective.with_torque = table.get_choice("kind", kinds, "error") == "error_and_torque";
+  const std::string kind = table.get_choice("kind", kinds, "error");
+  objective.kind = kind == "error"              ? Kind::error
+                   : kind == "error_and_torque" ? Kind::error_and_torque
+                                                : Kind::error_vs_torque;
+  objective.logarithm = table.get_bool_or("logarithm", false);
+  if (objective.logarithm && objective.kind == Kind::error_vs_torque) {
+    table.refuse("logarithm", "two objectives are compared as they are; leave it out");
+  }
   const Range positive{.lower = 0, .upper = 1e12, .lower_open = true};
   objective.torque_weight = table.get_number_or("torque_weight", 1, {.lower = 0, .upper = 1e6});
   objective.error_scale_m = table.get_number_or("error_scale_m", objective.error_scale_m, positive);

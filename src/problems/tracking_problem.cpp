@@ -81,8 +81,23 @@ ProblemDescription make_description(const TrackingConfig& config) {
   for (const DesignParameter& parameter : config.parameters) {
     description.variables.push_back(make_variable(config, parameter));
   }
-  description.objectives = {config.objective.with_torque ? Quantity{"error and torque", "1"}
-                                                         : Quantity{"error", "m"}};
+  const TrackingObjective& objective = config.objective;
+  switch (objective.kind) {
+    case TrackingObjective::Kind::error:
+      description.objectives = {objective.logarithm ? Quantity{"ln(error / 1 m)", "1"}
+                                                    : Quantity{"error", "m"}};
+      break;
+    case TrackingObjective::Kind::error_and_torque:
+      description.objectives = {
+          {objective.logarithm ? "ln(error and torque)" : "error and torque", "1"}};
+      break;
+    case TrackingObjective::Kind::error_vs_torque:
+      description.objectives = {{"error", "m"}, {"total torque", "N m"}};
+      description.objective_weights = {1 / objective.error_scale_m,
+                                       objective.torque_weight / objective.torque_scale_n_m};
+      break;
+  }
+  description.has_residuals = true;
   description.metrics = {{"error", "m"},
                          {"total_torque", "N m"},
                          {"failures", "1"},
@@ -95,7 +110,28 @@ ProblemDescription make_description(const TrackingConfig& config) {
   return description;
 }
 
-CaseOutcome make_outcome(const TrackingResult& result, bool training) {
+// Of an error (m) and a total torque (N m).
+std::vector<double> calc_objectives(const TrackingObjective& objective, double error_m,
+                                    double torque_n_m) {
+  // No arm comes near it: keeps the logarithm finite whatever happens.
+  constexpr double kLeast = 1e-300;
+  const auto apply_scale = [&](double value) {
+    return objective.logarithm ? std::log(std::max(value, kLeast)) : value;
+  };
+  switch (objective.kind) {
+    case TrackingObjective::Kind::error:
+      return {apply_scale(error_m)};
+    case TrackingObjective::Kind::error_and_torque:
+      return {apply_scale(error_m / objective.error_scale_m +
+                          objective.torque_weight * torque_n_m / objective.torque_scale_n_m)};
+    case TrackingObjective::Kind::error_vs_torque:
+      break;
+  }
+  return {error_m, torque_n_m};
+}
+
+// The residuals of an outcome are the errors (m) of the points that count; aggregate() scales them.
+CaseOutcome make_outcome(const TrackingResult& result, bool training, bool count_first_point) {
   CaseOutcome outcome;
   outcome.reason = result.reason;
   switch (result.status) {
@@ -114,6 +150,10 @@ CaseOutcome make_outcome(const TrackingResult& result, bool training) {
       return outcome;
   }
   outcome.error = outcome.has_error ? result.mean_error_m : 0;
+  if (outcome.has_error) {
+    outcome.residuals.assign(result.point_error_m.begin() + (count_first_point ? 0 : 1),
+                             result.point_error_m.end());
+  }
   const double joints = static_cast<double>(result.saturated_share.size());
   double saturation = 0;
   for (const double share : result.saturated_share) {
@@ -224,7 +264,8 @@ std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs
   std::vector<CaseOutcome> outcomes;
   outcomes.reserve(jobs.size());
   for (std::size_t i = 0; i < jobs.size(); ++i) {
-    outcomes.push_back(make_outcome(results[i], jobs[i].block->role == CaseRole::training));
+    outcomes.push_back(make_outcome(results[i], jobs[i].block->role == CaseRole::training,
+                                    config_.task.count_first_point));
   }
   return outcomes;
 }
@@ -274,12 +315,10 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
     return evaluation;
   }
   error /= numbers;
-  const double torque = calc_total_torque_n_m(make_design(x));
-  const TrackingObjective& objective = config_.objective;
-  evaluation.objectives = {objective.with_torque
-                               ? error / objective.error_scale_m +
-                                     objective.torque_weight * torque / objective.torque_scale_n_m
-                               : error};
+  const ArmDesign design = make_design(x);
+  const double torque = calc_total_torque_n_m(design);
+  evaluation.objectives = calc_objectives(config_.objective, error, torque);
+  evaluation.residuals = calc_residuals(design, outcomes, numbers);
   evaluation.metrics = {error, torque, failures, sums[kEnergy] / numbers,
                         sums[kSaturation] / numbers};
   for (std::size_t i = kFirstJointMetric; i < sums.size(); i += 2) {
@@ -289,22 +328,39 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
   return evaluation;
 }
 
+std::vector<double> TrackingProblem::calc_residuals(const ArmDesign& design,
+                                                    std::span<const CaseOutcome> outcomes,
+                                                    double cases) const {
+  const TrackingObjective& objective = config_.objective;
+  const bool with_torque = objective.kind != TrackingObjective::Kind::error;
+  std::vector<double> residuals;
+  for (const CaseOutcome& outcome : outcomes) {
+    const double share = cases * static_cast<double>(outcome.residuals.size()) *
+                         (with_torque ? objective.error_scale_m : 1);
+    for (const double error_m : outcome.residuals) {
+      residuals.push_back(std::sqrt(error_m / share));
+    }
+  }
+  if (with_torque) {
+    for (const JointDrive& joint : design.joints) {
+      const double torque = std::max(-joint.limits.min_n_m, joint.limits.max_n_m);
+      residuals.push_back(std::sqrt(objective.torque_weight * torque / objective.torque_scale_n_m));
+    }
+  }
+  return residuals;
+}
+
 std::vector<double> TrackingProblem::penalty_objectives() const {
   // Ten times the error of a design that is cut off at once on every case, and as much torque as
   // the box allows.
-  const double error = 10 * config_.cutoff_error_m;
-  if (!config_.objective.with_torque) {
-    return {error};
-  }
   ArmDesign strongest = config_.start;
   for (const DesignParameter& parameter : config_.parameters) {
     if (parameter.kind != DesignParameter::Kind::gain) {
       get_parameter(strongest, parameter) *= config_.bounds_factor;
     }
   }
-  return {error / config_.objective.error_scale_m + config_.objective.torque_weight *
-                                                        calc_total_torque_n_m(strongest) /
-                                                        config_.objective.torque_scale_n_m};
+  return calc_objectives(config_.objective, 10 * config_.cutoff_error_m,
+                         calc_total_torque_n_m(strongest));
 }
 
 }  // namespace armwright

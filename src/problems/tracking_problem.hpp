@@ -3,6 +3,12 @@
 //   error              e, the mean over the cases of the case's positional error (m)
 //   error_and_torque   e / e_0 + w tau / tau_0, tau the sum over the joints of max(-min, max)
 //                      of their effort limits (thesis section 6.3)
+//   error_vs_torque    e (m) and tau (N m) as two objectives; as one number, error_and_torque
+// The first two also as their natural logarithm: the same minimiser, but steps of equal ratio count
+// alike, which wrapped local methods like.
+// Residuals: sqrt(e_kl / (K_l L)) of each point k that counts, K_l of them, in each of L cases l,
+// divided by sqrt(e_0) where the objective has torque, then sqrt(w tau_j / tau_0) of each joint j:
+// the sum of their squares is the objective before the logarithm.
 // Decision variables: any of the controllers' gains and effort limits of any joints, in natural
 // units, bounded by a factor around the start values, sign kept; what is not a variable keeps its
 // start value.
@@ -26,7 +32,9 @@ namespace armwright {
 inline constexpr double kFailureError_m = 0.1;
 
 struct TrackingObjective {
-  bool with_torque = false;
+  enum class Kind { error, error_and_torque, error_vs_torque };
+  Kind kind = Kind::error;
+  bool logarithm = false;            // not of error_vs_torque
   double torque_weight = 0;          // w
   double error_scale_m = 0.0058;     // e_0: the thesis's Q1 winner
   double torque_scale_n_m = 963686;  // tau_0: the same
@@ -87,6 +95,9 @@ class TrackingProblem final : public Problem {
   const TargetCache& targets() const { return targets_; }
 
  private:
+  // `cases` is how many of the outcomes have an error.
+  std::vector<double> calc_residuals(const ArmDesign& design, std::span<const CaseOutcome> outcomes,
+                                     double cases) const;
   std::shared_ptr<const TargetTable> get_targets(const TestSet& set, std::uint64_t number) const;
 
   TrackingConfig config_;

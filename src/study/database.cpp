@@ -105,7 +105,8 @@ std::string get_role_name(CaseRole role) {
   return "?";
 }
 
-void insert_records(Database& database, std::span<const EvaluationRecord> records) {
+void insert_records(Database& database, const ProblemDescription& problem,
+                    std::span<const EvaluationRecord> records) {
   Insert evaluation(database, "INSERT INTO evaluation VALUES (?,?,?,?,?,?,?,?,?,?,?,?)");
   Insert case_error(database, "INSERT INTO case_error VALUES (?,?,?,?)");
   for (const EvaluationRecord& record : records) {
@@ -116,7 +117,8 @@ void insert_records(Database& database, std::span<const EvaluationRecord> record
                << result.reason << std::uint64_t{record.clipped} << record.cases.set
                << (numbers.empty() ? std::uint64_t{0} : numbers.front())
                << std::uint64_t{numbers.size()}
-               << (result.objectives.empty() ? std::nan("") : result.objectives.front())
+               << (result.objectives.empty() ? std::nan("")
+                                             : calc_scalar(problem, result.objectives))
                << nlohmann::json(record.x).dump() << nlohmann::json(result.metrics).dump();
     evaluation.run();
     for (std::size_t i = 0; i < result.case_errors.size() && i < numbers.size(); ++i) {
@@ -148,8 +150,8 @@ void write_database(const std::filesystem::path& file, const ProblemDescription&
         metric << std::uint64_t{i} << problem.metrics[i].name << problem.metrics[i].unit;
         metric.run();
       }
-      insert_records(database, journal.training);
-      insert_records(database, journal.judgements);
+      insert_records(database, problem, journal.training);
+      insert_records(database, problem, journal.judgements);
     }
     database.execute("COMMIT");
     database.close();

@@ -2,7 +2,7 @@
 // time.
 //   variable(position, name, unit, lower, upper, start)
 //   evaluation(role, number, generation, status, reason, clipped, set_name, first_case, cases,
-//              objective, x, metrics)
+//              objective, x, metrics)      objective: of several, the weighted sum
 //     role: training, validation or test; x and metrics: JSON arrays in the order of those tables
 //   metric(position, name, unit)
 //   case_error(role, number, case_number, error)     error is NULL where a simulation yielded none

@@ -107,14 +107,15 @@ std::optional<std::vector<JudgedCandidate>> Judge::validate(std::vector<Candidat
   return judged;
 }
 
-std::optional<std::size_t> Judge::choose_winner(const std::vector<JudgedCandidate>& judged) {
-  const auto rank = [](const JudgedCandidate& candidate) {
+std::optional<std::size_t> Judge::choose_winner(const ProblemDescription& problem,
+                                                const std::vector<JudgedCandidate>& judged) {
+  const auto rank = [&](const JudgedCandidate& candidate) {
     double violation = 0;
     for (const double g : candidate.validation.constraint_values) {
       violation += std::max(0.0, g);
     }
     return std::tuple(candidate.validation.failed_cases, violation,
-                      candidate.validation.objectives.front());
+                      calc_scalar(problem, candidate.validation.objectives));
   };
   std::optional<std::size_t> winner;
   for (std::size_t i = 0; i < judged.size(); ++i) {

@@ -21,7 +21,8 @@ class Judge {
   std::optional<std::vector<JudgedCandidate>> validate(std::vector<Candidate> candidates);
   // The winner: fewest cases without number, then feasible, then the best first objective; nothing
   // if none has an objective.
-  static std::optional<std::size_t> choose_winner(const std::vector<JudgedCandidate>& judged);
+  static std::optional<std::size_t> choose_winner(const ProblemDescription& problem,
+                                                  const std::vector<JudgedCandidate>& judged);
   // The winner on the test set, or nothing if stopped.
   std::optional<Evaluation> test(const Candidate& winner);
 

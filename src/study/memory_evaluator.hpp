@@ -1,10 +1,11 @@
-// An Evaluator that lives in memory, for tests: exact budget with the last batch cut, clipping, a
-// trace of everything asked for, and faults on request (every k-th evaluation fails, an exception,
-// a stop). It keeps the Evaluator contract as strictly as the contract allows: a failed evaluation
-// shows the penalty, and no constraint values.
+// An Evaluator that lives in memory, for trying optimizers out (study/contract.hpp, tests): exact
+// budget with the last batch cut, clipping, a trace of everything asked for, and faults on request
+// (every k-th evaluation fails, an exception, a stop). It keeps the Evaluator contract as strictly
+// as the contract allows: a failed evaluation shows the penalty, and no constraint values.
 #pragma once
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -13,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "optimizers/evaluator.hpp"
+#include "optimizers/optimizer.hpp"
 
 namespace armwright {
 
@@ -59,6 +60,11 @@ class FunctionProblem : public Problem {
   ProblemDescription description_;
 };
 
+// What evaluate() throws on request.
+struct BrokenEvaluator : std::runtime_error {
+  BrokenEvaluator() : std::runtime_error("the evaluator is broken") {}
+};
+
 struct MemoryEvaluatorSettings {
   std::int64_t budget = 0;  // evaluations
   bool fresh =
@@ -70,6 +76,8 @@ struct MemoryEvaluatorSettings {
 
 class MemoryEvaluator : public Evaluator {
  public:
+  using Clock = std::chrono::steady_clock;
+
   struct Entry {
     std::vector<double> asked;
     std::vector<double> evaluated;
@@ -120,6 +128,7 @@ class MemoryEvaluator : public Evaluator {
   const std::vector<std::vector<double>>& recommended() const { return recommended_; }
   std::int64_t generations() const { return generations_; }
   std::int64_t calls_after_stop() const { return calls_after_stop_; }
+  std::optional<Clock::time_point> stopped_at() const { return stopped_at_; }
 
   // The best objective of a feasible point that did not fail.
   std::optional<double> best() const {
@@ -139,11 +148,11 @@ class MemoryEvaluator : public Evaluator {
   Score evaluate_one(const std::vector<double>& asked) {
     const std::vector<DecisionVariable>& variables = problem().variables;
     if (asked.size() != variables.size()) {
-      throw std::logic_error("a point of the wrong dimension was asked for");
+      throw OptimizerFailure("a point of the wrong dimension was asked for");
     }
     const auto number = static_cast<std::int64_t>(trace_.size()) + 1;
     if (number == settings_.throw_at) {
-      throw std::runtime_error("the evaluator is broken");
+      throw BrokenEvaluator();
     }
     Entry entry{.asked = asked, .evaluated = asked, .score = {}, .generation = generations_};
     for (std::size_t i = 0; i < asked.size(); ++i) {
@@ -159,8 +168,12 @@ class MemoryEvaluator : public Evaluator {
           problem_.evaluate(entry.evaluated, {CaseRole::training, "train/test", {case_number}});
       entry.score.objectives = evaluation.objectives;
       entry.score.constraint_values = evaluation.constraint_values;
+      entry.score.residuals = evaluation.residuals;
     }
     trace_.push_back(entry);
+    if (stopped()) {
+      stopped_at_ = Clock::now();
+    }
     return entry.score;
   }
 
@@ -171,6 +184,7 @@ class MemoryEvaluator : public Evaluator {
   std::vector<std::vector<double>> recommended_;
   std::int64_t generations_ = 0;
   std::int64_t calls_after_stop_ = 0;
+  std::optional<Clock::time_point> stopped_at_;
 };
 
 }  // namespace armwright

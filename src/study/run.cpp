@@ -25,8 +25,8 @@ RunResult make_result(const RunPlan& plan) {
   for (const Quantity& metric : description.metrics) {
     result.metric_names.push_back(metric.name);
   }
-  result.objective_name = description.objectives.front().name;
-  result.objective_unit = description.objectives.front().unit;
+  result.objectives = description.objectives;
+  result.objective_weights = description.objective_weights;
   result.test_set = plan.problem.sets.test;
   result.tracking = plan.problem.tracking != nullptr;
   result.published = plan.problem.published;
@@ -73,15 +73,23 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   const bool ended = recorded.ended;
   Judge judge(plan, runner, journal, std::move(recorded.judgements), ended, observer);
   RunEvaluator evaluator(plan, runner, stop, journal, std::move(recorded), observer);
-  optimizer->minimize(evaluator, plan.seed);
+  RunResult result = make_result(plan);
+  try {
+    optimizer->minimize(evaluator, plan.seed);
+  } catch (const OptimizerFailure& failure) {
+    result.failure = failure.what();
+    observer.on_message("error: " + result.failure);
+  }
   if (stop.requested()) {
     journal.close();
     return std::nullopt;
   }
-  evaluator.check_replay_complete();
-
-  RunResult result = make_result(plan);
-  result.end_reason = evaluator.budget_spent() ? "budget" : "optimizer finished";
+  if (!result.failure.empty()) {
+    result.end_reason = "optimizer failed";
+  } else {
+    evaluator.check_replay_complete();
+    result.end_reason = evaluator.budget_spent() ? "budget" : "optimizer finished";
+  }
   result.counts = evaluator.counts();
   result.first_failure = evaluator.first_failure();
   auto judged = judge.validate(evaluator.select_candidates());
@@ -90,7 +98,7 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
     return std::nullopt;
   }
   result.judged = std::move(*judged);
-  result.winner = Judge::choose_winner(result.judged);
+  result.winner = Judge::choose_winner(plan.problem.problem->description(), result.judged);
   if (result.winner) {
     auto test = judge.test(result.judged[*result.winner].candidate);
     if (!test) {
@@ -100,7 +108,8 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
     result.test = std::move(*test);
     result.test_summary = summarize(result.test.case_errors, get_failure_error(result));
   }
-  if (!ended) {
+  // A failed run stays open: started again, it goes on where its optimizer failed.
+  if (!ended && result.failure.empty()) {
     journal.append(EndRecord{result.end_reason, result.counts.evaluations});
   }
   journal.close();

@@ -69,10 +69,10 @@ void RunEvaluator::recommend(std::span<const double> x) {
 EvaluationRecord RunEvaluator::make_request(std::span<const double> x) const {
   const auto& variables = problem().variables;
   if (x.size() != variables.size()) {
-    throw Error(ErrorKind::usage,
-                fmt::format("optimizer '{}' asked for a point of {} numbers; problem {} has {} "
-                            "decision variables",
-                            plan_.optimizer.name, x.size(), plan_.problem.name, variables.size()));
+    throw OptimizerFailure(
+        fmt::format("optimizer '{}' asked for a point of {} numbers; problem {} has {} decision "
+                    "variables",
+                    plan_.optimizer.name, x.size(), plan_.problem.name, variables.size()));
   }
   EvaluationRecord request;
   request.generation = counts_.generations;
@@ -223,7 +223,10 @@ void RunEvaluator::consider(const EvaluationRecord& record) {
   if (!is_feasible(record.evaluation)) {
     return;
   }
-  const double objective = record.evaluation.objectives.front();
+  const double objective = calc_scalar(problem(), record.evaluation.objectives);
+  if (problem().objectives.size() > 1) {
+    extend_front(record, objective);
+  }
   if (incumbent_ && incumbent_->training_objective <= objective) {
     return;
   }
@@ -231,6 +234,22 @@ void RunEvaluator::consider(const EvaluationRecord& record) {
   if (!plan_.schedule.fresh) {
     candidates_.push_back(*incumbent_);
   }
+}
+
+void RunEvaluator::extend_front(const EvaluationRecord& record, double objective) {
+  const auto covers = [](const std::vector<double>& a, const std::vector<double>& b) {
+    return std::ranges::equal(a, b, std::less_equal{});
+  };
+  const std::vector<double>& objectives = record.evaluation.objectives;
+  if (std::ranges::any_of(front_, [&](const FrontMember& member) {
+        return covers(member.objectives, objectives);
+      })) {
+    return;
+  }
+  std::erase_if(front_,
+                [&](const FrontMember& member) { return covers(objectives, member.objectives); });
+  Candidate candidate{record.x, record.index, record.generation, false, objective};
+  front_.push_back({std::move(candidate), objectives});
 }
 
 void RunEvaluator::report(std::uint64_t more_cases, std::uint64_t more_replayed) {
@@ -248,6 +267,21 @@ void RunEvaluator::report(std::uint64_t more_cases, std::uint64_t more_replayed)
   observer_.on_progress(progress);
 }
 
+// Both ends of the front and, where it is longer than what is judged, members in between at even
+// distances of rank along the first objective.
+std::vector<Candidate> RunEvaluator::thin_front() const {
+  std::vector<FrontMember> members = front_;
+  std::ranges::stable_sort(members, {}, [](const FrontMember& m) { return m.objectives.front(); });
+  const std::size_t count =
+      std::min(members.size(), static_cast<std::size_t>(plan_.selection.last));
+  std::vector<Candidate> thinned;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t gaps = std::max<std::size_t>(count - 1, 1);
+    thinned.push_back(members[i * (members.size() - 1) / gaps].candidate);
+  }
+  return thinned;
+}
+
 std::vector<Candidate> RunEvaluator::select_candidates() const {
   std::vector<Candidate> candidates = candidates_;
   if (plan_.schedule.fresh && incumbent_) {
@@ -257,7 +291,8 @@ std::vector<Candidate> RunEvaluator::select_candidates() const {
     return std::any_of(chosen.begin(), chosen.end(),
                        [&](const Candidate& other) { return same_bits(other.x, candidate.x); });
   };
-  std::vector<Candidate> chosen;
+  std::vector<Candidate> chosen =
+      problem().objectives.size() > 1 ? thin_front() : std::vector<Candidate>{};
   for (auto candidate = candidates.rbegin();
        candidate != candidates.rend() && std::ssize(chosen) < plan_.selection.last; ++candidate) {
     if (!known(chosen, *candidate)) {

@@ -17,7 +17,7 @@
 
 namespace armwright {
 
-// A design that may become the winner.
+// A design that may become the winner. Several objectives count as one number here: calc_scalar().
 struct Candidate {
   std::vector<double> x;
   std::uint64_t evaluation =
@@ -75,7 +75,8 @@ class RunEvaluator final : public Evaluator {
   // Once the optimizer has returned by itself: Error{bad_data} if the journal holds more
   // evaluations than it asked for.
   void check_replay_complete() const;
-  // The designs to judge on the validation set, oldest first, no two the same.
+  // The designs to judge on the validation set, oldest first, no two the same: the last and the
+  // best candidates; with several objectives the front, thinned out.
   std::vector<Candidate> select_candidates() const;
 
  private:
@@ -84,6 +85,8 @@ class RunEvaluator final : public Evaluator {
   [[noreturn]] void refuse_replay(std::uint64_t evaluation, const std::string& difference) const;
   void take(const EvaluationRecord& record, Score& score);
   void consider(const EvaluationRecord& record);
+  void extend_front(const EvaluationRecord& record, double objective);
+  std::vector<Candidate> thin_front() const;
   void report(std::uint64_t more_cases, std::uint64_t more_replayed);
 
   const RunPlan& plan_;
@@ -102,6 +105,13 @@ class RunEvaluator final : public Evaluator {
   std::optional<double> last_best_;     // fresh: the best objective of the generation before
   // fixed: all improvements; fresh: bests of generations and recommendations
   std::vector<Candidate> candidates_;
+  // Several objectives: the feasible evaluations that no other one is at least as good as in all
+  // objectives.
+  struct FrontMember {
+    Candidate candidate;
+    std::vector<double> objectives;
+  };
+  std::vector<FrontMember> front_;
 };
 
 }  // namespace armwright

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kFormat = 1;
+constexpr int kFormat = 2;
 
 json optional_to_json(const std::optional<double>& value) {
   return value ? json(*value) : json(nullptr);
@@ -110,7 +110,21 @@ double get_failure_error(const RunResult& result) {
   return result.tracking ? kFailureError_m : std::numeric_limits<double>::infinity();
 }
 
+Quantity get_target(const RunResult& result) {
+  return result.objectives.size() == 1 ? result.objectives.front() : Quantity{"weighted sum", "1"};
+}
+
+double calc_target(const RunResult& result, const Evaluation& evaluation) {
+  ProblemDescription description;
+  description.objective_weights = result.objective_weights;
+  return calc_scalar(description, evaluation.objectives);
+}
+
 std::string to_json(const RunResult& result) {
+  json objectives = json::array();
+  for (const Quantity& objective : result.objectives) {
+    objectives.push_back({{"name", objective.name}, {"unit", objective.unit}});
+  }
   json judged = json::array();
   for (const JudgedCandidate& candidate : result.judged) {
     judged.push_back(candidate_to_json(candidate));
@@ -122,6 +136,7 @@ std::string to_json(const RunResult& result) {
       {"seed", result.seed},
       {"tracking", result.tracking},
       {"end_reason", result.end_reason},
+      {"failure", result.failure},
       {"first_failure", result.first_failure},
       {"counts",
        {{"evaluations", result.counts.evaluations},
@@ -132,7 +147,8 @@ std::string to_json(const RunResult& result) {
         {"generations", result.counts.generations}}},
       {"variables", result.variable_names},
       {"metrics", result.metric_names},
-      {"objective", {{"name", result.objective_name}, {"unit", result.objective_unit}}},
+      {"objectives", objectives},
+      {"objective_weights", result.objective_weights},
       {"candidates", judged},
       {"winner", nullptr},
       {"test_set", result.test_set},
@@ -162,6 +178,7 @@ RunResult parse_result(const std::string& text, const std::filesystem::path& fil
     result.seed = j.at("seed");
     result.tracking = j.at("tracking");
     result.end_reason = j.at("end_reason");
+    result.failure = j.at("failure");
     result.first_failure = j.at("first_failure");
     const json& counts = j.at("counts");
     result.counts.evaluations = counts.at("evaluations");
@@ -172,8 +189,13 @@ RunResult parse_result(const std::string& text, const std::filesystem::path& fil
     result.counts.generations = counts.at("generations");
     result.variable_names = j.at("variables").get<std::vector<std::string>>();
     result.metric_names = j.at("metrics").get<std::vector<std::string>>();
-    result.objective_name = j.at("objective").at("name");
-    result.objective_unit = j.at("objective").at("unit");
+    for (const json& objective : j.at("objectives")) {
+      result.objectives.push_back({objective.at("name"), objective.at("unit")});
+    }
+    if (result.objectives.empty()) {
+      throw std::runtime_error("it names no objective");
+    }
+    result.objective_weights = j.at("objective_weights").get<std::vector<double>>();
     for (const json& candidate : j.at("candidates")) {
       result.judged.push_back(candidate_from_json(candidate));
     }

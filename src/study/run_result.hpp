@@ -22,7 +22,8 @@ struct RunResult {
   std::string problem;
   std::string optimizer;
   std::uint64_t seed = 1;
-  std::string end_reason;  // "budget" or "optimizer finished"
+  std::string end_reason;  // "budget", "optimizer finished" or "optimizer failed"
+  std::string failure;     // how the optimizer failed; empty if it did not
   std::string
       first_failure;  // why the first evaluation without objectives has none, if there is one
   RunCounts counts;   // `replayed` is not recorded
@@ -32,8 +33,8 @@ struct RunResult {
   ErrorSummary test_summary;
   std::vector<std::string> variable_names;
   std::vector<std::string> metric_names;
-  std::string objective_name;
-  std::string objective_unit;
+  std::vector<Quantity> objectives;
+  std::vector<double> objective_weights;  // as in ProblemDescription
   std::string test_set;
   bool tracking = false;  // the problem is an arm's
   PublishedWinner published;
@@ -41,6 +42,10 @@ struct RunResult {
 
 // Above which error a test case has failed: kFailureError_m for an arm, never for a function.
 double get_failure_error(const RunResult& result);
+
+// What the winner was chosen by: the objective, or the weighted sum of several.
+Quantity get_target(const RunResult& result);
+double calc_target(const RunResult& result, const Evaluation& evaluation);
 
 std::string to_json(const RunResult& result);
 RunResult parse_result(const std::string& json, const std::filesystem::path& file);

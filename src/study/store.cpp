@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <functional>
 #include <map>
 
 #include "base/file.hpp"
@@ -14,7 +16,7 @@ namespace armwright {
 namespace {
 
 // With generations one row each, otherwise one row an improvement; feasible evaluations only.
-std::string make_convergence_csv(const JournalContent& journal) {
+std::string make_convergence_csv(const ProblemDescription& problem, const JournalContent& journal) {
   struct Row {
     std::uint64_t evaluations = 0, cases = 0, generation = 0, counted = 0;
     double best = 0, sum = 0;
@@ -26,7 +28,7 @@ std::string make_convergence_csv(const JournalContent& journal) {
     if (!is_feasible(record.evaluation)) {
       continue;
     }
-    const double objective = record.evaluation.objectives.front();
+    const double objective = calc_scalar(problem, record.evaluation.objectives);
     const bool same_generation =
         record.generation > 0 && !rows.empty() && rows.back().generation == record.generation;
     if (!same_generation) {
@@ -47,6 +49,41 @@ std::string make_convergence_csv(const JournalContent& journal) {
     csv += fmt::format("{},{},{},{},{}\n", row.evaluations, row.cases, row.generation,
                        format_exact(row.best),
                        format_exact(row.sum / static_cast<double>(row.counted)));
+  }
+  return csv;
+}
+
+// The judged designs of a problem with several objectives, by the first of them on the validation
+// set; `on_front` tells those that no other one with as few failed cases is at least as good as.
+std::string make_front_csv(const RunResult& result) {
+  std::vector<const JudgedCandidate*> rows;
+  for (const JudgedCandidate& judged : result.judged) {
+    if (!judged.validation.objectives.empty()) {
+      rows.push_back(&judged);
+    }
+  }
+  std::ranges::stable_sort(rows, {}, [](const auto* row) { return row->validation.objectives[0]; });
+  const auto covers = [](const Evaluation& a, const Evaluation& b) {
+    return a.failed_cases <= b.failed_cases && a.objectives != b.objectives &&
+           std::ranges::equal(a.objectives, b.objectives, std::less_equal{});
+  };
+  std::string csv = "evaluation,on_front,failed_cases";
+  for (const Quantity& objective : result.objectives) {
+    csv += fmt::format(",{} [{}]", objective.name, objective.unit);
+  }
+  csv += "," + join(result.variable_names, ",") + "\n";
+  for (const JudgedCandidate* row : rows) {
+    const bool covered = std::ranges::any_of(
+        rows, [&](const auto* other) { return covers(other->validation, row->validation); });
+    csv += fmt::format("{},{},{}", row->candidate.evaluation, covered ? 0 : 1,
+                       row->validation.failed_cases);
+    for (const double objective : row->validation.objectives) {
+      csv += "," + format_exact(objective);
+    }
+    for (const double value : row->candidate.x) {
+      csv += "," + format_exact(value);
+    }
+    csv += "\n";
   }
   return csv;
 }
@@ -99,6 +136,12 @@ bool are_derived_files_there(const std::filesystem::path& folder) {
     return false;
   }
   const RunResult result = load_result(folder);
+  if (!result.failure.empty()) {
+    return false;
+  }
+  if (result.objectives.size() > 1 && !is_there("front.csv")) {
+    return false;
+  }
   return !result.winner || !result.tracking ||
          (is_there("winner.toml") && is_there("winner-trajectory.csv"));
 }
@@ -106,8 +149,12 @@ bool are_derived_files_there(const std::filesystem::path& folder) {
 void write_derived_files(const RunFolder& folder, const RunPlan& plan, const RunResult& result,
                          const JournalContent& journal) {
   const auto& path = folder.path();
-  write_file_atomically(path / "convergence.csv", make_convergence_csv(journal));
+  write_file_atomically(path / "convergence.csv",
+                        make_convergence_csv(plan.problem.problem->description(), journal));
   write_database(path / "results.sqlite", plan.problem.problem->description(), journal);
+  if (result.objectives.size() > 1) {
+    write_file_atomically(path / "front.csv", make_front_csv(result));
+  }
   if (result.winner && plan.problem.tracking) {
     const TrackingProblem& tracking = *plan.problem.tracking;
     const auto& x = result.judged[*result.winner].candidate.x;

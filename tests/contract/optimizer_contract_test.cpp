@@ -1,51 +1,19 @@
-// What every optimizer of the table must do, whatever it is: the same with the same seed, never
-// more than the budget, stop when told to, survive failing evaluations and exceptions. New rows are
-// covered by being in the table.
+// The optimizer contract (study/contract.hpp) over every row of the table: new rows are covered by
+// being there. Beside it, that the suite itself can fail.
 #include <gmock/gmock.h>
 
-#include <cmath>
+#include <algorithm>
+#include <cctype>
+#include <memory>
+#include <thread>
 
-#include "optimizers/optimizer.hpp"
-#include "problems/analytic.hpp"
-#include "study/memory_evaluator.hpp"
+#include "study/contract.hpp"
+#include "study/contract_problems.hpp"
 
 namespace armwright {
 namespace {
 
-using Entry = MemoryEvaluator::Entry;
-
-// Logarithmic variables of either sign, as robots have them: a bent bowl over three decades,
-// minimum 0 at (900, -30, 2).
-std::unique_ptr<Problem> make_log_bowl() {
-  return std::make_unique<FunctionProblem>(
-      std::vector<DecisionVariable>{{"p", "", 1, 10000, 100, Scale::logarithmic},
-                                    {"tau_min", "", -10000, -1, -100, Scale::logarithmic},
-                                    {"tau_max", "", 0.1, 1000, 10, Scale::logarithmic}},
-      [](std::span<const double> x, std::uint64_t) {
-        const double a = std::log(x[0] / 900);
-        const double b = std::log(x[1] / -30);
-        const double c = std::log(x[2] / 2);
-        return a * a + b * b + c * c + 0.5 * std::pow(a + b * b, 2);
-      });
-}
-
-std::unique_ptr<Problem> make_problem(const std::string& name) {
-  return name == "log_bowl" ? make_log_bowl()
-                            : make_analytic(name, find_analytic(name).default_dimension);
-}
-
-std::unique_ptr<Optimizer> make_optimizer(const std::string& name) {
-  const OptimizerRow& row = find_optimizer(name);
-  return row.make(Options::parse(name, row.options, {}));
-}
-
-double calc_start_value(const Problem& problem) {
-  std::vector<double> start;
-  for (const DecisionVariable& variable : problem.description().variables) {
-    start.push_back(variable.start);
-  }
-  return problem.evaluate(start, {CaseRole::training, "train/test", {0}}).objectives.at(0);
-}
+using testing::HasSubstr;
 
 std::string make_test_name(std::string text) {
   std::ranges::replace_if(
@@ -53,143 +21,35 @@ std::string make_test_name(std::string text) {
   return text;
 }
 
-std::vector<std::string> problem_names() {
-  std::vector<std::string> names = analytic_names();
-  names.push_back("log_bowl");
+const ContractCheck& find_check(const std::string& name) {
+  return *std::ranges::find(contract_checks(), name, &ContractCheck::name);
+}
+
+std::vector<std::string> check_names() {
+  std::vector<std::string> names;
+  std::ranges::transform(contract_checks(), std::back_inserter(names),
+                         [](const ContractCheck& check) { return std::string(check.name); });
   return names;
 }
 
-class OptimizerContract : public testing::TestWithParam<std::tuple<std::string, std::string>> {
- protected:
-  std::string optimizer_name() const { return std::get<0>(GetParam()); }
-  const Capabilities& capabilities() const { return find_optimizer(optimizer_name()).capabilities; }
-  const Problem& problem() const { return *problem_; }
+class OptimizerContract : public testing::TestWithParam<std::tuple<std::string, std::string>> {};
 
-  // One run of a new optimizer on a new evaluator.
-  MemoryEvaluator run(const MemoryEvaluatorSettings& settings, std::uint64_t seed = 1) const {
-    MemoryEvaluator evaluator(problem(), settings);
-    make_optimizer(optimizer_name())->minimize(evaluator, seed);
-    return evaluator;
+TEST_P(OptimizerContract, Holds) {
+  const OptimizerRow& row = find_optimizer(std::get<0>(GetParam()));
+  if (!row.unavailable.empty()) {
+    GTEST_SKIP() << row.unavailable;
   }
-
- private:
-  std::unique_ptr<Problem> problem_ = make_problem(std::get<1>(GetParam()));
-};
-
-TEST_P(OptimizerContract, TheSameSeedGivesTheSameTrace) {
-  EXPECT_EQ(run({.budget = 400}, 3).trace(), run({.budget = 400}, 3).trace());
-}
-
-TEST_P(OptimizerContract, TheSeedMattersWhereItSaysSo) {
-  const bool is_same = run({.budget = 400}, 0).trace() == run({.budget = 400}, 1).trace();
-  EXPECT_EQ(is_same, !capabilities().stochastic);
-}
-
-TEST_P(OptimizerContract, AnOptimizerKeepsNothingBetweenRuns) {
-  const auto optimizer = make_optimizer(optimizer_name());
-  MemoryEvaluator first(problem(), {.budget = 200});
-  MemoryEvaluator second(problem(), {.budget = 200});
-  optimizer->minimize(first, 3);
-  optimizer->minimize(second, 3);
-  EXPECT_EQ(first.trace(), second.trace());
-}
-
-TEST_P(OptimizerContract, ASmallerBudgetIsABeginningOfALargerOne) {
-  // What resuming rests on. Optimizers that plan with remaining() do differ; they must say so here
-  // when they come.
-  const MemoryEvaluator small = run({.budget = 90});
-  const MemoryEvaluator large = run({.budget = 300});
-  ASSERT_LE(small.trace().size(), large.trace().size());
-  for (std::size_t i = 0; i < small.trace().size(); ++i) {
-    ASSERT_EQ(small.trace()[i].evaluated, large.trace()[i].evaluated) << "evaluation " << i;
-  }
-}
-
-TEST_P(OptimizerContract, AsksForFinitePointsAndStaysInTheBoxWhereItSaysSo) {
-  const MemoryEvaluator evaluator = run({.budget = 600});
-  for (const Entry& entry : evaluator.trace()) {
-    for (const double value : entry.asked) {
-      ASSERT_TRUE(std::isfinite(value));
-    }
-    if (capabilities().bounds) {
-      ASSERT_FALSE(entry.score.clipped);
-    }
-  }
-}
-
-TEST_P(OptimizerContract, TheBudgetIsNeverExceeded) {
-  for (const std::int64_t budget : {1, 2, 36, 137}) {
-    const MemoryEvaluator evaluator = run({.budget = budget});
-    EXPECT_LE(evaluator.trace().size(), static_cast<std::size_t>(budget));
-    EXPECT_GE(evaluator.trace().size(), 1u);
-    EXPECT_LE(evaluator.calls_after_stop(), 1);
-  }
-}
-
-TEST_P(OptimizerContract, AZeroBudgetIsARunWithoutEvaluations) {
-  EXPECT_TRUE(run({.budget = 0}).trace().empty());
-}
-
-TEST_P(OptimizerContract, AStopIsHonoured) {
-  for (const std::int64_t stop_after : {1, 35, 50}) {
-    const MemoryEvaluator evaluator = run({.budget = INT64_MAX, .stop_after = stop_after});
-    EXPECT_LE(evaluator.trace().size(), static_cast<std::size_t>(stop_after));
-    EXPECT_LE(evaluator.calls_after_stop(), 1);
-  }
-}
-
-TEST_P(OptimizerContract, FailingEvaluationsAreSurvived) {
-  const MemoryEvaluator evaluator = run({.budget = 1000, .fail_every = 3});
-  EXPECT_GE(evaluator.trace().size(), 100u);
-  ASSERT_TRUE(evaluator.best().has_value());
-  EXPECT_LT(*evaluator.best(), calc_start_value(problem()));
-}
-
-TEST_P(OptimizerContract, NothingButFailuresIsSurvived) {
-  const MemoryEvaluator evaluator = run({.budget = 200, .fail_every = 1});
-  EXPECT_GE(evaluator.trace().size(), 1u);
-  EXPECT_FALSE(evaluator.best().has_value());
-}
-
-TEST_P(OptimizerContract, AnExceptionComesThroughAndLeavesNothingBehind) {
-  const auto optimizer = make_optimizer(optimizer_name());
-  for (const std::int64_t throw_at : {1, 2, 40}) {
-    MemoryEvaluator broken(problem(), {.budget = 200, .throw_at = throw_at});
-    try {
-      optimizer->minimize(broken, 1);
-      ADD_FAILURE() << "the exception at evaluation " << throw_at << " was swallowed";
-    } catch (const std::runtime_error& error) {
-      EXPECT_STREQ(error.what(), "the evaluator is broken");
-    }
-    EXPECT_EQ(broken.trace().size(), static_cast<std::size_t>(throw_at - 1));
-  }
-  MemoryEvaluator sound(problem(), {.budget = 200});
-  optimizer->minimize(sound, 1);
-  EXPECT_EQ(sound.trace(), run({.budget = 200}).trace());
-}
-
-TEST_P(OptimizerContract, TheIncumbentBeatsTheStart) {
-  const MemoryEvaluator evaluator = run({.budget = 2000});
-  ASSERT_TRUE(evaluator.best().has_value());
-  EXPECT_LT(*evaluator.best(), calc_start_value(problem()));
-}
-
-TEST_P(OptimizerContract, BatchesAndGenerationsAreAsDeclared) {
-  const MemoryEvaluator evaluator = run({.budget = 200});
-  const bool has_batches =
-      std::ranges::any_of(evaluator.batch_sizes(), [](std::size_t size) { return size > 1; });
-  EXPECT_EQ(has_batches, capabilities().batch);
-  EXPECT_EQ(evaluator.generations() > 0, capabilities().generations);
-  if (capabilities().generations) {
-    EXPECT_EQ(evaluator.trace().front().generation, 1);  // the first is declared, too
-  }
+  const Options options = Options::parse(row.name, row.options, {});
+  const ContractFinding finding =
+      run_contract_check(find_check(std::get<1>(GetParam())), row, options);
+  EXPECT_NE(finding.outcome, ContractOutcome::broken) << finding.detail;
 }
 
 INSTANTIATE_TEST_SUITE_P(Table, OptimizerContract,
                          testing::Combine(testing::ValuesIn(optimizer_names()),
-                                          testing::ValuesIn(problem_names())),
+                                          testing::ValuesIn(check_names())),
                          [](const auto& parameters) {
-                           return make_test_name(std::get<0>(parameters.param) + "_on_" +
+                           return make_test_name(std::get<0>(parameters.param) + "_" +
                                                  std::get<1>(parameters.param));
                          });
 
@@ -216,31 +76,160 @@ TEST_P(OptimizerRowContract, EveryDefaultIsAllowedAndReadsBack) {
 INSTANTIATE_TEST_SUITE_P(Table, OptimizerRowContract, testing::ValuesIn(optimizer_names()),
                          [](const auto& parameters) { return make_test_name(parameters.param); });
 
-// Convergence: the median of five seeds, the same budget for both.
-class GaBeatsRandomSearch : public testing::TestWithParam<std::string> {
- protected:
-  double calc_median_best(const std::string& optimizer) const {
-    const auto problem = make_analytic(GetParam(), 10);
-    std::vector<double> best;
-    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-      MemoryEvaluator evaluator(*problem, {.budget = 5000});
-      make_optimizer(optimizer)->minimize(evaluator, seed);
-      best.push_back(evaluator.best().value());
-    }
-    std::ranges::sort(best);
-    return best[2];
-  }
+// Optimizers that break one promise each; the suite must find every one out.
+using Minimize = std::function<void(Evaluator&, std::uint64_t)>;
+
+class FunctionOptimizer : public Optimizer {
+ public:
+  explicit FunctionOptimizer(Minimize minimize) : minimize_(std::move(minimize)) {}
+  void minimize(Evaluator& evaluator, std::uint64_t seed) override { minimize_(evaluator, seed); }
+
+ private:
+  Minimize minimize_;
 };
 
-TEST_P(GaBeatsRandomSearch, InTheMedian) {
-  const double ga = calc_median_best("ga");
-  const double random = calc_median_best("random");
-  EXPECT_LT(ga, random / 10);  // no close call: measured 200, 25 and 370 times less
+OptimizerRow make_row(Minimize minimize, Capabilities capabilities = {}) {
+  OptimizerRow row;
+  row.name = "broken";
+  row.capabilities = capabilities;
+  row.make = [minimize](const Options&) { return std::make_unique<FunctionOptimizer>(minimize); };
+  return row;
 }
 
-INSTANTIATE_TEST_SUITE_P(TenDimensions, GaBeatsRandomSearch,
-                         testing::Values("sphere", "ellipsoid", "rosenbrock"),
-                         [](const auto& parameters) { return parameters.param; });
+std::vector<double> get_start(const Evaluator& evaluator) {
+  std::vector<double> start;
+  for (const DecisionVariable& variable : evaluator.problem().variables) {
+    start.push_back(variable.start);
+  }
+  return start;
+}
+
+void ask(Evaluator& evaluator, const std::vector<double>& x) {
+  evaluator.evaluate({&x, 1});
+}
+
+ContractFinding find(const char* check, const OptimizerRow& row) {
+  return run_contract_check(find_check(check), row, Options::parse(row.name, row.options, {}));
+}
+
+#define EXPECT_BROKEN(check, row, text)                  \
+  {                                                      \
+    const ContractFinding finding = find(check, row);    \
+    EXPECT_EQ(finding.outcome, ContractOutcome::broken); \
+    EXPECT_THAT(finding.detail, HasSubstr(text));        \
+  }
+
+TEST(ContractSuite, FindsOutWhoIgnoresTheEnd) {
+  const OptimizerRow row = make_row([](Evaluator& evaluator, std::uint64_t) {
+    for (int i = 0; i < 300; ++i) {
+      ask(evaluator, get_start(evaluator));
+    }
+  });
+  EXPECT_BROKEN("Budget", row, "on sphere: with a budget of 1 it went on asking 299 times");
+  EXPECT_BROKEN("ZeroBudget", row, "without a budget");
+  EXPECT_BROKEN("Stop", row, "stopped after 1 evaluations");
+}
+
+TEST(ContractSuite, FindsOutWhoIsSlowToStop) {
+  const OptimizerRow row = make_row([](Evaluator& evaluator, std::uint64_t) {
+    ask(evaluator, get_start(evaluator));
+    std::this_thread::sleep_for(std::chrono::milliseconds(1200));
+  });
+  EXPECT_BROKEN("Stop", row, "s to return");
+}
+
+TEST(ContractSuite, FindsOutWhoAsksForNonsense) {
+  const auto asking_for = [](double value) {
+    return make_row([value](Evaluator& evaluator, std::uint64_t) {
+      std::vector<double> x = get_start(evaluator);
+      x[0] = value;
+      ask(evaluator, x);
+    });
+  };
+  EXPECT_BROKEN("Points", asking_for(NAN), "no finite number");
+  EXPECT_BROKEN("Points", asking_for(1e9), "outside the bounds");
+  EXPECT_BROKEN("Points", make_row([](Evaluator& e, std::uint64_t) { ask(e, {}); }), "dimension");
+}
+
+TEST(ContractSuite, FindsOutWhoIsNotRepeatable) {
+  auto calls = std::make_shared<int>(0);
+  const OptimizerRow row = make_row([calls](Evaluator& evaluator, std::uint64_t) {
+    std::vector<double> x = get_start(evaluator);
+    x[0] += 1e-3 * ++*calls;
+    ask(evaluator, x);
+  });
+  EXPECT_BROKEN("Repeatable", row, "on sphere: evaluation 0 differs");
+  EXPECT_BROKEN("Memory", row, "evaluation 0 differs");
+  EXPECT_BROKEN("Seed", row, "does not declare 'stochastic'");
+}
+
+TEST(ContractSuite, FindsOutWhoMisdeclares) {
+  const Minimize one = [](Evaluator& evaluator, std::uint64_t) {
+    ask(evaluator, get_start(evaluator));
+  };
+  EXPECT_BROKEN("Seed", make_row(one, {.stochastic = true}), "give the same run");
+  EXPECT_BROKEN("Batches", make_row(one, {.batch = true}), "one point at a time");
+  EXPECT_BROKEN("Batches", make_row(one, {.generations = true}), "begins none");
+  EXPECT_BROKEN("Learning", make_row(one), "no better than random search");
+}
+
+TEST(ContractSuite, FindsOutWhoPlansWithTheBudget) {
+  const OptimizerRow row = make_row([](Evaluator& evaluator, std::uint64_t) {
+    std::vector<double> x = get_start(evaluator);
+    x[0] += 1e-6 * static_cast<double>(evaluator.remaining());
+    ask(evaluator, x);
+  });
+  EXPECT_BROKEN("Beginning", row, "declare 'paced'");
+  OptimizerRow honest = row;
+  honest.capabilities.paced = true;
+  EXPECT_EQ(find("Beginning", honest).outcome, ContractOutcome::exempt);
+}
+
+TEST(ContractSuite, FindsOutWhoSwallowsExceptions) {
+  const OptimizerRow row = make_row([](Evaluator& evaluator, std::uint64_t) {
+    try {
+      ask(evaluator, get_start(evaluator));
+    } catch (...) {
+    }
+  });
+  EXPECT_BROKEN("Exceptions", row, "swallowed");
+}
+
+TEST(ContractSuite, FindsOutWhoGivesUp) {
+  const OptimizerRow row = make_row([](Evaluator&, std::uint64_t) {});
+  EXPECT_BROKEN("Budget", row, "no evaluation at all");
+  EXPECT_BROKEN("Failures", row, "found nothing");
+}
+
+TEST(ContractSuite, FindsOutWhoLeaks) {
+  auto kept = std::make_shared<std::vector<std::unique_ptr<std::vector<double>>>>();
+  const OptimizerRow row = make_row([kept](Evaluator& evaluator, std::uint64_t) {
+    kept->push_back(std::make_unique<std::vector<double>>(100));
+    ask(evaluator, get_start(evaluator));
+  });
+#if defined(__SANITIZE_ADDRESS__)
+  GTEST_SKIP() << "the sanitizer's allocator keeps no such account";
+#endif
+  EXPECT_BROKEN("Leaks", row, "bytes behind");
+}
+
+TEST(ContractSuite, FindsOutWhoCannotBeResumed) {
+  auto calls = std::make_shared<int>(0);
+  const OptimizerRow row = make_row([calls](Evaluator& evaluator, std::uint64_t) {
+    std::vector<double> x = get_start(evaluator);
+    x[0] += 1e-3 * ++*calls;
+    while (!evaluator.stopped()) {
+      ask(evaluator, x);
+    }
+  });
+  EXPECT_BROKEN("Resume", row, "is not what optimizer 'broken' asks for now");
+}
+
+TEST(Hypervolume, IsTheAreaUnderTheReferencePoint) {
+  EXPECT_EQ(calc_hypervolume({{1, 1}}), 100);
+  EXPECT_EQ(calc_hypervolume({{1, 6}, {6, 1}, {7, 7}, {20, 0}}), 75);
+  EXPECT_EQ(calc_hypervolume({}), 0);
+}
 
 }  // namespace
 }  // namespace armwright

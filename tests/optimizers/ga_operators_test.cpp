@@ -36,15 +36,28 @@ DecisionVariable linear(double lower, double upper) {
   return {"v", "", lower, upper, lower, Scale::linear};
 }
 
+ProblemDescription describe(std::size_t constraints) {
+  ProblemDescription problem;
+  problem.constraints.resize(constraints);
+  return problem;
+}
+
+TEST(GaFitness, SeveralObjectivesCountAsTheirWeightedSum) {
+  ProblemDescription problem;
+  problem.objective_weights = {2, 10};
+  const Score score{.objectives = {3, 7}, .constraint_values = {}, .residuals = {}};
+  EXPECT_EQ(calc_fitness(problem, score).objective, 76);
+}
+
 TEST(GaFitness, AddsUpViolationsAndKnowsWhatItIsNotTold) {
   const Score met{.objectives = {3, 7}, .constraint_values = {-1, 0}, .residuals = {}};
-  EXPECT_EQ(calc_fitness(met, 2).violation, 0);
-  EXPECT_EQ(calc_fitness(met, 2).objective, 3);
+  EXPECT_EQ(calc_fitness(describe(2), met).violation, 0);
+  EXPECT_EQ(calc_fitness(describe(2), met).objective, 3);
   const Score violated{.objectives = {3}, .constraint_values = {2, -5, 0.5}, .residuals = {}};
-  EXPECT_EQ(calc_fitness(violated, 3).violation, 2.5);
+  EXPECT_EQ(calc_fitness(describe(3), violated).violation, 2.5);
   const Score failed{.objectives = {1e12}, .constraint_values = {}, .residuals = {}};
-  EXPECT_EQ(calc_fitness(failed, 1).violation, std::numeric_limits<double>::infinity());
-  EXPECT_EQ(calc_fitness(failed, 0).violation, 0);
+  EXPECT_EQ(calc_fitness(describe(1), failed).violation, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(calc_fitness(describe(0), failed).violation, 0);
 }
 
 TEST(GaFitness, FeasibilityComesFirst) {

@@ -31,7 +31,9 @@ std::span<const Entry> generation_of(const MemoryEvaluator& evaluator, std::size
 std::vector<std::size_t> rank_entries(std::span<const Entry> entries) {
   std::vector<Fitness> fitness;
   for (const Entry& entry : entries) {
-    fitness.push_back(calc_fitness(entry.score, entry.score.constraint_values.size()));
+    ProblemDescription problem;
+    problem.constraints.resize(entry.score.constraint_values.size());
+    fitness.push_back(calc_fitness(problem, entry.score));
   }
   return rank(fitness);
 }

@@ -118,8 +118,9 @@ TEST(OptionText, ReadsBackAsTheSameValue) {
 TEST(OptimizerTable, HoldsTheBuiltInOptimizers) {
   EXPECT_THAT(optimizer_names(), testing::IsSupersetOf({"ga", "random"}));
   EXPECT_EQ(find_optimizer("random").name, "random");
-  EXPECT_THAT(message_of([] { find_optimizer("gaa"); }),
-              testing::StartsWith("unknown optimizer 'gaa'; did you mean 'ga'? Valid: ga, random"));
+  EXPECT_THAT(
+      message_of([] { find_optimizer("gaa"); }),
+      testing::StartsWith("unknown optimizer 'gaa'; did you mean 'ga'? Valid: ga, ga:simple, "));
 }
 
 }  // namespace

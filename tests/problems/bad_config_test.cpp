@@ -110,7 +110,10 @@ INSTANTIATE_TEST_SUITE_P(Workspace, BadSection, testing::ValuesIn(kWorkspace));
 
 const std::vector<Mistake> kObjective = {
     {"[objective]\nkind = 'errors'",
-     "3: unknown objective.kind 'errors'; did you mean 'error'? Valid: error, error_and_torque"},
+     "3: unknown objective.kind 'errors'; did you mean 'error'? Valid: error, "
+     "error_and_torque, error_vs_torque"},
+    {"[objective]\nkind = 'error_vs_torque'\nlogarithm = true",
+     "4: objective.logarithm is true; two objectives are compared as they are; leave it out"},
     {"[objective]\ntorque_weight = -1",
      "3: objective.torque_weight is -1; it must be a finite number >= 0 and <= 1000000"},
     {"[objective]\nerror_scale_m = 0",

@@ -134,7 +134,8 @@ TEST_P(ShippedExperiment, HasTheSettingsOfTheThesis) {
   EXPECT_EQ(config.workspace.shortest_move_m, 0.05);
   EXPECT_EQ(config.workspace.points, 25);
 
-  EXPECT_EQ(config.objective.with_torque, expected.torque_weight.has_value());
+  EXPECT_EQ(config.objective.kind == TrackingObjective::Kind::error_and_torque,
+            expected.torque_weight.has_value());
   if (expected.torque_weight) {
     EXPECT_EQ(config.objective.torque_weight, *expected.torque_weight);
     EXPECT_EQ(config.objective.error_scale_m, 0.0058);
@@ -205,6 +206,7 @@ TEST(ShippedProblems, AreAllKnownHere) {
   for (const Experiment& experiment : make_experiments()) {
     expected.push_back(experiment.name);
   }
+  expected.push_back("q2-pareto");
   EXPECT_THAT(list_configs("problems"), testing::UnorderedElementsAreArray(expected));
   std::vector<std::string> listed;
   for (const ProblemTitle& problem : list_problems()) {
@@ -213,6 +215,23 @@ TEST(ShippedProblems, AreAllKnownHere) {
     listed.push_back(problem.name);
   }
   EXPECT_EQ(listed, list_configs("problems"));
+}
+
+TEST(ShippedProblems, TheParetoProblemIsE6WithoutWeights) {
+  const LoadedProblem front = load_problem("q2-pareto");
+  const ProblemDescription& description = front.problem->description();
+  ASSERT_THAT(description.objectives, SizeIs(2));
+  EXPECT_FALSE(front.schedule.fresh);
+  const LoadedProblem e6 = load_problem("q2-e6");
+  const TrackingTask& task = front.tracking->config().task;
+  EXPECT_EQ(task.ik_bug, false);
+  EXPECT_EQ(task.distance_limit_m, e6.tracking->config().task.distance_limit_m);
+  EXPECT_EQ(front.sets.training, e6.sets.training);
+  const std::vector<double> start = e6.tracking->make_vector(e6.tracking->config().start);
+  const CaseBlock block{CaseRole::training, front.sets.training, {0, 1}};
+  const Evaluation both = front.problem->evaluate(start, block);
+  EXPECT_DOUBLE_EQ(calc_scalar(description, both.objectives),
+                   e6.problem->evaluate(start, block).objectives.at(0));
 }
 
 TEST(ShippedProblems, OnlyQ4Sweeps) {

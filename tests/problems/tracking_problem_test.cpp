@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "base/expect_error.hpp"
 #include "base/random.hpp"
@@ -243,6 +244,42 @@ TEST(TrackingAggregate, TorqueCountsAsTheFormulaSays) {
   EXPECT_NEAR(scaled->aggregate(get_start(*scaled), outcomes).objectives.at(0), 0.2 + 42.6, 1e-13);
   // Where torque does not count it is still a metric.
   EXPECT_EQ(load("q1-complex")->aggregate(x, outcomes).metrics.at(1), 155200);
+}
+
+TEST(TrackingAggregate, TheLogarithmIsThatOfTheSameNumber) {
+  const std::vector<CaseOutcome> outcomes = {make_outcome(0.01, 1, 0, 1)};
+  for (const char* name : {"q1-complex", "q2-e3"}) {
+    const auto plain = load(name);
+    const auto logarithmic = load(name, {"objective.logarithm=true"});
+    const std::vector<double> x = get_start(*plain);
+    EXPECT_EQ(logarithmic->aggregate(x, outcomes).objectives.at(0),
+              std::log(plain->aggregate(x, outcomes).objectives.at(0)));
+    EXPECT_EQ(logarithmic->penalty_objectives().at(0), std::log(plain->penalty_objectives().at(0)));
+    EXPECT_TRUE(std::isfinite(
+        logarithmic->aggregate(x, std::vector{make_outcome(0, 1, 0, 1)}).objectives[0]));
+  }
+}
+
+TEST(TrackingAggregate, TheSquaresOfTheResidualsAddUpToTheObjective) {
+  CaseOutcome three = make_outcome(0.02, 1, 0, 1);
+  three.residuals = {0.01, 0.02, 0.03};
+  CaseOutcome two = make_outcome(0.05, 1, 0, 1);
+  two.residuals = {0.04, 0.06};
+  const std::vector<CaseOutcome> outcomes = {
+      three, make_failure(EvaluationStatus::unreachable, "too far"), two};
+  for (const auto& [name, torques] :
+       std::map<std::string, std::size_t>{{"q1-complex", 0}, {"q2-e3", 4}, {"q2-pareto", 4}}) {
+    SCOPED_TRACE(name);
+    const auto problem = load(name);
+    EXPECT_TRUE(problem->description().has_residuals);
+    const Evaluation evaluation = problem->aggregate(get_start(*problem), outcomes);
+    ASSERT_THAT(evaluation.residuals, SizeIs(5 + torques));
+    double sum = 0;
+    for (const double r : evaluation.residuals) {
+      sum += r * r;
+    }
+    EXPECT_DOUBLE_EQ(sum, calc_scalar(problem->description(), evaluation.objectives));
+  }
 }
 
 TEST(TrackingAggregate, MetricsAreMeansExceptPeaksAndCounts) {

@@ -71,6 +71,12 @@ TEST(TrackingSimulation, EvaluationIsWhatTrackingTheDesignGives) {
   EXPECT_EQ(four.mean_error_m, sum / 24);
   const double error = (four.mean_error_m + zero.mean_error_m) / 2;
   EXPECT_NEAR(evaluation.objectives.at(0), error / 0.0058 + 85200.0 / 963686, 1e-12);
+  ASSERT_THAT(evaluation.residuals, SizeIs(2 * 24 + 4));
+  double squares = 0;
+  for (const double r : evaluation.residuals) {
+    squares += r * r;
+  }
+  EXPECT_NEAR(squares, evaluation.objectives.at(0), 1e-12);
   ASSERT_THAT(evaluation.metrics, SizeIs(13));
   EXPECT_EQ(evaluation.metrics[3], (four.energy_j + zero.energy_j) / 2);
   double saturation = 0;

@@ -343,9 +343,9 @@ TEST_F(RunTest, AFreshScheduleNeedsGenerations) {
 
 TEST_F(RunTest, AnOptimizerWithoutGenerationsGetsFixedCases) {
   const LoadedProblem problem = load_problem("q1-complex");
-  EXPECT_TRUE(choose_schedule(problem, "ga").fresh);
-  EXPECT_FALSE(choose_schedule(problem, "random").fresh);
-  EXPECT_EQ(choose_schedule(problem, "random").cases, 5);
+  EXPECT_TRUE(choose_schedule(problem, find_optimizer("ga")).fresh);
+  EXPECT_FALSE(choose_schedule(problem, find_optimizer("random")).fresh);
+  EXPECT_EQ(choose_schedule(problem, find_optimizer("random")).cases, 5);
 }
 
 TEST_F(RunTest, ATornJournalIsMendedAndTheRunGoesOn) {
@@ -398,11 +398,11 @@ TEST(ChooseWinner, FewerFailedCasesThenFeasibilityThenTheObjective) {
   judged[1].validation = make_judgement(5.0);
   judged[2].validation = make_judgement(4.0, 0, 0.1);
   judged[3].validation = make_judgement(4.5);
-  EXPECT_EQ(Judge::choose_winner(judged), std::optional<std::size_t>(3));
+  EXPECT_EQ(Judge::choose_winner(ProblemDescription{}, judged), std::optional<std::size_t>(3));
   judged.resize(1);
-  EXPECT_EQ(Judge::choose_winner(judged), std::optional<std::size_t>(0));
+  EXPECT_EQ(Judge::choose_winner(ProblemDescription{}, judged), std::optional<std::size_t>(0));
   judged[0].validation = Evaluation{};  // no case yielded a number
-  EXPECT_EQ(Judge::choose_winner(judged), std::nullopt);
+  EXPECT_EQ(Judge::choose_winner(ProblemDescription{}, judged), std::nullopt);
 }
 
 }  // namespace
