@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 
+#include "base/bits.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
 #include "problems/design_file.hpp"
@@ -110,6 +111,26 @@ std::string make_winner_toml(const RunPlan& plan, const RunResult& result,
   return toml;
 }
 
+// A run that failed and was tried again may have judged designs that are no candidates any more:
+// they are left out, and the others numbered as in the result.
+std::vector<EvaluationRecord> select_judgements(const JournalContent& journal,
+                                                const RunResult& result) {
+  std::vector<EvaluationRecord> selected;
+  for (EvaluationRecord record : journal.judgements) {
+    const auto judged = std::ranges::find_if(result.judged, [&](const JudgedCandidate& one) {
+      return same_bits(one.candidate.x, record.x);
+    });
+    const auto place = static_cast<std::size_t>(judged - result.judged.begin());
+    const bool is_test = record.cases.role == CaseRole::test;
+    if (judged == result.judged.end() || (is_test && result.winner != place)) {
+      continue;
+    }
+    record.index = is_test ? 0 : place;
+    selected.push_back(std::move(record));
+  }
+  return selected;
+}
+
 }  // namespace
 
 std::string make_trajectory_csv(const TrackingProblem& problem, const TrackingResult& result) {
@@ -147,10 +168,11 @@ bool are_derived_files_there(const std::filesystem::path& folder) {
 }
 
 void write_derived_files(const RunFolder& folder, const RunPlan& plan, const RunResult& result,
-                         const JournalContent& journal) {
+                         JournalContent journal) {
   const auto& path = folder.path();
   write_file_atomically(path / "convergence.csv",
                         make_convergence_csv(plan.problem.problem->description(), journal));
+  journal.judgements = select_judgements(journal, result);
   write_database(path / "results.sqlite", plan.problem.problem->description(), journal);
   if (result.objectives.size() > 1) {
     write_file_atomically(path / "front.csv", make_front_csv(result));

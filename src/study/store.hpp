@@ -18,6 +18,6 @@ bool are_derived_files_there(const std::filesystem::path& folder);
 
 // Writes result.json last, so that its presence says that the rest is there.
 void write_derived_files(const RunFolder& folder, const RunPlan& plan, const RunResult& result,
-                         const JournalContent& journal);
+                         JournalContent journal);
 
 }  // namespace armwright
