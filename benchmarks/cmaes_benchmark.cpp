@@ -64,22 +64,23 @@ double calc_rastrigin(std::span<const double> x) {
 }
 
 struct Function {
-  std::string name;
-  double (*calc)(std::span<const double>);
+  const char* name = "";
+  double (*calc)(std::span<const double>) = nullptr;
 };
 
 // A function on [-half_width, half_width]^n and where the search begins in it.
 struct Setting {
   Function function;
   int dimension = 10;
-  double half_width = 5;
-  double start_lower = 0;  // the start is uniform in [start_lower, start_upper]^n
+  double half_width = 100;  // the sources search without bounds
+  double start_lower = 0;   // the start is uniform in [start_lower, start_upper]^n
   double start_upper = 0;
   double sigma = 1;
   int population = 0;  // 0: the default
   double target = 1e-8;
   std::int64_t budget = 1000000;
-  std::string restarts = "none";
+  const char* restarts = "none";
+  const char* published = "";
 };
 
 constexpr int kSeeds = 15;
@@ -144,7 +145,7 @@ Outcome run_own(const Setting& setting, int seed, const std::vector<std::string>
   const OptimizerRow& row = find_optimizer("cmaes");
   std::vector<std::string> assignments = {
       fmt::format("sigma={}", setting.sigma / (2 * setting.half_width)),
-      fmt::format("population={}", setting.population), "restarts=" + setting.restarts};
+      fmt::format("population={}", setting.population), fmt::format("restarts={}", setting.restarts)};
   assignments.insert(assignments.end(), more.begin(), more.end());
   TargetEvaluator evaluator(setting, draw_start(setting, seed));
   row.make(Options::parse("cmaes", row.options, assignments))
@@ -232,27 +233,53 @@ std::vector<Setting> make_settings() {
   const Function rastrigin{"rastrigin", calc_rastrigin};
   std::vector<Setting> settings;
   for (const int n : {10, 20}) {
-    for (const Function& function : {sphere, ellipsoid}) {
-      settings.push_back(
-          {.function = function, .dimension = n, .start_lower = -4, .start_upper = 4, .sigma = 2});
-    }
-    settings.push_back({.function = rosenbrock, .dimension = n, .sigma = 0.5});
+    Setting setting{
+        .function = sphere, .dimension = n, .start_lower = -4, .start_upper = 4, .sigma = 2};
+    settings.push_back(setting);
+    setting.function = ellipsoid;
+    settings.push_back(setting);
+    setting = {.function = rosenbrock, .dimension = n, .sigma = 0.5};
+    settings.push_back(setting);
+  }
+  // The runs that pycma's documentation prints.
+  Setting run{.function = rosenbrock, .dimension = 8, .sigma = 0.5, .target = 1.272e-11};
+  run.published = "4000 [1]";
+  settings.push_back(run);
+  run = {.function = rosenbrock,
+         .dimension = 10,
+         .start_lower = 0.1,
+         .start_upper = 0.1,
+         .sigma = 0.5,
+         .target = 6.944e-11};
+  run.published = "6000, not active [2]";
+  settings.push_back(run);
+  run = {.function = ellipsoid,
+         .dimension = 4,
+         .start_lower = 2,
+         .start_upper = 2,
+         .sigma = 1,
+         .target = 9.602e-5};
+  run.published = "800 [3]";
+  settings.push_back(run);
+  run.target = 5.727e-16;
+  run.published = "1456 [3]";
+  settings.push_back(run);
+  // Large populations, as Hansen and Kern begin them.
+  for (const auto& [n, population] : {std::pair{10, 200}, {10, 400}, {20, 400}, {20, 800}}) {
     settings.push_back({.function = rastrigin,
                         .dimension = n,
                         .start_lower = 1,
                         .start_upper = 5,
                         .sigma = 2,
-                        .population = n == 10 ? 200 : 400});
+                        .population = population});
   }
   return settings;
 }
 
-}  // namespace
-
-int main() {
+void print_comparison() {
   fmt::print(
-      "| function | n | start | sigma | lambda | target | ours | ours, not active | pagmo |\n");
-  fmt::print("|---|---|---|---|---|---|---|---|---|\n");
+      "| function | n | start | sigma | lambda | f < | ours | ours, active=false | pagmo | "
+      "published |\n|---|---|---|---|---|---|---|---|---|---|\n");
   for (const Setting& s : make_settings()) {
     const std::string own = describe([&](int seed) { return run_own(s, seed); });
     const std::string passive =
@@ -261,10 +288,55 @@ int main() {
 #ifdef ARMWRIGHT_WITH_PAGMO
     pagmo = describe([&](int seed) { return run_pagmo(s, seed); });
 #endif
-    fmt::print("| {} | {} | [{}, {}]^n | {} | {} | {:g} | {} | {} | {} |\n", s.function.name,
-               s.dimension, s.start_lower, s.start_upper, s.sigma,
-               s.population > 0 ? std::to_string(s.population) : "default", s.target, own, passive,
-               pagmo);
+    fmt::print(
+        "| {} | {} | {} | {} | {} | {:g} | {} | {} | {} | {} |\n", s.function.name, s.dimension,
+        s.start_lower == s.start_upper ? fmt::format("{}", s.start_lower)
+                                       : fmt::format("[{}, {}]", s.start_lower, s.start_upper),
+        s.sigma, s.population > 0 ? std::to_string(s.population) : "default", s.target, own,
+        passive, pagmo, s.published);
     std::fflush(stdout);
   }
+}
+
+void print_restarts() {
+  fmt::print("\n| rastrigin in [-5, 5]^n, n | ipop | bipop |\n|---|---|---|\n");
+  for (const int n : {5, 10, 20}) {
+    Setting s{.function = {"rastrigin", calc_rastrigin},
+              .dimension = n,
+              .half_width = 5,
+              .start_lower = -4,
+              .start_upper = 4,
+              .sigma = 0.5,
+              .budget = 2000000};
+    s.restarts = "ipop";
+    const std::string ipop = describe([&](int seed) { return run_own(s, seed); });
+    s.restarts = "bipop";
+    const std::string bipop = describe([&](int seed) { return run_own(s, seed); });
+    fmt::print("| {} | {} | {} |\n", n, ipop, bipop);
+    std::fflush(stdout);
+  }
+}
+
+void print_speed() {
+  Setting s{.function = {"sphere", calc_sphere},
+            .dimension = 20,
+            .start_lower = -4,
+            .start_upper = 4,
+            .sigma = 2,
+            .target = -1,
+            .budget = 300000};
+  s.restarts = "ipop";
+  const auto begin = std::chrono::steady_clock::now();
+  const Outcome outcome = run_own(s, 1);
+  const std::chrono::duration<double> duration = std::chrono::steady_clock::now() - begin;
+  fmt::print("\n{:.0f} thousand evaluations a second on the sphere in 20 dimensions.\n",
+             static_cast<double>(outcome.evaluations) / duration.count() / 1000);
+}
+
+}  // namespace
+
+int main() {
+  print_comparison();
+  print_restarts();
+  print_speed();
 }
