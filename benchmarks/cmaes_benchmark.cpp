@@ -145,7 +145,9 @@ Outcome run_own(const Setting& setting, int seed, const std::vector<std::string>
   const OptimizerRow& row = find_optimizer("cmaes");
   std::vector<std::string> assignments = {
       fmt::format("sigma={}", setting.sigma / (2 * setting.half_width)),
-      fmt::format("population={}", setting.population), fmt::format("restarts={}", setting.restarts)};
+      fmt::format("population={}", setting.population),
+      fmt::format("restarts={}", setting.restarts),
+      fmt::format("tol_fun={}", std::min(1e-12, 1e-4 * std::abs(setting.target)))};
   assignments.insert(assignments.end(), more.begin(), more.end());
   TargetEvaluator evaluator(setting, draw_start(setting, seed));
   row.make(Options::parse("cmaes", row.options, assignments))

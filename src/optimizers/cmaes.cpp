@@ -127,6 +127,9 @@ class CmaSearch {
     CmaTermination termination(distribution.parameters(), settings_.tolerances, plan.sigma);
     const std::int64_t first_evaluation = evaluations_;
     while (evaluations_ - first_evaluation < plan.budget) {
+      if (evaluator_.stopped()) {
+        return false;
+      }
       if (!is_first_generation_) {
         evaluator_.begin_generation();
       }
