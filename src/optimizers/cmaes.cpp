@@ -315,7 +315,7 @@ std::vector<OptionSpec> make_option_specs() {
        .description =
            "what follows a run that has converged: nothing, larger populations (ipop), or "
            "larger and smaller ones in turn (bipop)",
-       .fallback = std::string("bipop"),
+       .fallback = std::string("ipop"),
        .choices = {"none", "ipop", "bipop"}},
       {.name = "restart_sigma",
        .description = "as sigma, for the restarts, which begin anywhere in the box",
