@@ -267,7 +267,7 @@ std::vector<Setting> make_settings() {
   run.target = 5.727e-16;
   run.published = "1456 [3]";
   settings.push_back(run);
-  // Large populations, as Hansen and Kern begin them.
+  // Large populations, which the global structure rewards.
   for (const auto& [n, population] : {std::pair{10, 200}, {10, 400}, {20, 400}, {20, 800}}) {
     settings.push_back({.function = rastrigin,
                         .dimension = n,

@@ -1,6 +1,6 @@
 // When a run of CMA-ES has nothing more to win and the next may begin. Source: Hansen 2016 (the
-// tutorial, arXiv:1604.00772), appendix B.3; the limit on generations is that of Hansen 2009,
-// Benchmarking a BI-population CMA-ES on the BBOB-2009 function testbed, three times as wide.
+// tutorial, arXiv:1604.00772), appendix B.3; the limit on generations,
+// 100 + 150 (n + 3)^2 / sqrt(lambda), is pycma's (Hansen, option maxiter).
 #pragma once
 
 #include <cstdint>
