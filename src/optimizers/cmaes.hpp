@@ -1,4 +1,6 @@
-// Covariance matrix adaptation evolution strategy.
+// The covariance matrix adaptation evolution strategy with active update, bounds, restarts and,
+// on request, handling of noise. The search distribution: cma_distribution.hpp; the box:
+// cma_box.hpp; the end of a run: cma_termination.hpp; noise: cma_uncertainty.hpp.
 #pragma once
 
 #include <vector>
