@@ -266,7 +266,7 @@ std::vector<OptimizerRow> make_multi_objective_rows() {
           population(64, 8,
                      {number("cr", "probability of crossover, below 1", 0.95, 0, 1),
                       number("eta_c", "distribution index of crossover, below 100", 10, 1, 100),
-                      number("m", "probability of mutation", 0.01, 0, 1),
+                      number("m", "probability of mutation", 0.1, 0, 1),
                       number("eta_m", "distribution index of mutation, below 100", 50, 1, 100)})),
       make_row(
           {.algorithm = "moead", .multi_objective = true},
