@@ -129,8 +129,8 @@ std::vector<OptionSpec> swarm_options() {
 
 std::vector<OptionSpec> ant_options(std::vector<OptionSpec> others) {
   std::vector<OptionSpec> options =
-      population(64, 8,
-                 {count("ker", "solutions in the archive, at most population", 63, 2, 100000),
+      population(32, 8,
+                 {count("ker", "solutions in the archive, at most population", 31, 2, 100000),
                   number("q", "the smaller, the faster it converges", 1, 0, 1e6),
                   count("threshold", "generation from which on q is 0.01", 1, 1, 1e9),
                   count("n_gen_mark", "generations over which the deviations shrink", 7, 1, 1e6),
@@ -263,18 +263,18 @@ std::vector<OptimizerRow> make_multi_objective_rows() {
           "Genetic algorithm by non-dominated sorting and crowding (pagmo)",
           "Deb, Pratap, Agarwal and Meyarivan 2002, A fast and elitist multiobjective "
           "genetic algorithm: NSGA-II",
-          population(64, 8,
+          population(32, 8,
                      {number("cr", "probability of crossover, below 1", 0.95, 0, 1),
                       number("eta_c", "distribution index of crossover, below 100", 10, 1, 100),
                       number("m", "probability of mutation", 0.1, 0, 1),
-                      number("eta_m", "distribution index of mutation, below 100", 50, 1, 100)})),
+                      number("eta_m", "distribution index of mutation, below 100", 10, 1, 100)})),
       make_row(
           {.algorithm = "moead", .multi_objective = true},
           "Many weighted problems at once, each helped by its neighbours (pagmo)",
           "Li and Zhang 2009, Multiobjective optimization problems with complicated Pareto sets, "
           "MOEA/D and NSGA-II",
           population(
-              64, 4,
+              32, 4,
               {choice("weight_generation", "where the weights lie",
                       {"grid", "low discrepancy", "random"}),
                choice("decomposition", "how weights make one objective",
@@ -297,7 +297,7 @@ std::vector<OptimizerRow> make_multi_objective_rows() {
                "Particle swarm by non-dominated sorting (pagmo)",
                "Li 2003, A non-dominated sorting particle swarm optimizer for multiobjective "
                "optimization",
-               population(64, 4,
+               population(32, 4,
                           {number("omega", "inertia", 0.6, 1e-9, 10),
                            number("c1", "pull towards a particle's own best point", 2, 1e-9, 100),
                            number("c2", "pull towards a leader", 2, 1e-9, 100),

@@ -281,8 +281,8 @@ void expect_refused(const std::string& name, const std::vector<std::string>& opt
 }
 
 TEST(Pagmo, OptionsThatDoNotFitAreRefusedBeforeTheRun) {
-  expect_refused("pagmo:gaco", {"population=40"}, "'ker' is 63");
-  expect_refused("pagmo:maco", {"ker=65"}, "'population', which is 64");
+  expect_refused("pagmo:gaco", {"population=20"}, "'ker' is 31");
+  expect_refused("pagmo:maco", {"ker=33"}, "'population', which is 32");
   expect_refused("pagmo:nsga2", {"population=66"}, "multiple of 4");
   expect_refused("pagmo:moead", {"population=20"}, "'neighbours' is 20");
   // what pagmo itself refuses
