@@ -120,7 +120,7 @@ std::vector<OptionSpec> swarm_options() {
       {number("omega", "inertia, or constriction coefficient", 0.7298, 0, 1),
        number("eta1", "pull towards a particle's own best point", 2.05, 0, 4),
        number("eta2", "pull towards its neighbours' best point", 2.05, 0, 4),
-       number("max_vel", "largest step, as a share of the box", 0.5, 1e-6, 1),
+       number("max_vel", "largest step, as a share of the box", 0.1, 1e-6, 1),
        count("variant", "how velocities change, as pagmo numbers the ways", 5, 1, 6),
        count("neighb_type", "1 gbest, 2 lbest, 3 von Neumann, 4 adaptive random", 2, 1, 4),
        count("neighb_param", "neighbours of a particle, for lbest and adaptive random", 4, 1,

@@ -96,7 +96,7 @@ TEST(PagmoExactness, CmaEs) {
 
 TEST(PagmoExactness, ParticleSwarm) {
   expect_exact("pagmo:pso",
-               pagmo::algorithm{pagmo::pso{count_generations(24), 0.7298, 2.05, 2.05, 0.5, 5, 2, 4,
+               pagmo::algorithm{pagmo::pso{count_generations(24), 0.7298, 2.05, 2.05, 0.1, 5, 2, 4,
                                            false, kSeed}},
                24);
 }
