@@ -171,7 +171,7 @@ TEST_P(PagmoRow, ExceptionsComeThrough) {
       run({.budget = 200, .throw_at = throw_at});
       ADD_FAILURE() << "the exception at evaluation " << throw_at << " was swallowed";
     } catch (const std::exception& error) {
-      EXPECT_EQ(typeid(error), typeid(std::runtime_error));
+      EXPECT_EQ(typeid(error), typeid(BrokenEvaluator));
       EXPECT_STREQ(error.what(), "the evaluator is broken");
     }
   }
