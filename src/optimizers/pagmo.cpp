@@ -1,9 +1,326 @@
 #include "optimizers/pagmo.hpp"
 
+#include <utility>
+
+#include "optimizers/pagmo_backend.hpp"
+#include "optimizers/scalar_function.hpp"
+
 namespace armwright {
+namespace {
+
+// Options keep pagmo's names, so that pagmo's documentation explains them.
+OptionSpec number(std::string name, std::string description, double fallback, double lower,
+                  double upper) {
+  return {.name = std::move(name),
+          .description = std::move(description),
+          .fallback = fallback,
+          .lower = lower,
+          .upper = upper};
+}
+
+OptionSpec count(std::string name, std::string description, std::int64_t fallback, double lower,
+                 double upper) {
+  return {.name = std::move(name),
+          .description = std::move(description),
+          .fallback = fallback,
+          .lower = lower,
+          .upper = upper};
+}
+
+OptionSpec choice(std::string name, std::string description, std::vector<std::string> choices) {
+  const std::string first = choices.front();
+  return {.name = std::move(name),
+          .description = std::move(description),
+          .fallback = first,
+          .choices = std::move(choices)};
+}
+
+// Wide first populations are wasted on robots: with gains drawn over two decades, 93 % of the arms
+// lose control. A share of 0.15 of such a box is a factor of 2 either way.
+constexpr double kSpread = 0.15;
+
+// The first population: its size, the fewest that the method works with, how wide it lies.
+std::vector<OptionSpec> population(std::int64_t size, double fewest,
+                                   std::vector<OptionSpec> others = {}) {
+  std::vector<OptionSpec> options = {
+      count("population", "individuals", size, fewest, 100000),
+      number("spread",
+             "size of the box about the start, as a share of the whole box, from which the first "
+             "population is drawn; 1: the whole box",
+             kSpread, 0, 1)};
+  options.insert(options.end(), others.begin(), others.end());
+  return options;
+}
+
+OptimizerRow make_row(PagmoMethod method, std::string summary, std::string source,
+                      std::vector<OptionSpec> options, Capabilities others = {}) {
+  if (method.row.empty()) {
+    method.row = "pagmo:" + method.algorithm;
+  }
+  if (!method.constraints) {
+    options.push_back(make_constraint_weight_option());
+  }
+  Capabilities capabilities = others;
+  capabilities.constraints = method.constraints;
+  capabilities.multi_objective = method.multi_objective;
+  capabilities.batch = method.batch;
+  capabilities.paced = method.paced;
+  capabilities.stochastic = !method.ends;
+  return {.name = method.row,
+          .summary = std::move(summary),
+          .source = std::move(source),
+          .capabilities = capabilities,
+          .options = std::move(options),
+          .make = [method](const Options& given) { return make_pagmo_optimizer(method, given); },
+          .requirements = {.objectives = method.multi_objective ? 2 : 1},
+          .unavailable = explain_missing_pagmo()};
+}
+
+OptionSpec adaptation_option() {
+  return count("variant_adptv", "how F and CR adapt: 1 jDE, 2 iDE", 1, 1, 2);
+}
+
+OptimizerRow make_de_row(std::string name) {
+  return make_row(
+      {.row = std::move(name), .algorithm = "de"}, "Differential evolution (pagmo)",
+      "Storn and Price 1997, Differential evolution - a simple and efficient heuristic for global "
+      "optimization over continuous spaces",
+      population(24, 6,
+                 {number("F", "weight of the difference of two individuals", 0.8, 0, 1),
+                  number("CR", "probability that a coordinate is taken from the mutant", 0.9, 0, 1),
+                  count("variant",
+                        "1 best/1/exp, 2 rand/1/exp, 3 rand-to-best/1/exp, 4 best/2/exp, "
+                        "5 rand/2/exp; 6 to 10: the same with /bin",
+                        2, 1, 10)}));
+}
+
+std::vector<OptimizerRow> make_differential_evolution_rows() {
+  return {
+      make_de_row("pagmo:de"),
+      make_de_row("de"),
+      make_row(
+          {.algorithm = "sade"},
+          "Differential evolution that adapts F and CR of every individual (jDE, iDE; pagmo)",
+          "Brest, Greiner, Boskovic, Mernik and Zumer 2006, Self-adapting control parameters "
+          "in differential evolution",
+          population(24, 8,
+                     {count("variant", "how mutants are made, as pagmo numbers the ways", 2, 1, 18),
+                      adaptation_option()})),
+      make_row({.algorithm = "de1220"},
+               "Differential evolution that adapts F, CR and the way mutants are made (pagmo)",
+               "Biscani and Izzo 2020, A parallel global multiobjective framework for "
+               "optimization: pagmo",
+               population(24, 8, {adaptation_option()})),
+  };
+}
+
+std::vector<OptionSpec> swarm_options() {
+  return population(
+      24, 5,
+      {number("omega", "inertia, or constriction coefficient", 0.7298, 0, 1),
+       number("eta1", "pull towards a particle's own best point", 2.05, 0, 4),
+       number("eta2", "pull towards its neighbours' best point", 2.05, 0, 4),
+       number("max_vel", "largest step, as a share of the box", 0.1, 1e-6, 1),
+       count("variant", "how velocities change, as pagmo numbers the ways", 5, 1, 6),
+       count("neighb_type", "1 gbest, 2 lbest, 3 von Neumann, 4 adaptive random", 2, 1, 4),
+       count("neighb_param", "neighbours of a particle, for lbest and adaptive random", 4, 1,
+             1000)});
+}
+
+std::vector<OptionSpec> ant_options(std::vector<OptionSpec> others) {
+  std::vector<OptionSpec> options =
+      population(32, 8,
+                 {count("ker", "solutions in the archive, at most population", 31, 2, 100000),
+                  number("q", "the smaller, the faster it converges", 1, 0, 1e6),
+                  count("threshold", "generation from which on q is 0.01", 1, 1, 1e9),
+                  count("n_gen_mark", "generations over which the deviations shrink", 7, 1, 1e6),
+                  number("focus", "the higher, the greedier", 0, 0, 1e12)});
+  options.insert(options.end(), others.begin(), others.end());
+  return options;
+}
+
+std::vector<OptimizerRow> make_swarm_rows() {
+  return {
+      make_row({.algorithm = "pso"}, "Particle swarm, particles one after another (pagmo)",
+               "Poli, Kennedy and Blackwell 2007, Particle swarm optimization: an overview",
+               swarm_options()),
+      make_row({.algorithm = "pso_gen", .batch = true},
+               "Particle swarm, a generation at a time (pagmo)",
+               "Poli, Kennedy and Blackwell 2007, Particle swarm optimization: an overview",
+               swarm_options()),
+      make_row({.algorithm = "gwo", .paced = true},
+               "Grey wolves: all close in on the best three, the slower the budget allows (pagmo)",
+               "Mirjalili, Mirjalili and Lewis 2014, Grey wolf optimizer", population(24, 4)),
+      make_row(
+          {.algorithm = "bee_colony"},
+          "Artificial bee colony: abandons what does not improve (pagmo)",
+          "Karaboga and Basturk 2007, A powerful and efficient algorithm for numerical "
+          "function optimization: artificial bee colony (ABC) algorithm",
+          population(20, 2,
+                     {count("limit", "failures after which a source is abandoned", 20, 1, 1e6)})),
+      make_row({.algorithm = "gaco", .batch = true, .constraints = true},
+               "Extended ant colony: samples about an archive, oracle penalty (pagmo)",
+               "Schlueter, Egea and Banga 2009, Extended ant colony optimization for non-convex "
+               "mixed integer nonlinear programming",
+               ant_options({number("oracle", "objective that the penalty takes as within reach", 0,
+                                   0, 1e12),
+                            number("acc", "smallest distance between penalties", 0.01, 0, 1e12)})),
+  };
+}
+
+std::vector<OptionSpec> strategy_options(std::int64_t size) {
+  return population(
+      size, 5,
+      {number("sigma0", "first step, as a share of the box", 0.07, 1e-6, 1),
+       number("ftol", "begin again once the population's objectives differ by less", 0, 0, 1e12),
+       number("xtol", "begin again once the steps are shorter", 1e-10, 0, 1e12)});
+}
+
+std::vector<OptimizerRow> make_evolution_rows() {
+  return {
+      make_row({.algorithm = "cmaes"},
+               "Covariance matrix adaptation, points outside moved to the bounds (pagmo)",
+               "Hansen 2006, The CMA evolution strategy: a comparing review", strategy_options(12)),
+      make_row({.algorithm = "xnes"},
+               "Natural evolution strategy, points outside moved to the bounds (pagmo)",
+               "Glasmachers, Schaul, Sun, Wierstra and Schmidhuber 2010, Exponential natural "
+               "evolution strategies",
+               strategy_options(12)),
+      make_row({.algorithm = "sea"},
+               "(N+1) evolution: mutates the best, replaces the worst (pagmo)",
+               "Oliveto, He and Yao 2007, Time complexity of evolutionary algorithms for "
+               "combinatorial optimization: a decade of results",
+               population(5, 1)),
+      make_row(
+          {.algorithm = "sga"}, "Simple genetic algorithm with a choice of operators (pagmo)",
+          "Holland 1975, Adaptation in natural and artificial systems",
+          population(
+              32, 2,
+              {number("cr", "probability of crossover", 0.9, 0, 1),
+               number("eta_c", "distribution index of crossover sbx", 1, 1, 100),
+               number("m", "probability of mutation", 0.02, 0, 1),
+               number("param_m",
+                      "mutation polynomial: distribution index, 1 to 100; gaussian: width as a "
+                      "share of the box, up to 1",
+                      1, 0, 100),
+               count("param_s", "size of the tournament, or number of the best kept", 2, 1, 100000),
+               choice("crossover", "how children are made",
+                      {"exponential", "binomial", "single", "sbx"}),
+               choice("mutation", "how children change", {"polynomial", "gaussian", "uniform"}),
+               choice("selection", "how parents are found", {"tournament", "truncated"})})),
+      make_row(
+          {.algorithm = "ihs", .constraints = true, .paced = true},
+          "Improved harmony search: steps shrink over the budget (pagmo)",
+          "Mahdavi, Fesanghary and Damangir 2007, An improved harmony search algorithm for "
+          "solving optimization problems",
+          population(20, 1,
+                     {number("phmcr", "probability to choose from memory", 0.85, 0, 1),
+                      number("ppar_min", "least probability to adjust the pitch", 0.35, 0, 1),
+                      number("ppar_max", "greatest probability to adjust the pitch", 0.99, 0, 1),
+                      number("bw_min", "last step, as a share of the box", 1e-5, 0, 1),
+                      number("bw_max", "first step, as a share of the box", 1, 0, 1)})),
+  };
+}
+
+std::vector<OptionSpec> compass_options(double start_range, double stop_range) {
+  return {number("start_range", "first step, as a share of the box", start_range, 1e-9, 1),
+          number("stop_range", "last step, as a share of the box", stop_range, 1e-12, 1),
+          number("reduction_coeff", "factor of the step where no direction improves", 0.5, 0, 1)};
+}
+
+std::vector<OptimizerRow> make_point_rows() {
+  std::vector<OptionSpec> hopping = compass_options(0.05, 0.005);
+  hopping.push_back(number("perturb", "length of a hop, as a share of the box", 0.05, 1e-9, 1));
+  return {
+      make_row({.algorithm = "simulated_annealing", .paced = true},
+               "Simulated annealing along the coordinates, cooling over the budget (pagmo)",
+               "Corana, Marchesi, Martini and Ridella 1987, Minimizing multimodal functions of "
+               "continuous variables with the simulated annealing algorithm",
+               {number("Ts", "first temperature, as a share of the objective at the start", 0.1,
+                       1e-12, 1e12),
+                number("Tf", "last temperature, as a share of the objective at the start", 1e-4,
+                       1e-12, 1e12),
+                count("n_range_adj", "adjustments of the steps at each temperature", 1, 1, 1000),
+                count("bin_size", "mutations of each coordinate between two of them", 10, 1, 1000),
+                number("start_range", "first step, as a share of the box", 0.1, 1e-6, 1)}),
+      make_row({.algorithm = "compass_search", .constraints = true, .ends = true},
+               "Compass search: along each axis in turn, halving the step (pagmo)",
+               "Kolda, Lewis and Torczon 2003, Optimization by direct search: new perspectives on "
+               "some classical and modern methods",
+               compass_options(0.1, 1e-6), {.local = true}),
+      make_row({.algorithm = "mbh", .constraints = true},
+               "Monotonic basin hopping: compass searches from about the best point (pagmo)",
+               "Wales and Doye 1997, Global optimization by basin-hopping and the lowest energy "
+               "structures of Lennard-Jones clusters containing up to 110 atoms",
+               std::move(hopping)),
+  };
+}
+
+std::vector<OptimizerRow> make_multi_objective_rows() {
+  return {
+      make_row(
+          {.algorithm = "nsga2", .batch = true, .multi_objective = true},
+          "Genetic algorithm by non-dominated sorting and crowding (pagmo)",
+          "Deb, Pratap, Agarwal and Meyarivan 2002, A fast and elitist multiobjective "
+          "genetic algorithm: NSGA-II",
+          population(32, 8,
+                     {number("cr", "probability of crossover, below 1", 0.95, 0, 1),
+                      number("eta_c", "distribution index of crossover, below 100", 10, 1, 100),
+                      number("m", "probability of mutation", 0.1, 0, 1),
+                      number("eta_m", "distribution index of mutation, below 100", 10, 1, 100)})),
+      make_row(
+          {.algorithm = "moead", .multi_objective = true},
+          "Many weighted problems at once, each helped by its neighbours (pagmo)",
+          "Li and Zhang 2009, Multiobjective optimization problems with complicated Pareto sets, "
+          "MOEA/D and NSGA-II",
+          population(
+              32, 4,
+              {choice("weight_generation", "where the weights lie",
+                      {"grid", "low discrepancy", "random"}),
+               choice("decomposition", "how weights make one objective",
+                      {"tchebycheff", "weighted", "bi"}),
+               count("neighbours", "neighbours of a weight, fewer than population", 20, 2, 100000),
+               number("CR", "crossover of the differential evolution within", 1, 0, 1),
+               number("F", "difference weight of the differential evolution within", 0.5, 0, 1),
+               number("eta_m", "distribution index of mutation", 20, 0, 1000),
+               number("realb", "probability that only neighbours mate", 0.9, 0, 1),
+               count("limit", "copies of a child at most", 2, 1, 100000),
+               {.name = "preserve_diversity",
+                .description = "realb and limit apply",
+                .fallback = true}})),
+      make_row({.algorithm = "maco", .batch = true, .multi_objective = true},
+               "Ant colony ranked by hypervolume (MHACO; pagmo)",
+               "Acciarini, Izzo and Mooij 2020, MHACO: a multi-objective hypervolume-based ant "
+               "colony optimizer for space trajectory optimization",
+               ant_options({})),
+      make_row({.algorithm = "nspso", .batch = true, .multi_objective = true},
+               "Particle swarm by non-dominated sorting (pagmo)",
+               "Li 2003, A non-dominated sorting particle swarm optimizer for multiobjective "
+               "optimization",
+               population(32, 4,
+                          {number("omega", "inertia", 0.6, 1e-9, 10),
+                           number("c1", "pull towards a particle's own best point", 2, 1e-9, 100),
+                           number("c2", "pull towards a leader", 2, 1e-9, 100),
+                           number("chi", "factor of the velocity", 1, 1e-9, 100),
+                           number("v_coeff", "largest step, as a share of the box", 0.5, 1e-6, 1),
+                           count("leader_selection_range", "percentage of the front that leads", 60,
+                                 1, 100),
+                           choice("diversity_mechanism", "how leaders are ranked",
+                                  {"crowding distance", "niche count", "max min"})})),
+  };
+}
+
+}  // namespace
 
 std::vector<OptimizerRow> make_pagmo_rows() {
-  return {};
+  std::vector<OptimizerRow> rows;
+  for (const auto make_rows : {make_differential_evolution_rows, make_swarm_rows,
+                               make_evolution_rows, make_point_rows, make_multi_objective_rows}) {
+    for (OptimizerRow& row : make_rows()) {
+      rows.push_back(std::move(row));
+    }
+  }
+  return rows;
 }
 
 }  // namespace armwright
