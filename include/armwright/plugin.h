@@ -107,7 +107,7 @@ struct armwright_evaluator {
 /* Types of options. */
 enum { ARMWRIGHT_BOOL = 0, ARMWRIGHT_INTEGER = 1, ARMWRIGHT_NUMBER = 2, ARMWRIGHT_TEXT = 3 };
 
-/* One option, given by the user as --option NAME=VALUE. armwright checks type and range before
+/* One option, given by the user as --opt NAME=VALUE. armwright checks type and range before
  * minimize() is called. Names are lower-case letters, digits and underscores. */
 struct armwright_option {
   const char* name;
