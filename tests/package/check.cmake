@@ -52,4 +52,14 @@ if(NOT output MATCHES "unknown optimizer 'gaa'; did you mean 'ga'\\?")
   message(FATAL_ERROR "the consumer printed\n${output}")
 endif()
 
+step("configure the plugin"
+     ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/plugin -B ${WORK_DIR}/plugin -G ${GENERATOR}
+     -D CMAKE_BUILD_TYPE=${CONFIG} -D CMAKE_CXX_COMPILER=${COMPILER} "-DCMAKE_CXX_FLAGS=${FLAGS}"
+     -D CMAKE_PREFIX_PATH=${prefix} -D EXPECTED_VERSION=${VERSION}
+     -D PLUGIN_SOURCE=${SOURCE_DIR}/tests/plugins/good.cpp)
+step("build the plugin" ${CMAKE_COMMAND} --build ${WORK_DIR}/plugin --config ${CONFIG})
+# Where the program looks for plugins by itself.
+file(COPY ${WORK_DIR}/plugin/libmine.so DESTINATION ${prefix}/lib/armwright/plugins)
+step("run the plugin" ${prefix}/bin/armwright optimize sphere --optimizer mine --budget 20 --out ${WORK_DIR}/run)
+
 step("run the installed program" ${prefix}/bin/armwright --version)
