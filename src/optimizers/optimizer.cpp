@@ -11,6 +11,7 @@
 #include "optimizers/cmaes.hpp"
 #include "optimizers/ga.hpp"
 #include "optimizers/latin_hypercube.hpp"
+#include "optimizers/multistart.hpp"
 #include "optimizers/nlopt.hpp"
 #include "optimizers/pagmo.hpp"
 #include "optimizers/random_search.hpp"
@@ -157,6 +158,10 @@ const OptimizerRow& find_optimizer(std::string_view name) {
 }
 
 OptimizerRow load_optimizer(std::string_view name) {
+  constexpr std::string_view kMultistart = "multistart:";
+  if (name.starts_with(kMultistart)) {
+    return make_multistart_row(load_optimizer(name.substr(kMultistart.size())));
+  }
   OptimizerRow row = find_optimizer(name);
   if (!row.unavailable.empty()) {
     throw Error(ErrorKind::usage,
