@@ -63,8 +63,12 @@ class StopCallback : public ceres::IterationCallback {
   const Evaluator& evaluator_;
 };
 
-bool is_finite(const std::vector<double>& values) {
-  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+// Larger sums of squares count as failures: Ceres goes on to square their slopes, and complains on
+// stderr of what is not finite.
+constexpr double kLargestSquareSum = 1e200;
+
+double calc_square_sum(const std::vector<double>& values) {
+  return std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
 }
 
 // --- Levenberg-Marquardt ---
@@ -86,13 +90,12 @@ class ResidualsOf {
   // floor.
   std::vector<double> operator()(const Score& score) {
     std::vector<double> residuals = score.residuals;
-    if (!is_finite(residuals)) {
+    const double square_sum = calc_square_sum(residuals);
+    if (!(square_sum < kLargestSquareSum)) {  // also where it is no number
       return {};
     }
     if (logarithm_ && !residuals.empty()) {
       if (floor_ == 0) {
-        const double square_sum =
-            std::inner_product(residuals.begin(), residuals.end(), residuals.begin(), 0.0);
         const double mean = square_sum / static_cast<double>(residuals.size());
         floor_ = std::max(floor_share_ * std::sqrt(mean), std::numeric_limits<double>::min());
       }
@@ -145,15 +148,15 @@ class ResidualCost : public ceres::CostFunction {
 
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override {
-    return held_.run([&] {
-      double* const jacobian = jacobians == nullptr ? nullptr : jacobians[0];
+    double* const jacobian = jacobians == nullptr ? nullptr : jacobians[0];
+    const std::size_t dimension = function_.space().dimension();
+    const bool is_known = held_.run([&] {
       const DifferencedFunction::Place& place =
           function_.look_at(box_.to_coordinates(parameters[0]), jacobian != nullptr);
       if (place.values.size() != residual_count_) {
         return false;
       }
       std::ranges::copy(place.values, residuals);
-      const std::size_t dimension = function_.space().dimension();
       for (std::size_t i = 0; jacobian != nullptr && i < dimension; ++i) {
         for (std::size_t k = 0; k < residual_count_; ++k) {
           jacobian[k * dimension + i] = place.derivatives[i][k] * box_.unit(i);
@@ -161,6 +164,15 @@ class ResidualCost : public ceres::CostFunction {
       }
       return true;
     });
+    if (is_known || jacobian == nullptr) {
+      return is_known;
+    }
+    // A Jacobian is asked for only where the residuals are known, so this is the end of the run.
+    // Ceres would announce a failure on stderr, logging switched off or not; a place without slope
+    // makes it return in silence.
+    std::fill_n(residuals, residual_count_, 0.0);
+    std::fill_n(jacobian, residual_count_ * dimension, 0.0);
+    return true;
   }
 
  private:
