@@ -85,7 +85,7 @@ OptimizerRow make_lm_row() {
   const std::vector<OptionSpec> own = {
       {.name = "transform",
        .description =
-           "of the residuals: log (ln of their magnitude over the floor), none, or auto: "
+           "of the residuals: log (ln of their squares over the floor's), none, or auto: "
            "log where every variable is logarithmic",
        .fallback = std::string("auto"),
        .choices = {"auto", "log", "none"}},

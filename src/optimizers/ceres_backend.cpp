@@ -100,7 +100,7 @@ class ResidualsOf {
         floor_ = std::max(floor_share_ * std::sqrt(mean), std::numeric_limits<double>::min());
       }
       for (double& residual : residuals) {
-        residual = std::log(std::max(std::abs(residual), floor_) / floor_);
+        residual = 2 * std::log(std::max(std::abs(residual), floor_) / floor_);
       }
     }
     return residuals;

@@ -15,9 +15,9 @@ namespace armwright {
 enum class ResidualTransform { automatic, logarithm, none };
 
 // Levenberg-Marquardt on Score::residuals (Levenberg 1944; Marquardt 1963). With the logarithm the
-// residuals are ln(max(|r|, f) / f), f = floor times the start's root mean square: every error then
-// counts by its ratio to what it was, however small it has become, which is what lets the method
-// move where a few errors are a thousand times the others.
+// residuals are 2 ln(max(|r|, f) / f), f = floor times the start's root mean square: the logarithm
+// of each one's share r^2 of the objective. Every share then counts by its ratio to what it was,
+// however small it has become.
 struct LevenbergSettings {
   ResidualTransform transform = ResidualTransform::automatic;  // the logarithm where every variable
                                                                // is logarithmic
