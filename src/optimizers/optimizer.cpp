@@ -11,6 +11,7 @@
 #include "optimizers/cmaes.hpp"
 #include "optimizers/ga.hpp"
 #include "optimizers/latin_hypercube.hpp"
+#include "optimizers/multistart.hpp"
 #include "optimizers/nlopt.hpp"
 #include "optimizers/pagmo.hpp"
 #include "optimizers/plugin_library.hpp"
@@ -158,6 +159,10 @@ const OptimizerRow& find_optimizer(std::string_view name) {
 }
 
 OptimizerRow load_optimizer(std::string_view name) {
+  constexpr std::string_view kMultistart = "multistart:";
+  if (name.starts_with(kMultistart)) {
+    return make_multistart_row(load_optimizer(name.substr(kMultistart.size())));
+  }
   if (is_library_name(name)) {
     return load_library_plugin(name);
   }

@@ -32,6 +32,10 @@ std::vector<double> SearchSpace::to_point(std::span<const double> coordinates) c
       continue;
     }
     const double u = coordinates[i];
+    if (u == start_[i]) {  // exp(log(start)) may miss it by a rounding
+      x[i] = variable.start;
+      continue;
+    }
     x[i] = std::copysign(std::exp(u), variable.lower);
     if (u >= lower_[i] && u <= upper_[i]) {  // exp(log(bound)) may miss the bound by a rounding
       x[i] = std::clamp(x[i], variable.lower, variable.upper);

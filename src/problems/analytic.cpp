@@ -36,12 +36,16 @@ double calc_sphere(Point z) {
   return sum;
 }
 
-double calc_ellipsoid(Point z) {
+double calc_ellipsoid_weight(std::size_t index, std::size_t dimension) {
   constexpr double kCondition = 1e6;
-  const double last = z.size() > 1 ? static_cast<double>(z.size() - 1) : 1;
+  const double last = dimension > 1 ? static_cast<double>(dimension - 1) : 1;
+  return std::pow(kCondition, static_cast<double>(index) / last);
+}
+
+double calc_ellipsoid(Point z) {
   double sum = 0;
   for (std::size_t i = 0; i < z.size(); ++i) {
-    sum += std::pow(kCondition, static_cast<double>(i) / last) * z[i] * z[i];
+    sum += calc_ellipsoid_weight(i, z.size()) * z[i] * z[i];
   }
   return sum;
 }
@@ -62,6 +66,39 @@ double calc_rastrigin(Point z) {
     sum += zi * zi + 10 * (1 - std::cos(2 * std::numbers::pi * zi));
   }
   return sum;
+}
+
+// What the functions are the squares of; the sum of those is the value up to rounding.
+std::vector<double> calc_sphere_residuals(Point z) {
+  return {z.begin(), z.end()};
+}
+
+std::vector<double> calc_ellipsoid_residuals(Point z) {
+  std::vector<double> residuals;
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    residuals.push_back(std::sqrt(calc_ellipsoid_weight(i, z.size())) * z[i]);
+  }
+  return residuals;
+}
+
+std::vector<double> calc_rosenbrock_residuals(Point z) {
+  std::vector<double> residuals;
+  for (std::size_t i = 0; i + 1 < z.size(); ++i) {
+    const double y = z[i] + 1;
+    residuals.push_back(10 * (z[i + 1] + 1 - y * y));
+    residuals.push_back(-z[i]);  // 1 - y
+  }
+  return residuals;
+}
+
+// 10 (1 - cos(2 pi z)) is 20 sin(pi z)^2.
+std::vector<double> calc_rastrigin_residuals(Point z) {
+  std::vector<double> residuals;
+  for (const double zi : z) {
+    residuals.push_back(zi);
+    residuals.push_back(std::sqrt(20.0) * std::sin(std::numbers::pi * zi));
+  }
+  return residuals;
 }
 
 double calc_rosen_suzuki(Point x) {
@@ -87,6 +124,7 @@ struct Definition {
   int constraint_count = 0;
   double (*calc_value)(Point) = nullptr;
   std::vector<double> (*calc_constraints)(Point) = nullptr;
+  std::vector<double> (*calc_residuals)(Point) = nullptr;
 };
 
 const std::vector<Definition>& definitions() {
@@ -98,7 +136,8 @@ const std::vector<Definition>& definitions() {
        .lower = -5,
        .upper = 5,
        .start = {kStart},
-       .calc_value = calc_sphere},
+       .calc_value = calc_sphere,
+       .calc_residuals = calc_sphere_residuals},
       {.row = {.name = "ellipsoid",
                .summary = "Separable quadratic of condition number 1e6",
                .source = "Hansen, Finck, Ros and Auger 2009, Real-parameter black-box optimization "
@@ -106,7 +145,8 @@ const std::vector<Definition>& definitions() {
        .lower = -5,
        .upper = 5,
        .start = {kStart},
-       .calc_value = calc_ellipsoid},
+       .calc_value = calc_ellipsoid,
+       .calc_residuals = calc_ellipsoid_residuals},
       {.row = {.name = "rosenbrock",
                .summary = "A long, bent, flat valley",
                .source = "Rosenbrock 1960, An automatic method for finding the greatest or least "
@@ -115,7 +155,8 @@ const std::vector<Definition>& definitions() {
        .lower = -5,
        .upper = 5,
        .start = {kStart},
-       .calc_value = calc_rosenbrock},
+       .calc_value = calc_rosenbrock,
+       .calc_residuals = calc_rosenbrock_residuals},
       {.row = {.name = "rastrigin",
                .summary = "A bowl with a regular grid of local minima",
                .source = "Rastrigin 1974, Systems of extremal control; Muehlenbein, Schomisch and "
@@ -123,7 +164,8 @@ const std::vector<Definition>& definitions() {
        .lower = -5.12,
        .upper = 5.12,
        .start = {kStart},
-       .calc_value = calc_rastrigin},
+       .calc_value = calc_rastrigin,
+       .calc_residuals = calc_rastrigin_residuals},
       {.row = {.name = "constrained",
                .summary = "Rosen-Suzuki: a convex quadratic under three quadratic constraints",
                .source = "Rosen and Suzuki 1965, Construction of nonlinear programming test "
@@ -176,6 +218,7 @@ class AnalyticProblem : public Problem {
       description_.constraints.push_back({fmt::format("g_{}", i + 1), ""});
     }
     description_.cost_unit = "function evaluation";
+    description_.has_residuals = definition.calc_residuals != nullptr;
   }
 
   const ProblemDescription& description() const override { return description_; }
@@ -191,6 +234,9 @@ class AnalyticProblem : public Problem {
       outcomes[job].error = definition_.calc_value(z);
       if (definition_.calc_constraints != nullptr) {
         outcomes[job].metrics = definition_.calc_constraints(z);
+      }
+      if (definition_.calc_residuals != nullptr) {
+        outcomes[job].residuals = definition_.calc_residuals(z);
       }
     }
     return outcomes;
@@ -225,6 +271,7 @@ class AnalyticProblem : public Problem {
       for (const double sum : constraint_sums) {
         evaluation.constraint_values.push_back(sum / count);
       }
+      evaluation.residuals = collect_residuals(outcomes, count);
     }
     return evaluation;
   }
@@ -232,6 +279,20 @@ class AnalyticProblem : public Problem {
   std::vector<double> penalty_objectives() const override { return {kPenalty}; }
 
  private:
+  // Those of every case that yielded a number, so scaled that their squares add up to the mean.
+  static std::vector<double> collect_residuals(std::span<const CaseOutcome> outcomes,
+                                               double count) {
+    std::vector<double> residuals;
+    for (const CaseOutcome& outcome : outcomes) {
+      if (outcome.has_error) {
+        for (const double residual : outcome.residuals) {
+          residuals.push_back(residual / std::sqrt(count));
+        }
+      }
+    }
+    return residuals;
+  }
+
   const Definition& definition_;  // lives as long as the program
   ProblemDescription description_;
   std::vector<double> shift_;

@@ -14,6 +14,10 @@
 // every function. It moves the minimiser away from the centre of the box, from the start and from
 // any pattern that an optimizer might favour by construction.
 //
+// All but the last are sums of squares and carry their residuals, two a pair or variable where they
+// have two terms: rosenbrock's 10 (y_{i+1} - y_i^2) and 1 - y_i, rastrigin's z_i and
+// sqrt(20) sin(pi z_i).
+//
 // A test case is one function evaluation; the functions are deterministic, so every case gives the
 // same value. Sources: see AnalyticRow::source of each.
 #pragma once

@@ -167,6 +167,35 @@ TEST_P(AnalyticTable, EveryCaseGivesTheSameAndTheMeanIsTaken) {
   EXPECT_EQ(four.status, EvaluationStatus::ok);
 }
 
+TEST_P(AnalyticTable, TheObjectiveIsTheSumOfTheSquaredResiduals) {
+  const auto problem = make_analytic(GetParam());
+  const ProblemDescription& description = problem->description();
+  EXPECT_EQ(description.has_residuals, GetParam() != "constrained");
+  RandomStream random("test/analytic/residuals/" + GetParam());
+  for (int sample = 0; sample < 100; ++sample) {
+    std::vector<double> x;
+    for (const DecisionVariable& variable : description.variables) {
+      x.push_back(random.uniform(variable.lower, variable.upper));
+    }
+    // Three cases, so that the mean is taken, too.
+    for (const CaseBlock& block : {kOneCase, CaseBlock{CaseRole::test, "test/1", {3, 1, 4}}}) {
+      const Evaluation evaluation = problem->evaluate(x, block);
+      if (!description.has_residuals) {
+        EXPECT_THAT(evaluation.residuals, IsEmpty());
+        continue;
+      }
+      double sum = 0;
+      for (const double residual : evaluation.residuals) {
+        sum += residual * residual;
+      }
+      // Some tens of positive terms, each off by a few roundings; rastrigin's cosine cancels
+      // against 1, at worst a rounding of 10 each.
+      const double objective = evaluation.objectives.at(0);
+      EXPECT_NEAR(sum, objective, 1e-14 * objective + 1e-13);
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, AnalyticTable, testing::ValuesIn(analytic_names()),
                          [](const auto& parameters) { return parameters.param; });
 
@@ -226,6 +255,31 @@ TEST(Analytic, AggregateLeavesOutCasesWithoutANumber) {
   EXPECT_TRUE(std::isnan(some.case_errors[1]));
   const Evaluation none = problem->aggregate(x, std::span(outcomes).subspan(1, 1));
   EXPECT_THAT(none.objectives, IsEmpty());
+}
+
+TEST(Analytic, ResidualsAreHandComputed) {
+  // z = (1, 2): y = (2, 3), 10 (3 - 4) and 1 - 2; the roundings of x are multiplied by at most 40.
+  const auto rosenbrock = make_analytic("rosenbrock", 2);
+  std::vector<double> x = rosenbrock->description().known_optimum;
+  x[0] += 1;
+  x[1] += 2;
+  const Evaluation bent = rosenbrock->evaluate(x, kOneCase);
+  ASSERT_THAT(bent.residuals, SizeIs(2));
+  EXPECT_NEAR(bent.residuals[0], -10, 1e-13);
+  EXPECT_NEAR(bent.residuals[1], -1, 1e-14);
+  const auto rastrigin = make_analytic("rastrigin", 1);
+  const Evaluation wave = rastrigin->evaluate(shifted(*rastrigin, -0.5), kOneCase);
+  ASSERT_THAT(wave.residuals, SizeIs(2));
+  EXPECT_NEAR(wave.residuals[0], -0.5, 1e-14);
+  EXPECT_NEAR(wave.residuals[1], -std::sqrt(20.0), 1e-13);
+}
+
+TEST(Analytic, WithoutANumberThereAreNoResiduals) {
+  const auto problem = make_analytic("sphere", 2);
+  std::vector<CaseOutcome> outcomes(1);
+  outcomes[0].has_error = false;
+  outcomes[0].status = EvaluationStatus::failed;
+  EXPECT_THAT(problem->aggregate(std::vector<double>{0, 0}, outcomes).residuals, IsEmpty());
 }
 
 TEST(EvaluationStatusText, EveryStatusHasItsName) {

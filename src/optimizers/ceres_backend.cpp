@@ -1,0 +1,366 @@
+#include "optimizers/ceres_backend.hpp"
+
+#ifdef ARMWRIGHT_WITH_CERES
+
+#include <ceres/ceres.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <functional>
+#include <limits>
+#include <numeric>
+
+namespace armwright {
+namespace {
+
+constexpr double kBoxWidth = 10;  // in the coordinates that Ceres sees
+
+// Exceptions must not pass through Ceres: the first one is held, every later question answered with
+// "failed" at once, and the held one thrown again when Ceres has returned.
+class Held {
+ public:
+  bool any() const { return exception_ != nullptr; }
+
+  // Whether `action` ran to its end and returned true.
+  template <typename Action>
+  bool run(Action action) {
+    if (any()) {
+      return false;
+    }
+    try {
+      return action();
+    } catch (...) {
+      exception_ = std::current_exception();
+      return false;
+    }
+  }
+
+  void rethrow_unless_stopped() const {
+    if (!any()) {
+      return;
+    }
+    try {
+      std::rethrow_exception(exception_);
+    } catch (const EvaluatorStopped&) {  // the run is over, which is no error
+    }
+  }
+
+ private:
+  std::exception_ptr exception_;
+};
+
+class StopCallback : public ceres::IterationCallback {
+ public:
+  StopCallback(const Held& held, const Evaluator& evaluator) : held_(held), evaluator_(evaluator) {}
+
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& /*summary*/) override {
+    return held_.any() || evaluator_.stopped() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const Held& held_;
+  const Evaluator& evaluator_;
+};
+
+// Larger sums of squares count as failures: Ceres goes on to square their slopes, and complains on
+// stderr of what is not finite.
+constexpr double kLargestSquareSum = 1e200;
+
+double calc_square_sum(const std::vector<double>& values) {
+  return std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+}
+
+// --- Levenberg-Marquardt ---
+
+bool uses_logarithm(ResidualTransform transform, const ProblemDescription& problem) {
+  if (transform != ResidualTransform::automatic) {
+    return transform == ResidualTransform::logarithm;
+  }
+  return std::ranges::all_of(problem.variables, [](const DecisionVariable& variable) {
+    return variable.scale == Scale::logarithmic;
+  });
+}
+
+class ResidualsOf {
+ public:
+  ResidualsOf(bool logarithm, double floor) : logarithm_(logarithm), floor_share_(floor) {}
+
+  // Empty for what failed: it has no residuals. The first residuals ever seen, the start's, set the
+  // floor.
+  std::vector<double> operator()(const Score& score) {
+    std::vector<double> residuals = score.residuals;
+    const double square_sum = calc_square_sum(residuals);
+    if (!(square_sum < kLargestSquareSum)) {  // also where it is no number
+      return {};
+    }
+    if (logarithm_ && !residuals.empty()) {
+      if (floor_ == 0) {
+        const double mean = square_sum / static_cast<double>(residuals.size());
+        floor_ = std::max(floor_share_ * std::sqrt(mean), std::numeric_limits<double>::min());
+      }
+      for (double& residual : residuals) {
+        residual = 2 * std::log(std::max(std::abs(residual), floor_) / floor_);
+      }
+    }
+    return residuals;
+  }
+
+ private:
+  bool logarithm_;
+  double floor_share_;
+  double floor_ = 0;
+};
+
+// The coordinates in which the box is 10 wide and the start is 0.
+class CentredBox {
+ public:
+  explicit CentredBox(const SearchSpace& space) : space_(space) {}
+
+  double unit(std::size_t i) const { return (space_.upper()[i] - space_.lower()[i]) / kBoxWidth; }
+  double lower(std::size_t i) const { return to_own(i, space_.lower()[i]); }
+  double upper(std::size_t i) const { return to_own(i, space_.upper()[i]); }
+
+  std::vector<double> to_coordinates(const double* p) const {
+    std::vector<double> coordinates;
+    for (std::size_t i = 0; i < space_.dimension(); ++i) {
+      coordinates.push_back(
+          std::clamp(space_.start()[i] + p[i] * unit(i), space_.lower()[i], space_.upper()[i]));
+    }
+    return coordinates;
+  }
+
+ private:
+  double to_own(std::size_t i, double coordinate) const {
+    return unit(i) > 0 ? (coordinate - space_.start()[i]) / unit(i) : 0;
+  }
+
+  const SearchSpace& space_;
+};
+
+class ResidualCost : public ceres::CostFunction {
+ public:
+  ResidualCost(DifferencedFunction& function, Held& held, std::size_t residual_count)
+      : function_(function), box_(function.space()), held_(held), residual_count_(residual_count) {
+    set_num_residuals(static_cast<int>(residual_count));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(function.space().dimension()));
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override {
+    double* const jacobian = jacobians == nullptr ? nullptr : jacobians[0];
+    const std::size_t dimension = function_.space().dimension();
+    const bool is_known = held_.run([&] {
+      const DifferencedFunction::Place& place =
+          function_.look_at(box_.to_coordinates(parameters[0]), jacobian != nullptr);
+      if (place.values.size() != residual_count_) {
+        return false;
+      }
+      std::ranges::copy(place.values, residuals);
+      for (std::size_t i = 0; jacobian != nullptr && i < dimension; ++i) {
+        for (std::size_t k = 0; k < residual_count_; ++k) {
+          jacobian[k * dimension + i] = place.derivatives[i][k] * box_.unit(i);
+        }
+      }
+      return true;
+    });
+    if (is_known || jacobian == nullptr) {
+      return is_known;
+    }
+    // A Jacobian is asked for only where the residuals are known, so this is the end of the run.
+    // Ceres would announce a failure on stderr, logging switched off or not; a place without slope
+    // makes it return in silence.
+    std::fill_n(residuals, residual_count_, 0.0);
+    std::fill_n(jacobian, residual_count_ * dimension, 0.0);
+    return true;
+  }
+
+ private:
+  DifferencedFunction& function_;
+  CentredBox box_;
+  Held& held_;
+  std::size_t residual_count_;
+};
+
+class LevenbergMarquardt : public Optimizer {
+ public:
+  explicit LevenbergMarquardt(const LevenbergSettings& settings) : settings_(settings) {}
+
+  void minimize(Evaluator& evaluator, std::uint64_t /*seed*/) override {
+    ResidualsOf residuals_of(uses_logarithm(settings_.transform, evaluator.problem()),
+                             settings_.floor);
+    DifferencedFunction function(evaluator, std::ref(residuals_of), settings_.differences);
+    Held held;
+    std::size_t residual_count = 0;
+    const bool has_start = held.run([&] {
+      residual_count = function.look_at(function.space().start(), false).values.size();
+      return residual_count > 0;  // a start that fails offers nothing to descend from
+    });
+    if (has_start) {
+      solve(evaluator, function, held, residual_count);
+    }
+    held.rethrow_unless_stopped();
+  }
+
+ private:
+  void solve(const Evaluator& evaluator, DifferencedFunction& function, Held& held,
+             std::size_t residual_count) const {
+    const SearchSpace& space = function.space();
+    const CentredBox box(space);
+    std::vector<double> p(space.dimension(), 0.0);
+    ResidualCost cost(function, held, residual_count);
+    ceres::Problem::Options ownership;
+    ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    ceres::Problem problem(ownership);
+    problem.AddResidualBlock(&cost, nullptr, p.data());
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      problem.SetParameterLowerBound(p.data(), static_cast<int>(i), box.lower(i));
+      problem.SetParameterUpperBound(p.data(), static_cast<int>(i), box.upper(i));
+    }
+    StopCallback callback(held, evaluator);
+    ceres::Solver::Options options;
+    options.minimizer_type = ceres::TRUST_REGION;
+    options.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
+    options.linear_solver_type = ceres::DENSE_QR;
+    options.num_threads = 1;
+    options.logging_type = ceres::SILENT;
+    options.minimizer_progress_to_stdout = false;
+    options.max_num_iterations = std::numeric_limits<int>::max();
+    options.max_solver_time_in_seconds = std::numeric_limits<double>::max();
+    // Steps are cut off at the bounds; a search along them would cost evaluations.
+    options.max_num_line_search_step_size_iterations = 0;
+    options.jacobi_scaling = settings_.jacobi_scaling;
+    options.min_lm_diagonal = settings_.min_damping;
+    options.initial_trust_region_radius = settings_.initial_radius;
+    options.function_tolerance = settings_.function_tolerance;
+    options.parameter_tolerance = settings_.parameter_tolerance;
+    options.callbacks.push_back(&callback);
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, &problem, &summary);
+  }
+
+  LevenbergSettings settings_;
+};
+
+// --- BFGS ---
+
+// Coordinates that wrap round inside the box, for methods that know no bounds.
+class FoldedBox {
+ public:
+  // At a bound the fold is flat and nothing could ever leave: a start there is moved in by `margin`
+  // (share of the box).
+  FoldedBox(const SearchSpace& space, double margin) : space_(space) {
+    for (std::size_t i = 0; i < space.dimension(); ++i) {
+      const double inset = margin * width(i);
+      centre_.push_back(
+          std::clamp(space.start()[i], space.lower()[i] + inset, space.upper()[i] - inset));
+      const double share = width(i) > 0 ? (centre_[i] - space.lower()[i]) / width(i) : 0.5;
+      angle_.push_back(std::asin(std::clamp(2 * share - 1, -1.0, 1.0)));
+    }
+  }
+
+  std::vector<double> to_coordinates(const double* p) const {
+    std::vector<double> coordinates;
+    for (std::size_t i = 0; i < centre_.size(); ++i) {
+      const double swing = std::sin(angle_[i] + kRate * p[i]) - std::sin(angle_[i]);
+      coordinates.push_back(
+          std::clamp(centre_[i] + width(i) / 2 * swing, space_.lower()[i], space_.upper()[i]));
+    }
+    return coordinates;
+  }
+
+  double slope(std::size_t i, double p) const {
+    return width(i) / 2 * kRate * std::cos(angle_[i] + kRate * p);
+  }
+
+ private:
+  static constexpr double kRate = 2 / kBoxWidth;  // in the middle of the box the scale is 10 a box
+
+  double width(std::size_t i) const { return space_.upper()[i] - space_.lower()[i]; }
+
+  const SearchSpace& space_;
+  std::vector<double> centre_;
+  std::vector<double> angle_;
+};
+
+class MeritFunction : public ceres::FirstOrderFunction {
+ public:
+  MeritFunction(DifferencedFunction& function, const FoldedBox& box, double unit, Held& held)
+      : function_(function), box_(box), unit_(unit), held_(held) {}
+
+  int NumParameters() const override { return static_cast<int>(function_.space().dimension()); }
+
+  bool Evaluate(const double* parameters, double* cost, double* gradient) const override {
+    return held_.run([&] {
+      std::vector<double> p(parameters, parameters + NumParameters());
+      std::ranges::transform(p, p.begin(), [this](double value) { return value * unit_; });
+      const DifferencedFunction::Place& place =
+          function_.look_at(box_.to_coordinates(p.data()), gradient != nullptr);
+      if (place.values.empty()) {
+        return false;
+      }
+      *cost = place.values.front();
+      for (std::size_t i = 0; gradient != nullptr && i < p.size(); ++i) {
+        gradient[i] = place.derivatives[i].front() * box_.slope(i, p[i]) * unit_;
+      }
+      return true;
+    });
+  }
+
+ private:
+  DifferencedFunction& function_;
+  const FoldedBox& box_;
+  double unit_;
+  Held& held_;
+};
+
+class Bfgs : public Optimizer {
+ public:
+  explicit Bfgs(const BfgsSettings& settings) : settings_(settings) {}
+
+  void minimize(Evaluator& evaluator, std::uint64_t /*seed*/) override {
+    const auto merit_of = [&](const Score& score) {
+      const double merit = calc_merit(evaluator.problem(), score, settings_.constraint_weight);
+      const bool is_usable = score.status == EvaluationStatus::ok && std::isfinite(merit);
+      return is_usable ? std::vector<double>{merit} : std::vector<double>{};
+    };
+    DifferencedFunction function(evaluator, merit_of, settings_.differences);
+    const FoldedBox box(function.space(), settings_.differences.step);
+    Held held;
+    StopCallback callback(held, evaluator);
+    ceres::GradientProblemSolver::Options options;
+    options.line_search_direction_type = ceres::BFGS;
+    options.line_search_type = ceres::WOLFE;
+    options.logging_type = ceres::SILENT;
+    options.minimizer_progress_to_stdout = false;
+    options.max_num_iterations = std::numeric_limits<int>::max();
+    options.max_solver_time_in_seconds = std::numeric_limits<double>::max();
+    options.function_tolerance = settings_.function_tolerance;
+    options.parameter_tolerance = settings_.parameter_tolerance;
+    options.callbacks.push_back(&callback);
+    // Ceres's first step is 1 in the largest component of its coordinates.
+    const ceres::GradientProblem problem(
+        new MeritFunction(function, box, settings_.initial_step * kBoxWidth, held));
+    std::vector<double> p(function.space().dimension(), 0.0);
+    ceres::GradientProblemSolver::Summary summary;
+    ceres::Solve(options, problem, p.data(), &summary);
+    held.rethrow_unless_stopped();
+  }
+
+ private:
+  BfgsSettings settings_;
+};
+
+}  // namespace
+
+std::unique_ptr<Optimizer> make_levenberg_marquardt(const LevenbergSettings& settings) {
+  return std::make_unique<LevenbergMarquardt>(settings);
+}
+
+std::unique_ptr<Optimizer> make_bfgs(const BfgsSettings& settings) {
+  return std::make_unique<Bfgs>(settings);
+}
+
+}  // namespace armwright
+
+#endif

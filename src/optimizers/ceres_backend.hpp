@@ -1,0 +1,47 @@
+// The two optimizers that are made of Ceres Solver; the only place that includes its headers.
+//
+// Both work in coordinates p of their own: p = 0 at the start and the box 10 wide in every
+// variable, on the variable's own scale. So a factor of ten is about one, trust regions and damping
+// mean the same for every variable and problem, and the start is met exactly.
+#pragma once
+
+#include <memory>
+
+#include "optimizers/differences.hpp"
+#include "optimizers/optimizer.hpp"
+
+namespace armwright {
+
+enum class ResidualTransform { automatic, logarithm, none };
+
+// Levenberg-Marquardt on Score::residuals (Levenberg 1944; Marquardt 1963). With the logarithm the
+// residuals are 2 ln(max(|r|, f) / f), f = floor times the start's root mean square: the logarithm
+// of each one's share r^2 of the objective. Every share then counts by its ratio to what it was,
+// however small it has become.
+struct LevenbergSettings {
+  ResidualTransform transform = ResidualTransform::automatic;  // the logarithm where every variable
+                                                               // is logarithmic
+  double floor = 1e-3;
+  DifferenceSettings differences;
+  bool jacobi_scaling = false;
+  double min_damping = 1;
+  double initial_radius = 1;
+  double function_tolerance = 1e-6;
+  double parameter_tolerance = 1e-8;
+};
+
+// BFGS with Wolfe line searches on calc_merit(). The box is folded into the coordinates:
+// u = c + w/2 (sin(a + 2 p/10) - sin(a)), w the box's width, so that no point lies outside it.
+struct BfgsSettings {
+  DifferenceSettings differences;
+  double initial_step = 0.05;  // longest first step, share of the box
+  double function_tolerance = 1e-6;
+  double parameter_tolerance = 1e-8;
+  double constraint_weight = 1000;
+};
+
+// Only in a build with Ceres (ARMWRIGHT_WITH_CERES).
+std::unique_ptr<Optimizer> make_levenberg_marquardt(const LevenbergSettings& settings);
+std::unique_ptr<Optimizer> make_bfgs(const BfgsSettings& settings);
+
+}  // namespace armwright

@@ -1,0 +1,64 @@
+// Derivatives by differences, for optimizers that need some: of a vector of values (residuals, or
+// one merit) with respect to the coordinates of search_space.hpp. Every shifted point is an
+// evaluation like any other: all those of one place are asked for as one batch and counted.
+//
+//   forward: (v(u + h e_i) - v(u)) / h         the error falls with h, n points
+//   central: (v(u + h e_i) - v(u - h e_i)) / 2h  the error falls with h^2, 2n points
+//
+// h is a share of the box. A shift that would leave the box goes the other way; where a side is
+// missing, or its evaluation failed, the base point stands for it, and where nothing is left the
+// derivative is 0.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "optimizers/scalar_function.hpp"
+
+namespace armwright {
+
+struct DifferenceSettings {
+  bool central = false;
+  double step = 0.005;  // share of the box, at most 0.5
+};
+
+class DifferencedFunction {
+ public:
+  // What is differentiated; empty where the evaluation failed.
+  using ValuesOf = std::function<std::vector<double>(const Score&)>;
+
+  // A place in the box and what is known of it. Places are kept, so that none is asked for twice.
+  struct Place {
+    std::vector<double> values;                    // empty: failed
+    std::vector<std::vector<double>> derivatives;  // one column a variable; empty: not asked for
+  };
+
+  DifferencedFunction(Evaluator& evaluator, ValuesOf values_of, const DifferenceSettings& settings)
+      : function_(evaluator), values_of_(std::move(values_of)), settings_(settings) {}
+
+  const SearchSpace& space() const { return function_.space(); }
+
+  // Throw EvaluatorStopped, and whatever the evaluator throws. The derivatives of a failed place
+  // stay empty. Valid until the next call.
+  const Place& look_at(const std::vector<double>& coordinates, bool with_derivatives);
+
+ private:
+  struct Shift {
+    std::optional<std::size_t> above;  // places in the batch
+    std::optional<std::size_t> below;
+  };
+
+  Shift add_shifts(const std::vector<double>& base, std::size_t variable,
+                   std::vector<std::vector<double>>& batch) const;
+
+  ScalarFunction function_;
+  ValuesOf values_of_;
+  DifferenceSettings settings_;
+  std::map<std::vector<double>, Place> places_;
+};
+
+}  // namespace armwright

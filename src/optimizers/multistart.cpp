@@ -1,0 +1,156 @@
+#include "optimizers/multistart.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/random.hpp"
+#include "base/text.hpp"
+#include "optimizers/search_space.hpp"
+
+namespace armwright {
+namespace {
+
+// The same problem from another start, with an allowance of its own.
+class StartedElsewhere : public Evaluator {
+ public:
+  StartedElsewhere(Evaluator& evaluator, ProblemDescription problem, std::int64_t allowance)
+      : evaluator_(evaluator), problem_(std::move(problem)), allowance_(allowance) {}
+
+  const ProblemDescription& problem() const override { return problem_; }
+
+  std::vector<Score> evaluate(std::span<const std::vector<double>> points) override {
+    if (stopped()) {
+      return {};
+    }
+    const auto count = std::min(std::ssize(points), static_cast<std::ptrdiff_t>(allowance_));
+    std::vector<Score> scores = evaluator_.evaluate(points.first(static_cast<std::size_t>(count)));
+    allowance_ -= std::ssize(scores);
+    has_evaluated_ = has_evaluated_ || !scores.empty();
+    return scores;
+  }
+
+  bool stopped() const override { return allowance_ == 0 || evaluator_.stopped(); }
+  std::int64_t remaining() const override { return std::min(allowance_, evaluator_.remaining()); }
+  void begin_generation() override { evaluator_.begin_generation(); }
+  void recommend(std::span<const double> x) override { evaluator_.recommend(x); }
+
+  bool has_evaluated() const { return has_evaluated_; }
+
+ private:
+  Evaluator& evaluator_;
+  ProblemDescription problem_;
+  std::int64_t allowance_;
+  bool has_evaluated_ = false;
+};
+
+class Multistart : public Optimizer {
+ public:
+  Multistart(std::unique_ptr<Optimizer> inner, const Options& options)
+      : inner_(std::move(inner)),
+        spread_(options.get_number("spread")),
+        evaluations_per_start_(options.get_integer("evaluations_per_start")) {}
+
+  void minimize(Evaluator& evaluator, std::uint64_t seed) override {
+    RandomStream random("optimizer/multistart", seed);
+    const SearchSpace space(evaluator.problem().variables);
+    const std::int64_t allowance = evaluations_per_start_ == 0 ? INT64_MAX : evaluations_per_start_;
+    // Nothing asked for twice in a row: the inner optimizer has no use for this problem, and would
+    // keep us here for ever.
+    int idle_starts = 0;
+    for (bool is_first = true; !evaluator.stopped() && idle_starts < 2; is_first = false) {
+      ProblemDescription problem = evaluator.problem();
+      const std::uint64_t inner_seed = random.next_u64();
+      if (!is_first) {
+        const std::vector<double> start = draw_start(space, random);
+        for (std::size_t i = 0; i < start.size(); ++i) {
+          problem.variables[i].start = start[i];
+        }
+      }
+      StartedElsewhere restarted(evaluator, std::move(problem), allowance);
+      inner_->minimize(restarted, inner_seed);
+      idle_starts = restarted.has_evaluated() ? 0 : idle_starts + 1;
+    }
+  }
+
+ private:
+  std::vector<double> draw_start(const SearchSpace& space, RandomStream& random) const {
+    std::vector<double> coordinates;
+    for (std::size_t i = 0; i < space.dimension(); ++i) {
+      const double centre = space.start()[i];
+      const double lower = centre - spread_ * (centre - space.lower()[i]);
+      const double upper = centre + spread_ * (space.upper()[i] - centre);
+      coordinates.push_back(
+          std::clamp(random.uniform(lower, upper), space.lower()[i], space.upper()[i]));
+    }
+    return space.to_point(coordinates);
+  }
+
+  std::unique_ptr<Optimizer> inner_;
+  double spread_;
+  std::int64_t evaluations_per_start_;
+};
+
+std::vector<OptionSpec> make_own_options() {
+  return {{.name = "spread",
+           .description = "of the random starts about the problem's start, share of the box",
+           .fallback = 1.0,
+           .lower = 0,
+           .upper = 1},
+          {.name = "evaluations_per_start",
+           .description = "after which a start is given up; 0: when it ends by itself",
+           .fallback = std::int64_t{0},
+           .lower = 0,
+           .upper = 1e12}};
+}
+
+// The inner optimizer's part of the options, which have been checked.
+Options select_inner(const OptimizerRow& inner, const Options& options) {
+  std::vector<std::string> assignments;
+  for (const OptionSpec& spec : inner.options) {
+    assignments.push_back(spec.name + "=" + to_text(options.values().at(spec.name)));
+  }
+  return Options::parse(inner.name, inner.options, assignments);
+}
+
+}  // namespace
+
+OptimizerRow make_multistart_row(const OptimizerRow& inner) {
+  OptimizerRow row = inner;
+  row.name = "multistart:" + inner.name;
+  if (!inner.capabilities.local) {
+    std::vector<std::string> local;
+    for (const OptimizerRow& candidate : optimizer_table()) {
+      if (candidate.capabilities.local) {
+        local.push_back(candidate.name);
+      }
+    }
+    throw Error(ErrorKind::usage,
+                fmt::format("optimizer '{}': '{}' is no local optimizer that ends by itself, so "
+                            "there is nothing to restart; these are: {}",
+                            sanitize(row.name), sanitize(inner.name), join(local, ", ")));
+  }
+  row.summary = fmt::format("{} from the start and then from random points, until the budget ends",
+                            inner.name);
+  row.source = fmt::format(
+      "Rinnooy Kan and Timmer 1987, Stochastic global optimization methods; {}", inner.source);
+  row.capabilities.stochastic = true;
+  row.capabilities.local = false;
+  for (OptionSpec& own : make_own_options()) {
+    if (std::ranges::count(inner.options, own.name, &OptionSpec::name) > 0) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("optimizer '{}': '{}' has an option '{}' itself, which would hide "
+                              "multistart's",
+                              sanitize(row.name), sanitize(inner.name), own.name));
+    }
+    row.options.push_back(std::move(own));
+  }
+  row.make = [inner](const Options& options) -> std::unique_ptr<Optimizer> {
+    return std::make_unique<Multistart>(inner.make(select_inner(inner, options)), options);
+  };
+  return row;
+}
+
+}  // namespace armwright

@@ -1,0 +1,284 @@
+#include "optimizers/ceres.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "base/error.hpp"
+#include "problems/analytic.hpp"
+#include "study/memory_evaluator.hpp"
+
+namespace armwright {
+namespace {
+
+using testing::AnyOf;
+using testing::Each;
+using testing::HasSubstr;
+
+// Sums of squares over any variables.
+class ResidualProblem : public Problem {
+ public:
+  using Residuals = std::function<std::vector<double>(std::span<const double>)>;
+
+  ResidualProblem(std::vector<DecisionVariable> variables, Residuals residuals)
+      : residuals_(std::move(residuals)) {
+    description_.name = "residuals";
+    description_.variables = std::move(variables);
+    description_.objectives = {{"f", ""}};
+    description_.cost_unit = "function evaluation";
+    description_.has_residuals = true;
+  }
+
+  const ProblemDescription& description() const override { return description_; }
+
+  std::vector<CaseOutcome> simulate(std::span<const CaseJob> jobs) const override {
+    std::vector<CaseOutcome> outcomes(jobs.size());
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+      outcomes[i].residuals = residuals_(jobs[i].x);
+    }
+    return outcomes;
+  }
+
+  Evaluation aggregate(std::span<const double> /*x*/,
+                       std::span<const CaseOutcome> outcomes) const override {
+    Evaluation evaluation;
+    double sum = 0;
+    for (const double residual : outcomes[0].residuals) {
+      sum += residual * residual;
+    }
+    evaluation.objectives = {sum};
+    evaluation.residuals = outcomes[0].residuals;
+    return evaluation;
+  }
+
+  std::vector<double> penalty_objectives() const override { return {1e12}; }
+
+ private:
+  Residuals residuals_;
+  ProblemDescription description_;
+};
+
+// As an arm's gains: errors, all positive and of very different size, that fall with the right
+// ratios of logarithmic variables; a limit that does not matter. Minimum 2.25.
+std::unique_ptr<Problem> make_arm_like() {
+  return std::make_unique<ResidualProblem>(
+      std::vector<DecisionVariable>{{"p", "", 1, 10000, 100, Scale::logarithmic},
+                                    {"d", "", 0.1, 1000, 10, Scale::logarithmic},
+                                    {"limit", "", -1e6, -100, -1e4, Scale::logarithmic}},
+      [](std::span<const double> x) {
+        const double a = std::log(x[0] / 400);
+        const double b = std::log(x[1] / 30);
+        return std::vector<double>{std::exp(a * a), std::exp(0.5 * a * a + 0.5 * b * b),
+                                   0.5 * std::exp(std::pow(b - 0.2 * a, 2))};
+      });
+}
+
+MemoryEvaluator run(const std::string& name, const Problem& problem,
+                    const MemoryEvaluatorSettings& settings,
+                    const std::vector<std::string>& assignments = {}) {
+  MemoryEvaluator evaluator(problem, settings);
+  const OptimizerRow& row = find_optimizer(name);
+  row.make(Options::parse(name, row.options, assignments))->minimize(evaluator, 1);
+  return evaluator;
+}
+
+std::vector<double> start_of(const Problem& problem) {
+  std::vector<double> start;
+  for (const DecisionVariable& variable : problem.description().variables) {
+    start.push_back(variable.start);
+  }
+  return start;
+}
+
+class Ceres : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!find_optimizer("ceres:lm").unavailable.empty()) {
+      GTEST_SKIP() << find_optimizer("ceres:lm").unavailable;
+    }
+  }
+};
+
+TEST_F(Ceres, LmSolvesRosenbrock) {
+  const auto problem = make_analytic("rosenbrock", 10);
+  for (const char* transform : {"transform=none", "transform=auto"}) {  // no logarithmic variables
+    const MemoryEvaluator evaluator = run("ceres:lm", *problem, {.budget = 2000}, {transform});
+    EXPECT_LT(evaluator.best().value(), 1e-8);
+    EXPECT_LT(evaluator.trace().size(), 500u);  // ends by itself; measured 334
+    EXPECT_EQ(evaluator.trace().front().asked, start_of(*problem));
+  }
+}
+
+TEST_F(Ceres, LmTakesLogarithmsWhereEveryVariableIsLogarithmic) {
+  const auto problem = make_arm_like();
+  const MemoryEvaluator evaluator = run("ceres:lm", *problem, {.budget = 300});
+  EXPECT_LT(evaluator.best().value(), 2.26);  // forward differences; the start has 60
+  EXPECT_GT(evaluator.best().value(), 2.25 - 1e-12);
+  EXPECT_EQ(evaluator.trace().front().asked, start_of(*problem));
+  const auto traced = [&](const char* transform) {
+    return run("ceres:lm", *problem, {.budget = 300}, {transform}).trace();
+  };
+  EXPECT_EQ(evaluator.trace(), traced("transform=log"));
+  EXPECT_NE(evaluator.trace(), traced("transform=none"));
+  // What has no influence stays where it was, but for the shifts.
+  const auto best = std::ranges::min_element(
+      evaluator.trace(), {}, [](const auto& entry) { return entry.score.objectives[0]; });
+  EXPECT_NEAR(best->asked[2], -1e4, 500);
+}
+
+TEST_F(Ceres, DerivativesAreOneBatchAndNothingIsAskedForTwice) {
+  const auto rosenbrock = make_analytic("rosenbrock", 10);
+  EXPECT_THAT(run("ceres:lm", *rosenbrock, {.budget = 300}).batch_sizes(), Each(AnyOf(1, 10)));
+  EXPECT_THAT(run("ceres:lm", *rosenbrock, {.budget = 300}, {"differences=central"}).batch_sizes(),
+              Each(AnyOf(1, 20)));
+  EXPECT_THAT(
+      run("ceres:bfgs", *rosenbrock, {.budget = 300}, {"differences=forward"}).batch_sizes(),
+      Each(AnyOf(1, 10, 11)));
+  for (const char* name : {"ceres:lm", "ceres:bfgs"}) {
+    std::vector<std::vector<double>> points;
+    const MemoryEvaluator evaluator = run(name, *rosenbrock, {.budget = 2000});
+    for (const MemoryEvaluator::Entry& entry : evaluator.trace()) {
+      points.push_back(entry.asked);
+    }
+    std::ranges::sort(points);
+    EXPECT_EQ(std::ranges::adjacent_find(points), points.end()) << name;
+  }
+}
+
+TEST_F(Ceres, BfgsSolvesRosenbrock) {
+  const auto problem = make_analytic("rosenbrock", 10);
+  const MemoryEvaluator evaluator = run("ceres:bfgs", *problem, {.budget = 4000}, {"step=1e-6"});
+  EXPECT_LT(evaluator.best().value(), 1e-8);
+  EXPECT_LT(evaluator.trace().size(), 4000u);  // ends by itself; measured 2415
+  EXPECT_EQ(evaluator.trace().front().asked, start_of(*problem));
+}
+
+TEST_F(Ceres, BfgsPaysForViolatedConstraints) {
+  const auto problem = make_analytic("constrained");
+  const MemoryEvaluator evaluator =
+      run("ceres:bfgs", *problem, {.budget = 2000}, {"constraint_weight=10"});
+  EXPECT_LT(evaluator.best().value(), -40);  // of -44, and the start is at 1.5
+}
+
+// A minimum outside the box: at the corner (2, -3).
+std::unique_ptr<Problem> make_cornered(double start) {
+  return std::make_unique<ResidualProblem>(
+      std::vector<DecisionVariable>{{"x", "", -2, 2, start, Scale::linear},
+                                    {"y", "", -3, 4, start, Scale::linear}},
+      [](std::span<const double> x) {
+        return std::vector<double>{x[0] - 5, x[1] + 4, 0.1 * x[0] * x[1]};
+      });
+}
+
+TEST_F(Ceres, BoundsAreKeptAndMet) {
+  constexpr double kMinimum = 9 + 1 + 0.36;
+  for (const double start : {0.5, 2.0}) {  // inside and, for x, on the upper bound
+    const auto problem = make_cornered(start);
+    for (const char* name : {"ceres:lm", "ceres:bfgs"}) {
+      const MemoryEvaluator evaluator = run(name, *problem, {.budget = 1000});
+      for (const MemoryEvaluator::Entry& entry : evaluator.trace()) {
+        EXPECT_FALSE(entry.score.clipped);
+      }
+      EXPECT_NEAR(evaluator.best().value(), kMinimum, 1e-3) << name << " from " << start;
+    }
+  }
+}
+
+TEST_F(Ceres, TheBudgetAndAStopAreHonoured) {
+  const auto problem = make_analytic("rosenbrock", 10);
+  for (const char* name : {"ceres:lm", "ceres:bfgs"}) {
+    for (const std::int64_t budget : {0, 1, 2, 11, 12, 13, 45, 150}) {
+      const MemoryEvaluator spent = run(name, *problem, {.budget = budget});
+      EXPECT_EQ(std::ssize(spent.trace()), budget) << name;
+      EXPECT_LE(spent.calls_after_stop(), 1) << name;
+      const MemoryEvaluator stopped =
+          run(name, *problem, {.budget = INT64_MAX, .stop_after = budget});
+      EXPECT_EQ(stopped.trace(), spent.trace()) << name;
+    }
+  }
+}
+
+TEST_F(Ceres, AnExceptionComesThroughAndNothingIsAskedForAfterIt) {
+  const auto problem = make_analytic("rosenbrock", 10);
+  for (const char* name : {"ceres:lm", "ceres:bfgs"}) {
+    for (const std::int64_t throw_at : {1, 2, 12, 40}) {
+      MemoryEvaluator evaluator(*problem, {.budget = 200, .throw_at = throw_at});
+      const OptimizerRow& row = find_optimizer(name);
+      try {
+        row.make(Options::parse(name, row.options, {}))->minimize(evaluator, 1);
+        ADD_FAILURE() << name << " swallowed the exception at evaluation " << throw_at;
+      } catch (const std::runtime_error& error) {
+        EXPECT_STREQ(error.what(), "the evaluator is broken");
+      }
+      EXPECT_EQ(std::ssize(evaluator.trace()), throw_at - 1);
+    }
+  }
+}
+
+TEST_F(Ceres, FailuresAreSurvivedAndNothingIsPrinted) {
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  const auto rosenbrock = make_analytic("rosenbrock", 10);
+  const auto arm_like = make_arm_like();
+  const auto flat = std::make_unique<ResidualProblem>(  // nothing to descend, and huge numbers
+      arm_like->description().variables, [](std::span<const double>) {
+        return std::vector<double>{1e200, 0};
+      });
+  const auto cliff = std::make_unique<ResidualProblem>(
+      arm_like->description().variables, [](std::span<const double> x) {
+        return std::vector<double>{x[0] < 90 ? std::nan("") : x[0], x[0] > 105 ? 1e308 : x[1]};
+      });
+  for (const char* name : {"ceres:lm", "ceres:bfgs"}) {
+    for (const std::int64_t fail_every : {1, 2, 3, 7, 13}) {
+      const MemoryEvaluator evaluator =
+          run(name, *rosenbrock, {.budget = 2000, .fail_every = fail_every});
+      EXPECT_GE(evaluator.trace().size(), 1u);
+      if (fail_every > 2) {
+        EXPECT_LT(evaluator.best().value(), evaluator.trace().front().score.objectives[0]);
+      }
+      run(name, *arm_like, {.budget = 2000, .fail_every = fail_every});
+    }
+    for (const char* transform : {"none", "log"}) {
+      const bool is_lm = name == std::string("ceres:lm");
+      const std::vector<std::string> assignments =
+          is_lm ? std::vector<std::string>{std::string("transform=") + transform}
+                : std::vector<std::string>{};
+      run(name, *flat, {.budget = 500}, assignments);
+      run(name, *cliff, {.budget = 500}, assignments);
+    }
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST(CeresRows, AreHonestAboutWhatTheyNeed) {
+  const OptimizerRow& lm = find_optimizer("ceres:lm");
+  EXPECT_TRUE(lm.capabilities.local);
+  EXPECT_FALSE(lm.capabilities.stochastic);
+  const auto description = make_analytic("constrained")->description();
+  EXPECT_THAT(explain_unsuitable(lm, description), HasSubstr("it works on residuals"));
+  EXPECT_EQ(explain_unsuitable(find_optimizer("ceres:bfgs"), description), "");
+  if (!lm.unavailable.empty()) {
+    EXPECT_EQ(lm.unavailable,
+              "built without Ceres Solver (CMake option ARMWRIGHT_WITH_CERES is OFF)");
+    EXPECT_THROW(load_optimizer("ceres:lm"), Error);
+    EXPECT_THROW(lm.make(Options::parse("ceres:lm", lm.options, {})), Error);
+  }
+}
+
+TEST_F(Ceres, CanBeRestarted) {
+  const auto problem = make_analytic("rastrigin", 2);
+  const double once = run("ceres:lm", *problem, {.budget = 3000}).best().value();
+  const OptimizerRow row = load_optimizer("multistart:ceres:lm");
+  EXPECT_TRUE(row.requirements.residuals);
+  MemoryEvaluator evaluator(*problem, {.budget = 3000});
+  row.make(Options::parse(row.name, row.options, {}))->minimize(evaluator, 1);
+  EXPECT_EQ(evaluator.trace().size(), 3000u);
+  EXPECT_GT(once, 0.9);
+  EXPECT_LT(evaluator.best().value(), 1e-6);
+}
+
+}  // namespace
+}  // namespace armwright
