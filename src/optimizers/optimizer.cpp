@@ -13,6 +13,7 @@
 #include "optimizers/latin_hypercube.hpp"
 #include "optimizers/nlopt.hpp"
 #include "optimizers/pagmo.hpp"
+#include "optimizers/plugin_process.hpp"
 #include "optimizers/random_search.hpp"
 
 namespace armwright {
@@ -157,6 +158,10 @@ const OptimizerRow& find_optimizer(std::string_view name) {
 }
 
 OptimizerRow load_optimizer(std::string_view name) {
+  constexpr std::string_view kProcess = "exec:";
+  if (name.starts_with(kProcess)) {
+    return load_process_plugin(name.substr(kProcess.size()));
+  }
   OptimizerRow row = find_optimizer(name);
   if (!row.unavailable.empty()) {
     throw Error(ErrorKind::usage,
