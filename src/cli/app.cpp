@@ -187,6 +187,7 @@ int run_app(int argc, char** argv) {
     add_reproduce(app, session);
     add_testset(app, session);
     add_show(app, session);
+    add_new_plugin(app, session);
     return parse_and_run(app, session, argc, argv);
   } catch (const BrokenPipe&) {
     return exit_code::kIo;

@@ -12,7 +12,7 @@
 #include "base/file.hpp"
 #include "base/hash.hpp"
 #include "base/text.hpp"
-#include "optimizers/child_process.hpp"
+#include "optimizers/line_process.hpp"
 #include "optimizers/plugin_messages.hpp"
 
 namespace armwright {
@@ -49,7 +49,7 @@ std::vector<std::string> watch_option_names() {
   return names;
 }
 
-json ask_for_description(ChildProcess& child, double silence_s) {
+json ask_for_description(LineProcess& child, double silence_s) {
   child.send(make_hello(), silence_s);
   const auto line = child.receive(silence_s, [] { return false; });
   return read_message(*line);
@@ -75,7 +75,7 @@ class ProcessPlugin : public Optimizer {
       Conversation(*this, evaluator, evaluations).run(seed);
     } catch (const ProtocolError& error) {
       fail(error.what(), evaluations);
-    } catch (const ChildFailure& error) {
+    } catch (const LineProcessFailure& error) {
       fail(error.what(), evaluations);
     }
   }
@@ -97,7 +97,7 @@ class ProcessPlugin : public Optimizer {
         if (!end_) {
           throw;
         }
-      } catch (const ChildFailure&) {
+      } catch (const LineProcessFailure&) {
         if (!end_) {  // how it ends once it has been told to is its own affair
           throw;
         }
@@ -168,26 +168,26 @@ class ProcessPlugin : public Optimizer {
       if (!end_ && evaluator_.stopped()) {
         end_ = make_end();
       }
-      return end_ && ChildProcess::Clock::now() > *end_;
+      return end_ && LineProcess::Clock::now() > *end_;
     }
 
-    static ChildProcess::Clock::time_point make_end() {
-      return ChildProcess::Clock::now() + std::chrono::duration_cast<ChildProcess::Clock::duration>(
-                                              std::chrono::duration<double>(kFarewell_s));
+    static LineProcess::Clock::time_point make_end() {
+      return LineProcess::Clock::now() + std::chrono::duration_cast<LineProcess::Clock::duration>(
+                                             std::chrono::duration<double>(kFarewell_s));
     }
 
     void finish() {
       const std::string exit = child_.finish(kFarewell_s);
       if (!exit.empty()) {
-        throw ChildFailure(exit + " after it was done");
+        throw LineProcessFailure(exit + " after it was done");
       }
     }
 
     ProcessPlugin& plugin_;
     Evaluator& evaluator_;
     std::int64_t& evaluations_;
-    ChildProcess child_;
-    std::optional<ChildProcess::Clock::time_point> end_;
+    LineProcess child_;
+    std::optional<LineProcess::Clock::time_point> end_;
   };
 
   [[noreturn]] void fail(const std::string& what, std::int64_t evaluations) const {
@@ -238,7 +238,7 @@ void check_names(const OptimizerRow& row) {
 OptimizerRow load_process_plugin(std::string_view command) {
   const std::vector<std::string> words = split_command(command);
   try {
-    ChildProcess child(words, "");
+    LineProcess child(words, "");
     const json description = ask_for_description(child, kDescriptionSilence_s);
     OptimizerRow row = read_description(description);
     check_names(row);
@@ -254,7 +254,7 @@ OptimizerRow load_process_plugin(std::string_view command) {
   } catch (const ProtocolError& error) {
     throw Error(ErrorKind::bad_data,
                 fmt::format("optimizer 'exec:{}': it {}", sanitize(command), error.what()));
-  } catch (const ChildFailure& error) {
+  } catch (const LineProcessFailure& error) {
     throw Error(ErrorKind::bad_data,
                 fmt::format("optimizer 'exec:{}': it {} before it described itself; what it says "
                             "about it stands above",

@@ -12,7 +12,7 @@
 #include "base/expect_error.hpp"
 #include "base/hash.hpp"
 #include "base/temporary_folder.hpp"
-#include "optimizers/child_process.hpp"
+#include "optimizers/line_process.hpp"
 #include "problems/analytic.hpp"
 #include "study/memory_evaluator.hpp"
 

@@ -19,7 +19,7 @@ namespace armwright {
 
 // The child broke off, fell silent or took too much. The message completes a sentence that begins
 // with the child's name: "ended with exit code 3".
-class ChildFailure : public std::runtime_error {
+class LineProcessFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
@@ -27,7 +27,7 @@ class ChildFailure : public std::runtime_error {
 // expanded. Error{usage} if a quote stays open or there is no word.
 std::vector<std::string> split_command(std::string_view command);
 
-class ChildProcess {
+class LineProcess {
  public:
   using Clock = std::chrono::steady_clock;
   static constexpr std::size_t kLongestLine = std::size_t{64} << 20;
@@ -35,15 +35,15 @@ class ChildProcess {
   // Looks words[0] up on the PATH. Standard error goes to the end of the file `log`, or where ours
   // goes if it is empty. Error{usage} if there is no such program, Error{io} for a log that cannot
   // be written.
-  ChildProcess(const std::vector<std::string>& words, const std::string& log);
-  ~ChildProcess();  // kills
-  ChildProcess(const ChildProcess&) = delete;
-  ChildProcess& operator=(const ChildProcess&) = delete;
+  LineProcess(const std::vector<std::string>& words, const std::string& log);
+  ~LineProcess();  // kills
+  LineProcess(const LineProcess&) = delete;
+  LineProcess& operator=(const LineProcess&) = delete;
 
   // From now on it may hold `mib` more of resident memory than it does now.
   void limit_memory(double mib);
 
-  // Both throw ChildFailure. `silence_s` is how long it may keep us waiting.
+  // Both throw LineProcessFailure. `silence_s` is how long it may keep us waiting.
   void send(const std::string& line, double silence_s);
   // The next line, or nothing as soon as `is_given_up` holds, which is asked ten times a second.
   std::optional<std::string> receive(double silence_s, const std::function<bool()>& is_given_up);

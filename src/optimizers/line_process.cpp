@@ -1,4 +1,4 @@
-#include "optimizers/child_process.hpp"
+#include "optimizers/line_process.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -24,7 +24,7 @@ namespace {
 
 constexpr auto kSlice = std::chrono::milliseconds(100);  // between two looks at what is watched
 
-using Clock = ChildProcess::Clock;
+using Clock = LineProcess::Clock;
 
 Clock::time_point after(double seconds) {
   return Clock::now() +
@@ -120,7 +120,7 @@ std::vector<std::string> split_command(std::string_view command) {
   return words;
 }
 
-ChildProcess::ChildProcess(const std::vector<std::string>& words, const std::string& log)
+LineProcess::LineProcess(const std::vector<std::string>& words, const std::string& log)
     : next_memory_check_(Clock::now()) {
   // The child's input is a socket, not a pipe: send() can be told not to raise SIGPIPE.
   std::array<int, 2> to_child{};
@@ -165,22 +165,22 @@ ChildProcess::ChildProcess(const std::vector<std::string>& words, const std::str
   }
 }
 
-ChildProcess::~ChildProcess() {
+LineProcess::~LineProcess() {
   kill();
 }
 
-void ChildProcess::limit_memory(double mib) {
+void LineProcess::limit_memory(double mib) {
   memory_limit_mib_ = mib;
   memory_mib_at_start_ = read_memory_mib(pid_);
 }
 
-bool ChildProcess::has_ended() const {
+bool LineProcess::has_ended() const {
   siginfo_t info{};
   return waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
          info.si_pid == pid_;
 }
 
-std::string ChildProcess::kill() {
+std::string LineProcess::kill() {
   if (pid_ < 0) {
     return "ended";
   }
@@ -193,7 +193,7 @@ std::string ChildProcess::kill() {
   return describe_exit(status);
 }
 
-void ChildProcess::check_memory() {
+void LineProcess::check_memory() {
   const auto now = Clock::now();
   if (memory_limit_mib_ <= 0 || now < next_memory_check_) {
     return;
@@ -201,14 +201,14 @@ void ChildProcess::check_memory() {
   next_memory_check_ = now + kSlice;
   const double grown_mib = read_memory_mib(pid_) - memory_mib_at_start_;
   if (grown_mib > memory_limit_mib_) {
-    throw ChildFailure(
+    throw LineProcessFailure(
         fmt::format("took {:.0f} MiB of memory beyond what it began with; {:.0f} MiB are allowed "
                     "(option memory_mib)",
                     grown_mib, memory_limit_mib_));
   }
 }
 
-void ChildProcess::read_available() {
+void LineProcess::read_available() {
   std::array<char, 65536> buffer;
   while (!at_end_ && received_.size() <= kLongestLine) {
     const ssize_t count = read(output_.get(), buffer.data(), buffer.size());
@@ -222,11 +222,11 @@ void ChildProcess::read_available() {
   }
 }
 
-std::optional<std::string> ChildProcess::take_line() {
+std::optional<std::string> LineProcess::take_line() {
   const std::size_t end = received_.find('\n', searched_);
   const std::size_t length = std::min(end, received_.size()) - taken_;
   if (length > kLongestLine) {
-    throw ChildFailure(
+    throw LineProcessFailure(
         fmt::format("sent a line of more than {} MiB", kLongestLine / (1024 * 1024)));
   }
   if (end == std::string::npos) {
@@ -241,7 +241,7 @@ std::optional<std::string> ChildProcess::take_line() {
   return line;
 }
 
-void ChildProcess::send(const std::string& line, double silence_s) {
+void LineProcess::send(const std::string& line, double silence_s) {
   const std::string text = line + '\n';
   const auto deadline = after(silence_s);
   std::size_t sent = 0;
@@ -259,7 +259,7 @@ void ChildProcess::send(const std::string& line, double silence_s) {
       return;
     }
     if (Clock::now() > deadline) {
-      throw ChildFailure(fmt::format("has not read its input for {:g} s", silence_s));
+      throw LineProcessFailure(fmt::format("has not read its input for {:g} s", silence_s));
     }
     check_memory();
     // It may have to get rid of something before it listens.
@@ -271,8 +271,8 @@ void ChildProcess::send(const std::string& line, double silence_s) {
   }
 }
 
-std::optional<std::string> ChildProcess::receive(double silence_s,
-                                                 const std::function<bool()>& is_given_up) {
+std::optional<std::string> LineProcess::receive(double silence_s,
+                                                const std::function<bool()>& is_given_up) {
   const auto deadline = after(silence_s);
   while (true) {
     if (auto line = take_line()) {
@@ -290,11 +290,11 @@ std::optional<std::string> ChildProcess::receive(double silence_s,
       continue;
     }
     if (ended) {
-      throw ChildFailure(kill());
+      throw LineProcessFailure(kill());
     }
     if (Clock::now() > deadline) {
-      throw ChildFailure(at_end_ ? "closed its standard output"
-                                 : fmt::format("has been silent for {:g} s", silence_s));
+      throw LineProcessFailure(at_end_ ? "closed its standard output"
+                                       : fmt::format("has been silent for {:g} s", silence_s));
     }
     if (at_end_) {
       poll(nullptr, 0, 10);  // it is about to end
@@ -305,7 +305,7 @@ std::optional<std::string> ChildProcess::receive(double silence_s,
   }
 }
 
-std::string ChildProcess::finish(double patience_s) {
+std::string LineProcess::finish(double patience_s) {
   input_.close();
   const auto deadline = after(patience_s);
   while (!has_ended()) {
