@@ -7,6 +7,7 @@ Needs SciPy 1.9 or later (Debian: python3-scipy). A whole generation is asked fo
 works in the logarithm of logarithmic variables; the start is the first member of the population.
 """
 import json
+import os
 import sys
 
 PROTOCOL = 1
@@ -44,8 +45,11 @@ class Stopped(Exception):
 
 def send(message):
     # Standard output is the protocol's; it is flushed, or the host would wait for ever.
-    sys.stdout.write(json.dumps(message) + "\n")
-    sys.stdout.flush()
+    try:
+        sys.stdout.write(json.dumps(message) + "\n")
+        sys.stdout.flush()
+    except BrokenPipeError:
+        os._exit(0)  # the host is gone
 
 
 def receive():

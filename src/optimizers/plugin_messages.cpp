@@ -41,9 +41,12 @@ std::string quote(const json& value) {
   return quote(value.dump(-1, ' ', false, json::error_handler_t::replace));
 }
 
+// With the type first, as people read it.
+using OrderedJson = nlohmann::ordered_json;
+
 // Names of problems come from files: never refuse to send one.
-std::string to_line(const json& message) {
-  return message.dump(-1, ' ', false, json::error_handler_t::replace);
+std::string to_line(const OrderedJson& message) {
+  return message.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
 }
 
 const json& require(const json& object, const char* key, const std::string& where) {
@@ -197,8 +200,8 @@ void check_inside(const std::vector<double>& point, const std::string& what,
   }
 }
 
-json describe_quantities(std::span<const Quantity> quantities) {
-  json list = json::array();
+OrderedJson describe_quantities(std::span<const Quantity> quantities) {
+  OrderedJson list = OrderedJson::array();
   for (const Quantity& quantity : quantities) {
     list.push_back({{"name", quantity.name}, {"unit", quantity.unit}});
   }
@@ -218,7 +221,7 @@ std::string make_quit() {
 std::string make_minimize(const ProblemDescription& problem, std::uint64_t seed,
                           const Options& options, std::span<const std::string> own_options,
                           std::int64_t remaining) {
-  json variables = json::array();
+  OrderedJson variables = OrderedJson::array();
   for (const DecisionVariable& variable : problem.variables) {
     variables.push_back(
         {{"name", variable.name},
@@ -228,10 +231,10 @@ std::string make_minimize(const ProblemDescription& problem, std::uint64_t seed,
          {"start", variable.start},
          {"scale", variable.scale == Scale::logarithmic ? "logarithmic" : "linear"}});
   }
-  json values = json::object();
+  OrderedJson values = OrderedJson::object();
   for (const auto& [name, value] : options.values()) {
     if (std::ranges::count(own_options, name) == 0) {
-      values[name] = std::visit([](const auto& v) { return json(v); }, value);
+      values[name] = std::visit([](const auto& v) { return OrderedJson(v); }, value);
     }
   }
   return to_line({{"type", "minimize"},
@@ -249,12 +252,12 @@ std::string make_minimize(const ProblemDescription& problem, std::uint64_t seed,
 
 std::string make_tell(std::span<const Score> scores, std::int64_t remaining, bool stopped,
                       bool with_residuals) {
-  json list = json::array();
+  OrderedJson list = OrderedJson::array();
   for (const Score& score : scores) {
-    json one = {{"objectives", score.objectives},
-                {"constraints", score.constraint_values},
-                {"status", to_string(score.status)},
-                {"clipped", score.clipped}};
+    OrderedJson one = {{"objectives", score.objectives},
+                       {"constraints", score.constraint_values},
+                       {"status", to_string(score.status)},
+                       {"clipped", score.clipped}};
     if (with_residuals) {
       one["residuals"] = score.residuals;
     }
