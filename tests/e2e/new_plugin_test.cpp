@@ -14,7 +14,6 @@ namespace armwright {
 namespace {
 
 using nlohmann::json;
-using testing::ElementsAre;
 using testing::HasSubstr;
 
 class CliNewPlugin : public testing::Test {
@@ -37,7 +36,7 @@ TEST_F(CliNewPlugin, InPythonItRunsAsItIs) {
   const json result = json::parse(first.out);
   EXPECT_EQ(result["optimizer"], "mine");
   // The sphere's start is worth more than 30: it does optimize.
-  EXPECT_LT(result["winner"]["training_objective"].get<double>(), 1);
+  EXPECT_LT(result["winner"]["test"]["objectives"][0].get<double>(), 1);
 }
 
 TEST_F(CliNewPlugin, EveryLanguageHasItsFilesWithTheNameFilledIn) {
@@ -69,7 +68,9 @@ TEST_F(CliNewPlugin, OverwritesNothingAndRefusesBadNames) {
   }
   EXPECT_THAT(run({"new-plugin", "--language", "pyton", "other"}).err,
               HasSubstr("did you mean 'python'?"));
-  EXPECT_THAT(folder_.list(), ElementsAre("mine"));
+  for (const std::string& entry : folder_.list()) {  // beside what the tests' program leaves there
+    EXPECT_TRUE(entry == "mine" || entry.starts_with(".streams")) << entry;
+  }
 }
 
 }  // namespace
