@@ -30,6 +30,7 @@ namespace armwright {
 namespace {
 
 constexpr int kPollMs = 50;
+constexpr int kClosedPollMs = 1;  // once the connection is closed, death is a matter of moments
 constexpr double kMib = 1024.0 * 1024.0;
 constexpr int kChildSocket = 3;
 constexpr std::size_t kMaxTextBytes = 4000;  // of an exception; what is longer is cut
@@ -246,7 +247,7 @@ ChildProcess::Event ChildProcess::receive(const std::function<bool()>& must_give
       explain_death();
     }
     if (!is_open) {
-      wait_for(0);  // it has closed its end; it ends soon, or falls silent
+      wait_for(0);  // its end is closed: it is about to die, or will fall silent
     }
   }
 }
@@ -309,7 +310,7 @@ std::optional<ChildProcess::Event> ChildProcess::take_message(std::string& messa
 // or a stopped program does not count.
 bool ChildProcess::wait_for(short events) {
   pollfd waiting{.fd = events == 0 ? -1 : sockets_.parent.get(), .events = events, .revents = 0};
-  const int count = poll(&waiting, 1, kPollMs);
+  const int count = poll(&waiting, 1, events == 0 ? kClosedPollMs : kPollMs);
   const Clock::time_point now = Clock::now();
   const double waited_s = std::chrono::duration<double>(now - last_check_).count();
   last_check_ = now;
