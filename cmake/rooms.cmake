@@ -25,7 +25,7 @@ function(armwright_room name)
   target_compile_features(armwright_${name} PUBLIC cxx_std_20)
   target_include_directories(
     armwright_${name}
-    PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
+    PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
            $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/armwright>)
   foreach(below IN LISTS ROOM_ROOMS)
     target_link_libraries(armwright_${name} PUBLIC armwright_${below})

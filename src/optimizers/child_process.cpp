@@ -210,6 +210,9 @@ void ChildProcess::run_child(pid_t parent, const std::function<void(ParentLink&)
     link.send(ParentLink::Kind::finished, "");
   } catch (const std::bad_alloc&) {
     link.send(ParentLink::Kind::out_of_memory, "");
+  } catch (const ChildFailure& failure) {
+    std::fflush(stdout);
+    link.send(ParentLink::Kind::failure, std::string_view(failure.what()).substr(0, kMaxTextBytes));
   } catch (const std::exception& error) {
     std::fflush(stdout);
     link.send(ParentLink::Kind::exception, std::string_view(error.what()).substr(0, kMaxTextBytes));
@@ -296,6 +299,8 @@ std::optional<ChildProcess::Event> ChildProcess::take_message(std::string& messa
       return Event::message;
     case ParentLink::Kind::finished:
       return Event::finished;
+    case ParentLink::Kind::failure:
+      throw ChildFailure(sanitize(message));
     case ParentLink::Kind::exception:
       throw ChildFailure(fmt::format("threw an exception ({})", sanitize(message)));
     case ParentLink::Kind::out_of_memory:

@@ -20,7 +20,7 @@
 namespace armwright {
 
 // What became of a child, as the end of a sentence that begins with its name: "was killed by signal
-// 11 (Segmentation fault)".
+// 11 (Segmentation fault)". A body may throw it too, and it comes out with the same words.
 class ChildFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -36,7 +36,7 @@ class ParentLink {
 
  private:
   friend class ChildProcess;
-  enum class Kind : std::uint8_t { message, finished, exception, out_of_memory };
+  enum class Kind : std::uint8_t { message, finished, failure, exception, out_of_memory };
   void send(Kind kind, std::string_view message);
 
   int socket_;

@@ -13,6 +13,7 @@
 #include "optimizers/latin_hypercube.hpp"
 #include "optimizers/nlopt.hpp"
 #include "optimizers/pagmo.hpp"
+#include "optimizers/plugin_library.hpp"
 #include "optimizers/random_search.hpp"
 
 namespace armwright {
@@ -157,6 +158,14 @@ const OptimizerRow& find_optimizer(std::string_view name) {
 }
 
 OptimizerRow load_optimizer(std::string_view name) {
+  if (is_library_name(name)) {
+    return load_library_plugin(name);
+  }
+  if (std::ranges::count(optimizer_table(), name, &OptimizerRow::name) == 0) {
+    if (const auto file = find_library_plugin(name)) {
+      return load_library_plugin(*file, std::string(name));
+    }
+  }
   OptimizerRow row = find_optimizer(name);
   if (!row.unavailable.empty()) {
     throw Error(ErrorKind::usage,
