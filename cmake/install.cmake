@@ -19,6 +19,11 @@ foreach(room IN LISTS ARMWRIGHT_PACKAGE_ROOMS)
 endforeach()
 install(EXPORT armwrightTargets NAMESPACE armwright:: DESTINATION ${ARMWRIGHT_CMAKE_DIR})
 
+# A set of its own, so that a plugin needs none of the libraries that the rooms need.
+install(TARGETS armwright_plugin EXPORT armwrightPluginTargets)
+install(DIRECTORY include/armwright DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp")
+install(EXPORT armwrightPluginTargets NAMESPACE armwright:: DESTINATION ${ARMWRIGHT_CMAKE_DIR})
+
 configure_package_config_file(cmake/armwrightConfig.cmake.in ${PROJECT_BINARY_DIR}/armwrightConfig.cmake
                               INSTALL_DESTINATION ${ARMWRIGHT_CMAKE_DIR})
 # Before 1.0 a minor version may break what a plugin was built against.

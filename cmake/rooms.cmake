@@ -34,3 +34,10 @@ function(armwright_room name)
   armwright_compile_settings(armwright_${name})
   set(ARMWRIGHT_ROOMS "${ARMWRIGHT_ROOMS};${name}" CACHE INTERNAL "")
 endfunction()
+
+# What a plugin is built against: two headers and nothing else.
+add_library(armwright_plugin INTERFACE)
+add_library(armwright::plugin ALIAS armwright_plugin)
+set_target_properties(armwright_plugin PROPERTIES EXPORT_NAME plugin)
+target_include_directories(armwright_plugin INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+                                                      $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)

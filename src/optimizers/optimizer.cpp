@@ -13,6 +13,7 @@
 #include "optimizers/latin_hypercube.hpp"
 #include "optimizers/nlopt.hpp"
 #include "optimizers/pagmo.hpp"
+#include "optimizers/plugin_library.hpp"
 #include "optimizers/plugin_process.hpp"
 #include "optimizers/random_search.hpp"
 
@@ -161,6 +162,14 @@ OptimizerRow load_optimizer(std::string_view name) {
   constexpr std::string_view kProcess = "exec:";
   if (name.starts_with(kProcess)) {
     return load_process_plugin(name.substr(kProcess.size()));
+  }
+  if (is_library_name(name)) {
+    return load_library_plugin(name);
+  }
+  if (std::ranges::count(optimizer_table(), name, &OptimizerRow::name) == 0) {
+    if (const auto file = find_library_plugin(name)) {
+      return load_library_plugin(*file, std::string(name));
+    }
   }
   OptimizerRow row = find_optimizer(name);
   if (!row.unavailable.empty()) {
