@@ -16,6 +16,10 @@ class FileDescriptor {
 
   int get() const { return fd_; }
   bool is_open() const { return fd_ >= 0; }
+  void reset(int fd) {
+    close();
+    fd_ = fd;
+  }
   // As close(2): 0, or -1 with errno set; 0 if there was nothing to close.
   int close() { return is_open() ? ::close(std::exchange(fd_, -1)) : 0; }
 

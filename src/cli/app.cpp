@@ -188,6 +188,7 @@ int run_app(int argc, char** argv) {
     add_testset(app, session);
     add_show(app, session);
     add_check_plugin(app, session);
+    add_new_plugin(app, session);
     return parse_and_run(app, session, argc, argv);
   } catch (const BrokenPipe&) {
     return exit_code::kIo;

@@ -43,6 +43,7 @@ void add_reproduce(CLI::App& app, Session& session);
 void add_testset(CLI::App& app, Session& session);
 void add_show(CLI::App& app, Session& session);
 void add_check_plugin(CLI::App& app, Session& session);
+void add_new_plugin(CLI::App& app, Session& session);
 
 // The exit code of a run or evaluation that was stopped.
 int get_stop_code(StopReason reason);

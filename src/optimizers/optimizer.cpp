@@ -15,6 +15,7 @@
 #include "optimizers/nlopt.hpp"
 #include "optimizers/pagmo.hpp"
 #include "optimizers/plugin_library.hpp"
+#include "optimizers/plugin_process.hpp"
 #include "optimizers/random_search.hpp"
 
 namespace armwright {
@@ -162,6 +163,10 @@ OptimizerRow load_optimizer(std::string_view name) {
   constexpr std::string_view kMultistart = "multistart:";
   if (name.starts_with(kMultistart)) {
     return make_multistart_row(load_optimizer(name.substr(kMultistart.size())));
+  }
+  constexpr std::string_view kProcess = "exec:";
+  if (name.starts_with(kProcess)) {
+    return load_process_plugin(name.substr(kProcess.size()));
   }
   if (is_library_name(name)) {
     return load_library_plugin(name);

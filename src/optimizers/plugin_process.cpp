@@ -1,0 +1,265 @@
+#include "optimizers/plugin_process.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/file.hpp"
+#include "base/hash.hpp"
+#include "base/text.hpp"
+#include "optimizers/line_process.hpp"
+#include "optimizers/plugin_messages.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kDescriptionSilence_s = 60;  // interpreters and their libraries load slowly
+constexpr double kFarewell_s = 1;             // from the last word to the end of the process
+constexpr int kMostNotes = 100000;            // recommendations without a question between them
+
+// Ours, beside the plugin's: where the process is watched.
+const std::vector<OptionSpec>& watch_options() {
+  static const std::vector<OptionSpec> specs = {
+      {.name = "silence_s",
+       .description = "the longest the process may take between two questions, in seconds",
+       .fallback = 60.0,
+       .lower = 0.1,
+       .upper = 1e6},
+      {.name = "memory_mib",
+       .description = "memory the process may take beyond what it began with, in MiB",
+       .fallback = 4096.0,
+       .lower = 1,
+       .upper = 1e9},
+      {.name = "log",
+       .description = "file that its standard error is added to; empty: our standard error",
+       .fallback = std::string()}};
+  return specs;
+}
+
+std::vector<std::string> watch_option_names() {
+  std::vector<std::string> names;
+  std::ranges::transform(watch_options(), std::back_inserter(names), &OptionSpec::name);
+  return names;
+}
+
+json ask_for_description(LineProcess& child, double silence_s) {
+  child.send(make_hello(), silence_s);
+  const auto line = child.receive(silence_s, [] { return false; });
+  return read_message(*line);
+}
+
+class ProcessPlugin : public Optimizer {
+ public:
+  ProcessPlugin(std::string name, std::vector<std::string> words, json description,
+                Capabilities capabilities, Options options)
+      : name_(std::move(name)),
+        words_(std::move(words)),
+        description_(std::move(description)),
+        capabilities_(capabilities),
+        options_(std::move(options)),
+        silence_s_(options_.get_number("silence_s")) {}
+
+  void minimize(Evaluator& evaluator, std::uint64_t seed) override {
+    if (evaluator.stopped()) {
+      return;
+    }
+    std::int64_t evaluations = 0;
+    try {
+      Conversation(*this, evaluator, evaluations).run(seed);
+    } catch (const ProtocolError& error) {
+      fail(error.what(), evaluations);
+    } catch (const LineProcessFailure& error) {
+      fail(error.what(), evaluations);
+    }
+  }
+
+ private:
+  // One process, from its start to its end: destroyed is killed.
+  class Conversation {
+   public:
+    Conversation(ProcessPlugin& plugin, Evaluator& evaluator, std::int64_t& evaluations)
+        : plugin_(plugin),
+          evaluator_(evaluator),
+          evaluations_(evaluations),
+          child_(plugin.words_, plugin.options_.get_text("log")) {}
+
+    void run(std::uint64_t seed) {
+      try {
+        converse(seed);
+      } catch (const ProtocolError&) {
+        if (!end_) {
+          throw;
+        }
+      } catch (const LineProcessFailure&) {
+        if (!end_) {  // how it ends once it has been told to is its own affair
+          throw;
+        }
+      }
+    }
+
+   private:
+    void converse(std::uint64_t seed) {
+      if (ask_for_description(child_, plugin_.silence_s_) != plugin_.description_) {
+        throw ProtocolError("describes itself differently from one start to the next");
+      }
+      child_.limit_memory(plugin_.options_.get_number("memory_mib"));
+      child_.send(make_minimize(evaluator_.problem(), seed, plugin_.options_, watch_option_names(),
+                                evaluator_.remaining()),
+                  plugin_.silence_s_);
+      int notes = 0;
+      while (const auto line = child_.receive(plugin_.silence_s_, [&] { return is_over(); })) {
+        const json message = read_message(*line);
+        const std::string type = read_type(message);
+        if (type == "done") {
+          finish();
+          return;
+        }
+        if (type == "ask") {
+          answer(message);
+          notes = 0;
+        } else if (type == "recommend") {
+          evaluator_.recommend(read_recommendation(message, evaluator_.problem()));
+          if (++notes > kMostNotes) {
+            throw ProtocolError(
+                fmt::format("sent {} recommendations without a question", kMostNotes));
+          }
+        } else {
+          throw ProtocolError(
+              fmt::format("sent a message of the unknown type '{}'; valid: ask, "
+                          "recommend, done",
+                          sanitize(type.substr(0, 80))));
+        }
+      }
+    }
+
+    void answer(const json& message) {
+      if (evaluator_.stopped()) {  // while it was thinking: the evaluator is not to be bothered
+        tell({});
+        return;
+      }
+      const AskMessage ask = read_ask(message, evaluator_.problem(), plugin_.capabilities_.bounds);
+      if (ask.begins_generation) {
+        evaluator_.begin_generation();
+      }
+      const std::vector<Score> scores = evaluator_.evaluate(ask.points);
+      evaluations_ += std::ssize(scores);
+      tell(scores);
+    }
+
+    void tell(const std::vector<Score>& scores) {
+      const bool stopped = evaluator_.stopped();
+      if (stopped && !end_) {
+        end_ = make_end();
+      }
+      child_.send(make_tell(scores, std::max<std::int64_t>(evaluator_.remaining(), 0), stopped,
+                            plugin_.capabilities_.residuals),
+                  stopped ? kFarewell_s : plugin_.silence_s_);
+    }
+
+    // The run has stopped and the process has had its time to notice.
+    bool is_over() {
+      if (!end_ && evaluator_.stopped()) {
+        end_ = make_end();
+      }
+      return end_ && LineProcess::Clock::now() > *end_;
+    }
+
+    static LineProcess::Clock::time_point make_end() {
+      return LineProcess::Clock::now() + std::chrono::duration_cast<LineProcess::Clock::duration>(
+                                             std::chrono::duration<double>(kFarewell_s));
+    }
+
+    void finish() {
+      const std::string exit = child_.finish(kFarewell_s);
+      if (!exit.empty()) {
+        throw LineProcessFailure(exit + " after it was done");
+      }
+    }
+
+    ProcessPlugin& plugin_;
+    Evaluator& evaluator_;
+    std::int64_t& evaluations_;
+    LineProcess child_;
+    std::optional<LineProcess::Clock::time_point> end_;
+  };
+
+  [[noreturn]] void fail(const std::string& what, std::int64_t evaluations) const {
+    throw OptimizerFailure(fmt::format("optimizer '{}' (exec:{}), after {} evaluation{}: it {}",
+                                       name_, sanitize(join(words_, " ")), evaluations,
+                                       evaluations == 1 ? "" : "s", what));
+  }
+
+  std::string name_;
+  std::vector<std::string> words_;
+  json description_;
+  Capabilities capabilities_;
+  Options options_;
+  double silence_s_;
+};
+
+// The script, the program: what decides how it behaves.
+std::map<std::string, std::string> hash_files(const std::vector<std::string>& words) {
+  constexpr std::size_t kLargestFile = std::size_t{1} << 30;
+  std::map<std::string, std::string> hashes;
+  for (const std::string& word : words) {
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(word, ignored)) {
+      hashes[word] = calc_sha256_hex(read_file(word, kLargestFile));
+    }
+  }
+  return hashes;
+}
+
+void check_names(const OptimizerRow& row) {
+  if (std::ranges::count(optimizer_table(), row.name, &OptimizerRow::name) > 0) {
+    throw ProtocolError(
+        fmt::format("calls itself '{}', which is the name of an optimizer of armwright's own; "
+                    "results could be mistaken for one another",
+                    row.name));
+  }
+  for (const OptionSpec& spec : watch_options()) {
+    if (std::ranges::count(row.options, spec.name, &OptionSpec::name) > 0) {
+      throw ProtocolError(
+          fmt::format("describes an option '{}'; every process has one of that name: {}", spec.name,
+                      spec.description));
+    }
+  }
+}
+
+}  // namespace
+
+OptimizerRow load_process_plugin(std::string_view command) {
+  const std::vector<std::string> words = split_command(command);
+  try {
+    LineProcess child(words, "");
+    const json description = ask_for_description(child, kDescriptionSilence_s);
+    OptimizerRow row = read_description(description);
+    check_names(row);
+    child.send(make_quit(), kFarewell_s);
+    child.finish(kFarewell_s);
+    row.options.insert(row.options.end(), watch_options().begin(), watch_options().end());
+    row.input_hashes = hash_files(words);
+    row.make = [=, name = row.name, capabilities = row.capabilities](
+                   const Options& options) -> std::unique_ptr<Optimizer> {
+      return std::make_unique<ProcessPlugin>(name, words, description, capabilities, options);
+    };
+    return row;
+  } catch (const ProtocolError& error) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("optimizer 'exec:{}': it {}", sanitize(command), error.what()));
+  } catch (const LineProcessFailure& error) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("optimizer 'exec:{}': it {} before it described itself; what it says "
+                            "about it stands above",
+                            sanitize(command), error.what()));
+  }
+}
+
+}  // namespace armwright
