@@ -36,7 +36,8 @@ struct Algorithm {
   // It can go round in circles without asking for a point, and then nothing inside this process
   // stops it.
   bool isolated = false;
-  bool needs_pace = false;  // reserves room for its evaluations beforehand
+  std::int64_t restarts = 20;  // of those that end by themselves
+  bool needs_pace = false;     // reserves room for its evaluations beforehand
   int smallest_dimension = 1;
   int largest_dimension = 0;  // 0: any
 };
@@ -80,6 +81,7 @@ const std::vector<Algorithm>& algorithms() {
        .source = "Powell 2006, The NEWUOA software for unconstrained optimization without "
                  "derivatives; Johnson 2007, The NLopt nonlinear-optimization package (bounds)",
        .isolated = true,
+       .restarts = 0,  // begun at a minimum it goes round in circles
        .smallest_dimension = 2},
       {.name = "praxis",
        .library = "LN_PRAXIS",
@@ -115,19 +117,18 @@ const std::vector<Algorithm>& algorithms() {
       {.name = "direct_noscal",
        .library = "GN_DIRECT_NOSCAL",
        .kind = Kind::dividing,
-       .summary = "DIRECT on the box as it is, not scaled to a cube",
+       .summary = "DIRECT on the unscaled box; in NLopt 2.7.1 the same as direct_l_noscal",
        .source = kJones},
       {.name = "direct_l_noscal",
        .library = "GN_DIRECT_L_NOSCAL",
        .kind = Kind::dividing,
        .summary = "DIRECT-L on the box as it is, not scaled to a cube",
        .source = kGablonsky},
-      {.name = "direct_l_rand_noscal",
+      {.name = "direct_l_rand_noscal",  // draws no lots, whatever its name says: measured
        .library = "GN_DIRECT_L_RAND_NOSCAL",
        .kind = Kind::dividing,
-       .summary = "DIRECT-L with lots, on the box as it is, not scaled to a cube",
-       .source = kGablonsky,
-       .is_stochastic = true},
+       .summary = "DIRECT-L with lots, unscaled; in NLopt 2.7.1 the same as direct_l_noscal",
+       .source = kGablonsky},
       {.name = "orig_direct",
        .library = "GN_ORIG_DIRECT",
        .kind = Kind::dividing,
@@ -324,7 +325,7 @@ std::vector<OptionSpec> make_options(const Algorithm& algorithm) {
     options.push_back({.name = "restarts",
                        .description = "times to begin again at the best point seen, each with half "
                                       "the step, as long as the last one improved it",
-                       .fallback = std::int64_t{20},
+                       .fallback = algorithm.restarts,
                        .lower = 0,
                        .upper = 1000});
   }

@@ -67,6 +67,7 @@ class Questions {
   // Whom to tell when there is no more to come.
   void begin(nlopt_opt solver) {
     solver_ = solver;
+    calls_ = 0;
     nan_sequence_ = 0;
   }
   bool has_ended() const { return has_stopped_ || exception_ != nullptr; }
@@ -83,6 +84,7 @@ class Questions {
   // Every question for the objective is an evaluation, as it is to the bare library, unless the
   // constraints at that point came first.
   double ask_objective(std::span<const double> coordinates) {
+    ++calls_;
     Answer* answer = find(coordinates);
     if (answer == nullptr || answer->is_objective_used) {
       answer = evaluate(coordinates);
@@ -95,6 +97,7 @@ class Questions {
   }
 
   double ask_constraint(std::span<const double> coordinates, std::size_t index) {
+    ++calls_;
     const Answer* answer = find(coordinates);
     if (answer == nullptr) {
       answer = evaluate(coordinates);
@@ -120,11 +123,12 @@ class Questions {
   // Null if there is no answer: nobody is asked about points that are none, nor after the end.
   Answer* evaluate(std::span<const double> coordinates) {
     if (has_ended()) {
+      stop_solver();
       return nullptr;
     }
     if (!is_finite(space().to_point(coordinates))) {
       if (++nan_sequence_ >= kLongestNanSequence) {
-        nlopt_force_stop(solver_);
+        stop_solver();
       }
       return nullptr;
     }
@@ -136,8 +140,17 @@ class Questions {
     } catch (...) {
       exception_ = std::current_exception();  // C code lies between here and who waits for it
     }
-    nlopt_force_stop(solver_);
+    stop_solver();
     return nullptr;
+  }
+
+  // Not at the first point: ORIG_DIRECT stopped there reads what it has not written yet, and now
+  // and then it crashes. It is stopped at the second.
+  void stop_solver() {
+    const std::int64_t calls_a_point = 1 + std::ssize(function_.evaluator().problem().constraints);
+    if (calls_ > calls_a_point) {
+      nlopt_force_stop(solver_);
+    }
   }
 
   Answer& remember(std::span<const double> coordinates, const Score& score) {
@@ -170,6 +183,7 @@ class Questions {
   std::size_t next_answer_ = 0;
   Answer best_;
   double worst_objective_ = 0;
+  std::int64_t calls_ = 0;  // of the current start, for objective or constraint
   std::int64_t nan_sequence_ = 0;
   bool has_stopped_ = false;
   std::exception_ptr exception_;
