@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "base/text.hpp"
@@ -15,9 +16,16 @@ using nlohmann::json;
 std::vector<ListItem> list_items() {
   std::vector<ListItem> items;
   for (const OptimizerRow& row : optimizer_table()) {
-    items.push_back({row.name, row.summary});
+    items.push_back(
+        {row.name, row.unavailable.empty() ? row.summary : row.summary + " (not available)"});
   }
   return items;
+}
+
+// A row of the table, available or not, or a plugin.
+OptimizerRow get_row(const std::string& name) {
+  const bool listed = std::ranges::count(optimizer_table(), name, &OptimizerRow::name) > 0;
+  return listed ? find_optimizer(name) : load_optimizer(name);
 }
 
 const char* get_type(const OptionValue& value) {
@@ -42,13 +50,19 @@ std::vector<std::pair<std::string, bool>> list_capabilities(const Capabilities& 
           {"noisy", c.noisy},
           {"residuals", c.residuals},
           {"stochastic", c.stochastic},
-          {"generations", c.generations}};
+          {"generations", c.generations},
+          {"local", c.local},
+          {"sampling", c.sampling},
+          {"paced", c.paced}};
 }
 
 std::string explain_optimizer(const std::string& name, const Style& style) {
-  const OptimizerRow& row = find_optimizer(name);
+  const OptimizerRow row = get_row(name);
   std::string text = format_title(style, row.name, row.summary);
   text += fmt::format("  Source: {}\n", row.source);
+  if (!row.unavailable.empty()) {
+    text += fmt::format("  Not available: {}\n", row.unavailable);
+  }
   std::vector<std::string> able;
   std::vector<std::string> unable;
   for (const auto& [capability, has] : list_capabilities(row.capabilities)) {
@@ -74,7 +88,7 @@ std::string explain_optimizer(const std::string& name, const Style& style) {
 }
 
 json explain_optimizer_as_json(const std::string& name) {
-  const OptimizerRow& row = find_optimizer(name);
+  const OptimizerRow row = get_row(name);
   json options = json::array();
   for (const OptionSpec& option : row.options) {
     json one = {{"name", option.name},
@@ -96,6 +110,7 @@ json explain_optimizer_as_json(const std::string& name) {
   return {{"name", row.name},
           {"summary", row.summary},
           {"source", row.source},
+          {"unavailable", row.unavailable},
           {"capabilities", capabilities},
           {"options", options}};
 }

@@ -40,6 +40,7 @@ struct Algorithm {
   bool needs_pace = false;     // reserves room for its evaluations beforehand
   int smallest_dimension = 1;
   int largest_dimension = 0;  // 0: any
+  std::string unfit = {};     // why it is not offered, although the library has it
 };
 
 constexpr const char* kJones =
@@ -182,7 +183,10 @@ const std::vector<Algorithm>& algorithms() {
        .source = "Sergeyev and Markin 1995, An algorithm for solving global optimization problems "
                  "with nonlinear constraints",
        .takes_constraints = true,
-       .largest_dimension = 10},
+       .largest_dimension = 10,
+       .unfit =
+           "it takes 10 variables at most, where the arm has 20, and with 5 or 10 variables it "
+           "did worse than random search on the sphere and the ellipsoid (5000 evaluations)"},
       {.name = "auglag",
        .library = "AUGLAG",
        .kind = Kind::wrapping,
@@ -350,7 +354,7 @@ OptimizerRow make_row(const Algorithm& algorithm) {
         return std::make_unique<Nlopt>(algorithm, options);
       },
       .requirements = {.variables = algorithm.smallest_dimension},
-      .unavailable = explain_missing_nlopt(),
+      .unavailable = explain_missing_nlopt().empty() ? algorithm.unfit : explain_missing_nlopt(),
   };
 }
 
