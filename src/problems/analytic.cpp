@@ -285,13 +285,14 @@ class AnalyticProblem : public Problem {
                                                double count) {
     std::vector<double> residuals;
     residuals.reserve(outcomes.size() * outcomes.front().residuals.size());
-    const double root = std::sqrt(count);
     for (const CaseOutcome& outcome : outcomes) {
       if (outcome.has_error) {
-        for (const double residual : outcome.residuals) {
-          residuals.push_back(residual / root);
-        }
+        residuals.insert(residuals.end(), outcome.residuals.begin(), outcome.residuals.end());
       }
+    }
+    const double root = std::sqrt(count);
+    for (double& residual : residuals) {
+      residual /= root;
     }
     return residuals;
   }

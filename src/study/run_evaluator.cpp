@@ -79,16 +79,18 @@ EvaluationRecord RunEvaluator::make_request(std::span<const double> x) const {
   EvaluationRecord request;
   request.generation = counts_.generations;
   request.cases = block_;
-  request.x.reserve(x.size());
+  request.x.resize(x.size());
+  bool clipped = false;
   for (std::size_t i = 0; i < x.size(); ++i) {
     // A coordinate that is no number at all goes to the start value: there is no nearest point
     // inside.
     const double inside = std::isnan(x[i])
                               ? variables[i].start
                               : std::clamp(x[i], variables[i].lower, variables[i].upper);
-    request.clipped = request.clipped || !(inside == x[i]);
-    request.x.push_back(inside);
+    clipped |= !(inside == x[i]);
+    request.x[i] = inside;
   }
+  request.clipped = clipped;
   return request;
 }
 
@@ -140,13 +142,13 @@ std::vector<Score> RunEvaluator::evaluate(std::span<const std::vector<double>> p
     points = points.first(allowed);
     budget_spent_ = true;
   }
-  std::vector<EvaluationRecord> records(points.size());
+  std::vector<EvaluationRecord> records;
+  records.reserve(points.size());
   std::vector<char> answered(points.size());
   std::vector<std::size_t> missing;
   std::vector<std::span<const double>> candidates;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    EvaluationRecord& record = records[i];
-    record = make_request(points[i]);
+    EvaluationRecord& record = records.emplace_back(make_request(points[i]));
     record.index = counts_.evaluations + i;
     if (record.index < recorded_.size() && recorded_[record.index]) {
       check_replay(record, *recorded_[record.index]);
