@@ -132,8 +132,8 @@ void BM_GenerationOnTwoCoresAgainstOne(benchmark::State& state) {
   std::uint64_t number = 0;
   const auto evaluate_generation = [&](ThreadPool& pool) {
     const CaseBlock block{CaseRole::training, "train/1", {number++}};
-    const std::vector<CandidateJob> candidates(35, CandidateJob{x, &block});
-    CaseRunner(*problem.problem, pool, stop).run(candidates, [](std::size_t, const Evaluation&) {});
+    const std::vector<std::span<const double>> candidates(35, x);
+    CaseRunner(*problem.problem, pool, stop).run(candidates, block, [](std::size_t, Evaluation) {});
   };
   std::vector<double> speedup, serial, parallel;
   const std::uint64_t computed_before = problem.tracking->targets().computed();

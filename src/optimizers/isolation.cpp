@@ -98,7 +98,7 @@ class Answerer {
         break;
       case Question::recommend: {
         const std::vector<double> point = reader.get_numbers();
-        check_point(point, "recommended a point");
+        check_point(point, [] { return "recommended a point"; });
         evaluator_.recommend(point);
         break;
       }
@@ -117,8 +117,9 @@ class Answerer {
     std::vector<std::vector<double>> points;
     for (auto left = reader.get<std::uint64_t>(); left > 0; --left) {
       points.push_back(reader.get_numbers());
-      check_point(points.back(), fmt::format("asked for a point (evaluation {})",
-                                             evaluations_ + std::ssize(points)));
+      check_point(points.back(), [&] {
+        return fmt::format("asked for a point (evaluation {})", evaluations_ + std::ssize(points));
+      });
     }
     const std::vector<Score> scores = evaluator_.evaluate(points);
     evaluations_ += std::ssize(scores);
@@ -132,16 +133,17 @@ class Answerer {
     }
   }
 
-  void check_point(std::span<const double> point, const std::string& doing) const {
+  // `describe_doing` says at what it was caught.
+  void check_point(std::span<const double> point, const auto& describe_doing) const {
     const std::vector<DecisionVariable>& variables = evaluator_.problem().variables;
     if (point.size() != variables.size()) {
-      fail(fmt::format("{} of {} coordinates for {} decision variables", doing, point.size(),
-                       variables.size()));
+      fail(fmt::format("{} of {} coordinates for {} decision variables", describe_doing(),
+                       point.size(), variables.size()));
     }
     for (std::size_t i = 0; i < point.size(); ++i) {
       if (!std::isfinite(point[i])) {
-        fail(fmt::format("{} with {} = {}, which is not a finite number", doing, variables[i].name,
-                         point[i]));
+        fail(fmt::format("{} with {} = {}, which is not a finite number", describe_doing(),
+                         variables[i].name, point[i]));
       }
     }
   }

@@ -126,7 +126,8 @@ class Questions {
       stop_solver();
       return nullptr;
     }
-    if (!is_finite(space().to_point(coordinates))) {
+    const std::vector<double> point = space().to_point(coordinates);
+    if (!is_finite(point)) {
       if (++nan_sequence_ >= kLongestNanSequence) {
         stop_solver();
       }
@@ -134,7 +135,7 @@ class Questions {
     }
     nan_sequence_ = 0;
     try {
-      return &remember(coordinates, function_.evaluate(coordinates));
+      return &remember(coordinates, function_.evaluate_point(point));
     } catch (const EvaluatorStopped&) {
       has_stopped_ = true;
     } catch (...) {
@@ -157,11 +158,13 @@ class Questions {
     const ProblemDescription& problem = function_.evaluator().problem();
     Answer& answer = answers_[next_answer_];
     next_answer_ = (next_answer_ + 1) % answers_.size();
-    answer = {.coordinates = {coordinates.begin(), coordinates.end()}};
+    answer.coordinates.assign(coordinates.begin(), coordinates.end());
+    answer.is_objective_used = false;
     if (settings_.takes_constraints) {
       answer.objective = calc_scalar(problem, score.objectives);
       answer.constraint_values = score.constraint_values;
       answer.constraint_values.resize(problem.constraints.size(), kFailedViolation);
+      answer.violation = 0;
       for (const double g : answer.constraint_values) {
         answer.violation += std::max(0.0, g);
       }

@@ -274,7 +274,7 @@ class StrictEvaluator : public Evaluator {
   const ProblemDescription& problem() const override { return evaluator_.problem(); }
   std::vector<Score> evaluate(std::span<const std::vector<double>> points) override {
     for (std::size_t i = 0; i < points.size(); ++i) {
-      check(points[i], fmt::format("asked in evaluation {}", evaluations_ + i + 1));
+      check(points[i], [&] { return fmt::format("asked in evaluation {}", evaluations_ + i + 1); });
     }
     std::vector<Score> scores = evaluator_.evaluate(points);
     evaluations_ += scores.size();
@@ -284,17 +284,19 @@ class StrictEvaluator : public Evaluator {
   std::int64_t remaining() const override { return evaluator_.remaining(); }
   void begin_generation() override { evaluator_.begin_generation(); }
   void recommend(std::span<const double> x) override {
-    check(x, "asked, recommending a point,");
+    check(x, [] { return "asked, recommending a point,"; });
     evaluator_.recommend(x);
   }
 
  private:
-  void check(std::span<const double> x, const std::string& doing) const {
+  // `describe_doing` says at what it was caught.
+  void check(std::span<const double> x, const auto& describe_doing) const {
     const std::vector<DecisionVariable>& variables = problem().variables;
     for (std::size_t i = 0; i < x.size(); ++i) {
       const auto fail = [&](const std::string& what) {
         throw OptimizerFailure(fmt::format("optimizer '{}' {} for {} = {}, {}", sanitize(name_),
-                                           doing, variables[i].name, format_exact(x[i]), what));
+                                           describe_doing(), variables[i].name, format_exact(x[i]),
+                                           what));
       };
       if (!std::isfinite(x[i])) {
         fail("which is not a finite number");

@@ -23,7 +23,10 @@ double calc_merit(const ProblemDescription& problem, const Score& score, double 
 }
 
 Score ScalarFunction::evaluate(std::span<const double> coordinates) {
-  const std::vector<double> point = space_.to_point(coordinates);
+  return evaluate_point(space_.to_point(coordinates));
+}
+
+Score ScalarFunction::evaluate_point(const std::vector<double>& point) {
   std::vector<Score> scores = evaluator_.evaluate({&point, 1});
   if (scores.empty()) {
     throw EvaluatorStopped{};

@@ -32,6 +32,7 @@ class ScalarFunction {
 
   // Throw EvaluatorStopped unless every point got its score.
   Score evaluate(std::span<const double> coordinates);
+  Score evaluate_point(const std::vector<double>& point);  // a decision vector
   std::vector<Score> evaluate_batch(std::span<const std::vector<double>> coordinates);
 
  private:

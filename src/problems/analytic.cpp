@@ -246,6 +246,7 @@ class AnalyticProblem : public Problem {
   Evaluation aggregate(std::span<const double> /*x*/,
                        std::span<const CaseOutcome> outcomes) const override {
     Evaluation evaluation;
+    evaluation.case_errors.reserve(outcomes.size());
     double error_sum = 0;
     std::vector<double> constraint_sums(description_.constraints.size());
     for (const CaseOutcome& outcome : outcomes) {
@@ -283,12 +284,15 @@ class AnalyticProblem : public Problem {
   static std::vector<double> collect_residuals(std::span<const CaseOutcome> outcomes,
                                                double count) {
     std::vector<double> residuals;
+    residuals.reserve(outcomes.size() * outcomes.front().residuals.size());
     for (const CaseOutcome& outcome : outcomes) {
       if (outcome.has_error) {
-        for (const double residual : outcome.residuals) {
-          residuals.push_back(residual / std::sqrt(count));
-        }
+        residuals.insert(residuals.end(), outcome.residuals.begin(), outcome.residuals.end());
       }
+    }
+    const double root = std::sqrt(count);
+    for (double& residual : residuals) {
+      residual /= root;
     }
     return residuals;
   }

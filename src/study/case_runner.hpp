@@ -3,21 +3,15 @@
 // threads.
 #pragma once
 
+#include <cstddef>
 #include <functional>
-#include <optional>
 #include <span>
-#include <vector>
 
 #include "problems/problem.hpp"
 #include "study/stop.hpp"
 #include "study/thread_pool.hpp"
 
 namespace armwright {
-
-struct CandidateJob {
-  std::span<const double> x;
-  const CaseBlock* block = nullptr;
-};
 
 class CaseRunner {
  public:
@@ -26,12 +20,12 @@ class CaseRunner {
 
   // Called once for each finished candidate, from the thread that finished it, as soon as its last
   // case is done.
-  using OnDone = std::function<void(std::size_t candidate, const Evaluation& evaluation)>;
+  using OnDone = std::function<void(std::size_t candidate, Evaluation evaluation)>;
 
-  // One evaluation a candidate, in order; nothing for those that a stop left unfinished. Rethrows
-  // what `on_done` throws.
-  std::vector<std::optional<Evaluation>> run(std::span<const CandidateJob> candidates,
-                                             const OnDone& on_done);
+  // Every candidate on every case of the block. Those that a stop leaves unfinished `on_done` never
+  // hears of. Rethrows what `on_done` throws.
+  void run(std::span<const std::span<const double>> candidates, const CaseBlock& block,
+           const OnDone& on_done);
 
  private:
   const Problem& problem_;

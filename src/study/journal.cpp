@@ -166,13 +166,15 @@ class Journal::Writer {
   ~Writer() { stop_threads(); }
 
   void append(const EvaluationRecord& record) {
+    const std::string bytes = encode(record);  // by each thread for itself, before it waits
     const std::lock_guard lock(mutex_);
-    add(record);
+    add(bytes);
   }
 
   void append(const EndRecord& record) {
+    const std::string bytes = encode(record);
     const std::lock_guard lock(mutex_);
-    add(record);
+    add(bytes);
     ended_ = true;
   }
 
@@ -199,6 +201,17 @@ class Journal::Writer {
   }
 
  private:
+  template <class Record>
+  std::string encode(const Record& record) const {
+    try {
+      std::string bytes;
+      journal_format::encode(record, bytes);
+      return bytes;
+    } catch (const Error& error) {
+      throw Error(error.kind(), fmt::format("{}: {}", file_.string(), error.what()));
+    }
+  }
+
   void begin_file() {
     const WriteResult result = write_fully(fd_.get(), kMagic);
     if (result.error != 0) {
@@ -238,8 +251,7 @@ class Journal::Writer {
 
   // Everything below is called with mutex_ held.
 
-  template <class Record>
-  void add(const Record& record) {
+  void add(std::string_view record) {
     throw_if_failed();
     if (!fd_.is_open()) {
       throw std::logic_error("append to a closed journal");
@@ -247,11 +259,7 @@ class Journal::Writer {
     if (ended_) {
       throw std::logic_error("append to a journal whose run has ended");
     }
-    try {
-      journal_format::encode(record, buffer_);
-    } catch (const Error& error) {
-      throw Error(error.kind(), fmt::format("{}: {}", file_.string(), error.what()));
-    }
+    buffer_ += record;
     const auto now = Clock::now();
     if (!has_threads_ || now - last_write_ >= kWriteInterval || buffer_.size() > kBufferBytes) {
       write_buffer(now);

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <mutex>
 #include <numeric>
+#include <span>
 #include <tuple>
+#include <utility>
 
 #include "base/bits.hpp"
 #include "base/error.hpp"
@@ -41,7 +43,7 @@ std::optional<std::vector<Evaluation>> Judge::evaluate(
     Progress::Phase phase) {
   std::vector<Evaluation> evaluations(designs.size());
   std::vector<std::size_t> missing;
-  std::vector<CandidateJob> jobs;
+  std::vector<std::span<const double>> candidates;
   for (std::size_t i = 0; i < designs.size(); ++i) {
     const auto found = std::find_if(
         recorded_.begin(), recorded_.end(),
@@ -50,7 +52,7 @@ std::optional<std::vector<Evaluation>> Judge::evaluate(
       evaluations[i] = found->evaluation;
     } else {
       missing.push_back(i);
-      jobs.push_back({designs[i], &block});
+      candidates.emplace_back(designs[i]);
     }
   }
   if (journal_ended_ && !missing.empty()) {
@@ -67,25 +69,23 @@ std::optional<std::vector<Evaluation>> Judge::evaluate(
   progress.replayed = progress.done;
   observer_.on_progress(progress);
   std::mutex mutex;
-  const auto done = runner_.run(jobs, [&](std::size_t job, const Evaluation& evaluation) {
+  std::size_t done = 0;
+  runner_.run(candidates, block, [&](std::size_t candidate, Evaluation evaluation) {
     EvaluationRecord record;
-    record.index = missing[job];
-    record.x = designs[missing[job]];
+    record.index = missing[candidate];
+    record.x = designs[record.index];
     record.cases = block;
-    record.evaluation = evaluation;
+    record.evaluation = std::move(evaluation);
+    record.evaluation.residuals.clear();  // for optimizers, and none is asking
     journal_.append(record);
+    evaluations[record.index] = std::move(record.evaluation);
     const std::lock_guard lock(mutex);
+    ++done;
     progress.done += block.numbers.size();
     observer_.on_progress(progress);
   });
   journal_.flush();
-  for (std::size_t job = 0; job < missing.size(); ++job) {
-    if (!done[job]) {
-      return std::nullopt;
-    }
-    evaluations[missing[job]] = *done[job];
-  }
-  return evaluations;
+  return done == missing.size() ? std::optional(std::move(evaluations)) : std::nullopt;
 }
 
 std::optional<std::vector<JudgedCandidate>> Judge::validate(std::vector<Candidate> candidates) {

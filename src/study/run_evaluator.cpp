@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <mutex>
 #include <numeric>
+#include <span>
+#include <utility>
 
 #include "base/bits.hpp"
 #include "base/error.hpp"
@@ -77,15 +79,18 @@ EvaluationRecord RunEvaluator::make_request(std::span<const double> x) const {
   EvaluationRecord request;
   request.generation = counts_.generations;
   request.cases = block_;
+  request.x.resize(x.size());
+  bool clipped = false;
   for (std::size_t i = 0; i < x.size(); ++i) {
     // A coordinate that is no number at all goes to the start value: there is no nearest point
     // inside.
     const double inside = std::isnan(x[i])
                               ? variables[i].start
                               : std::clamp(x[i], variables[i].lower, variables[i].upper);
-    request.clipped = request.clipped || !(inside == x[i]);
-    request.x.push_back(inside);
+    clipped |= !(inside == x[i]);
+    request.x[i] = inside;
   }
+  request.clipped = clipped;
   return request;
 }
 
@@ -137,58 +142,54 @@ std::vector<Score> RunEvaluator::evaluate(std::span<const std::vector<double>> p
     points = points.first(allowed);
     budget_spent_ = true;
   }
-  std::vector<EvaluationRecord> requests;
+  std::vector<EvaluationRecord> records;
+  records.reserve(points.size());
+  std::vector<char> answered(points.size());
   std::vector<std::size_t> missing;
-  std::uint64_t replayed = 0;
+  std::vector<std::span<const double>> candidates;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    EvaluationRecord request = make_request(points[i]);
-    request.index = counts_.evaluations + i;
-    if (request.index < recorded_.size() && recorded_[request.index]) {
-      check_replay(request, *recorded_[request.index]);
-      request.evaluation = std::move(recorded_[request.index]->evaluation);
-      recorded_[request.index].reset();
-      ++replayed;
+    EvaluationRecord& record = records.emplace_back(make_request(points[i]));
+    record.index = counts_.evaluations + i;
+    if (record.index < recorded_.size() && recorded_[record.index]) {
+      check_replay(record, *recorded_[record.index]);
+      record.evaluation = std::move(recorded_[record.index]->evaluation);
+      recorded_[record.index].reset();
+      answered[i] = true;
     } else {
       missing.push_back(i);
+      candidates.emplace_back(record.x);
     }
-    requests.push_back(std::move(request));
   }
-
   if (journal_ended_ && !missing.empty()) {
-    refuse_replay(requests[missing.front()].index, "the recorded run had ended before it");
+    refuse_replay(records[missing.front()].index, "the recorded run had ended before it");
   }
 
-  std::vector<CandidateJob> jobs;
-  for (const std::size_t i : missing) {
-    jobs.push_back({requests[i].x, &requests[i].cases});
-  }
+  // No flush of the journal: its promise of 10 ms is enough, since a resumed run makes again what
+  // a kill has cost, and for quick functions a write a batch would take longer than all the rest.
   std::mutex mutex;
+  const std::uint64_t replayed = points.size() - missing.size();
   std::uint64_t finished = replayed;
   const std::uint64_t cases_each = block_.numbers.size();
-  const auto evaluations = runner_.run(jobs, [&](std::size_t job, const Evaluation& evaluation) {
-    EvaluationRecord& request = requests[missing[job]];
-    request.evaluation = evaluation;
-    journal_.append(request);
+  runner_.run(candidates, block_, [&](std::size_t candidate, Evaluation evaluation) {
+    const std::size_t i = missing[candidate];
+    records[i].evaluation = std::move(evaluation);
+    journal_.append(records[i]);
+    answered[i] = true;
     const std::lock_guard lock(mutex);
-    ++finished;
-    report(finished * cases_each, replayed * cases_each);
+    if (++finished < points.size()) {  // the last one's is the report on all, below
+      report(finished * cases_each, replayed * cases_each);
+    }
   });
-  journal_.flush();
 
   // A stop can leave holes; the optimizer learns the results before the first, and a resumed run
   // evaluates only the holes.
-  std::size_t complete = points.size();
-  for (std::size_t job = 0; job < missing.size(); ++job) {
-    if (!evaluations[job]) {
-      complete = missing[job];
-      stopped_ = true;
-      break;
-    }
-  }
+  const auto complete =
+      static_cast<std::size_t>(std::ranges::find(answered, false) - answered.begin());
+  stopped_ = complete < points.size();
   counts_.replayed += replayed;
   std::vector<Score> scores(complete);
   for (std::size_t i = 0; i < complete; ++i) {
-    take(requests[i], scores[i]);
+    take(std::move(records[i]), scores[i]);
   }
   if (remaining() <= 0) {
     budget_spent_ = true;
@@ -197,32 +198,31 @@ std::vector<Score> RunEvaluator::evaluate(std::span<const std::vector<double>> p
   return scores;
 }
 
-void RunEvaluator::take(const EvaluationRecord& record, Score& score) {
+void RunEvaluator::take(EvaluationRecord record, Score& score) {
+  Evaluation& evaluation = record.evaluation;
   ++counts_.evaluations;
   counts_.cases += record.cases.numbers.size();
   counts_.clipped += record.clipped ? 1 : 0;
-  counts_.failed += record.evaluation.status == EvaluationStatus::ok ? 0 : 1;
-  consider(record);
-  const Evaluation& evaluation = record.evaluation;
-  counts_.feasible += is_feasible(evaluation) ? 1 : 0;
-  if (evaluation.objectives.empty() && first_failure_.empty()) {
-    first_failure_ = evaluation.reason;
+  counts_.failed += evaluation.status == EvaluationStatus::ok ? 0 : 1;
+  if (is_feasible(evaluation)) {
+    ++counts_.feasible;
+    consider(record);
   }
   score.status = evaluation.status;
   score.clipped = record.clipped;
-  score.residuals = evaluation.residuals;
-  score.constraint_values = evaluation.constraint_values;
-  score.objectives = evaluation.objectives;
-  if (score.objectives.empty()) {
-    score.objectives = plan_.problem.problem->penalty_objectives();
-    score.constraint_values.clear();
+  score.residuals = std::move(evaluation.residuals);
+  if (!evaluation.objectives.empty()) {
+    score.objectives = std::move(evaluation.objectives);
+    score.constraint_values = std::move(evaluation.constraint_values);
+    return;
+  }
+  score.objectives = plan_.problem.problem->penalty_objectives();
+  if (first_failure_.empty()) {
+    first_failure_ = std::move(evaluation.reason);
   }
 }
 
 void RunEvaluator::consider(const EvaluationRecord& record) {
-  if (!is_feasible(record.evaluation)) {
-    return;
-  }
   const double objective = calc_scalar(problem(), record.evaluation.objectives);
   if (problem().objectives.size() > 1) {
     extend_front(record, objective);

@@ -83,8 +83,8 @@ class RunEvaluator final : public Evaluator {
   EvaluationRecord make_request(std::span<const double> x) const;
   void check_replay(const EvaluationRecord& request, const EvaluationRecord& recorded) const;
   [[noreturn]] void refuse_replay(std::uint64_t evaluation, const std::string& difference) const;
-  void take(const EvaluationRecord& record, Score& score);
-  void consider(const EvaluationRecord& record);
+  void take(EvaluationRecord record, Score& score);
+  void consider(const EvaluationRecord& record);  // a feasible one
   void extend_front(const EvaluationRecord& record, double objective);
   std::vector<Candidate> thin_front() const;
   void report(std::uint64_t more_cases, std::uint64_t more_replayed);

@@ -130,6 +130,20 @@ TEST_F(RunTest, TheWinnerIsTheBestOnTheValidationSetAndItsTestIsComplete) {
   }
 }
 
+TEST_F(RunTest, ResidualsAreRecordedWhereAnOptimizerMayAskForThem) {
+  run(make_small_plan(), "a");
+  const JournalContent journal = read("a");
+  ASSERT_FALSE(journal.training.empty());
+  for (const EvaluationRecord& record : journal.training) {
+    EXPECT_FALSE(record.evaluation.residuals.empty()) << record.index;
+  }
+  ASSERT_FALSE(journal.judgements.empty());
+  for (const EvaluationRecord& record : journal.judgements) {
+    EXPECT_FALSE(record.evaluation.case_errors.empty()) << record.index;
+    EXPECT_TRUE(record.evaluation.residuals.empty()) << record.index;
+  }
+}
+
 TEST_F(RunTest, ResultsDoNotDependOnTheNumberOfThreads) {
   run(make_small_plan(), "one", 1);
   run(make_small_plan(), "two", 2);
