@@ -6,6 +6,7 @@
 namespace armwright {
 namespace {
 
+constexpr const char* kLibrary = "Ceres Solver (CMake option ARMWRIGHT_WITH_CERES)";
 #ifdef ARMWRIGHT_WITH_CERES
 constexpr const char* kUnavailable = "";
 #else
@@ -123,6 +124,7 @@ OptimizerRow make_lm_row() {
           join_options(own, make_difference_options("forward", 0.005), make_tolerance_options()),
       .make = make_lm,
       .requirements = {.residuals = true},
+      .library = kLibrary,
       .unavailable = kUnavailable,
   };
 }
@@ -146,6 +148,7 @@ OptimizerRow make_bfgs_row() {
       .options =
           join_options(own, make_difference_options("central", 0.001), make_tolerance_options()),
       .make = make_bfgs_optimizer,
+      .library = kLibrary,
       .unavailable = kUnavailable,
   };
 }
