@@ -70,8 +70,8 @@ std::string format_facts(const OptimizerRow& row) {
     text += fmt::format("- **Not offered:** {}\n", format_sentence(row.unfit));
   }
   text += row.library.empty()
-              ? "- **Build:** every build has it.\n"
-              : fmt::format("- **Build:** has it if it was built with {}, the default.\n",
+              ? "- **Build:** every one has it.\n"
+              : fmt::format("- **Build:** one with {}, as every build is by default.\n",
                             escape_markdown(row.library));
   const std::vector<std::string> required = list_requirements(row.requirements);
   text += required.empty() ? "- **Problem:** any.\n"
@@ -179,7 +179,11 @@ std::string format_optimizer_index(std::span<const OptimizerRow> rows) {
       "- `./libmine.so` and `exec:COMMAND` are [optimizers of your "
       "own](../adding-an-optimizer.md).\n\n"
       "Every optimizer gets the same budget, the same training cases and the same judging of its "
-      "winner. All are repeatable: the same seed gives the same run.\n\n"
+      "winner. All are repeatable: the same seed gives the same run. Where options speak of a "
+      "share of "
+      "the box, they mean the distance between a variable's bounds, or between their logarithms "
+      "where "
+      "the variable is logarithmic.\n\n"
       "| optimizer | what it is | capabilities | needs |\n|---|---|---|---|\n",
       kOrigin);
   for (const OptimizerRow& row : rows) {

@@ -5,9 +5,17 @@
 #include <algorithm>
 
 #include "base/text.hpp"
-#include "cli/format.hpp"
 
 namespace armwright {
+namespace {
+
+// 1e+12 rather than a row of noughts.
+std::string format_bound(double value) {
+  const std::string brief = fmt::format("{:g}", value);
+  return parse_finite(brief) == value ? brief : format_exact(value);
+}
+
+}  // namespace
 
 const std::vector<CapabilityWords>& capability_words() {
   static const std::vector<CapabilityWords> words = {
@@ -75,7 +83,7 @@ std::vector<std::string> list_requirements(const Requirements& requirements) {
     list.push_back(fmt::format("at least {} decision variables", requirements.variables));
   }
   if (requirements.residuals) {
-    list.emplace_back("residuals");
+    list.emplace_back("residuals (all robot problems have them)");
   }
   return list;
 }
@@ -84,9 +92,11 @@ std::string describe_isolation(const OptimizerRow& row) {
   if (row.isolated.empty()) {
     return "in armwright's own process";
   }
-  return fmt::format(
-      "{} in a process of its own, where a hang or a crash costs this run and nothing else",
-      row.isolated == "always" ? "always" : row.isolated + ",");
+  constexpr const char* kElsewhere =
+      "in a process of its own, where a hang or a crash costs this run and nothing else";
+  return row.isolated == "always"
+             ? kElsewhere
+             : fmt::format("{} {}, otherwise in armwright's own", row.isolated, kElsewhere);
 }
 
 const char* get_option_type(const OptionValue& value) {
@@ -99,7 +109,7 @@ std::string describe_range(const OptionSpec& option) {
     return fmt::format("{:.0f} to {:.0f}", option.lower, option.upper);
   }
   if (std::holds_alternative<double>(option.fallback)) {
-    return fmt::format("{} to {}", format_exact(option.lower), format_exact(option.upper));
+    return fmt::format("{} to {}", format_bound(option.lower), format_bound(option.upper));
   }
   return "";
 }

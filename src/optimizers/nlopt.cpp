@@ -304,8 +304,9 @@ std::vector<OptionSpec> make_options(const Algorithm& algorithm) {
   }
   if (takes_steps) {
     options.push_back({.name = "initial_step",
-                       .description = "as a share of the box, in every coordinate; 0: what NLopt "
-                                      "derives from start and bounds",
+                       .description =
+                           "first step in every coordinate, as a share of the box; 0: what NLopt "
+                           "derives from start and bounds",
                        .fallback = 0.05,
                        .lower = 0,
                        .upper = 0.49});  // BOBYQA wants two steps within the box
@@ -326,11 +327,14 @@ std::vector<OptionSpec> make_options(const Algorithm& algorithm) {
                        .upper = 1});
   }
   if (algorithm.kind == Kind::drawing || algorithm.kind == Kind::starting) {
-    options.push_back({.name = "population",
-                       .description = "points drawn at a time; 0: as many as NLopt finds right",
-                       .fallback = std::int64_t{0},
-                       .lower = 0,
-                       .upper = 100000});
+    options.push_back(
+        {.name = "population",
+         .description = algorithm.kind == Kind::drawing
+                            ? "individuals; 0: as many as NLopt finds right"
+                            : "points drawn at a time; 0: as many as NLopt finds right",
+         .fallback = std::int64_t{0},
+         .lower = 0,
+         .upper = 100000});
   }
   if (descends) {
     options.push_back({.name = "restarts",

@@ -41,9 +41,10 @@ constexpr double kSpread = 0.15;
 
 // The first population: its size, the fewest that the method works with, how wide it lies.
 std::vector<OptionSpec> population(std::int64_t size, double fewest,
-                                   std::vector<OptionSpec> others = {}) {
+                                   std::vector<OptionSpec> others = {},
+                                   std::string description = "individuals") {
   std::vector<OptionSpec> options = {
-      count("population", "individuals", size, fewest, 100000),
+      count("population", std::move(description), size, fewest, 100000),
       number("spread",
              "size of the box about the start, as a share of the whole box, from which the first "
              "population is drawn; 1: the whole box",
@@ -90,7 +91,8 @@ OptimizerRow make_de_row(std::string name, std::string summary) {
                  {number("F", "weight of the difference of two individuals", 0.8, 0, 1),
                   number("CR", "probability that a coordinate is taken from the mutant", 0.9, 0, 1),
                   count("variant",
-                        "1 best/1/exp, 2 rand/1/exp, 3 rand-to-best/1/exp, 4 best/2/exp, "
+                        "how mutants are made (base/differences/crossover): 1 best/1/exp, 2 "
+                        "rand/1/exp, 3 rand-to-best/1/exp, 4 best/2/exp, "
                         "5 rand/2/exp; 6 to 10: the same with /bin",
                         2, 1, 10)}));
 }
@@ -131,7 +133,10 @@ std::vector<OptionSpec> swarm_options() {
              "and pull, 2 the same ones for both pulls, 3 one for each pull, 4 a single one), 5 "
              "constriction with factors as in 1, 6 fully informed",
              5, 1, 6),
-       count("neighb_type", "1 gbest, 2 lbest, 3 von Neumann, 4 adaptive random", 2, 1, 4),
+       count("neighb_type",
+             "who is whose neighbour: 1 all (gbest), 2 a ring (lbest), 3 von Neumann's lattice, 4 "
+             "adaptive random",
+             2, 1, 4),
        count("neighb_param", "neighbours of a particle, for lbest and adaptive random", 4, 1,
              1000)});
 }
@@ -213,17 +218,19 @@ std::vector<OptimizerRow> make_evolution_rows() {
                       {"exponential", "binomial", "single", "sbx"}),
                choice("mutation", "how children change", {"polynomial", "gaussian", "uniform"}),
                choice("selection", "how parents are found", {"tournament", "truncated"})})),
-      make_row(
-          {.algorithm = "ihs", .constraints = true, .paced = true},
-          "Improved harmony search: steps shrink over the budget",
-          "Mahdavi, Fesanghary and Damangir 2007, An improved harmony search algorithm for "
-          "solving optimization problems",
-          population(20, 1,
-                     {number("phmcr", "probability to choose from memory", 0.85, 0, 1),
-                      number("ppar_min", "least probability to adjust the pitch", 0.35, 0, 1),
-                      number("ppar_max", "greatest probability to adjust the pitch", 0.99, 0, 1),
-                      number("bw_min", "last step, as a share of the box", 1e-5, 0, 1),
-                      number("bw_max", "first step, as a share of the box", 1, 0, 1)})),
+      make_row({.algorithm = "ihs", .constraints = true, .paced = true},
+               "Improved harmony search: steps shrink over the budget",
+               "Mahdavi, Fesanghary and Damangir 2007, An improved harmony search algorithm for "
+               "solving optimization problems",
+               population(
+                   20, 1,
+                   {number("phmcr", "probability of choosing a coordinate from memory", 0.85, 0, 1),
+                    number("ppar_min",
+                           "probability of moving what was chosen (pitch adjustment), at first",
+                           0.35, 0, 1),
+                    number("ppar_max", "the same, at last", 0.99, 0, 1),
+                    number("bw_min", "last step, as a share of the box", 1e-5, 0, 1),
+                    number("bw_max", "first step, as a share of the box", 1, 0, 1)})),
   };
 }
 
@@ -237,17 +244,18 @@ std::vector<OptimizerRow> make_point_rows() {
   std::vector<OptionSpec> hopping = compass_options(0.05, 0.005);
   hopping.push_back(number("perturb", "length of a hop, as a share of the box", 0.05, 1e-9, 1));
   return {
-      make_row({.algorithm = "simulated_annealing", .paced = true},
-               "Simulated annealing along the coordinates, cooling over the budget",
-               "Corana, Marchesi, Martini and Ridella 1987, Minimizing multimodal functions of "
-               "continuous variables with the simulated annealing algorithm",
-               {number("Ts", "first temperature, as a share of the objective at the start", 0.1,
-                       1e-12, 1e12),
-                number("Tf", "last temperature, as a share of the objective at the start", 1e-4,
-                       1e-12, 1e12),
-                count("n_range_adj", "adjustments of the steps at each temperature", 1, 1, 1000),
-                count("bin_size", "mutations of each coordinate between two of them", 10, 1, 1000),
-                number("start_range", "first step, as a share of the box", 0.1, 1e-6, 1)}),
+      make_row(
+          {.algorithm = "simulated_annealing", .paced = true},
+          "Simulated annealing along the coordinates, cooling over the budget",
+          "Corana, Marchesi, Martini and Ridella 1987, Minimizing multimodal functions of "
+          "continuous variables with the simulated annealing algorithm",
+          {number("Ts", "first temperature, as a share of the objective at the start", 0.1, 1e-12,
+                  1e12),
+           number("Tf", "last temperature, as a share of the objective at the start", 1e-4, 1e-12,
+                  1e12),
+           count("n_range_adj", "adjustments of the steps at each temperature", 1, 1, 1000),
+           count("bin_size", "mutations of each coordinate between two adjustments", 10, 1, 1000),
+           number("start_range", "first step, as a share of the box", 0.1, 1e-6, 1)}),
       make_row({.algorithm = "compass_search", .constraints = true, .ends = true},
                "Compass search: along each axis in turn, halving the step",
                "Kolda, Lewis and Torczon 2003, Optimization by direct search: new perspectives on "
@@ -272,7 +280,8 @@ std::vector<OptimizerRow> make_multi_objective_rows() {
                      {number("cr", "probability of crossover, below 1", 0.95, 0, 1),
                       number("eta_c", "distribution index of crossover, below 100", 10, 1, 100),
                       number("m", "probability of mutation", 0.1, 0, 1),
-                      number("eta_m", "distribution index of mutation, below 100", 10, 1, 100)})),
+                      number("eta_m", "distribution index of mutation, below 100", 10, 1, 100)},
+                     "individuals, a multiple of 4")),
       make_row(
           {.algorithm = "moead", .multi_objective = true},
           "MOEA/D: many weighted problems at once, each helped by its neighbours",

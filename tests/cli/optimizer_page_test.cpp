@@ -52,17 +52,18 @@ TEST(OptimizerPage, HoldsWhatTheRowSays) {
 TEST(OptimizerPage, SaysWhatTheOptimizerNeeds) {
   OptimizerRow row = make_row();
   EXPECT_THAT(format_optimizer_page(row),
-              AllOf(HasSubstr("- **Build:** every build has it."), HasSubstr("- **Problem:** any."),
+              AllOf(HasSubstr("- **Build:** every one has it."), HasSubstr("- **Problem:** any."),
                     HasSubstr("- **Runs:** in armwright's own process.")));
   row.library = "Libfoo (CMake option FOO)";
   row.requirements = {.objectives = 2, .variables = 3, .residuals = true};
   row.isolated = "with a=b";
   EXPECT_THAT(
       format_optimizer_page(row),
-      AllOf(HasSubstr("has it if it was built with Libfoo (CMake option FOO), the default."),
+      AllOf(HasSubstr(
+                "- **Build:** one with Libfoo (CMake option FOO), as every build is by default."),
             HasSubstr("one with at least 2 objectives and at least 3 decision variables and "
-                      "residuals."),
-            HasSubstr("with a=b, in a process of its own"), HasSubstr("optimize q2-pareto ")));
+                      "residuals (all robot problems have them)."),
+            HasSubstr("with a=b in a process of its own"), HasSubstr("optimize q2-pareto ")));
 }
 
 TEST(OptimizerPage, SaysWhatBecomesOfConstraints) {
