@@ -28,6 +28,13 @@ OptimizerRow get_row(const std::string& name) {
   return listed ? find_optimizer(name) : load_optimizer(name);
 }
 
+std::string format_heading(const OptimizerRow& row, const Style& style, int width) {
+  const std::string name = sanitize(row.name);
+  const int indent = static_cast<int>(name.size()) + 2;
+  const auto lines = wrap_words(sanitize(row.summary), std::max(width - indent, indent));
+  return style.bold(name) + ": " + join(lines, "\n" + std::string(name.size() + 2, ' ')) + "\n";
+}
+
 std::string format_facts(const OptimizerRow& row, const Style& style, int width) {
   Table facts({{"", false}, {"", false, true}});
   if (!row.unavailable.empty()) {
@@ -78,7 +85,7 @@ std::string format_options(const OptimizerRow& row, const Style& style, int widt
 std::string explain_optimizer(const std::string& name, const Style& style) {
   const OptimizerRow row = get_row(name);
   const int width = get_text_width(Stream::out);
-  return format_title(style, row.name, row.summary) + format_facts(row, style, width) + "\n" +
+  return format_heading(row, style, width) + format_facts(row, style, width) + "\n" +
          format_capabilities(row, style, width) + "\n" + format_options(row, style, width);
 }
 

@@ -10,8 +10,7 @@
 namespace armwright {
 namespace {
 
-constexpr std::size_t kGap = 2;         // between two columns
-constexpr std::size_t kNarrowest = 16;  // what a column that wraps keeps in any case
+constexpr std::size_t kGap = 2;  // between two columns
 
 // Continuation bytes of UTF-8 take no room.
 std::size_t count_characters(std::string_view text) {
@@ -48,28 +47,33 @@ void Table::add_row(std::vector<std::string> cells) {
 
 std::vector<std::size_t> Table::calc_widths(int room) const {
   std::vector<std::size_t> widths;
+  std::vector<std::size_t> least;  // what a column that wraps keeps in any case
   std::size_t total = 0;
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     std::size_t width = count_characters(columns_[c].title);
+    std::size_t longest_word = width;
     for (const auto& row : rows_) {
       width = std::max(width, count_characters(row[c]));
+      for (const std::string& word : split(row[c], ' ')) {
+        longest_word = std::max(longest_word, count_characters(word));
+      }
     }
     widths.push_back(width);
+    least.push_back(columns_[c].wraps ? longest_word : width);
     total += width + (c > 0 ? kGap : 0);
   }
   // The widest gives way first.
   while (total > static_cast<std::size_t>(room)) {
-    std::size_t* widest = nullptr;
+    std::size_t widest = columns_.size();
     for (std::size_t c = 0; c < columns_.size(); ++c) {
-      const std::size_t least = std::max(kNarrowest, count_characters(columns_[c].title));
-      if (columns_[c].wraps && widths[c] > least && (widest == nullptr || widths[c] > *widest)) {
-        widest = &widths[c];
+      if (widths[c] > least[c] && (widest == columns_.size() || widths[c] > widths[widest])) {
+        widest = c;
       }
     }
-    if (widest == nullptr) {
+    if (widest == columns_.size()) {
       break;
     }
-    --*widest;
+    --widths[widest];
     --total;
   }
   return widths;

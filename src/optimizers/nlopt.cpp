@@ -192,7 +192,7 @@ const std::vector<Algorithm>& algorithms() {
       {.name = "auglag",
        .nlopt_name = "AUGLAG",
        .kind = Kind::wrapping,
-       .summary = "Augmented Lagrangian: multipliers bring the constraints to a local search",
+       .summary = "Augmented Lagrangian: multipliers bring constraints to a local search",
        .source = kAuglag,
        .takes_constraints = true},
       {.name = "auglag_eq",

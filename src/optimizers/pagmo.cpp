@@ -102,7 +102,7 @@ std::vector<OptimizerRow> make_differential_evolution_rows() {
       make_de_row("pagmo:de", "Differential evolution"),
       make_de_row("de", "Differential evolution: another name of pagmo:de"),
       make_row({.algorithm = "sade"},
-               "Differential evolution that adapts every individual's F and CR (jDE, iDE)",
+               "Differential evolution that adapts every individual's F and CR",
                "Brest, Greiner, Boskovic, Mernik and Zumer 2006, Self-adapting control parameters "
                "in differential evolution",
                population(

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
+#include <cstdint>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -46,7 +48,7 @@ std::vector<std::string> get_lines(const std::string& text) {
 }
 
 TEST_F(ListOptimizers, FitsTheTerminal) {
-  for (const unsigned short columns : {80, 100}) {
+  for (const std::uint16_t columns : std::array<std::uint16_t, 2>{80, 100}) {
     for (const char* name : {"", "ga", "ceres:lm", "nlopt:mlsl", "pagmo:moead", "nlopt:ags"}) {
       const std::vector<std::string> arguments(*name == '\0' ? 0 : 1, name);
       for (const std::string& line : get_lines(show(arguments, columns))) {
@@ -113,19 +115,28 @@ TEST_F(ListOptimizers, MarkdownIsForOptimizersAlone) {
   EXPECT_EQ(run({"gaa", "--markdown"}).exit_code, 2);
 }
 
-// scripts/docs in a project of its own.
+// scripts/docs in a project of its own, with a program of two optimizers.
 class Docs : public ListOptimizers {
  protected:
   Docs() {
     std::filesystem::create_directories(folder_ / "scripts");
     std::filesystem::copy_file(ARMWRIGHT_SCRIPTS "/docs", folder_ / "scripts/docs");
+    const auto program = folder_ / "program";
+    std::ofstream(program) << R"(#!/bin/sh
+case "$3" in
+  --markdown) printf '| [`a:b`](a-b.md) | one |\n| [`c`](c.md) | two |\n' ;;
+  *) echo "page of $3" ;;
+esac
+)";
+    std::filesystem::permissions(program, std::filesystem::perms::owner_all);
   }
-  int run_docs(const std::string& flags) {
-    const std::string command = "ARMWRIGHT='" ARMWRIGHT_BINARY "' '" +
+  int run_docs(const std::string& flags, const std::string& program) {
+    const std::string command = "ARMWRIGHT='" + program + "' '" +
                                 (folder_ / "scripts/docs").string() + "' " + flags + " >'" +
                                 (folder_ / "said").string() + "' 2>&1";
     return std::system(command.c_str());
   }
+  int run_docs(const std::string& flags) { return run_docs(flags, folder_ / "program"); }
   void expect_refused() {
     EXPECT_NE(run_docs("--check"), 0);
     EXPECT_THAT(read_text(folder_ / "said"), HasSubstr("run scripts/docs"));
@@ -133,20 +144,21 @@ class Docs : public ListOptimizers {
 };
 
 TEST_F(Docs, WritesAPageForEveryRow) {
-  expect_refused();  // nothing is there
-  ASSERT_EQ(run_docs(""), 0) << read_text(folder_ / "said");
+  ASSERT_EQ(run_docs("", ARMWRIGHT_BINARY), 0) << read_text(folder_ / "said");
   EXPECT_EQ(read_text(folder_ / "docs/optimizers/README.md"), run({"--markdown"}).out);
   EXPECT_EQ(read_text(folder_ / "docs/optimizers/nlopt-cobyla.md"),
             run({"nlopt:cobyla", "--markdown"}).out);
   const auto count = std::distance(std::filesystem::directory_iterator(folder_ / "docs/optimizers"),
                                    std::filesystem::directory_iterator());
   EXPECT_EQ(count, std::ssize(optimizer_table()) + 1);
-  EXPECT_EQ(run_docs("--check"), 0) << read_text(folder_ / "said");
 }
 
 TEST_F(Docs, FindsPagesThatAreStaleMissingOrChanged) {
-  ASSERT_EQ(run_docs(""), 0);
-  const auto page = folder_ / "docs/optimizers/ga.md";
+  expect_refused();  // nothing is there
+  ASSERT_EQ(run_docs(""), 0) << read_text(folder_ / "said");
+  EXPECT_EQ(read_text(folder_ / "docs/optimizers/a-b.md"), "page of a:b\n");
+  EXPECT_EQ(run_docs("--check"), 0) << read_text(folder_ / "said");
+  const auto page = folder_ / "docs/optimizers/c.md";
   const auto stale = folder_ / "docs/optimizers/gone.md";
   std::ofstream(page, std::ios::app) << "changed\n";
   expect_refused();
@@ -159,6 +171,14 @@ TEST_F(Docs, FindsPagesThatAreStaleMissingOrChanged) {
   ASSERT_EQ(run_docs(""), 0);
   EXPECT_FALSE(std::filesystem::exists(stale));
   EXPECT_EQ(run_docs("--check"), 0);
+}
+
+TEST_F(Docs, LeavesEverythingAloneWithoutAProgramThatAnswers) {
+  ASSERT_EQ(run_docs(""), 0);
+  for (const char* program : {"/none", "/bin/false", "/bin/true"}) {
+    EXPECT_NE(run_docs("", program), 0) << program;
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "docs/optimizers/c.md"));
+  }
   EXPECT_NE(run_docs("--chek"), 0);
 }
 
