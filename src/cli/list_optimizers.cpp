@@ -46,8 +46,8 @@ std::string format_facts(const OptimizerRow& row, const Style& style, int width)
                                   ? "fresh:K (new training cases every generation) and fixed:K"
                                   : "fixed:K only"});
   facts.add_row({"Runs", describe_isolation(row)});
-  if (!row.library.empty()) {
-    facts.add_row({"Library", row.library});
+  if (!row.backend.empty()) {
+    facts.add_row({"Library", row.backend});
   }
   facts.add_row({"Source", sanitize(row.source)});
   return facts.format(style, 2, width);
@@ -112,7 +112,7 @@ json to_json(const OptimizerRow& row) {
           {"summary", row.summary},
           {"source", row.source},
           {"unavailable", row.unavailable},
-          {"library", row.library},
+          {"library", row.backend},
           {"isolated", row.isolated},
           {"capabilities", capabilities},
           {"requirements",

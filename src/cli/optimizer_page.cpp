@@ -49,14 +49,14 @@ std::string format_allowed(const OptionSpec& option) {
 }
 
 // "NLopt (CMake option X)" -> "NLopt"
-std::string get_library_name(const OptimizerRow& row) {
-  return row.library.substr(0, row.library.find(" ("));
+std::string get_backend_name(const OptimizerRow& row) {
+  return row.backend.substr(0, row.backend.find(" ("));
 }
 
 std::string format_index_row(const OptimizerRow& row) {
   std::vector<std::string> needs = list_requirements(row.requirements);
-  if (!row.library.empty()) {
-    needs.insert(needs.begin(), get_library_name(row));
+  if (!row.backend.empty()) {
+    needs.insert(needs.begin(), get_backend_name(row));
   }
   return fmt::format("| [`{}`]({}) | {}{} | {} | {} |\n", row.name, get_page_name(row.name),
                      escape_markdown(row.summary), row.unfit.empty() ? "" : " (not offered)",
@@ -69,10 +69,10 @@ std::string format_facts(const OptimizerRow& row) {
   if (!row.unfit.empty()) {
     text += fmt::format("- **Not offered:** {}\n", format_sentence(row.unfit));
   }
-  text += row.library.empty()
+  text += row.backend.empty()
               ? "- **Build:** every one has it.\n"
               : fmt::format("- **Build:** one with {}, as every build is by default.\n",
-                            escape_markdown(row.library));
+                            escape_markdown(row.backend));
   const std::vector<std::string> required = list_requirements(row.requirements);
   text += required.empty() ? "- **Problem:** any.\n"
                            : fmt::format("- **Problem:** one with {}.\n",

@@ -6,7 +6,7 @@
 namespace armwright {
 namespace {
 
-constexpr const char* kLibrary = "Ceres Solver (CMake option ARMWRIGHT_WITH_CERES)";
+constexpr const char* kBackend = "Ceres Solver (CMake option ARMWRIGHT_WITH_CERES)";
 #ifdef ARMWRIGHT_WITH_CERES
 constexpr const char* kUnavailable = "";
 #else
@@ -125,7 +125,7 @@ OptimizerRow make_lm_row() {
           join_options(own, make_difference_options("forward", 0.005), make_tolerance_options()),
       .make = make_lm,
       .requirements = {.residuals = true},
-      .library = kLibrary,
+      .backend = kBackend,
       .unavailable = kUnavailable,
   };
 }
@@ -149,7 +149,7 @@ OptimizerRow make_bfgs_row() {
       .options =
           join_options(own, make_difference_options("central", 0.001), make_tolerance_options()),
       .make = make_bfgs_optimizer,
-      .library = kLibrary,
+      .backend = kBackend,
       .unavailable = kUnavailable,
   };
 }

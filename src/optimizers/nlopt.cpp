@@ -382,10 +382,10 @@ OptimizerRow make_row(const Algorithm& algorithm) {
         return std::make_unique<Nlopt>(algorithm, options);
       },
       .requirements = {.variables = algorithm.smallest_dimension},
-      .library = "NLopt (CMake option ARMWRIGHT_WITH_NLOPT)",
+      .backend = "NLopt (CMake option ARMWRIGHT_WITH_NLOPT)",
       .isolated = explain_isolation(algorithm, specs),
       .unfit = algorithm.unfit,
-      .unavailable = explain_missing_nlopt().empty() ? algorithm.unfit : explain_missing_nlopt(),
+      .unavailable = algorithm.unfit.empty() ? explain_missing_nlopt() : algorithm.unfit,
   };
 }
 

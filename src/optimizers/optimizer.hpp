@@ -96,7 +96,7 @@ struct OptimizerRow {
   std::vector<OptionSpec> options;
   std::function<std::unique_ptr<Optimizer>(const Options& options)> make;
   Requirements requirements = {};
-  std::string library = {};  // what the build must have: "NLopt (CMake option ...)"; empty: nothing
+  std::string backend = {};  // what the build must have: "NLopt (CMake option ...)"; empty: nothing
   // When it runs in a child process (isolation.hpp): "always", "with local=cobyla"; empty: never.
   std::string isolated = {};
   std::string unfit = {};        // why it is offered in no build; empty: it is

@@ -74,7 +74,7 @@ OptimizerRow make_row(PagmoMethod method, std::string summary, std::string sourc
           .options = std::move(options),
           .make = [method](const Options& given) { return make_pagmo_optimizer(method, given); },
           .requirements = {.objectives = method.multi_objective ? 2 : 1},
-          .library = "pagmo (CMake option ARMWRIGHT_WITH_PAGMO)",
+          .backend = "pagmo (CMake option ARMWRIGHT_WITH_PAGMO)",
           .unavailable = explain_missing_pagmo()};
 }
 

@@ -54,7 +54,7 @@ TEST(OptimizerPage, SaysWhatTheOptimizerNeeds) {
   EXPECT_THAT(format_optimizer_page(row),
               AllOf(HasSubstr("- **Build:** every one has it."), HasSubstr("- **Problem:** any."),
                     HasSubstr("- **Runs:** in armwright's own process.")));
-  row.library = "Libfoo (CMake option FOO)";
+  row.backend = "Libfoo (CMake option FOO)";
   row.requirements = {.objectives = 2, .variables = 3, .residuals = true};
   row.isolated = "with a=b";
   EXPECT_THAT(

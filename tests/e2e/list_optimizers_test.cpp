@@ -63,10 +63,10 @@ TEST_F(ListOptimizers, IsOneLineARowInAPipeAndAt100Columns) {
   const std::vector<std::string> shown = get_lines(show({}, 100));
   std::size_t k = 1;  // below the title
   for (const OptimizerRow& row : optimizer_table()) {
-    ASSERT_LT(k, std::min(piped.size(), shown.size()));
+    ASSERT_LT(k, piped.size());
     EXPECT_THAT(piped[k], AllOf(testing::StartsWith(row.name + " "), HasSubstr(row.summary)));
     if (row.unavailable.empty()) {  // a star may need another line
-      EXPECT_EQ(shown[k], piped[k]);
+      EXPECT_THAT(shown, testing::Contains(piped[k]));
     }
     ++k;
   }
