@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -25,6 +27,7 @@ constexpr const char* kExamples = R"(Examples:
   armwright list problems                          # what can be optimized
   armwright list problems q1-complex               # its variables, bounds and settings (for --set)
   armwright list optimizers ga                     # what it is, can do, and its options (for --opt)
+  armwright list optimizers ga --markdown          # the same as a page, as under docs/optimizers
   armwright list designs --json
 
 Terms: a problem is a robot with a task, or a function, to be minimised; an optimizer minimises it; a design is what
@@ -106,6 +109,7 @@ struct ListOptions {
   std::string kind;
   std::string name;
   bool json = false;
+  bool markdown = false;
 };
 
 ListKind find_kind(const std::string& name) {
@@ -119,28 +123,79 @@ ListKind find_kind(const std::string& name) {
   throw Error(ErrorKind::usage, describe_unknown("kind", name, names));
 }
 
+json list_as_json(const ListKind& kind) {
+  if (kind.list_as_json) {
+    return kind.list_as_json();
+  }
+  json list = json::array();
+  for (const ListItem& item : kind.list()) {
+    list.push_back({{"name", sanitize(item.name)}, {"summary", sanitize(item.summary)}});
+  }
+  return list;
+}
+
+// What is marked with a star in the list: names by reason.
+std::string explain_unavailable(const std::vector<ListItem>& items, int width) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> reasons;
+  for (const ListItem& item : items) {
+    if (item.unavailable.empty()) {
+      continue;
+    }
+    const std::string reason = sanitize(item.unavailable);
+    if (std::ranges::count(reasons, reason, [](const auto& one) { return one.first; }) == 0) {
+      reasons.push_back({reason, {}});
+    }
+    std::ranges::find(reasons, reason, [](const auto& one) {
+      return one.first;
+    })->second.push_back(sanitize(item.name));
+  }
+  if (reasons.empty()) {
+    return "";
+  }
+  std::string text = "\n* not available here:\n";
+  for (const auto& [reason, names] : reasons) {
+    for (const std::string& line : wrap_words(join(names, ", ") + ": " + reason, width - 2)) {
+      text += "  " + line + "\n";
+    }
+  }
+  return text;
+}
+
+std::string format_list(const ListKind& kind, const Style& style) {
+  const std::vector<ListItem> items = kind.list();
+  // Into a pipe one line a row, for grep.
+  const int width = is_terminal(Stream::out) ? get_width(Stream::out) : kUnlimited;
+  Table table({{kind.name, false}, {"", false, true}});
+  for (const ListItem& item : items) {
+    table.add_row(
+        {sanitize(item.name) + (item.unavailable.empty() ? "" : " *"), sanitize(item.summary)});
+  }
+  const std::string hint = fmt::format("\n'armwright list {} NAME' explains one.\n", kind.name);
+  return table.format(style, 0, width) + explain_unavailable(items, get_text_width(Stream::out)) +
+         (is_terminal(Stream::out) ? hint : "");
+}
+
 int run_list(const ListOptions& options, const Session& session) {
   const ListKind kind = find_kind(options.kind);
   const Style style = make_style(Stream::out, session.color);
+  if (options.markdown) {
+    if (options.json) {
+      throw Error(ErrorKind::usage, "--json and --markdown are two formats; choose one");
+    }
+    if (!kind.explain_as_markdown) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("--markdown is for optimizers, not for {}; --json is for all kinds",
+                              kind.name));
+    }
+    write_stdout(kind.explain_as_markdown(options.name));
+    return exit_code::kDone;
+  }
   if (!options.name.empty()) {
     write_stdout(options.json ? kind.explain_as_json(options.name).dump(1) + "\n"
                               : kind.explain(options.name, style));
     return exit_code::kDone;
   }
-  const auto items = kind.list();
-  if (options.json) {
-    json list = json::array();
-    for (const ListItem& item : items) {
-      list.push_back({{"name", sanitize(item.name)}, {"summary", sanitize(item.summary)}});
-    }
-    write_stdout(list.dump(1) + "\n");
-    return exit_code::kDone;
-  }
-  Table table({{kind.name, false}, {"", false}});
-  for (const ListItem& item : items) {
-    table.add_row({sanitize(item.name), sanitize(item.summary)});
-  }
-  write_stdout(table.format(style));
+  write_stdout(options.json ? list_as_json(kind).dump(1) + "\n" : format_list(kind, style));
   return exit_code::kDone;
 }
 
@@ -160,6 +215,10 @@ void add_list(CLI::App& app, Session& session) {
       ->required();
   command->add_option("NAME", options->name, "Explain this one in full");
   command->add_flag("--json", options->json, "Print it as JSON")->group("Output");
+  command
+      ->add_flag("--markdown", options->markdown,
+                 "Print it as a page of documentation (optimizers)")
+      ->group("Output");
   command->callback([options, &session] {
     session.action = [options, &session] { return run_list(*options, session); };
   });

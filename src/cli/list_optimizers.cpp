@@ -5,8 +5,9 @@
 
 #include "base/text.hpp"
 #include "cli/list_views.hpp"
+#include "cli/optimizer_page.hpp"
+#include "cli/optimizer_words.hpp"
 #include "cli/table.hpp"
-#include "optimizers/optimizer.hpp"
 
 namespace armwright {
 namespace {
@@ -16,8 +17,7 @@ using nlohmann::json;
 std::vector<ListItem> list_items() {
   std::vector<ListItem> items;
   for (const OptimizerRow& row : optimizer_table()) {
-    items.push_back(
-        {row.name, row.unavailable.empty() ? row.summary : row.summary + " (not available)"});
+    items.push_back({row.name, row.summary, row.unavailable});
   }
   return items;
 }
@@ -28,71 +28,72 @@ OptimizerRow get_row(const std::string& name) {
   return listed ? find_optimizer(name) : load_optimizer(name);
 }
 
-const char* get_type(const OptionValue& value) {
-  constexpr const char* kNames[] = {"true or false", "integer", "number", "text"};
-  return kNames[value.index()];
+std::string format_heading(const OptimizerRow& row, const Style& style, int width) {
+  const std::string name = sanitize(row.name);
+  const int indent = static_cast<int>(name.size()) + 2;
+  const auto lines = wrap_words(sanitize(row.summary), std::max(width - indent, indent));
+  return style.bold(name) + ": " + join(lines, "\n" + std::string(name.size() + 2, ' ')) + "\n";
 }
 
-std::string describe_range(const OptionSpec& option) {
-  if (!option.choices.empty()) {
-    return join(option.choices, ", ");
+std::string format_facts(const OptimizerRow& row, const Style& style, int width) {
+  Table facts({{"", false}, {"", false, true}});
+  if (!row.unavailable.empty()) {
+    facts.add_row({"Not available", sanitize(row.unavailable)});
   }
-  const bool number = std::holds_alternative<double>(option.fallback) ||
-                      std::holds_alternative<std::int64_t>(option.fallback);
-  return number ? fmt::format("{} to {}", option.lower, option.upper) : "";
+  const std::vector<std::string> required = list_requirements(row.requirements);
+  facts.add_row({"Problem", required.empty() ? "any" : "one with " + join(required, " and ")});
+  facts.add_row({"Schedules", row.capabilities.generations
+                                  ? "fresh:K (new training cases every generation) and fixed:K"
+                                  : "fixed:K only"});
+  facts.add_row({"Runs", describe_isolation(row)});
+  if (!row.backend.empty()) {
+    facts.add_row({"Library", row.backend});
+  }
+  facts.add_row({"Source", sanitize(row.source)});
+  return facts.format(style, 2, width);
 }
 
-std::vector<std::pair<std::string, bool>> list_capabilities(const Capabilities& c) {
-  return {{"bounds", c.bounds},
-          {"constraints", c.constraints},
-          {"multi_objective", c.multi_objective},
-          {"batch", c.batch},
-          {"noisy", c.noisy},
-          {"residuals", c.residuals},
-          {"stochastic", c.stochastic},
-          {"generations", c.generations},
-          {"local", c.local},
-          {"sampling", c.sampling},
-          {"paced", c.paced}};
+std::string format_capabilities(const OptimizerRow& row, const Style& style, int width) {
+  Table table({{"capability", false}, {"", false}, {"what that means", false, true}});
+  for (const CapabilityWords& words : capability_words()) {
+    table.add_row({words.name, row.capabilities.*words.member ? "yes" : "no",
+                   describe_capability(row, words)});
+  }
+  return table.format(style, 0, width);
+}
+
+std::string format_options(const OptimizerRow& row, const Style& style, int width) {
+  if (row.options.empty()) {
+    return "It has no options.\n";
+  }
+  Table table({{"option (for --opt)", false},
+               {"default", false},
+               {"allowed", false, true},
+               {"meaning", false, true}});
+  for (const OptionSpec& option : row.options) {
+    const std::string range = describe_range(option);
+    const std::string type = get_option_type(option.fallback);
+    table.add_row({sanitize(option.name), sanitize(to_text(option.fallback)),
+                   !option.choices.empty() ? sanitize(join(option.choices, ", "))
+                   : range.empty()         ? type
+                                           : type + ", " + range,
+                   sanitize(option.description)});
+  }
+  return table.format(style, 0, width);
 }
 
 std::string explain_optimizer(const std::string& name, const Style& style) {
   const OptimizerRow row = get_row(name);
-  std::string text = format_title(style, row.name, row.summary);
-  text += fmt::format("  Source: {}\n", row.source);
-  if (!row.unavailable.empty()) {
-    text += fmt::format("  Not available: {}\n", row.unavailable);
-  }
-  std::vector<std::string> able;
-  std::vector<std::string> unable;
-  for (const auto& [capability, has] : list_capabilities(row.capabilities)) {
-    (has ? able : unable).push_back(capability);
-  }
-  text += fmt::format("  Capabilities: {} (not: {})\n", join(able, ", "), join(unable, ", "));
-  text += row.capabilities.generations
-              ? "  Schedules: fresh:K (new training cases every generation) and fixed:K\n\n"
-              : "  Schedules: fixed:K only\n\n";
-  if (row.options.empty()) {
-    return text + "It has no options.\n";
-  }
-  Table table({{"option (for --opt)", false},
-               {"type", false},
-               {"default", false},
-               {"allowed", false},
-               {"meaning", false}});
-  for (const OptionSpec& option : row.options) {
-    table.add_row({option.name, get_type(option.fallback), to_text(option.fallback),
-                   describe_range(option), option.description});
-  }
-  return text + table.format(style);
+  const int width = get_text_width(Stream::out);
+  return format_heading(row, style, width) + format_facts(row, style, width) + "\n" +
+         format_capabilities(row, style, width) + "\n" + format_options(row, style, width);
 }
 
-json explain_optimizer_as_json(const std::string& name) {
-  const OptimizerRow row = get_row(name);
+json to_json(const OptimizerRow& row) {
   json options = json::array();
   for (const OptionSpec& option : row.options) {
     json one = {{"name", option.name},
-                {"type", get_type(option.fallback)},
+                {"type", get_option_type(option.fallback)},
                 {"default", std::visit([](const auto& v) { return json(v); }, option.fallback)},
                 {"meaning", option.description}};
     if (!option.choices.empty()) {
@@ -104,21 +105,44 @@ json explain_optimizer_as_json(const std::string& name) {
     options.push_back(std::move(one));
   }
   json capabilities = json::object();
-  for (const auto& [capability, has] : list_capabilities(row.capabilities)) {
-    capabilities[capability] = has;
+  for (const CapabilityWords& words : capability_words()) {
+    capabilities[words.name] = row.capabilities.*words.member;
   }
   return {{"name", row.name},
           {"summary", row.summary},
           {"source", row.source},
           {"unavailable", row.unavailable},
+          {"library", row.backend},
+          {"isolated", row.isolated},
           {"capabilities", capabilities},
+          {"requirements",
+           {{"objectives", row.requirements.objectives},
+            {"variables", row.requirements.variables},
+            {"residuals", row.requirements.residuals}}},
           {"options", options}};
+}
+
+json list_as_json() {
+  json list = json::array();
+  for (const OptimizerRow& row : optimizer_table()) {
+    list.push_back(to_json(row));
+  }
+  return list;
 }
 
 }  // namespace
 
 ListKind make_optimizer_kind() {
-  return {"optimizers", list_items, explain_optimizer, explain_optimizer_as_json};
+  return {.name = "optimizers",
+          .list = list_items,
+          .explain = explain_optimizer,
+          .explain_as_json = [](const std::string& name) { return to_json(get_row(name)); },
+          .list_as_json = list_as_json,
+          .explain_as_markdown =
+              [](const std::string& name) {
+                return name.empty() ? format_optimizer_index(optimizer_table())
+                                    : format_optimizer_page(get_row(name));
+              }};
 }
 
 }  // namespace armwright

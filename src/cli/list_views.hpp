@@ -13,6 +13,7 @@ namespace armwright {
 struct ListItem {
   std::string name;
   std::string summary;
+  std::string unavailable = {};  // why it cannot be used here; empty: it can
 };
 
 struct ListKind {
@@ -21,6 +22,9 @@ struct ListKind {
   // Error{usage} with the valid names if there is none of that name.
   std::function<std::string(const std::string& name, const Style& style)> explain;
   std::function<nlohmann::json(const std::string& name)> explain_as_json;
+  // Optional: more than names and summaries, for --json; and Markdown of all (no name) or of one.
+  std::function<nlohmann::json()> list_as_json = {};
+  std::function<std::string(const std::string& name)> explain_as_markdown = {};
 };
 
 ListKind make_problem_kind();

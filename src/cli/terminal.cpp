@@ -54,6 +54,11 @@ int get_width(Stream stream) {
   return size.ws_col;
 }
 
+int get_text_width(Stream stream) {
+  constexpr int kUsual = 100;
+  return is_terminal(stream) ? get_width(stream) : kUsual;
+}
+
 std::string Style::wrap(std::string_view code, std::string_view text) const {
   return on_ ? fmt::format("\x1b[{}m{}\x1b[0m", code, text) : std::string(text);
 }

@@ -11,6 +11,8 @@ enum class Stream { out = 1, error = 2 };
 
 bool is_terminal(Stream stream);
 int get_width(Stream stream);  // columns; 80 if unknown
+// For text in lines that nobody reads by machine: a terminal's width, 100 anywhere else.
+int get_text_width(Stream stream);
 
 // Escape codes for emphasis, or none.
 class Style {

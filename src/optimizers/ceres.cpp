@@ -6,6 +6,7 @@
 namespace armwright {
 namespace {
 
+constexpr const char* kBackend = "Ceres Solver (CMake option ARMWRIGHT_WITH_CERES)";
 #ifdef ARMWRIGHT_WITH_CERES
 constexpr const char* kUnavailable = "";
 #else
@@ -14,26 +15,27 @@ constexpr const char* kUnavailable =
 #endif
 
 std::vector<OptionSpec> make_difference_options(const char* kind, double step) {
-  return {
-      {.name = "differences",
-       .description = "of the derivatives: forward (a point for each variable) or central (two)",
-       .fallback = std::string(kind),
-       .choices = {"forward", "central"}},
-      {.name = "step",
-       .description = "of the differences, share of the box",
-       .fallback = step,
-       .lower = 1e-12,
-       .upper = 0.25}};
+  return {{.name = "differences",
+           .description =
+               "how derivatives are taken: forward (a point for each variable) or central (two)",
+           .fallback = std::string(kind),
+           .choices = {"forward", "central"}},
+          {.name = "step",
+           .description = "step of the differences, as a share of the box",
+           .fallback = step,
+           .lower = 1e-12,
+           .upper = 0.25}};
 }
 
 std::vector<OptionSpec> make_tolerance_options() {
   return {{.name = "function_tolerance",
-           .description = "ends when a step changes the cost by less than this share of it",
+           .description = "the run ends when a step changes the cost by less than this share of it",
            .fallback = 1e-6,
            .lower = 0,
            .upper = 1},
           {.name = "parameter_tolerance",
-           .description = "ends when a step is shorter than this share of the way from the start",
+           .description =
+               "the run ends when a step is shorter than this share of the way from the start",
            .fallback = 1e-8,
            .lower = 0,
            .upper = 1}};
@@ -84,9 +86,9 @@ std::vector<OptionSpec> join_options(std::vector<OptionSpec> options, const List
 OptimizerRow make_lm_row() {
   const std::vector<OptionSpec> own = {
       {.name = "transform",
-       .description =
-           "of the residuals: log (ln of their squares over the floor's), none, or auto: "
-           "log where every variable is logarithmic",
+       .description = "what becomes of the residuals: log (ln of their squares over the floor's), "
+                      "none, or auto: "
+                      "log where every variable is logarithmic",
        .fallback = std::string("auto"),
        .choices = {"auto", "log", "none"}},
       {.name = "floor",
@@ -123,6 +125,7 @@ OptimizerRow make_lm_row() {
           join_options(own, make_difference_options("forward", 0.005), make_tolerance_options()),
       .make = make_lm,
       .requirements = {.residuals = true},
+      .backend = kBackend,
       .unavailable = kUnavailable,
   };
 }
@@ -130,7 +133,7 @@ OptimizerRow make_lm_row() {
 OptimizerRow make_bfgs_row() {
   const std::vector<OptionSpec> own = {
       {.name = "initial_step",
-       .description = "longest first step of a variable, share of the box",
+       .description = "longest first step of a variable, as a share of the box",
        .fallback = 0.05,
        .lower = 1e-9,
        .upper = 1},
@@ -146,6 +149,7 @@ OptimizerRow make_bfgs_row() {
       .options =
           join_options(own, make_difference_options("central", 0.001), make_tolerance_options()),
       .make = make_bfgs_optimizer,
+      .backend = kBackend,
       .unavailable = kUnavailable,
   };
 }

@@ -227,25 +227,31 @@ OptimizerRow make_ga_row() {
                .lower = 0,
                .upper = 99999},
               probability("tournament_probability",
-                          "that the fitter of two individuals becomes a parent", 0.7),
-              probability("crossover_probability", "of each gene of a child", 0.75),
+                          "probability that the fitter of two individuals becomes a parent", 0.7),
+              probability("crossover_probability", "probability that a gene of a child is crossed",
+                          0.75),
               {.name = "crossover_extent",
-               .description = "upper end of sigma in 0.5 (A + B) + sigma (A - B)",
+               .description =
+                   "a crossed gene is 0.5 (A + B) + sigma (A - B), with sigma drawn from 0 to this",
                .fallback = 0.25,
                .lower = 0,
                .upper = 10},
-              probability("mutation_probability", "of each gene of a child", 0.05),
+              probability("mutation_probability", "probability that a gene of a child mutates",
+                          0.05),
               factor("mutation_factor",
-                     "a gene is multiplied by at most this, divided by at most this", 2.0),
-              probability("initial_mutation_probability", "of each gene of the first generation",
-                          0.8),
+                     "a gene is multiplied or divided by at most this; that of a linear variable "
+                     "moves by "
+                     "at most ln(this) / ln(100) of half the box",
+                     2.0),
+              probability("initial_mutation_probability",
+                          "as mutation_probability, for the first generation", 0.8),
               factor("initial_mutation_factor", "as mutation_factor, for the first generation",
                      10.0),
               {.name = "include_prototype",
                .description = "the start itself is the first individual of the first generation",
                .fallback = false},
               {.name = "generations",
-               .description = "to run at most; 0: until the budget ends",
+               .description = "generations to run at most; 0: until the budget ends",
                .fallback = std::int64_t{0},
                .lower = 0,
                .upper = 1e9},
@@ -259,9 +265,10 @@ OptimizerRow make_ga_row() {
 OptimizerRow make_simple_ga_row() {
   OptimizerRow row = make_ga_row();
   row.name = "ga:simple";
-  row.summary = "The same without an elite: what the thesis's sources call the simple GA";
+  row.summary = "ga without an elite: what the thesis's sources call the simple GA";
   row.source = "Goldberg 1989, Genetic Algorithms in Search, Optimization and Machine Learning";
   std::erase_if(row.options, [](const OptionSpec& option) { return option.name == "elite"; });
+  row.options.front().description = "individuals of a generation";
   row.make = [](const Options& options) -> std::unique_ptr<Optimizer> {
     return std::make_unique<GeneticAlgorithm>(options, 0);
   };

@@ -66,7 +66,7 @@ std::vector<std::vector<double>> draw_latin_hypercube(const SearchSpace& space, 
 std::vector<OptimizerRow> make_latin_hypercube_rows() {
   return {{
       .name = "lhs",
-      .summary = "Latin hypercube sampling: designs that cover every variable's range evenly",
+      .summary = "Latin hypercube sampling: covers every variable's range evenly",
       .source = "McKay, Beckman and Conover 1979, A comparison of three methods for selecting "
                 "values of input variables in the analysis of output from a computer code",
       .capabilities = {.bounds = true, .batch = true, .stochastic = true, .sampling = true},

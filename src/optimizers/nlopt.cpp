@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "optimizers/isolation.hpp"
 #include "optimizers/nlopt_backend.hpp"
 #include "optimizers/scalar_function.hpp"
@@ -25,8 +26,8 @@ enum class Kind {
 
 // What NLopt 2.7.1 is known for beyond its documentation.
 struct Algorithm {
-  std::string name;     // behind "nlopt:"
-  std::string library;  // NLopt's name without its prefix
+  std::string name;        // behind "nlopt:"
+  std::string nlopt_name;  // without its prefix
   Kind kind = Kind::local;
   std::string summary;
   std::string source;
@@ -51,33 +52,34 @@ constexpr const char* kMlsl =
     "Rinnooy Kan and Timmer 1987, Stochastic global optimization methods; Kucherenko and Sytsko "
     "2005, Application of deterministic low-discrepancy sequences in global optimization";
 constexpr const char* kAuglag =
-    "Conn, Gould and Toint 1991, A globally convergent augmented Lagrangian algorithm; Birgin and "
-    "Martinez 2008, Improving ultimate convergence of an augmented Lagrangian method";
+    "Conn, Gould and Toint 1991, A globally convergent augmented Lagrangian algorithm for "
+    "optimization with general constraints and simple bounds; Birgin and Martinez 2008, Improving "
+    "ultimate convergence of an augmented Lagrangian method";
 
 const std::vector<Algorithm>& algorithms() {
   static const std::vector<Algorithm> table = {
       {.name = "cobyla",
-       .library = "LN_COBYLA",
+       .nlopt_name = "LN_COBYLA",
        .summary = "COBYLA: linear models of objective and constraints in a trust region",
        .source = "Powell 1994, A direct search optimization method that models the objective and "
                  "constraint functions by linear interpolation",
        .takes_constraints = true,
        .isolated = true},
       {.name = "bobyqa",
-       .library = "LN_BOBYQA",
+       .nlopt_name = "LN_BOBYQA",
        .summary = "BOBYQA: quadratic models in a trust region within the box",
        .source = "Powell 2009, The BOBYQA algorithm for bound constrained optimization without "
                  "derivatives",
        .smallest_dimension = 2},
       {.name = "newuoa",
-       .library = "LN_NEWUOA",
+       .nlopt_name = "LN_NEWUOA",
        .summary = "NEWUOA: quadratic models in a trust region that knows no bounds",
        .source = "Powell 2006, The NEWUOA software for unconstrained optimization without "
                  "derivatives",
        .leaves_box = true,
        .smallest_dimension = 2},
       {.name = "newuoa_bound",
-       .library = "LN_NEWUOA_BOUND",
+       .nlopt_name = "LN_NEWUOA_BOUND",
        .summary = "NEWUOA with bounds in its steps; slow by itself: bobyqa supersedes it",
        .source = "Powell 2006, The NEWUOA software for unconstrained optimization without "
                  "derivatives; Johnson 2007, The NLopt nonlinear-optimization package (bounds)",
@@ -85,99 +87,99 @@ const std::vector<Algorithm>& algorithms() {
        .restarts = 0,  // begun at a minimum it goes round in circles
        .smallest_dimension = 2},
       {.name = "praxis",
-       .library = "LN_PRAXIS",
+       .nlopt_name = "LN_PRAXIS",
        .summary = "PRAXIS: line searches along principal axes",
        .source = "Brent 1973, Algorithms for minimization without derivatives",
        .is_stochastic = true,
        .smallest_dimension = 2},
       {.name = "neldermead",
-       .library = "LN_NELDERMEAD",
-       .summary = "Nelder-Mead simplex within the box",
+       .nlopt_name = "LN_NELDERMEAD",
+       .summary = "Nelder-Mead simplex within the box; may collapse onto its boundary",
        .source = "Nelder and Mead 1965, A simplex method for function minimization; Box 1965, A "
                  "new method of constrained optimization and a comparison with other methods"},
       {.name = "sbplx",
-       .library = "LN_SBPLX",
+       .nlopt_name = "LN_SBPLX",
        .summary = "Subplex: Nelder-Mead on a sequence of subspaces",
        .source = "Rowan 1990, Functional stability analysis of numerical algorithms"},
       {.name = "direct",
-       .library = "GN_DIRECT",
+       .nlopt_name = "GN_DIRECT",
        .kind = Kind::dividing,
        .summary = "DIRECT: divides the box where it may still hold the best",
        .source = kJones},
       {.name = "direct_l",
-       .library = "GN_DIRECT_L",
+       .nlopt_name = "GN_DIRECT_L",
        .kind = Kind::dividing,
        .summary = "DIRECT with a bias towards the best found",
        .source = kGablonsky},
       {.name = "direct_l_rand",
-       .library = "GN_DIRECT_L_RAND",
+       .nlopt_name = "GN_DIRECT_L_RAND",
        .kind = Kind::dividing,
        .summary = "DIRECT-L that draws lots for the side to divide",
        .source = kGablonsky,
        .is_stochastic = true},
       {.name = "direct_noscal",
-       .library = "GN_DIRECT_NOSCAL",
+       .nlopt_name = "GN_DIRECT_NOSCAL",
        .kind = Kind::dividing,
        .summary = "DIRECT on the unscaled box; in NLopt 2.7.1 the same as direct_l_noscal",
        .source = kJones},
       {.name = "direct_l_noscal",
-       .library = "GN_DIRECT_L_NOSCAL",
+       .nlopt_name = "GN_DIRECT_L_NOSCAL",
        .kind = Kind::dividing,
        .summary = "DIRECT-L on the box as it is, not scaled to a cube",
        .source = kGablonsky},
       {.name = "direct_l_rand_noscal",  // draws no lots, whatever its name says: measured
-       .library = "GN_DIRECT_L_RAND_NOSCAL",
+       .nlopt_name = "GN_DIRECT_L_RAND_NOSCAL",
        .kind = Kind::dividing,
        .summary = "DIRECT-L with lots, unscaled; in NLopt 2.7.1 the same as direct_l_noscal",
        .source = kGablonsky},
       {.name = "orig_direct",
-       .library = "GN_ORIG_DIRECT",
+       .nlopt_name = "GN_ORIG_DIRECT",
        .kind = Kind::dividing,
        .summary = "DIRECT in Gablonsky's program; takes constraints",
        .source = kJones,
        .takes_constraints = true,
        .needs_pace = true},
       {.name = "orig_direct_l",
-       .library = "GN_ORIG_DIRECT_L",
+       .nlopt_name = "GN_ORIG_DIRECT_L",
        .kind = Kind::dividing,
        .summary = "DIRECT-L in Gablonsky's program; takes constraints",
        .source = kGablonsky,
        .takes_constraints = true,
        .needs_pace = true},
       {.name = "crs2_lm",
-       .library = "GN_CRS2_LM",
+       .nlopt_name = "GN_CRS2_LM",
        .kind = Kind::drawing,
        .summary = "CRS2: controlled random search with local mutation",
        .source = "Kaelo and Ali 2006, Some variants of the controlled random search algorithm for "
                  "global optimization",
        .is_stochastic = true},
       {.name = "mlsl",
-       .library = "G_MLSL",
+       .nlopt_name = "G_MLSL",
        .kind = Kind::starting,
        .summary = "MLSL: local searches from random points, one a basin",
        .source = kMlsl,
        .is_stochastic = true},
       {.name = "mlsl_lds",
-       .library = "G_MLSL_LDS",
+       .nlopt_name = "G_MLSL_LDS",
        .kind = Kind::starting,
        .summary = "MLSL: local searches from points of a Sobol sequence, one a basin",
        .source = kMlsl},
       {.name = "isres",
-       .library = "GN_ISRES",
+       .nlopt_name = "GN_ISRES",
        .kind = Kind::drawing,
        .summary = "ISRES: evolution strategy that ranks objective and constraints by lot",
        .source = "Runarsson and Yao 2005, Search biases in constrained evolutionary optimization",
        .takes_constraints = true,
        .is_stochastic = true},
       {.name = "esch",
-       .library = "GN_ESCH",
+       .nlopt_name = "GN_ESCH",
        .kind = Kind::drawing,
        .summary = "ESCH: evolution with crossover and Cauchy mutation",
        .source = "da Silva Santos, Goncalves and Hernandez-Figueroa 2010, Designing novel photonic "
                  "devices by bio-inspired computing",
        .is_stochastic = true},
       {.name = "ags",
-       .library = "GN_AGS",
+       .nlopt_name = "GN_AGS",
        .kind = Kind::covering,
        .summary = "AGS: searches along a space-filling curve; up to 10 variables, better 5",
        .source = "Sergeyev and Markin 1995, An algorithm for solving global optimization problems "
@@ -188,16 +190,15 @@ const std::vector<Algorithm>& algorithms() {
            "it takes 10 variables at most, where the arm has 20, and with 5 or 10 variables it "
            "did worse than random search on the sphere and the ellipsoid (5000 evaluations)"},
       {.name = "auglag",
-       .library = "AUGLAG",
+       .nlopt_name = "AUGLAG",
        .kind = Kind::wrapping,
-       .summary = "Augmented Lagrangian around a local optimizer that knows no constraints",
+       .summary = "Augmented Lagrangian: multipliers bring constraints to a local search",
        .source = kAuglag,
        .takes_constraints = true},
       {.name = "auglag_eq",
-       .library = "AUGLAG_EQ",
+       .nlopt_name = "AUGLAG_EQ",
        .kind = Kind::wrapping,
-       .summary =
-           "Augmented Lagrangian for equalities only: inequalities go to the local optimizer",
+       .summary = "Augmented Lagrangian for equalities, of which problems here have none",
        .source = kAuglag,
        .takes_constraints = true},
   };
@@ -221,7 +222,7 @@ class Nlopt : public Optimizer {
     isolated_ = algorithm.isolated;
     smallest_dimension_ = algorithm.smallest_dimension;
     settings_ = {.optimizer = "nlopt:" + algorithm.name,
-                 .algorithm = algorithm.library,
+                 .algorithm = algorithm.nlopt_name,
                  .takes_constraints = algorithm.takes_constraints,
                  .is_paced = algorithm.needs_pace,
                  .initial_step = number("initial_step"),
@@ -233,7 +234,7 @@ class Nlopt : public Optimizer {
                  .constraint_weight = number("constraint_weight")};
     if (values.contains("local")) {
       const Algorithm& local = find_algorithm(options.get_text("local"));
-      settings_.local = local.library;
+      settings_.local = local.nlopt_name;
       isolated_ = isolated_ || local.isolated;
       smallest_dimension_ = std::max(smallest_dimension_, local.smallest_dimension);
     }
@@ -280,7 +281,9 @@ std::vector<OptionSpec> make_options(const Algorithm& algorithm) {
   if (algorithm.kind == Kind::starting) {
     options.push_back(
         {.name = "local",
-         .description = "the local optimizer that is started",
+         .description =
+             "the local optimizer that is started; bobyqa, newuoa_bound and praxis want 2 "
+             "variables at least; praxis draws by chance",
          .fallback = std::string("bobyqa"),
          .choices = {"bobyqa", "cobyla", "neldermead", "newuoa_bound", "praxis", "sbplx"}});
   }
@@ -290,15 +293,20 @@ std::vector<OptionSpec> make_options(const Algorithm& algorithm) {
     if (!passes_constraints_on) {
       choices = {"bobyqa", "cobyla", "neldermead", "newuoa_bound", "praxis", "sbplx"};
     }
-    options.push_back({.name = "local",
-                       .description = "the local optimizer inside",
-                       .fallback = choices.front(),
-                       .choices = choices});
+    options.push_back(
+        {.name = "local",
+         .description = passes_constraints_on
+                            ? "the local optimizer inside, which takes the inequalities"
+                            : "the local optimizer inside; bobyqa, newuoa_bound and praxis want "
+                              "2 variables at least; praxis draws by chance",
+         .fallback = choices.front(),
+         .choices = choices});
   }
   if (takes_steps) {
     options.push_back({.name = "initial_step",
-                       .description = "as a share of the box, in every coordinate; 0: what NLopt "
-                                      "derives from start and bounds",
+                       .description =
+                           "first step in every coordinate, as a share of the box; 0: what NLopt "
+                           "derives from start and bounds",
                        .fallback = 0.05,
                        .lower = 0,
                        .upper = 0.49});  // BOBYQA wants two steps within the box
@@ -319,11 +327,14 @@ std::vector<OptionSpec> make_options(const Algorithm& algorithm) {
                        .upper = 1});
   }
   if (algorithm.kind == Kind::drawing || algorithm.kind == Kind::starting) {
-    options.push_back({.name = "population",
-                       .description = "points drawn at a time; 0: as many as NLopt finds right",
-                       .fallback = std::int64_t{0},
-                       .lower = 0,
-                       .upper = 100000});
+    options.push_back(
+        {.name = "population",
+         .description = algorithm.kind == Kind::drawing
+                            ? "individuals; 0: as many as NLopt finds right"
+                            : "points drawn at a time; 0: as many as NLopt finds right",
+         .fallback = std::int64_t{0},
+         .lower = 0,
+         .upper = 100000});
   }
   if (descends) {
     options.push_back({.name = "restarts",
@@ -339,8 +350,25 @@ std::vector<OptionSpec> make_options(const Algorithm& algorithm) {
   return options;
 }
 
+// Which of the options lead into a child process.
+std::string explain_isolation(const Algorithm& algorithm, std::span<const OptionSpec> options) {
+  const auto local = std::ranges::find(options, "local", &OptionSpec::name);
+  if (algorithm.isolated || local == options.end()) {
+    return algorithm.isolated ? "always" : "";
+  }
+  std::vector<std::string> isolated;
+  for (const std::string& choice : local->choices) {
+    if (find_algorithm(choice).isolated) {
+      isolated.push_back("local=" + choice);
+    }
+  }
+  const bool always = isolated.size() == local->choices.size();
+  return always ? "always" : "with " + join(isolated, " or ");
+}
+
 OptimizerRow make_row(const Algorithm& algorithm) {
   const bool descends = algorithm.kind == Kind::local || algorithm.kind == Kind::wrapping;
+  const std::vector<OptionSpec> specs = make_options(algorithm);
   return {
       .name = "nlopt:" + algorithm.name,
       .summary = algorithm.summary,
@@ -349,12 +377,15 @@ OptimizerRow make_row(const Algorithm& algorithm) {
                        .constraints = algorithm.takes_constraints,
                        .stochastic = algorithm.is_stochastic,
                        .local = descends},
-      .options = make_options(algorithm),
+      .options = specs,
       .make = [&algorithm](const Options& options) -> std::unique_ptr<Optimizer> {
         return std::make_unique<Nlopt>(algorithm, options);
       },
       .requirements = {.variables = algorithm.smallest_dimension},
-      .unavailable = explain_missing_nlopt().empty() ? algorithm.unfit : explain_missing_nlopt(),
+      .backend = "NLopt (CMake option ARMWRIGHT_WITH_NLOPT)",
+      .isolated = explain_isolation(algorithm, specs),
+      .unfit = algorithm.unfit,
+      .unavailable = algorithm.unfit.empty() ? explain_missing_nlopt() : algorithm.unfit,
   };
 }
 

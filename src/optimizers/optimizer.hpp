@@ -96,7 +96,11 @@ struct OptimizerRow {
   std::vector<OptionSpec> options;
   std::function<std::unique_ptr<Optimizer>(const Options& options)> make;
   Requirements requirements = {};
-  std::string unavailable = {};  // why it cannot be used here; empty if it can
+  std::string backend = {};  // what the build must have: "NLopt (CMake option ...)"; empty: nothing
+  // When it runs in a child process (isolation.hpp): "always", "with local=cobyla"; empty: never.
+  std::string isolated = {};
+  std::string unfit = {};        // why it is offered in no build; empty: it is
+  std::string unavailable = {};  // why it cannot be used here, whatever the reason; empty if it can
   std::map<std::string, std::string> input_hashes =
       {};  // of a plugin: file -> SHA-256, so that a resumed run knows it again
 };

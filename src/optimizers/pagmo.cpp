@@ -41,9 +41,10 @@ constexpr double kSpread = 0.15;
 
 // The first population: its size, the fewest that the method works with, how wide it lies.
 std::vector<OptionSpec> population(std::int64_t size, double fewest,
-                                   std::vector<OptionSpec> others = {}) {
+                                   std::vector<OptionSpec> others = {},
+                                   std::string description = "individuals") {
   std::vector<OptionSpec> options = {
-      count("population", "individuals", size, fewest, 100000),
+      count("population", std::move(description), size, fewest, 100000),
       number("spread",
              "size of the box about the start, as a share of the whole box, from which the first "
              "population is drawn; 1: the whole box",
@@ -73,6 +74,7 @@ OptimizerRow make_row(PagmoMethod method, std::string summary, std::string sourc
           .options = std::move(options),
           .make = [method](const Options& given) { return make_pagmo_optimizer(method, given); },
           .requirements = {.objectives = method.multi_objective ? 2 : 1},
+          .backend = "pagmo (CMake option ARMWRIGHT_WITH_PAGMO)",
           .unavailable = explain_missing_pagmo()};
 }
 
@@ -80,34 +82,39 @@ OptionSpec adaptation_option() {
   return count("variant_adptv", "how F and CR adapt: 1 jDE, 2 iDE", 1, 1, 2);
 }
 
-OptimizerRow make_de_row(std::string name) {
+OptimizerRow make_de_row(std::string name, std::string summary) {
   return make_row(
-      {.row = std::move(name), .algorithm = "de"}, "Differential evolution (pagmo)",
+      {.row = std::move(name), .algorithm = "de"}, std::move(summary),
       "Storn and Price 1997, Differential evolution - a simple and efficient heuristic for global "
       "optimization over continuous spaces",
       population(24, 6,
                  {number("F", "weight of the difference of two individuals", 0.8, 0, 1),
                   number("CR", "probability that a coordinate is taken from the mutant", 0.9, 0, 1),
                   count("variant",
-                        "1 best/1/exp, 2 rand/1/exp, 3 rand-to-best/1/exp, 4 best/2/exp, "
+                        "how mutants are made (base/differences/crossover): 1 best/1/exp, 2 "
+                        "rand/1/exp, 3 rand-to-best/1/exp, 4 best/2/exp, "
                         "5 rand/2/exp; 6 to 10: the same with /bin",
                         2, 1, 10)}));
 }
 
 std::vector<OptimizerRow> make_differential_evolution_rows() {
   return {
-      make_de_row("pagmo:de"),
-      make_de_row("de"),
-      make_row(
-          {.algorithm = "sade"},
-          "Differential evolution that adapts F and CR of every individual (jDE, iDE; pagmo)",
-          "Brest, Greiner, Boskovic, Mernik and Zumer 2006, Self-adapting control parameters "
-          "in differential evolution",
-          population(24, 8,
-                     {count("variant", "how mutants are made, as pagmo numbers the ways", 2, 1, 18),
-                      adaptation_option()})),
+      make_de_row("pagmo:de", "Differential evolution"),
+      make_de_row("de", "Differential evolution: another name of pagmo:de"),
+      make_row({.algorithm = "sade"},
+               "Differential evolution that adapts every individual's F and CR",
+               "Brest, Greiner, Boskovic, Mernik and Zumer 2006, Self-adapting control parameters "
+               "in differential evolution",
+               population(
+                   24, 8,
+                   {count("variant",
+                          "how mutants are made: 1 to 10 as in pagmo:de; 11 rand/3/exp, 12 "
+                          "rand/3/bin, 13 best/3/exp, 14 best/3/bin; to current/2 15 exp, 16 bin; "
+                          "to best and current/2 17 exp, 18 bin",
+                          2, 1, 18),
+                    adaptation_option()})),
       make_row({.algorithm = "de1220"},
-               "Differential evolution that adapts F, CR and the way mutants are made (pagmo)",
+               "Differential evolution that adapts F, CR and the way mutants are made",
                "Biscani and Izzo 2020, A parallel global multiobjective framework for "
                "optimization: pagmo",
                population(24, 8, {adaptation_option()})),
@@ -121,8 +128,15 @@ std::vector<OptionSpec> swarm_options() {
        number("eta1", "pull towards a particle's own best point", 2.05, 0, 4),
        number("eta2", "pull towards its neighbours' best point", 2.05, 0, 4),
        number("max_vel", "largest step, as a share of the box", 0.1, 1e-6, 1),
-       count("variant", "how velocities change, as pagmo numbers the ways", 5, 1, 6),
-       count("neighb_type", "1 gbest, 2 lbest, 3 von Neumann, 4 adaptive random", 2, 1, 4),
+       count("variant",
+             "how velocities change: 1 to 4 with inertia (1 random factors for every coordinate "
+             "and pull, 2 the same ones for both pulls, 3 one for each pull, 4 a single one), 5 "
+             "constriction with factors as in 1, 6 fully informed",
+             5, 1, 6),
+       count("neighb_type",
+             "who is whose neighbour: 1 all (gbest), 2 a ring (lbest), 3 von Neumann's lattice, 4 "
+             "adaptive random",
+             2, 1, 4),
        count("neighb_param", "neighbours of a particle, for lbest and adaptive random", 4, 1,
              1000)});
 }
@@ -141,25 +155,23 @@ std::vector<OptionSpec> ant_options(std::vector<OptionSpec> others) {
 
 std::vector<OptimizerRow> make_swarm_rows() {
   return {
-      make_row({.algorithm = "pso"}, "Particle swarm, particles one after another (pagmo)",
+      make_row({.algorithm = "pso"}, "Particle swarm, particles one after another",
                "Poli, Kennedy and Blackwell 2007, Particle swarm optimization: an overview",
                swarm_options()),
-      make_row({.algorithm = "pso_gen", .batch = true},
-               "Particle swarm, a generation at a time (pagmo)",
+      make_row({.algorithm = "pso_gen", .batch = true}, "Particle swarm, a generation at a time",
                "Poli, Kennedy and Blackwell 2007, Particle swarm optimization: an overview",
                swarm_options()),
       make_row({.algorithm = "gwo", .paced = true},
-               "Grey wolves: all close in on the best three, the slower the budget allows (pagmo)",
+               "Grey wolves: all close in on the best three, at the pace of the budget",
                "Mirjalili, Mirjalili and Lewis 2014, Grey wolf optimizer", population(24, 4)),
       make_row(
-          {.algorithm = "bee_colony"},
-          "Artificial bee colony: abandons what does not improve (pagmo)",
+          {.algorithm = "bee_colony"}, "Artificial bee colony: abandons what does not improve",
           "Karaboga and Basturk 2007, A powerful and efficient algorithm for numerical "
           "function optimization: artificial bee colony (ABC) algorithm",
           population(20, 2,
                      {count("limit", "failures after which a source is abandoned", 20, 1, 1e6)})),
       make_row({.algorithm = "gaco", .batch = true, .constraints = true},
-               "Extended ant colony: samples about an archive, oracle penalty (pagmo)",
+               "Extended ant colony: samples about an archive, oracle penalty",
                "Schlueter, Egea and Banga 2009, Extended ant colony optimization for non-convex "
                "mixed integer nonlinear programming",
                ant_options({number("oracle", "objective that the penalty takes as within reach", 0,
@@ -178,21 +190,19 @@ std::vector<OptionSpec> strategy_options(std::int64_t size) {
 
 std::vector<OptimizerRow> make_evolution_rows() {
   return {
-      make_row({.algorithm = "cmaes"},
-               "Covariance matrix adaptation, points outside moved to the bounds (pagmo)",
+      make_row({.algorithm = "cmaes"}, "CMA-ES; points outside the box are moved to its bounds",
                "Hansen 2006, The CMA evolution strategy: a comparing review", strategy_options(12)),
       make_row({.algorithm = "xnes"},
-               "Natural evolution strategy, points outside moved to the bounds (pagmo)",
+               "xNES, an evolution strategy; points outside are moved to the bounds",
                "Glasmachers, Schaul, Sun, Wierstra and Schmidhuber 2010, Exponential natural "
                "evolution strategies",
                strategy_options(12)),
-      make_row({.algorithm = "sea"},
-               "(N+1) evolution: mutates the best, replaces the worst (pagmo)",
+      make_row({.algorithm = "sea"}, "(N+1) evolution: mutates the best, replaces the worst",
                "Oliveto, He and Yao 2007, Time complexity of evolutionary algorithms for "
                "combinatorial optimization: a decade of results",
                population(5, 1)),
       make_row(
-          {.algorithm = "sga"}, "Simple genetic algorithm with a choice of operators (pagmo)",
+          {.algorithm = "sga"}, "Simple genetic algorithm with a choice of operators",
           "Holland 1975, Adaptation in natural and artificial systems",
           population(
               32, 2,
@@ -208,17 +218,19 @@ std::vector<OptimizerRow> make_evolution_rows() {
                       {"exponential", "binomial", "single", "sbx"}),
                choice("mutation", "how children change", {"polynomial", "gaussian", "uniform"}),
                choice("selection", "how parents are found", {"tournament", "truncated"})})),
-      make_row(
-          {.algorithm = "ihs", .constraints = true, .paced = true},
-          "Improved harmony search: steps shrink over the budget (pagmo)",
-          "Mahdavi, Fesanghary and Damangir 2007, An improved harmony search algorithm for "
-          "solving optimization problems",
-          population(20, 1,
-                     {number("phmcr", "probability to choose from memory", 0.85, 0, 1),
-                      number("ppar_min", "least probability to adjust the pitch", 0.35, 0, 1),
-                      number("ppar_max", "greatest probability to adjust the pitch", 0.99, 0, 1),
-                      number("bw_min", "last step, as a share of the box", 1e-5, 0, 1),
-                      number("bw_max", "first step, as a share of the box", 1, 0, 1)})),
+      make_row({.algorithm = "ihs", .constraints = true, .paced = true},
+               "Improved harmony search: steps shrink over the budget",
+               "Mahdavi, Fesanghary and Damangir 2007, An improved harmony search algorithm for "
+               "solving optimization problems",
+               population(
+                   20, 1,
+                   {number("phmcr", "probability of choosing a coordinate from memory", 0.85, 0, 1),
+                    number("ppar_min",
+                           "probability of moving what was chosen (pitch adjustment), at first",
+                           0.35, 0, 1),
+                    number("ppar_max", "the same, at last", 0.99, 0, 1),
+                    number("bw_min", "last step, as a share of the box", 1e-5, 0, 1),
+                    number("bw_max", "first step, as a share of the box", 1, 0, 1)})),
   };
 }
 
@@ -232,24 +244,25 @@ std::vector<OptimizerRow> make_point_rows() {
   std::vector<OptionSpec> hopping = compass_options(0.05, 0.005);
   hopping.push_back(number("perturb", "length of a hop, as a share of the box", 0.05, 1e-9, 1));
   return {
-      make_row({.algorithm = "simulated_annealing", .paced = true},
-               "Simulated annealing along the coordinates, cooling over the budget (pagmo)",
-               "Corana, Marchesi, Martini and Ridella 1987, Minimizing multimodal functions of "
-               "continuous variables with the simulated annealing algorithm",
-               {number("Ts", "first temperature, as a share of the objective at the start", 0.1,
-                       1e-12, 1e12),
-                number("Tf", "last temperature, as a share of the objective at the start", 1e-4,
-                       1e-12, 1e12),
-                count("n_range_adj", "adjustments of the steps at each temperature", 1, 1, 1000),
-                count("bin_size", "mutations of each coordinate between two of them", 10, 1, 1000),
-                number("start_range", "first step, as a share of the box", 0.1, 1e-6, 1)}),
+      make_row(
+          {.algorithm = "simulated_annealing", .paced = true},
+          "Simulated annealing along the coordinates, cooling over the budget",
+          "Corana, Marchesi, Martini and Ridella 1987, Minimizing multimodal functions of "
+          "continuous variables with the simulated annealing algorithm",
+          {number("Ts", "first temperature, as a share of the objective at the start", 0.1, 1e-12,
+                  1e12),
+           number("Tf", "last temperature, as a share of the objective at the start", 1e-4, 1e-12,
+                  1e12),
+           count("n_range_adj", "adjustments of the steps at each temperature", 1, 1, 1000),
+           count("bin_size", "mutations of each coordinate between two adjustments", 10, 1, 1000),
+           number("start_range", "first step, as a share of the box", 0.1, 1e-6, 1)}),
       make_row({.algorithm = "compass_search", .constraints = true, .ends = true},
-               "Compass search: along each axis in turn, halving the step (pagmo)",
+               "Compass search: along each axis in turn, halving the step",
                "Kolda, Lewis and Torczon 2003, Optimization by direct search: new perspectives on "
                "some classical and modern methods",
                compass_options(0.1, 1e-6), {.local = true}),
       make_row({.algorithm = "mbh", .constraints = true},
-               "Monotonic basin hopping: compass searches from about the best point (pagmo)",
+               "Monotonic basin hopping: compass searches from about the best point",
                "Wales and Doye 1997, Global optimization by basin-hopping and the lowest energy "
                "structures of Lennard-Jones clusters containing up to 110 atoms",
                std::move(hopping)),
@@ -260,17 +273,18 @@ std::vector<OptimizerRow> make_multi_objective_rows() {
   return {
       make_row(
           {.algorithm = "nsga2", .batch = true, .multi_objective = true},
-          "Genetic algorithm by non-dominated sorting and crowding (pagmo)",
+          "NSGA-II: genetic algorithm by non-dominated sorting and crowding",
           "Deb, Pratap, Agarwal and Meyarivan 2002, A fast and elitist multiobjective "
           "genetic algorithm: NSGA-II",
           population(32, 8,
                      {number("cr", "probability of crossover, below 1", 0.95, 0, 1),
                       number("eta_c", "distribution index of crossover, below 100", 10, 1, 100),
                       number("m", "probability of mutation", 0.1, 0, 1),
-                      number("eta_m", "distribution index of mutation, below 100", 10, 1, 100)})),
+                      number("eta_m", "distribution index of mutation, below 100", 10, 1, 100)},
+                     "individuals, a multiple of 4")),
       make_row(
           {.algorithm = "moead", .multi_objective = true},
-          "Many weighted problems at once, each helped by its neighbours (pagmo)",
+          "MOEA/D: many weighted problems at once, each helped by its neighbours",
           "Li and Zhang 2009, Multiobjective optimization problems with complicated Pareto sets, "
           "MOEA/D and NSGA-II",
           population(
@@ -289,12 +303,12 @@ std::vector<OptimizerRow> make_multi_objective_rows() {
                 .description = "realb and limit apply",
                 .fallback = true}})),
       make_row({.algorithm = "maco", .batch = true, .multi_objective = true},
-               "Ant colony ranked by hypervolume (MHACO; pagmo)",
+               "MHACO: ant colony whose solutions are ranked by hypervolume",
                "Acciarini, Izzo and Mooij 2020, MHACO: a multi-objective hypervolume-based ant "
                "colony optimizer for space trajectory optimization",
                ant_options({})),
       make_row({.algorithm = "nspso", .batch = true, .multi_objective = true},
-               "Particle swarm by non-dominated sorting (pagmo)",
+               "NSPSO: particle swarm led by the non-dominated particles",
                "Li 2003, A non-dominated sorting particle swarm optimizer for multiobjective "
                "optimization",
                population(32, 4,

@@ -424,6 +424,7 @@ OptimizerRow load_library_plugin(const std::filesystem::path& file, const std::s
             .make = [library](const Options& options) -> std::unique_ptr<Optimizer> {
               return std::make_unique<LibraryOptimizer>(library, options);
             },
+            .isolated = "with isolate=true",
             .input_hashes = {{file.filename().string(), library.hash}}};
   } catch (const Refusal& refusal) {
     throw Error(ErrorKind::bad_data, fmt::format("{}: {}", shown, refusal.what()));

@@ -245,6 +245,7 @@ OptimizerRow load_process_plugin(std::string_view command) {
     child.send(make_quit(), kFarewell_s);
     child.finish(kFarewell_s);
     row.options.insert(row.options.end(), watch_options().begin(), watch_options().end());
+    row.isolated = "always";
     row.input_hashes = hash_files(words);
     row.make = [=, name = row.name, capabilities = row.capabilities](
                    const Options& options) -> std::unique_ptr<Optimizer> {

@@ -49,7 +49,7 @@ double draw_coordinate(const DecisionVariable& variable, RandomStream& random) {
 std::vector<OptimizerRow> make_random_search_rows() {
   return {{
       .name = "random",
-      .summary = "Random search: independent points, uniform over the box",
+      .summary = "Random search: independent points, uniform on every variable's scale",
       .source = "Brooks 1958, A discussion of random methods for seeking maxima",
       .capabilities = {.bounds = true, .batch = true, .stochastic = true, .sampling = true},
       .options = {{.name = "batch",

@@ -168,8 +168,9 @@ TEST_F(Cli, ExplainsAProblem) {
   EXPECT_THAT(
       run({"list", "problems", "q1-complex"}).out,
       AllOf(HasSubstr("N m/(rad s)"), HasSubstr("task.speed_m_per_s"), HasSubstr("4500000")));
-  EXPECT_THAT(run({"list", "optimizers", "ga"}).out,
-              AllOf(HasSubstr("tournament_probability"), HasSubstr("0.7"), HasSubstr("Source: ")));
+  EXPECT_THAT(
+      run({"list", "optimizers", "ga"}).out,
+      AllOf(HasSubstr("tournament_probability"), HasSubstr("0.7"), HasSubstr("  Source  ")));
 }
 
 TEST_F(Cli, EvaluatesTheOracleCases) {
