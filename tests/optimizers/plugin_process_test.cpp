@@ -12,6 +12,7 @@
 #include "base/expect_error.hpp"
 #include "base/hash.hpp"
 #include "base/temporary_folder.hpp"
+#include "optimizers/command_words.hpp"
 #include "optimizers/line_process.hpp"
 #include "problems/analytic.hpp"
 #include "study/memory_evaluator.hpp"
