@@ -128,7 +128,7 @@ TEST_F(CliMisbehavingPlugins, WhoLiesAboutItsInterfaceIsRefusedBeforeAnythingRun
            {"size", "says that its struct armwright_plugin has 8 bytes"},
            {"crash", "cannot be used: while it was opened, it was killed by signal 11"}}) {
     const Outcome outcome =
-        optimize(library("unloadable"), {}, "run", {.variables = {{"ARMWRIGHT_TEST_PLUGIN", how}}});
+        optimize(library("unloadable"), {}, "run", {{{"ARMWRIGHT_TEST_PLUGIN", how}}, ""});
     EXPECT_EQ(outcome.exit_code, 4);
     EXPECT_THAT(outcome.err,
                 AllOf(HasSubstr("error: " + library("unloadable") + ": "), HasSubstr(message)));
