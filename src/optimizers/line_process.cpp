@@ -205,7 +205,7 @@ void LineProcess::send(const std::string& line, double silence_s) {
       return;
     }
     if (Clock::now() > deadline) {
-      throw LineProcessFailure(fmt::format("has not read its input for {:g} s", silence_s));
+      throw LineProcessSilence(fmt::format("has not read its input for {:g} s", silence_s));
     }
     check_memory();
     log_.take_available();
@@ -241,8 +241,10 @@ std::optional<std::string> LineProcess::receive(double silence_s,
       throw LineProcessFailure(kill());
     }
     if (Clock::now() > deadline) {
-      throw LineProcessFailure(at_end_ ? "closed its standard output"
-                                       : fmt::format("has been silent for {:g} s", silence_s));
+      if (at_end_) {
+        throw LineProcessFailure("closed its standard output");
+      }
+      throw LineProcessSilence(fmt::format("has been silent for {:g} s", silence_s));
     }
     if (at_end_) {
       poll(nullptr, 0, 10);  // it is about to end

@@ -24,6 +24,11 @@ class LineProcessFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// It kept us waiting for longer than it might.
+class LineProcessSilence : public LineProcessFailure {
+  using LineProcessFailure::LineProcessFailure;
+};
+
 class LineProcess {
  public:
   using Clock = std::chrono::steady_clock;

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "base/error.hpp"
@@ -33,10 +35,12 @@ std::vector<std::string> watch_option_names() {
   return names;
 }
 
-json ask_for_description(LineProcess& child, double silence_s) {
-  child.send(make_hello(), silence_s);
-  const auto line = child.receive(silence_s, [] { return false; });
-  return read_message(*line);
+// Nothing if it is given up before it has answered.
+std::optional<json> ask_for_description(LineProcess& child,
+                                        const std::function<bool()>& is_given_up) {
+  child.send(make_hello(), kDescriptionSilence_s);
+  const auto line = child.receive(kDescriptionSilence_s, is_given_up);
+  return line ? std::optional(read_message(*line)) : std::nullopt;
 }
 
 class ProcessPlugin : public Optimizer {
@@ -65,6 +69,8 @@ class ProcessPlugin : public Optimizer {
       Conversation(*this, evaluator, evaluations).run(seed);
     } catch (const ProtocolError& error) {
       fail(error.what(), evaluations);
+    } catch (const LineProcessSilence& error) {
+      fail(fmt::format("{} (option silence_s)", error.what()), evaluations);
     } catch (const LineProcessFailure& error) {
       fail(error.what(), evaluations);
     }
@@ -96,7 +102,11 @@ class ProcessPlugin : public Optimizer {
 
    private:
     void converse(std::uint64_t seed) {
-      if (ask_for_description(child_, plugin_.silence_s_) != plugin_.description_) {
+      const auto description = ask_for_description(child_, [&] { return evaluator_.stopped(); });
+      if (!description) {
+        return;
+      }
+      if (*description != plugin_.description_) {
         throw ProtocolError("describes itself differently from one start to the next");
       }
       child_.limit_memory(plugin_.options_.get_number("memory_mib"));
@@ -233,7 +243,7 @@ OptimizerRow load_process_plugin(std::string_view command) {
   OutputLog log;
   try {
     LineProcess child(words, log);
-    const json description = ask_for_description(child, kDescriptionSilence_s);
+    const json description = ask_for_description(child, [] { return false; }).value();
     OptimizerRow row = read_description(description);
     check_names(row);
     child.send(make_quit(), kFarewell_s);

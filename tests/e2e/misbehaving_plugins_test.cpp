@@ -80,11 +80,11 @@ TEST_F(CliMisbehavingPlugins, ALibraryCostsItsRunAlone) {
       {"throw", {}, "threw an exception (out of ideas) after 2 evaluations"},
       {"exit", {}, "ended its process with exit code 3 before it had finished"},
       {"segfault", {}, "was killed by signal 11 (Segmentation fault) after 2 evaluations"},
-      {"loop", {"silence_s=0.5"}, "was silent for more than 0.5 s (option silence_s)"},
+      {"loop", {"silence_s=2"}, "was silent for more than 2 s (option silence_s)"},
       {"allocate", {"memory_mib=64"}, "memory_mib"},
       {"nan", {}, "asked for a point (evaluation 3) with x_1 = nan, which is not a finite number"},
       {"outside", {}, "though it declares that it keeps to the bounds"},
-      {"count", {}, "after 2 evaluations"},
+      {"count", {"memory_mib=64"}, "after 2 evaluations"},
       {"fail", {}, "failed with code 7 (the matrix is singular) after 2 evaluations"},
   };
   const std::string plugin = library("misbehaving");
@@ -105,7 +105,7 @@ TEST_F(CliMisbehavingPlugins, AProgramCostsItsRunAlone) {
       {"throw", {}, "ended with exit code 1"},
       {"exit", {}, "ended with exit code 3"},
       {"crash", {}, "was killed by signal 11 (Segmentation fault)"},
-      {"loop", {"silence_s=1"}, "has been silent for 1 s"},
+      {"loop", {"silence_s=3"}, "has been silent for 3 s (option silence_s)"},
       {"memory", {"memory_mib=64"}, "64 MiB are allowed (option memory_mib)"},
       {"nan", {}, "JSON knows no NaN and no Infinity"},
       {"outside", {}, "declares the capability \"bounds\" and sent a point"},
@@ -164,9 +164,9 @@ TEST_F(CliMisbehavingPlugins, AComparisonGoesOnWithTheNext) {
 
 TEST_F(CliMisbehavingPlugins, AFailedRunGoesOnWithAnotherPatience) {
   const std::string plugin = library("misbehaving");
-  optimize(plugin, {"how=loop", "silence_s=0.3"}, "run");
-  const Outcome again = optimize(plugin, {"how=loop", "silence_s=0.6", "memory_mib=512"}, "run");
-  expect_failure(again, plugin, "run", "was silent for more than 0.6 s", 2);
+  optimize(plugin, {"how=loop", "silence_s=2"}, "run");
+  const Outcome again = optimize(plugin, {"how=loop", "silence_s=2.5", "memory_mib=512"}, "run");
+  expect_failure(again, plugin, "run", "was silent for more than 2.5 s", 2);
   EXPECT_THAT(again.err, HasSubstr("resuming: 2 evaluations"));
   const Outcome other = optimize(plugin, {"how=fail"}, "run");
   EXPECT_EQ(other.exit_code, 2);
@@ -175,8 +175,8 @@ TEST_F(CliMisbehavingPlugins, AFailedRunGoesOnWithAnotherPatience) {
 
 TEST_F(CliMisbehavingPlugins, WhoPrintsWithoutEndFillsNoDisk) {
   const std::vector<std::pair<std::string, std::vector<std::string>>> plugins = {
-      {library("misbehaving"), {"how=print", "silence_s=1"}},
-      {"exec:python3 " + script() + " print", {"silence_s=1"}}};
+      {library("misbehaving"), {"how=print", "silence_s=3"}},
+      {"exec:python3 " + script() + " print", {"silence_s=3"}}};
   int number = 0;
   for (const auto& [plugin, opt] : plugins) {
     const std::string out = "run" + std::to_string(++number);
