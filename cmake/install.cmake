@@ -9,6 +9,8 @@ list(REMOVE_ITEM ARMWRIGHT_PACKAGE_ROOMS cli)
 
 install(TARGETS armwright RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY configs/ DESTINATION ${CMAKE_INSTALL_DATADIR}/armwright/configs)
+# Examples to read and to build; the program looks for built plugins in lib/armwright/plugins.
+install(DIRECTORY plugins/ DESTINATION ${CMAKE_INSTALL_DATADIR}/armwright/plugins PATTERN "__pycache__" EXCLUDE)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} OPTIONAL)
 

@@ -138,6 +138,26 @@ void announce(const RunRequest& request) {
   write_message(fmt::format("folder {} ({})", request.folder.string(), known ? "found" : "new"));
 }
 
+// What to do about an optimizer that has failed.
+std::string describe_way_out(const OptimizeOptions& options, const RunRequest& request) {
+  std::vector<std::string> check = {
+      request.command_line.front(), "check-plugin",
+      options.optimizer.empty() ? request.plan.problem.optimizer : options.optimizer};
+  for (const std::string& assignment : options.opt) {
+    check.insert(check.end(), {"--opt", assignment});
+  }
+  auto anew = request.command_line;
+  anew.emplace_back("--new");
+  const auto log = request.folder / "optimizer.log";
+  return fmt::format(
+      "{} is marked as failed; what was evaluated is kept and judged.{}\nTo look for the fault:\n"
+      "{}\nThe same command tries again from there (silence_s, memory_mib and log may be others); "
+      "with a changed optimizer begin anew:\n{}",
+      request.folder.string(),
+      std::filesystem::exists(log) ? " What the optimizer printed: " + log.string() : "",
+      quote_command(check), quote_command(anew));
+}
+
 // Commands to try next, with the program named as the user named it.
 std::string describe_next(const OptimizeOptions& options, const std::string& program,
                           const std::filesystem::path& folder, const Style& style) {
@@ -177,6 +197,9 @@ int run_optimize(const OptimizeOptions& options, Session& session) {
                   objectives.size() == 1 ? objectives.front() : Quantity{"weighted sum", "1"});
   const auto result = execute_run(request, session.stop, bar);
   bar.clear();
+  if (result && !result->failure.empty()) {
+    write_message(describe_way_out(options, request));
+  }
   if (!result) {
     write_message(fmt::format("{}; nothing is lost. To go on:\n{}",
                               describe_stop(session.stop.reason()),

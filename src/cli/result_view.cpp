@@ -23,6 +23,7 @@ constexpr RunFile kRunFiles[] = {
     {"convergence.csv", "the best value over the evaluations"},
     {"results.sqlite", "every evaluation, as SQL tables"},
     {"journal", "every evaluation, as it was made: resuming reads it"},
+    {"optimizer.log", "what the optimizer printed"},
     {"manifest.json", "what was asked for, and what it was made with"},
 };
 

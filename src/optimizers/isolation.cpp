@@ -156,7 +156,7 @@ class Answerer {
 }  // namespace
 
 void minimize_isolated(const std::string& name, const std::function<void(Evaluator&)>& body,
-                       Evaluator& evaluator, const IsolationLimits& limits) {
+                       Evaluator& evaluator, const IsolationLimits& limits, OutputLog* log) {
   if (evaluator.stopped()) {
     return;
   }
@@ -165,7 +165,7 @@ void minimize_isolated(const std::string& name, const std::function<void(Evaluat
         RemoteEvaluator remote(parent, evaluator.problem());
         body(remote);
       },
-      limits);
+      limits, log);
   Answerer answerer(name, evaluator);
   const auto is_stopped = [&] { return evaluator.stopped(); };
   const auto next_question = [&]() -> std::optional<std::string> {

@@ -5,7 +5,6 @@
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
-#include <string.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -13,11 +12,13 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <fstream>
+#include <system_error>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
+#include "optimizers/process_watch.hpp"
 
 namespace armwright {
 namespace {
@@ -33,11 +34,8 @@ Clock::time_point after(double seconds) {
 
 // Resident memory in MiB; 0 for a process that is gone.
 double read_memory_mib(pid_t pid) {
-  std::ifstream statm(fmt::format("/proc/{}/statm", pid));
-  double pages = 0;
-  double resident_pages = 0;
-  statm >> pages >> resident_pages;
-  return resident_pages * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1048576;
+  const auto memory = measure_memory(std::to_string(pid));
+  return memory ? static_cast<double>(memory->resident_bytes) / 1048576 : 0;
 }
 
 void set_nonblocking(int fd) {
@@ -46,8 +44,7 @@ void set_nonblocking(int fd) {
 
 std::string describe_exit(int status) {
   if (WIFSIGNALED(status)) {
-    return fmt::format("was killed by signal {} ({})", WTERMSIG(status),
-                       strsignal(WTERMSIG(status)));
+    return describe_signal(WTERMSIG(status));
   }
   return fmt::format("ended with exit code {}", WEXITSTATUS(status));
 }
@@ -80,48 +77,8 @@ struct SpawnSettings {
 
 }  // namespace
 
-std::vector<std::string> split_command(std::string_view command) {
-  std::vector<std::string> words;
-  bool in_word = false;
-  char quote = 0;
-  for (std::size_t i = 0; i < command.size(); ++i) {
-    const char c = command[i];
-    const bool is_last = i + 1 == command.size();
-    if (quote == 0 && (c == ' ' || c == '\t' || c == '\n')) {
-      in_word = false;
-      continue;
-    }
-    if (!in_word) {
-      words.emplace_back();
-      in_word = true;
-    }
-    if (quote != 0 && c == quote) {
-      quote = 0;
-    } else if (quote == 0 && (c == '\'' || c == '"')) {
-      quote = c;
-    } else if (c == '\\' && quote == 0 && !is_last) {
-      words.back() += command[++i];
-    } else if (c == '\\' && quote == '"' && !is_last &&
-               std::string_view("\\\"$`").find(command[i + 1]) != std::string_view::npos) {
-      words.back() += command[++i];
-    } else {
-      words.back() += c;
-    }
-  }
-  if (quote != 0) {
-    throw Error(ErrorKind::usage, fmt::format("optimizer 'exec:{}': a quote ({}) is not closed",
-                                              sanitize(command), quote));
-  }
-  if (words.empty() || words.front().empty()) {
-    throw Error(ErrorKind::usage,
-                "optimizer 'exec:' names no program; write 'exec:PROGRAM ARGUMENTS', as in "
-                "'exec:python3 mine.py'");
-  }
-  return words;
-}
-
-LineProcess::LineProcess(const std::vector<std::string>& words, const std::string& log)
-    : next_memory_check_(Clock::now()) {
+LineProcess::LineProcess(const std::vector<std::string>& words, OutputLog& log)
+    : log_(log), next_memory_check_(Clock::now()) {
   // The child's input is a socket, not a pipe: send() can be told not to raise SIGPIPE.
   std::array<int, 2> to_child{};
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, to_child.data()) != 0) {
@@ -135,20 +92,13 @@ LineProcess::LineProcess(const std::vector<std::string>& words, const std::strin
   }
   output_.reset(from_child[0]);
   const FileDescriptor child_output(from_child[1]);
-  const FileDescriptor child_log(
-      log.empty() ? -1 : open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644));
-  if (!log.empty() && !child_log.is_open()) {
-    fail_io(log, "write", errno);
-  }
   set_nonblocking(input_.get());
   set_nonblocking(output_.get());
 
   SpawnSettings settings;
   posix_spawn_file_actions_adddup2(&settings.actions, child_input.get(), STDIN_FILENO);
   posix_spawn_file_actions_adddup2(&settings.actions, child_output.get(), STDOUT_FILENO);
-  if (child_log.is_open()) {
-    posix_spawn_file_actions_adddup2(&settings.actions, child_log.get(), STDERR_FILENO);
-  }
+  posix_spawn_file_actions_adddup2(&settings.actions, log_.child_end(), STDERR_FILENO);
   posix_spawn_file_actions_addclosefrom_np(&settings.actions, STDERR_FILENO + 1);
   std::vector<char*> arguments;
   std::ranges::transform(words, std::back_inserter(arguments),
@@ -156,17 +106,22 @@ LineProcess::LineProcess(const std::vector<std::string>& words, const std::strin
   arguments.push_back(nullptr);
   const int error = posix_spawnp(&pid_, words.front().c_str(), &settings.actions,
                                  &settings.attributes, arguments.data(), environ);
+  log_.close_child_end();
   if (error != 0) {
     pid_ = -1;
     throw Error(ErrorKind::usage,
                 fmt::format("cannot start '{}': {}; it must be a program on the PATH or the path "
                             "of one",
-                            sanitize(words.front()), strerror(error)));
+                            sanitize(words.front()), std::generic_category().message(error)));
   }
 }
 
 LineProcess::~LineProcess() {
-  kill();
+  try {
+    kill();
+  } catch (const std::exception&) {
+    // Dead it is; only its last words are lost.
+  }
 }
 
 void LineProcess::limit_memory(double mib) {
@@ -174,22 +129,13 @@ void LineProcess::limit_memory(double mib) {
   memory_mib_at_start_ = read_memory_mib(pid_);
 }
 
-bool LineProcess::has_ended() const {
-  siginfo_t info{};
-  return waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
-         info.si_pid == pid_;
-}
-
 std::string LineProcess::kill() {
   if (pid_ < 0) {
     return "ended";
   }
-  // Before it is reaped, so that the group's number cannot be anybody else's.
-  ::kill(-pid_, SIGKILL);
-  int status = 0;
-  while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
-  }
-  pid_ = -1;
+  kill_group(pid_);
+  const int status = reap(std::exchange(pid_, -1));
+  log_.take_available();
   return describe_exit(status);
 }
 
@@ -255,18 +201,19 @@ void LineProcess::send(const std::string& line, double silence_s) {
     if (errno == EPIPE || errno == ECONNRESET) {
       return;  // it does not listen: receive() finds out why
     }
-    if (has_ended()) {
+    if (has_ended(pid_)) {
       return;
     }
     if (Clock::now() > deadline) {
-      throw LineProcessFailure(fmt::format("has not read its input for {:g} s", silence_s));
+      throw LineProcessSilence(fmt::format("has not read its input for {:g} s", silence_s));
     }
     check_memory();
+    log_.take_available();
     // It may have to get rid of something before it listens.
     const bool has_room = !at_end_ && received_.size() <= kLongestLine;
-    std::array<pollfd, 2> waiting{pollfd{input_.get(), POLLOUT, 0},
-                                  pollfd{output_.get(), POLLIN, 0}};
-    poll(waiting.data(), has_room ? 2 : 1, static_cast<int>(kSlice.count()));
+    std::array<pollfd, 3> waiting{pollfd{input_.get(), POLLOUT, 0}, pollfd{log_.get(), POLLIN, 0},
+                                  pollfd{has_room ? output_.get() : -1, POLLIN, 0}};
+    poll(waiting.data(), waiting.size(), static_cast<int>(kSlice.count()));
     read_available();
   }
 }
@@ -279,11 +226,12 @@ std::optional<std::string> LineProcess::receive(double silence_s,
       return line;
     }
     check_memory();
+    log_.take_available();
     if (is_given_up()) {
       return std::nullopt;
     }
     // What it wrote before it ended is read first, whoever else holds its output open.
-    const bool ended = has_ended();
+    const bool ended = has_ended(pid_);
     const std::size_t before = received_.size();
     read_available();
     if (received_.size() > before) {
@@ -293,14 +241,17 @@ std::optional<std::string> LineProcess::receive(double silence_s,
       throw LineProcessFailure(kill());
     }
     if (Clock::now() > deadline) {
-      throw LineProcessFailure(at_end_ ? "closed its standard output"
-                                       : fmt::format("has been silent for {:g} s", silence_s));
+      if (at_end_) {
+        throw LineProcessFailure("closed its standard output");
+      }
+      throw LineProcessSilence(fmt::format("has been silent for {:g} s", silence_s));
     }
     if (at_end_) {
       poll(nullptr, 0, 10);  // it is about to end
     } else {
-      pollfd waiting{output_.get(), POLLIN, 0};
-      poll(&waiting, 1, static_cast<int>(kSlice.count()));
+      std::array<pollfd, 2> waiting{pollfd{output_.get(), POLLIN, 0},
+                                    pollfd{log_.get(), POLLIN, 0}};
+      poll(waiting.data(), waiting.size(), static_cast<int>(kSlice.count()));
     }
   }
 }
@@ -308,10 +259,11 @@ std::optional<std::string> LineProcess::receive(double silence_s,
 std::string LineProcess::finish(double patience_s) {
   input_.close();
   const auto deadline = after(patience_s);
-  while (!has_ended()) {
+  while (!has_ended(pid_)) {
     received_.clear();
     taken_ = searched_ = 0;
     read_available();  // so that it does not wait for us
+    log_.take_available();
     if (Clock::now() > deadline) {
       kill();
       return "";

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/file_descriptor.hpp"
+#include "optimizers/output_log.hpp"
 
 namespace armwright {
 
@@ -23,19 +24,20 @@ class LineProcessFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Words as a shell would split them: blanks, quotes of both kinds, backslashes. Nothing is
-// expanded. Error{usage} if a quote stays open or there is no word.
-std::vector<std::string> split_command(std::string_view command);
+// It kept us waiting for longer than it might.
+class LineProcessSilence : public LineProcessFailure {
+  using LineProcessFailure::LineProcessFailure;
+};
 
 class LineProcess {
  public:
   using Clock = std::chrono::steady_clock;
   static constexpr std::size_t kLongestLine = std::size_t{64} << 20;
 
-  // Looks words[0] up on the PATH. Standard error goes to the end of the file `log`, or where ours
-  // goes if it is empty. Error{usage} if there is no such program, Error{io} for a log that cannot
-  // be written.
-  LineProcess(const std::vector<std::string>& words, const std::string& log);
+  // Looks words[0] up on the PATH. Standard error goes to `log`, which must outlive this.
+  // Error{usage} if there is no such program; Error{io} from here and all that waits if the log
+  // cannot be written.
+  LineProcess(const std::vector<std::string>& words, OutputLog& log);
   ~LineProcess();  // kills
   LineProcess(const LineProcess&) = delete;
   LineProcess& operator=(const LineProcess&) = delete;
@@ -53,8 +55,7 @@ class LineProcess {
   std::string finish(double patience_s);
 
  private:
-  bool has_ended() const;  // without reaping it: its number stays its own
-  std::string kill();      // and reap; how it ended
+  std::string kill();  // and reap; how it ended
   void check_memory();
   void read_available();
   std::optional<std::string> take_line();
@@ -62,6 +63,7 @@ class LineProcess {
   pid_t pid_ = -1;
   FileDescriptor input_;   // we write here
   FileDescriptor output_;  // we read here
+  OutputPipe log_;         // and here
   bool at_end_ = false;
   std::string received_;
   std::size_t taken_ = 0;        // of received_

@@ -74,6 +74,7 @@ class Multistart : public Optimizer {
       idle_starts = restarted.has_evaluated() ? 0 : idle_starts + 1;
     }
   }
+  void log_to(const std::filesystem::path& file) override { inner_->log_to(file); }
 
  private:
   std::vector<double> draw_start(const SearchSpace& space, RandomStream& random) const {

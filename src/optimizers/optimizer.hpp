@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -12,6 +13,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -52,6 +54,7 @@ struct OptionSpec {
   double lower = 0;  // numbers: the closed range allowed
   double upper = 0;
   std::vector<std::string> choices = {};  // text: what is allowed; empty: anything
+  bool changes_result = true;             // false: a run may be resumed with another value
 };
 
 // Options that have been checked: every declared name has a value of the right type within its
@@ -77,7 +80,16 @@ std::string to_text(const OptionValue& value);
 // The optimizer itself is at fault: it crashed, hung, broke its own word. The run keeps what was
 // evaluated and is marked as failed; every other exception out of minimize() is the evaluator's.
 class OptimizerFailure : public std::runtime_error {
+ public:
   using std::runtime_error::runtime_error;
+  OptimizerFailure(const std::string& what, std::vector<std::string> printed)
+      : std::runtime_error(what), printed_(std::move(printed)) {}
+
+  // The last lines that its process printed, fit for a terminal.
+  const std::vector<std::string>& printed() const { return printed_; }
+
+ private:
+  std::vector<std::string> printed_;
 };
 
 class Optimizer {
@@ -86,6 +98,9 @@ class Optimizer {
   // Returns when evaluator.stopped() or when it has nothing more to try. Throws OptimizerFailure,
   // and whatever the evaluator throws.
   virtual void minimize(Evaluator& evaluator, std::uint64_t seed) = 0;
+  // For those that run in processes of their own: where what these print goes from now on. What is
+  // there already is removed. Error{io}.
+  virtual void log_to(const std::filesystem::path& /*file*/) {}
 };
 
 struct OptimizerRow {

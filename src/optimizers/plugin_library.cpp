@@ -1,11 +1,12 @@
 #include "optimizers/plugin_library.hpp"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
+#include <memory>
 #include <utility>
 
 #include "base/error.hpp"
@@ -13,255 +14,64 @@
 #include "base/hash.hpp"
 #include "base/text.hpp"
 #include "optimizers/child_process.hpp"
+#include "optimizers/output_log.hpp"
 #include "optimizers/packet.hpp"
 #include "optimizers/plugin_call.hpp"
+#include "optimizers/plugin_description.hpp"
+#include "optimizers/process_watch.hpp"
 
 namespace armwright {
 namespace {
 
 constexpr std::size_t kMaxLibraryBytes = std::size_t{1} << 30;
-constexpr std::size_t kMaxOptions = 1000;
-constexpr std::size_t kMaxChoices = 1000;
-constexpr double kMaxInteger = 9007199254740992;  // 2^53: doubles below it tell integers apart
-constexpr const char* kOwnOptions[] = {"isolate", "silence_s", "memory_mib"};
-
-// Why a library is no plugin.
-class Refusal : public std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
-// In the process that is to call it. The library stays open: what it has started may still run.
-const struct armwright_plugin& open_plugin(const std::filesystem::path& file) {
-  void* const library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (library == nullptr) {
-    throw Refusal(fmt::format("is no shared library that can be opened: {}", dlerror()));
-  }
-  void* const symbol = dlsym(library, ARMWRIGHT_PLUGIN_SYMBOL);
-  if (symbol == nullptr) {
-    throw Refusal(
-        fmt::format("exports no function '{0}'; a plugin defines ARMWRIGHT_PLUGIN_EXPORT const "
-                    "struct armwright_plugin* {0}(void), in C++ as extern \"C\" or by the macro "
-                    "ARMWRIGHT_PLUGIN of armwright/plugin.hpp",
-                    ARMWRIGHT_PLUGIN_SYMBOL));
-  }
-  const auto* const plugin = reinterpret_cast<decltype(&::armwright_plugin)>(symbol)();
-  if (plugin == nullptr) {
-    throw Refusal("describes nothing: armwright_plugin() returned NULL");
-  }
-  if (plugin->abi != ARMWRIGHT_PLUGIN_ABI) {
-    throw Refusal(
-        fmt::format("is built for version {} of the plugin interface, and this armwright has "
-                    "version {}; build it against this armwright's armwright/plugin.h",
-                    plugin->abi, ARMWRIGHT_PLUGIN_ABI));
-  }
-  if (plugin->struct_size < sizeof(struct armwright_plugin)) {
-    throw Refusal(
-        fmt::format("says that its struct armwright_plugin has {} bytes; it has {} or "
-                    "more",
-                    plugin->struct_size, sizeof(struct armwright_plugin)));
-  }
-  return *plugin;
-}
-
-std::string take_text(const char* text, const std::string& what) {
-  if (text == nullptr) {
-    throw Refusal(what + " is NULL");
-  }
-  const std::string taken = sanitize(text);
-  if (taken.size() > 1000) {
-    throw Refusal(what + " has more than 1000 bytes");
-  }
-  return taken;
-}
-
-std::string take_name(const char* text, const std::string& what, std::string_view extra) {
-  const std::string name = take_text(text, what);
-  const auto is_allowed = [extra](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || extra.find(c) != extra.npos;
-  };
-  if (name.empty() || !std::ranges::all_of(name, is_allowed)) {
-    throw Refusal(fmt::format("{} is '{}'; it must be of letters, digits and {}", what, name,
-                              extra == "_" ? "underscores, the letters small" : "-, _ and :"));
-  }
-  return name;
-}
-
-OptionSpec take_option(const armwright_option& raw, std::size_t number) {
-  OptionSpec option;
-  option.name = take_name(raw.name, fmt::format("the name of option {}", number), "_");
-  const std::string what = fmt::format("option '{}': ", option.name);
-  option.description = take_text(raw.description, what + "its description");
-  option.lower = raw.lower;
-  option.upper = raw.upper;
-  const bool is_number = raw.type == ARMWRIGHT_NUMBER || raw.type == ARMWRIGHT_INTEGER;
-  if (is_number && !(std::isfinite(raw.lower) && std::isfinite(raw.upper) &&
-                     raw.lower <= raw.fallback && raw.fallback <= raw.upper)) {
-    throw Refusal(
-        fmt::format("{}its default is {}, its range from {} to {}; the range must be "
-                    "finite and hold the default",
-                    what, raw.fallback, raw.lower, raw.upper));
-  }
-  switch (raw.type) {
-    case ARMWRIGHT_BOOL:
-      if (raw.fallback != 0 && raw.fallback != 1) {
-        throw Refusal(fmt::format("{}its default is {}; it must be 0 or 1", what, raw.fallback));
-      }
-      option.fallback = raw.fallback == 1;
-      break;
-    case ARMWRIGHT_INTEGER:
-      for (const double value : {raw.fallback, raw.lower, raw.upper}) {
-        if (value != std::floor(value) || std::abs(value) > kMaxInteger) {
-          throw Refusal(fmt::format("{}{} is no integer up to 2^53", what, value));
-        }
-      }
-      option.fallback = static_cast<std::int64_t>(raw.fallback);
-      break;
-    case ARMWRIGHT_NUMBER:
-      option.fallback = raw.fallback;
-      break;
-    case ARMWRIGHT_TEXT: {
-      const std::string fallback = take_text(raw.fallback_text, what + "its default");
-      for (std::size_t i = 0; raw.choices != nullptr && raw.choices[i] != nullptr; ++i) {
-        if (i == kMaxChoices) {
-          throw Refusal(what + "its choices do not end with NULL");
-        }
-        option.choices.push_back(take_text(raw.choices[i], what + "a choice"));
-      }
-      if (!option.choices.empty() && std::ranges::count(option.choices, fallback) == 0) {
-        throw Refusal(fmt::format("{}its default '{}' is not among its choices: {}", what, fallback,
-                                  join(option.choices, ", ")));
-      }
-      option.fallback = fallback;
-      break;
-    }
-    default:
-      throw Refusal(fmt::format("{}its type is {}; there are 0 to 3", what, raw.type));
-  }
-  return option;
-}
-
-struct Description {
-  std::string name;
-  std::string summary;
-  std::string source;
-  std::uint32_t capabilities = 0;
-  std::vector<OptionSpec> options;
-};
-
-Description take_description(const struct armwright_plugin& plugin) {
-  constexpr std::uint32_t kKnown = (ARMWRIGHT_PACED << 1) - 1;
-  Description taken;
-  taken.name = take_name(plugin.name, "its name", "_-:ABCDEFGHIJKLMNOPQRSTUVWXYZ");
-  taken.summary = take_text(plugin.summary, "its summary");
-  taken.source = take_text(plugin.source, "its source");
-  taken.capabilities = plugin.capabilities;
-  if ((plugin.capabilities & ~kKnown) != 0) {
-    throw Refusal(
-        fmt::format("declares capabilities that this armwright does not know (bits {:#x})",
-                    plugin.capabilities & ~kKnown));
-  }
-  if (plugin.minimize == nullptr) {
-    throw Refusal("has no function minimize: it is NULL");
-  }
-  if (plugin.option_count > kMaxOptions || (plugin.option_count > 0 && plugin.options == nullptr)) {
-    throw Refusal(fmt::format("says that it has {} options{}", plugin.option_count,
-                              plugin.options == nullptr ? ", and points to none" : ""));
-  }
-  for (std::size_t i = 0; i < plugin.option_count; ++i) {
-    OptionSpec option = take_option(plugin.options[i], i + 1);
-    const bool is_taken = std::ranges::count(taken.options, option.name, &OptionSpec::name) > 0 ||
-                          std::ranges::count(kOwnOptions, option.name) > 0;
-    if (is_taken) {
-      throw Refusal(fmt::format("declares option '{}', which there is already; every plugin has {}",
-                                option.name, fmt::join(kOwnOptions, ", ")));
-    }
-    taken.options.push_back(std::move(option));
-  }
-  return taken;
-}
-
-std::string pack(const Description& description) {
-  PacketWriter writer;
-  writer.put(true);
-  writer.put(description.summary);
-  writer.put(description.source);
-  writer.put(description.capabilities);
-  writer.put(std::uint64_t{description.options.size()});
-  for (const OptionSpec& option : description.options) {
-    writer.put(option.name);
-    writer.put(option.description);
-    writer.put(std::uint64_t{option.fallback.index()});
-    std::visit([&writer](const auto& value) { writer.put(value); }, option.fallback);
-    writer.put(option.lower);
-    writer.put(option.upper);
-    writer.put(std::uint64_t{option.choices.size()});
-    for (const std::string& choice : option.choices) {
-      writer.put(choice);
-    }
-  }
-  return writer.bytes();
-}
-
-OptionValue unpack_value(PacketReader& reader) {
-  switch (reader.get<std::uint64_t>()) {
-    case 0:
-      return reader.get<bool>();
-    case 1:
-      return reader.get<std::int64_t>();
-    case 2:
-      return reader.get<double>();
-    default:
-      return reader.get_text();
-  }
-}
-
-Description unpack(PacketReader& reader) {
-  Description description;
-  description.summary = reader.get_text();
-  description.source = reader.get_text();
-  description.capabilities = reader.get<std::uint32_t>();
-  for (auto left = reader.get<std::uint64_t>(); left > 0; --left) {
-    OptionSpec& option = description.options.emplace_back();
-    option.name = reader.get_text();
-    option.description = reader.get_text();
-    option.fallback = unpack_value(reader);
-    option.lower = reader.get<double>();
-    option.upper = reader.get<double>();
-    for (auto choices = reader.get<std::uint64_t>(); choices > 0; --choices) {
-      option.choices.push_back(reader.get_text());
-    }
-  }
-  return description;
+// The options that every library has beside its own.
+std::vector<OptionSpec> make_own_options() {
+  std::vector<OptionSpec> options = {
+      {.name = "isolate",
+       .description = "true: in a process of its own; false: in this one, faster, but neither "
+                      "watched nor logged, and a crash ends everything",
+       .fallback = true,
+       .changes_result = false}};
+  std::ranges::move(make_watch_options(), std::back_inserter(options));
+  return options;
 }
 
 // Opens the library in a child, which sends (true, description) or (false, why not).
-Description describe(const std::filesystem::path& file, const IsolationLimits& limits) {
+PluginDescription describe(const std::filesystem::path& file, const IsolationLimits& limits) {
+  std::vector<std::string> own_options;
+  for (const OptionSpec& option : make_own_options()) {
+    own_options.push_back(option.name);
+  }
   std::string message;
+  OutputLog log;
   try {
     ChildProcess child(
         [&](ParentLink& parent) {
+          PacketWriter writer;
           try {
-            parent.send(pack(take_description(open_plugin(file))));
-          } catch (const Refusal& refusal) {
-            PacketWriter writer;
+            const PluginDescription description = describe_plugin(open_plugin(file), own_options);
+            writer.put(true);
+            pack(description, writer);
+          } catch (const PluginRefusal& refusal) {
             writer.put(false);
             writer.put(std::string_view(refusal.what()));
-            parent.send(writer.bytes());
           }
+          parent.send(writer.bytes());
         },
-        limits);
+        limits, &log);
     if (child.receive([] { return false; }, message) != ChildProcess::Event::message) {
-      throw Refusal("said nothing");
+      throw PluginRefusal("said nothing");
     }
     PacketReader reader(message);
     if (!reader.get<bool>()) {
-      throw Refusal(sanitize(reader.get_text()));
+      throw PluginRefusal(sanitize(reader.get_text()));
     }
-    return unpack(reader);
+    return unpack_description(reader);
   } catch (const ChildFailure& failure) {
-    throw Refusal(fmt::format("cannot be used: while it was opened, it {}", failure.what()));
+    throw PluginRefusal(fmt::format("cannot be used: while it was opened, it {}{}", failure.what(),
+                                    describe_printed(log.last_lines())));
   } catch (const PacketError&) {
-    throw Refusal("cannot be used: while it was opened, it sent what makes no sense");
+    throw PluginRefusal("cannot be used: while it was opened, it sent what makes no sense");
   }
 }
 
@@ -332,6 +142,12 @@ class LibraryOptimizer : public Optimizer {
   LibraryOptimizer(Library library, const Options& options)
       : library_(std::move(library)), options_(options) {}
 
+  void log_to(const std::filesystem::path& file) override {
+    if (options_.get_text("log").empty()) {
+      log_ = std::make_unique<OutputLog>(file, OutputLog::Begin::anew);
+    }
+  }
+
   void minimize(Evaluator& evaluator, std::uint64_t seed) override {
     if (calc_file_hash(library_.file) != library_.hash) {
       fail("is no longer the file that it was when this program started");
@@ -340,20 +156,25 @@ class LibraryOptimizer : public Optimizer {
     const auto call = [&](Evaluator& any) {
       try {
         call_plugin(open_plugin(library_.file), options_, any, seed);
-      } catch (const Refusal& refusal) {
+      } catch (const PluginRefusal& refusal) {
         throw ChildFailure(refusal.what());
       }
     };
-    if (options_.get_bool("isolate")) {
-      minimize_isolated(library_.name, call, strict,
-                        {.silence_s = options_.get_number("silence_s"),
-                         .memory_mib = options_.get_number("memory_mib")});
+    if (!options_.get_bool("isolate")) {
+      try {
+        call(strict);
+      } catch (const ChildFailure& failure) {
+        fail(failure.what());
+      }
       return;
     }
     try {
-      call(strict);
-    } catch (const ChildFailure& failure) {
-      fail(failure.what());
+      minimize_isolated(library_.name, call, strict,
+                        {.silence_s = options_.get_number("silence_s"),
+                         .memory_mib = options_.get_number("memory_mib")},
+                        log_.get());
+    } catch (const OptimizerFailure& failure) {
+      throw OptimizerFailure(failure.what(), log_->last_lines());
     }
   }
 
@@ -364,6 +185,8 @@ class LibraryOptimizer : public Optimizer {
 
   Library library_;
   Options options_;
+  std::unique_ptr<OutputLog> log_ =
+      std::make_unique<OutputLog>(options_.get_text("log"), OutputLog::Begin::behind_what_is_there);
 };
 
 Capabilities make_capabilities(std::uint32_t bits) {
@@ -377,24 +200,6 @@ Capabilities make_capabilities(std::uint32_t bits) {
           .generations = has(ARMWRIGHT_GENERATIONS),
           .local = has(ARMWRIGHT_LOCAL),
           .paced = has(ARMWRIGHT_PACED)};
-}
-
-void add_own_options(std::vector<OptionSpec>& options) {
-  const IsolationLimits limits;
-  options.push_back({.name = "isolate",
-                     .description = "true: in a process of its own; false: in this one, faster, "
-                                    "but a crash ends everything",
-                     .fallback = true});
-  options.push_back({.name = "silence_s",
-                     .description = "isolated: longest time in seconds between two questions",
-                     .fallback = limits.silence_s,
-                     .lower = 0.1,
-                     .upper = 1e6});
-  options.push_back({.name = "memory_mib",
-                     .description = "isolated: memory in MiB that it may allocate",
-                     .fallback = limits.memory_mib,
-                     .lower = 16,
-                     .upper = 1e6});
 }
 
 }  // namespace
@@ -413,9 +218,9 @@ OptimizerRow load_library_plugin(const std::filesystem::path& file, const std::s
                   .file = std::filesystem::absolute(file),
                   .hash = calc_file_hash(file)};
   try {
-    Description description = describe(library.file, loading);
+    PluginDescription description = describe(library.file, loading);
     library.keeps_bounds = (description.capabilities & ARMWRIGHT_BOUNDS) != 0;
-    add_own_options(description.options);
+    std::ranges::move(make_own_options(), std::back_inserter(description.options));
     return {.name = library.name,
             .summary = description.summary,
             .source = description.source,
@@ -426,7 +231,7 @@ OptimizerRow load_library_plugin(const std::filesystem::path& file, const std::s
             },
             .isolated = "with isolate=true",
             .input_hashes = {{file.filename().string(), library.hash}}};
-  } catch (const Refusal& refusal) {
+  } catch (const PluginRefusal& refusal) {
     throw Error(ErrorKind::bad_data, fmt::format("{}: {}", shown, refusal.what()));
   }
 }

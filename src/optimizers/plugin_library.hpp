@@ -13,8 +13,8 @@
 
 namespace armwright {
 
-// A row named `name` (default: the path as given), whose options are the plugin's and isolate,
-// silence_s, memory_mib. Error{bad_data}, with the reason and what to do, if the file is no plugin
+// A row named `name` (default: the path as given), whose options are the plugin's, isolate and
+// make_watch_options(). Error{bad_data}, with the reason and what to do, if the file is no plugin
 // that can be used.
 OptimizerRow load_library_plugin(const std::filesystem::path& file, const std::string& name = "",
                                  const IsolationLimits& loading = {.silence_s = 20});

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <cmath>
 #include <utility>
 
 #include "base/text.hpp"
+#include "optimizers/message_fields.hpp"
 #include "optimizers/plugin_process.hpp"
 
 namespace armwright {
@@ -16,153 +15,12 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kQuoted = 80;  // characters of a bad line that are shown
-
-constexpr std::array<std::pair<const char*, bool Capabilities::*>, 11> kCapabilities{{
-    {"bounds", &Capabilities::bounds},
-    {"constraints", &Capabilities::constraints},
-    {"multi_objective", &Capabilities::multi_objective},
-    {"batch", &Capabilities::batch},
-    {"noisy", &Capabilities::noisy},
-    {"residuals", &Capabilities::residuals},
-    {"stochastic", &Capabilities::stochastic},
-    {"generations", &Capabilities::generations},
-    {"local", &Capabilities::local},
-    {"sampling", &Capabilities::sampling},
-    {"paced", &Capabilities::paced},
-}};
-
-std::string quote(const std::string& text) {
-  return fmt::format("'{}'{}", sanitize(text.substr(0, kQuoted)),
-                     text.size() > kQuoted ? "..." : "");
-}
-
-std::string quote(const json& value) {
-  return quote(value.dump(-1, ' ', false, json::error_handler_t::replace));
-}
-
 // With the type first, as people read it.
 using OrderedJson = nlohmann::ordered_json;
 
 // Names of problems come from files: never refuse to send one.
 std::string to_line(const OrderedJson& message) {
   return message.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
-}
-
-const json& require(const json& object, const char* key, const std::string& where) {
-  const auto found = object.find(key);
-  if (found == object.end()) {
-    throw ProtocolError(fmt::format("sent {} without \"{}\"", where, key));
-  }
-  return *found;
-}
-
-// One line for a person, of a field that may be missing.
-std::string read_text(const json& object, const char* key, const std::string& where) {
-  const json& value = require(object, key, where);
-  if (!value.is_string()) {
-    throw ProtocolError(
-        fmt::format("sent {} whose \"{}\" is {}, not a text", where, key, quote(value)));
-  }
-  return sanitize(value.get<std::string>());
-}
-
-bool is_name(const std::string& text) {
-  constexpr std::size_t kLongestName = 64;
-  return !text.empty() && text.size() <= kLongestName &&
-         std::isalnum(static_cast<unsigned char>(text[0])) != 0 &&
-         std::ranges::all_of(text, [](char c) {
-           return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' ||
-                  c == '.';
-         });
-}
-
-std::string read_name(const json& object, const std::string& where) {
-  const std::string name = read_text(object, "name", where);
-  if (!is_name(name)) {
-    throw ProtocolError(
-        fmt::format("sent {} named {}; a name begins with a letter or digit, goes on with letters, "
-                    "digits, '_', '-' and '.', and has at most 64 of them",
-                    where, quote(name)));
-  }
-  return name;
-}
-
-// Whether or not a number is written with a point, it is one.
-double read_number(const json& object, const char* key, const std::string& where) {
-  const json& value = require(object, key, where);
-  if (!value.is_number() || !std::isfinite(value.get<double>())) {
-    throw ProtocolError(
-        fmt::format("sent {} whose \"{}\" is {}, not a number", where, key, quote(value)));
-  }
-  return value.get<double>();
-}
-
-OptionSpec read_option(const json& object) {
-  if (!object.is_object()) {
-    throw ProtocolError(
-        fmt::format("sent a description with an option that is no object: {}", quote(object)));
-  }
-  OptionSpec spec;
-  spec.name = read_name(object, "an option");
-  const std::string where = fmt::format("option '{}'", spec.name);
-  spec.description = object.contains("description") ? read_text(object, "description", where) : "";
-  const json& fallback = require(object, "default", where);
-  if (fallback.is_boolean()) {
-    spec.fallback = fallback.get<bool>();
-  } else if (fallback.is_string()) {
-    spec.fallback = fallback.get<std::string>();
-    for (const json& choice : object.value("choices", json::array())) {
-      if (!choice.is_string()) {
-        throw ProtocolError(
-            fmt::format("sent {} with a choice that is no text: {}", where, quote(choice)));
-      }
-      spec.choices.push_back(choice.get<std::string>());
-    }
-    if (!spec.choices.empty() &&
-        std::ranges::count(spec.choices, std::get<std::string>(spec.fallback)) == 0) {
-      throw ProtocolError(
-          fmt::format("sent {} whose default {} is none of its choices", where, quote(fallback)));
-    }
-  } else if (fallback.is_number()) {
-    const double value = read_number(object, "default", where);
-    spec.lower = read_number(object, "lower", where);
-    spec.upper = read_number(object, "upper", where);
-    if (!(spec.lower <= value && value <= spec.upper)) {
-      throw ProtocolError(fmt::format("sent {} whose default {} lies outside its range {} to {}",
-                                      where, quote(fallback), format_exact(spec.lower),
-                                      format_exact(spec.upper)));
-    }
-    if (fallback.is_number_integer()) {
-      spec.fallback = fallback.get<std::int64_t>();
-    } else {
-      spec.fallback = value;
-    }
-  } else {
-    throw ProtocolError(
-        fmt::format("sent {} whose default is {}; it must be a truth value, a number or a text",
-                    where, quote(fallback)));
-  }
-  return spec;
-}
-
-Capabilities read_capabilities(const json& list) {
-  Capabilities capabilities;
-  std::vector<std::string> names;
-  for (const auto& [name, member] : kCapabilities) {
-    names.emplace_back(name);
-    capabilities.*member = false;
-  }
-  for (const json& one : list) {
-    const std::string text = one.is_string() ? one.get<std::string>() : quote(one);
-    const auto found = std::ranges::find(names, text);
-    if (found == names.end()) {
-      throw ProtocolError("described itself with an " +
-                          describe_unknown("capability", text, names));
-    }
-    capabilities.*(kCapabilities[static_cast<std::size_t>(found - names.begin())].second) = true;
-  }
-  return capabilities;
 }
 
 std::vector<double> read_point(const json& list, const std::string& what,
@@ -288,51 +146,6 @@ json read_message(const std::string& line) {
 
 std::string read_type(const json& message) {
   return message.at("type").get<std::string>();
-}
-
-OptimizerRow read_description(const json& message) {
-  const std::string where = "a description";
-  if (read_type(message) != "description") {
-    throw ProtocolError(
-        fmt::format("answered \"hello\" with {}, not with a description", quote(message)));
-  }
-  const json& protocol = require(message, "protocol", where);
-  if (!protocol.is_number_integer() || protocol.get<std::int64_t>() != kPluginProtocol) {
-    throw ProtocolError(
-        fmt::format("speaks version {} of the plugin protocol; this armwright speaks version {}",
-                    quote(protocol), kPluginProtocol));
-  }
-  OptimizerRow row;
-  row.name = read_name(message, where);
-  row.summary = read_text(message, "summary", where);
-  row.source = message.contains("source") ? read_text(message, "source", where) : "";
-  for (const char* list : {"capabilities", "options"}) {
-    if (!require(message, list, where).is_array()) {
-      throw ProtocolError(fmt::format("sent a description whose \"{}\" is no list", list));
-    }
-  }
-  row.capabilities = read_capabilities(message["capabilities"]);
-  for (const json& option : message["options"]) {
-    OptionSpec spec = read_option(option);
-    if (std::ranges::count(row.options, spec.name, &OptionSpec::name) > 0) {
-      throw ProtocolError(fmt::format("described option '{}' twice", spec.name));
-    }
-    row.options.push_back(std::move(spec));
-  }
-  if (const auto needs = message.find("requirements"); needs != message.end()) {
-    const auto read_least = [&](const char* key) {
-      return needs->contains(key)
-                 ? static_cast<int>(std::clamp(read_number(*needs, key, "requirements"), 1.0, 1e6))
-                 : 1;
-    };
-    if (!needs->is_object()) {
-      throw ProtocolError("sent a description whose \"requirements\" are no object");
-    }
-    row.requirements.objectives = read_least("objectives");
-    row.requirements.variables = read_least("variables");
-    row.requirements.residuals = needs->contains("residuals") && (*needs)["residuals"] == true;
-  }
-  return row;
 }
 
 AskMessage read_ask(const json& message, const ProblemDescription& problem, bool inside) {

@@ -5,15 +5,20 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/hash.hpp"
 #include "base/text.hpp"
+#include "optimizers/command_words.hpp"
 #include "optimizers/line_process.hpp"
+#include "optimizers/output_log.hpp"
 #include "optimizers/plugin_messages.hpp"
+#include "optimizers/process_watch.hpp"
 
 namespace armwright {
 namespace {
@@ -24,35 +29,18 @@ constexpr double kDescriptionSilence_s = 60;  // interpreters and their librarie
 constexpr double kFarewell_s = 1;             // from the last word to the end of the process
 constexpr int kMostNotes = 100000;            // recommendations without a question between them
 
-// Ours, beside the plugin's: where the process is watched.
-const std::vector<OptionSpec>& watch_options() {
-  static const std::vector<OptionSpec> specs = {
-      {.name = "silence_s",
-       .description = "the longest the process may take between two questions, in seconds",
-       .fallback = 60.0,
-       .lower = 0.1,
-       .upper = 1e6},
-      {.name = "memory_mib",
-       .description = "memory the process may take beyond what it began with, in MiB",
-       .fallback = 4096.0,
-       .lower = 1,
-       .upper = 1e9},
-      {.name = "log",
-       .description = "file that its standard error is added to; empty: our standard error",
-       .fallback = std::string()}};
-  return specs;
-}
-
 std::vector<std::string> watch_option_names() {
   std::vector<std::string> names;
-  std::ranges::transform(watch_options(), std::back_inserter(names), &OptionSpec::name);
+  std::ranges::transform(make_watch_options(), std::back_inserter(names), &OptionSpec::name);
   return names;
 }
 
-json ask_for_description(LineProcess& child, double silence_s) {
-  child.send(make_hello(), silence_s);
-  const auto line = child.receive(silence_s, [] { return false; });
-  return read_message(*line);
+// Nothing if it is given up before it has answered.
+std::optional<json> ask_for_description(LineProcess& child,
+                                        const std::function<bool()>& is_given_up) {
+  child.send(make_hello(), kDescriptionSilence_s);
+  const auto line = child.receive(kDescriptionSilence_s, is_given_up);
+  return line ? std::optional(read_message(*line)) : std::nullopt;
 }
 
 class ProcessPlugin : public Optimizer {
@@ -66,6 +54,12 @@ class ProcessPlugin : public Optimizer {
         options_(std::move(options)),
         silence_s_(options_.get_number("silence_s")) {}
 
+  void log_to(const std::filesystem::path& file) override {
+    if (options_.get_text("log").empty()) {
+      log_ = std::make_unique<OutputLog>(file, OutputLog::Begin::anew);
+    }
+  }
+
   void minimize(Evaluator& evaluator, std::uint64_t seed) override {
     if (evaluator.stopped()) {
       return;
@@ -75,6 +69,8 @@ class ProcessPlugin : public Optimizer {
       Conversation(*this, evaluator, evaluations).run(seed);
     } catch (const ProtocolError& error) {
       fail(error.what(), evaluations);
+    } catch (const LineProcessSilence& error) {
+      fail(fmt::format("{} (option silence_s)", error.what()), evaluations);
     } catch (const LineProcessFailure& error) {
       fail(error.what(), evaluations);
     }
@@ -88,7 +84,7 @@ class ProcessPlugin : public Optimizer {
         : plugin_(plugin),
           evaluator_(evaluator),
           evaluations_(evaluations),
-          child_(plugin.words_, plugin.options_.get_text("log")) {}
+          child_(plugin.words_, *plugin.log_) {}
 
     void run(std::uint64_t seed) {
       try {
@@ -106,7 +102,11 @@ class ProcessPlugin : public Optimizer {
 
    private:
     void converse(std::uint64_t seed) {
-      if (ask_for_description(child_, plugin_.silence_s_) != plugin_.description_) {
+      const auto description = ask_for_description(child_, [&] { return evaluator_.stopped(); });
+      if (!description) {
+        return;
+      }
+      if (*description != plugin_.description_) {
         throw ProtocolError("describes itself differently from one start to the next");
       }
       child_.limit_memory(plugin_.options_.get_number("memory_mib"));
@@ -191,9 +191,10 @@ class ProcessPlugin : public Optimizer {
   };
 
   [[noreturn]] void fail(const std::string& what, std::int64_t evaluations) const {
-    throw OptimizerFailure(fmt::format("optimizer '{}' (exec:{}), after {} evaluation{}: it {}",
-                                       name_, sanitize(join(words_, " ")), evaluations,
-                                       evaluations == 1 ? "" : "s", what));
+    throw OptimizerFailure(
+        fmt::format("optimizer '{}' (exec:{}), after {} evaluation{}: it {}", name_,
+                    sanitize(join(words_, " ")), evaluations, evaluations == 1 ? "" : "s", what),
+        log_->last_lines());
   }
 
   std::string name_;
@@ -202,6 +203,8 @@ class ProcessPlugin : public Optimizer {
   Capabilities capabilities_;
   Options options_;
   double silence_s_;
+  std::unique_ptr<OutputLog> log_ =
+      std::make_unique<OutputLog>(options_.get_text("log"), OutputLog::Begin::behind_what_is_there);
 };
 
 // The script, the program: what decides how it behaves.
@@ -224,7 +227,7 @@ void check_names(const OptimizerRow& row) {
                     "results could be mistaken for one another",
                     row.name));
   }
-  for (const OptionSpec& spec : watch_options()) {
+  for (const OptionSpec& spec : make_watch_options()) {
     if (std::ranges::count(row.options, spec.name, &OptionSpec::name) > 0) {
       throw ProtocolError(
           fmt::format("describes an option '{}'; every process has one of that name: {}", spec.name,
@@ -237,14 +240,15 @@ void check_names(const OptimizerRow& row) {
 
 OptimizerRow load_process_plugin(std::string_view command) {
   const std::vector<std::string> words = split_command(command);
+  OutputLog log;
   try {
-    LineProcess child(words, "");
-    const json description = ask_for_description(child, kDescriptionSilence_s);
+    LineProcess child(words, log);
+    const json description = ask_for_description(child, [] { return false; }).value();
     OptimizerRow row = read_description(description);
     check_names(row);
     child.send(make_quit(), kFarewell_s);
     child.finish(kFarewell_s);
-    row.options.insert(row.options.end(), watch_options().begin(), watch_options().end());
+    std::ranges::move(make_watch_options(), std::back_inserter(row.options));
     row.isolated = "always";
     row.input_hashes = hash_files(words);
     row.make = [=, name = row.name, capabilities = row.capabilities](
@@ -253,13 +257,12 @@ OptimizerRow load_process_plugin(std::string_view command) {
     };
     return row;
   } catch (const ProtocolError& error) {
-    throw Error(ErrorKind::bad_data,
-                fmt::format("optimizer 'exec:{}': it {}", sanitize(command), error.what()));
+    throw Error(ErrorKind::bad_data, fmt::format("optimizer 'exec:{}': it {}{}", sanitize(command),
+                                                 error.what(), describe_printed(log.last_lines())));
   } catch (const LineProcessFailure& error) {
     throw Error(ErrorKind::bad_data,
-                fmt::format("optimizer 'exec:{}': it {} before it described itself; what it says "
-                            "about it stands above",
-                            sanitize(command), error.what()));
+                fmt::format("optimizer 'exec:{}': it {} before it described itself{}",
+                            sanitize(command), error.what(), describe_printed(log.last_lines())));
   }
 }
 

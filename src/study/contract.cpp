@@ -14,6 +14,7 @@
 #include <mutex>
 #include <optional>
 
+#include "base/text.hpp"
 #include "study/contract_problems.hpp"
 #include "study/memory_evaluator.hpp"
 #include "study/run.hpp"
@@ -430,6 +431,11 @@ ContractFinding run_contract_check(const ContractCheck& check, const OptimizerRo
                                    const Options& options) {
   try {
     return check.run(row, options);
+  } catch (const OptimizerFailure& failure) {
+    const auto& printed = failure.printed();
+    return make_broken(
+        failure.what() +
+        (printed.empty() ? "" : "; the last that it printed: " + join(printed, " | ")));
   } catch (const std::exception& error) {
     return make_broken(error.what());
   }

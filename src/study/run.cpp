@@ -4,6 +4,7 @@
 
 #include "base/error.hpp"
 #include "base/file.hpp"
+#include "optimizers/output_log.hpp"
 #include "study/judge.hpp"
 #include "study/run_folder.hpp"
 #include "study/store.hpp"
@@ -74,11 +75,12 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   Judge judge(plan, runner, journal, std::move(recorded.judgements), ended, observer);
   RunEvaluator evaluator(plan, runner, stop, journal, std::move(recorded), observer);
   RunResult result = make_result(plan);
+  optimizer->log_to(folder.log());
   try {
     optimizer->minimize(evaluator, plan.seed);
   } catch (const OptimizerFailure& failure) {
     result.failure = failure.what();
-    observer.on_message("error: " + result.failure);
+    observer.on_message("error: " + result.failure + describe_printed(failure.printed()));
   }
   if (stop.requested()) {
     journal.close();

@@ -1,7 +1,7 @@
 // A run's folder: manifest.json (what was asked for, and by what it was made), journal (the truth),
-// lock, and what was derived from the journal: result.json, winner.toml, convergence.csv,
-// results.sqlite, winner-trajectory.csv. Nothing is ever overwritten by another run, and two
-// processes never write one folder.
+// lock, optimizer.log (what a plugin printed), and what was derived from the journal: result.json,
+// winner.toml, convergence.csv, results.sqlite, winner-trajectory.csv. Nothing is ever overwritten
+// by another run, and two processes never write one folder.
 #pragma once
 
 #include <filesystem>
@@ -23,6 +23,8 @@ class RunFolder {
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path journal() const { return path_ / "journal"; }
+  // What an optimizer's own processes print.
+  std::filesystem::path log() const { return path_ / "optimizer.log"; }
   std::filesystem::path result() const { return path_ / "result.json"; }
   // Why a resumed run may not replay: recorded and present version, compiler or CPU differ. Empty
   // if they do not.

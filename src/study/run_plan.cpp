@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <nlohmann/json.hpp>
 
@@ -49,7 +50,10 @@ void check_plan(const RunPlan& plan) {
 std::string to_json(const RunPlan& plan) {
   json options = json::object();
   for (const auto& [name, value] : plan.options.values()) {
-    options[name] = to_json_value(value);
+    const auto spec = std::ranges::find(plan.optimizer.options, name, &OptionSpec::name);
+    if (spec == plan.optimizer.options.end() || spec->changes_result) {
+      options[name] = to_json_value(value);
+    }
   }
   const json run = {
       {"optimizer", plan.optimizer.name},

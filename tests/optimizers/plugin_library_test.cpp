@@ -84,7 +84,7 @@ TEST_F(PluginLibrary, ADescriptionBecomesARow) {
     names.push_back(option.name);
   }
   EXPECT_EQ(names, (std::vector<std::string>{"step", "sweeps", "shuffle", "start", "isolate",
-                                             "silence_s", "memory_mib"}));
+                                             "silence_s", "memory_mib", "log"}));
   EXPECT_EQ(row.options[0].upper, 1);
   EXPECT_EQ(row.options[1].fallback, OptionValue(std::int64_t{1000}));
   EXPECT_EQ(row.options[3].choices, (std::vector<std::string>{"start", "middle"}));
@@ -152,7 +152,7 @@ TEST_F(PluginLibrary, ImplausibleDescriptionsAreRefused) {
       {"capabilities", "bits 0x80000000"},
       {"no_options", "says that it has 2 options, and points to none"},
       {"twice", "option 'rate', which there is already"},
-      {"ours", "every plugin has isolate, silence_s, memory_mib"},
+      {"ours", "every plugin has isolate, silence_s, memory_mib, log"},
       {"range", "option 'rate': its default is 2, its range from 0 to 1"},
       {"type", "option 'rate': its type is 12"},
       {"integer", "option 'rate': 0.5 is no integer"},

@@ -12,6 +12,7 @@
 #include "base/expect_error.hpp"
 #include "base/hash.hpp"
 #include "base/temporary_folder.hpp"
+#include "optimizers/command_words.hpp"
 #include "optimizers/line_process.hpp"
 #include "problems/analytic.hpp"
 #include "study/memory_evaluator.hpp"
@@ -202,13 +203,13 @@ TEST_F(PluginProcess, AStopWhileItThinksIsNoticed) {
 }
 
 TEST_F(PluginProcess, EveryFaultIsNamed) {
-  EXPECT_THAT(failure_of("silent", {"silence_s=0.5"}), HasSubstr("silent for 0.5 s"));
+  EXPECT_THAT(failure_of("silent", {"silence_s=2"}), HasSubstr("silent for 2 s"));
   EXPECT_THAT(failure_of("exit"),
               AllOf(HasSubstr("after 1 evaluation: "), HasSubstr("ended with exit code 3")));
   EXPECT_THAT(failure_of("no-done"), HasSubstr("ended with exit code 0"));
   EXPECT_THAT(failure_of("exit-after-done"), HasSubstr("ended with exit code 3 after it was done"));
   EXPECT_THAT(failure_of("crash"), HasSubstr("killed by signal 11 (Segmentation fault)"));
-  EXPECT_THAT(failure_of("closed", {"silence_s=0.5"}), HasSubstr("closed its standard output"));
+  EXPECT_THAT(failure_of("closed", {"silence_s=2"}), HasSubstr("closed its standard output"));
   EXPECT_THAT(failure_of("memory", {"memory_mib=100"}),
               AllOf(HasSubstr("MiB of memory"), HasSubstr("100 MiB are allowed")));
   EXPECT_THAT(failure_of("two-faces"), HasSubstr("describes itself differently"));
@@ -233,7 +234,7 @@ TEST_F(PluginProcess, EveryBadMessageIsNamed) {
 }
 
 TEST_F(PluginProcess, WhoAsksWithoutReadingAnswersIsGivenUp) {
-  EXPECT_THAT(failure_of("deaf", {"silence_s=1"}), HasSubstr("has not read its input for 1 s"));
+  EXPECT_THAT(failure_of("deaf", {"silence_s=2"}), HasSubstr("has not read its input for 2 s"));
 }
 
 TEST_F(PluginProcess, WhatItStartedIsKilledWithIt) {

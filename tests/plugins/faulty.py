@@ -47,6 +47,7 @@ elif fault == "no-range":
 elif fault == "greeting":
     say("Hello, world")
 elif fault == "early-exit":
+    sys.stderr.write("no licence\n")
     sys.exit(4)
 elif fault == "two-faces":
     description["summary"] = str(os.getpid())
@@ -61,6 +62,14 @@ if fault == "silent":
     time.sleep(600)
 elif fault == "exit":
     sys.exit(3)
+elif fault == "throw":
+    raise RuntimeError("out of ideas")
+elif fault == "loop":
+    while True:
+        pass
+elif fault == "print":
+    while True:
+        sys.stderr.write("I have nothing to say and I say it. ")
 elif fault == "exit-after-done":
     send({"type": "done"})
     sys.exit(3)

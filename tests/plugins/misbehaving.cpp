@@ -1,7 +1,11 @@
 // Does what its option `how` says, after two evaluations; straight on the C border. It promises to
 // keep to the bounds.
+#include <sys/types.h>
+#include <unistd.h>
+
 #include <csignal>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
@@ -23,6 +27,7 @@ int minimize(const armwright_problem* problem, const armwright_evaluator* evalua
   evaluate(x);
   evaluate(x);
   const std::string how = options->get_text(options->context, "how");
+  std::puts("two points are evaluated");
   if (how == "throw") {
     throw std::runtime_error("out of ideas");
   }
@@ -54,6 +59,24 @@ int minimize(const armwright_problem* problem, const armwright_evaluator* evalua
   if (how == "outside") {
     x[0] = 2 * problem->upper[0] + 1;
     evaluate(x);
+  }
+  if (how == "count") {
+    evaluator->evaluate(evaluator->context, x.data(), SIZE_MAX / 64, nullptr, nullptr, nullptr);
+  }
+  if (how == "print") {
+    while (true) {
+      std::fputs("I have nothing to say and I say it. ", stderr);
+    }
+  }
+  if (how == "children") {
+    const pid_t child = fork();
+    if (child == 0) {
+      while (true) {
+        pause();
+      }
+    }
+    std::printf("child %d\n", static_cast<int>(child));
+    std::abort();
   }
   if (how == "undeclared") {
     options->get_number(options->context, "hwo");

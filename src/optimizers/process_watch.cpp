@@ -1,0 +1,69 @@
+#include "optimizers/process_watch.hpp"
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <fstream>
+
+#include "optimizers/isolation.hpp"
+
+namespace armwright {
+
+std::optional<ProcessMemory> measure_memory(const std::string& process) {
+  std::ifstream file("/proc/" + process + "/statm");
+  std::int64_t size = 0, resident = 0, shared = 0, text = 0, library = 0, data = 0;
+  if (!(file >> size >> resident >> shared >> text >> library >> data)) {
+    return std::nullopt;
+  }
+  const std::int64_t page = sysconf(_SC_PAGESIZE);
+  return ProcessMemory{.resident_bytes = resident * page, .data_bytes = data * page};
+}
+
+bool has_ended(pid_t child) {
+  siginfo_t info{};
+  return waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+         info.si_pid == child;
+}
+
+void kill_group(pid_t child) {
+  kill(-child, SIGKILL);
+  kill(child, SIGKILL);  // one that has not yet come to lead its group
+}
+
+int reap(pid_t child) {
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return status;
+}
+
+std::string describe_signal(int signal) {
+  return fmt::format("was killed by signal {} ({})", signal, strsignal(signal));
+}
+
+std::vector<OptionSpec> make_watch_options() {
+  const IsolationLimits limits;
+  return {{.name = "silence_s",
+           .description = "longest time in seconds between two questions",
+           .fallback = limits.silence_s,
+           .lower = 0.1,
+           .upper = 1e6,
+           .changes_result = false},
+          {.name = "memory_mib",
+           .description = "memory in MiB that its process may take beyond what it began with",
+           .fallback = limits.memory_mib,
+           .lower = 1,
+           .upper = 1e9,
+           .changes_result = false},
+          {.name = "log",
+           .description = "file that what it prints is added to; empty: optimizer.log in the run's "
+                          "folder",
+           .fallback = std::string(),
+           .changes_result = false}};
+}
+
+}  // namespace armwright

@@ -1,0 +1,47 @@
+# Run by ctest: what a user's own optimizers need, from an installed package alone. The templates' own test.sh builds each, has
+# check-plugin look at it and runs it; the examples in C and C++ likewise. Every step that fails ends the test with its name and what it printed.
+function(step name)
+  execute_process(COMMAND ${ARGN} WORKING_DIRECTORY ${WORK_DIR} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(NOT status STREQUAL "0")
+    message(FATAL_ERROR "${name}: failed (${status})\n${output}")
+  endif()
+  message(STATUS "${name}: done")
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+file(REMOVE_RECURSE ${WORK_DIR})
+file(MAKE_DIRECTORY ${WORK_DIR})
+set(prefix ${WORK_DIR}/installed)
+set(program ${prefix}/bin/armwright)
+# As a newcomer has it: compiler, generator and places in the environment, no flag on any command line.
+set(env ${CMAKE_COMMAND} -E env CMAKE_PREFIX_PATH=${prefix} ARMWRIGHT=${program} CMAKE_GENERATOR=${GENERATOR} CC=${C_COMPILER}
+        CXX=${CXX_COMPILER} "CFLAGS=${C_FLAGS} -Wall -Wextra -Wpedantic -Werror" "CXXFLAGS=${CXX_FLAGS} -Wall -Wextra -Wpedantic -Werror")
+step("install" ${CMAKE_COMMAND} --install ${BUILD_DIR} --config ${CONFIG} --prefix ${prefix})
+
+foreach(language IN ITEMS c++ c)
+  string(REPLACE "c++" "cpp" name mine_${language})
+  step("begin ${name}" ${program} new-plugin --language ${language} ${name})
+  step("test.sh of ${name}" ${env} ./${name}/test.sh)
+  if(NOT output MATCHES "It keeps every promise")
+    message(FATAL_ERROR "test.sh of ${name} printed\n${output}")
+  endif()
+endforeach()
+# A process is started for each of check-plugin's hundreds of runs, which would take most of this test's time: it is run only.
+step("begin mine_python" ${program} new-plugin --language python mine_python)
+step("run mine_python" ${program} optimize rosenbrock --optimizer "exec:python3 mine_python/mine_python.py" --budget 300)
+
+foreach(example IN ITEMS evolution_strategy hooke_jeeves)
+  step("configure ${example}" ${env} ${CMAKE_COMMAND} -S ${prefix}/share/armwright/plugins/${example} -B ${example})
+  step("build ${example}" ${CMAKE_COMMAND} --build ${example})
+  step("check ${example}" ${program} check-plugin ./${example}/lib${example}.so)
+  step("run ${example}" ${program} optimize rosenbrock --optimizer ./${example}/lib${example}.so --budget 300)
+endforeach()
+
+# The system's Python, for which Debian has SciPy; another may come first on the PATH.
+execute_process(COMMAND /usr/bin/python3 -c "import scipy.optimize" RESULT_VARIABLE status OUTPUT_QUIET ERROR_QUIET)
+if(status STREQUAL "0")
+  step("run scipy_de" ${program} optimize rosenbrock --budget 300
+       --optimizer "exec:/usr/bin/python3 ${prefix}/share/armwright/plugins/scipy_de/scipy_de.py")
+else()
+  message(STATUS "scipy_de is left out: /usr/bin/python3 has no SciPy")
+endif()
