@@ -5,15 +5,14 @@
 #include <sys/wait.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 
+#include "base/temporary_folder.hpp"
 #include "study/contract_problems.hpp"
 #include "study/memory_evaluator.hpp"
 #include "study/run.hpp"
@@ -252,29 +251,6 @@ class StoppingObserver : public RunObserver {
   std::uint64_t after_;
 };
 
-// A folder that goes away with its owner.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "armwright-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) {
-      throw std::filesystem::filesystem_error("cannot make a temporary folder", name,
-                                              std::error_code(errno, std::generic_category()));
-    }
-    path_ = name;
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 ContractFinding check_resume(const OptimizerRow& row, const Options& options) {
   const ContractProblem problem = make_contract_problems(row).at(0);
   RunPlan plan;
@@ -286,11 +262,11 @@ ContractFinding check_resume(const OptimizerRow& row, const Options& options) {
   plan.optimizer = row;
   plan.options = options;
   plan.budget = 150;
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const auto run = [&](const char* name, std::uint64_t stop_after) {
     StopSignal stop;
     StoppingObserver observer(stop, stop_after);
-    return execute_run({plan, folder.path() / name, 2, {}}, stop, observer);
+    return execute_run({plan, folder / name, 2, {}}, stop, observer);
   };
   const auto whole = run("whole", UINT64_MAX);
   if (!whole) {
