@@ -343,8 +343,8 @@ std::vector<double> TrackingProblem::calc_residuals(const ArmDesign& design,
   }
   if (with_torque) {
     for (const JointDrive& joint : design.joints) {
-      const double torque = std::max(-joint.limits.min_n_m, joint.limits.max_n_m);
-      residuals.push_back(std::sqrt(objective.torque_weight * torque / objective.torque_scale_n_m));
+      residuals.push_back(std::sqrt(objective.torque_weight * calc_largest_torque_n_m(joint) /
+                                    objective.torque_scale_n_m));
     }
   }
   return residuals;
