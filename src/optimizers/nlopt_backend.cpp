@@ -2,14 +2,6 @@
 
 #include "optimizers/optimizer.hpp"
 
-namespace armwright {
-
-std::uint32_t fold_seed(std::uint64_t seed) {
-  return static_cast<std::uint32_t>(seed ^ (seed >> 32));
-}
-
-}  // namespace armwright
-
 #ifdef ARMWRIGHT_WITH_NLOPT
 
 #include <fmt/format.h>
@@ -17,7 +9,6 @@ std::uint32_t fold_seed(std::uint64_t seed) {
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <climits>
 #include <cmath>
 #include <exception>
@@ -25,7 +16,9 @@ std::uint32_t fold_seed(std::uint64_t seed) {
 #include <type_traits>
 #include <utility>
 
+#include "base/bits.hpp"
 #include "optimizers/scalar_function.hpp"
+#include "optimizers/seed.hpp"
 
 namespace armwright {
 namespace {
@@ -46,12 +39,6 @@ constexpr std::int64_t kMostPacedEvaluations = 1'000'000;
 
 // A restart steps at least this share of the box: below, coordinates stop changing.
 constexpr double kSmallestRestartScale = 1e-9;
-
-bool is_same(std::span<const double> a, std::span<const double> b) {
-  return std::ranges::equal(a, b, [](double left, double right) {
-    return std::bit_cast<std::uint64_t>(left) == std::bit_cast<std::uint64_t>(right);
-  });
-}
 
 bool is_finite(std::span<const double> values) {
   return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
@@ -116,7 +103,7 @@ class Questions {
 
   Answer* find(std::span<const double> coordinates) {
     const auto found = std::ranges::find_if(
-        answers_, [&](const Answer& answer) { return is_same(answer.coordinates, coordinates); });
+        answers_, [&](const Answer& answer) { return same_bits(answer.coordinates, coordinates); });
     return found == answers_.end() ? nullptr : &*found;
   }
 

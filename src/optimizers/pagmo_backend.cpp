@@ -16,6 +16,7 @@
 #include "base/random.hpp"
 #include "optimizers/pagmo_algorithms.hpp"
 #include "optimizers/scalar_function.hpp"
+#include "optimizers/seed.hpp"
 
 namespace armwright {
 namespace {
@@ -142,10 +143,6 @@ std::string get_reason(const std::exception& error) {
   return reason;
 }
 
-unsigned fold(std::uint64_t seed) {
-  return static_cast<unsigned>(seed ^ (seed >> 32));
-}
-
 class PagmoOptimizer : public Optimizer {
  public:
   PagmoOptimizer(PagmoMethod method, Options options)
@@ -208,7 +205,7 @@ class PagmoOptimizer : public Optimizer {
   void evolve(Bridge& bridge, Evaluator& evaluator, std::uint64_t seed) const {
     const pagmo::problem problem{BridgedProblem{&bridge}};
     pagmo::population population = make_population(bridge, problem, seed);
-    PagmoPlan plan{.seed = fold(seed)};
+    PagmoPlan plan{.seed = fold_seed(seed)};
     if (const double start_value = std::abs(population.get_f().front().front()); start_value > 0) {
       plan.scale = start_value;
     }
@@ -269,7 +266,7 @@ class PagmoOptimizer : public Optimizer {
       }
       individuals.push_back(std::move(individual));
     }
-    return evaluate_population(bridge, problem, individuals, fold(seed));
+    return evaluate_population(bridge, problem, individuals, fold_seed(seed));
   }
 
   pagmo::population evaluate_population(Bridge& bridge, const pagmo::problem& problem,

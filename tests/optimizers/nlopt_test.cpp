@@ -9,7 +9,6 @@
 #include <set>
 
 #include "base/error.hpp"
-#include "optimizers/nlopt_backend.hpp"
 #include "problems/analytic.hpp"
 #include "study/memory_evaluator.hpp"
 
@@ -317,12 +316,6 @@ TEST(Nlopt, OneVariableIsEnoughWhereTheRowSaysSo) {
     }
     EXPECT_LT(run(row.name, *line, {.budget = 100}, 1, options).best().value(), 0.1) << row.name;
   }
-}
-
-TEST(Nlopt, SeedsFoldWithoutLosingSmallOnes) {
-  EXPECT_EQ(fold_seed(0), 0u);
-  EXPECT_EQ(fold_seed(4294967295), 4294967295u);
-  EXPECT_EQ(fold_seed((5ULL << 32) + 3), 5u ^ 3u);
 }
 
 }  // namespace

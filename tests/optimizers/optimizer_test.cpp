@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "base/error.hpp"
+#include "optimizers/seed.hpp"
 
 namespace armwright {
 namespace {
@@ -113,6 +114,12 @@ TEST(OptionText, ReadsBackAsTheSameValue) {
   EXPECT_EQ(to_text(std::int64_t{-3}), "-3");
   EXPECT_EQ(to_text(0.1), "0.1");
   EXPECT_EQ(to_text(std::string("full")), "full");
+}
+
+TEST(Seed, FoldsWithoutLosingSmallOnes) {
+  EXPECT_EQ(fold_seed(0), 0u);
+  EXPECT_EQ(fold_seed(4294967295), 4294967295u);
+  EXPECT_EQ(fold_seed((5ULL << 32) + 3), 5u ^ 3u);
 }
 
 TEST(OptimizerTable, HoldsTheBuiltInOptimizers) {
