@@ -253,18 +253,16 @@ class PagmoOptimizer : public Optimizer {
     const SearchSpace& space = bridge.space();
     std::vector<std::vector<double>> individuals = {space.start()};
     RandomStream random("optimizer/pagmo:" + method_.algorithm, seed);
+    std::vector<double> lower = space.lower();
+    std::vector<double> upper = space.upper();
+    const double spread = has_option("spread") ? options_.get_number("spread") : 1;
+    for (std::size_t i = 0; i < space.dimension() && spread != 1; ++i) {
+      const double reach = 0.5 * spread * (space.upper()[i] - space.lower()[i]);
+      lower[i] = std::max(lower[i], space.start()[i] - reach);
+      upper[i] = std::min(upper[i], space.start()[i] + reach);
+    }
     while (std::ssize(individuals) < population_size()) {
-      std::vector<double> individual = space.start();
-      const double spread = options_.get_number("spread");
-      for (std::size_t i = 0; i < individual.size(); ++i) {
-        const double reach = 0.5 * spread * (space.upper()[i] - space.lower()[i]);
-        const double lower =
-            spread == 1 ? space.lower()[i] : std::max(space.lower()[i], individual[i] - reach);
-        const double upper =
-            spread == 1 ? space.upper()[i] : std::min(space.upper()[i], individual[i] + reach);
-        individual[i] = std::clamp(random.uniform(lower, upper), lower, upper);
-      }
-      individuals.push_back(std::move(individual));
+      individuals.push_back(space.draw_between(lower, upper, random));
     }
     return evaluate_population(bridge, problem, individuals, fold_seed(seed));
   }
