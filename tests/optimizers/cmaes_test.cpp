@@ -10,6 +10,7 @@
 #include "optimizers/cma_distribution.hpp"
 #include "optimizers/cma_termination.hpp"
 #include "optimizers/cma_uncertainty.hpp"
+#include "optimizers/test_problems.hpp"
 #include "problems/analytic.hpp"
 #include "study/memory_evaluator.hpp"
 
