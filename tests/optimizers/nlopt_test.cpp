@@ -82,6 +82,48 @@ TEST_P(NloptRow, AStopEndsIt) {
   }
 }
 
+// The first evaluation fails, whatever it is.
+class FailingStart : public Evaluator {
+ public:
+  FailingStart(MemoryEvaluator& evaluator, double penalty)
+      : evaluator_(evaluator), penalty_(penalty) {}
+
+  const ProblemDescription& problem() const override { return evaluator_.problem(); }
+  std::vector<Score> evaluate(std::span<const std::vector<double>> points) override {
+    const bool is_start = evaluator_.trace().empty();
+    std::vector<Score> scores = evaluator_.evaluate(points);
+    if (is_start && !scores.empty()) {
+      scores[0] = Score{};
+      scores[0].objectives = {penalty_};
+      scores[0].status = EvaluationStatus::diverged;
+    }
+    return scores;
+  }
+  bool stopped() const override { return evaluator_.stopped(); }
+  std::int64_t remaining() const override { return evaluator_.remaining(); }
+  void begin_generation() override { evaluator_.begin_generation(); }
+  void recommend(std::span<const double> x) override { evaluator_.recommend(x); }
+
+ private:
+  MemoryEvaluator& evaluator_;
+  double penalty_;
+};
+
+// NLopt gives up, or never returns, where the start is NaN; it is told the penalty.
+TEST_P(NloptRow, AFailedStartIsSurvived) {
+  for (const char* name : {"sphere", "constrained"}) {
+    const auto problem = make_analytic(name, 4);
+    MemoryEvaluator evaluator(*problem, {.budget = 500});
+    FailingStart failing(evaluator, problem->penalty_objectives().front());
+    row().make(Options::parse(row().name, row().options, {}))->minimize(failing, 1);
+    double best = INFINITY;
+    for (const MemoryEvaluator::Entry& entry : std::span(evaluator.trace()).subspan(1)) {
+      best = std::min(best, entry.score.objectives[0]);
+    }
+    EXPECT_LT(best, 0.5 * calc_start_value(*problem)) << name;
+  }
+}
+
 TEST_P(NloptRow, WithoutPopulationOrStepTheLibraryChooses) {
   const auto problem = make_analytic("sphere", 4);
   for (const OptionSpec& option : row().options) {
@@ -139,6 +181,24 @@ INSTANTIATE_TEST_SUITE_P(Rows, NloptConstraints,
                          testing::Values("nlopt:cobyla", "nlopt:isres", "nlopt:ags", "nlopt:auglag",
                                          "nlopt:auglag_eq", "nlopt:orig_direct"),
                          [](const auto& parameters) { return parameters.param.substr(6); });
+
+// They are told beforehand how many evaluations there will be, for their storage, and must not plan
+// by it.
+TEST(Nlopt, OrigDirectBeginsTheSameWhateverTheBudget) {
+  for (const char* name : {"nlopt:orig_direct", "nlopt:orig_direct_l"}) {
+    for (const char* function : {"rosenbrock", "constrained"}) {
+      const auto problem = make_analytic(function, 4);
+      const Points all = asked_points(run_optimizer(name, *problem, {.budget = 5000}));
+      ASSERT_EQ(all.size(), 5000u);
+      for (const std::int64_t budget : {1, 2, 10, 200, 2000}) {
+        const Points some = asked_points(run_optimizer(name, *problem, {.budget = budget}));
+        EXPECT_EQ(std::ssize(some), budget);
+        EXPECT_TRUE(std::ranges::equal(some, std::span(all).first(some.size())))
+            << name << " on " << function << " with " << budget;
+      }
+    }
+  }
+}
 
 TEST(Nlopt, CobylaFindsTheConstrainedMinimum) {
   const auto problem = make_analytic("constrained");
