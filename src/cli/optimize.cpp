@@ -192,9 +192,8 @@ int run_optimize(const OptimizeOptions& options, Session& session) {
   }
 
   catch_signals(session.stop);
-  const auto& objectives = request.plan.problem.problem->description().objectives;
   ProgressBar bar(options.quiet,
-                  objectives.size() == 1 ? objectives.front() : Quantity{"weighted sum", "1"});
+                  get_scalar_quantity(request.plan.problem.problem->description().objectives));
   const auto result = execute_run(request, session.stop, bar);
   bar.clear();
   if (result && !result->failure.empty()) {

@@ -78,15 +78,13 @@ class Multistart : public Optimizer {
 
  private:
   std::vector<double> draw_start(const SearchSpace& space, RandomStream& random) const {
-    std::vector<double> coordinates;
+    std::vector<double> lower = space.start();
+    std::vector<double> upper = space.start();
     for (std::size_t i = 0; i < space.dimension(); ++i) {
-      const double centre = space.start()[i];
-      const double lower = centre - spread_ * (centre - space.lower()[i]);
-      const double upper = centre + spread_ * (space.upper()[i] - centre);
-      coordinates.push_back(
-          std::clamp(random.uniform(lower, upper), space.lower()[i], space.upper()[i]));
+      lower[i] -= spread_ * (lower[i] - space.lower()[i]);
+      upper[i] += spread_ * (space.upper()[i] - upper[i]);
     }
-    return space.to_point(coordinates);
+    return space.to_point(space.draw_between(lower, upper, random));
   }
 
   std::unique_ptr<Optimizer> inner_;

@@ -38,7 +38,7 @@ struct Algorithm {
   // stops it.
   bool isolated = false;
   std::int64_t restarts = 20;  // of those that end by themselves
-  bool needs_pace = false;     // reserves room for its evaluations beforehand
+  bool needs_pace = false;     // is told the number of evaluations, for its storage only
   int smallest_dimension = 1;
   int largest_dimension = 0;  // 0: any
   std::string unfit = {};     // why it is not offered, although the library has it
@@ -80,7 +80,9 @@ const std::vector<Algorithm>& algorithms() {
        .smallest_dimension = 2},
       {.name = "newuoa_bound",
        .nlopt_name = "LN_NEWUOA_BOUND",
-       .summary = "NEWUOA with bounds in its steps; slow by itself: bobyqa supersedes it",
+       // NLopt finds every step within the bounds by a run of MMA: 2.2 ms of its own time an
+       // evaluation at 12 variables, 4.2 ms at 24, where newuoa and bobyqa take 0.01 and 0.05 ms.
+       .summary = "NEWUOA with bounds in its steps, at 100 times the time of bobyqa, its successor",
        .source = "Powell 2006, The NEWUOA software for unconstrained optimization without "
                  "derivatives; Johnson 2007, The NLopt nonlinear-optimization package (bounds)",
        .isolated = true,

@@ -2,43 +2,22 @@
 
 #include "optimizers/optimizer.hpp"
 
-namespace armwright {
-
-std::uint32_t fold_seed(std::uint64_t seed) {
-  return static_cast<std::uint32_t>(seed ^ (seed >> 32));
-}
-
-}  // namespace armwright
-
 #ifdef ARMWRIGHT_WITH_NLOPT
 
 #include <fmt/format.h>
 #include <nlopt.h>
 
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <climits>
-#include <cmath>
-#include <exception>
 #include <memory>
 #include <type_traits>
-#include <utility>
 
-#include "optimizers/scalar_function.hpp"
+#include "optimizers/nlopt_questions.hpp"
+#include "optimizers/seed.hpp"
 
 namespace armwright {
 namespace {
 
 using NloptHandle = std::unique_ptr<std::remove_pointer_t<nlopt_opt>, decltype(&nlopt_destroy)>;
-
-// A failed evaluation violates every constraint by this: more than any design does, and still a
-// number that linear models of the constraints survive.
-constexpr double kFailedViolation = 1e9;
-
-// COBYLA and PRAXIS can ask for NaN for ever once they have begun; after so many in a row the start
-// is given up.
-constexpr std::int64_t kLongestNanSequence = 1000;
 
 // ORIG_DIRECT reserves room for all its evaluations at once, for 100 000 if it is not told how many
 // there will be. So many fit into some hundreds of MiB.
@@ -47,158 +26,13 @@ constexpr std::int64_t kMostPacedEvaluations = 1'000'000;
 // A restart steps at least this share of the box: below, coordinates stop changing.
 constexpr double kSmallestRestartScale = 1e-9;
 
-bool is_same(std::span<const double> a, std::span<const double> b) {
-  return std::ranges::equal(a, b, [](double left, double right) {
-    return std::bit_cast<std::uint64_t>(left) == std::bit_cast<std::uint64_t>(right);
-  });
-}
-
-bool is_finite(std::span<const double> values) {
-  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
-}
-
-// What NLopt asks about, point by point: objective and constraints in separate calls.
-class Questions {
- public:
-  Questions(const NloptSettings& settings, Evaluator& evaluator)
-      : settings_(settings), function_(evaluator) {}
-
-  const SearchSpace& space() const { return function_.space(); }
-  // Whom to tell when there is no more to come.
-  void begin(nlopt_opt solver) {
-    solver_ = solver;
-    calls_ = 0;
-    nan_sequence_ = 0;
-  }
-  bool has_ended() const { return has_stopped_ || exception_ != nullptr; }
-  void rethrow() const {
-    if (exception_) {
-      std::rethrow_exception(exception_);
-    }
-  }
-
-  bool has_best() const { return !best_.coordinates.empty(); }
-  const std::vector<double>& best_coordinates() const { return best_.coordinates; }
-  std::pair<double, double> best_rank() const { return {best_.violation, best_.objective}; }
-
-  // Every question for the objective is an evaluation, as it is to the bare library, unless the
-  // constraints at that point came first.
-  double ask_objective(std::span<const double> coordinates) {
-    ++calls_;
-    Answer* answer = find(coordinates);
-    if (answer == nullptr || answer->is_objective_used) {
-      answer = evaluate(coordinates);
-    }
-    if (answer == nullptr) {
-      return worst_objective_;
-    }
-    answer->is_objective_used = true;
-    return answer->objective;
-  }
-
-  double ask_constraint(std::span<const double> coordinates, std::size_t index) {
-    ++calls_;
-    const Answer* answer = find(coordinates);
-    if (answer == nullptr) {
-      answer = evaluate(coordinates);
-    }
-    return answer == nullptr ? kFailedViolation : answer->constraint_values[index];
-  }
-
- private:
-  struct Answer {
-    std::vector<double> coordinates = {};
-    double objective = 0;
-    std::vector<double> constraint_values = {};
-    double violation = 0;
-    bool is_objective_used = false;
-  };
-
-  Answer* find(std::span<const double> coordinates) {
-    const auto found = std::ranges::find_if(
-        answers_, [&](const Answer& answer) { return is_same(answer.coordinates, coordinates); });
-    return found == answers_.end() ? nullptr : &*found;
-  }
-
-  // Null if there is no answer: nobody is asked about points that are none, nor after the end.
-  Answer* evaluate(std::span<const double> coordinates) {
-    if (has_ended()) {
-      stop_solver();
-      return nullptr;
-    }
-    const std::vector<double> point = space().to_point(coordinates);
-    if (!is_finite(point)) {
-      if (++nan_sequence_ >= kLongestNanSequence) {
-        stop_solver();
-      }
-      return nullptr;
-    }
-    nan_sequence_ = 0;
-    try {
-      return &remember(coordinates, function_.evaluate_point(point));
-    } catch (const EvaluatorStopped&) {
-      has_stopped_ = true;
-    } catch (...) {
-      exception_ = std::current_exception();  // C code lies between here and who waits for it
-    }
-    stop_solver();
-    return nullptr;
-  }
-
-  // Not at the first point: ORIG_DIRECT stopped there reads what it has not written yet, and now
-  // and then it crashes. It is stopped at the second.
-  void stop_solver() {
-    const std::int64_t calls_a_point = 1 + std::ssize(function_.evaluator().problem().constraints);
-    if (calls_ > calls_a_point) {
-      nlopt_force_stop(solver_);
-    }
-  }
-
-  Answer& remember(std::span<const double> coordinates, const Score& score) {
-    const ProblemDescription& problem = function_.evaluator().problem();
-    Answer& answer = answers_[next_answer_];
-    next_answer_ = (next_answer_ + 1) % answers_.size();
-    answer.coordinates.assign(coordinates.begin(), coordinates.end());
-    answer.is_objective_used = false;
-    if (settings_.takes_constraints) {
-      answer.objective = calc_scalar(problem, score.objectives);
-      answer.constraint_values = score.constraint_values;
-      answer.constraint_values.resize(problem.constraints.size(), kFailedViolation);
-      answer.violation = 0;
-      for (const double g : answer.constraint_values) {
-        answer.violation += std::max(0.0, g);
-      }
-    } else {
-      answer.objective = calc_merit(problem, score, settings_.constraint_weight);
-    }
-    const bool is_first = !has_best();
-    if (is_first || std::pair{answer.violation, answer.objective} < best_rank()) {
-      best_ = answer;
-    }
-    worst_objective_ = is_first ? answer.objective : std::max(worst_objective_, answer.objective);
-    return answer;
-  }
-
-  const NloptSettings& settings_;
-  ScalarFunction function_;
-  nlopt_opt solver_ = nullptr;
-  std::array<Answer, 8> answers_;  // the latest
-  std::size_t next_answer_ = 0;
-  Answer best_;
-  double worst_objective_ = 0;
-  std::int64_t calls_ = 0;  // of the current start, for objective or constraint
-  std::int64_t nan_sequence_ = 0;
-  bool has_stopped_ = false;
-  std::exception_ptr exception_;
-};
-
 struct ConstraintQuestion {
-  Questions* questions = nullptr;
+  NloptQuestions* questions = nullptr;
   std::size_t index = 0;
 };
 
 double call_objective(unsigned n, const double* x, double* /*gradient*/, void* data) {
-  return static_cast<Questions*>(data)->ask_objective({x, n});
+  return static_cast<NloptQuestions*>(data)->ask_objective({x, n});
 }
 
 double call_constraint(unsigned n, const double* x, double* /*gradient*/, void* data) {
@@ -321,7 +155,7 @@ class Search {
     } else {
       set_step(solver_.get(), from, scale);
     }
-    questions_.begin(solver_.get());
+    questions_.begin([this] { nlopt_force_stop(solver_.get()); });
     double value = 0;
     const nlopt_result result = nlopt_optimize(solver_.get(), from.data(), &value);
     questions_.rethrow();
@@ -340,7 +174,7 @@ class Search {
 
   const NloptSettings& settings_;
   Evaluator& evaluator_;
-  Questions questions_;
+  NloptQuestions questions_;
   std::vector<ConstraintQuestion> constraints_;
   NloptHandle solver_;
   NloptHandle local_;

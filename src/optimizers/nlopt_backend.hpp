@@ -4,7 +4,7 @@
 // NLopt works in SearchSpace coordinates u and is told f(u) (the merit with penalised constraints,
 // or the objective and g(u) <= 0 apart where the algorithm takes constraints), the box and a start.
 // For linear variables and restarts = 0 it asks for the very points that the bare library asks for
-// with the same settings, seeded with fold_seed(seed).
+// with the same settings, seeded with fold_seed(seed) (seed.hpp).
 #pragma once
 
 #include <cstdint>
@@ -31,9 +31,6 @@ struct NloptSettings {
 
 // Empty, or why there is no NLopt here.
 std::string explain_missing_nlopt();
-
-// NLopt's random numbers begin at one of 2^32 places. Seeds below 2^32 are that place themselves.
-std::uint32_t fold_seed(std::uint64_t seed);
 
 // Returns when the evaluator has stopped or NLopt has nothing more to try. Throws what the
 // evaluator throws, and OptimizerFailure when NLopt refuses or fails.

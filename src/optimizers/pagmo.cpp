@@ -3,55 +3,13 @@
 #include <utility>
 
 #include "optimizers/pagmo_backend.hpp"
+#include "optimizers/pagmo_options.hpp"
 #include "optimizers/scalar_function.hpp"
 
 namespace armwright {
 namespace {
 
-// Options keep pagmo's names, so that pagmo's documentation explains them.
-OptionSpec number(std::string name, std::string description, double fallback, double lower,
-                  double upper) {
-  return {.name = std::move(name),
-          .description = std::move(description),
-          .fallback = fallback,
-          .lower = lower,
-          .upper = upper};
-}
-
-OptionSpec count(std::string name, std::string description, std::int64_t fallback, double lower,
-                 double upper) {
-  return {.name = std::move(name),
-          .description = std::move(description),
-          .fallback = fallback,
-          .lower = lower,
-          .upper = upper};
-}
-
-OptionSpec choice(std::string name, std::string description, std::vector<std::string> choices) {
-  const std::string first = choices.front();
-  return {.name = std::move(name),
-          .description = std::move(description),
-          .fallback = first,
-          .choices = std::move(choices)};
-}
-
-// Wide first populations are wasted on robots: with gains drawn over two decades, 93 % of the arms
-// lose control. A share of 0.15 of such a box is a factor of 2 either way.
-constexpr double kSpread = 0.15;
-
-// The first population: its size, the fewest that the method works with, how wide it lies.
-std::vector<OptionSpec> population(std::int64_t size, double fewest,
-                                   std::vector<OptionSpec> others = {},
-                                   std::string description = "individuals") {
-  std::vector<OptionSpec> options = {
-      count("population", std::move(description), size, fewest, 100000),
-      number("spread",
-             "size of the box about the start, as a share of the whole box, from which the first "
-             "population is drawn; 1: the whole box",
-             kSpread, 0, 1)};
-  options.insert(options.end(), others.begin(), others.end());
-  return options;
-}
+using namespace pagmo_options;
 
 OptimizerRow make_row(PagmoMethod method, std::string summary, std::string source,
                       std::vector<OptionSpec> options, Capabilities others = {}) {

@@ -15,120 +15,11 @@
 
 #include "base/random.hpp"
 #include "optimizers/pagmo_algorithms.hpp"
-#include "optimizers/scalar_function.hpp"
+#include "optimizers/pagmo_bridge.hpp"
+#include "optimizers/seed.hpp"
 
 namespace armwright {
 namespace {
-
-// Stands for each constraint of a failed evaluation. Finite, because the methods add and square
-// violations.
-constexpr double kViolatedBeyondMeasure = 1e12;
-
-// Scores as pagmo's fitness vectors: objectives first, then constraints.
-class Bridge {
- public:
-  Bridge(const PagmoMethod& method, const Options& options, Evaluator& evaluator)
-      : method_(method),
-        constraint_weight_(method.constraints ? 0 : options.get_number("constraint_weight")),
-        function_(evaluator) {}
-
-  const SearchSpace& space() const { return function_.space(); }
-  const ProblemDescription& problem() const { return function_.evaluator().problem(); }
-  std::size_t objective_count() const {
-    return method_.multi_objective ? problem().objectives.size() : 1;
-  }
-  std::size_t constraint_count() const {
-    return method_.constraints ? problem().constraints.size() : 0;
-  }
-  std::int64_t evaluation_count() const { return evaluation_count_; }
-  // An exception passed through the library that is not the library's own.
-  bool has_thrown() const { return has_thrown_; }
-
-  std::vector<std::vector<double>> evaluate(std::span<const std::vector<double>> coordinates) {
-    try {
-      for (const std::vector<double>& one : coordinates) {
-        require_finite(one);
-      }
-      const std::vector<Score> scores = function_.evaluate_batch(coordinates);
-      evaluation_count_ += static_cast<std::int64_t>(scores.size());
-      std::vector<std::vector<double>> fitness;
-      std::ranges::transform(scores, std::back_inserter(fitness),
-                             [this](const Score& score) { return calc_fitness(score); });
-      return fitness;
-    } catch (...) {
-      has_thrown_ = true;
-      throw;
-    }
-  }
-
- private:
-  void require_finite(std::span<const double> coordinates) const {
-    if (!std::ranges::all_of(coordinates, [](double u) { return std::isfinite(u); })) {
-      throw OptimizerFailure(
-          fmt::format("optimizer '{}' asked for a point that is not finite", method_.row));
-    }
-  }
-
-  std::vector<double> calc_fitness(const Score& score) const {
-    if (method_.multi_objective) {
-      double violation = 0;
-      for (const double g : score.constraint_values) {
-        violation += std::max(0.0, g);
-      }
-      std::vector<double> fitness = score.objectives;
-      for (double& objective : fitness) {
-        objective += constraint_weight_ * violation;
-      }
-      return fitness;
-    }
-    if (!method_.constraints) {
-      return {calc_merit(problem(), score, constraint_weight_)};
-    }
-    std::vector<double> fitness = {calc_scalar(problem(), score.objectives)};
-    if (score.constraint_values.size() == constraint_count()) {
-      fitness.insert(fitness.end(), score.constraint_values.begin(), score.constraint_values.end());
-    } else {
-      fitness.resize(1 + constraint_count(), kViolatedBeyondMeasure);
-    }
-    return fitness;
-  }
-
-  const PagmoMethod& method_;
-  double constraint_weight_;
-  ScalarFunction function_;
-  std::int64_t evaluation_count_ = 0;
-  bool has_thrown_ = false;
-};
-
-// The problem as pagmo wants it: default-constructible and copyable. All copies share the bridge.
-struct BridgedProblem {
-  Bridge* bridge = nullptr;
-
-  std::vector<double> fitness(const std::vector<double>& coordinates) const {
-    return bridge->evaluate({&coordinates, 1}).front();
-  }
-
-  // pagmo lays points and fitness vectors end to end.
-  std::vector<double> batch_fitness(const std::vector<double>& all) const {
-    const auto dimension = static_cast<std::ptrdiff_t>(bridge->space().dimension());
-    std::vector<std::vector<double>> points;
-    for (auto from = all.begin(); from != all.end(); from += dimension) {
-      points.emplace_back(from, from + dimension);
-    }
-    std::vector<double> joined;
-    for (const std::vector<double>& one : bridge->evaluate(points)) {
-      joined.insert(joined.end(), one.begin(), one.end());
-    }
-    return joined;
-  }
-
-  std::pair<std::vector<double>, std::vector<double>> get_bounds() const {
-    return {bridge->space().lower(), bridge->space().upper()};
-  }
-  // pagmo asks a default-constructed one for these as well.
-  std::size_t get_nobj() const { return bridge == nullptr ? 1 : bridge->objective_count(); }
-  std::size_t get_nic() const { return bridge == nullptr ? 0 : bridge->constraint_count(); }
-};
 
 // pagmo's messages are several lines; the last says what is wrong.
 std::string get_reason(const std::exception& error) {
@@ -140,10 +31,6 @@ std::string get_reason(const std::exception& error) {
     reason.pop_back();
   }
   return reason;
-}
-
-unsigned fold(std::uint64_t seed) {
-  return static_cast<unsigned>(seed ^ (seed >> 32));
 }
 
 class PagmoOptimizer : public Optimizer {
@@ -159,7 +46,7 @@ class PagmoOptimizer : public Optimizer {
   }
 
   void minimize(Evaluator& evaluator, std::uint64_t seed) override {
-    Bridge bridge(method_, options_, evaluator);
+    PagmoBridge bridge(method_, options_, evaluator);
     try {
       evolve(bridge, evaluator, seed);
     } catch (const EvaluatorStopped&) {
@@ -205,10 +92,10 @@ class PagmoOptimizer : public Optimizer {
     return has_option("population") ? options_.get_integer("population") : 1;
   }
 
-  void evolve(Bridge& bridge, Evaluator& evaluator, std::uint64_t seed) const {
-    const pagmo::problem problem{BridgedProblem{&bridge}};
+  void evolve(PagmoBridge& bridge, Evaluator& evaluator, std::uint64_t seed) const {
+    const pagmo::problem problem{BridgedPagmoProblem{&bridge}};
     pagmo::population population = make_population(bridge, problem, seed);
-    PagmoPlan plan{.seed = fold(seed)};
+    PagmoPlan plan{.seed = fold_seed(seed)};
     if (const double start_value = std::abs(population.get_f().front().front()); start_value > 0) {
       plan.scale = start_value;
     }
@@ -226,7 +113,7 @@ class PagmoOptimizer : public Optimizer {
     }
   }
 
-  pagmo::algorithm plan_algorithm(PagmoPlan& plan, const Bridge& bridge,
+  pagmo::algorithm plan_algorithm(PagmoPlan& plan, const PagmoBridge& bridge,
                                   const Evaluator& evaluator) const {
     if (method_.paced) {
       const std::int64_t generations =
@@ -251,28 +138,26 @@ class PagmoOptimizer : public Optimizer {
 
   // The start, and points drawn uniformly from a box about it: `spread` times the whole box in
   // size, centred on the start, cut off at the bounds.
-  pagmo::population make_population(Bridge& bridge, const pagmo::problem& problem,
+  pagmo::population make_population(PagmoBridge& bridge, const pagmo::problem& problem,
                                     std::uint64_t seed) const {
     const SearchSpace& space = bridge.space();
     std::vector<std::vector<double>> individuals = {space.start()};
     RandomStream random("optimizer/pagmo:" + method_.algorithm, seed);
-    while (std::ssize(individuals) < population_size()) {
-      std::vector<double> individual = space.start();
-      const double spread = options_.get_number("spread");
-      for (std::size_t i = 0; i < individual.size(); ++i) {
-        const double reach = 0.5 * spread * (space.upper()[i] - space.lower()[i]);
-        const double lower =
-            spread == 1 ? space.lower()[i] : std::max(space.lower()[i], individual[i] - reach);
-        const double upper =
-            spread == 1 ? space.upper()[i] : std::min(space.upper()[i], individual[i] + reach);
-        individual[i] = std::clamp(random.uniform(lower, upper), lower, upper);
-      }
-      individuals.push_back(std::move(individual));
+    std::vector<double> lower = space.lower();
+    std::vector<double> upper = space.upper();
+    const double spread = has_option("spread") ? options_.get_number("spread") : 1;
+    for (std::size_t i = 0; i < space.dimension() && spread != 1; ++i) {
+      const double reach = 0.5 * spread * (space.upper()[i] - space.lower()[i]);
+      lower[i] = std::max(lower[i], space.start()[i] - reach);
+      upper[i] = std::min(upper[i], space.start()[i] + reach);
     }
-    return evaluate_population(bridge, problem, individuals, fold(seed));
+    while (std::ssize(individuals) < population_size()) {
+      individuals.push_back(space.draw_between(lower, upper, random));
+    }
+    return evaluate_population(bridge, problem, individuals, fold_seed(seed));
   }
 
-  pagmo::population evaluate_population(Bridge& bridge, const pagmo::problem& problem,
+  pagmo::population evaluate_population(PagmoBridge& bridge, const pagmo::problem& problem,
                                         std::span<const std::vector<double>> individuals,
                                         unsigned seed) const {
     // Only a method that asks for batches later begins with one.

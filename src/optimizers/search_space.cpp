@@ -52,4 +52,14 @@ std::vector<double> SearchSpace::to_coordinates(std::span<const double> x) const
   return coordinates;
 }
 
+std::vector<double> SearchSpace::draw_between(std::span<const double> lower,
+                                              std::span<const double> upper,
+                                              RandomStream& random) const {
+  std::vector<double> coordinates;
+  for (std::size_t i = 0; i < dimension(); ++i) {
+    coordinates.push_back(std::clamp(random.uniform(lower[i], upper[i]), lower_[i], upper_[i]));
+  }
+  return coordinates;
+}
+
 }  // namespace armwright

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "base/random.hpp"
 #include "problems/problem.hpp"
 
 namespace armwright {
@@ -27,6 +28,11 @@ class SearchSpace {
   // lies outside comes out outside.
   std::vector<double> to_point(std::span<const double> coordinates) const;
   std::vector<double> to_coordinates(std::span<const double> x) const;
+
+  // Coordinates drawn uniformly between `lower` and `upper`, one number of the stream each. Those
+  // lie in the box but for roundings; what is drawn lies in it.
+  std::vector<double> draw_between(std::span<const double> lower, std::span<const double> upper,
+                                   RandomStream& random) const;
 
  private:
   std::vector<DecisionVariable> variables_;

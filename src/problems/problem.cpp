@@ -22,15 +22,23 @@ const char* to_string(EvaluationStatus status) {
   return "failed";
 }
 
-double calc_scalar(const ProblemDescription& problem, std::span<const double> objectives) {
-  if (problem.objective_weights.empty()) {
+double calc_scalar(std::span<const double> weights, std::span<const double> objectives) {
+  if (weights.empty()) {
     return objectives.front();
   }
   double sum = 0;
   for (std::size_t i = 0; i < objectives.size(); ++i) {
-    sum += problem.objective_weights[i] * objectives[i];
+    sum += weights[i] * objectives[i];
   }
   return sum;
+}
+
+double calc_scalar(const ProblemDescription& problem, std::span<const double> objectives) {
+  return calc_scalar(problem.objective_weights, objectives);
+}
+
+Quantity get_scalar_quantity(std::span<const Quantity> objectives) {
+  return objectives.size() == 1 ? objectives.front() : Quantity{"weighted sum", "1"};
 }
 
 bool is_feasible(const Evaluation& evaluation) {

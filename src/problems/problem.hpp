@@ -99,7 +99,10 @@ struct Evaluation {
 };
 
 // One number for what may be several objectives: their weighted sum.
+double calc_scalar(std::span<const double> weights, std::span<const double> objectives);
 double calc_scalar(const ProblemDescription& problem, std::span<const double> objectives);
+// What that number is.
+Quantity get_scalar_quantity(std::span<const Quantity> objectives);
 
 // It has objectives, and every constraint is met.
 bool is_feasible(const Evaluation& evaluation);

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "problems/tracking_description.hpp"
 
 namespace armwright {
 namespace {
@@ -16,99 +17,6 @@ constexpr std::size_t kTargetCache_bytes = std::size_t{512} << 20;
 // What simulate() puts into a case's metrics before the peaks and root-mean-squares of the joints'
 // efforts.
 enum CaseMetric : std::size_t { kEnergy, kSaturation, kFirstJointMetric };
-
-double& get_parameter(ArmDesign& design, const DesignParameter& parameter) {
-  JointDrive& joint = design.joints[parameter.joint];
-  switch (parameter.kind) {
-    case DesignParameter::Kind::effort_min:
-      return joint.limits.min_n_m;
-    case DesignParameter::Kind::effort_max:
-      return joint.limits.max_n_m;
-    case DesignParameter::Kind::gain:
-      break;
-  }
-  return joint.gains[parameter.gain];
-}
-
-DecisionVariable make_variable(const TrackingConfig& config, const DesignParameter& parameter) {
-  const std::string& joint = config.robot.joints[parameter.joint].name;
-  DecisionVariable variable;
-  switch (parameter.kind) {
-    case DesignParameter::Kind::gain: {
-      const GainSpec& gain = find_controller(config.start.controller).gains[parameter.gain];
-      variable.name = joint + "." + gain.name;
-      variable.unit = gain.unit;
-      break;
-    }
-    case DesignParameter::Kind::effort_min:
-      variable.name = joint + ".effort_min";
-      variable.unit = "N m";
-      break;
-    case DesignParameter::Kind::effort_max:
-      variable.name = joint + ".effort_max";
-      variable.unit = "N m";
-      break;
-  }
-  ArmDesign start = config.start;
-  variable.start = get_parameter(start, parameter);
-  if (variable.start == 0) {
-    throw Error(ErrorKind::usage,
-                fmt::format("{} starts at 0, but a variable spans a factor around its start value; "
-                            "give it another value in the design or leave it out of 'optimize'",
-                            variable.name));
-  }
-  variable.scale = Scale::logarithmic;
-  // The list form returns values; the two-argument form would return references to the temporaries.
-  const auto [lower, upper] =
-      std::minmax({variable.start / config.bounds_factor, variable.start * config.bounds_factor});
-  variable.lower = lower;
-  variable.upper = upper;
-  if (!std::isnormal(lower) || !std::isnormal(upper)) {
-    throw Error(ErrorKind::usage,
-                fmt::format("{} starts at {} and would span {} to {}, which floating-point numbers "
-                            "cannot hold; give it another value in the design or lower "
-                            "bounds_factor",
-                            variable.name, variable.start, lower, upper));
-  }
-  return variable;
-}
-
-ProblemDescription make_description(const TrackingConfig& config) {
-  ProblemDescription description;
-  description.name = config.name;
-  description.summary = config.summary;
-  description.cost_unit = "simulated test case";
-  for (const DesignParameter& parameter : config.parameters) {
-    description.variables.push_back(make_variable(config, parameter));
-  }
-  const TrackingObjective& objective = config.objective;
-  switch (objective.kind) {
-    case TrackingObjective::Kind::error:
-      description.objectives = {objective.logarithm ? Quantity{"ln(error / 1 m)", "1"}
-                                                    : Quantity{"error", "m"}};
-      break;
-    case TrackingObjective::Kind::error_and_torque:
-      description.objectives = {
-          {objective.logarithm ? "ln(error and torque)" : "error and torque", "1"}};
-      break;
-    case TrackingObjective::Kind::error_vs_torque:
-      description.objectives = {{"error", "m"}, {"total torque", "N m"}};
-      description.objective_weights = {1 / objective.error_scale_m,
-                                       objective.torque_weight / objective.torque_scale_n_m};
-      break;
-  }
-  description.has_residuals = true;
-  description.metrics = {{"error", "m"},
-                         {"total_torque", "N m"},
-                         {"failures", "1"},
-                         {"energy", "J"},
-                         {"saturated_share", "1"}};
-  for (const Joint& joint : config.robot.joints) {
-    description.metrics.push_back({joint.name + ".peak_effort", "N m"});
-    description.metrics.push_back({joint.name + ".rms_effort", "N m"});
-  }
-  return description;
-}
 
 // Of an error (m) and a total torque (N m).
 std::vector<double> calc_objectives(const TrackingObjective& objective, double error_m,
@@ -175,7 +83,7 @@ TrackingProblem::TrackingProblem(TrackingConfig config)
       engine_(make_engine(config_.engine)),
       targets_(kTargetCache_bytes) {
   check_design(config_.start);
-  description_ = make_description(config_);
+  description_ = make_tracking_description(config_);
 }
 
 void TrackingProblem::check_design(const ArmDesign& design) const {
@@ -343,8 +251,8 @@ std::vector<double> TrackingProblem::calc_residuals(const ArmDesign& design,
   }
   if (with_torque) {
     for (const JointDrive& joint : design.joints) {
-      const double torque = std::max(-joint.limits.min_n_m, joint.limits.max_n_m);
-      residuals.push_back(std::sqrt(objective.torque_weight * torque / objective.torque_scale_n_m));
+      residuals.push_back(std::sqrt(objective.torque_weight * calc_largest_torque_n_m(joint) /
+                                    objective.torque_scale_n_m));
     }
   }
   return residuals;

@@ -20,10 +20,14 @@ int calc_steps_covering(double duration_s, double period_s) {
 
 }  // namespace
 
+double calc_largest_torque_n_m(const JointDrive& joint) {
+  return std::max(-joint.limits.min_n_m, joint.limits.max_n_m);
+}
+
 double calc_total_torque_n_m(const ArmDesign& design) {
   double total = 0;
   for (const JointDrive& joint : design.joints) {
-    total += std::max(-joint.limits.min_n_m, joint.limits.max_n_m);
+    total += calc_largest_torque_n_m(joint);
   }
   return total;
 }

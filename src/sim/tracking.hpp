@@ -58,7 +58,9 @@ struct ArmDesign {
   std::string controller = "pid";
   std::vector<JointDrive> joints;
 };
-// Sum over the joints of max(-min, max): the thesis's total torque magnitude (N m).
+// The larger of a joint's two limits, max(-min, max), and its sum over the joints: the thesis's
+// total torque magnitude (N m).
+double calc_largest_torque_n_m(const JointDrive& joint);
 double calc_total_torque_n_m(const ArmDesign& design);
 
 // One segment of the timeline.

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -17,48 +16,6 @@
 #include "optimizers/optimizer.hpp"
 
 namespace armwright {
-
-// A problem made of a function of the decision vector and the case number.
-class FunctionProblem : public Problem {
- public:
-  using Function = std::function<double(std::span<const double>, std::uint64_t)>;
-
-  FunctionProblem(std::vector<DecisionVariable> variables, Function function)
-      : function_(std::move(function)) {
-    description_.name = "function";
-    description_.variables = std::move(variables);
-    description_.objectives = {{"f", ""}};
-    description_.cost_unit = "function evaluation";
-  }
-
-  const ProblemDescription& description() const override { return description_; }
-
-  std::vector<CaseOutcome> simulate(std::span<const CaseJob> jobs) const override {
-    std::vector<CaseOutcome> outcomes(jobs.size());
-    for (std::size_t i = 0; i < jobs.size(); ++i) {
-      outcomes[i].error = function_(jobs[i].x, jobs[i].number);
-    }
-    return outcomes;
-  }
-
-  Evaluation aggregate(std::span<const double> /*x*/,
-                       std::span<const CaseOutcome> outcomes) const override {
-    Evaluation evaluation;
-    double sum = 0;
-    for (const CaseOutcome& outcome : outcomes) {
-      evaluation.case_errors.push_back(outcome.error);
-      sum += outcome.error;
-    }
-    evaluation.objectives = {sum / static_cast<double>(outcomes.size())};
-    return evaluation;
-  }
-
-  std::vector<double> penalty_objectives() const override { return {1e12}; }
-
- private:
-  Function function_;
-  ProblemDescription description_;
-};
 
 // What evaluate() throws on request.
 struct BrokenEvaluator : std::runtime_error {

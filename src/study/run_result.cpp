@@ -111,13 +111,11 @@ double get_failure_error(const RunResult& result) {
 }
 
 Quantity get_target(const RunResult& result) {
-  return result.objectives.size() == 1 ? result.objectives.front() : Quantity{"weighted sum", "1"};
+  return get_scalar_quantity(result.objectives);
 }
 
 double calc_target(const RunResult& result, const Evaluation& evaluation) {
-  ProblemDescription description;
-  description.objective_weights = result.objective_weights;
-  return calc_scalar(description, evaluation.objectives);
+  return calc_scalar(result.objective_weights, evaluation.objectives);
 }
 
 std::string to_json(const RunResult& result) {

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "base/error.hpp"
+#include "optimizers/test_problems.hpp"
 #include "problems/analytic.hpp"
 #include "study/memory_evaluator.hpp"
 
@@ -16,49 +16,6 @@ namespace {
 using testing::AnyOf;
 using testing::Each;
 using testing::HasSubstr;
-
-// Sums of squares over any variables.
-class ResidualProblem : public Problem {
- public:
-  using Residuals = std::function<std::vector<double>(std::span<const double>)>;
-
-  ResidualProblem(std::vector<DecisionVariable> variables, Residuals residuals)
-      : residuals_(std::move(residuals)) {
-    description_.name = "residuals";
-    description_.variables = std::move(variables);
-    description_.objectives = {{"f", ""}};
-    description_.cost_unit = "function evaluation";
-    description_.has_residuals = true;
-  }
-
-  const ProblemDescription& description() const override { return description_; }
-
-  std::vector<CaseOutcome> simulate(std::span<const CaseJob> jobs) const override {
-    std::vector<CaseOutcome> outcomes(jobs.size());
-    for (std::size_t i = 0; i < jobs.size(); ++i) {
-      outcomes[i].residuals = residuals_(jobs[i].x);
-    }
-    return outcomes;
-  }
-
-  Evaluation aggregate(std::span<const double> /*x*/,
-                       std::span<const CaseOutcome> outcomes) const override {
-    Evaluation evaluation;
-    double sum = 0;
-    for (const double residual : outcomes[0].residuals) {
-      sum += residual * residual;
-    }
-    evaluation.objectives = {sum};
-    evaluation.residuals = outcomes[0].residuals;
-    return evaluation;
-  }
-
-  std::vector<double> penalty_objectives() const override { return {1e12}; }
-
- private:
-  Residuals residuals_;
-  ProblemDescription description_;
-};
 
 // As an arm's gains: errors, all positive and of very different size, that fall with the right
 // ratios of logarithmic variables; a limit that does not matter. Minimum 2.25.

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "optimizers/test_problems.hpp"
 #include "problems/analytic.hpp"
 #include "study/memory_evaluator.hpp"
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "optimizers/test_problems.hpp"
 #include "problems/analytic.hpp"
 #include "study/memory_evaluator.hpp"
 

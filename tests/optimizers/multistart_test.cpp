@@ -3,10 +3,10 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <functional>
 
-#include "base/error.hpp"
+#include "base/expect_error.hpp"
 #include "optimizers/search_space.hpp"
+#include "optimizers/test_problems.hpp"
 #include "problems/analytic.hpp"
 #include "study/memory_evaluator.hpp"
 
@@ -100,16 +100,6 @@ class MultistartTest : public testing::Test {
  private:
   std::vector<std::uint64_t> seeds_;
 };
-
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::usage);
-    return error.what();
-  }
-  return "no error";
-}
 
 TEST_F(MultistartTest, TheRowIsTheInnerOnesButForWhatItAdds) {
   const OptimizerRow row = make_multistart_row(make_inner());
@@ -218,15 +208,15 @@ TEST_F(MultistartTest, ASmallerBudgetIsABeginningOfALargerOne) {
 }
 
 TEST_F(MultistartTest, WhatCannotBeRestartedIsRefused) {
-  EXPECT_THAT(message_of([] { load_optimizer("multistart:random"); }),
+  EXPECT_THAT(usage_error_of([] { load_optimizer("multistart:random"); }),
               HasSubstr("optimizer 'multistart:random': 'random' is no local optimizer"));
-  EXPECT_THAT(message_of([&] { make_multistart_row(make_multistart_row(make_inner())); }),
+  EXPECT_THAT(usage_error_of([&] { make_multistart_row(make_multistart_row(make_inner())); }),
               HasSubstr("'multistart:compass' is no local optimizer"));
-  EXPECT_THAT(message_of([] { load_optimizer("multistart:randon"); }),
+  EXPECT_THAT(usage_error_of([] { load_optimizer("multistart:randon"); }),
               HasSubstr("unknown optimizer 'randon'; did you mean 'random'?"));
   OptimizerRow spread = make_inner();
   spread.options[0].name = "spread";
-  EXPECT_THAT(message_of([&] { make_multistart_row(spread); }),
+  EXPECT_THAT(usage_error_of([&] { make_multistart_row(spread); }),
               HasSubstr("'compass' has an option 'spread' itself"));
 }
 

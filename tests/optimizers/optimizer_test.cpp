@@ -2,9 +2,8 @@
 
 #include <gmock/gmock.h>
 
-#include <functional>
-
-#include "base/error.hpp"
+#include "base/expect_error.hpp"
+#include "optimizers/seed.hpp"
 
 namespace armwright {
 namespace {
@@ -27,18 +26,8 @@ Options parse(std::vector<std::string> assignments) {
   return Options::parse("demo", kSpecs, assignments);
 }
 
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::usage);
-    return error.what();
-  }
-  return "no error";
-}
-
 std::string refusal_of(const std::string& assignment) {
-  return message_of([&] { parse({assignment}); });
+  return usage_error_of([&] { parse({assignment}); });
 }
 
 TEST(Options, WhatIsNotGivenHasItsDefault) {
@@ -70,7 +59,7 @@ TEST(Options, UnknownNamesListTheValidOnes) {
   EXPECT_EQ(refusal_of("sise=3"),
             "optimizer 'demo': unknown option 'sise'; did you mean 'size'? "
             "Valid: size, rate, restart, method, label");
-  EXPECT_EQ(message_of([] { Options::parse("none", {}, std::vector<std::string>{"a=1"}); }),
+  EXPECT_EQ(usage_error_of([] { Options::parse("none", {}, std::vector<std::string>{"a=1"}); }),
             "optimizer 'none': unknown option 'a'. Valid: (none)");
 }
 
@@ -79,7 +68,7 @@ TEST(Options, AMissingValueIsRefused) {
 }
 
 TEST(Options, DuplicatesAreRefused) {
-  EXPECT_EQ(message_of([] {
+  EXPECT_EQ(usage_error_of([] {
               parse({"size=3", "rate=1", "size=4"});
             }),
             "optimizer 'demo': option 'size' is given twice, as '3' and as '4'; give it once");
@@ -115,11 +104,17 @@ TEST(OptionText, ReadsBackAsTheSameValue) {
   EXPECT_EQ(to_text(std::string("full")), "full");
 }
 
+TEST(Seed, FoldsWithoutLosingSmallOnes) {
+  EXPECT_EQ(fold_seed(0), 0u);
+  EXPECT_EQ(fold_seed(4294967295), 4294967295u);
+  EXPECT_EQ(fold_seed((5ULL << 32) + 3), 5u ^ 3u);
+}
+
 TEST(OptimizerTable, HoldsTheBuiltInOptimizers) {
   EXPECT_THAT(optimizer_names(), testing::IsSupersetOf({"ga", "random"}));
   EXPECT_EQ(find_optimizer("random").name, "random");
   EXPECT_THAT(
-      message_of([] { find_optimizer("gaa"); }),
+      usage_error_of([] { find_optimizer("gaa"); }),
       testing::StartsWith("unknown optimizer 'gaa'; did you mean 'ga'? Valid: ga, ga:simple, "));
 }
 

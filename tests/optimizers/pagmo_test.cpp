@@ -9,9 +9,10 @@
 #include <ranges>
 #include <typeinfo>
 
-#include "base/error.hpp"
+#include "base/expect_error.hpp"
+#include "optimizers/run_optimizer.hpp"
+#include "optimizers/test_problems.hpp"
 #include "problems/analytic.hpp"
-#include "study/memory_evaluator.hpp"
 
 namespace armwright {
 namespace {
@@ -61,27 +62,6 @@ class TwoObjectives : public Problem {
   ProblemDescription description_;
 };
 
-// Logarithmic variables of either sign, minimum 0 at (900, -30, 2).
-std::unique_ptr<Problem> make_log_bowl() {
-  return std::make_unique<FunctionProblem>(
-      std::vector<DecisionVariable>{{"p", "", 1, 10000, 100, Scale::logarithmic},
-                                    {"tau_min", "", -10000, -1, -100, Scale::logarithmic},
-                                    {"tau_max", "", 0.1, 1000, 10, Scale::logarithmic}},
-      [](std::span<const double> x, std::uint64_t) {
-        return std::pow(std::log(x[0] / 900), 2) + std::pow(std::log(x[1] / -30), 2) +
-               std::pow(std::log(x[2] / 2), 2);
-      });
-}
-
-MemoryEvaluator run(const std::string& name, const Problem& problem,
-                    const MemoryEvaluatorSettings& settings, std::uint64_t seed = 1,
-                    const std::vector<std::string>& options = {}) {
-  const OptimizerRow& row = find_optimizer(name);
-  MemoryEvaluator evaluator(problem, settings);
-  row.make(Options::parse(name, row.options, options))->minimize(evaluator, seed);
-  return evaluator;
-}
-
 std::vector<std::string> select_names(bool multi_objective) {
   std::vector<std::string> names;
   for (const OptimizerRow& row : make_pagmo_rows()) {
@@ -109,7 +89,7 @@ class PagmoRow : public testing::TestWithParam<std::string> {
     return row().capabilities.multi_objective ? static_cast<const Problem&>(two_) : *sphere_;
   }
   MemoryEvaluator run(const MemoryEvaluatorSettings& settings, std::uint64_t seed = 1) const {
-    return armwright::run(GetParam(), problem(), settings, seed);
+    return run_optimizer(GetParam(), problem(), settings, seed);
   }
 
  private:
@@ -196,7 +176,7 @@ TEST_P(PagmoSingleObjective, FindsItsWayOnEitherScale) {
   const auto sphere = make_analytic("sphere", 10);
   const auto log_bowl = make_log_bowl();
   for (const Problem* problem : {sphere.get(), log_bowl.get()}) {
-    const MemoryEvaluator evaluator = run(GetParam(), *problem, {.budget = 2000});
+    const MemoryEvaluator evaluator = run_optimizer(GetParam(), *problem, {.budget = 2000});
     EXPECT_LT(evaluator.best().value(), evaluator.trace().front().score.objectives.front() / 10)
         << problem->description().name;
   }
@@ -219,8 +199,8 @@ class PagmoMultiObjective : public testing::TestWithParam<std::string> {};
 
 TEST_P(PagmoMultiObjective, FindsBothEndsOfTheFront) {
   const TwoObjectives problem;
-  const MemoryEvaluator random = run("random", problem, {.budget = 4000});
-  const MemoryEvaluator evaluator = run(GetParam(), problem, {.budget = 4000});
+  const MemoryEvaluator random = run_optimizer("random", problem, {.budget = 4000});
+  const MemoryEvaluator evaluator = run_optimizer(GetParam(), problem, {.budget = 4000});
   RecordProperty("left", std::to_string(calc_distance(evaluator, 0, 1)));
   RecordProperty("right", std::to_string(calc_distance(evaluator, 1, 0)));
   EXPECT_LT(calc_distance(evaluator, 0, 1), calc_distance(random, 0, 1) / 2);
@@ -234,18 +214,18 @@ TEST(Pagmo, ConstraintsAreRespected) {
   const auto problem = make_analytic("constrained");  // the minimum is -44
   for (const std::string name : {"pagmo:gaco", "pagmo:ihs", "pagmo:mbh"}) {
     EXPECT_TRUE(find_optimizer(name).capabilities.constraints);
-    EXPECT_LT(run(name, *problem, {.budget = 4000}).best().value(), -43) << name;
+    EXPECT_LT(run_optimizer(name, *problem, {.budget = 4000}).best().value(), -43) << name;
   }
   for (const std::string name : {"pagmo:de", "pagmo:cmaes", "pagmo:pso"}) {  // by a penalty
     EXPECT_FALSE(find_optimizer(name).capabilities.constraints);
-    EXPECT_LT(run(name, *problem, {.budget = 4000}).best().value(), -43) << name;
+    EXPECT_LT(run_optimizer(name, *problem, {.budget = 4000}).best().value(), -43) << name;
   }
 }
 
 TEST(Pagmo, ThePenaltyForConstraintsIsAnOption) {
   const auto problem = make_analytic("constrained");
   const MemoryEvaluator blind =
-      run("pagmo:cmaes", *problem, {.budget = 4000}, 1, {"constraint_weight=0"});
+      run_optimizer("pagmo:cmaes", *problem, {.budget = 4000}, 1, {"constraint_weight=0"});
   const std::vector<double>& last = blind.trace().back().score.constraint_values;
   EXPECT_GT(*std::ranges::max_element(last), 0.1);
 }
@@ -254,8 +234,8 @@ TEST(Pagmo, SpreadIsTheWidthOfTheFirstPopulation) {
   const auto problem = make_analytic("sphere", 10);
   const DecisionVariable& variable = problem->description().variables.front();
   for (const double spread : {0.0, 0.2}) {
-    const MemoryEvaluator evaluator =
-        run("pagmo:de", *problem, {.budget = 24}, 1, {"spread=" + std::to_string(spread)});
+    const MemoryEvaluator evaluator = run_optimizer("pagmo:de", *problem, {.budget = 24}, 1,
+                                                    {"spread=" + std::to_string(spread)});
     double farthest = 0;
     for (const MemoryEvaluator::Entry& entry : evaluator.trace()) {
       for (const double value : entry.asked) {
@@ -271,13 +251,8 @@ TEST(Pagmo, SpreadIsTheWidthOfTheFirstPopulation) {
 void expect_refused(const std::string& name, const std::vector<std::string>& options,
                     const std::string& what) {
   const OptimizerRow& row = find_optimizer(name);
-  try {
-    row.make(Options::parse(name, row.options, options));
-    ADD_FAILURE() << name << " took " << testing::PrintToString(options);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::usage);
-    EXPECT_THAT(error.what(), AllOf(HasSubstr("'" + name + "'"), HasSubstr(what)));
-  }
+  EXPECT_THAT(usage_error_of([&] { row.make(Options::parse(name, row.options, options)); }),
+              AllOf(HasSubstr("'" + name + "'"), HasSubstr(what)));
 }
 
 TEST(Pagmo, OptionsThatDoNotFitAreRefusedBeforeTheRun) {
@@ -294,8 +269,8 @@ TEST(Pagmo, OptionsThatDoNotFitAreRefusedBeforeTheRun) {
 
 TEST(Pagmo, DeIsPagmosDe) {
   const auto problem = make_analytic("rosenbrock", 10);
-  EXPECT_EQ(run("de", *problem, {.budget = 500}).trace(),
-            run("pagmo:de", *problem, {.budget = 500}).trace());
+  EXPECT_EQ(run_optimizer("de", *problem, {.budget = 500}).trace(),
+            run_optimizer("pagmo:de", *problem, {.budget = 500}).trace());
 }
 
 #endif

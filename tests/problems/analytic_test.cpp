@@ -3,9 +3,8 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <functional>
 
-#include "base/error.hpp"
+#include "base/expect_error.hpp"
 #include "base/random.hpp"
 
 namespace armwright {
@@ -29,29 +28,19 @@ std::vector<double> shifted(const Problem& problem, double by) {
   return x;
 }
 
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::usage);
-    return error.what();
-  }
-  return "no error";
-}
-
 TEST(Analytic, NamesAndDimensionsAreChecked) {
   EXPECT_THAT(analytic_names(),
               ElementsAre("sphere", "ellipsoid", "rosenbrock", "rastrigin", "constrained"));
-  EXPECT_EQ(message_of([] { make_analytic("spere", 3); }),
+  EXPECT_EQ(usage_error_of([] { make_analytic("spere", 3); }),
             "unknown analytic function 'spere'; did you mean 'sphere'? Valid: sphere, ellipsoid, "
             "rosenbrock, rastrigin, constrained");
-  EXPECT_EQ(message_of([] { make_analytic("sphere", 0); }),
+  EXPECT_EQ(usage_error_of([] { make_analytic("sphere", 0); }),
             "analytic function 'sphere': dimension is 0; it must be between 1 and 1000");
-  EXPECT_EQ(message_of([] { make_analytic("rosenbrock", 1); }),
+  EXPECT_EQ(usage_error_of([] { make_analytic("rosenbrock", 1); }),
             "analytic function 'rosenbrock': dimension is 1; it must be between 2 and 1000");
-  EXPECT_EQ(message_of([] { make_analytic("rastrigin", 1001); }),
+  EXPECT_EQ(usage_error_of([] { make_analytic("rastrigin", 1001); }),
             "analytic function 'rastrigin': dimension is 1001; it must be between 1 and 1000");
-  EXPECT_EQ(message_of([] { make_analytic("constrained", 10); }),
+  EXPECT_EQ(usage_error_of([] { make_analytic("constrained", 10); }),
             "analytic function 'constrained': dimension is 10; it must be 4");
 }
 

@@ -1,11 +1,17 @@
-// What tests of whole runs share: a silent observer, small plans.
+// What tests of whole runs share: a silent observer, small plans, a fixture with a folder.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "base/bits.hpp"
+#include "base/file.hpp"
 #include "base/temporary_folder.hpp"
+#include "study/journal.hpp"
 #include "study/run.hpp"
 
 namespace armwright {
@@ -40,6 +46,39 @@ inline RunPlan make_small_plan(const std::string& optimizer = "ga", std::int64_t
     plan.schedule = {.fresh = false, .cases = 2};
   }
   return plan;
+}
+
+// Runs in a folder of their own that goes away.
+class RunTest : public testing::Test {
+ protected:
+  std::optional<RunResult> run(const RunPlan& plan, const std::string& folder, unsigned jobs = 2) {
+    StopSignal stop;
+    return execute_run({plan, temporary_ / folder, jobs, {"armwright", "optimize"}}, stop,
+                       observer_);
+  }
+  JournalContent read(const std::string& folder) {
+    return read_journal(temporary_ / folder / "journal");
+  }
+  std::string read_result(const std::string& folder) {
+    return read_file(temporary_ / folder / "result.json", 1 << 24);
+  }
+  TemporaryFolder temporary_;
+  SilentObserver observer_;
+};
+
+inline void expect_same_evaluations(const JournalContent& a, const JournalContent& b) {
+  ASSERT_EQ(a.training.size(), b.training.size());
+  for (std::size_t i = 0; i < a.training.size(); ++i) {
+    EXPECT_EQ(a.training[i].index, b.training[i].index);
+    EXPECT_EQ(a.training[i].generation, b.training[i].generation);
+    EXPECT_EQ(a.training[i].cases.numbers, b.training[i].cases.numbers);
+    EXPECT_TRUE(same_bits(a.training[i].x, b.training[i].x)) << i;
+    EXPECT_TRUE(
+        same_bits(a.training[i].evaluation.objectives, b.training[i].evaluation.objectives));
+    EXPECT_TRUE(
+        same_bits(a.training[i].evaluation.case_errors, b.training[i].evaluation.case_errors));
+    EXPECT_TRUE(same_bits(a.training[i].evaluation.metrics, b.training[i].evaluation.metrics));
+  }
 }
 
 }  // namespace armwright

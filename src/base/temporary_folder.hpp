@@ -4,9 +4,10 @@
 #include <stdlib.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
-#include <stdexcept>
 #include <string>
+#include <system_error>
 #include <vector>
 
 namespace armwright {
@@ -14,9 +15,10 @@ namespace armwright {
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "armwright-test-XXXXXX").string();
+    std::string name = (std::filesystem::temp_directory_path() / "armwright-XXXXXX").string();
     if (mkdtemp(name.data()) == nullptr) {
-      throw std::runtime_error("cannot make a folder for the test: " + name);
+      throw std::filesystem::filesystem_error("cannot make a temporary folder", name,
+                                              std::error_code(errno, std::generic_category()));
     }
     path_ = name;
   }
@@ -30,6 +32,7 @@ class TemporaryFolder {
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
 
+  // The names of what is in it, sorted.
   std::vector<std::string> list() const {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(path_)) {

@@ -1,0 +1,21 @@
+// A run of an optimizer of the table in memory.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "study/memory_evaluator.hpp"
+
+namespace armwright {
+
+inline MemoryEvaluator run_optimizer(const std::string& name, const Problem& problem,
+                                     const MemoryEvaluatorSettings& settings,
+                                     std::uint64_t seed = 1,
+                                     const std::vector<std::string>& options = {}) {
+  const OptimizerRow& row = find_optimizer(name);
+  MemoryEvaluator evaluator(problem, settings);
+  row.make(Options::parse(name, row.options, options))->minimize(evaluator, seed);
+  return evaluator;
+}
+
+}  // namespace armwright

@@ -1,0 +1,132 @@
+// Runs whose optimizer or evaluations fail, and runs of several objectives.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "base/expect_error.hpp"
+#include "study/run.hpp"
+#include "study/run_support.hpp"
+
+namespace armwright {
+namespace {
+
+using testing::HasSubstr;
+
+// Fails after so many evaluations, unless the number is negative.
+class FailingOptimizer : public Optimizer {
+ public:
+  explicit FailingOptimizer(int evaluations) : evaluations_(evaluations) {}
+  void minimize(Evaluator& evaluator, std::uint64_t /*seed*/) override {
+    std::vector<double> x;
+    for (const DecisionVariable& variable : evaluator.problem().variables) {
+      x.push_back(variable.start);
+    }
+    for (int i = 0; !evaluator.stopped(); ++i) {
+      if (i == evaluations_) {
+        throw OptimizerFailure("it fell over");
+      }
+      x[0] *= 0.99;
+      evaluator.evaluate({&x, 1});
+    }
+  }
+
+ private:
+  int evaluations_;
+};
+
+RunPlan make_failing_plan(int evaluations) {
+  RunPlan plan;
+  plan.problem = load_problem("sphere");
+  plan.optimizer.name = "failing";
+  plan.optimizer.make = [evaluations](const Options&) {
+    return std::make_unique<FailingOptimizer>(evaluations);
+  };
+  plan.budget = 30;
+  return plan;
+}
+
+TEST_F(RunTest, AFailedOptimizerEndsAMarkedRunThatKeepsEverything) {
+  const auto result = run(make_failing_plan(7), "a");
+  ASSERT_TRUE(result && result->winner);
+  EXPECT_EQ(result->failure, "it fell over");
+  EXPECT_EQ(result->end_reason, "optimizer failed");
+  EXPECT_EQ(result->counts.evaluations, 7u);
+  EXPECT_EQ(result->judged.size(), 7u);
+  EXPECT_THAT(observer_.messages, testing::Contains("error: it fell over"));
+  EXPECT_EQ(load_result(temporary_ / "a").failure, "it fell over");
+  const JournalContent journal = read("a");
+  EXPECT_EQ(journal.training.size(), 7u);
+  EXPECT_FALSE(journal.ended);
+}
+
+TEST_F(RunTest, AFailedRunIsTriedAgainFromWhereItFailed) {
+  run(make_failing_plan(7), "a");
+  const auto again = run(make_failing_plan(7), "a");
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->failure, "it fell over");
+  EXPECT_EQ(again->counts.replayed, 7u);
+  const auto repaired = run(make_failing_plan(-1), "a");
+  ASSERT_TRUE(repaired);
+  EXPECT_EQ(repaired->failure, "");
+  EXPECT_EQ(repaired->counts.replayed, 7u);
+  EXPECT_EQ(repaired->counts.evaluations, 30u);
+  run(make_failing_plan(-1), "whole");
+  EXPECT_EQ(read_result("a"), read_result("whole"));
+}
+
+TEST_F(RunTest, SeveralObjectivesLeaveAFront) {
+  RunPlan plan;
+  plan.problem = load_problem(
+      "q2-pareto", std::vector<std::string>{"workspace.points=4", "sets.validation_cases=2",
+                                            "sets.test_cases=2"});
+  plan.optimizer = load_optimizer("ga");
+  plan.options =
+      Options::parse("ga", plan.optimizer.options, std::vector<std::string>{"population=8"});
+  plan.schedule = {.fresh = false, .cases = 1};
+  plan.budget = 40;
+  const auto result = run(plan, "a");
+  ASSERT_TRUE(result && result->winner);
+  // No judged design is better than another one in training in both, but for the best sums.
+  std::vector<std::vector<double>> front;
+  for (const EvaluationRecord& one : read("a").training) {
+    const bool covered = std::ranges::any_of(read("a").training, [&](const auto& other) {
+      return other.evaluation.objectives[0] < one.evaluation.objectives[0] &&
+             other.evaluation.objectives[1] < one.evaluation.objectives[1];
+    });
+    if (!covered) {
+      front.push_back(one.x);
+    }
+  }
+  for (const std::vector<double>& x : front) {
+    EXPECT_TRUE(std::ranges::any_of(
+        result->judged, [&](const JudgedCandidate& judged) { return judged.candidate.x == x; }));
+  }
+  const std::string csv = read_file(temporary_ / "a" / "front.csv", 1 << 20);
+  EXPECT_THAT(csv, testing::StartsWith(
+                       "evaluation,on_front,failed_cases,error [m],total torque [N m],joint_1.p,"));
+  EXPECT_EQ(std::ranges::count(csv, '\n'), std::ssize(result->judged) + 1);
+  EXPECT_EQ(get_target(*result).name, "weighted sum");
+}
+
+TEST_F(RunTest, AnOptimizerThatDoesNotSuitIsRefusedBeforehand) {
+  RunPlan plan = make_failing_plan(1);
+  plan.optimizer.requirements.objectives = 2;
+  EXPECT_EQ(usage_error_of([&] { run(plan, "a"); }),
+            "optimizer 'failing' cannot work on sphere: it needs a problem of at least 2 "
+            "objectives, and this one has 1");
+  EXPECT_FALSE(std::filesystem::exists(temporary_ / "a"));
+}
+
+TEST_F(RunTest, ReasonsOfFailureReachTheResult) {
+  RunPlan plan = make_small_plan("ga", 16);
+  plan.problem = load_problem(
+      "q1-complex", std::vector<std::string>{"workspace.points=4", "workspace.centre_m=[5,0,1]"});
+  const auto result = run(plan, "a");
+  ASSERT_TRUE(result);
+  EXPECT_FALSE(result->winner);
+  EXPECT_EQ(result->counts.failed, 16u);
+  EXPECT_THAT(result->first_failure, HasSubstr("out of reach"));
+}
+
+}  // namespace
+}  // namespace armwright
