@@ -14,17 +14,11 @@ constexpr const char* kUnavailable =
     "built without Ceres Solver (CMake option ARMWRIGHT_WITH_CERES is OFF)";
 #endif
 
-std::vector<OptionSpec> make_difference_options(const char* kind, double step) {
-  return {{.name = "differences",
-           .description =
-               "how derivatives are taken: forward (a point for each variable) or central (two)",
-           .fallback = std::string(kind),
-           .choices = {"forward", "central"}},
-          {.name = "step",
-           .description = "step of the differences, as a share of the box",
-           .fallback = step,
-           .lower = 1e-12,
-           .upper = 0.25}};
+OptionSpec make_differences_option(const char* kind) {
+  return {.name = "differences",
+          .description = "of the derivatives: forward (a point for each variable) or central (two)",
+          .fallback = std::string(kind),
+          .choices = {"forward", "central"}};
 }
 
 std::vector<OptionSpec> make_tolerance_options() {
@@ -55,6 +49,7 @@ std::unique_ptr<Optimizer> make_lm([[maybe_unused]] const Options& options) {
                                           : ResidualTransform::automatic,
        .floor = options.get_number("floor"),
        .differences = read_differences(options),
+       .smallest_step = options.get_number("smallest_step"),
        .jacobi_scaling = options.get_bool("jacobi_scaling"),
        .min_damping = options.get_number("min_lm_diagonal"),
        .initial_radius = options.get_number("initial_trust_region_radius"),
@@ -92,19 +87,32 @@ OptimizerRow make_lm_row() {
        .fallback = std::string("auto"),
        .choices = {"auto", "log", "none"}},
       {.name = "floor",
-       .description = "residuals below this share of the start's root mean square count as that; "
-                      "without the logarithm no influence",
-       .fallback = 1e-3,
+       .description = "of the logarithm, which levels out for residuals below this share of the "
+                      "start's root mean square; without the logarithm no influence",
+       .fallback = 0.1,
        .lower = 1e-12,
        .upper = 1},
+      make_differences_option("forward"),
+      {.name = "step",
+       .description = "of the differences at first, share of the box; 0: 0.07 with the logarithm, "
+                      "wide as simulations are rough, and 0.005 without",
+       .fallback = 0.0,
+       .lower = 0,
+       .upper = 0.25},
+      {.name = "smallest_step",
+       .description = "each time that it comes to an end, it starts again from the best point with "
+                      "half the step of the differences, down to this share of the box",
+       .fallback = 5e-4,
+       .lower = 1e-12,
+       .upper = 0.25},
       {.name = "jacobi_scaling",
        .description = "scale every variable by its column of the Jacobian: variables without "
                       "influence then take huge steps",
        .fallback = false},
       {.name = "min_lm_diagonal",
-       .description = "least damping of a variable; 1 damps those without influence like the "
-                      "others, in a box 10 wide",
-       .fallback = 1.0,
+       .description = "least damping of a variable, beside the mean square of its column of the "
+                      "Jacobian in a box 10 wide: those without influence stay where they are",
+       .fallback = 0.5,
        .lower = 1e-12,
        .upper = 1e12},
       {.name = "initial_trust_region_radius",
@@ -121,8 +129,7 @@ OptimizerRow make_lm_row() {
           "squares; Marquardt 1963, An algorithm for least-squares estimation of nonlinear "
           "parameters; Agarwal, Mierle and others, Ceres Solver",
       .capabilities = {.bounds = true, .batch = true, .residuals = true, .local = true},
-      .options =
-          join_options(own, make_difference_options("forward", 0.005), make_tolerance_options()),
+      .options = join_options(own, make_tolerance_options()),
       .make = make_lm,
       .requirements = {.residuals = true},
       .backend = kBackend,
@@ -137,6 +144,12 @@ OptimizerRow make_bfgs_row() {
        .fallback = 0.05,
        .lower = 1e-9,
        .upper = 1},
+      make_differences_option("central"),
+      {.name = "step",
+       .description = "of the differences, share of the box",
+       .fallback = 0.001,
+       .lower = 1e-12,
+       .upper = 0.25},
       make_constraint_weight_option(),
   };
   return {
@@ -146,8 +159,7 @@ OptimizerRow make_bfgs_row() {
           "Nocedal and Wright 2006, Numerical Optimization, sections 6.1 and 3.5; Agarwal, "
           "Mierle and others, Ceres Solver",
       .capabilities = {.bounds = true, .batch = true, .local = true},
-      .options =
-          join_options(own, make_difference_options("central", 0.001), make_tolerance_options()),
+      .options = join_options(own, make_tolerance_options()),
       .make = make_bfgs_optimizer,
       .backend = kBackend,
       .unavailable = kUnavailable,

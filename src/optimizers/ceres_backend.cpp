@@ -10,6 +10,7 @@
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 namespace armwright {
 namespace {
@@ -82,26 +83,27 @@ bool uses_logarithm(ResidualTransform transform, const ProblemDescription& probl
   });
 }
 
+// The residuals as Ceres sees them. The first usable ones, the start's, set the scale: the cost,
+// half the sum of squares, is that of a mean, so that the damping means the same for every problem.
 class ResidualsOf {
  public:
   ResidualsOf(bool logarithm, double floor) : logarithm_(logarithm), floor_share_(floor) {}
 
-  // Empty for what failed: it has no residuals. The first residuals ever seen, the start's, set the
-  // floor.
+  // Empty for what failed: it has no residuals.
   std::vector<double> operator()(const Score& score) {
     std::vector<double> residuals = score.residuals;
     const double square_sum = calc_square_sum(residuals);
-    if (!(square_sum < kLargestSquareSum)) {  // also where it is no number
+    if (residuals.empty() || !(square_sum < kLargestSquareSum)) {  // also where it is no number
       return {};
     }
-    if (logarithm_ && !residuals.empty()) {
-      if (floor_ == 0) {
-        const double mean = square_sum / static_cast<double>(residuals.size());
-        floor_ = std::max(floor_share_ * std::sqrt(mean), std::numeric_limits<double>::min());
-      }
-      for (double& residual : residuals) {
-        residual = 2 * std::log(std::max(std::abs(residual), floor_) / floor_);
-      }
+    const auto count = static_cast<double>(residuals.size());
+    if (scale_ == 0) {
+      scale_ = std::max(std::sqrt(square_sum / count), std::numeric_limits<double>::min());
+    }
+    const double floor = floor_share_ * scale_;
+    for (double& residual : residuals) {
+      const double share = residual / (logarithm_ ? floor : scale_);
+      residual = (logarithm_ ? std::log1p(share * share) : share) / std::sqrt(count);
     }
     return residuals;
   }
@@ -109,13 +111,14 @@ class ResidualsOf {
  private:
   bool logarithm_;
   double floor_share_;
-  double floor_ = 0;
+  double scale_ = 0;  // root mean square of the start's residuals
 };
 
-// The coordinates in which the box is 10 wide and the start is 0.
+// The coordinates in which the box is 10 wide and `centre` is 0.
 class CentredBox {
  public:
-  explicit CentredBox(const SearchSpace& space) : space_(space) {}
+  CentredBox(const SearchSpace& space, std::vector<double> centre)
+      : space_(space), centre_(std::move(centre)) {}
 
   double unit(std::size_t i) const { return (space_.upper()[i] - space_.lower()[i]) / kBoxWidth; }
   double lower(std::size_t i) const { return to_own(i, space_.lower()[i]); }
@@ -125,23 +128,25 @@ class CentredBox {
     std::vector<double> coordinates;
     for (std::size_t i = 0; i < space_.dimension(); ++i) {
       coordinates.push_back(
-          std::clamp(space_.start()[i] + p[i] * unit(i), space_.lower()[i], space_.upper()[i]));
+          std::clamp(centre_[i] + p[i] * unit(i), space_.lower()[i], space_.upper()[i]));
     }
     return coordinates;
   }
 
  private:
   double to_own(std::size_t i, double coordinate) const {
-    return unit(i) > 0 ? (coordinate - space_.start()[i]) / unit(i) : 0;
+    return unit(i) > 0 ? (coordinate - centre_[i]) / unit(i) : 0;
   }
 
   const SearchSpace& space_;
+  std::vector<double> centre_;
 };
 
 class ResidualCost : public ceres::CostFunction {
  public:
-  ResidualCost(DifferencedFunction& function, Held& held, std::size_t residual_count)
-      : function_(function), box_(function.space()), held_(held), residual_count_(residual_count) {
+  ResidualCost(DifferencedFunction& function, const CentredBox& box, Held& held,
+               std::size_t residual_count)
+      : function_(function), box_(box), held_(held), residual_count_(residual_count) {
     set_num_residuals(static_cast<int>(residual_count));
     mutable_parameter_block_sizes()->push_back(static_cast<int>(function.space().dimension()));
   }
@@ -177,38 +182,63 @@ class ResidualCost : public ceres::CostFunction {
 
  private:
   DifferencedFunction& function_;
-  CentredBox box_;
+  const CentredBox& box_;
   Held& held_;
   std::size_t residual_count_;
 };
+
+// The widest differences, share of the box: what is simulated is rough, what is not is smooth.
+constexpr double kRoughStep = 0.07;
+constexpr double kSmoothStep = 0.005;
+
+// Wide differences have done their part when a step gains less than this share of the cost.
+constexpr double kCoarseTolerance = 0.01;
 
 class LevenbergMarquardt : public Optimizer {
  public:
   explicit LevenbergMarquardt(const LevenbergSettings& settings) : settings_(settings) {}
 
   void minimize(Evaluator& evaluator, std::uint64_t /*seed*/) override {
-    ResidualsOf residuals_of(uses_logarithm(settings_.transform, evaluator.problem()),
-                             settings_.floor);
-    DifferencedFunction function(evaluator, std::ref(residuals_of), settings_.differences);
+    const bool logarithm = uses_logarithm(settings_.transform, evaluator.problem());
     Held held;
-    std::size_t residual_count = 0;
-    const bool has_start = held.run([&] {
-      residual_count = function.look_at(function.space().start(), false).values.size();
-      return residual_count > 0;  // a start that fails offers nothing to descend from
-    });
-    if (has_start) {
-      solve(evaluator, function, held, residual_count);
+    DifferenceSettings differences = settings_.differences;
+    if (differences.step == 0) {
+      differences.step = logarithm ? kRoughStep : kSmoothStep;
+    }
+    std::optional<DifferencedFunction::Best> best;
+    for (bool is_going = true; is_going && differences.step >= settings_.smallest_step;
+         differences.step /= 2) {
+      is_going = held.run([&] {
+        ResidualsOf residuals_of(logarithm, settings_.floor);
+        DifferencedFunction function(evaluator, std::ref(residuals_of), differences);
+        if (best) {
+          function.learn(*best);
+        }
+        const std::vector<double> centre = best ? best->coordinates : function.space().start();
+        const std::size_t residual_count = function.look_at(centre, false).values.size();
+        if (residual_count == 0) {  // a start that fails offers nothing to descend from
+          return false;
+        }
+        const bool is_last = differences.step / 2 < settings_.smallest_step;
+        solve(evaluator, function, held, centre, residual_count,
+              is_last ? settings_.function_tolerance
+                      : std::max(settings_.function_tolerance, kCoarseTolerance));
+        if (function.best()) {
+          best = function.best();
+        }
+        return true;
+      });
     }
     held.rethrow_unless_stopped();
   }
 
  private:
   void solve(const Evaluator& evaluator, DifferencedFunction& function, Held& held,
-             std::size_t residual_count) const {
-    const SearchSpace& space = function.space();
-    const CentredBox box(space);
-    std::vector<double> p(space.dimension(), 0.0);
-    ResidualCost cost(function, held, residual_count);
+             const std::vector<double>& centre, std::size_t residual_count,
+             double function_tolerance) const {
+    const CentredBox box(function.space(), centre);
+    std::vector<double> p(centre.size(), 0.0);
+    ResidualCost cost(function, box, held, residual_count);
     ceres::Problem::Options ownership;
     ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     ceres::Problem problem(ownership);
@@ -232,7 +262,7 @@ class LevenbergMarquardt : public Optimizer {
     options.jacobi_scaling = settings_.jacobi_scaling;
     options.min_lm_diagonal = settings_.min_damping;
     options.initial_trust_region_radius = settings_.initial_radius;
-    options.function_tolerance = settings_.function_tolerance;
+    options.function_tolerance = function_tolerance;
     options.parameter_tolerance = settings_.parameter_tolerance;
     options.callbacks.push_back(&callback);
     ceres::Solver::Summary summary;

@@ -14,17 +14,26 @@ namespace armwright {
 
 enum class ResidualTransform { automatic, logarithm, none };
 
-// Levenberg-Marquardt on Score::residuals (Levenberg 1944; Marquardt 1963). With the logarithm the
-// residuals are 2 ln(max(|r|, f) / f), f = floor times the start's root mean square: the logarithm
-// of each one's share r^2 of the objective. Every share then counts by its ratio to what it was,
-// however small it has become.
+// Levenberg-Marquardt on Score::residuals (Levenberg 1944; Marquardt 1963). With the logarithm a
+// residual r is ln(1 + (r/f)^2), f = floor times the start's root mean square: the logarithm of its
+// share of the objective, level where that is small. Every share then counts by its ratio to what
+// it was. Either way the residuals are divided by the root of their number (and, without the
+// logarithm, by the start's root mean square), so that the damping means the same for every
+// problem.
+//
+// Simulations are rough: slopes over short distances are those of the roughness. So the differences
+// begin wide; each time that Ceres comes to its end, it starts again from the best point with half
+// the step, which also scales the residuals anew (the idea of implicit filtering; Gilmore and
+// Kelley 1995, An implicit filtering algorithm for optimization of functions with many local
+// minima).
 struct LevenbergSettings {
   ResidualTransform transform = ResidualTransform::automatic;  // the logarithm where every variable
                                                                // is logarithmic
-  double floor = 1e-3;
-  DifferenceSettings differences;
+  double floor = 0.1;
+  DifferenceSettings differences{.step = 0};  // the widest; 0: by the transform
+  double smallest_step = 0.0005;              // the narrowest, share of the box
   bool jacobi_scaling = false;
-  double min_damping = 1;
+  double min_damping = 0.5;
   double initial_radius = 1;
   double function_tolerance = 1e-6;
   double parameter_tolerance = 1e-8;

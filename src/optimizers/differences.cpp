@@ -28,6 +28,20 @@ DifferencedFunction::Shift DifferencedFunction::add_shifts(
   return shift;
 }
 
+std::vector<Score> DifferencedFunction::evaluate(const std::vector<std::vector<double>>& batch) {
+  std::vector<Score> scores = function_.evaluate_batch(batch);
+  const auto calc = [&](const Score& score) {
+    return calc_scalar(function_.evaluator().problem(), score.objectives);
+  };
+  for (std::size_t i = 0; i < batch.size(); ++i) {
+    if (scores[i].status == EvaluationStatus::ok &&
+        (!best_ || calc(scores[i]) < calc(best_->score))) {
+      best_ = {batch[i], scores[i]};
+    }
+  }
+  return scores;
+}
+
 const DifferencedFunction::Place& DifferencedFunction::look_at(
     const std::vector<double>& coordinates, bool with_derivatives) {
   const auto known = places_.find(coordinates);
@@ -46,7 +60,7 @@ const DifferencedFunction::Place& DifferencedFunction::look_at(
       shifts.push_back(add_shifts(coordinates, i, batch));
     }
   }
-  const std::vector<Score> scores = function_.evaluate_batch(batch);
+  const std::vector<Score> scores = evaluate(batch);
   Place& place = is_known ? known->second : places_[coordinates];
   if (!is_known) {
     place.values = values_of_(scores.front());

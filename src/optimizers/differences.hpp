@@ -46,6 +46,17 @@ class DifferencedFunction {
   // stay empty. Valid until the next call.
   const Place& look_at(const std::vector<double>& coordinates, bool with_derivatives);
 
+  // The evaluated point with the smallest objective (calc_scalar()), shifted ones included; none
+  // before the first that did not fail.
+  struct Best {
+    std::vector<double> coordinates;
+    Score score;
+  };
+  const std::optional<Best>& best() const { return best_; }
+
+  // Another function's best: not asked for again.
+  void learn(const Best& known) { places_[known.coordinates].values = values_of_(known.score); }
+
  private:
   struct Shift {
     std::optional<std::size_t> above;  // places in the batch
@@ -55,10 +66,13 @@ class DifferencedFunction {
   Shift add_shifts(const std::vector<double>& base, std::size_t variable,
                    std::vector<std::vector<double>>& batch) const;
 
+  std::vector<Score> evaluate(const std::vector<std::vector<double>>& batch);
+
   ScalarFunction function_;
   ValuesOf values_of_;
   DifferenceSettings settings_;
   std::map<std::vector<double>, Place> places_;
+  std::optional<Best> best_;
 };
 
 }  // namespace armwright
