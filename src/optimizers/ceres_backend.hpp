@@ -1,4 +1,5 @@
-// The two optimizers that are made of Ceres Solver; the only place that includes its headers.
+// The two optimizers that are made of Ceres Solver. Its headers are included by their .cpp files
+// and ceres_support.hpp only.
 //
 // Both work in coordinates p of their own: p = 0 at the start and the box 10 wide in every
 // variable, on the variable's own scale. So a factor of ten is about one, trust regions and damping

@@ -2,67 +2,17 @@
 
 #ifdef ARMWRIGHT_WITH_CERES
 
-#include <ceres/ceres.h>
-
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <functional>
 #include <limits>
 #include <numeric>
 #include <optional>
 
+#include "optimizers/ceres_support.hpp"
+
 namespace armwright {
 namespace {
-
-constexpr double kBoxWidth = 10;  // in the coordinates that Ceres sees
-
-// Exceptions must not pass through Ceres: the first one is held, every later question answered with
-// "failed" at once, and the held one thrown again when Ceres has returned.
-class Held {
- public:
-  bool any() const { return exception_ != nullptr; }
-
-  // Whether `action` ran to its end and returned true.
-  template <typename Action>
-  bool run(Action action) {
-    if (any()) {
-      return false;
-    }
-    try {
-      return action();
-    } catch (...) {
-      exception_ = std::current_exception();
-      return false;
-    }
-  }
-
-  void rethrow_unless_stopped() const {
-    if (!any()) {
-      return;
-    }
-    try {
-      std::rethrow_exception(exception_);
-    } catch (const EvaluatorStopped&) {  // the run is over, which is no error
-    }
-  }
-
- private:
-  std::exception_ptr exception_;
-};
-
-class StopCallback : public ceres::IterationCallback {
- public:
-  StopCallback(const Held& held, const Evaluator& evaluator) : held_(held), evaluator_(evaluator) {}
-
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary& /*summary*/) override {
-    return held_.any() || evaluator_.stopped() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
-  }
-
- private:
-  const Held& held_;
-  const Evaluator& evaluator_;
-};
 
 // Larger sums of squares count as failures: Ceres goes on to square their slopes, and complains on
 // stderr of what is not finite.
@@ -71,8 +21,6 @@ constexpr double kLargestSquareSum = 1e200;
 double calc_square_sum(const std::vector<double>& values) {
   return std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
 }
-
-// --- Levenberg-Marquardt ---
 
 bool uses_logarithm(ResidualTransform transform, const ProblemDescription& problem) {
   if (transform != ResidualTransform::automatic) {
@@ -120,7 +68,9 @@ class CentredBox {
   CentredBox(const SearchSpace& space, std::vector<double> centre)
       : space_(space), centre_(std::move(centre)) {}
 
-  double unit(std::size_t i) const { return (space_.upper()[i] - space_.lower()[i]) / kBoxWidth; }
+  double unit(std::size_t i) const {
+    return (space_.upper()[i] - space_.lower()[i]) / kCeresBoxWidth;
+  }
   double lower(std::size_t i) const { return to_own(i, space_.lower()[i]); }
   double upper(std::size_t i) const { return to_own(i, space_.upper()[i]); }
 
@@ -144,7 +94,7 @@ class CentredBox {
 
 class ResidualCost : public ceres::CostFunction {
  public:
-  ResidualCost(DifferencedFunction& function, const CentredBox& box, Held& held,
+  ResidualCost(DifferencedFunction& function, const CentredBox& box, HeldException& held,
                std::size_t residual_count)
       : function_(function), box_(box), held_(held), residual_count_(residual_count) {
     set_num_residuals(static_cast<int>(residual_count));
@@ -183,7 +133,7 @@ class ResidualCost : public ceres::CostFunction {
  private:
   DifferencedFunction& function_;
   const CentredBox& box_;
-  Held& held_;
+  HeldException& held_;
   std::size_t residual_count_;
 };
 
@@ -200,7 +150,7 @@ class LevenbergMarquardt : public Optimizer {
 
   void minimize(Evaluator& evaluator, std::uint64_t /*seed*/) override {
     const bool logarithm = uses_logarithm(settings_.transform, evaluator.problem());
-    Held held;
+    HeldException held;
     DifferenceSettings differences = settings_.differences;
     if (differences.step == 0) {
       differences.step = logarithm ? kRoughStep : kSmoothStep;
@@ -233,7 +183,7 @@ class LevenbergMarquardt : public Optimizer {
   }
 
  private:
-  void solve(const Evaluator& evaluator, DifferencedFunction& function, Held& held,
+  void solve(const Evaluator& evaluator, DifferencedFunction& function, HeldException& held,
              const std::vector<double>& centre, std::size_t residual_count,
              double function_tolerance) const {
     const CentredBox box(function.space(), centre);
@@ -272,123 +222,10 @@ class LevenbergMarquardt : public Optimizer {
   LevenbergSettings settings_;
 };
 
-// --- BFGS ---
-
-// Coordinates that wrap round inside the box, for methods that know no bounds.
-class FoldedBox {
- public:
-  // At a bound the fold is flat and nothing could ever leave: a start there is moved in by `margin`
-  // (share of the box).
-  FoldedBox(const SearchSpace& space, double margin) : space_(space) {
-    for (std::size_t i = 0; i < space.dimension(); ++i) {
-      const double inset = margin * width(i);
-      centre_.push_back(
-          std::clamp(space.start()[i], space.lower()[i] + inset, space.upper()[i] - inset));
-      const double share = width(i) > 0 ? (centre_[i] - space.lower()[i]) / width(i) : 0.5;
-      angle_.push_back(std::asin(std::clamp(2 * share - 1, -1.0, 1.0)));
-    }
-  }
-
-  std::vector<double> to_coordinates(const double* p) const {
-    std::vector<double> coordinates;
-    for (std::size_t i = 0; i < centre_.size(); ++i) {
-      const double swing = std::sin(angle_[i] + kRate * p[i]) - std::sin(angle_[i]);
-      coordinates.push_back(
-          std::clamp(centre_[i] + width(i) / 2 * swing, space_.lower()[i], space_.upper()[i]));
-    }
-    return coordinates;
-  }
-
-  double slope(std::size_t i, double p) const {
-    return width(i) / 2 * kRate * std::cos(angle_[i] + kRate * p);
-  }
-
- private:
-  static constexpr double kRate = 2 / kBoxWidth;  // in the middle of the box the scale is 10 a box
-
-  double width(std::size_t i) const { return space_.upper()[i] - space_.lower()[i]; }
-
-  const SearchSpace& space_;
-  std::vector<double> centre_;
-  std::vector<double> angle_;
-};
-
-class MeritFunction : public ceres::FirstOrderFunction {
- public:
-  MeritFunction(DifferencedFunction& function, const FoldedBox& box, double unit, Held& held)
-      : function_(function), box_(box), unit_(unit), held_(held) {}
-
-  int NumParameters() const override { return static_cast<int>(function_.space().dimension()); }
-
-  bool Evaluate(const double* parameters, double* cost, double* gradient) const override {
-    return held_.run([&] {
-      std::vector<double> p(parameters, parameters + NumParameters());
-      std::ranges::transform(p, p.begin(), [this](double value) { return value * unit_; });
-      const DifferencedFunction::Place& place =
-          function_.look_at(box_.to_coordinates(p.data()), gradient != nullptr);
-      if (place.values.empty()) {
-        return false;
-      }
-      *cost = place.values.front();
-      for (std::size_t i = 0; gradient != nullptr && i < p.size(); ++i) {
-        gradient[i] = place.derivatives[i].front() * box_.slope(i, p[i]) * unit_;
-      }
-      return true;
-    });
-  }
-
- private:
-  DifferencedFunction& function_;
-  const FoldedBox& box_;
-  double unit_;
-  Held& held_;
-};
-
-class Bfgs : public Optimizer {
- public:
-  explicit Bfgs(const BfgsSettings& settings) : settings_(settings) {}
-
-  void minimize(Evaluator& evaluator, std::uint64_t /*seed*/) override {
-    const auto merit_of = [&](const Score& score) {
-      const double merit = calc_merit(evaluator.problem(), score, settings_.constraint_weight);
-      const bool is_usable = score.status == EvaluationStatus::ok && std::isfinite(merit);
-      return is_usable ? std::vector<double>{merit} : std::vector<double>{};
-    };
-    DifferencedFunction function(evaluator, merit_of, settings_.differences);
-    const FoldedBox box(function.space(), settings_.differences.step);
-    Held held;
-    StopCallback callback(held, evaluator);
-    ceres::GradientProblemSolver::Options options;
-    options.line_search_direction_type = ceres::BFGS;
-    options.line_search_type = ceres::WOLFE;
-    options.logging_type = ceres::SILENT;
-    options.minimizer_progress_to_stdout = false;
-    options.max_num_iterations = std::numeric_limits<int>::max();
-    options.max_solver_time_in_seconds = std::numeric_limits<double>::max();
-    options.function_tolerance = settings_.function_tolerance;
-    options.parameter_tolerance = settings_.parameter_tolerance;
-    options.callbacks.push_back(&callback);
-    // Ceres's first step is 1 in the largest component of its coordinates.
-    const ceres::GradientProblem problem(
-        new MeritFunction(function, box, settings_.initial_step * kBoxWidth, held));
-    std::vector<double> p(function.space().dimension(), 0.0);
-    ceres::GradientProblemSolver::Summary summary;
-    ceres::Solve(options, problem, p.data(), &summary);
-    held.rethrow_unless_stopped();
-  }
-
- private:
-  BfgsSettings settings_;
-};
-
 }  // namespace
 
 std::unique_ptr<Optimizer> make_levenberg_marquardt(const LevenbergSettings& settings) {
   return std::make_unique<LevenbergMarquardt>(settings);
-}
-
-std::unique_ptr<Optimizer> make_bfgs(const BfgsSettings& settings) {
-  return std::make_unique<Bfgs>(settings);
 }
 
 }  // namespace armwright
