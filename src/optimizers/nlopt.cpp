@@ -82,7 +82,7 @@ const std::vector<Algorithm>& algorithms() {
        .nlopt_name = "LN_NEWUOA_BOUND",
        // NLopt finds every step within the bounds by a run of MMA: 2.2 ms of its own time an
        // evaluation at 12 variables, 4.2 ms at 24, where newuoa and bobyqa take 0.01 and 0.05 ms.
-       .summary = "NEWUOA with bounds in its steps, at 100 times the time of bobyqa, its successor",
+       .summary = "NEWUOA with bounds in its steps, at 100 times the time of bobyqa",
        .source = "Powell 2006, The NEWUOA software for unconstrained optimization without "
                  "derivatives; Johnson 2007, The NLopt nonlinear-optimization package (bounds)",
        .isolated = true,
