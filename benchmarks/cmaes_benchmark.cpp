@@ -281,22 +281,27 @@ std::vector<Setting> make_settings() {
 
 void print_comparison() {
   fmt::print(
-      "| function | n | start | sigma | lambda | f < | ours | ours, active=false | pagmo | "
-      "published |\n|---|---|---|---|---|---|---|---|---|---|\n");
+      "| function | n | start | sigma | lambda | f < | ours | orthogonal=false | "
+      "active=false as well | pagmo | published |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const Setting& s : make_settings()) {
     const std::string own = describe([&](int seed) { return run_own(s, seed); });
-    const std::string passive =
-        describe([&](int seed) { return run_own(s, seed, {"active=false"}); });
+    const std::string independent =
+        describe([&](int seed) { return run_own(s, seed, {"orthogonal=false"}); });
+    const std::string passive = describe([&](int seed) {
+      return run_own(s, seed, {"orthogonal=false", "active=false"});
+    });
     std::string pagmo = "not built";
 #ifdef ARMWRIGHT_WITH_PAGMO
     pagmo = describe([&](int seed) { return run_pagmo(s, seed); });
 #endif
-    fmt::print(
-        "| {} | {} | {} | {} | {} | {:g} | {} | {} | {} | {} |\n", s.function.name, s.dimension,
-        s.start_lower == s.start_upper ? fmt::format("{}", s.start_lower)
-                                       : fmt::format("[{}, {}]", s.start_lower, s.start_upper),
-        s.sigma, s.population > 0 ? std::to_string(s.population) : "default", s.target, own,
-        passive, pagmo, s.published);
+    fmt::print("| {} | {} | {} | {} | {} | {:g} | {} | {} | {} | {} | {} |\n", s.function.name,
+               s.dimension,
+               s.start_lower == s.start_upper
+                   ? fmt::format("{}", s.start_lower)
+                   : fmt::format("[{}, {}]", s.start_lower, s.start_upper),
+               s.sigma, s.population > 0 ? std::to_string(s.population) : "default", s.target, own,
+               independent, passive, pagmo, s.published);
     std::fflush(stdout);
   }
 }

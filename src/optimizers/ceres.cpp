@@ -81,9 +81,9 @@ std::vector<OptionSpec> join_options(std::vector<OptionSpec> options, const List
 OptimizerRow make_lm_row() {
   const std::vector<OptionSpec> own = {
       {.name = "transform",
-       .description = "what becomes of the residuals: log (ln of their squares over the floor's), "
-                      "none, or auto: "
-                      "log where every variable is logarithmic",
+       .description =
+           "what becomes of the residuals: log (ln of 1 plus their squares over the "
+           "floor's), none (as they are), or auto: log where every variable is logarithmic",
        .fallback = std::string("auto"),
        .choices = {"auto", "log", "none"}},
       {.name = "floor",

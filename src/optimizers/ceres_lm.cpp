@@ -156,7 +156,8 @@ class LevenbergMarquardt : public Optimizer {
       differences.step = logarithm ? kRoughStep : kSmoothStep;
     }
     std::optional<DifferencedFunction::Best> best;
-    for (bool is_going = true; is_going && differences.step >= settings_.smallest_step;
+    const double smallest_step = std::min(settings_.smallest_step, differences.step);
+    for (bool is_going = true; is_going && differences.step >= smallest_step;
          differences.step /= 2) {
       is_going = held.run([&] {
         ResidualsOf residuals_of(logarithm, settings_.floor);
@@ -169,13 +170,11 @@ class LevenbergMarquardt : public Optimizer {
         if (residual_count == 0) {  // a start that fails offers nothing to descend from
           return false;
         }
-        const bool is_last = differences.step / 2 < settings_.smallest_step;
+        const bool is_last = differences.step / 2 < smallest_step;
         solve(evaluator, function, held, centre, residual_count,
               is_last ? settings_.function_tolerance
                       : std::max(settings_.function_tolerance, kCoarseTolerance));
-        if (function.best()) {
-          best = function.best();
-        }
+        best = function.best();
         return true;
       });
     }

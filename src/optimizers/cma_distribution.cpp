@@ -37,6 +37,22 @@ void scale_to_sum(std::span<double> weights, double sum) {
   }
 }
 
+// Turns the columns, n at a time, until they are at right angles (Gram and Schmidt, twice over
+// against rounding); they keep their lengths.
+void make_orthogonal(Eigen::MatrixXd& z) {
+  const Eigen::Index n = z.rows();
+  for (Eigen::Index i = 0; i < z.cols(); ++i) {
+    const Eigen::Index others = i % n;
+    const double length = z.col(i).norm();
+    for (int pass = 0; pass < 2; ++pass) {
+      for (Eigen::Index k = i - others; k < i; ++k) {
+        z.col(i) -= z.col(k).dot(z.col(i)) / std::max(z.col(k).squaredNorm(), 1e-300) * z.col(k);
+      }
+    }
+    z.col(i) *= length / std::max(z.col(i).norm(), 1e-300);
+  }
+}
+
 }  // namespace
 
 std::size_t calc_default_population(std::size_t dimension) {
@@ -82,6 +98,7 @@ CmaParameters make_cma_parameters(std::size_t dimension, const CmaSettings& sett
   }
   scale_to_sum(negative, negative_sum);
 
+  p.orthogonal = settings.orthogonal;
   p.expected_norm = std::sqrt(n) * (1 - 1 / (4 * n) + 1 / (21 * n * n));
   p.decomposition_interval = std::max(
       std::int64_t{1}, static_cast<std::int64_t>(std::min(1e6, 1 / (10 * n * (p.c_1 + p.c_mu)))));
@@ -130,6 +147,9 @@ const std::vector<std::vector<double>>& CmaDistribution::sample(RandomStream& ra
     for (Eigen::Index j = 0; j < s.z.rows(); ++j) {
       s.z(j, i) = random.normal();
     }
+  }
+  if (parameters_.orthogonal) {
+    make_orthogonal(s.z);
   }
   s.y.noalias() = s.axes * (s.lengths.asDiagonal() * s.z);
   for (std::size_t i = 0; i < points_.size(); ++i) {

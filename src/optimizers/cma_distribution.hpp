@@ -11,7 +11,10 @@
 // i runs from the best individual to the worst; weights past mu are negative ("active" update) and
 // there w_i' = w_i n / |C^-1/2 y_i|^2, which keeps C positive definite; h holds p_c back while p_s
 // is long. Source: Hansen 2016, The CMA Evolution Strategy: A Tutorial (arXiv:1604.00772v2),
-// section 6, figure 6 and table 1. C is decomposed every max(1, floor(1 / (10 n (c_1 + c_mu))))
+// section 6, figure 6 and table 1. The y of a generation are drawn at right angles to each other in
+// C's own metric, n at a time: every one is still N(0, C), and none repeats what another has tried
+// (Wang, Emmerich and Baeck 2014, Mirrored orthogonal sampling with pairwise selection in evolution
+// strategies; without the mirroring). C is decomposed every max(1, floor(1 / (10 n (c_1 + c_mu))))
 // generations, as its appendix B.2 advises.
 #pragma once
 
@@ -30,6 +33,7 @@ struct CmaSettings {
   std::size_t population = 0;  // lambda
   std::size_t mu = 0;
   bool active = true;
+  bool orthogonal = true;
   double c_1 = 0;
   double c_mu = 0;
   double c_sigma = 0;
@@ -48,6 +52,7 @@ struct CmaParameters {
   double c_sigma = 0;
   double d_sigma = 0;
   double c_c = 0;
+  bool orthogonal = true;                   // z of up to n individuals at right angles
   double expected_norm = 0;                 // E|N(0, I)|
   std::int64_t decomposition_interval = 1;  // generations
 };

@@ -21,6 +21,7 @@ class CmaEs : public Optimizer {
       : settings_{.cma = {.population = static_cast<std::size_t>(options.get_integer("population")),
                           .mu = static_cast<std::size_t>(options.get_integer("mu")),
                           .active = options.get_bool("active"),
+                          .orthogonal = options.get_bool("orthogonal"),
                           .c_1 = options.get_number("c_1"),
                           .c_mu = options.get_number("c_mu"),
                           .c_sigma = options.get_number("c_sigma"),
@@ -75,6 +76,10 @@ std::vector<OptionSpec> make_option_specs() {
        .upper = 1},
       {.name = "active",
        .description = "the worst points take part in the update, with negative weights",
+       .fallback = true},
+      {.name = "orthogonal",
+       .description = "the steps of a generation are drawn at right angles to each other, as many "
+                      "at a time as there are variables",
        .fallback = true},
       {.name = "mu",
        .description = "points of positive weight; 0: half the population",

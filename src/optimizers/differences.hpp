@@ -54,8 +54,11 @@ class DifferencedFunction {
   };
   const std::optional<Best>& best() const { return best_; }
 
-  // Another function's best: not asked for again.
-  void learn(const Best& known) { places_[known.coordinates].values = values_of_(known.score); }
+  // What is known already, which is not asked for again: another function's best.
+  void learn(const Best& known) {
+    places_[known.coordinates].values = values_of_(known.score);
+    best_ = known;
+  }
 
  private:
   struct Shift {

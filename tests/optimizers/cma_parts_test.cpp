@@ -15,6 +15,7 @@ namespace armwright {
 namespace {
 
 using testing::DoubleNear;
+using testing::Each;
 using testing::ElementsAre;
 
 double sum(std::span<const double> values) {
@@ -139,6 +140,65 @@ TEST(CmaDistribution, SamplesWithTheMeanAndTheDeviationItWasGiven) {
 }
 
 // One update of one variable, by hand: every formula of the header on numbers.
+// The distribution is N(0, I) here, so that the points are the steps z themselves.
+TEST(CmaDistribution, DrawsAsManyStepsAtRightAnglesAsThereAreVariables) {
+  const auto calc_largest_cosine = [](bool orthogonal, std::size_t first, std::size_t last) {
+    RandomStream random("test", 3);
+    CmaDistribution distribution(
+        make_cma_parameters(5, {.population = 12, .orthogonal = orthogonal}),
+        std::vector<double>(5, 0.0), 1);
+    const std::vector<std::vector<double>>& z = distribution.sample(random);
+    const auto dot = [&](std::size_t a, std::size_t b) {
+      return std::inner_product(z[a].begin(), z[a].end(), z[b].begin(), 0.0);
+    };
+    double largest = 0;
+    for (std::size_t a = first; a < last; ++a) {
+      for (std::size_t b = first; b < a; ++b) {
+        largest = std::max(largest, std::abs(dot(a, b)) / std::sqrt(dot(a, a) * dot(b, b)));
+      }
+    }
+    return largest;
+  };
+  EXPECT_LT(calc_largest_cosine(true, 0, 5), 1e-12);
+  EXPECT_LT(calc_largest_cosine(true, 5, 10), 1e-12);
+  EXPECT_LT(calc_largest_cosine(true, 10, 12), 1e-12);
+  EXPECT_GT(calc_largest_cosine(true, 0, 6), 0.1);  // six in five dimensions cannot be
+  EXPECT_GT(calc_largest_cosine(false, 0, 5), 0.1);
+}
+
+// Turning must leave every single step normal: mean 0, variance 1 in every coordinate, and squared
+// lengths with the mean n and the variance 2n of chi-squared, also for the last of a block, of
+// which least is left. 3000 generations; bounds of five standard errors.
+TEST(CmaDistribution, StepsAtRightAnglesAreStillNormal) {
+  constexpr int kGenerations = 3000;
+  constexpr std::size_t kDimension = 4;
+  RandomStream random("test", 4);
+  CmaDistribution distribution(make_cma_parameters(kDimension, {.population = 4}),
+                               std::vector<double>(kDimension, 0.0), 1);
+  for (const std::size_t individual : {std::size_t{0}, std::size_t{3}}) {
+    std::vector<double> means(kDimension);
+    std::vector<double> squares(kDimension);
+    double lengths = 0;
+    double lengths_squared = 0;
+    for (int g = 0; g < kGenerations; ++g) {
+      const std::vector<double>& z = distribution.sample(random)[individual];
+      double length = 0;
+      for (std::size_t i = 0; i < kDimension; ++i) {
+        means[i] += z[i] / kGenerations;
+        squares[i] += z[i] * z[i] / kGenerations;
+        length += z[i] * z[i];
+      }
+      lengths += length / kGenerations;
+      lengths_squared += length * length / kGenerations;
+    }
+    const double root = std::sqrt(kGenerations);
+    EXPECT_THAT(means, Each(DoubleNear(0, 5 / root)));
+    EXPECT_THAT(squares, Each(DoubleNear(1, 5 * std::sqrt(2) / root)));
+    EXPECT_NEAR(lengths, 4, 5 * std::sqrt(8) / root);
+    EXPECT_NEAR(lengths_squared, 24, 5 * std::sqrt(1344) / root);  // E l^2 and Var l^2, l chi2(4)
+  }
+}
+
 TEST(CmaDistribution, OneUpdateIsThatOfTheEquations) {
   CmaDistribution distribution(make_cma_parameters(1, {}), std::vector<double>{2.0}, 0.5);
   const CmaParameters& p = distribution.parameters();
