@@ -101,6 +101,51 @@ TEST_F(Ceres, LmLooksBeyondRipples) {
   EXPECT_LT(wide, 0.1 * narrow);
 }
 
+TEST_F(Ceres, LmEvaluatesWhateverTheSmallestStep) {
+  const auto problem = make_analytic("rosenbrock", 10);
+  const MemoryEvaluator evaluator =
+      run("ceres:lm", *problem, {.budget = 600}, {"step=1e-5", "smallest_step=0.1"});
+  EXPECT_LT(evaluator.best().value(), 1e-6);
+}
+
+// Every round's derivatives are taken at, and so one shift away from, the best point of all before.
+TEST_F(Ceres, LmStartsAgainFromTheBestPoint) {
+  // The start is the best already, and no slope says so: no round gains anything.
+  const ResidualProblem problem(
+      std::vector<DecisionVariable>{{"a", "", -1, 1, 0}, {"b", "", -1, 1, 0}},
+      [](std::span<const double> x) {
+        return std::vector<double>{1 + std::abs(x[0]), 1 + std::abs(x[1])};
+      });
+  const MemoryEvaluator evaluator = run("ceres:lm", problem, {.budget = 3000}, {"step=0.1"});
+  const auto& trace = evaluator.trace();
+  // The step of a batch of shifts: the one coordinate in which it differs from its centre.
+  double narrowest = std::numeric_limits<double>::infinity();
+  std::vector<double> best;
+  double best_value = std::numeric_limits<double>::infinity();
+  int rounds = 0;
+  for (std::size_t i = 0; i < trace.size(); ++i) {
+    if (!best.empty()) {
+      int differing = 0;
+      double shift = 0;
+      for (std::size_t k = 0; k < best.size(); ++k) {
+        if (trace[i].asked[k] != best[k]) {
+          ++differing;
+          shift = std::abs(trace[i].asked[k] - best[k]);
+        }
+      }
+      if (differing == 1 && shift < 0.6 * narrowest) {
+        narrowest = shift;
+        ++rounds;
+      }
+    }
+    if (trace[i].score.objectives[0] < best_value) {
+      best_value = trace[i].score.objectives[0];
+      best = trace[i].asked;
+    }
+  }
+  EXPECT_EQ(rounds, 8);  // 0.1 / 2^7 is the last above 0.0005
+}
+
 TEST_F(Ceres, DerivativesAreOneBatchAndNothingIsAskedForTwice) {
   const auto rosenbrock = make_analytic("rosenbrock", 10);
   EXPECT_THAT(run("ceres:lm", *rosenbrock, {.budget = 300}).batch_sizes(), Each(AnyOf(1, 10)));
