@@ -21,18 +21,17 @@ OptionSpec make_differences_option(const char* kind) {
           .choices = {"forward", "central"}};
 }
 
-std::vector<OptionSpec> make_tolerance_options(const std::string& note) {
-  return {
-      {.name = "function_tolerance",
-       .description = "converged when a step changes the cost by less than this share of it" + note,
-       .fallback = 1e-6,
-       .lower = 0,
-       .upper = 1},
-      {.name = "parameter_tolerance",
-       .description = "converged when a step is shorter than this share of the way gone so far",
-       .fallback = 1e-8,
-       .lower = 0,
-       .upper = 1}};
+std::vector<OptionSpec> make_tolerance_options() {
+  return {{.name = "function_tolerance",
+           .description = "converged when a step changes the cost by less than this share of it",
+           .fallback = 1e-6,
+           .lower = 0,
+           .upper = 1},
+          {.name = "parameter_tolerance",
+           .description = "converged when a step is shorter than this share of the way gone so far",
+           .fallback = 1e-8,
+           .lower = 0,
+           .upper = 1}};
 }
 
 [[maybe_unused]] DifferenceSettings read_differences(const Options& options) {
@@ -130,8 +129,7 @@ OptimizerRow make_lm_row() {
           "squares; Marquardt 1963, An algorithm for least-squares estimation of nonlinear "
           "parameters; Agarwal, Mierle and others, Ceres Solver",
       .capabilities = {.bounds = true, .batch = true, .residuals = true, .local = true},
-      .options = join_options(
-          own, make_tolerance_options("; before the last halving of the step 0.01 at least")),
+      .options = join_options(own, make_tolerance_options()),
       .make = make_lm,
       .requirements = {.residuals = true},
       .backend = kBackend,
@@ -161,7 +159,7 @@ OptimizerRow make_bfgs_row() {
           "Nocedal and Wright 2006, Numerical Optimization, sections 6.1 and 3.5; Agarwal, "
           "Mierle and others, Ceres Solver",
       .capabilities = {.bounds = true, .batch = true, .local = true},
-      .options = join_options(own, make_tolerance_options("")),
+      .options = join_options(own, make_tolerance_options()),
       .make = make_bfgs_optimizer,
       .backend = kBackend,
       .unavailable = kUnavailable,

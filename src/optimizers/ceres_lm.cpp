@@ -141,9 +141,6 @@ class ResidualCost : public ceres::CostFunction {
 constexpr double kRoughStep = 0.07;
 constexpr double kSmoothStep = 0.005;
 
-// Wide differences have done their part when a step gains less than this share of the cost.
-constexpr double kCoarseTolerance = 0.01;
-
 class LevenbergMarquardt : public Optimizer {
  public:
   explicit LevenbergMarquardt(const LevenbergSettings& settings) : settings_(settings) {}
@@ -170,10 +167,7 @@ class LevenbergMarquardt : public Optimizer {
         if (residual_count == 0) {  // a start that fails offers nothing to descend from
           return false;
         }
-        const bool is_last = differences.step / 2 < smallest_step;
-        solve(evaluator, function, held, centre, residual_count,
-              is_last ? settings_.function_tolerance
-                      : std::max(settings_.function_tolerance, kCoarseTolerance));
+        solve(evaluator, function, held, centre, residual_count);
         best = function.best();
         return true;
       });
@@ -183,8 +177,7 @@ class LevenbergMarquardt : public Optimizer {
 
  private:
   void solve(const Evaluator& evaluator, DifferencedFunction& function, HeldException& held,
-             const std::vector<double>& centre, std::size_t residual_count,
-             double function_tolerance) const {
+             const std::vector<double>& centre, std::size_t residual_count) const {
     const CentredBox box(function.space(), centre);
     std::vector<double> p(centre.size(), 0.0);
     ResidualCost cost(function, box, held, residual_count);
@@ -211,7 +204,7 @@ class LevenbergMarquardt : public Optimizer {
     options.jacobi_scaling = settings_.jacobi_scaling;
     options.min_lm_diagonal = settings_.min_damping;
     options.initial_trust_region_radius = settings_.initial_radius;
-    options.function_tolerance = function_tolerance;
+    options.function_tolerance = settings_.function_tolerance;
     options.parameter_tolerance = settings_.parameter_tolerance;
     options.callbacks.push_back(&callback);
     ceres::Solver::Summary summary;

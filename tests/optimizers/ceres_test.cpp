@@ -63,7 +63,7 @@ TEST_F(Ceres, LmSolvesRosenbrock) {
   for (const char* transform : {"transform=none", "transform=auto"}) {  // no logarithmic variables
     const MemoryEvaluator evaluator = run("ceres:lm", *problem, {.budget = 2000}, {transform});
     EXPECT_LT(evaluator.best().value(), 1e-8);
-    EXPECT_LT(evaluator.trace().size(), 500u);  // ends by itself; measured 334
+    EXPECT_LT(evaluator.trace().size(), 600u);  // ends by itself; measured 530
     EXPECT_EQ(evaluator.trace().front().asked, start_of(*problem));
   }
 }
