@@ -45,9 +45,12 @@ std::int64_t RunEvaluator::remaining() const {
 }
 
 void RunEvaluator::begin_generation() {
-  if (stopped()) {
-    return;
+  if (!stopped()) {
+    start_generation();
   }
+}
+
+void RunEvaluator::start_generation() {
   if (plan_.schedule.fresh) {
     const std::uint64_t first = counts_.generations * block_.numbers.size();
     std::iota(block_.numbers.begin(), block_.numbers.end(), first);
@@ -131,6 +134,25 @@ void RunEvaluator::check_replay_complete() const {
       refuse_replay(record->index, "it is recorded, and no longer asked for");
     }
   }
+}
+
+void RunEvaluator::take_remaining_recorded() {
+  for (auto& record : recorded_) {
+    if (!record) {
+      continue;
+    }
+    if (record->generation < counts_.generations) {
+      refuse_replay(record->index, "its generation is over");
+    }
+    while (counts_.generations < record->generation) {
+      start_generation();
+    }
+    ++counts_.replayed;
+    Score score;  // nobody is asking any more
+    take(std::move(*record), score);
+    record.reset();
+  }
+  report(0, 0);
 }
 
 std::vector<Score> RunEvaluator::evaluate(std::span<const std::vector<double>> points) {

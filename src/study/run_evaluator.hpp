@@ -75,6 +75,12 @@ class RunEvaluator final : public Evaluator {
   // Once the optimizer has returned by itself: Error{bad_data} if the journal holds more
   // evaluations than it asked for.
   void check_replay_complete() const;
+  // Once the optimizer has failed: counts and remembers, as if it had asked for them, the
+  // evaluations in the journal that it has not come to, those behind a gap too. What an earlier
+  // attempt at the run achieved is so not lost to a later one that fails sooner. (Recommendations
+  // are not in the journal: those of an earlier attempt only count where this one repeats them.)
+  // Error{bad_data} if they belong to a generation before the present one.
+  void take_remaining_recorded();
   // The designs to judge on the validation set, oldest first, no two the same: the last and the
   // best candidates; with several objectives the front, thinned out.
   std::vector<Candidate> select_candidates() const;
@@ -82,6 +88,7 @@ class RunEvaluator final : public Evaluator {
  private:
   EvaluationRecord make_request(std::span<const double> x) const;
   void check_replay(const EvaluationRecord& request, const EvaluationRecord& recorded) const;
+  void start_generation();
   [[noreturn]] void refuse_replay(std::uint64_t evaluation, const std::string& difference) const;
   void take(EvaluationRecord record, Score& score);
   void consider(const EvaluationRecord& record);  // a feasible one
