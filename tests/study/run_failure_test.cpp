@@ -117,6 +117,29 @@ TEST_F(RunTest, AnAttemptThatFailsSoonerTakesNothingAway) {
   }
 }
 
+TEST_F(RunTest, WhatIsRecordedBehindAGapCountsWhenTheNextAttemptFailsSooner) {
+  run(make_failing_plan(10), "a");
+  const JournalContent whole = read("a");
+  const auto file = temporary_ / "a" / "journal";
+  std::filesystem::remove(file);
+  JournalContent nothing;
+  Journal journal(file, nothing);
+  for (const EvaluationRecord& record : whole.training) {
+    if (record.index != 6) {
+      journal.append(record);
+    }
+  }
+  journal.close();
+  const auto again = run(make_failing_plan(2), "a");
+  ASSERT_TRUE(again && again->winner);
+  EXPECT_EQ(again->counts.evaluations, 9u);
+  EXPECT_EQ(again->counts.generations, 3u);
+  EXPECT_EQ(again->judged.back().candidate.evaluation, 8u);
+  run(make_failing_plan(-1), "a");
+  run(make_failing_plan(-1), "whole");
+  EXPECT_EQ(read_result("a"), read_result("whole"));
+}
+
 TEST_F(RunTest, AnAttemptThatFailsInALaterGenerationThanWasRecordedIsRefused) {
   run(make_failing_plan(7), "a");
   RunPlan other = make_failing_plan(0);
