@@ -111,14 +111,10 @@ class GeneticAlgorithm : public Optimizer {
 }  // namespace
 
 Fitness calc_fitness(const ProblemDescription& problem, const Score& score) {
-  Fitness fitness{.violation = 0, .objective = calc_scalar(problem, score.objectives)};
-  if (score.constraint_values.size() < problem.constraints.size()) {
-    fitness.violation = std::numeric_limits<double>::infinity();
-  }
-  for (const double g : score.constraint_values) {
-    fitness.violation += std::max(0.0, g);
-  }
-  return fitness;
+  const bool is_failed = score.constraint_values.size() < problem.constraints.size();
+  return {.violation = is_failed ? std::numeric_limits<double>::infinity()
+                                 : calc_violation(score.constraint_values),
+          .objective = calc_scalar(problem, score.objectives)};
 }
 
 bool is_fitter(const Fitness& a, const Fitness& b) {

@@ -106,10 +106,7 @@ NloptQuestions::Answer& NloptQuestions::remember(std::span<const double> coordin
     answer.objective = calc_scalar(problem, score.objectives);
     answer.constraint_values = score.constraint_values;
     answer.constraint_values.resize(problem.constraints.size(), kFailedViolation);
-    answer.violation = 0;
-    for (const double g : answer.constraint_values) {
-      answer.violation += std::max(0.0, g);
-    }
+    answer.violation = calc_violation(answer.constraint_values);
   } else {
     answer.objective = calc_merit(problem, score, settings_.constraint_weight);
   }

@@ -46,10 +46,7 @@ void PagmoBridge::require_finite(std::span<const double> coordinates) const {
 
 std::vector<double> PagmoBridge::calc_fitness(const Score& score) const {
   if (method_.multi_objective) {
-    double violation = 0;
-    for (const double g : score.constraint_values) {
-      violation += std::max(0.0, g);
-    }
+    const double violation = calc_violation(score.constraint_values);
     std::vector<double> fitness = score.objectives;
     for (double& objective : fitness) {
       objective += constraint_weight_ * violation;

@@ -15,11 +15,8 @@ OptionSpec make_constraint_weight_option() {
 }
 
 double calc_merit(const ProblemDescription& problem, const Score& score, double constraint_weight) {
-  double violation = 0;
-  for (const double g : score.constraint_values) {
-    violation += std::max(0.0, g);
-  }
-  return calc_scalar(problem, score.objectives) + constraint_weight * violation;
+  return calc_scalar(problem, score.objectives) +
+         constraint_weight * calc_violation(score.constraint_values);
 }
 
 Score ScalarFunction::evaluate(std::span<const double> coordinates) {

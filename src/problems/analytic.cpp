@@ -9,184 +9,23 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "problems/analytic_functions.hpp"
 
 namespace armwright {
 namespace {
-
-using Point = std::span<const double>;
 
 // More than any of the functions reaches inside its box (largest: the 1000-dimensional ellipsoid,
 // below 1e10), yet small enough that models fitted through it keep their digits: its square is far
 // from overflow and its spacing is 1e-4.
 constexpr double kPenalty = 1e12;
 
-// Off the centre of the box, and outside (-2, 2), where the coordinates of the minimiser lie.
-constexpr double kStart = -2.5;
-
 double calc_shift(int index) {
   const double multiple = (index + 1) * (std::numbers::phi - 1);
   return 4 * (multiple - std::floor(multiple) - 0.5);
 }
 
-double calc_sphere(Point z) {
-  double sum = 0;
-  for (const double zi : z) {
-    sum += zi * zi;
-  }
-  return sum;
-}
-
-double calc_ellipsoid_weight(std::size_t index, std::size_t dimension) {
-  constexpr double kCondition = 1e6;
-  const double last = dimension > 1 ? static_cast<double>(dimension - 1) : 1;
-  return std::pow(kCondition, static_cast<double>(index) / last);
-}
-
-double calc_ellipsoid(Point z) {
-  double sum = 0;
-  for (std::size_t i = 0; i < z.size(); ++i) {
-    sum += calc_ellipsoid_weight(i, z.size()) * z[i] * z[i];
-  }
-  return sum;
-}
-
-double calc_rosenbrock(Point z) {
-  double sum = 0;
-  for (std::size_t i = 0; i + 1 < z.size(); ++i) {
-    const double y = z[i] + 1;
-    const double valley = z[i + 1] + 1 - y * y;
-    sum += 100 * valley * valley + z[i] * z[i];
-  }
-  return sum;
-}
-
-double calc_rastrigin(Point z) {
-  double sum = 0;
-  for (const double zi : z) {
-    sum += zi * zi + 10 * (1 - std::cos(2 * std::numbers::pi * zi));
-  }
-  return sum;
-}
-
-// What the functions are the squares of; the sum of those is the value up to rounding.
-std::vector<double> calc_sphere_residuals(Point z) {
-  return {z.begin(), z.end()};
-}
-
-std::vector<double> calc_ellipsoid_residuals(Point z) {
-  std::vector<double> residuals;
-  for (std::size_t i = 0; i < z.size(); ++i) {
-    residuals.push_back(std::sqrt(calc_ellipsoid_weight(i, z.size())) * z[i]);
-  }
-  return residuals;
-}
-
-std::vector<double> calc_rosenbrock_residuals(Point z) {
-  std::vector<double> residuals;
-  for (std::size_t i = 0; i + 1 < z.size(); ++i) {
-    const double y = z[i] + 1;
-    residuals.push_back(10 * (z[i + 1] + 1 - y * y));
-    residuals.push_back(-z[i]);  // 1 - y
-  }
-  return residuals;
-}
-
-// 10 (1 - cos(2 pi z)) is 20 sin(pi z)^2.
-std::vector<double> calc_rastrigin_residuals(Point z) {
-  std::vector<double> residuals;
-  for (const double zi : z) {
-    residuals.push_back(zi);
-    residuals.push_back(std::sqrt(20.0) * std::sin(std::numbers::pi * zi));
-  }
-  return residuals;
-}
-
-double calc_rosen_suzuki(Point x) {
-  return x[0] * x[0] + x[1] * x[1] + 2 * x[2] * x[2] + x[3] * x[3] - 5 * x[0] - 5 * x[1] -
-         21 * x[2] + 7 * x[3];
-}
-
-std::vector<double> calc_rosen_suzuki_constraints(Point x) {
-  const double a = x[0] * x[0];
-  const double b = x[1] * x[1];
-  const double c = x[2] * x[2];
-  const double d = x[3] * x[3];
-  return {a + b + c + d + x[0] - x[1] + x[2] - x[3] - 8, a + 2 * b + c + 2 * d - x[0] - x[3] - 10,
-          2 * a + b + c + 2 * x[0] - x[1] - x[3] - 5};
-}
-
-struct Definition {
-  AnalyticRow row;
-  double lower = 0;
-  double upper = 0;
-  std::vector<double> start = {};      // one number: the same for every variable
-  std::vector<double> minimiser = {};  // empty: the shift
-  int constraint_count = 0;
-  double (*calc_value)(Point) = nullptr;
-  std::vector<double> (*calc_constraints)(Point) = nullptr;
-  std::vector<double> (*calc_residuals)(Point) = nullptr;
-};
-
-const std::vector<Definition>& definitions() {
-  static const std::vector<Definition> table = {
-      {.row = {.name = "sphere",
-               .summary = "Sum of squares; the easiest function there is",
-               .source = "De Jong 1975, An analysis of the behavior of a class of genetic adaptive "
-                         "systems, F1"},
-       .lower = -5,
-       .upper = 5,
-       .start = {kStart},
-       .calc_value = calc_sphere,
-       .calc_residuals = calc_sphere_residuals},
-      {.row = {.name = "ellipsoid",
-               .summary = "Separable quadratic of condition number 1e6",
-               .source = "Hansen, Finck, Ros and Auger 2009, Real-parameter black-box optimization "
-                         "benchmarking: noiseless functions definitions, f2 without oscillation"},
-       .lower = -5,
-       .upper = 5,
-       .start = {kStart},
-       .calc_value = calc_ellipsoid,
-       .calc_residuals = calc_ellipsoid_residuals},
-      {.row = {.name = "rosenbrock",
-               .summary = "A long, bent, flat valley",
-               .source = "Rosenbrock 1960, An automatic method for finding the greatest or least "
-                         "value of a function; chained to n variables",
-               .smallest_dimension = 2},
-       .lower = -5,
-       .upper = 5,
-       .start = {kStart},
-       .calc_value = calc_rosenbrock,
-       .calc_residuals = calc_rosenbrock_residuals},
-      {.row = {.name = "rastrigin",
-               .summary = "A bowl with a regular grid of local minima",
-               .source = "Rastrigin 1974, Systems of extremal control; Muehlenbein, Schomisch and "
-                         "Born 1991 for n variables"},
-       .lower = -5.12,
-       .upper = 5.12,
-       .start = {kStart},
-       .calc_value = calc_rastrigin,
-       .calc_residuals = calc_rastrigin_residuals},
-      {.row = {.name = "constrained",
-               .summary = "Rosen-Suzuki: a convex quadratic under three quadratic constraints",
-               .source = "Rosen and Suzuki 1965, Construction of nonlinear programming test "
-                         "problems; Hock and Schittkowski 1981, problem 43 (our box and start)",
-               .smallest_dimension = 4,
-               .largest_dimension = 4,
-               .default_dimension = 4},
-       .lower = -4,
-       .upper = 5,
-       .start = {-1, -1, -1,
-                 0.5},  // feasible; the source's origin shares a coordinate with the minimiser
-       .minimiser = {0, 1, 2, -1},
-       .constraint_count = 3,
-       .calc_value = calc_rosen_suzuki,
-       .calc_constraints = calc_rosen_suzuki_constraints},
-  };
-  return table;
-}
-
-const Definition& find_definition(std::string_view name) {
-  for (const Definition& definition : definitions()) {
+const AnalyticDefinition& find_definition(std::string_view name) {
+  for (const AnalyticDefinition& definition : analytic_definitions()) {
     if (definition.row.name == name) {
       return definition;
     }
@@ -196,7 +35,7 @@ const Definition& find_definition(std::string_view name) {
 
 class AnalyticProblem : public Problem {
  public:
-  AnalyticProblem(const Definition& definition, int dimension) : definition_(definition) {
+  AnalyticProblem(const AnalyticDefinition& definition, int dimension) : definition_(definition) {
     description_.name = definition.row.name;
     description_.summary = fmt::format("{}; {} {}", definition.row.summary, dimension,
                                        dimension == 1 ? "variable" : "variables");
@@ -297,7 +136,7 @@ class AnalyticProblem : public Problem {
     return residuals;
   }
 
-  const Definition& definition_;  // lives as long as the program
+  const AnalyticDefinition& definition_;  // lives as long as the program
   ProblemDescription description_;
   std::vector<double> shift_;
 };
@@ -307,7 +146,7 @@ class AnalyticProblem : public Problem {
 const std::vector<AnalyticRow>& analytic_table() {
   static const std::vector<AnalyticRow> rows = [] {
     std::vector<AnalyticRow> collected;
-    for (const Definition& definition : definitions()) {
+    for (const AnalyticDefinition& definition : analytic_definitions()) {
       collected.push_back(definition.row);
     }
     return collected;
@@ -317,7 +156,7 @@ const std::vector<AnalyticRow>& analytic_table() {
 
 std::vector<std::string> analytic_names() {
   std::vector<std::string> names;
-  for (const Definition& definition : definitions()) {
+  for (const AnalyticDefinition& definition : analytic_definitions()) {
     names.push_back(definition.row.name);
   }
   return names;
@@ -328,7 +167,7 @@ const AnalyticRow& find_analytic(std::string_view name) {
 }
 
 std::unique_ptr<Problem> make_analytic(std::string_view name, int dimension) {
-  const Definition& definition = find_definition(name);
+  const AnalyticDefinition& definition = find_definition(name);
   const AnalyticRow& row = definition.row;
   if (dimension < row.smallest_dimension || dimension > row.largest_dimension) {
     throw Error(

@@ -47,6 +47,14 @@ bool is_feasible(const Evaluation& evaluation) {
                      [](double g) { return g <= 0; });
 }
 
+double calc_violation(std::span<const double> constraint_values) {
+  double violation = 0;
+  for (const double g : constraint_values) {
+    violation += std::max(0.0, g);
+  }
+  return violation;
+}
+
 Evaluation Problem::evaluate(std::span<const double> x, const CaseBlock& block) const {
   std::vector<CaseJob> jobs;
   jobs.reserve(block.numbers.size());

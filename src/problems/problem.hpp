@@ -106,6 +106,8 @@ Quantity get_scalar_quantity(std::span<const Quantity> objectives);
 
 // It has objectives, and every constraint is met.
 bool is_feasible(const Evaluation& evaluation);
+// By how much constraints are violated: the sum of max(0, g).
+double calc_violation(std::span<const double> constraint_values);
 
 class Problem {
  public:

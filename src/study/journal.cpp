@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -18,6 +17,7 @@
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/file_descriptor.hpp"
+#include "study/journal_file.hpp"
 #include "study/journal_format.hpp"
 #include "study/journal_reader.hpp"
 
@@ -25,112 +25,12 @@ namespace armwright {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using journal_format::kFrameBytes;
-using journal_format::kMagic;
 
 // Half of what is promised (10 ms), so that a late wake-up does not break the promise.
 constexpr auto kWriteInterval = std::chrono::milliseconds(5);
 constexpr auto kSyncInterval = std::chrono::seconds(1);
-constexpr std::size_t kBufferBytes = 256
-                                     << 10;  // fits a core's L2 cache; larger writes gain nothing
-
-struct WriteResult {
-  std::size_t written = 0;
-  int error = 0;
-};
-
-WriteResult write_fully(int fd, std::string_view bytes) {
-  WriteResult result;
-  while (result.written < bytes.size()) {
-    const ssize_t put = ::write(fd, bytes.data() + result.written, bytes.size() - result.written);
-    if (put < 0 && errno == EINTR) {
-      continue;
-    }
-    if (put <= 0) {
-      result.error = put < 0 ? errno : EIO;
-      break;
-    }
-    result.written += static_cast<std::size_t>(put);
-  }
-  return result;
-}
-
-// Some file systems cannot sync; what they can do is then all there is to have.
-int sync_data(int fd) {
-  return ::fdatasync(fd) == 0 || errno == EINVAL || errno == EROFS ? 0 : errno;
-}
-
-// Makes the names of new files survive a power cut.
-void sync_folder_of(const std::filesystem::path& file) {
-  const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
-  const FileDescriptor descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (descriptor.is_open()) {
-    ::fsync(descriptor.get());
-  }
-}
-
-// The bytes of the whole records at the beginning of `records[0, written)`.
-std::size_t count_whole_record_bytes(std::string_view records, std::size_t written) {
-  std::size_t whole = 0;
-  while (written - whole >= kFrameBytes) {
-    const auto frame = journal_format::decode_frame(records.substr(whole, kFrameBytes));
-    const std::size_t record_bytes = kFrameBytes + frame.payload_bytes;
-    if (record_bytes > written - whole) {
-      break;
-    }
-    whole += record_bytes;
-  }
-  return whole;
-}
-
-void copy_from(int source, std::uint64_t offset, int target,
-               const std::filesystem::path& source_name, const std::filesystem::path& target_name) {
-  std::string chunk(1 << 20, '\0');
-  while (true) {
-    const ssize_t got = ::pread(source, chunk.data(), chunk.size(), static_cast<off_t>(offset));
-    if (got < 0 && errno == EINTR) {
-      continue;
-    }
-    if (got < 0) {
-      fail_io(source_name, "read its torn end", errno);
-    }
-    if (got == 0) {
-      break;
-    }
-    const auto bytes = static_cast<std::size_t>(got);
-    if (const int error = write_fully(target, {chunk.data(), bytes}).error; error != 0) {
-      fail_io(target_name, "save the torn end of the journal in it", error);
-    }
-    offset += bytes;
-  }
-  if (const int error = sync_data(target); error != 0) {
-    fail_io(target_name, "sync it to the disk", error);
-  }
-}
-
-// Saves what lies behind `offset` in the first free "<file>.torn-N".
-void save_torn_end(int fd, std::uint64_t offset, const std::filesystem::path& file) {
-  for (int n = 1;; ++n) {
-    const std::filesystem::path name = fmt::format("{}.torn-{}", file.string(), n);
-    FileDescriptor target(::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644));
-    if (!target.is_open() && errno == EEXIST) {
-      continue;
-    }
-    if (!target.is_open()) {
-      fail_io(name, "save the torn end of the journal in it", errno);
-    }
-    try {
-      copy_from(fd, offset, target.get(), file, name);
-      if (target.close() != 0) {
-        fail_io(name, "close it", errno);
-      }
-    } catch (...) {
-      ::unlink(name.c_str());  // half a copy beside an untouched journal would only confuse
-      throw;
-    }
-    return;
-  }
-}
+// Fits a core's L2 cache; larger writes gain nothing.
+constexpr std::size_t kBufferBytes = std::size_t{256} << 10;
 
 }  // namespace
 
@@ -147,11 +47,7 @@ class Journal::Writer {
     }
     JournalScan scan = scan_journal(fd_.get(), file_);
     if (scan.content.torn_bytes != 0) {
-      save_torn_end(fd_.get(), scan.good_bytes, file_);
-      sync_folder_of(file_);
-      if (::ftruncate(fd_.get(), static_cast<off_t>(scan.good_bytes)) != 0) {
-        fail_io(file_, "cut off its torn end", errno);
-      }
+      cut_torn_end(fd_.get(), scan.good_bytes, file_);
       unsynced_ = true;
     }
     good_bytes_ = scan.good_bytes;
@@ -213,11 +109,11 @@ class Journal::Writer {
   }
 
   void begin_file() {
-    const WriteResult result = write_fully(fd_.get(), kMagic);
+    const WriteResult result = write_fully(fd_.get(), journal_format::kMagic);
     if (result.error != 0) {
       fail_io(file_, "write it", result.error);
     }
-    good_bytes_ = kMagic.size();
+    good_bytes_ = journal_format::kMagic.size();
     unsynced_ = true;
     sync_folder_of(file_);
   }
@@ -285,14 +181,14 @@ class Journal::Writer {
     last_write_ = now;
     const WriteResult result = write_fully(fd_.get(), buffer_);
     if (result.error != 0) {
-      good_bytes_ += count_whole_record_bytes(buffer_, result.written);
+      good_bytes_ += journal_format::count_whole_record_bytes(
+          std::string_view(buffer_).substr(0, result.written));
       // Should this fail as well, the next opening finds a torn end and cuts it off.
       [[maybe_unused]] const int cut = ::ftruncate(fd_.get(), static_cast<off_t>(good_bytes_));
       remember_error("write it", result.error);
     } else {
       good_bytes_ += buffer_.size();
-      struct stat status {};
-      if (::fstat(fd_.get(), &status) == 0 && status.st_nlink == 0) {
+      if (is_deleted(fd_.get())) {
         error_ = fmt::format("{}: was deleted while the run was writing it", file_.string());
       }
     }

@@ -180,6 +180,19 @@ Frame decode_frame(std::string_view bytes) {
   return frame;
 }
 
+std::size_t count_whole_record_bytes(std::string_view records) {
+  std::size_t whole = 0;
+  while (records.size() - whole >= kFrameBytes) {
+    const Frame frame = decode_frame(records.substr(whole, kFrameBytes));
+    const std::size_t record_bytes = kFrameBytes + frame.payload_bytes;
+    if (record_bytes > records.size() - whole) {
+      break;
+    }
+    whole += record_bytes;
+  }
+  return whole;
+}
+
 bool could_begin_payload(std::string_view probe, std::uint32_t payload_bytes) {
   Read read{probe};
   std::uint8_t type = 0;

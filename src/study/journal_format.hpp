@@ -45,6 +45,9 @@ struct Frame {
 };
 Frame decode_frame(std::string_view bytes);  // the first kFrameBytes
 
+// The bytes of the whole records at the beginning of `records`, whose last one may be cut short.
+std::size_t count_whole_record_bytes(std::string_view records);
+
 // A cheap test that nearly no place fails to fail unless a record begins there: `probe` is the
 // payload's first kProbeBytes.
 bool could_begin_payload(std::string_view probe, std::uint32_t payload_bytes);

@@ -110,11 +110,8 @@ std::optional<std::vector<JudgedCandidate>> Judge::validate(std::vector<Candidat
 std::optional<std::size_t> Judge::choose_winner(const ProblemDescription& problem,
                                                 const std::vector<JudgedCandidate>& judged) {
   const auto rank = [&](const JudgedCandidate& candidate) {
-    double violation = 0;
-    for (const double g : candidate.validation.constraint_values) {
-      violation += std::max(0.0, g);
-    }
-    return std::tuple(candidate.validation.failed_cases, violation,
+    return std::tuple(candidate.validation.failed_cases,
+                      calc_violation(candidate.validation.constraint_values),
                       calc_scalar(problem, candidate.validation.objectives));
   };
   std::optional<std::size_t> winner;

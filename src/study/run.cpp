@@ -87,6 +87,7 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
     return std::nullopt;
   }
   if (!result.failure.empty()) {
+    evaluator.take_remaining_recorded();
     result.end_reason = "optimizer failed";
   } else {
     evaluator.check_replay_complete();

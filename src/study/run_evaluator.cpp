@@ -20,7 +20,8 @@ RunEvaluator::RunEvaluator(const RunPlan& plan, CaseRunner& runner, StopSignal& 
       stop_(stop),
       journal_(journal),
       observer_(observer),
-      journal_ended_(recorded.ended) {
+      journal_ended_(recorded.ended),
+      candidates_(plan) {
   for (EvaluationRecord& record : recorded.training) {
     recorded_.resize(std::max<std::size_t>(recorded_.size(), record.index + 1));
     const std::uint64_t index = record.index;
@@ -45,17 +46,16 @@ std::int64_t RunEvaluator::remaining() const {
 }
 
 void RunEvaluator::begin_generation() {
-  if (stopped()) {
-    return;
+  if (!stopped()) {
+    start_generation();
   }
+}
+
+void RunEvaluator::start_generation() {
   if (plan_.schedule.fresh) {
     const std::uint64_t first = counts_.generations * block_.numbers.size();
     std::iota(block_.numbers.begin(), block_.numbers.end(), first);
-    if (incumbent_) {
-      candidates_.push_back(*incumbent_);
-      last_best_ = incumbent_->training_objective;
-      incumbent_.reset();
-    }
+    candidates_.end_generation();
   }
   ++counts_.generations;
 }
@@ -64,8 +64,7 @@ void RunEvaluator::recommend(std::span<const double> x) {
   if (stopped()) {
     return;
   }
-  const EvaluationRecord request = make_request(x);
-  candidates_.push_back({request.x, 0, counts_.generations, true, 0});
+  candidates_.recommend(make_request(x).x, counts_.generations);
 }
 
 EvaluationRecord RunEvaluator::make_request(std::span<const double> x) const {
@@ -131,6 +130,25 @@ void RunEvaluator::check_replay_complete() const {
       refuse_replay(record->index, "it is recorded, and no longer asked for");
     }
   }
+}
+
+void RunEvaluator::take_remaining_recorded() {
+  for (auto& record : recorded_) {
+    if (!record) {
+      continue;
+    }
+    if (record->generation < counts_.generations) {
+      refuse_replay(record->index, "its generation is over");
+    }
+    while (counts_.generations < record->generation) {
+      start_generation();
+    }
+    ++counts_.replayed;
+    Score score;  // nobody is asking any more
+    take(std::move(*record), score);
+    record.reset();
+  }
+  report(0, 0);
 }
 
 std::vector<Score> RunEvaluator::evaluate(std::span<const std::vector<double>> points) {
@@ -206,7 +224,7 @@ void RunEvaluator::take(EvaluationRecord record, Score& score) {
   counts_.failed += evaluation.status == EvaluationStatus::ok ? 0 : 1;
   if (is_feasible(evaluation)) {
     ++counts_.feasible;
-    consider(record);
+    candidates_.consider(record);
   }
   score.status = evaluation.status;
   score.clipped = record.clipped;
@@ -222,36 +240,6 @@ void RunEvaluator::take(EvaluationRecord record, Score& score) {
   }
 }
 
-void RunEvaluator::consider(const EvaluationRecord& record) {
-  const double objective = calc_scalar(problem(), record.evaluation.objectives);
-  if (problem().objectives.size() > 1) {
-    extend_front(record, objective);
-  }
-  if (incumbent_ && incumbent_->training_objective <= objective) {
-    return;
-  }
-  incumbent_ = Candidate{record.x, record.index, record.generation, false, objective};
-  if (!plan_.schedule.fresh) {
-    candidates_.push_back(*incumbent_);
-  }
-}
-
-void RunEvaluator::extend_front(const EvaluationRecord& record, double objective) {
-  const auto covers = [](const std::vector<double>& a, const std::vector<double>& b) {
-    return std::ranges::equal(a, b, std::less_equal{});
-  };
-  const std::vector<double>& objectives = record.evaluation.objectives;
-  if (std::ranges::any_of(front_, [&](const FrontMember& member) {
-        return covers(member.objectives, objectives);
-      })) {
-    return;
-  }
-  std::erase_if(front_,
-                [&](const FrontMember& member) { return covers(objectives, member.objectives); });
-  Candidate candidate{record.x, record.index, record.generation, false, objective};
-  front_.push_back({std::move(candidate), objectives});
-}
-
 void RunEvaluator::report(std::uint64_t more_cases, std::uint64_t more_replayed) {
   const std::uint64_t cases_each = block_.numbers.size();
   Progress progress;
@@ -259,68 +247,8 @@ void RunEvaluator::report(std::uint64_t more_cases, std::uint64_t more_replayed)
   progress.total = static_cast<std::uint64_t>(plan_.budget) / cases_each * cases_each;
   progress.replayed = counts_.replayed * cases_each + more_replayed;
   progress.generation = counts_.generations;
-  if (incumbent_) {
-    progress.best_objective = incumbent_->training_objective;
-  } else if (last_best_) {
-    progress.best_objective = *last_best_;
-  }
+  progress.best_objective = candidates_.best_objective();
   observer_.on_progress(progress);
-}
-
-// Both ends of the front and, where it is longer than what is judged, members in between at even
-// distances of rank along the first objective.
-std::vector<Candidate> RunEvaluator::thin_front() const {
-  std::vector<FrontMember> members = front_;
-  std::ranges::stable_sort(members, {}, [](const FrontMember& m) { return m.objectives.front(); });
-  const std::size_t count =
-      std::min(members.size(), static_cast<std::size_t>(plan_.selection.last));
-  std::vector<Candidate> thinned;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t gaps = std::max<std::size_t>(count - 1, 1);
-    thinned.push_back(members[i * (members.size() - 1) / gaps].candidate);
-  }
-  return thinned;
-}
-
-std::vector<Candidate> RunEvaluator::select_candidates() const {
-  std::vector<Candidate> candidates = candidates_;
-  if (plan_.schedule.fresh && incumbent_) {
-    candidates.push_back(*incumbent_);  // the last generation's best
-  }
-  const auto known = [](const std::vector<Candidate>& chosen, const Candidate& candidate) {
-    return std::any_of(chosen.begin(), chosen.end(),
-                       [&](const Candidate& other) { return same_bits(other.x, candidate.x); });
-  };
-  std::vector<Candidate> chosen =
-      problem().objectives.size() > 1 ? thin_front() : std::vector<Candidate>{};
-  for (auto candidate = candidates.rbegin();
-       candidate != candidates.rend() && std::ssize(chosen) < plan_.selection.last; ++candidate) {
-    if (!known(chosen, *candidate)) {
-      chosen.push_back(*candidate);
-    }
-  }
-  std::vector<Candidate> by_objective;
-  std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(by_objective),
-               [](const Candidate& candidate) { return !candidate.recommended; });
-  std::stable_sort(by_objective.begin(), by_objective.end(),
-                   [](const Candidate& a, const Candidate& b) {
-                     return a.training_objective < b.training_objective;
-                   });
-  std::vector<Candidate> best;
-  for (const Candidate& candidate : by_objective) {
-    if (std::ssize(best) == plan_.selection.best) {
-      break;
-    }
-    if (!known(best, candidate)) {
-      best.push_back(candidate);
-    }
-  }
-  std::copy_if(best.begin(), best.end(), std::back_inserter(chosen),
-               [&](const Candidate& candidate) { return !known(chosen, candidate); });
-  std::stable_sort(chosen.begin(), chosen.end(), [](const Candidate& a, const Candidate& b) {
-    return a.generation != b.generation ? a.generation < b.generation : a.evaluation < b.evaluation;
-  });
-  return chosen;
 }
 
 }  // namespace armwright

@@ -11,21 +11,12 @@
 #include <vector>
 
 #include "optimizers/evaluator.hpp"
+#include "study/candidate_pool.hpp"
 #include "study/case_runner.hpp"
 #include "study/journal.hpp"
 #include "study/run_plan.hpp"
 
 namespace armwright {
-
-// A design that may become the winner. Several objectives count as one number here: calc_scalar().
-struct Candidate {
-  std::vector<double> x;
-  std::uint64_t evaluation =
-      0;  // of the training evaluation that made it one; unused for a recommendation
-  std::uint64_t generation = 0;
-  bool recommended = false;  // named by the optimizer; it has no training objective of its own
-  double training_objective = 0;
-};
 
 struct RunCounts {
   std::uint64_t evaluations = 0;
@@ -75,18 +66,20 @@ class RunEvaluator final : public Evaluator {
   // Once the optimizer has returned by itself: Error{bad_data} if the journal holds more
   // evaluations than it asked for.
   void check_replay_complete() const;
-  // The designs to judge on the validation set, oldest first, no two the same: the last and the
-  // best candidates; with several objectives the front, thinned out.
-  std::vector<Candidate> select_candidates() const;
+  // Once the optimizer has failed: counts and remembers, as if it had asked for them, the
+  // evaluations in the journal that it has not come to, those behind a gap too. What an earlier
+  // attempt at the run achieved is so not lost to a later one that fails sooner. (Recommendations
+  // are not in the journal: those of an earlier attempt only count where this one repeats them.)
+  // Error{bad_data} if they belong to a generation before the present one.
+  void take_remaining_recorded();
+  std::vector<Candidate> select_candidates() const { return candidates_.select(); }
 
  private:
   EvaluationRecord make_request(std::span<const double> x) const;
   void check_replay(const EvaluationRecord& request, const EvaluationRecord& recorded) const;
+  void start_generation();
   [[noreturn]] void refuse_replay(std::uint64_t evaluation, const std::string& difference) const;
   void take(EvaluationRecord record, Score& score);
-  void consider(const EvaluationRecord& record);  // a feasible one
-  void extend_front(const EvaluationRecord& record, double objective);
-  std::vector<Candidate> thin_front() const;
   void report(std::uint64_t more_cases, std::uint64_t more_replayed);
 
   const RunPlan& plan_;
@@ -101,17 +94,7 @@ class RunEvaluator final : public Evaluator {
   RunCounts counts_;
   std::string first_failure_;
   CaseBlock block_;
-  std::optional<Candidate> incumbent_;  // fixed: best so far; fresh: best of this generation
-  std::optional<double> last_best_;     // fresh: the best objective of the generation before
-  // fixed: all improvements; fresh: bests of generations and recommendations
-  std::vector<Candidate> candidates_;
-  // Several objectives: the feasible evaluations that no other one is at least as good as in all
-  // objectives.
-  struct FrontMember {
-    Candidate candidate;
-    std::vector<double> objectives;
-  };
-  std::vector<FrontMember> front_;
+  CandidatePool candidates_;
 };
 
 }  // namespace armwright

@@ -1,4 +1,5 @@
 // Runs whose optimizer or evaluations fail, and runs of several objectives.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -12,10 +13,12 @@ namespace {
 
 using testing::HasSubstr;
 
-// Fails after so many evaluations, unless the number is negative.
+// Goes outwards and back again, in generations of four. Fails after so many evaluations, unless the
+// number is negative.
 class FailingOptimizer : public Optimizer {
  public:
-  explicit FailingOptimizer(int evaluations) : evaluations_(evaluations) {}
+  FailingOptimizer(int evaluations, std::string message)
+      : evaluations_(evaluations), message_(std::move(message)) {}
   void minimize(Evaluator& evaluator, std::uint64_t /*seed*/) override {
     std::vector<double> x;
     for (const DecisionVariable& variable : evaluator.problem().variables) {
@@ -23,23 +26,28 @@ class FailingOptimizer : public Optimizer {
     }
     for (int i = 0; !evaluator.stopped(); ++i) {
       if (i == evaluations_) {
-        throw OptimizerFailure("it fell over");
+        throw OptimizerFailure(message_);
       }
-      x[0] *= 0.99;
+      if (i % 4 == 0) {
+        evaluator.begin_generation();
+      }
+      x[0] *= i % 4 == 1 ? 1.1 : 0.95;
       evaluator.evaluate({&x, 1});
     }
   }
 
  private:
   int evaluations_;
+  std::string message_;
 };
 
-RunPlan make_failing_plan(int evaluations) {
+RunPlan make_failing_plan(int evaluations, const std::string& message = "it fell over") {
   RunPlan plan;
   plan.problem = load_problem("sphere");
   plan.optimizer.name = "failing";
-  plan.optimizer.make = [evaluations](const Options&) {
-    return std::make_unique<FailingOptimizer>(evaluations);
+  plan.optimizer.capabilities.generations = true;
+  plan.optimizer.make = [=](const Options&) {
+    return std::make_unique<FailingOptimizer>(evaluations, message);
   };
   plan.budget = 30;
   return plan;
@@ -51,7 +59,7 @@ TEST_F(RunTest, AFailedOptimizerEndsAMarkedRunThatKeepsEverything) {
   EXPECT_EQ(result->failure, "it fell over");
   EXPECT_EQ(result->end_reason, "optimizer failed");
   EXPECT_EQ(result->counts.evaluations, 7u);
-  EXPECT_EQ(result->judged.size(), 7u);
+  EXPECT_EQ(result->judged.size(), 3u);  // the improvements
   EXPECT_THAT(observer_.messages, testing::Contains("error: it fell over"));
   EXPECT_EQ(load_result(temporary_ / "a").failure, "it fell over");
   const JournalContent journal = read("a");
@@ -72,6 +80,84 @@ TEST_F(RunTest, AFailedRunIsTriedAgainFromWhereItFailed) {
   EXPECT_EQ(repaired->counts.evaluations, 30u);
   run(make_failing_plan(-1), "whole");
   EXPECT_EQ(read_result("a"), read_result("whole"));
+}
+
+// Whatever an earlier attempt achieved is kept and judged, even if the next one fails sooner: at
+// once, within a generation, at the end of one, or where the earlier one failed.
+TEST_F(RunTest, AnAttemptThatFailsSoonerTakesNothingAway) {
+  for (const bool fresh : {false, true}) {
+    for (const int sooner : {0, 2, 4, 5, 8, 10}) {
+      SCOPED_TRACE(fmt::format("fresh {}, fails after {}", fresh, sooner));
+      const std::string folder = fmt::format("{}-{}", fresh, sooner);
+      const auto make_plan = [&](int evaluations, const std::string& message) {
+        RunPlan plan = make_failing_plan(evaluations, message);
+        plan.schedule = {.fresh = fresh, .cases = 2};
+        plan.budget = 36;
+        return plan;
+      };
+      const auto first = run(make_plan(10, "it fell over"), folder);
+      ASSERT_TRUE(first && first->winner);
+      auto again = run(make_plan(sooner, "it fell over sooner"), folder);
+      ASSERT_TRUE(again);
+      EXPECT_EQ(again->counts.replayed, 10u);
+      EXPECT_EQ(again->failure, "it fell over sooner");
+      again->failure = first->failure;
+      EXPECT_EQ(to_json(*again), to_json(*first));
+      RunResult recorded = load_result(temporary_ / folder);
+      recorded.failure = first->failure;
+      EXPECT_EQ(to_json(recorded), to_json(*first));
+      EXPECT_EQ(observer_.last.phase, Progress::Phase::test);
+      EXPECT_EQ(read(folder).training.size(), 10u);
+      // The attempt that failed sooner leaves nothing behind, either.
+      run(make_plan(-1, ""), folder);
+      const std::string whole = fmt::format("whole-{}", folder);
+      run(make_plan(-1, ""), whole);
+      EXPECT_EQ(read_result(folder), read_result(whole));
+    }
+  }
+}
+
+TEST_F(RunTest, WhatIsRecordedBehindAGapCountsWhenTheNextAttemptFailsSooner) {
+  run(make_failing_plan(10), "a");
+  const JournalContent whole = read("a");
+  const auto file = temporary_ / "a" / "journal";
+  std::filesystem::remove(file);
+  JournalContent nothing;
+  Journal journal(file, nothing);
+  for (const EvaluationRecord& record : whole.training) {
+    if (record.index != 6) {
+      journal.append(record);
+    }
+  }
+  journal.close();
+  const auto again = run(make_failing_plan(2), "a");
+  ASSERT_TRUE(again && again->winner);
+  EXPECT_EQ(again->counts.evaluations, 9u);
+  EXPECT_EQ(again->counts.generations, 3u);
+  EXPECT_EQ(again->judged.back().candidate.evaluation, 8u);
+  run(make_failing_plan(-1), "a");
+  run(make_failing_plan(-1), "whole");
+  EXPECT_EQ(read_result("a"), read_result("whole"));
+}
+
+TEST_F(RunTest, AnAttemptThatFailsInALaterGenerationThanWasRecordedIsRefused) {
+  run(make_failing_plan(7), "a");
+  RunPlan other = make_failing_plan(0);
+  other.optimizer.make = [](const Options&) -> std::unique_ptr<Optimizer> {
+    class Hasty : public Optimizer {
+      void minimize(Evaluator& evaluator, std::uint64_t /*seed*/) override {
+        evaluator.begin_generation();
+        evaluator.begin_generation();
+        throw OptimizerFailure("it fell over");
+      }
+    };
+    return std::make_unique<Hasty>();
+  };
+  const std::string before = read_result("a");
+  EXPECT_THAT(error_of(ErrorKind::bad_data, [&] { run(other, "a"); }),
+              HasSubstr("evaluation 0 of the journal is not what optimizer 'failing' asks for now: "
+                        "its generation is over"));
+  EXPECT_EQ(read_result("a"), before);
 }
 
 TEST_F(RunTest, SeveralObjectivesLeaveAFront) {

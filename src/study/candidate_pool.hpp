@@ -1,0 +1,61 @@
+// Remembers, of all that a run evaluates in training, the designs worth judging: with fixed cases
+// every improvement, with fresh ones the best of every generation (objectives on different cases do
+// not compare), with several objectives the front, and what the optimizer recommends.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "study/journal.hpp"
+#include "study/run_plan.hpp"
+
+namespace armwright {
+
+// A design that may become the winner. Several objectives count as one number here: calc_scalar().
+struct Candidate {
+  std::vector<double> x;
+  std::uint64_t evaluation =
+      0;  // of the training evaluation that made it one; unused for a recommendation
+  std::uint64_t generation = 0;
+  bool recommended = false;  // named by the optimizer; it has no training objective of its own
+  double training_objective = 0;
+};
+
+class CandidatePool {
+ public:
+  explicit CandidatePool(const RunPlan& plan);  // which outlives it
+
+  void consider(const EvaluationRecord& record);  // a feasible one
+  void recommend(std::vector<double> x, std::uint64_t generation);
+  void end_generation();  // fresh cases only
+  // With fixed cases the incumbent's; with fresh ones the present generation's best, or the last
+  // one's before there is any; NaN if there is none.
+  double best_objective() const;
+  // The designs to judge on the validation set, oldest first, no two the same: the last and the
+  // best candidates; with several objectives the front, thinned out.
+  std::vector<Candidate> select() const;
+
+ private:
+  void extend_front(const EvaluationRecord& record, double objective);
+  std::vector<Candidate> thin_front() const;
+
+  const ProblemDescription& problem_;
+  const Selection selection_;
+  const bool fresh_;
+  std::optional<Candidate> incumbent_;  // fixed: best so far; fresh: best of this generation
+  // fresh: the best objective of the generation before
+  double last_best_ = std::numeric_limits<double>::quiet_NaN();
+  // fixed: all improvements; fresh: bests of generations and recommendations
+  std::vector<Candidate> candidates_;
+  // Several objectives: the feasible evaluations that no other one is at least as good as in all
+  // objectives.
+  struct FrontMember {
+    Candidate candidate;
+    std::vector<double> objectives;
+  };
+  std::vector<FrontMember> front_;
+};
+
+}  // namespace armwright
