@@ -15,6 +15,10 @@ namespace {
 
 using nlohmann::json;
 
+// Writing, comparing and copying JSON call themselves once a level; no message of the protocol
+// comes near it.
+constexpr int kDeepest = 16;
+
 // With the type first, as people read it.
 using OrderedJson = nlohmann::ordered_json;
 
@@ -126,9 +130,18 @@ std::string make_tell(std::span<const Score> scores, std::int64_t remaining, boo
 }
 
 json read_message(const std::string& line) {
+  const auto refuse_depth = [&](int depth, json::parse_event_t event, const json&) {
+    const bool begins_level =
+        event == json::parse_event_t::object_start || event == json::parse_event_t::array_start;
+    if (begins_level && depth >= kDeepest) {
+      throw ProtocolError(
+          fmt::format("sent JSON nested more than {} deep: {}", kDeepest, quote(line)));
+    }
+    return true;
+  };
   json message;
   try {
-    message = json::parse(line);
+    message = json::parse(line, refuse_depth);
   } catch (const json::exception&) {
     const bool has_nan =
         line.find("NaN") != std::string::npos || line.find("Infinity") != std::string::npos;

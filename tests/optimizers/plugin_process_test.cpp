@@ -220,6 +220,7 @@ TEST_F(PluginProcess, EveryBadMessageIsNamed) {
               AllOf(HasSubstr("not JSON: 'iteration 1: ?[31mfine?[0m yyy"), HasSubstr("yyy'...")));
   EXPECT_THAT(failure_of("no-type"), HasSubstr("no object with a \"type\": '[1, 2]'"));
   EXPECT_THAT(failure_of("unknown-type"), HasSubstr("unknown type 'tell'"));
+  EXPECT_THAT(failure_of("deep"), HasSubstr("nested more than 16 deep: '{\"type\""));
   EXPECT_THAT(failure_of("length"),
               HasSubstr("point 2 of 2 of 2 coordinates; the problem has 3 variables"));
   EXPECT_THAT(failure_of("nan"), HasSubstr("JSON knows no NaN"));
@@ -273,6 +274,7 @@ TEST_F(PluginProcess, ABadDescriptionIsRefused) {
   EXPECT_THAT(refusal_of("option-range"), HasSubstr("outside its range 5 to 9"));
   EXPECT_THAT(refusal_of("no-range"), HasSubstr("option 'k' without \"lower\""));
   EXPECT_THAT(refusal_of("greeting"), HasSubstr("'Hello, world'"));
+  EXPECT_THAT(refusal_of("deep-greeting"), HasSubstr("nested more than 16 deep"));
   EXPECT_THAT(refusal_of("early-exit"), HasSubstr("ended with exit code 4 before it described"));
 }
 

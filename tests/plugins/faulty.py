@@ -46,6 +46,8 @@ elif fault == "no-range":
     description["options"] = [{"name": "k", "default": 3}]
 elif fault == "greeting":
     say("Hello, world")
+elif fault == "deep-greeting":
+    say('{"type": "description", "protocol": ' + 200000 * "[" + 200000 * "]" + "}")
 elif fault == "early-exit":
     sys.stderr.write("no licence\n")
     sys.exit(4)
@@ -91,6 +93,8 @@ elif fault == "no-type":
     say("[1, 2]")
 elif fault == "unknown-type":
     send({"type": "tell"})
+elif fault == "deep":
+    say('{"type": "recommend", "x": ' + 200000 * "[" + 200000 * "]" + "}")
 elif fault == "length":
     send({"type": "ask", "points": [start, start[1:]]})
 elif fault == "nan":
