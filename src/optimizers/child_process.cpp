@@ -110,6 +110,7 @@ ChildProcess::Event ChildProcess::receive(const std::function<bool()>& must_give
     if (const auto event = take_message(message)) {
       return *event;
     }
+    check_silence();  // a part of a message does not break it
     // Death is looked at before reading: what was sent before it is then all there.
     const bool is_dead = has_ended(pid_);
     if (!is_dead && !wait_for(POLLIN)) {
@@ -141,6 +142,7 @@ std::optional<ChildProcess::Event> ChildProcess::send(std::string_view message,
       sent += static_cast<std::size_t>(count);
     } else if (errno == EAGAIN) {
       wait_for(POLLOUT);
+      check_silence();
       if (must_give_up()) {
         return Event::given_up;
       }
@@ -202,12 +204,15 @@ bool ChildProcess::wait_for(short events) {
     return true;
   }
   check_memory();
+  return false;
+}
+
+void ChildProcess::check_silence() const {
   if (silence_s_ > limits_.silence_s) {
     throw ChildFailure(
         fmt::format("was silent for more than {} s (option silence_s) and had to be killed",
                     limits_.silence_s));
   }
-  return false;
 }
 
 bool ChildProcess::read_available() {

@@ -204,6 +204,8 @@ TEST_F(PluginProcess, AStopWhileItThinksIsNoticed) {
 
 TEST_F(PluginProcess, EveryFaultIsNamed) {
   EXPECT_THAT(failure_of("silent", {"silence_s=2"}), HasSubstr("silent for 2 s"));
+  EXPECT_THAT(failure_of("drip", {"silence_s=2"}),
+              HasSubstr("has begun a line and not ended it within 2 s"));
   EXPECT_THAT(failure_of("exit"),
               AllOf(HasSubstr("after 1 evaluation: "), HasSubstr("ended with exit code 3")));
   EXPECT_THAT(failure_of("no-done"), HasSubstr("ended with exit code 0"));

@@ -62,6 +62,12 @@ ask([start])
 
 if fault == "silent":
     time.sleep(600)
+elif fault == "drip":
+    for _ in range(200):
+        sys.stdout.write(" ")
+        sys.stdout.flush()
+        time.sleep(0.03)
+    sys.exit(3)
 elif fault == "exit":
     sys.exit(3)
 elif fault == "throw":
