@@ -15,6 +15,7 @@
 #include <limits>
 #include <thread>
 
+#include "optimizers/parent_link.hpp"
 #include "optimizers/scalar_function.hpp"
 #include "problems/analytic.hpp"
 #include "study/memory_evaluator.hpp"
@@ -206,6 +207,22 @@ TEST_F(Isolation, SilenceIsAFailure) {
                         "after 1 evaluation;"));
 }
 
+TEST_F(Isolation, APartOfAMessageDoesNotBreakTheSilence) {
+  EXPECT_THAT(failure_of(
+                  [](Evaluator&) {
+                    constexpr int kConnection = 3;  // as TheChildHoldsNoneOfOurDescriptors has it
+                    const FrameHeader header{.size = 1000};
+                    [[maybe_unused]] auto written = write(kConnection, &header, sizeof header);
+                    for (int i = 0; i < 100; ++i) {
+                      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+                      written = write(kConnection, "x", 1);
+                    }
+                    _exit(3);
+                  },
+                  {.silence_s = 0.3, .memory_mib = 1024}),
+              HasSubstr("was silent for more than 0.3 s"));
+}
+
 TEST_F(Isolation, TheEvaluatorsOwnTimeIsNoSilence) {
   class Slow : public MemoryEvaluator {
    public:
@@ -270,6 +287,40 @@ TEST_F(Isolation, PointsOfTheWrongLengthAreFailures) {
   EXPECT_THAT(failure_of([](Evaluator& remote) { evaluate(remote, {{}}); }),
               HasSubstr("(evaluation 1) of 0 coordinates"));
   EXPECT_TRUE(evaluator_.trace().empty());
+}
+
+TEST_F(Isolation, WhoAsksOnAndOnWithoutEvaluatingFails) {
+  // Bounded, so that the test ends if nobody notices.
+  const auto repeat = [](const std::function<void(Evaluator&)>& ask) {
+    return [ask](Evaluator& remote) {
+      evaluate(remote, {{1, 2}});
+      for (int i = 0; i < 100001; ++i) {
+        ask(remote);
+      }
+    };
+  };
+  EXPECT_EQ(failure_of(repeat([](Evaluator& remote) {
+              remote.recommend(std::vector<double>{1, 2});
+            })),
+            "optimizer 'demo' asked 100000 questions in a row without evaluating a point (the "
+            "last: recommend()) after 1 evaluation; what it had asked for is kept");
+  EXPECT_THAT(failure_of(repeat([](Evaluator& remote) { evaluate(remote, {}); })),
+              HasSubstr("the last: evaluate() without points"));
+  EXPECT_THAT(failure_of(repeat([](Evaluator& remote) { remote.stopped(); })),
+              HasSubstr("the last: stopped()"));
+}
+
+TEST_F(Isolation, WhoAsksMuchAndEvaluatesMayGoOn) {
+  EXPECT_EQ(failure_of([](Evaluator& remote) {
+              for (int i = 0; i < 2; ++i) {
+                for (int k = 0; k < 60000; ++k) {
+                  remote.stopped();
+                }
+                evaluate(remote, {{1, 2}});
+              }
+            }),
+            "no failure");
+  EXPECT_EQ(evaluator_.trace().size(), 2u);
 }
 
 TEST_F(Isolation, AStopFromOutsideEndsTheChildWhileItComputes) {
