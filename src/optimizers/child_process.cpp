@@ -183,9 +183,9 @@ std::optional<ChildProcess::Event> ChildProcess::take_message(std::string& messa
     case FrameKind::out_of_memory:
       break;
   }
-  throw ChildFailure(
-      fmt::format("ran out of memory (memory_mib allows {} MiB beyond what it began with)",
-                  limits_.memory_mib));
+  throw ChildFailure(fmt::format("ran out of memory: it may take {} MiB beyond what it began with",
+                                 limits_.memory_mib),
+                     "memory_mib");
 }
 
 // Silence is the sum of short waits rather than a difference of times, so that a suspended machine
@@ -210,8 +210,8 @@ bool ChildProcess::wait_for(short events) {
 void ChildProcess::check_silence() const {
   if (silence_s_ > limits_.silence_s) {
     throw ChildFailure(
-        fmt::format("was silent for more than {} s (option silence_s) and had to be killed",
-                    limits_.silence_s));
+        fmt::format("was silent for more than {} s and had to be killed", limits_.silence_s),
+        "silence_s");
   }
 }
 
@@ -237,9 +237,9 @@ void ChildProcess::check_memory() {
   }
   const auto grown = static_cast<double>(now->data_bytes - memory_at_start_->data_bytes);
   if (grown > limits_.memory_mib * kMib) {
-    throw ChildFailure(fmt::format(
-        "took more memory than the {} MiB it may (option memory_mib) and had to be killed",
-        limits_.memory_mib));
+    throw ChildFailure(fmt::format("took more memory than the {} MiB it may and had to be killed",
+                                   limits_.memory_mib),
+                       "memory_mib");
   }
 }
 

@@ -194,6 +194,10 @@ void minimize_isolated(const std::string& name, const std::function<void(Evaluat
       },
       limits, log);
   Answerer answerer(name, evaluator);
+  const auto fail = [&](const ChildFailure& failure) {
+    const std::string limit = limits.are_options ? failure.limit() : "";
+    answerer.fail(failure.what() + (limit.empty() ? "" : fmt::format(" (option {})", limit)));
+  };
   const auto is_stopped = [&] { return evaluator.stopped(); };
   const auto next_question = [&]() -> std::optional<std::string> {
     try {
@@ -201,8 +205,9 @@ void minimize_isolated(const std::string& name, const std::function<void(Evaluat
       const auto event = child.receive(is_stopped, question);
       return event == ChildProcess::Event::message ? std::optional(question) : std::nullopt;
     } catch (const ChildFailure& failure) {
-      answerer.fail(failure.what());
+      fail(failure);
     }
+    return std::nullopt;
   };
   while (const auto question = next_question()) {
     try {
@@ -210,7 +215,7 @@ void minimize_isolated(const std::string& name, const std::function<void(Evaluat
         return;
       }
     } catch (const ChildFailure& failure) {
-      answerer.fail(failure.what());
+      fail(failure);
     } catch (const PacketError&) {
       answerer.fail("sent a question that makes no sense");
     }

@@ -15,6 +15,7 @@ class OutputLog;
 struct IsolationLimits {
   double silence_s = 60;     // longest time between two questions; the scores' own time not counted
   double memory_mib = 4096;  // that the child may allocate beyond what it began with
+  bool are_options = false;  // the two above: messages then name them, for the user to change
 };
 
 // Calls `body` in the child. Returns when it returns. Kills the child as soon as

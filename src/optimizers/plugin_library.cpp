@@ -171,7 +171,8 @@ class LibraryOptimizer : public Optimizer {
     try {
       minimize_isolated(library_.name, call, strict,
                         {.silence_s = options_.get_number("silence_s"),
-                         .memory_mib = options_.get_number("memory_mib")},
+                         .memory_mib = options_.get_number("memory_mib"),
+                         .are_options = true},
                         log_.get());
     } catch (const OptimizerFailure& failure) {
       throw OptimizerFailure(failure.what(), log_->last_lines());

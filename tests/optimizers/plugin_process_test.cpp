@@ -23,6 +23,7 @@ namespace {
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 std::string script(const std::string& name) {
   return std::string(ARMWRIGHT_TEST_DATA) + "/../plugins/" + name;
@@ -203,7 +204,8 @@ TEST_F(PluginProcess, AStopWhileItThinksIsNoticed) {
 }
 
 TEST_F(PluginProcess, EveryFaultIsNamed) {
-  EXPECT_THAT(failure_of("silent", {"silence_s=2"}), HasSubstr("silent for 2 s"));
+  EXPECT_THAT(failure_of("silent", {"silence_s=2"}),
+              HasSubstr("silent for 2 s (option silence_s)"));
   EXPECT_THAT(failure_of("drip", {"silence_s=2"}),
               HasSubstr("has begun a line and not ended it within 2 s"));
   EXPECT_THAT(failure_of("exit"),
@@ -238,6 +240,20 @@ TEST_F(PluginProcess, EveryBadMessageIsNamed) {
 
 TEST_F(PluginProcess, WhoAsksWithoutReadingAnswersIsGivenUp) {
   EXPECT_THAT(failure_of("deaf", {"silence_s=2"}), HasSubstr("has not read its input for 2 s"));
+}
+
+TEST_F(PluginProcess, TheTimeForItsDescriptionIsNoOption) {
+  const TemporaryFolder folder;
+  const std::string command = faulty("late " + (folder / "mark").string()).substr(5);
+  const OptimizerRow row = load_process_plugin(command, 3);
+  MemoryEvaluator evaluator(problem(), {.budget = 10});
+  try {
+    row.make(Options::parse(row.name, row.options, {}))->minimize(evaluator, 1);
+    ADD_FAILURE() << "no OptimizerFailure";
+  } catch (const OptimizerFailure& failure) {
+    EXPECT_THAT(failure.what(), AllOf(HasSubstr("silent for 3 s, asked to describe itself"),
+                                      Not(HasSubstr("silence_s"))));
+  }
 }
 
 TEST_F(PluginProcess, WhatItStartedIsKilledWithIt) {

@@ -28,6 +28,10 @@ def ask(points):
 
 
 receive()
+if fault == "late":  # from the second start on
+    if os.path.exists(sys.argv[2]):
+        time.sleep(600)
+    open(sys.argv[2], "w").close()
 description = {"type": "description", "protocol": 1, "name": "faulty", "summary": "Misbehaves",
                "source": "", "capabilities": ["bounds"], "options": []}
 if fault == "protocol":
