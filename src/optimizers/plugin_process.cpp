@@ -60,8 +60,9 @@ class ProcessPlugin : public Optimizer {
         silence_s_(options_.get_number("silence_s")) {}
 
   void log_to(const std::filesystem::path& file) override {
+    auto log = std::make_unique<OutputLog>(file, OutputLog::Begin::anew);
     if (options_.get_text("log").empty()) {
-      log_ = std::make_unique<OutputLog>(file, OutputLog::Begin::anew);
+      log_ = std::move(log);
     }
   }
 
@@ -69,6 +70,7 @@ class ProcessPlugin : public Optimizer {
     if (evaluator.stopped()) {
       return;
     }
+    open_log();
     std::int64_t evaluations = 0;
     try {
       Conversation(*this, evaluator, evaluations).run(seed);
@@ -82,6 +84,14 @@ class ProcessPlugin : public Optimizer {
   }
 
  private:
+  // Not before: whoever makes an optimizer may still find that there is nothing to run.
+  void open_log() {
+    if (!log_) {
+      log_ = std::make_unique<OutputLog>(options_.get_text("log"),
+                                         OutputLog::Begin::behind_what_is_there);
+    }
+  }
+
   // One process, from its start to its end: destroyed is killed.
   class Conversation {
    public:
@@ -210,8 +220,7 @@ class ProcessPlugin : public Optimizer {
   Capabilities capabilities_;
   Options options_;
   double silence_s_;
-  std::unique_ptr<OutputLog> log_ =
-      std::make_unique<OutputLog>(options_.get_text("log"), OutputLog::Begin::behind_what_is_there);
+  std::unique_ptr<OutputLog> log_;  // from the first minimize() on, or log_to()
 };
 
 // The script, the program: what decides how it behaves.

@@ -199,8 +199,12 @@ TEST_F(CliMisbehavingPlugins, CheckPluginShowsWhatWasPrinted) {
 }
 
 TEST_F(CliMisbehavingPlugins, TheLogIsWhereTheUserWantsItAndOfThisRunAlone) {
+  optimize(library("misbehaving"), {"how=fail"}, "a");
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "a/optimizer.log"));
   optimize(library("misbehaving"), {"how=fail", "log=mine.log"}, "a");
-  optimize(library("misbehaving"), {"how=fail", "log=mine.log"}, "a");
+  const Outcome outcome = optimize(library("misbehaving"), {"how=fail", "log=mine.log"}, "a");
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("What the optimizer printed: mine.log\n"),
+                                 HasSubstr("(silence_s, memory_mib and log may be others)")));
   EXPECT_EQ(read_text(folder_ / "mine.log"),
             "two points are evaluated\ntwo points are evaluated\n");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "a/optimizer.log"));

@@ -202,6 +202,19 @@ TEST_F(PluginLibrary, ItIsHeldToItsWordHereToo) {
   EXPECT_THAT(failure_of({"how=undeclared", "isolate=false"}), HasSubstr("'hwo'"));
 }
 
+TEST_F(PluginLibrary, TheLogIsOpenedByTheRunAndLeavesNoneOfAnEarlierOne) {
+  const std::string earlier = write("optimizer.log", "of an earlier run");
+  const std::filesystem::path wanted = folder_ / "wanted.log";
+  const OptimizerRow row = load_optimizer(plugin("misbehaving"));
+  const auto optimizer = row.make(Options::parse(
+      row.name, row.options, std::vector<std::string>{"how=fail", "log=" + wanted.string()}));
+  optimizer->log_to(earlier);
+  EXPECT_FALSE(std::filesystem::exists(earlier));
+  EXPECT_FALSE(std::filesystem::exists(wanted));
+  EXPECT_THROW(optimizer->minimize(evaluator_, 1), OptimizerFailure);
+  EXPECT_GT(std::filesystem::file_size(wanted), 0u);
+}
+
 TEST_F(PluginLibrary, APluginThatIgnoresTheEndIsStopped) {
   EXPECT_EQ(failure_of({"how=endless"}), "no failure");
   EXPECT_EQ(evaluator_.trace().size(), 200u);
