@@ -9,6 +9,7 @@
 
 #include "base/text.hpp"
 #include "optimizers/message_fields.hpp"
+#include "optimizers/plugin_limits.hpp"
 #include "optimizers/plugin_messages.hpp"
 #include "optimizers/plugin_process.hpp"
 
@@ -31,6 +32,26 @@ constexpr std::array<std::pair<const char*, bool Capabilities::*>, 11> kCapabili
     {"paced", &Capabilities::paced},
 }};
 
+std::vector<std::string> read_choices(const json& object, const std::string& where) {
+  std::vector<std::string> choices;
+  const auto list = object.find("choices");
+  if (list == object.end()) {
+    return choices;
+  }
+  if (!list->is_array()) {
+    throw ProtocolError(
+        fmt::format("sent {} whose \"choices\" are {}, not a list of texts", where, quote(*list)));
+  }
+  for (const json& choice : *list) {
+    if (!choice.is_string()) {
+      throw ProtocolError(
+          fmt::format("sent {} with a choice that is no text: {}", where, quote(choice)));
+    }
+    choices.push_back(choice.get<std::string>());
+  }
+  return choices;
+}
+
 OptionSpec read_option(const json& object) {
   if (!object.is_object()) {
     throw ProtocolError(
@@ -45,13 +66,7 @@ OptionSpec read_option(const json& object) {
     spec.fallback = fallback.get<bool>();
   } else if (fallback.is_string()) {
     spec.fallback = fallback.get<std::string>();
-    for (const json& choice : object.value("choices", json::array())) {
-      if (!choice.is_string()) {
-        throw ProtocolError(
-            fmt::format("sent {} with a choice that is no text: {}", where, quote(choice)));
-      }
-      spec.choices.push_back(choice.get<std::string>());
-    }
+    spec.choices = read_choices(object, where);
     if (!spec.choices.empty() &&
         std::ranges::count(spec.choices, std::get<std::string>(spec.fallback)) == 0) {
       throw ProtocolError(
@@ -67,7 +82,14 @@ OptionSpec read_option(const json& object) {
                                       format_exact(spec.upper)));
     }
     if (fallback.is_number_integer()) {
-      spec.fallback = fallback.get<std::int64_t>();
+      for (const char* key : {"default", "lower", "upper"}) {
+        const double integer = read_number(object, key, where);
+        if (integer != std::floor(integer) || std::abs(integer) > kLargestInteger) {
+          throw ProtocolError(fmt::format("sent {} whose \"{}\" is {}, not an integer up to 2^53",
+                                          where, key, quote(object[key])));
+        }
+      }
+      spec.fallback = static_cast<std::int64_t>(value);
     } else {
       spec.fallback = value;
     }

@@ -70,6 +70,11 @@ OrderedJson describe_quantities(std::span<const Quantity> quantities) {
   return list;
 }
 
+// As the protocol has it: what people read may have a blank.
+const char* get_status_name(EvaluationStatus status) {
+  return status == EvaluationStatus::timed_out ? "timed_out" : to_string(status);
+}
+
 }  // namespace
 
 std::string make_hello() {
@@ -118,7 +123,7 @@ std::string make_tell(std::span<const Score> scores, std::int64_t remaining, boo
   for (const Score& score : scores) {
     OrderedJson one = {{"objectives", score.objectives},
                        {"constraints", score.constraint_values},
-                       {"status", to_string(score.status)},
+                       {"status", get_status_name(score.status)},
                        {"clipped", score.clipped}};
     if (with_residuals) {
       one["residuals"] = score.residuals;

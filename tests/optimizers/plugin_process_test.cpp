@@ -14,6 +14,7 @@
 #include "base/temporary_folder.hpp"
 #include "optimizers/command_words.hpp"
 #include "optimizers/line_process.hpp"
+#include "optimizers/plugin_messages.hpp"
 #include "problems/analytic.hpp"
 #include "study/memory_evaluator.hpp"
 
@@ -283,6 +284,22 @@ TEST_F(PluginProcess, TheLogTakesItsStandardError) {
       HasSubstr("/none/log"));
 }
 
+TEST_F(PluginProcess, TheLogIsOpenedByTheRunAndLeavesNoneOfAnEarlierOne) {
+  const TemporaryFolder folder;
+  const std::filesystem::path wanted = folder / "log";
+  const OptimizerRow row = load_optimizer(faulty("notes"));
+  const auto optimizer = row.make(
+      Options::parse(row.name, row.options, std::vector<std::string>{"log=" + wanted.string()}));
+  EXPECT_FALSE(std::filesystem::exists(wanted));
+  std::ofstream(folder / "optimizer.log") << "of an earlier run";
+  optimizer->log_to(folder / "optimizer.log");
+  EXPECT_FALSE(std::filesystem::exists(folder / "optimizer.log"));
+  EXPECT_FALSE(std::filesystem::exists(wanted));
+  MemoryEvaluator evaluator(problem(), {.budget = 20});
+  optimizer->minimize(evaluator, 1);
+  EXPECT_EQ(read_text(wanted), "a note\n");
+}
+
 TEST_F(PluginProcess, ABadDescriptionIsRefused) {
   EXPECT_THAT(refusal_of("protocol"), AllOf(HasSubstr("version '7'"), HasSubstr("version 1")));
   EXPECT_THAT(refusal_of("capability"), HasSubstr("unknown capability 'bonds'; did you mean"));
@@ -291,6 +308,21 @@ TEST_F(PluginProcess, ABadDescriptionIsRefused) {
   EXPECT_THAT(refusal_of("own-option"), HasSubstr("option 'log'; every process has one"));
   EXPECT_THAT(refusal_of("option-range"), HasSubstr("outside its range 5 to 9"));
   EXPECT_THAT(refusal_of("no-range"), HasSubstr("option 'k' without \"lower\""));
+  const auto refusal_of_option = [this](const std::string& json) {
+    return refusal_of("option '{\"name\": \"k\", " + json + "}'");
+  };
+  EXPECT_THAT(refusal_of_option(R"("default": 18446744073709551615, "lower": -1, "upper": 1e20)"),
+              HasSubstr("option 'k' whose \"default\" is '18446744073709551615', not an integer"));
+  EXPECT_THAT(refusal_of_option(R"("default": 3, "lower": 0.5, "upper": 9)"),
+              HasSubstr("option 'k' whose \"lower\" is '0.5', not an integer up to 2^53"));
+  EXPECT_THAT(refusal_of_option(R"("default": 3, "lower": 0, "upper": 1e300)"),
+              HasSubstr("option 'k' whose \"upper\" is '1e+300', not an integer"));
+  EXPECT_THAT(refusal_of_option(R"("default": "a", "choices": {"x": "a"})"),
+              HasSubstr("\"choices\" are '{\"x\":\"a\"}', not a list of texts"));
+  EXPECT_THAT(refusal_of_option(R"("default": "a", "choices": "a")"),
+              HasSubstr("\"choices\" are '\"a\"', not a list of texts"));
+  EXPECT_THAT(refusal_of_option(R"("default": "a", "choices": ["a", 1])"),
+              HasSubstr("a choice that is no text: '1'"));
   EXPECT_THAT(refusal_of("greeting"), HasSubstr("'Hello, world'"));
   EXPECT_THAT(refusal_of("deep-greeting"), HasSubstr("nested more than 16 deep"));
   EXPECT_THAT(refusal_of("early-exit"), HasSubstr("ended with exit code 4 before it described"));
@@ -301,6 +333,20 @@ TEST_F(PluginProcess, ACommandThatIsNoneIsRefused) {
               AllOf(HasSubstr("'no-such-program-here'"), HasSubstr("No such file")));
   EXPECT_THAT(usage_error_of([] { load_optimizer("exec:"); }), HasSubstr("names no program"));
   EXPECT_THAT(usage_error_of([] { load_optimizer("exec:python3 'x"); }), HasSubstr("not closed"));
+}
+
+TEST(PluginMessages, AScoreSaysItsStatusAsTheProtocolHasIt) {
+  const std::vector<std::pair<EvaluationStatus, std::string>> names = {
+      {EvaluationStatus::ok, "ok"},
+      {EvaluationStatus::diverged, "diverged"},
+      {EvaluationStatus::unreachable, "unreachable"},
+      {EvaluationStatus::timed_out, "timed_out"},
+      {EvaluationStatus::failed, "failed"}};
+  for (const auto& [status, name] : names) {
+    Score score;
+    score.status = status;
+    EXPECT_THAT(make_tell({{score}}, 1, false, false), HasSubstr("\"status\":\"" + name + "\""));
+  }
 }
 
 TEST(SplitCommand, FollowsTheShell) {

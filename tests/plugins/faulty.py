@@ -48,6 +48,8 @@ elif fault == "option-range":
     description["options"] = [{"name": "k", "default": 3, "lower": 5, "upper": 9}]
 elif fault == "no-range":
     description["options"] = [{"name": "k", "default": 3}]
+elif fault == "option":
+    description["options"] = [json.loads(sys.argv[2])]
 elif fault == "greeting":
     say("Hello, world")
 elif fault == "deep-greeting":
