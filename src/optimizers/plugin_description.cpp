@@ -146,7 +146,7 @@ PluginDescription describe_plugin(const struct armwright_plugin& plugin,
                                   std::span<const std::string> own_options) {
   constexpr std::uint32_t kKnown = (ARMWRIGHT_PACED << 1) - 1;
   PluginDescription taken;
-  taken.name = take_name(plugin.name, "its name", "_-:ABCDEFGHIJKLMNOPQRSTUVWXYZ");
+  take_name(plugin.name, "its name", "_-:ABCDEFGHIJKLMNOPQRSTUVWXYZ");
   taken.summary = take_text(plugin.summary, "its summary");
   taken.source = take_text(plugin.source, "its source");
   taken.capabilities = plugin.capabilities;

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
 #include "base/text.hpp"
+#include "optimizers/capability_names.hpp"
 #include "optimizers/message_fields.hpp"
 #include "optimizers/plugin_limits.hpp"
 #include "optimizers/plugin_messages.hpp"
@@ -17,20 +17,6 @@ namespace armwright {
 namespace {
 
 using nlohmann::json;
-
-constexpr std::array<std::pair<const char*, bool Capabilities::*>, 11> kCapabilities{{
-    {"bounds", &Capabilities::bounds},
-    {"constraints", &Capabilities::constraints},
-    {"multi_objective", &Capabilities::multi_objective},
-    {"batch", &Capabilities::batch},
-    {"noisy", &Capabilities::noisy},
-    {"residuals", &Capabilities::residuals},
-    {"stochastic", &Capabilities::stochastic},
-    {"generations", &Capabilities::generations},
-    {"local", &Capabilities::local},
-    {"sampling", &Capabilities::sampling},
-    {"paced", &Capabilities::paced},
-}};
 
 std::vector<std::string> read_choices(const json& object, const std::string& where) {
   std::vector<std::string> choices;
@@ -104,7 +90,7 @@ OptionSpec read_option(const json& object) {
 Capabilities read_capabilities(const json& list) {
   Capabilities capabilities;
   std::vector<std::string> names;
-  for (const auto& [name, member] : kCapabilities) {
+  for (const auto& [name, member] : kCapabilityNames) {
     names.emplace_back(name);
     capabilities.*member = false;
   }
@@ -115,7 +101,7 @@ Capabilities read_capabilities(const json& list) {
       throw ProtocolError("described itself with an " +
                           describe_unknown("capability", text, names));
     }
-    capabilities.*(kCapabilities[static_cast<std::size_t>(found - names.begin())].second) = true;
+    capabilities.*(kCapabilityNames[static_cast<std::size_t>(found - names.begin())].member) = true;
   }
   return capabilities;
 }
