@@ -77,7 +77,8 @@ struct armwright_problem {
 };
 
 /* The only door to the problem. Pass `context` to every function. The functions may be called from
- * one thread at a time. */
+ * one thread at a time. Who calls them 100 000 times in a row without a point to evaluate has lost
+ * its way: the run ends with a failure. */
 struct armwright_evaluator {
   size_t struct_size;
   void* context;

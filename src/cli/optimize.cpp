@@ -138,6 +138,17 @@ void announce(const RunRequest& request) {
   write_message(fmt::format("folder {} ({})", request.folder.string(), known ? "found" : "new"));
 }
 
+// Where what the optimizer printed went; empty if nothing is there.
+std::string find_log(const RunRequest& request) {
+  const auto& values = request.plan.options.values();
+  const auto option = values.find("log");
+  std::filesystem::path log = option == values.end() ? "" : std::get<std::string>(option->second);
+  if (log.empty()) {
+    log = request.folder / "optimizer.log";
+  }
+  return std::filesystem::exists(log) ? log.string() : "";
+}
+
 // What to do about an optimizer that has failed.
 std::string describe_way_out(const OptimizeOptions& options, const RunRequest& request) {
   std::vector<std::string> check = {
@@ -148,14 +159,14 @@ std::string describe_way_out(const OptimizeOptions& options, const RunRequest& r
   }
   auto anew = request.command_line;
   anew.emplace_back("--new");
-  const auto log = request.folder / "optimizer.log";
+  const std::string log = find_log(request);
+  const bool is_watched = request.plan.options.values().contains("silence_s");
   return fmt::format(
       "{} is marked as failed; what was evaluated is kept and judged.{}\nTo look for the fault:\n"
-      "{}\nThe same command tries again from there (silence_s, memory_mib and log may be others); "
-      "with a changed optimizer begin anew:\n{}",
-      request.folder.string(),
-      std::filesystem::exists(log) ? " What the optimizer printed: " + log.string() : "",
-      quote_command(check), quote_command(anew));
+      "{}\nThe same command tries again from there{}; with a changed optimizer begin anew:\n{}",
+      request.folder.string(), log.empty() ? "" : " What the optimizer printed: " + log,
+      quote_command(check), is_watched ? " (silence_s, memory_mib and log may be others)" : "",
+      quote_command(anew));
 }
 
 // Commands to try next, with the program named as the user named it.

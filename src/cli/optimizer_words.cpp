@@ -3,11 +3,52 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "base/text.hpp"
+#include "optimizers/capability_names.hpp"
 
 namespace armwright {
 namespace {
+
+struct Meaning {
+  bool Capabilities::*member;
+  const char* with;
+  const char* without;
+};
+
+constexpr std::array<Meaning, kCapabilityNames.size()> kMeanings{{
+    {&Capabilities::bounds, "keeps its points within the bounds",
+     "may propose points outside the bounds: the nearest point inside is evaluated"},
+    {&Capabilities::constraints, "sees the constraints apart from the objective",
+     "knows no constraints: their violation is added to the objective where it has an option "
+     "constraint_weight, and ignored where it has none"},
+    {&Capabilities::multi_objective, "looks for the front of several objectives",
+     "minimises one number: of several objectives, their weighted sum"},
+    {&Capabilities::batch, "asks for several points at a time, which are simulated in parallel",
+     "asks for one point at a time: only its test cases are simulated in parallel"},
+    {&Capabilities::noisy, "copes with values that change with the training cases",
+     "takes every value for exact"},
+    {&Capabilities::residuals, "uses the residuals, of whose squares the objective is the sum",
+     "uses no residuals, only the objective"},
+    {&Capabilities::stochastic, "draws by chance: another --seed, another run",
+     "draws nothing by chance: --seed has no influence"},
+    {&Capabilities::generations,
+     "works in generations: --schedule fresh:K gives each of them new training cases",
+     "wants the same training cases throughout: --schedule fixed:K"},
+    {&Capabilities::local,
+     "descends from the start and ends by itself: multistart:NAME begins again elsewhere",
+     "is no descent that ends by itself: multistart: does not take it"},
+    {&Capabilities::sampling, "learns nothing from what it has seen: a yardstick for the others",
+     "learns from what it has seen"},
+    {&Capabilities::paced,
+     "divides the budget up beforehand: a larger one changes the run from its beginning",
+     "does not plan with the budget: a larger one only makes the run longer"},
+}};
+
+static_assert(std::ranges::all_of(kCapabilityNames, [](const CapabilityName& capability) {
+  return std::ranges::count(kMeanings, capability.member, &Meaning::member) == 1;
+}));
 
 // 1e+12 rather than a row of noughts.
 std::string format_bound(double value) {
@@ -18,38 +59,14 @@ std::string format_bound(double value) {
 }  // namespace
 
 const std::vector<CapabilityWords>& capability_words() {
-  static const std::vector<CapabilityWords> words = {
-      {"bounds", &Capabilities::bounds, "keeps its points within the bounds",
-       "may propose points outside the bounds: the nearest point inside is evaluated"},
-      {"constraints", &Capabilities::constraints, "sees the constraints apart from the objective",
-       "knows no constraints: their violation is added to the objective where it has an option "
-       "constraint_weight, and ignored where it has none"},
-      {"multi_objective", &Capabilities::multi_objective,
-       "looks for the front of several objectives",
-       "minimises one number: of several objectives, their weighted sum"},
-      {"batch", &Capabilities::batch,
-       "asks for several points at a time, which are simulated in parallel",
-       "asks for one point at a time: only its test cases are simulated in parallel"},
-      {"noisy", &Capabilities::noisy, "copes with values that change with the training cases",
-       "takes every value for exact"},
-      {"residuals", &Capabilities::residuals,
-       "uses the residuals, of whose squares the objective is the sum",
-       "uses no residuals, only the objective"},
-      {"stochastic", &Capabilities::stochastic, "draws by chance: another --seed, another run",
-       "draws nothing by chance: --seed has no influence"},
-      {"generations", &Capabilities::generations,
-       "works in generations: --schedule fresh:K gives each of them new training cases",
-       "wants the same training cases throughout: --schedule fixed:K"},
-      {"local", &Capabilities::local,
-       "descends from the start and ends by itself: multistart:NAME begins again elsewhere",
-       "is no descent that ends by itself: multistart: does not take it"},
-      {"sampling", &Capabilities::sampling,
-       "learns nothing from what it has seen: a yardstick for the others",
-       "learns from what it has seen"},
-      {"paced", &Capabilities::paced,
-       "divides the budget up beforehand: a larger one changes the run from its beginning",
-       "does not plan with the budget: a larger one only makes the run longer"},
-  };
+  static const std::vector<CapabilityWords> words = [] {
+    std::vector<CapabilityWords> all;
+    for (const auto& [name, member] : kCapabilityNames) {
+      const auto& found = *std::ranges::find(kMeanings, member, &Meaning::member);
+      all.push_back({name, member, found.with, found.without});
+    }
+    return all;
+  }();
   return words;
 }
 

@@ -110,6 +110,7 @@ ChildProcess::Event ChildProcess::receive(const std::function<bool()>& must_give
     if (const auto event = take_message(message)) {
       return *event;
     }
+    check_silence();  // a part of a message does not break it
     // Death is looked at before reading: what was sent before it is then all there.
     const bool is_dead = has_ended(pid_);
     if (!is_dead && !wait_for(POLLIN)) {
@@ -141,6 +142,7 @@ std::optional<ChildProcess::Event> ChildProcess::send(std::string_view message,
       sent += static_cast<std::size_t>(count);
     } else if (errno == EAGAIN) {
       wait_for(POLLOUT);
+      check_silence();
       if (must_give_up()) {
         return Event::given_up;
       }
@@ -181,9 +183,9 @@ std::optional<ChildProcess::Event> ChildProcess::take_message(std::string& messa
     case FrameKind::out_of_memory:
       break;
   }
-  throw ChildFailure(
-      fmt::format("ran out of memory (memory_mib allows {} MiB beyond what it began with)",
-                  limits_.memory_mib));
+  throw ChildFailure(fmt::format("ran out of memory: it may take {} MiB beyond what it began with",
+                                 limits_.memory_mib),
+                     "memory_mib");
 }
 
 // Silence is the sum of short waits rather than a difference of times, so that a suspended machine
@@ -202,12 +204,15 @@ bool ChildProcess::wait_for(short events) {
     return true;
   }
   check_memory();
+  return false;
+}
+
+void ChildProcess::check_silence() const {
   if (silence_s_ > limits_.silence_s) {
     throw ChildFailure(
-        fmt::format("was silent for more than {} s (option silence_s) and had to be killed",
-                    limits_.silence_s));
+        fmt::format("was silent for more than {} s and had to be killed", limits_.silence_s),
+        "silence_s");
   }
-  return false;
 }
 
 bool ChildProcess::read_available() {
@@ -232,9 +237,9 @@ void ChildProcess::check_memory() {
   }
   const auto grown = static_cast<double>(now->data_bytes - memory_at_start_->data_bytes);
   if (grown > limits_.memory_mib * kMib) {
-    throw ChildFailure(fmt::format(
-        "took more memory than the {} MiB it may (option memory_mib) and had to be killed",
-        limits_.memory_mib));
+    throw ChildFailure(fmt::format("took more memory than the {} MiB it may and had to be killed",
+                                   limits_.memory_mib),
+                       "memory_mib");
   }
 }
 

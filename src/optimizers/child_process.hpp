@@ -51,6 +51,7 @@ class ChildProcess {
   bool wait_for(short events);  // whether there is something to be done
   bool read_available();        // false at the end
   void take_output();
+  void check_silence() const;
   void check_memory();
   [[noreturn]] void explain_death();
 

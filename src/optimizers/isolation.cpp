@@ -15,6 +15,26 @@ namespace {
 
 enum class Question : std::uint8_t { evaluate, remaining, stopped, begin_generation, recommend };
 
+// Questions without a point to evaluate, one after the other: they cost no budget, break the
+// silence and, as recommendations, take our memory.
+constexpr int kMostIdleQuestions = 100000;
+
+const char* describe(Question question) {
+  switch (question) {
+    case Question::evaluate:
+      return "evaluate() without points";
+    case Question::remaining:
+      return "remaining()";
+    case Question::stopped:
+      return "stopped()";
+    case Question::begin_generation:
+      return "begin_generation()";
+    case Question::recommend:
+      return "recommend()";
+  }
+  return "nothing that is known";
+}
+
 // The Evaluator in the child. A body with threads may ask from any of them, one at a time.
 class RemoteEvaluator : public Evaluator {
  public:
@@ -83,7 +103,12 @@ class Answerer {
   std::string answer(const std::string& question) {
     PacketReader reader(question);
     PacketWriter writer;
-    switch (reader.get<Question>()) {
+    const auto kind = reader.get<Question>();
+    if (++idle_questions_ > kMostIdleQuestions) {
+      fail(fmt::format("asked {} questions in a row without evaluating a point (the last: {})",
+                       kMostIdleQuestions, describe(kind)));
+    }
+    switch (kind) {
       case Question::evaluate:
         answer_evaluate(reader, writer);
         break;
@@ -123,6 +148,7 @@ class Answerer {
     }
     const std::vector<Score> scores = evaluator_.evaluate(points);
     evaluations_ += std::ssize(scores);
+    idle_questions_ = points.empty() ? idle_questions_ : 0;
     writer.put(std::uint64_t{scores.size()});
     for (const Score& score : scores) {
       writer.put(std::span<const double>(score.objectives));
@@ -151,6 +177,7 @@ class Answerer {
   const std::string& name_;
   Evaluator& evaluator_;
   std::int64_t evaluations_ = 0;
+  int idle_questions_ = 0;
 };
 
 }  // namespace
@@ -167,6 +194,10 @@ void minimize_isolated(const std::string& name, const std::function<void(Evaluat
       },
       limits, log);
   Answerer answerer(name, evaluator);
+  const auto fail = [&](const ChildFailure& failure) {
+    const std::string limit = limits.are_options ? failure.limit() : "";
+    answerer.fail(failure.what() + (limit.empty() ? "" : fmt::format(" (option {})", limit)));
+  };
   const auto is_stopped = [&] { return evaluator.stopped(); };
   const auto next_question = [&]() -> std::optional<std::string> {
     try {
@@ -174,8 +205,9 @@ void minimize_isolated(const std::string& name, const std::function<void(Evaluat
       const auto event = child.receive(is_stopped, question);
       return event == ChildProcess::Event::message ? std::optional(question) : std::nullopt;
     } catch (const ChildFailure& failure) {
-      answerer.fail(failure.what());
+      fail(failure);
     }
+    return std::nullopt;
   };
   while (const auto question = next_question()) {
     try {
@@ -183,7 +215,7 @@ void minimize_isolated(const std::string& name, const std::function<void(Evaluat
         return;
       }
     } catch (const ChildFailure& failure) {
-      answerer.fail(failure.what());
+      fail(failure);
     } catch (const PacketError&) {
       answerer.fail("sent a question that makes no sense");
     }

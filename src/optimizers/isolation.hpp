@@ -15,13 +15,14 @@ class OutputLog;
 struct IsolationLimits {
   double silence_s = 60;     // longest time between two questions; the scores' own time not counted
   double memory_mib = 4096;  // that the child may allocate beyond what it began with
+  bool are_options = false;  // the two above: messages then name them, for the user to change
 };
 
 // Calls `body` in the child. Returns when it returns. Kills the child as soon as
 // evaluator.stopped() holds. Throws OptimizerFailure, with `name` in the message, if the child
-// throws, dies, falls silent, asks for nonsense or takes more memory than allowed; Error{io} if
-// there is no process to be had. What the child prints goes into `log`, or else to our standard
-// error.
+// throws, dies, falls silent, asks for nonsense or on and on without evaluating, or takes more
+// memory than allowed; Error{io} if there is no process to be had. What the child prints goes into
+// `log`, or else to our standard error.
 void minimize_isolated(const std::string& name, const std::function<void(Evaluator&)>& body,
                        Evaluator& evaluator, const IsolationLimits& limits,
                        OutputLog* log = nullptr);

@@ -234,15 +234,27 @@ std::optional<std::string> LineProcess::receive(double silence_s,
     const bool ended = has_ended(pid_);
     const std::size_t before = received_.size();
     read_available();
-    if (received_.size() > before) {
+    const bool has_grown = received_.size() > before;
+    if (has_grown) {
+      if (auto line = take_line()) {
+        return line;
+      }
+    }
+    // Only a whole line breaks the silence: one byte now and then would keep us here for ever.
+    const bool is_late = Clock::now() > deadline;
+    if (has_grown && !is_late) {
       continue;
     }
     if (ended) {
       throw LineProcessFailure(kill());
     }
-    if (Clock::now() > deadline) {
+    if (is_late) {
       if (at_end_) {
         throw LineProcessFailure("closed its standard output");
+      }
+      if (!received_.empty()) {
+        throw LineProcessSilence(
+            fmt::format("has begun a line and not ended it within {:g} s", silence_s));
       }
       throw LineProcessSilence(fmt::format("has been silent for {:g} s", silence_s));
     }

@@ -16,7 +16,14 @@ namespace armwright {
 // What became of a child, as the end of a sentence that begins with its name: "was killed by signal
 // 11 (Segmentation fault)". A body may throw it too, and it comes out with the same words.
 class ChildFailure : public std::runtime_error {
-  using std::runtime_error::runtime_error;
+ public:
+  // `limit`: the member of IsolationLimits that it went beyond; empty for none.
+  explicit ChildFailure(const std::string& what, const char* limit = "")
+      : std::runtime_error(what), limit_(limit) {}
+  const char* limit() const { return limit_; }
+
+ private:
+  const char* limit_;
 };
 
 enum class FrameKind : std::uint64_t { message, finished, failure, exception, out_of_memory };

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/text.hpp"
-#include "optimizers/child_process.hpp"
+#include "optimizers/parent_link.hpp"
 
 namespace armwright {
 namespace {

@@ -8,13 +8,13 @@
 #include <utility>
 
 #include "base/text.hpp"
+#include "optimizers/plugin_limits.hpp"
 
 namespace armwright {
 namespace {
 
 constexpr std::size_t kMaxOptions = 1000;
 constexpr std::size_t kMaxChoices = 1000;
-constexpr double kMaxInteger = 9007199254740992;  // 2^53: doubles below it tell integers apart
 
 std::string take_text(const char* text, const std::string& what) {
   if (text == nullptr) {
@@ -65,7 +65,7 @@ OptionSpec take_option(const armwright_option& raw, std::size_t number) {
       break;
     case ARMWRIGHT_INTEGER:
       for (const double value : {raw.fallback, raw.lower, raw.upper}) {
-        if (value != std::floor(value) || std::abs(value) > kMaxInteger) {
+        if (value != std::floor(value) || std::abs(value) > kLargestInteger) {
           throw PluginRefusal(fmt::format("{}{} is no integer up to 2^53", what, value));
         }
       }
@@ -146,7 +146,7 @@ PluginDescription describe_plugin(const struct armwright_plugin& plugin,
                                   std::span<const std::string> own_options) {
   constexpr std::uint32_t kKnown = (ARMWRIGHT_PACED << 1) - 1;
   PluginDescription taken;
-  taken.name = take_name(plugin.name, "its name", "_-:ABCDEFGHIJKLMNOPQRSTUVWXYZ");
+  take_name(plugin.name, "its name", "_-:ABCDEFGHIJKLMNOPQRSTUVWXYZ");
   taken.summary = take_text(plugin.summary, "its summary");
   taken.source = take_text(plugin.source, "its source");
   taken.capabilities = plugin.capabilities;

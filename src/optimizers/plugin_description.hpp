@@ -21,7 +21,6 @@ class PluginRefusal : public std::runtime_error {
 };
 
 struct PluginDescription {
-  std::string name;
   std::string summary;
   std::string source;
   std::uint32_t capabilities = 0;
@@ -32,11 +31,11 @@ struct PluginDescription {
 // still run. Throws PluginRefusal.
 const struct armwright_plugin& open_plugin(const std::filesystem::path& file);
 
-// `own_options`: names that are taken. Throws PluginRefusal.
+// `own_options`: names that are taken. The plugin's own name is checked and left: the user's word
+// for it counts. Throws PluginRefusal.
 PluginDescription describe_plugin(const struct armwright_plugin& plugin,
                                   std::span<const std::string> own_options);
 
-// All but the name, which only has to be a sound one: the user's word for the plugin counts.
 void pack(const PluginDescription& description, PacketWriter& writer);
 PluginDescription unpack_description(PacketReader& reader);
 

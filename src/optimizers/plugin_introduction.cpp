@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
 #include "base/text.hpp"
+#include "optimizers/capability_names.hpp"
 #include "optimizers/message_fields.hpp"
+#include "optimizers/plugin_limits.hpp"
 #include "optimizers/plugin_messages.hpp"
 #include "optimizers/plugin_process.hpp"
 
@@ -17,19 +18,25 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array<std::pair<const char*, bool Capabilities::*>, 11> kCapabilities{{
-    {"bounds", &Capabilities::bounds},
-    {"constraints", &Capabilities::constraints},
-    {"multi_objective", &Capabilities::multi_objective},
-    {"batch", &Capabilities::batch},
-    {"noisy", &Capabilities::noisy},
-    {"residuals", &Capabilities::residuals},
-    {"stochastic", &Capabilities::stochastic},
-    {"generations", &Capabilities::generations},
-    {"local", &Capabilities::local},
-    {"sampling", &Capabilities::sampling},
-    {"paced", &Capabilities::paced},
-}};
+std::vector<std::string> read_choices(const json& object, const std::string& where) {
+  std::vector<std::string> choices;
+  const auto list = object.find("choices");
+  if (list == object.end()) {
+    return choices;
+  }
+  if (!list->is_array()) {
+    throw ProtocolError(
+        fmt::format("sent {} whose \"choices\" are {}, not a list of texts", where, quote(*list)));
+  }
+  for (const json& choice : *list) {
+    if (!choice.is_string()) {
+      throw ProtocolError(
+          fmt::format("sent {} with a choice that is no text: {}", where, quote(choice)));
+    }
+    choices.push_back(choice.get<std::string>());
+  }
+  return choices;
+}
 
 OptionSpec read_option(const json& object) {
   if (!object.is_object()) {
@@ -45,13 +52,7 @@ OptionSpec read_option(const json& object) {
     spec.fallback = fallback.get<bool>();
   } else if (fallback.is_string()) {
     spec.fallback = fallback.get<std::string>();
-    for (const json& choice : object.value("choices", json::array())) {
-      if (!choice.is_string()) {
-        throw ProtocolError(
-            fmt::format("sent {} with a choice that is no text: {}", where, quote(choice)));
-      }
-      spec.choices.push_back(choice.get<std::string>());
-    }
+    spec.choices = read_choices(object, where);
     if (!spec.choices.empty() &&
         std::ranges::count(spec.choices, std::get<std::string>(spec.fallback)) == 0) {
       throw ProtocolError(
@@ -67,7 +68,14 @@ OptionSpec read_option(const json& object) {
                                       format_exact(spec.upper)));
     }
     if (fallback.is_number_integer()) {
-      spec.fallback = fallback.get<std::int64_t>();
+      for (const char* key : {"default", "lower", "upper"}) {
+        const double integer = read_number(object, key, where);
+        if (integer != std::floor(integer) || std::abs(integer) > kLargestInteger) {
+          throw ProtocolError(fmt::format("sent {} whose \"{}\" is {}, not an integer up to 2^53",
+                                          where, key, quote(object[key])));
+        }
+      }
+      spec.fallback = static_cast<std::int64_t>(value);
     } else {
       spec.fallback = value;
     }
@@ -82,7 +90,7 @@ OptionSpec read_option(const json& object) {
 Capabilities read_capabilities(const json& list) {
   Capabilities capabilities;
   std::vector<std::string> names;
-  for (const auto& [name, member] : kCapabilities) {
+  for (const auto& [name, member] : kCapabilityNames) {
     names.emplace_back(name);
     capabilities.*member = false;
   }
@@ -93,7 +101,7 @@ Capabilities read_capabilities(const json& list) {
       throw ProtocolError("described itself with an " +
                           describe_unknown("capability", text, names));
     }
-    capabilities.*(kCapabilities[static_cast<std::size_t>(found - names.begin())].second) = true;
+    capabilities.*(kCapabilityNames[static_cast<std::size_t>(found - names.begin())].member) = true;
   }
   return capabilities;
 }

@@ -143,8 +143,9 @@ class LibraryOptimizer : public Optimizer {
       : library_(std::move(library)), options_(options) {}
 
   void log_to(const std::filesystem::path& file) override {
+    auto log = std::make_unique<OutputLog>(file, OutputLog::Begin::anew);
     if (options_.get_text("log").empty()) {
-      log_ = std::make_unique<OutputLog>(file, OutputLog::Begin::anew);
+      log_ = std::move(log);
     }
   }
 
@@ -168,10 +169,12 @@ class LibraryOptimizer : public Optimizer {
       }
       return;
     }
+    open_log();
     try {
       minimize_isolated(library_.name, call, strict,
                         {.silence_s = options_.get_number("silence_s"),
-                         .memory_mib = options_.get_number("memory_mib")},
+                         .memory_mib = options_.get_number("memory_mib"),
+                         .are_options = true},
                         log_.get());
     } catch (const OptimizerFailure& failure) {
       throw OptimizerFailure(failure.what(), log_->last_lines());
@@ -179,14 +182,21 @@ class LibraryOptimizer : public Optimizer {
   }
 
  private:
+  // Not before: whoever makes an optimizer may still find that there is nothing to run.
+  void open_log() {
+    if (!log_) {
+      log_ = std::make_unique<OutputLog>(options_.get_text("log"),
+                                         OutputLog::Begin::behind_what_is_there);
+    }
+  }
+
   [[noreturn]] void fail(const std::string& what) const {
     throw OptimizerFailure(fmt::format("optimizer '{}' {}", sanitize(library_.name), what));
   }
 
   Library library_;
   Options options_;
-  std::unique_ptr<OutputLog> log_ =
-      std::make_unique<OutputLog>(options_.get_text("log"), OutputLog::Begin::behind_what_is_there);
+  std::unique_ptr<OutputLog> log_;  // from the first minimize() on, or log_to()
 };
 
 Capabilities make_capabilities(std::uint32_t bits) {

@@ -15,6 +15,10 @@ namespace {
 
 using nlohmann::json;
 
+// Writing, comparing and copying JSON call themselves once a level; no message of the protocol
+// comes near it.
+constexpr int kDeepest = 16;
+
 // With the type first, as people read it.
 using OrderedJson = nlohmann::ordered_json;
 
@@ -66,6 +70,11 @@ OrderedJson describe_quantities(std::span<const Quantity> quantities) {
   return list;
 }
 
+// As the protocol has it: what people read may have a blank.
+const char* get_status_name(EvaluationStatus status) {
+  return status == EvaluationStatus::timed_out ? "timed_out" : to_string(status);
+}
+
 }  // namespace
 
 std::string make_hello() {
@@ -114,7 +123,7 @@ std::string make_tell(std::span<const Score> scores, std::int64_t remaining, boo
   for (const Score& score : scores) {
     OrderedJson one = {{"objectives", score.objectives},
                        {"constraints", score.constraint_values},
-                       {"status", to_string(score.status)},
+                       {"status", get_status_name(score.status)},
                        {"clipped", score.clipped}};
     if (with_residuals) {
       one["residuals"] = score.residuals;
@@ -126,9 +135,18 @@ std::string make_tell(std::span<const Score> scores, std::int64_t remaining, boo
 }
 
 json read_message(const std::string& line) {
+  const auto refuse_depth = [&](int depth, json::parse_event_t event, const json&) {
+    const bool begins_level =
+        event == json::parse_event_t::object_start || event == json::parse_event_t::array_start;
+    if (begins_level && depth >= kDeepest) {
+      throw ProtocolError(
+          fmt::format("sent JSON nested more than {} deep: {}", kDeepest, quote(line)));
+    }
+    return true;
+  };
   json message;
   try {
-    message = json::parse(line);
+    message = json::parse(line, refuse_depth);
   } catch (const json::exception&) {
     const bool has_nan =
         line.find("NaN") != std::string::npos || line.find("Infinity") != std::string::npos;

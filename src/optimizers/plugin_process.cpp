@@ -25,9 +25,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kDescriptionSilence_s = 60;  // interpreters and their libraries load slowly
-constexpr double kFarewell_s = 1;             // from the last word to the end of the process
-constexpr int kMostNotes = 100000;            // recommendations without a question between them
+constexpr double kFarewell_s = 1;   // from the last word to the end of the process
+constexpr int kMostNotes = 100000;  // recommendations without a question between them
 
 std::vector<std::string> watch_option_names() {
   std::vector<std::string> names;
@@ -35,28 +34,35 @@ std::vector<std::string> watch_option_names() {
   return names;
 }
 
-// Nothing if it is given up before it has answered.
-std::optional<json> ask_for_description(LineProcess& child,
+// Nothing if it is given up before it has answered. Silence is a failure like any other here: the
+// option silence_s has no say in it.
+std::optional<json> ask_for_description(LineProcess& child, double loading_s,
                                         const std::function<bool()>& is_given_up) {
-  child.send(make_hello(), kDescriptionSilence_s);
-  const auto line = child.receive(kDescriptionSilence_s, is_given_up);
-  return line ? std::optional(read_message(*line)) : std::nullopt;
+  try {
+    child.send(make_hello(), loading_s);
+    const auto line = child.receive(loading_s, is_given_up);
+    return line ? std::optional(read_message(*line)) : std::nullopt;
+  } catch (const LineProcessSilence& silence) {
+    throw LineProcessFailure(fmt::format("{}, asked to describe itself", silence.what()));
+  }
 }
 
 class ProcessPlugin : public Optimizer {
  public:
   ProcessPlugin(std::string name, std::vector<std::string> words, json description,
-                Capabilities capabilities, Options options)
+                double loading_s, Capabilities capabilities, Options options)
       : name_(std::move(name)),
         words_(std::move(words)),
         description_(std::move(description)),
+        loading_s_(loading_s),
         capabilities_(capabilities),
         options_(std::move(options)),
         silence_s_(options_.get_number("silence_s")) {}
 
   void log_to(const std::filesystem::path& file) override {
+    auto log = std::make_unique<OutputLog>(file, OutputLog::Begin::anew);
     if (options_.get_text("log").empty()) {
-      log_ = std::make_unique<OutputLog>(file, OutputLog::Begin::anew);
+      log_ = std::move(log);
     }
   }
 
@@ -64,6 +70,7 @@ class ProcessPlugin : public Optimizer {
     if (evaluator.stopped()) {
       return;
     }
+    open_log();
     std::int64_t evaluations = 0;
     try {
       Conversation(*this, evaluator, evaluations).run(seed);
@@ -77,6 +84,14 @@ class ProcessPlugin : public Optimizer {
   }
 
  private:
+  // Not before: whoever makes an optimizer may still find that there is nothing to run.
+  void open_log() {
+    if (!log_) {
+      log_ = std::make_unique<OutputLog>(options_.get_text("log"),
+                                         OutputLog::Begin::behind_what_is_there);
+    }
+  }
+
   // One process, from its start to its end: destroyed is killed.
   class Conversation {
    public:
@@ -102,7 +117,8 @@ class ProcessPlugin : public Optimizer {
 
    private:
     void converse(std::uint64_t seed) {
-      const auto description = ask_for_description(child_, [&] { return evaluator_.stopped(); });
+      const auto description =
+          ask_for_description(child_, plugin_.loading_s_, [&] { return evaluator_.stopped(); });
       if (!description) {
         return;
       }
@@ -200,11 +216,11 @@ class ProcessPlugin : public Optimizer {
   std::string name_;
   std::vector<std::string> words_;
   json description_;
+  double loading_s_;
   Capabilities capabilities_;
   Options options_;
   double silence_s_;
-  std::unique_ptr<OutputLog> log_ =
-      std::make_unique<OutputLog>(options_.get_text("log"), OutputLog::Begin::behind_what_is_there);
+  std::unique_ptr<OutputLog> log_;  // from the first minimize() on, or log_to()
 };
 
 // The script, the program: what decides how it behaves.
@@ -238,12 +254,12 @@ void check_names(const OptimizerRow& row) {
 
 }  // namespace
 
-OptimizerRow load_process_plugin(std::string_view command) {
+OptimizerRow load_process_plugin(std::string_view command, double loading_s) {
   const std::vector<std::string> words = split_command(command);
   OutputLog log;
   try {
     LineProcess child(words, log);
-    const json description = ask_for_description(child, [] { return false; }).value();
+    const json description = ask_for_description(child, loading_s, [] { return false; }).value();
     OptimizerRow row = read_description(description);
     check_names(row);
     child.send(make_quit(), kFarewell_s);
@@ -253,7 +269,8 @@ OptimizerRow load_process_plugin(std::string_view command) {
     row.input_hashes = hash_files(words);
     row.make = [=, name = row.name, capabilities = row.capabilities](
                    const Options& options) -> std::unique_ptr<Optimizer> {
-      return std::make_unique<ProcessPlugin>(name, words, description, capabilities, options);
+      return std::make_unique<ProcessPlugin>(name, words, description, loading_s, capabilities,
+                                             options);
     };
     return row;
   } catch (const ProtocolError& error) {

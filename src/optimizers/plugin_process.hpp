@@ -14,6 +14,8 @@ inline constexpr int kPluginProtocol = 1;
 // `command` is what stands behind "exec:", split as a shell would, but no shell runs. The program
 // is started once to describe itself, and again for every minimize(). Error{usage} if there is no
 // such program, Error{bad_data} if it does not describe itself as the protocol wants it.
-OptimizerRow load_process_plugin(std::string_view command);
+// `loading_s`: how long it may take to describe itself, each time: interpreters and their libraries
+// load slowly.
+OptimizerRow load_process_plugin(std::string_view command, double loading_s = 60);
 
 }  // namespace armwright

@@ -80,8 +80,10 @@ TEST_F(CliMisbehavingPlugins, ALibraryCostsItsRunAlone) {
       {"throw", {}, "threw an exception (out of ideas) after 2 evaluations"},
       {"exit", {}, "ended its process with exit code 3 before it had finished"},
       {"segfault", {}, "was killed by signal 11 (Segmentation fault) after 2 evaluations"},
-      {"loop", {"silence_s=2"}, "was silent for more than 2 s (option silence_s)"},
-      {"allocate", {"memory_mib=64"}, "memory_mib"},
+      {"loop",
+       {"silence_s=2"},
+       "was silent for more than 2 s and had to be killed (option silence_s)"},
+      {"allocate", {"memory_mib=64"}, "(option memory_mib)"},
       {"nan", {}, "asked for a point (evaluation 3) with x_1 = nan, which is not a finite number"},
       {"outside", {}, "though it declares that it keeps to the bounds"},
       {"count", {"memory_mib=64"}, "after 2 evaluations"},
@@ -197,8 +199,12 @@ TEST_F(CliMisbehavingPlugins, CheckPluginShowsWhatWasPrinted) {
 }
 
 TEST_F(CliMisbehavingPlugins, TheLogIsWhereTheUserWantsItAndOfThisRunAlone) {
+  optimize(library("misbehaving"), {"how=fail"}, "a");
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "a/optimizer.log"));
   optimize(library("misbehaving"), {"how=fail", "log=mine.log"}, "a");
-  optimize(library("misbehaving"), {"how=fail", "log=mine.log"}, "a");
+  const Outcome outcome = optimize(library("misbehaving"), {"how=fail", "log=mine.log"}, "a");
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("What the optimizer printed: mine.log\n"),
+                                 HasSubstr("(silence_s, memory_mib and log may be others)")));
   EXPECT_EQ(read_text(folder_ / "mine.log"),
             "two points are evaluated\ntwo points are evaluated\n");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "a/optimizer.log"));

@@ -15,6 +15,7 @@
 #include <limits>
 #include <thread>
 
+#include "optimizers/parent_link.hpp"
 #include "optimizers/scalar_function.hpp"
 #include "problems/analytic.hpp"
 #include "study/memory_evaluator.hpp"
@@ -24,6 +25,7 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr IsolationLimits kLimits{.silence_s = 30, .memory_mib = 1024};
@@ -196,14 +198,31 @@ TEST_F(Isolation, DeathBySignalNamesIt) {
 }
 
 TEST_F(Isolation, SilenceIsAFailure) {
+  const auto body = [](Evaluator& remote) {
+    evaluate(remote, {{1, 2}});
+    loop_forever();
+  };
+  EXPECT_THAT(failure_of(body, {.silence_s = 0.3}),
+              HasSubstr("was silent for more than 0.3 s and had to be killed after 1 evaluation;"));
+  EXPECT_THAT(failure_of(body, {.silence_s = 0.3, .are_options = true}),
+              HasSubstr("was silent for more than 0.3 s and had to be killed (option silence_s) "
+                        "after 1 evaluation;"));
+}
+
+TEST_F(Isolation, APartOfAMessageDoesNotBreakTheSilence) {
   EXPECT_THAT(failure_of(
-                  [](Evaluator& remote) {
-                    evaluate(remote, {{1, 2}});
-                    loop_forever();
+                  [](Evaluator&) {
+                    constexpr int kConnection = 3;  // as TheChildHoldsNoneOfOurDescriptors has it
+                    const FrameHeader header{.size = 1000};
+                    [[maybe_unused]] auto written = write(kConnection, &header, sizeof header);
+                    for (int i = 0; i < 100; ++i) {
+                      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+                      written = write(kConnection, "x", 1);
+                    }
+                    _exit(3);
                   },
                   {.silence_s = 0.3, .memory_mib = 1024}),
-              HasSubstr("was silent for more than 0.3 s (option silence_s) and had to be killed "
-                        "after 1 evaluation;"));
+              HasSubstr("was silent for more than 0.3 s"));
 }
 
 TEST_F(Isolation, TheEvaluatorsOwnTimeIsNoSilence) {
@@ -237,10 +256,14 @@ TEST_F(Isolation, HungerForMemoryIsAFailure) {
   };
   // Slowly: the parent notices. At one stroke: the system refuses, or (address sanitizer) the
   // parent notices again.
-  EXPECT_THAT(failure_of(hungry(std::size_t{8} << 20), {.silence_s = 30, .memory_mib = 64}),
-              HasSubstr("more memory than the 64 MiB it may (option memory_mib)"));
+  const IsolationLimits limits{.silence_s = 30, .memory_mib = 64, .are_options = true};
+  EXPECT_THAT(failure_of(hungry(std::size_t{8} << 20), limits),
+              HasSubstr("more memory than the 64 MiB it may and had to be killed (option "
+                        "memory_mib)"));
+  EXPECT_THAT(failure_of(hungry(std::size_t{512} << 20), limits),
+              AllOf(HasSubstr("(option memory_mib)"), HasSubstr("64 MiB")));
   EXPECT_THAT(failure_of(hungry(std::size_t{512} << 20), {.silence_s = 30, .memory_mib = 64}),
-              AllOf(HasSubstr("memory_mib"), HasSubstr("64 MiB")));
+              AllOf(HasSubstr("64 MiB"), Not(HasSubstr("memory_mib"))));
 }
 
 TEST_F(Isolation, PointsThatAreNoNumbersNameEvaluationAndVariable) {
@@ -270,6 +293,40 @@ TEST_F(Isolation, PointsOfTheWrongLengthAreFailures) {
   EXPECT_THAT(failure_of([](Evaluator& remote) { evaluate(remote, {{}}); }),
               HasSubstr("(evaluation 1) of 0 coordinates"));
   EXPECT_TRUE(evaluator_.trace().empty());
+}
+
+TEST_F(Isolation, WhoAsksOnAndOnWithoutEvaluatingFails) {
+  // Bounded, so that the test ends if nobody notices.
+  const auto repeat = [](const std::function<void(Evaluator&)>& ask) {
+    return [ask](Evaluator& remote) {
+      evaluate(remote, {{1, 2}});
+      for (int i = 0; i < 100001; ++i) {
+        ask(remote);
+      }
+    };
+  };
+  EXPECT_EQ(failure_of(repeat([](Evaluator& remote) {
+              remote.recommend(std::vector<double>{1, 2});
+            })),
+            "optimizer 'demo' asked 100000 questions in a row without evaluating a point (the "
+            "last: recommend()) after 1 evaluation; what it had asked for is kept");
+  EXPECT_THAT(failure_of(repeat([](Evaluator& remote) { evaluate(remote, {}); })),
+              HasSubstr("the last: evaluate() without points"));
+  EXPECT_THAT(failure_of(repeat([](Evaluator& remote) { remote.stopped(); })),
+              HasSubstr("the last: stopped()"));
+}
+
+TEST_F(Isolation, WhoAsksMuchAndEvaluatesMayGoOn) {
+  EXPECT_EQ(failure_of([](Evaluator& remote) {
+              for (int i = 0; i < 2; ++i) {
+                for (int k = 0; k < 60000; ++k) {
+                  remote.stopped();
+                }
+                evaluate(remote, {{1, 2}});
+              }
+            }),
+            "no failure");
+  EXPECT_EQ(evaluator_.trace().size(), 2u);
 }
 
 TEST_F(Isolation, AStopFromOutsideEndsTheChildWhileItComputes) {

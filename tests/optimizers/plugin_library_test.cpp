@@ -18,6 +18,7 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 std::string plugin(const std::string& name) {
@@ -166,7 +167,8 @@ TEST_F(PluginLibrary, ImplausibleDescriptionsAreRefused) {
                 AllOf(StartsWith(plugin("unloadable") + ": "), HasSubstr(message)));
   }
   setenv("ARMWRIGHT_TEST_PLUGIN", "hang", 1);
-  EXPECT_THAT(refusal_of(plugin("unloadable"), {.silence_s = 0.3}), HasSubstr("was silent"));
+  EXPECT_THAT(refusal_of(plugin("unloadable"), {.silence_s = 0.3}),
+              AllOf(HasSubstr("was silent"), Not(HasSubstr("silence_s"))));
   unsetenv("ARMWRIGHT_TEST_PLUGIN");
   EXPECT_EQ(refusal_of(plugin("unloadable")), "no refusal");
 }
@@ -186,7 +188,8 @@ TEST_F(PluginLibrary, MisbehaviourCostsTheRunAndNotTheProgram) {
         failure_of({std::string("how=") + how}),
         AllOf(StartsWith("optimizer '" + plugin("misbehaving") + "' "), HasSubstr(message)));
   }
-  EXPECT_THAT(failure_of({"how=loop", "silence_s=0.3"}), HasSubstr("was silent for more than 0.3"));
+  EXPECT_THAT(failure_of({"how=loop", "silence_s=0.3"}),
+              AllOf(HasSubstr("was silent for more than 0.3"), HasSubstr("(option silence_s)")));
   EXPECT_THAT(failure_of({"how=allocate", "memory_mib=64"}), HasSubstr("memory"));
 }
 
@@ -197,6 +200,19 @@ TEST_F(PluginLibrary, ItIsHeldToItsWordHereToo) {
   EXPECT_THAT(failure_of({"how=fail", "isolate=false"}), HasSubstr("failed with code 7"));
   EXPECT_THAT(failure_of({"how=throw", "isolate=false"}), HasSubstr("out of ideas"));
   EXPECT_THAT(failure_of({"how=undeclared", "isolate=false"}), HasSubstr("'hwo'"));
+}
+
+TEST_F(PluginLibrary, TheLogIsOpenedByTheRunAndLeavesNoneOfAnEarlierOne) {
+  const std::string earlier = write("optimizer.log", "of an earlier run");
+  const std::filesystem::path wanted = folder_ / "wanted.log";
+  const OptimizerRow row = load_optimizer(plugin("misbehaving"));
+  const auto optimizer = row.make(Options::parse(
+      row.name, row.options, std::vector<std::string>{"how=fail", "log=" + wanted.string()}));
+  optimizer->log_to(earlier);
+  EXPECT_FALSE(std::filesystem::exists(earlier));
+  EXPECT_FALSE(std::filesystem::exists(wanted));
+  EXPECT_THROW(optimizer->minimize(evaluator_, 1), OptimizerFailure);
+  EXPECT_GT(std::filesystem::file_size(wanted), 0u);
 }
 
 TEST_F(PluginLibrary, APluginThatIgnoresTheEndIsStopped) {

@@ -14,6 +14,7 @@
 #include "base/temporary_folder.hpp"
 #include "optimizers/command_words.hpp"
 #include "optimizers/line_process.hpp"
+#include "optimizers/plugin_messages.hpp"
 #include "problems/analytic.hpp"
 #include "study/memory_evaluator.hpp"
 
@@ -23,6 +24,7 @@ namespace {
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 std::string script(const std::string& name) {
   return std::string(ARMWRIGHT_TEST_DATA) + "/../plugins/" + name;
@@ -203,7 +205,10 @@ TEST_F(PluginProcess, AStopWhileItThinksIsNoticed) {
 }
 
 TEST_F(PluginProcess, EveryFaultIsNamed) {
-  EXPECT_THAT(failure_of("silent", {"silence_s=2"}), HasSubstr("silent for 2 s"));
+  EXPECT_THAT(failure_of("silent", {"silence_s=2"}),
+              HasSubstr("silent for 2 s (option silence_s)"));
+  EXPECT_THAT(failure_of("drip", {"silence_s=2"}),
+              HasSubstr("has begun a line and not ended it within 2 s"));
   EXPECT_THAT(failure_of("exit"),
               AllOf(HasSubstr("after 1 evaluation: "), HasSubstr("ended with exit code 3")));
   EXPECT_THAT(failure_of("no-done"), HasSubstr("ended with exit code 0"));
@@ -220,6 +225,7 @@ TEST_F(PluginProcess, EveryBadMessageIsNamed) {
               AllOf(HasSubstr("not JSON: 'iteration 1: ?[31mfine?[0m yyy"), HasSubstr("yyy'...")));
   EXPECT_THAT(failure_of("no-type"), HasSubstr("no object with a \"type\": '[1, 2]'"));
   EXPECT_THAT(failure_of("unknown-type"), HasSubstr("unknown type 'tell'"));
+  EXPECT_THAT(failure_of("deep"), HasSubstr("nested more than 16 deep: '{\"type\""));
   EXPECT_THAT(failure_of("length"),
               HasSubstr("point 2 of 2 of 2 coordinates; the problem has 3 variables"));
   EXPECT_THAT(failure_of("nan"), HasSubstr("JSON knows no NaN"));
@@ -235,6 +241,20 @@ TEST_F(PluginProcess, EveryBadMessageIsNamed) {
 
 TEST_F(PluginProcess, WhoAsksWithoutReadingAnswersIsGivenUp) {
   EXPECT_THAT(failure_of("deaf", {"silence_s=2"}), HasSubstr("has not read its input for 2 s"));
+}
+
+TEST_F(PluginProcess, TheTimeForItsDescriptionIsNoOption) {
+  const TemporaryFolder folder;
+  const std::string command = faulty("late " + (folder / "mark").string()).substr(5);
+  const OptimizerRow row = load_process_plugin(command, 3);
+  MemoryEvaluator evaluator(problem(), {.budget = 10});
+  try {
+    row.make(Options::parse(row.name, row.options, {}))->minimize(evaluator, 1);
+    ADD_FAILURE() << "no OptimizerFailure";
+  } catch (const OptimizerFailure& failure) {
+    EXPECT_THAT(failure.what(), AllOf(HasSubstr("silent for 3 s, asked to describe itself"),
+                                      Not(HasSubstr("silence_s"))));
+  }
 }
 
 TEST_F(PluginProcess, WhatItStartedIsKilledWithIt) {
@@ -264,6 +284,22 @@ TEST_F(PluginProcess, TheLogTakesItsStandardError) {
       HasSubstr("/none/log"));
 }
 
+TEST_F(PluginProcess, TheLogIsOpenedByTheRunAndLeavesNoneOfAnEarlierOne) {
+  const TemporaryFolder folder;
+  const std::filesystem::path wanted = folder / "log";
+  const OptimizerRow row = load_optimizer(faulty("notes"));
+  const auto optimizer = row.make(
+      Options::parse(row.name, row.options, std::vector<std::string>{"log=" + wanted.string()}));
+  EXPECT_FALSE(std::filesystem::exists(wanted));
+  std::ofstream(folder / "optimizer.log") << "of an earlier run";
+  optimizer->log_to(folder / "optimizer.log");
+  EXPECT_FALSE(std::filesystem::exists(folder / "optimizer.log"));
+  EXPECT_FALSE(std::filesystem::exists(wanted));
+  MemoryEvaluator evaluator(problem(), {.budget = 20});
+  optimizer->minimize(evaluator, 1);
+  EXPECT_EQ(read_text(wanted), "a note\n");
+}
+
 TEST_F(PluginProcess, ABadDescriptionIsRefused) {
   EXPECT_THAT(refusal_of("protocol"), AllOf(HasSubstr("version '7'"), HasSubstr("version 1")));
   EXPECT_THAT(refusal_of("capability"), HasSubstr("unknown capability 'bonds'; did you mean"));
@@ -272,7 +308,23 @@ TEST_F(PluginProcess, ABadDescriptionIsRefused) {
   EXPECT_THAT(refusal_of("own-option"), HasSubstr("option 'log'; every process has one"));
   EXPECT_THAT(refusal_of("option-range"), HasSubstr("outside its range 5 to 9"));
   EXPECT_THAT(refusal_of("no-range"), HasSubstr("option 'k' without \"lower\""));
+  const auto refusal_of_option = [this](const std::string& json) {
+    return refusal_of("option '{\"name\": \"k\", " + json + "}'");
+  };
+  EXPECT_THAT(refusal_of_option(R"("default": 18446744073709551615, "lower": -1, "upper": 1e20)"),
+              HasSubstr("option 'k' whose \"default\" is '18446744073709551615', not an integer"));
+  EXPECT_THAT(refusal_of_option(R"("default": 3, "lower": 0.5, "upper": 9)"),
+              HasSubstr("option 'k' whose \"lower\" is '0.5', not an integer up to 2^53"));
+  EXPECT_THAT(refusal_of_option(R"("default": 3, "lower": 0, "upper": 1e300)"),
+              HasSubstr("option 'k' whose \"upper\" is '1e+300', not an integer"));
+  EXPECT_THAT(refusal_of_option(R"("default": "a", "choices": {"x": "a"})"),
+              HasSubstr("\"choices\" are '{\"x\":\"a\"}', not a list of texts"));
+  EXPECT_THAT(refusal_of_option(R"("default": "a", "choices": "a")"),
+              HasSubstr("\"choices\" are '\"a\"', not a list of texts"));
+  EXPECT_THAT(refusal_of_option(R"("default": "a", "choices": ["a", 1])"),
+              HasSubstr("a choice that is no text: '1'"));
   EXPECT_THAT(refusal_of("greeting"), HasSubstr("'Hello, world'"));
+  EXPECT_THAT(refusal_of("deep-greeting"), HasSubstr("nested more than 16 deep"));
   EXPECT_THAT(refusal_of("early-exit"), HasSubstr("ended with exit code 4 before it described"));
 }
 
@@ -281,6 +333,20 @@ TEST_F(PluginProcess, ACommandThatIsNoneIsRefused) {
               AllOf(HasSubstr("'no-such-program-here'"), HasSubstr("No such file")));
   EXPECT_THAT(usage_error_of([] { load_optimizer("exec:"); }), HasSubstr("names no program"));
   EXPECT_THAT(usage_error_of([] { load_optimizer("exec:python3 'x"); }), HasSubstr("not closed"));
+}
+
+TEST(PluginMessages, AScoreSaysItsStatusAsTheProtocolHasIt) {
+  const std::vector<std::pair<EvaluationStatus, std::string>> names = {
+      {EvaluationStatus::ok, "ok"},
+      {EvaluationStatus::diverged, "diverged"},
+      {EvaluationStatus::unreachable, "unreachable"},
+      {EvaluationStatus::timed_out, "timed_out"},
+      {EvaluationStatus::failed, "failed"}};
+  for (const auto& [status, name] : names) {
+    Score score;
+    score.status = status;
+    EXPECT_THAT(make_tell({{score}}, 1, false, false), HasSubstr("\"status\":\"" + name + "\""));
+  }
 }
 
 TEST(SplitCommand, FollowsTheShell) {

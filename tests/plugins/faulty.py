@@ -28,6 +28,10 @@ def ask(points):
 
 
 receive()
+if fault == "late":  # from the second start on
+    if os.path.exists(sys.argv[2]):
+        time.sleep(600)
+    open(sys.argv[2], "w").close()
 description = {"type": "description", "protocol": 1, "name": "faulty", "summary": "Misbehaves",
                "source": "", "capabilities": ["bounds"], "options": []}
 if fault == "protocol":
@@ -44,8 +48,12 @@ elif fault == "option-range":
     description["options"] = [{"name": "k", "default": 3, "lower": 5, "upper": 9}]
 elif fault == "no-range":
     description["options"] = [{"name": "k", "default": 3}]
+elif fault == "option":
+    description["options"] = [json.loads(sys.argv[2])]
 elif fault == "greeting":
     say("Hello, world")
+elif fault == "deep-greeting":
+    say('{"type": "description", "protocol": ' + 200000 * "[" + 200000 * "]" + "}")
 elif fault == "early-exit":
     sys.stderr.write("no licence\n")
     sys.exit(4)
@@ -60,6 +68,12 @@ ask([start])
 
 if fault == "silent":
     time.sleep(600)
+elif fault == "drip":
+    for _ in range(200):
+        sys.stdout.write(" ")
+        sys.stdout.flush()
+        time.sleep(0.03)
+    sys.exit(3)
 elif fault == "exit":
     sys.exit(3)
 elif fault == "throw":
@@ -91,6 +105,8 @@ elif fault == "no-type":
     say("[1, 2]")
 elif fault == "unknown-type":
     send({"type": "tell"})
+elif fault == "deep":
+    say('{"type": "recommend", "x": ' + 200000 * "[" + 200000 * "]" + "}")
 elif fault == "length":
     send({"type": "ask", "points": [start, start[1:]]})
 elif fault == "nan":
