@@ -1,22 +1,18 @@
 #include "optimizers/isolation.hpp"
 
-#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <signal.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <atomic>
-#include <cerrno>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 #include <limits>
 #include <thread>
 
+#include "optimizers/isolation_support.hpp"
 #include "optimizers/parent_link.hpp"
-#include "optimizers/scalar_function.hpp"
 #include "problems/analytic.hpp"
 #include "study/memory_evaluator.hpp"
 
@@ -28,51 +24,6 @@ using testing::HasSubstr;
 using testing::Not;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr IsolationLimits kLimits{.silence_s = 30, .memory_mib = 1024};
-
-std::size_t count_descriptors() {
-  std::size_t count = 0;
-  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
-    ++count;
-  }
-  return count;
-}
-
-// Every test ends with no child and no descriptor more than it began with.
-class Isolation : public testing::Test {
- protected:
-  void SetUp() override { descriptors_ = count_descriptors(); }
-  void TearDown() override {
-    EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);
-    EXPECT_EQ(errno, ECHILD);
-    EXPECT_EQ(count_descriptors(), descriptors_);
-  }
-
-  std::string failure_of(const std::function<void(Evaluator&)>& body,
-                         const IsolationLimits& limits = kLimits) {
-    try {
-      minimize_isolated("demo", body, evaluator_, limits);
-    } catch (const OptimizerFailure& failure) {
-      return failure.what();
-    }
-    return "no failure";
-  }
-
-  std::unique_ptr<Problem> problem_ = make_analytic("sphere", 2);
-  MemoryEvaluator evaluator_{*problem_, {.budget = 100}};
-  std::size_t descriptors_ = 0;
-};
-
-void evaluate(Evaluator& evaluator, std::initializer_list<std::vector<double>> points) {
-  evaluator.evaluate(std::vector<std::vector<double>>(points));
-}
-
-[[noreturn]] void loop_forever() {
-  const volatile bool is_true = true;
-  while (is_true) {
-  }
-  std::abort();
-}
 
 TEST_F(Isolation, GivesTheTraceOfTheOptimizerRunHere) {
   for (const char* name : {"ga", "random"}) {
@@ -379,121 +330,6 @@ TEST_F(Isolation, TheEvaluatorsExceptionsComeOutUnchanged) {
     FAIL() << "taken for the optimizer's";
   } catch (const std::runtime_error& error) {
     EXPECT_STREQ(error.what(), "the evaluator is broken");
-  }
-}
-
-TEST_F(Isolation, TheChildHoldsNoneOfOurDescriptors) {
-  const int held = open("/dev/null", O_RDONLY);
-  minimize_isolated(
-      "demo",
-      [](Evaluator& remote) {
-        std::vector<int> open_ones;
-        for (int fd = 0; fd < 64; ++fd) {
-          if (fcntl(fd, F_GETFD) >= 0) {
-            open_ones.push_back(fd);
-          }
-        }
-        char byte = 0;
-        remote.recommend(std::vector<double>{static_cast<double>(open_ones.size()),
-                                             static_cast<double>(read(0, &byte, 1))});
-      },
-      evaluator_, kLimits);
-  close(held);
-  EXPECT_EQ(evaluator_.recommended().at(0), (std::vector<double>{4, 0}));
-}
-
-TEST_F(Isolation, UnwrittenOutputIsWrittenOnceAndTheChildsGoesToStderr) {
-  testing::internal::CaptureStdout();
-  testing::internal::CaptureStderr();
-  std::fputs("ours, unwritten;", stdout);
-  minimize_isolated(
-      "demo", [](Evaluator&) { std::fputs("the child's", stdout); }, evaluator_, kLimits);
-  std::fflush(stdout);
-  EXPECT_EQ(testing::internal::GetCapturedStdout(), "ours, unwritten;");
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "the child's");
-}
-
-TEST_F(Isolation, HandlersAndMasksOfOursAreNotTheChilds) {
-  struct sigaction before {};
-  struct sigaction handler {};
-  handler.sa_handler = [](int) {};
-  sigaction(SIGTERM, &handler, &before);
-  sigset_t blocked;
-  sigemptyset(&blocked);
-  sigaddset(&blocked, SIGTERM);
-  sigset_t mask_before;
-  pthread_sigmask(SIG_BLOCK, &blocked, &mask_before);
-  EXPECT_THAT(failure_of([](Evaluator&) {
-                raise(SIGTERM);
-                pause();
-              }),
-              HasSubstr("signal 15"));
-  pthread_sigmask(SIG_SETMASK, &mask_before, nullptr);
-  sigaction(SIGTERM, &before, nullptr);
-}
-
-TEST_F(Isolation, ProcessesThatTheChildStartedEndWithIt) {
-  int ends[2];
-  ASSERT_EQ(pipe(ends), 0);
-  // The grandchild keeps our pipe open for as long as it lives: as standard error, the one place
-  // where a descriptor of ours gets through.
-  const int error_before = dup(STDERR_FILENO);
-  dup2(ends[1], STDERR_FILENO);
-  minimize_isolated(
-      "demo",
-      [](Evaluator&) {
-        if (fork() == 0) {
-          while (true) {
-            pause();
-          }
-        }
-      },
-      evaluator_, kLimits);
-  dup2(error_before, STDERR_FILENO);
-  close(error_before);
-  close(ends[1]);
-  char byte = 0;
-  EXPECT_EQ(read(ends[0], &byte, 1), 0);  // its end: nobody holds it any more
-  close(ends[0]);
-}
-
-TEST_F(Isolation, OtherThreadsGoOn) {
-  std::atomic<bool> end = false;
-  std::atomic<std::int64_t> steps = 0;
-  std::thread busy([&] {
-    while (!end) {
-      ++steps;
-    }
-  });
-  for (int i = 0; i < 20; ++i) {
-    EXPECT_THAT(failure_of([](Evaluator&) { std::abort(); }), HasSubstr("signal 6"));
-  }
-  const std::int64_t before = steps;
-  while (steps == before) {
-  }
-  end = true;
-  busy.join();
-}
-
-TEST_F(Isolation, ChildrenOfSeveralThreadsDoNotDisturbEachOther) {
-  const OptimizerRow& row = find_optimizer("ga");
-  std::vector<std::unique_ptr<MemoryEvaluator>> evaluators;
-  std::vector<std::thread> threads;
-  for (int i = 0; i < 4; ++i) {
-    evaluators.push_back(
-        std::make_unique<MemoryEvaluator>(*problem_, MemoryEvaluatorSettings{.budget = 500}));
-    threads.emplace_back([&row, evaluator = evaluators.back().get()] {
-      const auto optimizer = row.make(Options::parse("ga", row.options, {}));
-      minimize_isolated(
-          "ga", [&](Evaluator& remote) { optimizer->minimize(remote, 1); }, *evaluator, kLimits);
-    });
-  }
-  for (std::thread& thread : threads) {
-    thread.join();
-  }
-  for (const auto& evaluator : evaluators) {
-    EXPECT_EQ(evaluator->trace(), evaluators.front()->trace());
-    EXPECT_EQ(evaluator->trace().size(), 500u);
   }
 }
 
