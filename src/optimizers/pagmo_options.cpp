@@ -22,11 +22,9 @@ OptionSpec number(std::string name, std::string description, double fallback, do
 
 OptionSpec count(std::string name, std::string description, std::int64_t fallback, double lower,
                  double upper) {
-  return {.name = std::move(name),
-          .description = std::move(description),
-          .fallback = fallback,
-          .lower = lower,
-          .upper = upper};
+  OptionSpec spec = number(std::move(name), std::move(description), 0, lower, upper);
+  spec.fallback = fallback;  // which makes it an integer
+  return spec;
 }
 
 OptionSpec choice(std::string name, std::string description, std::vector<std::string> choices) {
