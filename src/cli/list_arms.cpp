@@ -44,9 +44,9 @@ std::string explain_robot(const std::string& name, const Style& style) {
   for (std::size_t i = 0; i < robot.joint_count(); ++i) {
     const Joint& joint = robot.joints[i];
     table.add_row({sanitize(joint.name), sanitize(robot.links[i].name),
-                   format_significant(robot.links[i].inertial.mass_kg), degrees(joint.lower_rad),
-                   degrees(joint.upper_rad), format_significant(joint.speed_limit_rad_per_s),
-                   format_significant(joint.effort_limit_n_m)});
+                   format_significant(robot.links[i].inertial.mass_kg), degrees(joint.lower),
+                   degrees(joint.upper), format_significant(joint.speed_limit),
+                   format_significant(joint.effort_limit)});
   }
   return format_title(style, robot.name, file.string()) + "\n" + table.format(style);
 }
@@ -62,10 +62,10 @@ json explain_robot_as_json(const std::string& name) {
     joints.push_back({{"name", sanitize(joint.name)},
                       {"link", sanitize(robot.links[i].name)},
                       {"mass_kg", robot.links[i].inertial.mass_kg},
-                      {"lower_rad", finite(joint.lower_rad)},
-                      {"upper_rad", finite(joint.upper_rad)},
-                      {"speed_limit_rad_per_s", finite(joint.speed_limit_rad_per_s)},
-                      {"effort_limit_n_m", finite(joint.effort_limit_n_m)}});
+                      {"lower_rad", finite(joint.lower)},
+                      {"upper_rad", finite(joint.upper)},
+                      {"speed_limit_rad_per_s", finite(joint.speed_limit)},
+                      {"effort_limit_n_m", finite(joint.effort_limit)}});
   }
   return {{"name", sanitize(robot.name)}, {"joints", joints}};
 }

@@ -45,15 +45,20 @@ struct Link {
   std::vector<VisualShape> visuals;
 };
 
+// A revolute joint turns about its axis by an angle in rad (a continuous one is revolute with
+// infinite limits); a prismatic joint moves along it by a distance in m.
+enum class JointKind { revolute, prismatic };
+
 struct Joint {
   std::string name;
+  JointKind kind = JointKind::revolute;
   Eigen::Isometry3d origin =
-      Eigen::Isometry3d::Identity();                // in the parent link's frame, at angle 0
+      Eigen::Isometry3d::Identity();                // in the parent link's frame, at position 0
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  // unit vector in the joint's frame
-  double lower_rad = 0;                             // -inf and +inf for a continuous joint
-  double upper_rad = 0;
-  double speed_limit_rad_per_s = 0;  // both +inf for a continuous joint without <limit>
-  double effort_limit_n_m = 0;
+  double lower = 0;         // rad or m; -inf and +inf for a continuous joint
+  double upper = 0;         // rad or m
+  double speed_limit = 0;   // rad/s or m/s; both +inf for a continuous joint without <limit>
+  double effort_limit = 0;  // N m or N
 };
 
 struct RobotModel {

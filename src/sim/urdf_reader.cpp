@@ -122,10 +122,10 @@ Joint to_joint(const urdf::Joint& from, const Eigen::Isometry3d& parent_pose) {
   joint.name = from.name;
   joint.origin = parent_pose * to_eigen(from.parent_to_joint_origin_transform);
   joint.axis = to_eigen(from.axis).normalized();
-  joint.lower_rad = continuous ? -kInfinity : from.limits->lower;
-  joint.upper_rad = continuous ? kInfinity : from.limits->upper;
-  joint.speed_limit_rad_per_s = from.limits ? from.limits->velocity : kInfinity;
-  joint.effort_limit_n_m = from.limits ? from.limits->effort : kInfinity;
+  joint.lower = continuous ? -kInfinity : from.limits->lower;
+  joint.upper = continuous ? kInfinity : from.limits->upper;
+  joint.speed_limit = from.limits ? from.limits->velocity : kInfinity;
+  joint.effort_limit = from.limits ? from.limits->effort : kInfinity;
   return joint;
 }
 

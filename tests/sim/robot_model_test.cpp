@@ -63,10 +63,10 @@ TEST(Irb4600, HasTheRangesAndSpeedsOfTheDataSheet) {
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(arm.joints[i].name, "joint_" + std::to_string(i + 1));
     // One rounding of the decimal in the file, one of the product here.
-    EXPECT_DOUBLE_EQ(arm.joints[i].lower_rad, lower_deg[i] * kPi / 180);
-    EXPECT_DOUBLE_EQ(arm.joints[i].upper_rad, upper_deg[i] * kPi / 180);
-    EXPECT_DOUBLE_EQ(arm.joints[i].speed_limit_rad_per_s, speed_deg_per_s[i] * kPi / 180);
-    EXPECT_GE(arm.joints[i].effort_limit_n_m, 20000);
+    EXPECT_DOUBLE_EQ(arm.joints[i].lower, lower_deg[i] * kPi / 180);
+    EXPECT_DOUBLE_EQ(arm.joints[i].upper, upper_deg[i] * kPi / 180);
+    EXPECT_DOUBLE_EQ(arm.joints[i].speed_limit, speed_deg_per_s[i] * kPi / 180);
+    EXPECT_GE(arm.joints[i].effort_limit, 20000);
     EXPECT_EQ(arm.joints[i].axis, i == 0 ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitY());
     EXPECT_EQ(arm.joints[i].origin.linear(), Eigen::Matrix3d::Identity());
   }
@@ -99,10 +99,10 @@ TEST(LoadUrdf, ReadsJointsFramesAndVisuals) {
   EXPECT_EQ(robot.base.inertial.com_m, Eigen::Vector3d(0, 0, 0.5));  // in the root's frame
   ASSERT_EQ(robot.joint_count(), 2u);
   EXPECT_EQ(robot.joints[0].axis, Eigen::Vector3d::UnitZ()) << "0 0 2, normalised";
-  EXPECT_EQ(robot.joints[0].lower_rad, -1);
-  EXPECT_EQ(robot.joints[0].upper_rad, 2);
-  EXPECT_EQ(robot.joints[0].speed_limit_rad_per_s, 3);
-  EXPECT_EQ(robot.joints[0].effort_limit_n_m, 40);
+  EXPECT_EQ(robot.joints[0].lower, -1);
+  EXPECT_EQ(robot.joints[0].upper, 2);
+  EXPECT_EQ(robot.joints[0].speed_limit, 3);
+  EXPECT_EQ(robot.joints[0].effort_limit, 40);
   EXPECT_EQ(robot.joints[0].origin.translation(), Eigen::Vector3d(0.1, 0.2, 0.8));
   // URDF: fixed-axis roll, pitch, yaw, hence Rz(yaw) Ry(pitch) Rx(roll). Tolerance: a few roundings
   // of numbers of size 1.
@@ -113,9 +113,9 @@ TEST(LoadUrdf, ReadsJointsFramesAndVisuals) {
   EXPECT_LT((robot.joints[0].origin.linear() - expected).norm(), 1e-15);
 
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(robot.joints[1].lower_rad, -kInfinity);
-  EXPECT_EQ(robot.joints[1].upper_rad, kInfinity);
-  EXPECT_EQ(robot.joints[1].speed_limit_rad_per_s, kInfinity);
+  EXPECT_EQ(robot.joints[1].lower, -kInfinity);
+  EXPECT_EQ(robot.joints[1].upper, kInfinity);
+  EXPECT_EQ(robot.joints[1].speed_limit, kInfinity);
   EXPECT_EQ(robot.tip_pose.translation(), Eigen::Vector3d(0, 0, 0.25));
 
   ASSERT_EQ(robot.links[0].visuals.size(), 1u);
