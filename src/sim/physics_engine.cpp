@@ -1,5 +1,10 @@
 #include "sim/physics_engine.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "sim/ode_arm.hpp"
@@ -27,14 +32,53 @@ class OdeEngine final : public PhysicsEngine {
     }
     return results;
   }
+  BatchSize batch_size() const override { return {}; }
 };
+
+constexpr std::array kPrecisions = {Precision::double_, Precision::single};
+
+// What to do about a choice that an engine does not have.
+std::string describe_engines_with_simd() {
+  std::vector<std::string> names;
+  for (const EngineRow& row : engine_table()) {
+    if (row.simd) {
+      names.push_back(row.name);
+    }
+  }
+  return names.empty()
+             ? "leave it out"
+             : fmt::format("leave it out or choose an engine that has one: {}", join(names, ", "));
+}
 
 }  // namespace
 
+const char* to_string(Precision precision) {
+  return precision == Precision::double_ ? "double" : "float";
+}
+
+std::vector<std::string> precision_names() {
+  std::vector<std::string> names;
+  for (const Precision precision : kPrecisions) {
+    names.emplace_back(to_string(precision));
+  }
+  return names;
+}
+
+Precision parse_precision(std::string_view name) {
+  const auto found = std::ranges::find_if(
+      kPrecisions, [&](Precision precision) { return to_string(precision) == name; });
+  if (found == kPrecisions.end()) {
+    throw Error(ErrorKind::usage, describe_unknown("precision", name, precision_names()));
+  }
+  return *found;
+}
+
 const std::vector<EngineRow>& engine_table() {
   static const std::vector<EngineRow> table = {
-      {"ode", "Open Dynamics Engine, maximal coordinates, dWorldStep: the reference",
-       []() -> std::unique_ptr<PhysicsEngine> { return std::make_unique<OdeEngine>(); }},
+      {"ode", "Open Dynamics Engine, maximal coordinates, dWorldStep: the reference", false,
+       [](const EngineOptions&) -> std::unique_ptr<PhysicsEngine> {
+         return std::make_unique<OdeEngine>();
+       }},
   };
   return table;
 }
@@ -47,13 +91,41 @@ std::vector<std::string> engine_names() {
   return names;
 }
 
-std::unique_ptr<PhysicsEngine> make_engine(std::string_view name) {
+const EngineRow& find_engine(std::string_view name) {
   for (const EngineRow& row : engine_table()) {
     if (row.name == name) {
-      return row.make();
+      return row;
     }
   }
   throw Error(ErrorKind::usage, describe_unknown("engine", name, engine_names()));
+}
+
+EngineOptions resolve_options(const EngineRow& engine, EngineOptions options) {
+  if (!engine.simd && options.precision != Precision::double_) {
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("the precision is '{}', but engine '{}' always computes in double; {}",
+                    to_string(options.precision), engine.name, describe_engines_with_simd()));
+  }
+  if (!engine.simd && options.simd) {
+    throw Error(ErrorKind::usage,
+                fmt::format("the SIMD level is '{}', but engine '{}' has none to choose; {}",
+                            to_string(*options.simd), engine.name, describe_engines_with_simd()));
+  }
+  if (options.simd && !is_supported(*options.simd)) {
+    throw Error(ErrorKind::usage,
+                fmt::format("the SIMD level is '{}', which this CPU lacks; possible here: {}",
+                            to_string(*options.simd), join(supported_simd_names(), ", ")));
+  }
+  if (engine.simd && !options.simd) {
+    options.simd = find_best_simd();
+  }
+  return options;
+}
+
+std::unique_ptr<PhysicsEngine> make_engine(std::string_view name, const EngineOptions& options) {
+  const EngineRow& row = find_engine(name);
+  return row.make(resolve_options(row, options));
 }
 
 }  // namespace armwright

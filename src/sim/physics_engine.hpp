@@ -3,12 +3,16 @@
 // what ran before.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "base/batch_size.hpp"
+#include "sim/simd_level.hpp"
 #include "sim/tracking.hpp"
 
 namespace armwright {
@@ -20,16 +24,37 @@ class PhysicsEngine {
   // lack of memory.
   virtual std::vector<TrackingResult> simulate(const TrackingSetup& setup,
                                                std::span<const TrackingJob> jobs) const = 0;
+  // How many jobs one call should get; any number is simulated alike.
+  virtual BatchSize batch_size() const = 0;
+};
+
+enum class Precision : std::uint8_t { double_, single };
+const char* to_string(Precision precision);  // "double", "float"
+std::vector<std::string> precision_names();
+Precision parse_precision(std::string_view name);  // Error{usage} if there is none of that name
+
+struct EngineOptions {
+  Precision precision = Precision::double_;
+  std::optional<SimdLevel> simd;  // nothing: the best of this machine
 };
 
 struct EngineRow {
   std::string name;
   std::string summary;
-  std::unique_ptr<PhysicsEngine> (*make)();
+  bool simd = false;  // works in SIMD lanes: precision and SIMD level can be chosen
+  // Of an engine with SIMD, `simd` has a value that this CPU supports.
+  std::unique_ptr<PhysicsEngine> (*make)(const EngineOptions& options);
 };
 
 const std::vector<EngineRow>& engine_table();
 std::vector<std::string> engine_names();
-std::unique_ptr<PhysicsEngine> make_engine(std::string_view name);  // Error{usage} if there is none
+const EngineRow& find_engine(std::string_view name);  // Error{usage} if there is none
+
+// Precision and SIMD level as the engine will use them: of one with SIMD the level is set to the
+// best of this machine where none is given. Error{usage} for a choice that the engine does not
+// have, and for a level that this CPU lacks.
+EngineOptions resolve_options(const EngineRow& engine, EngineOptions options);
+std::unique_ptr<PhysicsEngine> make_engine(std::string_view name,
+                                           const EngineOptions& options = {});
 
 }  // namespace armwright
