@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "sim/articulated/articulated_engine.hpp"
 #include "sim/ode_arm.hpp"
 #include "sim/tracking_loop.hpp"
 
@@ -27,8 +28,9 @@ class OdeEngine final : public PhysicsEngine {
         results.push_back(std::move(result));
         continue;
       }
-      OdeArm arm(setup.robot(), job.targets->start_rad, setup.task().physics);
-      results.push_back(TrackingLoop(setup, job).run(arm));
+      const TrackingSetup& own = job.setup != nullptr ? *job.setup : setup;
+      OdeArm arm(own.robot(), job.targets->start_rad, own.task().physics);
+      results.push_back(TrackingLoop(own, job).run(arm));
     }
     return results;
   }
@@ -79,6 +81,9 @@ const std::vector<EngineRow>& engine_table() {
        [](const EngineOptions&) -> std::unique_ptr<PhysicsEngine> {
          return std::make_unique<OdeEngine>();
        }},
+      {"articulated",
+       "joint coordinates, many simulations at once in SIMD lanes: a hundred times as fast", true,
+       make_articulated_engine},
   };
   return table;
 }

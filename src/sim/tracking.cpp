@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "sim/articulated/chain_model.hpp"
 
 namespace armwright {
 namespace {
@@ -47,6 +48,8 @@ const char* to_string(SimulationStatus status) {
       return "diverged";
     case SimulationStatus::unreachable:
       return "unreachable";
+    case SimulationStatus::abandoned:
+      return "abandoned";
   }
   return "?";
 }
@@ -54,7 +57,8 @@ const char* to_string(SimulationStatus status) {
 TrackingSetup::TrackingSetup(const RobotModel& robot, const TrackingTask& task)
     : robot_(task.load_kg > 0 ? add_load(robot, task.load_kg) : robot),
       task_(task),
-      kinematics_(robot, task.ik_bug) {}
+      kinematics_(robot, task.ik_bug),
+      chain_(std::make_shared<articulated::ChainModel>(robot_, task.physics.gravity_m_per_s2)) {}
 
 ReferenceSignal TrackingSetup::make_signal(double distance_m) const {
   double speed = task_.speed_m_per_s;

@@ -27,6 +27,10 @@
 
 namespace armwright {
 
+namespace articulated {
+class ChainModel;
+}
+
 struct PhysicsSettings {
   double gravity_m_per_s2 = 9.80665;
   int substeps =
@@ -94,6 +98,7 @@ class TrackingSetup {
   TrackingSetup(const RobotModel& robot, const TrackingTask& task);
   const RobotModel& robot() const { return robot_; }  // the load included
   const TrackingTask& task() const { return task_; }
+  const articulated::ChainModel& chain() const { return *chain_; }  // the same robot
   TargetTable make_targets(const TestCase& test_case) const;
   // Where the target is at the end of a step: for error series and trajectories.
   Eigen::Vector3d calc_target_position(const Segment& segment, int step_in_segment) const;
@@ -103,9 +108,10 @@ class TrackingSetup {
   RobotModel robot_;
   TrackingTask task_;
   ElbowUpKinematics kinematics_;
+  std::shared_ptr<const articulated::ChainModel> chain_;
 };
 
-enum class SimulationStatus : std::uint8_t { ok, cut_off, diverged, unreachable };
+enum class SimulationStatus : std::uint8_t { ok, cut_off, diverged, unreachable, abandoned };
 const char* to_string(SimulationStatus status);
 
 struct RecordingOptions {
@@ -142,6 +148,12 @@ struct TrackingJob {
   // this error.
   double cutoff_m = std::numeric_limits<double>::infinity();
   RecordingOptions recording;
+  // The simulation is abandoned at the end of the first point after which the case's error is
+  // certain to exceed this: the errors of the points that counted so far, divided by the number of
+  // all that count, do already. After the last point there is nothing left to abandon.
+  double abandon_above_m = std::numeric_limits<double>::infinity();
+  // Where the design changes the arm itself: its own setup, of the same task and number of joints.
+  const TrackingSetup* setup = nullptr;
 };
 
 }  // namespace armwright

@@ -1,0 +1,79 @@
+#include "sim/articulated/articulated_engine.hpp"
+
+#include "sim/articulated/lane_block.hpp"
+
+namespace armwright {
+namespace {
+
+using namespace articulated;
+
+// Groups of lanes that go through the timeline together; enough to fill the lanes of simulations
+// that ended early, few enough to stay in the cache.
+constexpr std::size_t kGroups = 16;
+
+bool have_same_timeline(const TargetTable& a, const TargetTable& b) {
+  if (&a == &b) {
+    return true;
+  }
+  if (a.segments.size() != b.segments.size()) {
+    return false;
+  }
+  for (std::size_t k = 0; k < a.segments.size(); ++k) {
+    if (a.segments[k].steps != b.segments[k].steps ||
+        a.segments[k].window_start != b.segments[k].window_start) {
+      return false;
+    }
+  }
+  return true;
+}
+
+template <class T>
+class ArticulatedEngine final : public PhysicsEngine {
+ public:
+  explicit ArticulatedEngine(SimdLevel level) : kernel_(get_kernel<T>(level)) {}
+
+  std::vector<TrackingResult> simulate(const TrackingSetup& setup,
+                                       std::span<const TrackingJob> jobs) const override {
+    std::vector<TrackingResult> results(jobs.size());
+    std::vector<std::vector<std::size_t>> alike;  // jobs of one timeline each
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+      const TargetTable& targets = *jobs[i].targets;
+      if (!targets.unreachable.empty()) {
+        results[i].status = SimulationStatus::unreachable;
+        results[i].reason = targets.unreachable;
+        continue;
+      }
+      const auto found = std::find_if(alike.begin(), alike.end(), [&](const auto& group) {
+        return have_same_timeline(*jobs[group.front()].targets, targets);
+      });
+      (found == alike.end() ? alike.emplace_back() : *found).push_back(i);
+    }
+    const std::size_t most = kGroups * static_cast<std::size_t>(kernel_.lanes);
+    for (const std::vector<std::size_t>& group : alike) {
+      for (std::size_t first = 0; first < group.size(); first += most) {
+        const std::size_t count = std::min(most, group.size() - first);
+        LaneBlock<T>(setup, kernel_, jobs, std::span(group).subspan(first, count), results).run();
+      }
+    }
+    return results;
+  }
+
+  BatchSize batch_size() const override {
+    const auto lanes = static_cast<std::size_t>(kernel_.lanes);
+    return {lanes, kGroups * lanes};
+  }
+
+ private:
+  Kernel<T> kernel_;
+};
+
+}  // namespace
+
+std::unique_ptr<PhysicsEngine> make_articulated_engine(const EngineOptions& options) {
+  if (options.precision == Precision::single) {
+    return std::make_unique<ArticulatedEngine<float>>(*options.simd);
+  }
+  return std::make_unique<ArticulatedEngine<double>>(*options.simd);
+}
+
+}  // namespace armwright

@@ -1,0 +1,29 @@
+// The compiled kernels, one set for every instruction set.
+#pragma once
+
+#include "sim/articulated/chain_layout.hpp"
+#include "sim/simd_level.hpp"
+
+namespace armwright::articulated {
+
+template <class T>
+struct Kernel {
+  void (*run_segment)(SegmentCall<T>& call) = nullptr;
+  int lanes = 1;
+};
+
+// The level must be supported by this CPU.
+template <class T>
+Kernel<T> get_kernel(SimdLevel level);
+
+// Each defined in a file that is compiled for its instruction set; see there.
+void run_segment_scalar(SegmentCall<double>& call);
+void run_segment_scalar(SegmentCall<float>& call);
+void run_segment_sse2(SegmentCall<double>& call);
+void run_segment_sse2(SegmentCall<float>& call);
+void run_segment_avx2(SegmentCall<double>& call);
+void run_segment_avx2(SegmentCall<float>& call);
+void run_segment_avx512(SegmentCall<double>& call);
+void run_segment_avx512(SegmentCall<float>& call);
+
+}  // namespace armwright::articulated

@@ -1,0 +1,76 @@
+// A block of simulations on one timeline: hands its packs of lanes to a kernel segment by segment,
+// collects what ends, and closes up when lanes have become free. All memory is taken before
+// the first step.
+#pragma once
+
+#include <memory>
+#include <new>
+#include <span>
+#include <vector>
+
+#include "sim/articulated/chain_model.hpp"
+#include "sim/articulated/kernels.hpp"
+#include "sim/tracking.hpp"
+
+namespace armwright::articulated {
+
+// Numbers that begin at a multiple of the widest vector's size; all zero at first.
+template <class T>
+class AlignedNumbers {
+ public:
+  explicit AlignedNumbers(std::size_t count = 0)
+      : data_(count == 0 ? nullptr : new (kAlignment) T[count]()) {}
+  T* data() const { return data_.get(); }
+
+ private:
+  static constexpr std::align_val_t kAlignment{64};
+  struct Deleter {
+    void operator()(T* data) const { operator delete[](data, kAlignment); }
+  };
+  std::unique_ptr<T[], Deleter> data_;
+};
+
+template <class T>
+class LaneBlock {
+ public:
+  // `chosen`: the jobs' numbers, all of one timeline; results[i] is that of jobs[i].
+  LaneBlock(const TrackingSetup& setup, const Kernel<T>& kernel, std::span<const TrackingJob> jobs,
+            std::span<const std::size_t> chosen, std::vector<TrackingResult>& results);
+  void run();
+
+ private:
+  static constexpr std::size_t kFree = static_cast<std::size_t>(-1);
+
+  std::size_t lanes() const { return static_cast<std::size_t>(kernel_.lanes); }
+  const TrackingSetup& setup_of(std::size_t job) const;
+  T* state(std::size_t slot) const;  // of the slot's lane; packs lie lanes() apart
+  T* model(std::size_t slot) const;
+  void place(std::size_t slot, std::size_t job);
+  void run_segment(std::size_t group, std::size_t segment);
+  void end_segment(std::size_t slot);
+  void read_records(std::size_t slot, const Segment& segment, int steps);
+  void close_up();
+  // What the result says of the controllers and of energy, from a state.
+  void read_measures(const T* state, TrackingResult& result) const;
+  std::string describe_divergence(std::size_t job, const T* state) const;
+
+  const TrackingSetup& setup_;
+  const Kernel<T>& kernel_;
+  std::span<const TrackingJob> jobs_;
+  std::vector<TrackingResult>& results_;
+  std::size_t joints_;
+  std::vector<std::size_t> slots_;  // the job in each lane, or kFree
+  bool own_models_ = false;  // some job has an arm of its own: every pack of lanes has a model
+  bool recording_ = false;
+  bool prismatic_ = false;
+  bool tilted_gravity_ = false;
+  std::vector<std::uint8_t> flags_;
+  std::size_t state_size_, model_size_,
+      record_size_;  // numbers of a pack of lanes (records: a step)
+  AlignedNumbers<T> states_, models_, scratch_, final_state_, records_;
+};
+
+extern template class LaneBlock<double>;
+extern template class LaneBlock<float>;
+
+}  // namespace armwright::articulated

@@ -1,0 +1,238 @@
+// One segment of the tracking timeline for a pack of lanes, in the step order of TrackingLoop
+// (tracking_loop.hpp): efforts from the angles at the start of the period, the plant stepped with
+// them held (semi-implicit Euler: qd += h qdd(q, qd); q += h qd), measures at its end.
+#pragma once
+
+#include "sim/articulated/chain_dynamics.hpp"
+
+namespace armwright::articulated {
+
+// Beyond this, in angles (rad) or ways (m) plus rates, a joint of no arm ever is: it has diverged.
+// It lies within the range of the sine.
+template <class T>
+inline constexpr T kFarthest = T{1e6};
+template <>
+inline constexpr float kFarthest<float> = 1e4F;
+
+template <class V, class Chain>
+class SegmentKernel {
+ public:
+  using T = typename V::Scalar;
+
+  static void run(SegmentCall<T>& call) {
+    SegmentKernel kernel(call);
+    kernel.go();
+  }
+
+ private:
+  ARMWRIGHT_INLINE explicit SegmentKernel(SegmentCall<T>& call)
+      : call_(call),
+        state_(reinterpret_cast<V*>(call.state)),
+        scratch_(reinterpret_cast<V*>(call.scratch)),
+        chain_(call.joints, call.flags, call.tilted_gravity),
+        dynamics_(chain_, reinterpret_cast<const V*>(call.model), scratch_) {
+    effort_.place(scratch_, call.joints);
+    acceleration_.place(scratch_, call.joints);
+    way_.place(scratch_, call.joints);
+  }
+
+  ARMWRIGHT_INLINE int joints() const { return chain_.joints(); }
+  ARMWRIGHT_INLINE V* field(StateField field) const { return state_ + field * joints(); }
+  ARMWRIGHT_INLINE V& single(StateSingle field) const {
+    return state_[kStateFields * joints() + field];
+  }
+  ARMWRIGHT_INLINE void go() {
+    V* const q = field(kQ);
+    V* const rate = field(kRate);
+    const V substep_s = call_.period_s / static_cast<T>(call_.substeps);
+    const bool recording = call_.records != nullptr;
+    single(kWorstSquared) = V(0);
+    dynamics_.set_posture(q, false);
+    for (int step = 0; step < call_.steps; ++step) {
+      control(step);
+      const bool measuring = recording || step >= call_.window_start;
+      for (int substep = 1; substep <= call_.substeps; ++substep) {
+        dynamics_.calc_equations(q, rate);
+        dynamics_.solve(&effort_[0], &acceleration_[0]);
+        chain_.for_up([&](auto i) __attribute__((always_inline)) {
+          rate[i] += substep_s * acceleration_[i];
+          const V way = substep_s * rate[i];
+          q[i] += way;
+          way_[i] = substep == 1 ? way : way_[i] + way;
+        });
+        dynamics_.set_posture(q, measuring && substep == call_.substeps);
+      }
+      if (!check(step)) {
+        return;
+      }
+      add_measures();
+      if (measuring) {
+        const Vec3<V> tip = dynamics_.calc_tip(q);
+        if (recording) {
+          record(step, tip);
+        }
+        if (step >= call_.window_start && !measure(step, tip)) {
+          return;
+        }
+      }
+    }
+  }
+
+  ARMWRIGHT_INLINE V load_target(int step, int joint) const {
+    const int index = step * joints() + joint;
+    if (call_.shared_targets) {
+      return V(static_cast<T>(call_.targets[0][index]));
+    }
+    alignas(64) T lanes[V::kLanes];
+    for (int lane = 0; lane < V::kLanes; ++lane) {
+      lanes[lane] = static_cast<T>(call_.targets[lane][index]);
+    }
+    return *reinterpret_cast<const V*>(lanes);
+  }
+
+  ARMWRIGHT_INLINE void control(int step) {
+    const V period_s = call_.period_s;
+    const V frequency = T{1} / call_.period_s;
+    chain_.for_up([&](auto i) __attribute__((always_inline)) {
+      V error = load_target(step, i) - field(kQ)[i];
+      if (!chain_.slides(i)) {
+        error = lanes::wrap(error);
+      }
+      if (call_.first_step_of_case && step == 0) {
+        field(kPreviousError)[i] = error;  // the first step's derivative is zero
+      }
+      const V integral = field(kIntegral)[i] + field(kIntegrating)[i] * (error * period_s);
+      const V change = (error - field(kPreviousError)[i]) * frequency;
+      const V wanted =
+          field(kGainP)[i] * error + field(kGainI)[i] * integral + field(kGainD)[i] * change;
+      const V low = field(kEffortMin)[i];
+      const V high = field(kEffortMax)[i];
+      // NaN stays NaN: min and max yield their second argument where they cannot compare.
+      const V effort = min(high, max(low, wanted));
+      effort_[i] = effort;
+      field(kIntegral)[i] = integral;
+      field(kPreviousError)[i] = error;
+      field(kIntegrating)[i] = select(wanted < low, V(0), select(wanted > high, V(0), V(1)));
+    });
+  }
+
+  // False once no lane is left.
+  ARMWRIGHT_INLINE bool check(int step) {
+    V sum = V(0);
+    chain_.for_up([&](auto i) __attribute__((always_inline)) {
+      sum += abs(field(kQ)[i]) + abs(field(kRate)[i]);
+    });
+    const std::uint32_t lost = call_.alive & ~find_less(sum, V(kFarthest<T>));
+    if (lost == 0) [[likely]] {
+      return true;
+    }
+    return retire(call_, lost, LaneEvent::diverged, step) && refresh();
+  }
+
+  ARMWRIGHT_INLINE void add_measures() {
+    V energy = V(0);
+    chain_.for_up([&](auto i) __attribute__((always_inline)) {
+      const V effort = effort_[i];
+      field(kPeakEffort)[i] = max(field(kPeakEffort)[i], abs(effort));
+      field(kSquaredEffort)[i] += effort * effort;
+      field(kClampedSteps)[i] += V(1) - field(kIntegrating)[i];
+      energy += max(V(0), effort * way_[i]);
+    });
+    single(kEnergy) += energy;
+  }
+
+  ARMWRIGHT_INLINE bool measure(int step, const Vec3<V>& tip) {
+    const V x = tip.x - single(kPointX);
+    const V y = tip.y - single(kPointY);
+    const V z = tip.z - single(kPointZ);
+    const V squared = x * x + y * y + z * z;
+    single(kWorstSquared) = max(single(kWorstSquared), squared);
+    const std::uint32_t beyond =
+        call_.alive & find_less(single(kCutoffSquared), single(kWorstSquared));
+    if (beyond == 0) [[likely]] {
+      return true;
+    }
+    return retire(call_, beyond, LaneEvent::cut_off, step) && refresh();
+  }
+
+  ARMWRIGHT_INLINE void record(int step, const Vec3<V>& tip) {
+    const int packs = calc_record_packs(joints());
+    V* out = reinterpret_cast<V*>(call_.records) + static_cast<long>(step) * packs;
+    for (int i = 0; i < joints(); ++i) {
+      out[i] = field(kQ)[i];
+      out[joints() + i] = effort_[i];
+    }
+    out[2 * joints()] = tip.x;
+    out[2 * joints() + 1] = tip.y;
+    out[2 * joints() + 2] = tip.z;
+  }
+
+  // After lanes were taken out: the posture that goes with the angles as they are now.
+  ARMWRIGHT_INLINE bool refresh() {
+    dynamics_.set_posture(field(kQ), true);
+    return true;
+  }
+
+  // Takes lanes out: their state is kept as it is now; what goes on in them from here on is an arm
+  // that starts at rest at angles zero, without controllers, so that they raise no events and
+  // no infinities slow the others down. Static: the kernel itself must not lie in memory.
+  __attribute__((noinline)) static bool retire(SegmentCall<T>& call, std::uint32_t which,
+                                               LaneEvent event, int step) {
+    constexpr int kLanes = V::kLanes;
+    const int packs = calc_state_packs(call.joints);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      if ((which >> lane & 1) == 0) {
+        continue;
+      }
+      call.event[lane] = event;
+      call.event_step[lane] = step;
+      for (int pack = 0; pack < packs; ++pack) {
+        T& number = call.state[pack * kLanes + lane];
+        call.final_state[pack * kLanes + lane] = number;
+        number = 0;
+      }
+    }
+    call.alive &= ~which;
+    return call.alive != 0;
+  }
+
+  SegmentCall<T>& call_;
+  V* state_;
+  V* scratch_;
+  Chain chain_;
+  ChainDynamics<V, Chain> dynamics_;
+  PackList<V, Chain::kJoints> effort_, acceleration_, way_;
+};
+
+// Kernels of their own for the shape above and for up to eight turning joints; one for any chain.
+template <class V>
+void run_segment(SegmentCall<typename V::Scalar>& call) {
+  if (call.prismatic) {
+    return SegmentKernel<V, ChainShape<0, kAnyShape, true>>::run(call);
+  }
+  if (call.joints == 4 && !call.tilted_gravity && has_shape(call.flags, 4, kPalletiser)) {
+    return SegmentKernel<V, ChainShape<4, kPalletiser, false>>::run(call);
+  }
+  switch (call.joints) {
+    case 1:
+      return SegmentKernel<V, ChainShape<1, kAnyShape, false>>::run(call);
+    case 2:
+      return SegmentKernel<V, ChainShape<2, kAnyShape, false>>::run(call);
+    case 3:
+      return SegmentKernel<V, ChainShape<3, kAnyShape, false>>::run(call);
+    case 4:
+      return SegmentKernel<V, ChainShape<4, kAnyShape, false>>::run(call);
+    case 5:
+      return SegmentKernel<V, ChainShape<5, kAnyShape, false>>::run(call);
+    case 6:
+      return SegmentKernel<V, ChainShape<6, kAnyShape, false>>::run(call);
+    case 7:
+      return SegmentKernel<V, ChainShape<7, kAnyShape, false>>::run(call);
+    case 8:
+      return SegmentKernel<V, ChainShape<8, kAnyShape, false>>::run(call);
+    default:
+      return SegmentKernel<V, ChainShape<0, kAnyShape, true>>::run(call);
+  }
+}
+
+}  // namespace armwright::articulated
