@@ -27,26 +27,36 @@ std::vector<ListItem> list_robots() {
   return items;
 }
 
+std::string format_limit(double value, std::string_view unit) {
+  return std::isinf(value) ? "none" : fmt::format("{} {}", format_significant(value), unit);
+}
+
+std::string format_position_limit(JointKind kind, double value) {
+  if (kind == JointKind::prismatic || std::isinf(value)) {
+    return format_limit(value, "m");
+  }
+  return fmt::format("{:.1f} deg", value * 180 / std::numbers::pi);
+}
+
 std::string explain_robot(const std::string& name, const Style& style) {
   const auto file = resolve_config("robots", name);
   const RobotModel robot = load_urdf(file);
   Table table({{"joint", false},
                {"moves", false},
                {"mass kg"},
-               {"lower deg"},
-               {"upper deg"},
-               {"speed rad/s"},
-               {"effort N m"}});
-  const auto degrees = [](double angle_rad) {
-    return std::isinf(angle_rad) ? std::string("none")
-                                 : fmt::format("{:.1f}", angle_rad * 180 / std::numbers::pi);
-  };
+               {"lower"},
+               {"upper"},
+               {"speed"},
+               {"effort"}});
   for (std::size_t i = 0; i < robot.joint_count(); ++i) {
     const Joint& joint = robot.joints[i];
+    const bool slides = joint.kind == JointKind::prismatic;
     table.add_row({sanitize(joint.name), sanitize(robot.links[i].name),
-                   format_significant(robot.links[i].inertial.mass_kg), degrees(joint.lower),
-                   degrees(joint.upper), format_significant(joint.speed_limit),
-                   format_significant(joint.effort_limit)});
+                   format_significant(robot.links[i].inertial.mass_kg),
+                   format_position_limit(joint.kind, joint.lower),
+                   format_position_limit(joint.kind, joint.upper),
+                   format_limit(joint.speed_limit, slides ? "m/s" : "rad/s"),
+                   format_limit(joint.effort_limit, slides ? "N" : "N m")});
   }
   return format_title(style, robot.name, file.string()) + "\n" + table.format(style);
 }
@@ -59,13 +69,16 @@ json explain_robot_as_json(const std::string& name) {
   json joints = json::array();
   for (std::size_t i = 0; i < robot.joint_count(); ++i) {
     const Joint& joint = robot.joints[i];
-    joints.push_back({{"name", sanitize(joint.name)},
-                      {"link", sanitize(robot.links[i].name)},
-                      {"mass_kg", robot.links[i].inertial.mass_kg},
-                      {"lower_rad", finite(joint.lower)},
-                      {"upper_rad", finite(joint.upper)},
-                      {"speed_limit_rad_per_s", finite(joint.speed_limit)},
-                      {"effort_limit_n_m", finite(joint.effort_limit)}});
+    const bool slides = joint.kind == JointKind::prismatic;
+    joints.push_back(
+        {{"name", sanitize(joint.name)},
+         {"kind", slides ? "prismatic" : "revolute"},
+         {"link", sanitize(robot.links[i].name)},
+         {"mass_kg", robot.links[i].inertial.mass_kg},
+         {slides ? "lower_m" : "lower_rad", finite(joint.lower)},
+         {slides ? "upper_m" : "upper_rad", finite(joint.upper)},
+         {slides ? "speed_limit_m_per_s" : "speed_limit_rad_per_s", finite(joint.speed_limit)},
+         {slides ? "effort_limit_n" : "effort_limit_n_m", finite(joint.effort_limit)}});
   }
   return {{"name", sanitize(robot.name)}, {"joints", joints}};
 }

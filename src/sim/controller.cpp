@@ -19,47 +19,49 @@ void require_finite(const char* key, double value) {
   }
 }
 
-std::unique_ptr<Controller> make_pid(std::span<const double> gains, EffortLimits limits) {
+std::unique_ptr<Controller> make_pid(std::span<const double> gains, EffortLimits limits,
+                                     JointKind kind) {
   if (gains.size() != 3) {
     throw Error(ErrorKind::usage,
                 fmt::format("controller 'pid': {} gains are given; it takes exactly 3: p, i, d",
                             gains.size()));
   }
-  return std::make_unique<PidController>(gains[0], gains[1], gains[2], limits);
+  return std::make_unique<PidController>(gains[0], gains[1], gains[2], limits, kind);
 }
 
 }  // namespace
 
 PidController::PidController(double p_n_m_per_rad, double i_n_m_per_rad_s, double d_n_m_s_per_rad,
-                             EffortLimits limits)
-    : p_(p_n_m_per_rad), i_(i_n_m_per_rad_s), d_(d_n_m_s_per_rad), limits_(limits) {
+                             EffortLimits limits, JointKind kind)
+    : p_(p_n_m_per_rad), i_(i_n_m_per_rad_s), d_(d_n_m_s_per_rad), limits_(limits), kind_(kind) {
   require_finite("p_n_m_per_rad", p_);
   require_finite("i_n_m_per_rad_s", i_);
   require_finite("d_n_m_s_per_rad", d_);
   if (!(limits_.min_n_m <= limits_.max_n_m)) {
-    throw Error(ErrorKind::usage,
-                fmt::format("controller 'pid': the effort limits are {} to {} N m; the lower must "
-                            "not exceed the upper",
-                            limits_.min_n_m, limits_.max_n_m));
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("controller 'pid': the effort limits are {} to {} {}; the lower must "
+                    "not exceed the upper",
+                    limits_.min_n_m, limits_.max_n_m, kind == JointKind::prismatic ? "N" : "N m"));
   }
 }
 
-double PidController::step(double setpoint_rad, double measurement_rad, double dt_s) {
-  const double error_rad = wrap_angle(setpoint_rad - measurement_rad);
+double PidController::step(double setpoint, double measurement, double dt_s) {
+  const double error = calc_displacement(kind_, measurement, setpoint);
   if (!saturated_) {
-    integral_rad_s_ += error_rad * dt_s;
+    integral_ += error * dt_s;
   }
-  const double rate_rad_per_s = first_ ? 0 : (error_rad - previous_error_rad_) / dt_s;
-  const double wanted_n_m = p_ * error_rad + i_ * integral_rad_s_ + d_ * rate_rad_per_s;
-  saturated_ = wanted_n_m < limits_.min_n_m || wanted_n_m > limits_.max_n_m;
-  previous_error_rad_ = error_rad;
+  const double rate = first_ ? 0 : (error - previous_error_) / dt_s;
+  const double wanted = p_ * error + i_ * integral_ + d_ * rate;
+  saturated_ = wanted < limits_.min_n_m || wanted > limits_.max_n_m;
+  previous_error_ = error;
   first_ = false;
-  return std::clamp(wanted_n_m, limits_.min_n_m, limits_.max_n_m);
+  return std::clamp(wanted, limits_.min_n_m, limits_.max_n_m);
 }
 
 void PidController::reset() {
-  integral_rad_s_ = 0;
-  previous_error_rad_ = 0;
+  integral_ = 0;
+  previous_error_ = 0;
   first_ = true;
   saturated_ = false;
 }

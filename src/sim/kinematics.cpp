@@ -26,6 +26,14 @@ double calc_length(const Eigen::Vector3d& v) {
   return std::hypot(v.x(), v.z());
 }
 
+// The pose of the link that a joint at q moves, from the pose of the link that carries the joint.
+Eigen::Isometry3d calc_next_pose(const Eigen::Isometry3d& pose, const Joint& joint, double q) {
+  if (joint.kind == JointKind::prismatic) {
+    return pose * joint.origin * Eigen::Translation3d(q * joint.axis);
+  }
+  return pose * joint.origin * Eigen::AngleAxisd(q, joint.axis);
+}
+
 std::string describe(const Eigen::Vector3d& v) {
   return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x(), v.y(), v.z());
 }
@@ -60,14 +68,17 @@ double wrap_angle(double angle_rad) {
   return std::remainder(angle_rad, 2 * kPi);
 }
 
+double calc_displacement(JointKind kind, double from, double to) {
+  return kind == JointKind::prismatic ? to - from : wrap_angle(to - from);
+}
+
 std::vector<Eigen::Isometry3d> calc_link_poses(const RobotModel& model, std::span<const double> q) {
   assert(q.size() == model.joint_count());
   std::vector<Eigen::Isometry3d> poses;
   poses.reserve(model.joint_count());
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   for (std::size_t i = 0; i < model.joint_count(); ++i) {
-    const Joint& joint = model.joints[i];
-    pose = pose * joint.origin * Eigen::AngleAxisd(q[i], joint.axis);
+    pose = calc_next_pose(pose, model.joints[i], q[i]);
     poses.push_back(pose);
   }
   return poses;
@@ -77,7 +88,7 @@ Eigen::Vector3d calc_tip_position(const RobotModel& model, std::span<const doubl
   assert(q.size() == model.joint_count());
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   for (std::size_t i = 0; i < model.joint_count(); ++i) {
-    pose = pose * model.joints[i].origin * Eigen::AngleAxisd(q[i], model.joints[i].axis);
+    pose = calc_next_pose(pose, model.joints[i], q[i]);
   }
   return pose * model.tip_pose.translation();
 }
@@ -88,6 +99,12 @@ ElbowUpKinematics::ElbowUpKinematics(const RobotModel& model, bool ik_bug) : ik_
                       "it has {} moving joints; it must have {}: a vertical one and three parallel "
                       "horizontal ones",
                       model.joint_count(), kJoints));
+  }
+  for (std::size_t i = 0; i < kJoints; ++i) {
+    if (model.joints[i].kind == JointKind::prismatic) {
+      refuse(model, fmt::format("joint {} ('{}') is prismatic; all {} must be revolute", i + 1,
+                                sanitize(model.joints[i].name), kJoints));
+    }
   }
   const std::array<double, kJoints> zero{};
   const std::vector<Eigen::Isometry3d> poses = calc_link_poses(model, zero);

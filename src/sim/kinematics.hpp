@@ -1,4 +1,4 @@
-// Where the links are for given joint angles, and back again.
+// Where the links are for given joint positions, and back again.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -13,7 +13,12 @@ namespace armwright {
 // Angle wrapped to [-pi, pi].
 double wrap_angle(double angle_rad);
 
-// Pose of every link frame in the world for the joint angles q (rad), one a joint.
+// How far a joint has to move from one position to another: the short way round if it is revolute
+// (rad, in [-pi, pi]), there and nowhere else if it is prismatic (m).
+double calc_displacement(JointKind kind, double from, double to);
+
+// Pose of every link frame in the world for the joint positions q (rad or m), one a joint:
+//   T_i = T_(i-1) origin_i Rot(axis_i, q_i) or T_(i-1) origin_i Trans(q_i axis_i).
 std::vector<Eigen::Isometry3d> calc_link_poses(const RobotModel& model, std::span<const double> q);
 Eigen::Vector3d calc_tip_position(const RobotModel& model, std::span<const double> q);
 

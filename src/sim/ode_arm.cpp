@@ -68,6 +68,27 @@ void abandon(dxThreadingImplementation* threading) {
   const std::lock_guard lock(mutex);
   abandoned->push_back(threading);
 }
+
+Eigen::Vector3d to_eigen(const dReal* v) {
+  return {v[0], v[1], v[2]};
+}
+
+// The child first, so that positions, rates and efforts have the sign of the child's motion.
+dJointID make_joint(dWorldID world, JointKind kind, dBodyID child, dBodyID parent,
+                    const Eigen::Vector3d& anchor, const Eigen::Vector3d& axis) {
+  if (kind == JointKind::prismatic) {
+    const dJointID slider = dJointCreateSlider(world, nullptr);
+    dJointAttach(slider, child, parent);
+    dJointSetSliderAxis(slider, axis.x(), axis.y(), axis.z());
+    return slider;
+  }
+  const dJointID hinge = dJointCreateHinge(world, nullptr);
+  dJointAttach(hinge, child, parent);
+  dJointSetHingeAnchor(hinge, anchor.x(), anchor.y(), anchor.z());
+  dJointSetHingeAxis(hinge, axis.x(), axis.y(), axis.z());
+  return hinge;
+}
+
 struct WorldDeleter {
   void operator()(dxWorld* world) const {
     dWorldDestroy(world);
@@ -82,9 +103,29 @@ struct OdeArm::World {
   std::unique_ptr<dxThreadingImplementation, ThreadingDeleter> threading;
   std::unique_ptr<dxWorld, WorldDeleter> world;
   std::vector<dBodyID> bodies;
-  std::vector<dJointID> hinges;
-  std::vector<double> start_rad;
+  std::vector<dJointID> joints;
+  std::vector<double> start;  // joint positions
   Eigen::Vector3d tip_in_body_m;
+
+  bool is_prismatic(std::size_t i) const { return model->joints[i].kind == JointKind::prismatic; }
+
+  // How fast the slider's child moves along the axis, seen from the turning parent:
+  //   a . (v_c - v_p - w_p x (p_c - p_p)).
+  // dJointGetSliderPositionRate() leaves out the last term (ODE 0.16), which is not zero where the
+  // bodies' centres lie beside each other.
+  double calc_slide_rate(std::size_t i) const {
+    dVector3 axis;
+    dJointGetSliderAxis(joints[i], axis);
+    Eigen::Vector3d velocity = to_eigen(dBodyGetLinearVel(bodies[i]));
+    if (i > 0) {
+      const dBodyID parent = bodies[i - 1];
+      const Eigen::Vector3d apart =
+          to_eigen(dBodyGetPosition(bodies[i])) - to_eigen(dBodyGetPosition(parent));
+      velocity -=
+          to_eigen(dBodyGetLinearVel(parent)) + to_eigen(dBodyGetAngularVel(parent)).cross(apart);
+    }
+    return to_eigen(axis).dot(velocity);
+  }
 
   void check() const {
     for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -102,8 +143,7 @@ struct OdeArm::World {
   }
 };
 
-OdeArm::OdeArm(const RobotModel& model, std::span<const double> q_rad,
-               const PhysicsSettings& physics)
+OdeArm::OdeArm(const RobotModel& model, std::span<const double> q, const PhysicsSettings& physics)
     : world_(std::make_unique<World>()) {
   prepare_ode_on_this_thread();
   World& w = *world_;
@@ -117,9 +157,9 @@ OdeArm::OdeArm(const RobotModel& model, std::span<const double> q_rad,
   dWorldSetERP(w.world.get(), physics.erp);
   dWorldSetCFM(w.world.get(), physics.cfm);
   dWorldSetAutoDisableFlag(w.world.get(), 0);
-  w.start_rad.assign(q_rad.begin(), q_rad.end());
+  w.start.assign(q.begin(), q.end());
 
-  const auto poses = calc_link_poses(model, q_rad);
+  const auto poses = calc_link_poses(model, q);
   for (std::size_t i = 0; i < model.joint_count(); ++i) {
     const Inertial& inertial = model.links[i].inertial;
     const Eigen::Vector3d com = poses[i] * inertial.com_m;
@@ -141,29 +181,29 @@ OdeArm::OdeArm(const RobotModel& model, std::span<const double> q_rad,
     dBodySetRotation(body, r);
     dBodySetGyroscopicMode(body, 1);
 
-    const dJointID hinge = dJointCreateHinge(w.world.get(), nullptr);
-    dJointAttach(hinge, body, i == 0 ? nullptr : w.bodies.back());
-    const Eigen::Vector3d anchor = poses[i].translation();
-    const Eigen::Vector3d axis = rotation * model.joints[i].axis;
-    dJointSetHingeAnchor(hinge, anchor.x(), anchor.y(), anchor.z());
-    dJointSetHingeAxis(hinge, axis.x(), axis.y(), axis.z());
+    const dBodyID parent = i == 0 ? nullptr : w.bodies.back();
+    w.joints.push_back(make_joint(w.world.get(), model.joints[i].kind, body, parent,
+                                  poses[i].translation(), rotation * model.joints[i].axis));
     w.bodies.push_back(body);
-    w.hinges.push_back(hinge);
   }
   w.tip_in_body_m = model.tip_pose.translation() - model.links.back().inertial.com_m;
 }
 
 OdeArm::~OdeArm() = default;
 
-void OdeArm::step(std::span<const double> effort_n_m, double dt_s) {
+void OdeArm::step(std::span<const double> effort, double dt_s) {
   World& w = *world_;
-  for (std::size_t i = 0; i < w.hinges.size(); ++i) {
-    if (!std::isfinite(effort_n_m[i])) {
+  for (std::size_t i = 0; i < w.joints.size(); ++i) {
+    if (!std::isfinite(effort[i])) {
       throw DivergenceError(
           fmt::format("joint {} ({}): its controller asks for a non-finite effort", i + 1,
                       w.model->joints[i].name));
     }
-    dJointAddHingeTorque(w.hinges[i], effort_n_m[i]);
+    if (w.is_prismatic(i)) {
+      dJointAddSliderForce(w.joints[i], effort[i]);
+    } else {
+      dJointAddHingeTorque(w.joints[i], effort[i]);
+    }
   }
   try {
     dWorldStep(w.world.get(), dt_s);
@@ -174,16 +214,19 @@ void OdeArm::step(std::span<const double> effort_n_m, double dt_s) {
   w.check();
 }
 
-void OdeArm::read_angles(std::span<double> q_rad) const {
-  for (std::size_t i = 0; i < world_->hinges.size(); ++i) {
-    // ODE counts from the posture in which the hinge was attached.
-    q_rad[i] = wrap_angle(world_->start_rad[i] + dJointGetHingeAngle(world_->hinges[i]));
+void OdeArm::read_angles(std::span<double> q) const {
+  const World& w = *world_;
+  for (std::size_t i = 0; i < w.joints.size(); ++i) {
+    // ODE counts from the posture in which the joint was attached.
+    q[i] = w.is_prismatic(i) ? w.start[i] + dJointGetSliderPosition(w.joints[i])
+                             : wrap_angle(w.start[i] + dJointGetHingeAngle(w.joints[i]));
   }
 }
 
-void OdeArm::read_rates(std::span<double> qd_rad_per_s) const {
-  for (std::size_t i = 0; i < world_->hinges.size(); ++i) {
-    qd_rad_per_s[i] = dJointGetHingeAngleRate(world_->hinges[i]);
+void OdeArm::read_rates(std::span<double> qd) const {
+  const World& w = *world_;
+  for (std::size_t i = 0; i < w.joints.size(); ++i) {
+    qd[i] = w.is_prismatic(i) ? w.calc_slide_rate(i) : dJointGetHingeAngleRate(w.joints[i]);
   }
 }
 
@@ -201,20 +244,18 @@ Eigen::Vector3d OdeArm::tip_position_m() const {
 }
 
 Eigen::Vector3d OdeArm::com_position_m(std::size_t link) const {
-  const dReal* p = dBodyGetPosition(world_->bodies[link]);
-  return {p[0], p[1], p[2]};
+  return to_eigen(dBodyGetPosition(world_->bodies[link]));
 }
 
 double OdeArm::calc_kinetic_energy_j() const {
   double energy = 0;
   for (std::size_t i = 0; i < world_->bodies.size(); ++i) {
     const Inertial& inertial = world_->model->links[i].inertial;
-    const dReal* v = dBodyGetLinearVel(world_->bodies[i]);
     const dReal* omega = dBodyGetAngularVel(world_->bodies[i]);
     dVector3 local;
     dBodyVectorFromWorld(world_->bodies[i], omega[0], omega[1], omega[2], local);
-    const Eigen::Vector3d spin(local[0], local[1], local[2]);
-    const Eigen::Vector3d speed(v[0], v[1], v[2]);
+    const Eigen::Vector3d spin = to_eigen(local);
+    const Eigen::Vector3d speed = to_eigen(dBodyGetLinearVel(world_->bodies[i]));
     energy += 0.5 * inertial.mass_kg * speed.squaredNorm() +
               0.5 * spin.dot(inertial.inertia_kg_m2 * spin);
   }

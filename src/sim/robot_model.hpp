@@ -1,10 +1,11 @@
-// A robot arm as the rest of the program sees it: a serial chain of revolute joints on a fixed
-// base, read from URDF behind our own strict validation (urdfdom 3.0.1 takes mass "nan", "1.5kg"
-// and the like as 0, accepts negative masses and inertia tensors that no body can have, and crashes
-// on deep nesting).
+// A robot arm as the rest of the program sees it: a serial chain of revolute and prismatic joints
+// on a fixed base, read from URDF behind our own strict validation (urdfdom 3.0.1 takes mass "nan",
+// "1.5kg" and the like as 0, accepts negative masses and inertia tensors that no body can have, and
+// crashes on deep nesting).
 //
-// Frames: a link's frame is its joint's frame (URDF's convention). Links joined by fixed joints are
-// lumped into the link that carries them. SI units, angles in rad.
+// Frames: a link's frame is its joint's frame (URDF's convention); that of a prismatic joint moves
+// with the link. Links joined by fixed joints are lumped into the link that carries them. SI units,
+// angles in rad.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -80,10 +81,11 @@ struct RobotModel {
 // deeper than 64; document types; anything that is not a finite number where one belongs; misspelt
 // elements and attributes; xacro; names used twice; a moving link without mass; mass <= 0; an
 // inertia that is not symmetric positive definite or violates the triangle inequality of principal
-// moments; a zero axis; lower > upper; speed or effort limits < 0; joint damping, friction and
-// mimic (they are not simulated); a branching chain; any joint type but revolute, continuous and
-// fixed; no moving joint; all that urdfdom itself refuses. load_urdf(): Error{io} if the file
-// cannot be read.
+// moments; a zero axis; a revolute or
+// prismatic joint without limits; lower > upper; speed or effort limits < 0; joint damping,
+// friction and mimic (they are not simulated); a branching chain; any joint type but revolute,
+// continuous, prismatic and fixed; no moving joint; all that urdfdom itself refuses. load_urdf():
+// Error{io} if the file cannot be read.
 RobotModel load_urdf(const std::filesystem::path& file);
 RobotModel parse_urdf(std::string_view xml, const std::string& name);
 

@@ -135,7 +135,8 @@ struct TrackingResult {
   double mean_error_m = 0;  // the case's error; meaningful for ok and, under a cut-off policy, for
                             // cut_off and diverged
   std::vector<double> peak_effort_n_m, rms_effort_n_m, saturated_share;  // one a joint
-  double energy_j = 0;  // positive mechanical work of all joints, sum of max(0, effort x rotation)
+  double energy_j =
+      0;  // positive mechanical work of all joints, sum of max(0, effort x displacement)
   std::vector<double> error_series_m;        // on request
   std::vector<TrajectorySample> trajectory;  // on request
 };

@@ -9,8 +9,9 @@ TrackingLoop::TrackingLoop(const TrackingSetup& setup, const TrackingJob& job)
       substep_s_(period_s_ / setup.task().physics.substeps) {
   const std::size_t joints = setup.robot().joint_count();
   const ControllerRow& row = find_controller(job.design->controller);
-  for (const JointDrive& joint : job.design->joints) {
-    controllers_.push_back(row.make(joint.gains, joint.limits));
+  for (std::size_t i = 0; i < joints; ++i) {
+    const JointDrive& drive = job.design->joints[i];
+    controllers_.push_back(row.make(drive.gains, drive.limits, setup.robot().joints[i].kind));
   }
   q_.resize(joints);
   q_before_.resize(joints);

@@ -54,7 +54,8 @@ void TrackingLoop::step(Arm& arm, std::span<const double> targets) {
     result_.peak_effort_n_m[i] = std::max(result_.peak_effort_n_m[i], magnitude);
     result_.rms_effort_n_m[i] += magnitude * magnitude;
     saturated_steps_[i] += controllers_[i]->saturated() ? 1 : 0;
-    result_.energy_j += std::max(0.0, effort_[i] * wrap_angle(q_[i] - q_before_[i]));
+    result_.energy_j += std::max(
+        0.0, effort_[i] * calc_displacement(setup_.robot().joints[i].kind, q_before_[i], q_[i]));
   }
 }
 

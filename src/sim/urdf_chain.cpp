@@ -114,7 +114,8 @@ void check_urdf_chain(const std::vector<UrdfLink>& links, const std::vector<Urdf
   }
   if (carrying == nullptr) {
     fail_urdf(name, root->line,
-              "the robot has no moving joint; it needs at least one revolute or continuous joint");
+              "the robot has no moving joint; it needs at least one revolute, continuous or "
+              "prismatic joint");
   }
   check_mass();
 }

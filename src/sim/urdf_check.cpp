@@ -322,11 +322,10 @@ class Checker {
                       "calibration", "safety_controller"},
                      {"name", "type"});
     const std::string type = xml_.get_text(element, "type");
-    if (type != "revolute" && type != "continuous" && type != "fixed") {
-      xml_.fail(
-          element,
-          fmt::format("the type is '{}'; only revolute, continuous and fixed are supported so far",
-                      type));
+    if (type != "revolute" && type != "continuous" && type != "prismatic" && type != "fixed") {
+      xml_.fail(element, fmt::format("the type is '{}'; only revolute, continuous, prismatic and "
+                                     "fixed are supported",
+                                     type));
     }
     joint.moving = type != "fixed";
     out_.OpenElement("joint");
@@ -341,7 +340,7 @@ class Checker {
     check_origin(element);
     if (joint.moving) {
       check_axis(element);
-      check_limit(element, type == "revolute");
+      check_limit(element, type);
       check_extras(element);
     }
     out_.CloseElement();
@@ -380,10 +379,17 @@ class Checker {
     out_.CloseElement();
   }
 
-  void check_limit(const XMLElement& joint, bool revolute) {
+  void check_limit(const XMLElement& joint, const std::string& type) {
+    const bool prismatic = type == "prismatic";
+    const bool bounded = prismatic || type == "revolute";
     const XMLElement* limit = xml_.find_only(joint, "limit");
     if (limit == nullptr) {
-      if (revolute) {
+      if (prismatic) {
+        xml_.fail(joint,
+                  "has no <limit>; a prismatic joint needs one (lower and upper in m, velocity in "
+                  "m/s, effort in N)");
+      }
+      if (bounded) {
         xml_.fail(joint,
                   "has no <limit>; a revolute joint needs one (lower and upper in rad, velocity in "
                   "rad/s, effort in N m), "
@@ -393,13 +399,13 @@ class Checker {
     }
     xml_.check_names(*limit, {}, {"lower", "upper", "velocity", "effort"});
     out_.OpenElement("limit");
-    if (revolute) {
+    if (bounded) {
       const double lower = xml_.read_number(*limit, "lower", 0.0);
       const double upper = xml_.read_number(*limit, "upper", 0.0);
       if (lower > upper) {
         xml_.fail(*limit,
-                  fmt::format("<limit>: lower is {} and upper is {} rad; lower must be <= upper",
-                              lower, upper));
+                  fmt::format("<limit>: lower is {} and upper is {} {}; lower must be <= upper",
+                              lower, upper, prismatic ? "m" : "rad"));
       }
       write("lower", {lower});
       write("upper", {upper});

@@ -120,6 +120,7 @@ Joint to_joint(const urdf::Joint& from, const Eigen::Isometry3d& parent_pose) {
   const bool continuous = from.type == urdf::Joint::CONTINUOUS;
   Joint joint;
   joint.name = from.name;
+  joint.kind = from.type == urdf::Joint::PRISMATIC ? JointKind::prismatic : JointKind::revolute;
   joint.origin = parent_pose * to_eigen(from.parent_to_joint_origin_transform);
   joint.axis = to_eigen(from.axis).normalized();
   joint.lower = continuous ? -kInfinity : from.limits->lower;

@@ -153,6 +153,27 @@ TEST_F(Cli, ListsEverythingAsJson) {
   }
 }
 
+TEST_F(Cli, GivesTheLimitsOfARobotsJointsTheirUnits) {
+  const std::string file = ARMWRIGHT_TEST_DATA "/urdf/rail_and_pole.urdf";
+  const json joints = json::parse(run({"list", "robots", file, "--json"}).out).at("joints");
+  ASSERT_EQ(joints.size(), 2);
+  EXPECT_EQ(joints[0].at("kind"), "prismatic");
+  EXPECT_EQ(joints[0].at("lower_m"), -0.4);
+  EXPECT_EQ(joints[0].at("upper_m"), 1.5);
+  EXPECT_EQ(joints[0].at("speed_limit_m_per_s"), 2);
+  EXPECT_EQ(joints[0].at("effort_limit_n"), 300);
+  EXPECT_EQ(joints[1].at("kind"), "revolute");
+  EXPECT_TRUE(joints[1].at("lower_rad").is_null());
+  const std::string table = run({"list", "robots", file}).out;
+  for (const char* limit : {"-0.4 m", "1.5 m", "2 m/s", "300 N", "none"}) {
+    EXPECT_THAT(table, HasSubstr(limit));
+  }
+  const std::string arm = run({"list", "robots", "irb4600_40_255"}).out;
+  for (const char* limit : {"-180.0 deg", "150.0 deg", " rad/s", " N m"}) {
+    EXPECT_THAT(arm, HasSubstr(limit));
+  }
+}
+
 TEST_F(Cli, ExplainsAProblem) {
   const json problem = json::parse(run({"list", "problems", "q1-complex", "--json"}).out);
   ASSERT_EQ(problem.at("variables").size(), 20);

@@ -6,9 +6,10 @@
 //   M = sum over the bodies of  m Jv' Jv + Jw' I Jw
 //   b = sum over the bodies of  m Jv' (a0 - g) + Jw' (I alpha0 + w x I w)
 //
-// Jv, Jw: Jacobians of a centre of mass's velocity and of the body's spin; a0, alpha0: their
-// accelerations at qdd = 0; I: inertia about the centre of mass, along the world's axes; g:
-// gravity.
+// Jv, Jw: Jacobians of a centre of mass's velocity and of the body's spin, their columns a x (c -
+// p) and a for a revolute joint in p with the axis a, a and 0 for a prismatic one; a0, alpha0:
+// their accelerations at qdd = 0, with 2 w x a qd of a prismatic joint (Coriolis); I: inertia about
+// the centre of mass, along the world's axes; g: gravity.
 #pragma once
 
 #include <Eigen/Dense>
@@ -58,7 +59,8 @@ class ChainOracle {
     e.bias = VectorXd::Zero(n);
     const Vector3d up_m_per_s2(0, 0, gravity_);
     MatrixXd spin_jacobian = MatrixXd::Zero(3, n);
-    MatrixXd joints_m(3, n);  // where the joints are
+    MatrixXd axes(3, n);      // of the joints
+    MatrixXd joints_m(3, n);  // where the revolute joints are
     Matrix3d rotation = Matrix3d::Identity();
     Vector3d position = Vector3d::Zero(), spin = Vector3d::Zero();
     Vector3d spin_rate = Vector3d::Zero(), acceleration = Vector3d::Zero();
@@ -69,11 +71,19 @@ class ChainOracle {
       acceleration += spin_rate.cross(step) + spin.cross(spin.cross(step));
       rotation = rotation * joint.origin.linear();
       const Vector3d axis = rotation * joint.axis;
-      rotation = rotation * make_rotation(joint.axis, q[i]);
-      spin_rate += spin.cross(axis) * qd[i];
-      spin += axis * qd[i];
-      spin_jacobian.col(i) = axis;
-      joints_m.col(i) = position;
+      axes.col(i) = axis;
+      if (joint.kind == JointKind::prismatic) {
+        const Vector3d slide = axis * q[i];
+        position += slide;
+        acceleration +=
+            spin_rate.cross(slide) + spin.cross(spin.cross(slide)) + 2 * spin.cross(axis) * qd[i];
+      } else {
+        rotation = rotation * make_rotation(joint.axis, q[i]);
+        spin_rate += spin.cross(axis) * qd[i];
+        spin += axis * qd[i];
+        spin_jacobian.col(i) = axis;
+        joints_m.col(i) = position;
+      }
 
       const Inertial& body = model_.links[static_cast<std::size_t>(i)].inertial;
       const Vector3d arm = rotation * body.com_m;
@@ -81,8 +91,12 @@ class ChainOracle {
       const Vector3d com_bias = acceleration + spin_rate.cross(arm) + spin.cross(spin.cross(arm));
       MatrixXd com_jacobian = MatrixXd::Zero(3, n);
       for (Eigen::Index k = 0; k <= i; ++k) {
-        const Vector3d axis_k = spin_jacobian.col(k);
-        com_jacobian.col(k) = axis_k.cross(Vector3d(position + arm - joints_m.col(k)));
+        const Vector3d axis_k = axes.col(k);
+        if (model_.joints[static_cast<std::size_t>(k)].kind == JointKind::prismatic) {
+          com_jacobian.col(k) = axis_k;
+        } else {
+          com_jacobian.col(k) = axis_k.cross(Vector3d(position + arm - joints_m.col(k)));
+        }
       }
       e.mass += body.mass_kg * com_jacobian.transpose() * com_jacobian +
                 spin_jacobian.transpose() * inertia * spin_jacobian;

@@ -21,7 +21,7 @@ using testing::MatchesRegex;
 using testing::StartsWith;
 
 constexpr double kLargest = std::numeric_limits<double>::max();
-const VectorXd kStart = (VectorXd(3) << 0.6, -0.9, 1.3).finished();
+const VectorXd kStart = make_vector({0.6, -0.9, 1.3});
 
 std::string divergence_message(const std::function<void()>& action) {
   try {
@@ -33,9 +33,10 @@ std::string divergence_message(const std::function<void()>& action) {
 }
 
 // Steps until something is thrown, at most `steps` times.
+template <class Arm>
 std::string step_until_divergence(const RobotModel& model, Eigen::Index joint, double effort_n_m,
                                   int steps) {
-  OdeArm arm = make_arm(model, kStart);
+  Arm arm = make_arm<Arm>(model, kStart);
   VectorXd tau = VectorXd::Constant(3, 1.5);
   tau[joint] = effort_n_m;
   return divergence_message([&] {
@@ -46,9 +47,10 @@ std::string step_until_divergence(const RobotModel& model, Eigen::Index joint, d
 }
 
 // All that can be read of an arm after half a second of general motion.
+template <class Arm>
 VectorXd simulate_half_a_second() {
   const RobotModel model = make_skew_arm();
-  OdeArm arm = make_arm(model, kStart);
+  Arm arm = make_arm<Arm>(model, kStart);
   for (int k = 0; k < 50; ++k) {
     step(arm, VectorXd::LinSpaced(3, std::sin(k), -2), 0.01);
   }
@@ -58,30 +60,32 @@ VectorXd simulate_half_a_second() {
   return all;
 }
 
-TEST(Divergence, ANonFiniteEffortNamesItsJoint) {
+template <class Arm>
+class Divergence : public testing::Test {};
+TYPED_TEST_SUITE(Divergence, ArmTypes, ArmNames);
+
+TYPED_TEST(Divergence, ANonFiniteEffortNamesItsJoint) {
   const RobotModel model = make_skew_arm();
   const std::vector<std::string> names{"joint 1 (waist)", "joint 2 (shoulder)", "joint 3 (elbow)"};
   for (const double effort_n_m :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
         -std::numeric_limits<double>::infinity()}) {
     for (std::size_t i = 0; i < names.size(); ++i) {
-      EXPECT_EQ(step_until_divergence(model, static_cast<Eigen::Index>(i), effort_n_m, 1),
-                names[i] + ": its controller asks for a non-finite effort");
+      EXPECT_EQ(
+          step_until_divergence<TypeParam>(model, static_cast<Eigen::Index>(i), effort_n_m, 1),
+          names[i] + ": its controller asks for a non-finite effort");
     }
   }
 }
 
 // 1e160 squared overflows; with the largest double the first step itself does, and the engine stops
 // in its middle.
-TEST(Divergence, AbsurdEffortsAreCaughtAndNameAJoint) {
+TYPED_TEST(Divergence, AbsurdEffortsAreCaughtAndNameAJoint) {
   const RobotModel model = make_skew_arm();
   for (const double effort_n_m : {1e12, -1e30, 1e100, 1e160, -1e160, 1e300, kLargest, -kLargest}) {
     for (Eigen::Index i = 0; i < 3; ++i) {
-      EXPECT_THAT(
-          step_until_divergence(model, i, effort_n_m, 3),
-          testing::AnyOf(MatchesRegex("joint [123] \\((waist|shoulder|elbow)\\): its link is "
-                                      ".* m from the base and turns at .* rad/s"),
-                         StartsWith("ODE stopped (message ")))
+      EXPECT_THAT(step_until_divergence<TypeParam>(model, i, effort_n_m, 3),
+                  MatchesRegex(ArmTraits<TypeParam>::kBlownUp))
           << effort_n_m << " N m in joint " << i + 1;
     }
   }
@@ -89,23 +93,24 @@ TEST(Divergence, AbsurdEffortsAreCaughtAndNameAJoint) {
 
 // A link on an axis along y, kicked to a rate within one step (qd = h tau / J, exact from rest): an
 // arm that is merely out of control is not called diverged.
+template <class Arm>
 std::string kick(double rate_rad_per_s, double h_s) {
   const RobotModel model = make_pendulum({0, 1, 0});
   const double inertia_kg_m2 =
       ChainOracle(model, 0).calc(VectorXd::Zero(1), VectorXd::Zero(1)).mass(0, 0);
   PhysicsSettings physics;
   physics.gravity_m_per_s2 = 0;
-  OdeArm arm = make_arm(model, VectorXd::Constant(1, 0.7), physics);
+  Arm arm = make_arm<Arm>(model, VectorXd::Constant(1, 0.7), physics);
   return divergence_message(
       [&] { step(arm, VectorXd::Constant(1, rate_rad_per_s * inertia_kg_m2 / h_s), h_s); });
 }
 
 // In a microsecond the link moves by less than a metre: the rate alone decides.
-TEST(Divergence, BeginsAtAMillionRadiansPerSecond) {
+TYPED_TEST(Divergence, BeginsAtAMillionRadiansPerSecond) {
   for (const double sign : {1.0, -1.0}) {
-    EXPECT_EQ(kick(sign * 0.99e6, 1e-6), "(no error)");
+    EXPECT_EQ(kick<TypeParam>(sign * 0.99e6, 1e-6), "(no error)");
     EXPECT_THAT(
-        kick(sign * 1.01e6, 1e-6),
+        kick<TypeParam>(sign * 1.01e6, 1e-6),
         MatchesRegex("joint 1 \\(pivot\\): its link is [0-9.]+ m from the base and turns at "
                      "1\\.01e\\+06 rad/s"));
   }
@@ -113,35 +118,55 @@ TEST(Divergence, BeginsAtAMillionRadiansPerSecond) {
 
 // The centre of mass is at most 0.34 m from the hinge and the distance that counts is |x| + |y| +
 // |z|, so that in 0.1 s and at 1e4 rad/s it gets 0.34 to 0.48 km away, at 1e5 rad/s 3.4 to 4.8 km.
-TEST(Divergence, BeginsAtAKilometre) {
-  EXPECT_EQ(kick(1e4, 0.1), "(no error)");
-  EXPECT_THAT(kick(1e5, 0.1), MatchesRegex("joint 1 \\(pivot\\): its link is .*e\\+03 m from the "
-                                           "base and turns at 1e\\+05 rad/s"));
+TYPED_TEST(Divergence, BeginsAtAKilometre) {
+  EXPECT_EQ(kick<TypeParam>(1e4, 0.1), "(no error)");
+  EXPECT_THAT(kick<TypeParam>(1e5, 0.1),
+              MatchesRegex("joint 1 \\(pivot\\): its link is .*e\\+03 m from the "
+                           "base and turns at 1e\\+05 rad/s"));
 }
 
-TEST(Divergence, LeavesNoTraceInTheNextSimulation) {
-  const VectorXd fresh = simulate_half_a_second();
+// A link on a level rail, pushed for one step of 10 s: it is there where it says, or too far away.
+TYPED_TEST(Divergence, OfASliderBeginsAtAKilometreToo) {
+  const RobotModel model = make_slider({0.6, -0.8, 0});
+  const auto push = [&](double distance_m) {
+    auto arm = make_arm<TypeParam>(model, make_vector({0.5}));
+    return divergence_message(
+        [&] { step(arm, make_vector({distance_m / 100 * kFirstBody.mass_kg}), 10); });
+  };
+  // |x| + |y| + |z| is 1.4 times the way along this rail, and 1.7 m at the start.
+  EXPECT_EQ(push(700), "(no error)");
+  EXPECT_EQ(push(-700), "(no error)");
+  for (const double sign : {1.0, -1.0}) {
+    EXPECT_THAT(push(sign * 730), MatchesRegex("joint 1 \\(rail\\): its link is 1\\.02e\\+03 m "
+                                               "from the base and turns at .* rad/s"));
+  }
+  EXPECT_EQ(push(std::numeric_limits<double>::quiet_NaN()),
+            "joint 1 (rail): its controller asks for a non-finite effort");
+}
+
+TYPED_TEST(Divergence, LeavesNoTraceInTheNextSimulation) {
+  const VectorXd fresh = simulate_half_a_second<TypeParam>();
   const RobotModel model = make_skew_arm();
   for (const double effort_n_m :
        {1e12, 1e160, 1e300, kLargest, std::numeric_limits<double>::quiet_NaN()}) {
-    OdeArm survivor = make_arm(model, kStart);  // lives on beside the one that blows up
-    EXPECT_NE(step_until_divergence(model, 1, effort_n_m, 3), "(no error)");
-    EXPECT_EQ(simulate_half_a_second(), fresh) << effort_n_m;
+    auto survivor = make_arm<TypeParam>(model, kStart);  // lives on beside the one that blows up
+    EXPECT_NE(step_until_divergence<TypeParam>(model, 1, effort_n_m, 3), "(no error)");
+    EXPECT_EQ(simulate_half_a_second<TypeParam>(), fresh) << effort_n_m;
     step(survivor, VectorXd::Constant(3, 1.5), 0.01);
     EXPECT_TRUE(read_rates(survivor, 3).allFinite());
     VectorXd elsewhere;
-    std::thread([&] { elsewhere = simulate_half_a_second(); }).join();
+    std::thread([&] { elsewhere = simulate_half_a_second<TypeParam>(); }).join();
     EXPECT_EQ(elsewhere, fresh) << effort_n_m;
   }
 }
 
 // A thread that has seen a blow-up and one that has not do the same.
-TEST(Divergence, LeavesNoTraceInItsThread) {
-  const VectorXd fresh = simulate_half_a_second();
+TYPED_TEST(Divergence, LeavesNoTraceInItsThread) {
+  const VectorXd fresh = simulate_half_a_second<TypeParam>();
   VectorXd after;
   std::thread([&] {
-    EXPECT_NE(step_until_divergence(make_skew_arm(), 0, kLargest, 3), "(no error)");
-    after = simulate_half_a_second();
+    EXPECT_NE(step_until_divergence<TypeParam>(make_skew_arm(), 0, kLargest, 3), "(no error)");
+    after = simulate_half_a_second<TypeParam>();
   }).join();
   EXPECT_EQ(after, fresh);
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "chain_oracle.hpp"
-#include "convergence.hpp"
+#include "solving.hpp"
 #include "test_arms.hpp"
 
 namespace armwright::physics_test {
@@ -66,78 +66,10 @@ class PlanarManipulator {
   Vector2d c1_, c2_, d_, gravity_;
 };
 
-VectorXd make_vector(std::initializer_list<double> values) {
-  VectorXd v(static_cast<Eigen::Index>(values.size()));
-  std::copy(values.begin(), values.end(), v.begin());
-  return v;
-}
-
-// Smooth driving efforts, different in every joint.
-VectorXd calc_drive(const VectorXd& amplitude_n_m, double t_s) {
-  VectorXd tau(amplitude_n_m.size());
-  for (Eigen::Index i = 0; i < tau.size(); ++i) {
-    const double k = static_cast<double>(i);
-    tau[i] = amplitude_n_m[i] * std::sin((3 + k) * t_s + 0.5 + k);
-  }
-  return tau;
-}
-
-// Angles (turns counted) and rates after a second of driving.
-VectorXd simulate(const RobotModel& model, const VectorXd& start, const VectorXd& amplitude_n_m,
-                  int steps) {
-  const double h_s = 1.0 / steps;
-  const auto joints = static_cast<std::size_t>(start.size());
-  OdeArm arm = make_arm(model, start);
-  VectorXd q = start;
-  for (int k = 0; k < steps; ++k) {
-    step(arm, calc_drive(amplitude_n_m, k * h_s), h_s);
-    q += wrap_angles(read_angles(arm, joints) - q);
-  }
-  VectorXd state(2 * start.size());
-  state << q, read_rates(arm, joints);
-  return state;
-}
-
-VectorXd flatten(const State& s) {
-  VectorXd state(2 * s.q.size());
-  state << s.q, s.qd;
-  return state;
-}
-
-constexpr int kTruthSteps = 4000;  // RK4's error is then below 1e-9, four orders below the others
-
-// The engine's limit h -> 0 is the solution of the equations; on the way there its error is of
-// first order, like that of semi-implicit Euler in joint coordinates, but with a constant of its
-// own (links move along tangents). Measured: up to 3 times as large; 4 is allowed.
-void expect_solves(const RobotModel& model, const Acceleration& f, const VectorXd& start,
-                   const VectorXd& amplitude_n_m) {
-  const State rest{start, VectorXd::Zero(start.size())};
-  const VectorXd truth = flatten(integrate_rk4(f, rest, kTruthSteps, 1.0 / kTruthSteps));
-  ASSERT_LT((flatten(integrate_rk4(f, rest, kTruthSteps / 2, 2.0 / kTruthSteps)) - truth).norm(),
-            1e-8);
-  ASSERT_GT((truth.head(start.size()) - start).cwiseAbs().minCoeff(), 0.2) << "hardly moves";
-
-  const Limit engine =
-      extrapolate([&](int steps) { return simulate(model, start, amplitude_n_m, steps); }, 800);
-  EXPECT_NEAR(engine.order, 1, kOrderTolerance);
-  EXPECT_LT(engine.error, 1e-3 * truth.norm());  // or the next line would say little
-  EXPECT_LT((engine.value - truth).norm(), engine.error);
-
-  for (const int steps : {200, 1000, 3200}) {
-    const VectorXd euler = flatten(integrate_semi_implicit_euler(f, rest, steps, 1.0 / steps));
-    const VectorXd ode = simulate(model, start, amplitude_n_m, steps);
-    EXPECT_LT((ode - truth).norm(), 4 * (euler - truth).norm()) << steps << " steps";
-    EXPECT_LT((ode - euler).norm(), 4 * (euler - truth).norm()) << steps << " steps";
-  }
-}
-
 struct Plane {
   const char* name;
   Vector3d u, v;  // u x v: the joints' axis
 };
-void PrintTo(const Plane& plane, std::ostream* out) {
-  *out << plane.name;
-}
 const Plane kVertical{"vertical", {0, 0, 1}, {1, 0, 0}};
 const Plane kHorizontal{"horizontal", {1, 0, 0}, {0, 1, 0}};
 const Plane kInclined{"inclined", Vector3d(1, 2, 2) / 3, Vector3d(2, 1, -2) / 3};
@@ -147,39 +79,45 @@ const VectorXd kTwoEfforts_n_m = make_vector({9, -2.5});
 const VectorXd kThreeAngles = make_vector({0.6, -0.9, 1.3});
 const VectorXd kThreeEfforts_n_m = make_vector({4, -3, 0.7});
 
-class TwoLinkArm : public testing::TestWithParam<Plane> {};
-INSTANTIATE_TEST_SUITE_P(Planes, TwoLinkArm, testing::Values(kVertical, kHorizontal, kInclined),
-                         [](const auto& plane) { return std::string(plane.param.name); });
+const Plane kPlanes[] = {kVertical, kHorizontal, kInclined};
 
-TEST_P(TwoLinkArm, FollowsTheTextbookEquations) {
-  const Plane& plane = GetParam();
-  const RobotModel model = make_planar_arm(plane.u.cross(plane.v));
-  const PlanarManipulator textbook(model, plane.u, plane.v, kGravity_m_per_s2);
-  expect_solves(
-      model,
-      [&](double t_s, const VectorXd& q, const VectorXd& qd) {
-        return textbook.calc_acceleration(q, qd, calc_drive(kTwoEfforts_n_m, t_s));
-      },
-      kTwoAngles, kTwoEfforts_n_m);
+template <class Arm>
+class TwoLinkArm : public testing::Test {};
+TYPED_TEST_SUITE(TwoLinkArm, ArmTypes, ArmNames);
+
+TYPED_TEST(TwoLinkArm, FollowsTheTextbookEquations) {
+  for (const Plane& plane : kPlanes) {
+    SCOPED_TRACE(plane.name);
+    const RobotModel model = make_planar_arm(plane.u.cross(plane.v));
+    const PlanarManipulator textbook(model, plane.u, plane.v, kGravity_m_per_s2);
+    expect_solves<TypeParam>(
+        model,
+        [&](double t_s, const VectorXd& q, const VectorXd& qd) {
+          return textbook.calc_acceleration(q, qd, calc_drive(kTwoEfforts_n_m, t_s));
+        },
+        kTwoAngles, kTwoEfforts_n_m);
+  }
 }
 
 // The oracle of the spatial arms, checked itself: rounding only.
-TEST_P(TwoLinkArm, TheJacobianEquationsAgreeWithTheTextbooks) {
-  const Plane& plane = GetParam();
-  const RobotModel model = make_planar_arm(plane.u.cross(plane.v));
-  const PlanarManipulator textbook(model, plane.u, plane.v, kGravity_m_per_s2);
-  const ChainOracle oracle(model, kGravity_m_per_s2);
-  for (int i = 1; i < 20; ++i) {
-    const VectorXd q = make_vector({0.9 * i, -1.7 * i}), qd = make_vector({3.1 - i, 0.4 * i});
-    const ChainOracle::Equations equations = oracle.calc(q, qd);
-    EXPECT_LT((equations.mass - textbook.calc_mass(q)).norm(), 1e-12);
-    EXPECT_LT((equations.bias - textbook.calc_bias(q, qd)).norm(), 1e-10);
+TEST(TwoLinks, TheJacobianEquationsAgreeWithTheTextbooks) {
+  for (const Plane& plane : kPlanes) {
+    SCOPED_TRACE(plane.name);
+    const RobotModel model = make_planar_arm(plane.u.cross(plane.v));
+    const PlanarManipulator textbook(model, plane.u, plane.v, kGravity_m_per_s2);
+    const ChainOracle oracle(model, kGravity_m_per_s2);
+    for (int i = 1; i < 20; ++i) {
+      const VectorXd q = make_vector({0.9 * i, -1.7 * i}), qd = make_vector({3.1 - i, 0.4 * i});
+      const ChainOracle::Equations equations = oracle.calc(q, qd);
+      EXPECT_LT((equations.mass - textbook.calc_mass(q)).norm(), 1e-12);
+      EXPECT_LT((equations.bias - textbook.calc_bias(q, qd)).norm(), 1e-10);
+    }
   }
 }
 
 // Without efforts RK4 keeps the oracle's energy to its own error: the equations of the skew arm,
 // gyroscopic terms included, are consistent with its energy.
-TEST(SkewArm, TheJacobianEquationsKeepTheirEnergy) {
+TEST(ThreeLinks, TheJacobianEquationsKeepTheirEnergy) {
   const RobotModel model = make_skew_arm();
   const ChainOracle oracle(model, kGravity_m_per_s2);
   const State start{kThreeAngles, make_vector({1.1, -0.7, 2.3})};
@@ -195,36 +133,20 @@ TEST(SkewArm, TheJacobianEquationsKeepTheirEnergy) {
   EXPECT_NEAR(energy(end), energy(start), 1e-8);
 }
 
-TEST(SkewArm, FollowsTheEquationsOfMotion) {
+template <class Arm>
+class SkewArm : public testing::Test {};
+TYPED_TEST_SUITE(SkewArm, ArmTypes, ArmNames);
+
+TYPED_TEST(SkewArm, FollowsTheEquationsOfMotion) {
   const RobotModel model = make_skew_arm();
   const ChainOracle oracle(model, kGravity_m_per_s2);
-  expect_solves(
-      model,
-      [&](double t_s, const VectorXd& q, const VectorXd& qd) {
-        return oracle.calc_acceleration(q, qd, calc_drive(kThreeEfforts_n_m, t_s));
-      },
-      kThreeAngles, kThreeEfforts_n_m);
+  expect_solves<TypeParam>(model, make_driven_acceleration(oracle, kThreeEfforts_n_m), kThreeAngles,
+                           kThreeEfforts_n_m);
 }
 
-// The first step from rest is exact: every centre of mass moves by h^2 times its acceleration, but
-// for rounding (of positions of size 2, over h^2: 1e-10), and qd = h qdd. Rates are measured along
-// the axes after the step, though, which have turned by up to h |qd|: half its square, relative.
-TEST(SkewArm, TheFirstStepHasTheAccelerationsOfTheEquationsOfMotion) {
-  const RobotModel model = make_skew_arm();
-  const ChainOracle oracle(model, kGravity_m_per_s2);
-  const double h_s = 0.002;
+TYPED_TEST(SkewArm, TheFirstStepHasTheAccelerationsOfTheEquationsOfMotion) {
   for (const VectorXd& tau : {make_vector({0, 0, 0}), make_vector({21, -13, 4.5})}) {
-    OdeArm arm = make_arm(model, kThreeAngles);
-    const ChainOracle::Equations equations = oracle.calc(kThreeAngles, VectorXd::Zero(3));
-    const VectorXd acceleration = equations.mass.ldlt().solve(tau - equations.bias);
-    step(arm, tau, h_s);
-    const double turn = h_s * h_s * acceleration.cwiseAbs().sum();
-    EXPECT_LT((read_rates(arm, 3) / h_s - acceleration).norm(),
-              turn * turn / 2 * acceleration.norm());
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Vector3d moved = (arm.com_position_m(i) - equations.com_m[i]) / (h_s * h_s);
-      EXPECT_LT((moved - equations.com_jacobian[i] * acceleration).norm(), 1e-9) << "link " << i;
-    }
+    expect_first_step<TypeParam>(make_skew_arm(), kThreeAngles, tau, 0.002);
   }
 }
 

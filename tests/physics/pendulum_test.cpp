@@ -42,9 +42,10 @@ struct Pendulum {
 };
 
 // From the first to the third time it passes the lowest point, interpolated linearly between steps.
+template <class Arm>
 double measure_period_s(const Pendulum& pendulum, double amplitude_rad, double h_s) {
   const VectorXd start = VectorXd::Constant(1, pendulum.rest_rad + amplitude_rad);
-  OdeArm arm = make_arm(pendulum.model, start);
+  Arm arm = make_arm<Arm>(pendulum.model, start);
   std::vector<double> passes_s;
   double before = amplitude_rad;
   for (int k = 1; passes_s.size() < 3 && k * h_s < 10; ++k) {
@@ -59,75 +60,92 @@ double measure_period_s(const Pendulum& pendulum, double amplitude_rad, double h
   return passes_s.size() == 3 ? passes_s[2] - passes_s[0] : 0;
 }
 
-class PendulumOnAxis : public testing::TestWithParam<Vector3d> {};
-INSTANTIATE_TEST_SUITE_P(Axes, PendulumOnAxis,
-                         testing::Values(Vector3d(0, 1, 0), Vector3d(-0.6, 0.8, 0),
-                                         Vector3d(0.5, 0.8, 0.4)));
+const std::vector<Vector3d> kAxes{{0, 1, 0}, {-0.6, 0.8, 0}, {0.5, 0.8, 0.4}};
+
+template <class Arm>
+class PendulumOnAxis : public testing::Test {};
+TYPED_TEST_SUITE(PendulumOnAxis, ArmTypes, ArmNames);
 
 // Semi-implicit Euler turns a harmonic oscillator of frequency w into one of frequency w' with
 // cos(w' h) = 1 - (w h)^2 / 2, so its period is too short by (w h)^2 / 24, 8e-5 here. The rest
 // (interpolation of the passes, loss of amplitude, A^2 terms of the error) is below a tenth of
 // that.
-TEST_P(PendulumOnAxis, SmallSwingsHaveTheClosedFormPeriodUpToTheIntegratorsOwnError) {
-  const Pendulum pendulum(GetParam());
-  const double amplitude_rad = 0.02;
-  for (const double h_s : {0.01, 0.005, 0.0025}) {
-    const double error =
-        measure_period_s(pendulum, amplitude_rad, h_s) / pendulum.calc_period_s(amplitude_rad) - 1;
-    const double expected = -std::pow(pendulum.calc_frequency_rad_per_s() * h_s, 2) / 24;
-    EXPECT_NEAR(error, expected, -0.1 * expected) << "step " << h_s << " s";
+TYPED_TEST(PendulumOnAxis, SmallSwingsHaveTheClosedFormPeriodUpToTheIntegratorsOwnError) {
+  for (const Vector3d& axis : kAxes) {
+    SCOPED_TRACE(testing::Message() << "axis " << axis.transpose());
+    const Pendulum pendulum(axis);
+    const double amplitude_rad = 0.02;
+    for (const double h_s : {0.01, 0.005, 0.0025}) {
+      const double error = measure_period_s<TypeParam>(pendulum, amplitude_rad, h_s) /
+                               pendulum.calc_period_s(amplitude_rad) -
+                           1;
+      const double expected = -std::pow(pendulum.calc_frequency_rad_per_s() * h_s, 2) / 24;
+      EXPECT_NEAR(error, expected, -0.1 * expected) << "step " << h_s << " s";
+    }
   }
 }
 
-// Large swings: the engine moves the centre of mass along the tangent and pulls it back, which
-// costs amplitude, and so period, in proportion to the step.
-TEST_P(PendulumOnAxis, LargeSwingsConvergeToTheClosedFormPeriodWithFirstOrder) {
-  const Pendulum pendulum(GetParam());
-  for (const double amplitude_rad : {2.1, 2.6}) {
-    const double period_s = pendulum.calc_period_s(amplitude_rad);
-    const Limit limit = extrapolate(
-        [&](int steps_per_s) {
-          return VectorXd::Constant(1,
-                                    measure_period_s(pendulum, amplitude_rad, 1.0 / steps_per_s));
-        },
-        1600);
-    EXPECT_NEAR(limit.order, 1, kOrderTolerance) << "amplitude " << amplitude_rad;
-    EXPECT_LT(limit.error, 3e-4 * period_s);  // or the next line would say little
-    EXPECT_NEAR(limit.value[0], period_s, limit.error) << "amplitude " << amplitude_rad;
-    // The first-order term itself, at the finest step: relative, about the fastest turn in a step.
-    const double fastest_rad_per_s =
-        2 * pendulum.calc_frequency_rad_per_s() * std::sin(amplitude_rad / 2);
-    EXPECT_NEAR(limit.finest[0], period_s, fastest_rad_per_s / 6400 * period_s)
-        << "amplitude " << amplitude_rad;
+// Large swings, with the arm's own order.
+TYPED_TEST(PendulumOnAxis, LargeSwingsConvergeToTheClosedFormPeriod) {
+  for (const Vector3d& axis : kAxes) {
+    SCOPED_TRACE(testing::Message() << "axis " << axis.transpose());
+    const Pendulum pendulum(axis);
+    for (const double amplitude_rad : {2.1, 2.6}) {
+      const double period_s = pendulum.calc_period_s(amplitude_rad);
+      const Limit limit = extrapolate(
+          [&](int steps_per_s) {
+            return VectorXd::Constant(
+                1, measure_period_s<TypeParam>(pendulum, amplitude_rad, 1.0 / steps_per_s));
+          },
+          1600, ArmTraits<TypeParam>::kPeriodOrder);
+      EXPECT_NEAR(limit.order, ArmTraits<TypeParam>::kPeriodOrder, kOrderTolerance)
+          << "amplitude " << amplitude_rad;
+      EXPECT_LT(limit.error, 3e-4 * period_s);  // or the next line would say little
+      EXPECT_NEAR(limit.value[0], period_s, limit.error) << "amplitude " << amplitude_rad;
+      // The first-order term itself, at the finest step: relative, about the fastest turn in a
+      // step.
+      const double fastest_rad_per_s =
+          2 * pendulum.calc_frequency_rad_per_s() * std::sin(amplitude_rad / 2);
+      EXPECT_NEAR(limit.finest[0], period_s, fastest_rad_per_s / 6400 * period_s)
+          << "amplitude " << amplitude_rad;
+    }
   }
 }
 
 // Released at rest, the first step gives it the rate h m g l sin(from rest) / J, to rounding: there
 // is no velocity yet for the integrator to err on. With the angle phi between lever and horizontal
 // this is m g l cos(phi) / J.
-TEST_P(PendulumOnAxis, FallsWithTheAccelerationOfTheHandFormula) {
-  const Pendulum pendulum(GetParam());
-  const double h_s = 0.01;
-  for (const double phi_rad : {-1.2, -0.4, 0.3, 1.1, 1.5}) {
-    const double from_rest_rad = kPi / 2 - phi_rad;
-    OdeArm arm = make_arm(pendulum.model, VectorXd::Constant(1, pendulum.rest_rad + from_rest_rad));
-    step(arm, VectorXd::Zero(1), h_s);
-    const double acceleration =
-        -pendulum.torque_n_m * std::cos(phi_rad) / pendulum.inertia_kg_m2;  // back to the bottom
-    EXPECT_NEAR(read_rates(arm, 1)[0] / h_s, acceleration, 1e-10) << "phi " << phi_rad;
+TYPED_TEST(PendulumOnAxis, FallsWithTheAccelerationOfTheHandFormula) {
+  for (const Vector3d& axis : kAxes) {
+    SCOPED_TRACE(testing::Message() << "axis " << axis.transpose());
+    const Pendulum pendulum(axis);
+    const double h_s = 0.01;
+    for (const double phi_rad : {-1.2, -0.4, 0.3, 1.1, 1.5}) {
+      const double from_rest_rad = kPi / 2 - phi_rad;
+      auto arm = make_arm<TypeParam>(pendulum.model,
+                                     VectorXd::Constant(1, pendulum.rest_rad + from_rest_rad));
+      step(arm, VectorXd::Zero(1), h_s);
+      const double acceleration =
+          -pendulum.torque_n_m * std::cos(phi_rad) / pendulum.inertia_kg_m2;  // back to the bottom
+      EXPECT_NEAR(read_rates(arm, 1)[0] / h_s, acceleration, 1e-10) << "phi " << phi_rad;
+    }
   }
 }
 
 // A massive effort and gravity add up; the effort acts about the hinge's axis.
-TEST_P(PendulumOnAxis, AnEffortAddsToGravity) {
-  const Pendulum pendulum(GetParam());
-  const double h_s = 0.01, from_rest_rad = 0.8;
-  for (const double effort_n_m : {-31.7, -2.3, 4.1, 55.5}) {
-    OdeArm arm = make_arm(pendulum.model, VectorXd::Constant(1, pendulum.rest_rad + from_rest_rad));
-    step(arm, VectorXd::Constant(1, effort_n_m), h_s);
-    const double acceleration =
-        (effort_n_m - pendulum.torque_n_m * std::sin(from_rest_rad)) / pendulum.inertia_kg_m2;
-    EXPECT_NEAR(read_rates(arm, 1)[0] / h_s, acceleration, 1e-10) << "effort " << effort_n_m;
+TYPED_TEST(PendulumOnAxis, AnEffortAddsToGravity) {
+  for (const Vector3d& axis : kAxes) {
+    SCOPED_TRACE(testing::Message() << "axis " << axis.transpose());
+    const Pendulum pendulum(axis);
+    const double h_s = 0.01, from_rest_rad = 0.8;
+    for (const double effort_n_m : {-31.7, -2.3, 4.1, 55.5}) {
+      auto arm = make_arm<TypeParam>(pendulum.model,
+                                     VectorXd::Constant(1, pendulum.rest_rad + from_rest_rad));
+      step(arm, VectorXd::Constant(1, effort_n_m), h_s);
+      const double acceleration =
+          (effort_n_m - pendulum.torque_n_m * std::sin(from_rest_rad)) / pendulum.inertia_kg_m2;
+      EXPECT_NEAR(read_rates(arm, 1)[0] / h_s, acceleration, 1e-10) << "effort " << effort_n_m;
+    }
   }
 }
 

@@ -1,14 +1,18 @@
-// Arms of general shape for the physics tests (no zeros, no symmetry), and driving an OdeArm.
+// Arms of general shape for the physics tests (no zeros, no symmetry), and driving one.
 #pragma once
 
 #include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
 #include <numbers>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "arm_types.hpp"
+#include "base/random.hpp"
 #include "chain_oracle.hpp"
-#include "sim/kinematics.hpp"
-#include "sim/ode_arm.hpp"
 #include "sim/robot_model.hpp"
 
 namespace armwright::physics_test {
@@ -24,9 +28,11 @@ inline Matrix3d make_inertia(const Vector3d& principal_kg_m2, const Vector3d& tu
 }
 
 inline void append_link(RobotModel& model, const std::string& name, const Vector3d& origin_m,
-                        const Vector3d& axis, const Inertial& inertial) {
+                        const Vector3d& axis, const Inertial& inertial,
+                        JointKind kind = JointKind::revolute) {
   Joint joint;
   joint.name = name;
+  joint.kind = kind;
   joint.origin.translation() = origin_m;
   joint.axis = axis.normalized();
   model.joints.push_back(joint);
@@ -78,33 +84,106 @@ inline RobotModel make_turntable_arm() {
   return model;
 }
 
-inline VectorXd read_angles(const OdeArm& arm, std::size_t joints) {
+// The skew arm with other joints: 'r' revolute, 'p' prismatic.
+inline RobotModel make_mixed_arm(std::string_view kinds) {
+  RobotModel model = make_skew_arm();
+  for (std::size_t i = 0; i < model.joint_count(); ++i) {
+    model.joints[i].kind = kinds[i] == 'p' ? JointKind::prismatic : JointKind::revolute;
+  }
+  return model;
+}
+
+// One link on a rail.
+inline RobotModel make_slider(const Vector3d& axis) {
+  RobotModel model;
+  append_link(model, "rail", {0.2, -0.3, 1.4}, axis, kFirstBody, JointKind::prismatic);
+  model.tip_pose.translation() = Vector3d(0.7, 0.1, 0.2);
+  return model;
+}
+
+// A chain of `joints` links of any shape, the kind of each joint drawn too.
+inline RobotModel make_random_arm(std::size_t joints, RandomStream& random) {
+  const auto draw = [&](double size) {
+    const double x = random.uniform(-size, size), y = random.uniform(-size, size);
+    return Vector3d(x, y, random.uniform(-size, size));
+  };
+  RobotModel model;
+  for (std::size_t i = 0; i < joints; ++i) {
+    Inertial body;
+    body.mass_kg = random.uniform(0.5, 4);
+    body.com_m = draw(0.4);
+    const double a = random.uniform(0.02, 0.3), b = random.uniform(0.02, 0.3);
+    const double share = random.uniform(0.1, 0.9);  // between |a - b| and a + b
+    const double c = std::abs(a - b) + share * (a + b - std::abs(a - b));
+    body.inertia_kg_m2 = make_inertia({a, b, c}, draw(2));
+    const Vector3d origin_m = draw(0.6), axis = draw(1);
+    const bool slides = random.uniform(0, 1) < 0.5;
+    append_link(model, std::string(1, static_cast<char>('a' + i)), origin_m, axis, body,
+                slides ? JointKind::prismatic : JointKind::revolute);
+    const Vector3d turn = draw(2);
+    model.joints.back().origin.linear() = make_rotation(turn.normalized(), turn.norm());
+  }
+  model.tip_pose.translation() = draw(0.5);
+  return model;
+}
+
+template <class Arm>
+VectorXd read_angles(const Arm& arm, std::size_t joints) {
   VectorXd q(static_cast<Eigen::Index>(joints));
   arm.read_angles({q.data(), joints});
   return q;
 }
 
-inline VectorXd read_rates(const OdeArm& arm, std::size_t joints) {
+template <class Arm>
+VectorXd read_rates(const Arm& arm, std::size_t joints) {
   VectorXd qd(static_cast<Eigen::Index>(joints));
   arm.read_rates({qd.data(), joints});
   return qd;
 }
 
-inline OdeArm make_arm(const RobotModel& model, const VectorXd& q,
-                       const PhysicsSettings& physics = {}) {
-  return OdeArm(model, {q.data(), static_cast<std::size_t>(q.size())}, physics);
+template <class Arm>
+Arm make_arm(const RobotModel& model, const VectorXd& q, const PhysicsSettings& physics = {}) {
+  return Arm(model, {q.data(), static_cast<std::size_t>(q.size())}, physics);
 }
 
-inline void step(OdeArm& arm, const VectorXd& tau, double h_s) {
+template <class Arm>
+void step(Arm& arm, const VectorXd& tau, double h_s) {
   arm.step({tau.data(), static_cast<std::size_t>(tau.size())}, h_s);
 }
 
-// Differences of angles, the short way round.
-inline VectorXd wrap_angles(VectorXd q) {
-  for (double& angle : q) {
-    angle = std::remainder(angle, 2 * kPi);
+inline bool is_prismatic(const RobotModel& model, Eigen::Index joint) {
+  return model.joints[static_cast<std::size_t>(joint)].kind == JointKind::prismatic;
+}
+
+// From one posture to another: of revolute joints the short way round.
+inline VectorXd calc_motion(const RobotModel& model, const VectorXd& from, const VectorXd& to) {
+  VectorXd motion = to - from;
+  for (Eigen::Index i = 0; i < motion.size(); ++i) {
+    if (!is_prismatic(model, i)) {
+      motion[i] = std::remainder(motion[i], 2 * kPi);
+    }
   }
-  return q;
+  return motion;
+}
+
+// By how much links turn in a step, at most.
+inline double calc_turn_rad(const RobotModel& model, const VectorXd& rates, double h_s) {
+  double turn_rad = 0;
+  for (Eigen::Index i = 0; i < rates.size(); ++i) {
+    turn_rad += is_prismatic(model, i) ? 0 : h_s * std::abs(rates[i]);
+  }
+  return turn_rad;
+}
+
+inline bool has_slider(const RobotModel& model) {
+  return std::any_of(model.joints.begin(), model.joints.end(),
+                     [](const Joint& joint) { return joint.kind == JointKind::prismatic; });
+}
+
+inline VectorXd make_vector(std::initializer_list<double> values) {
+  VectorXd v(static_cast<Eigen::Index>(values.size()));
+  std::copy(values.begin(), values.end(), v.begin());
+  return v;
 }
 
 }  // namespace armwright::physics_test

@@ -75,7 +75,7 @@ TEST_F(Tracking, TheTrajectoryIsConsistent) {
     const auto target = targets_.angles(static_cast<int>(k));
     EXPECT_EQ(sample.target_rad, std::vector<double>(target.begin(), target.end()));
     const VectorXd q = Eigen::Map<const VectorXd>(sample.q_rad.data(), 4);
-    turn = std::max(0.9 * turn, wrap_angles(q - before).cwiseAbs().sum());
+    turn = std::max(0.9 * turn, calc_motion(setup_.robot(), before, q).cwiseAbs().sum());
     before = q;
     EXPECT_LT((oracle.calc(q, VectorXd::Zero(4)).tip_m - sample.tip_m).norm(),
               4 * turn * turn * 2.8 / (2 * 0.25) + 1e-12)

@@ -105,6 +105,15 @@ TEST(PidController, TurnsTheShortWayRound) {
   EXPECT_NEAR(pid.step(0.5, 0.2 + 6 * kPi, 0.01), 10 * 0.3, kTolerance);
 }
 
+// Metres know no turns. Every number is exact in binary.
+TEST(PidController, GoesTheWholeWayOfAPrismaticJoint) {
+  PidController pid(8, 4, 2, {-1000, 1000}, JointKind::prismatic);
+  EXPECT_EQ(pid.step(4, -4, 0.5), 80);     // e 8, S 4: 64 + 16 + 0
+  EXPECT_EQ(pid.step(-4, 4, 0.5), -128);   // e -8, S 0, rate -32: -64 + 0 - 64
+  EXPECT_EQ(pid.step(100, 0, 0.5), 1000);  // e 100, S 50, rate 216: 800 + 200 + 432
+  EXPECT_TRUE(pid.saturated());
+}
+
 // The target moves from 3.13 to -3.13 past pi, the arm follows: no kick of 2 pi / h in the
 // derivative.
 TEST(PidController, TheDerivativeDoesNotSeeTheWrap) {
@@ -146,6 +155,11 @@ TEST(PidController, RefusesWhatCannotWork) {
   EXPECT_EQ(
       refusal(1, 1, 1, {2, -3}),
       "controller 'pid': the effort limits are 2 to -3 N m; the lower must not exceed the upper");
+  EXPECT_EQ(
+      usage_message([] {
+        PidController(1, 1, 1, {2, -3}, JointKind::prismatic);
+      }),
+      "controller 'pid': the effort limits are 2 to -3 N; the lower must not exceed the upper");
   EXPECT_THAT(refusal(1, 1, 1, {kNan, 3}),
               testing::HasSubstr("the effort limits are nan to 3 N m"));
 }
@@ -168,11 +182,20 @@ TEST(ControllerTable, HasThePidWithItsGains) {
 
 TEST(ControllerTable, MakesTheControllerItNames) {
   const std::array<double, 3> gains = {100, 50, 2};
-  const auto controller = find_controller("pid").make(gains, {-30, 40});
+  const auto controller = find_controller("pid").make(gains, {-30, 40}, JointKind::revolute);
   for (const Step& step : kByHand) {
     EXPECT_NEAR(controller->step(step.setpoint_rad, step.measurement_rad, 0.1), step.effort_n_m,
                 kTolerance);
   }
+}
+
+TEST(ControllerTable, MakesItForTheKindOfJoint) {
+  const std::array<double, 3> gains = {10, 0, 0};
+  const ControllerRow& row = find_controller("pid");
+  const EffortLimits limits{-1000, 1000};
+  EXPECT_EQ(row.make(gains, limits, JointKind::prismatic)->step(5, -5, 0.01), 100);
+  EXPECT_NEAR(row.make(gains, limits, JointKind::revolute)->step(5, -5, 0.01), 10 * (10 - 4 * kPi),
+              kTolerance);
 }
 
 TEST(ControllerTable, NamesWhatItDoesNotKnow) {
@@ -180,7 +203,7 @@ TEST(ControllerTable, NamesWhatItDoesNotKnow) {
             "unknown controller 'pi'; did you mean 'pid'? Valid: pid");
   const std::array<double, 2> two = {100, 50};
   EXPECT_EQ(usage_message([&] {
-              find_controller("pid").make(two, {-1, 1});
+              find_controller("pid").make(two, {-1, 1}, JointKind::revolute);
             }),
             "controller 'pid': 2 gains are given; it takes exactly 3: p, i, d");
 }

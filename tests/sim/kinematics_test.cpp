@@ -102,6 +102,36 @@ TEST(ForwardKinematics, AgreesWithRodriguesFormulaForAnyAxisAndOrigin) {
 // Through the whole sphere of the task. Tolerance: some 1e-16 rad of rounding in each angle,
 // magnified at most ten times by acos inside the sphere (which keeps away from the stretched arm),
 // at 3 m of reach.
+// A turned slider on a turned hinge: R(q1) (d + R0 (q2 a + p)), by hand with a quarter turn each.
+TEST(ForwardKinematics, MovesAPrismaticJointAlongItsTurnedAxis) {
+  RobotModel robot;
+  robot.joints.resize(2);
+  robot.links.resize(2);
+  robot.joints[0].axis = Eigen::Vector3d::UnitZ();
+  robot.joints[1].kind = JointKind::prismatic;
+  robot.joints[1].axis = Eigen::Vector3d(0.6, 0, 0.8);
+  robot.joints[1].origin.translation() << 1, 2, 3;
+  robot.joints[1].origin.linear() << 0, -1, 0, 1, 0, 0, 0, 0, 1;  // a quarter turn about z
+  robot.tip_pose.translation() << 0.25, 0.5, -1;
+  const std::array<double, 2> q{kPi / 2, -5};
+  // q2 a = (-3, 0, -4), the tip (-2.75, 0.5, -5) from the origin; turned: (-0.5, -2.75, -5); in the
+  // first link's frame (0.5, -0.75, -2); turned once more: (0.75, 0.5, -2).
+  EXPECT_LT((calc_tip_position(robot, q) - Eigen::Vector3d(0.75, 0.5, -2)).norm(), 4e-15);
+  const auto poses = calc_link_poses(robot, q);
+  // The same without the tip: (1, 2, 3) + (0, -3, -4) = (1, -1, -1), turned (1, 1, -1).
+  EXPECT_LT((poses[1].translation() - Eigen::Vector3d(1, 1, -1)).norm(), 4e-15);
+  EXPECT_LT((poses[1].linear() - poses[0].linear() * robot.joints[1].origin.linear()).norm(), 1e-15)
+      << "a slider does not turn";
+}
+
+TEST(Displacement, IsTheShortWayRoundForRevoluteJointsOnly) {
+  EXPECT_EQ(calc_displacement(JointKind::revolute, 0.25, 1.5), 1.25);
+  EXPECT_NEAR(calc_displacement(JointKind::revolute, 3.1, -3.1), 2 * kPi - 6.2, 1e-15);
+  EXPECT_EQ(calc_displacement(JointKind::prismatic, 0.25, 1.5), 1.25);
+  EXPECT_EQ(calc_displacement(JointKind::prismatic, 3.5, -3.5), -7);
+  EXPECT_EQ(calc_displacement(JointKind::prismatic, -100, 200), 300);
+}
+
 TEST(ElbowUp, ForwardUndoesInverseEverywhereInTheSphere) {
   const RobotModel arm = load_arm();
   const ElbowUpKinematics kinematics(arm);
@@ -245,6 +275,8 @@ TEST(ElbowUp, RefusesOtherKindsOfRobots) {
             who +
                 "it has 3 moving joints; it must have 4: a vertical one and three parallel "
                 "horizontal ones");
+  EXPECT_EQ(refusal([](RobotModel& r) { r.joints[2].kind = JointKind::prismatic; }),
+            who + "joint 3 ('joint_3') is prismatic; all 4 must be revolute");
   EXPECT_EQ(refusal([](RobotModel& r) { r.joints[0].axis = Eigen::Vector3d::UnitX(); }),
             who +
                 "at angle zero the axis of joint 1 ('joint_1') is (1, 0, 0) in the world frame; it "

@@ -124,6 +124,36 @@ TEST(LoadUrdf, ReadsJointsFramesAndVisuals) {
   EXPECT_EQ(robot.links[0].visuals[0].rgba, Eigen::Vector4d(1, 0, 0, 1));
 }
 
+TEST(LoadUrdf, ReadsPrismaticJoints) {
+  const RobotModel robot =
+      load_urdf(std::filesystem::path(ARMWRIGHT_TEST_DATA) / "urdf/rail_and_pole.urdf");
+  ASSERT_EQ(robot.joint_count(), 2u);
+  const Joint& rail = robot.joints[0];
+  EXPECT_EQ(rail.kind, JointKind::prismatic);
+  EXPECT_EQ(rail.axis, Eigen::Vector3d::UnitY()) << "0 2 0, normalised";
+  EXPECT_EQ(rail.origin.translation(), Eigen::Vector3d(0.1, 0.2, 0.3));
+  EXPECT_EQ(rail.lower, -0.4);
+  EXPECT_EQ(rail.upper, 1.5);
+  EXPECT_EQ(rail.speed_limit, 2);
+  EXPECT_EQ(rail.effort_limit, 300);
+  EXPECT_EQ(robot.joints[1].kind, JointKind::revolute) << "a continuous joint turns";
+  for (const Joint& joint : load_two_joints().joints) {
+    EXPECT_EQ(joint.kind, JointKind::revolute) << joint.name;
+  }
+}
+
+// A rail that ends in 0 is as good as any: URDF's defaults of lower and upper are 0.
+TEST(LoadUrdf, TakesUrdfsDefaultsForTheEndsOfARail) {
+  const RobotModel robot = parse_urdf(
+      R"(<robot name="r"><link name="base"/><joint name="rail" type="prismatic">
+      <parent link="base"/><child link="cart"/><limit upper="0.7" velocity="1" effort="1"/></joint>
+      <link name="cart"><inertial><mass value="2"/><inertia ixx="0.2" iyy="0.3" izz="0.4" ixy="0"
+      ixz="0" iyz="0"/></inertial></link></robot>)",
+      "rail.urdf");
+  EXPECT_EQ(robot.joints[0].lower, 0);
+  EXPECT_EQ(robot.joints[0].upper, 0.7);
+}
+
 constexpr const char* kPendulum = R"(<robot name="pendulum">
   <link name="base"/>
   <joint name="pivot" type="revolute">

@@ -87,10 +87,19 @@ Trap limit(const std::string& name, const std::string& attributes, const std::st
   return {"limit_" + name, kLimit, "<limit " + attributes + "/>", 21,
           "joint 'first': <limit>" + message};
 }
+// The first joint slides instead of turning.
+Trap slide(const std::string& name, const std::string& attributes, const std::string& message) {
+  const std::string rest =
+      ">\n    <parent link=\"base\"/>\n    <child link=\"arm\"/>\n"
+      "    <origin xyz=\"0.1 0.2 0.3\" rpy=\"0.1 0.2 0.3\"/>\n    <axis xyz=\"0 0 2\"/>\n    ";
+  const std::string limit = attributes.empty() ? "" : "<limit " + attributes + "/>";
+  return {"slide_" + name, "type=\"revolute\"" + rest + kLimit, "type=\"prismatic\"" + rest + limit,
+          attributes.empty() ? 16 : 21, "joint 'first': " + message};
+}
 Trap type(const std::string& type_name) {
   return {"type_" + type_name, "type=\"continuous\"", "type=\"" + type_name + "\"", 34,
           "joint 'second': the type is '" + type_name +
-              "'; only revolute, continuous and fixed are supported so far"};
+              "'; only revolute, continuous, prismatic and fixed are supported"};
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -166,7 +175,22 @@ INSTANTIATE_TEST_SUITE_P(
                            "joint 'first': has no <limit>; a revolute joint needs one (lower and "
                            "upper in rad, velocity in "
                            "rad/s, effort in N m), or the type must be continuous"},
-                      type("prismatic"), type("planar"), type("floating"), type("revolut"),
+                      slide("without_limit", "",
+                            "has no <limit>; a prismatic joint needs one (lower and upper in m, "
+                            "velocity in m/s, effort in N)"),
+                      slide("swapped", "lower=\"0.2\" upper=\"-1\" velocity=\"3\" effort=\"40\"",
+                            "<limit>: lower is 0.2 and upper is -1 m; lower must be <= upper"),
+                      slide("velocity", "lower=\"-1\" upper=\"2\" velocity=\"-3\" effort=\"40\"",
+                            "<limit>: velocity is -3; it must be >= 0"),
+                      slide("effort", "lower=\"-1\" upper=\"2\" velocity=\"3\" effort=\"-40\"",
+                            "<limit>: effort is -40; it must be >= 0"),
+                      slide("without_velocity", "lower=\"-1\" upper=\"2\" effort=\"40\"",
+                            "<limit> has no velocity; it must have one"),
+                      slide("infinite", "lower=\"0\" upper=\"inf\" velocity=\"3\" effort=\"4\"",
+                            "<limit>: upper is 'inf'; it must be one finite number"),
+                      slide("misspelt", "lower=\"0\" uper=\"1\" velocity=\"3\" effort=\"4\"",
+                            "unknown attribute of <limit> 'uper'; did you mean 'upper'?"),
+                      type("planar"), type("floating"), type("revolut"),
                       Trap{"no_type", " type=\"continuous\"", "", 34,
                            "joint 'second': <joint> has no type; it must have one"},
                       Trap{"mimic", "<axis xyz=\"0 1 0\"/>", "<mimic joint=\"first\"/>", 38,
@@ -340,12 +364,32 @@ TEST(UrdfText, RefusesOtherRoots) {
                         "name, or not at all"));
 }
 
+// What is refused of a revolute joint is refused of a prismatic one.
+TEST(UrdfText, RefusesSlidersThatCannotBeSimulated) {
+  const std::string xml =
+      read_file(std::filesystem::path(ARMWRIGHT_TEST_DATA) / "urdf/rail_and_pole.urdf", 1 << 20);
+  const std::string axis = "<axis xyz=\"0 2 0\"/>";
+  EXPECT_EQ(message_of(xml), "no error");
+  EXPECT_EQ(message_of(replace(xml, axis, "<axis xyz=\"0 0 0\"/>")),
+            "robot.urdf:8: joint 'rail': <axis>: xyz is '0 0 0', which has no direction; give one "
+            "such as 0 0 1");
+  EXPECT_THAT(message_of(replace(xml, axis, axis + "<dynamics damping=\"3\"/>")),
+              StartsWith("robot.urdf:8: joint 'rail': <dynamics>: damping is 3, but joints are "
+                         "simulated without any"));
+  EXPECT_THAT(message_of(replace(xml, axis, axis + "<mimic joint=\"pivot\"/>")),
+              StartsWith("robot.urdf:8: joint 'rail': <mimic> joints are not supported"));
+  const std::size_t from = xml.find("    <inertial>"), to = xml.find("</inertial>") + 11;
+  EXPECT_EQ(message_of(std::string(xml).erase(from, to - from)),
+            "robot.urdf:4: joint 'rail' moves link 'cart', which has no mass; give it an "
+            "<inertial> element (or make the joint fixed)");
+}
+
 TEST(UrdfText, RefusesRobotsThatCannotMove) {
   EXPECT_EQ(message_of("<robot name=\"r\"/>"),
             "robot.urdf:1: the file: <robot> has no <link>; it needs a chain of links and joints");
   EXPECT_EQ(message_of("<robot name=\"r\">\n<link name=\"a\"/></robot>"),
-            "robot.urdf:2: the robot has no moving joint; it needs at least one revolute or "
-            "continuous joint");
+            "robot.urdf:2: the robot has no moving joint; it needs at least one revolute, "
+            "continuous or prismatic joint");
 }
 
 TEST(UrdfText, ShowsOnlyTheBeginningOfLongValues) {

@@ -1,0 +1,64 @@
+// The classes that simulate a single arm, and what each may be off by: the physics tests run over
+// every one of them. An arm has OdeArm's constructor and members.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <string>
+
+#include "sim/ode_arm.hpp"
+
+namespace armwright::physics_test {
+
+using ArmTypes = testing::Types<OdeArm>;
+
+template <class Arm>
+struct ArmTraits;
+
+// Maximal coordinates: in a step links move along tangents, the joints are pulled together again in
+// the steps after it, and velocities are those that solve the equations in the posture before it.
+template <>
+struct ArmTraits<OdeArm> {
+  static constexpr const char* kName = "OdeArm";
+
+  // After a second of motion, in units of the error of semi-implicit Euler in joint coordinates:
+  // the own error and the distance to that method. Measured: up to 3.
+  static constexpr double kErrorOverEuler = 4;
+  static constexpr double kDistanceToEuler = 4;
+
+  // A large swing loses amplitude to the tangents, and so period, in proportion to the step.
+  static constexpr int kPeriodOrder = 1;
+
+  // The posture to which the velocities after a step belong.
+  static const Eigen::VectorXd& select_posture(const Eigen::VectorXd& before,
+                                               const Eigen::VectorXd& after [[maybe_unused]]) {
+    return before;
+  }
+  // Of the rates after a step in which the links turned by `turn`, relative to all of them. They
+  // are measured along axes that have turned since: by the square of that. Between the two bodies
+  // of a slider the lever has changed as well, by the turn itself times their distance (up to 2 m).
+  static double calc_rate_error(double turn_rad, bool slides) {
+    return slides ? 2 * turn_rad : turn_rad * turn_rad / 2;
+  }
+  // Of a centre of mass after a first step from rest, beside the straight line: rounding only.
+  static double calc_path_error_m(double turn_rad [[maybe_unused]]) { return 4e-15; }
+  // Of the tip from where the joint positions put it: each joint is off its circle by turn^2 / 2
+  // times the reach more every step, of which the share ERP is taken back.
+  static double calc_gap_m(double turn_rad, double reach_m, std::size_t joints, double erp) {
+    return static_cast<double>(joints) * turn_rad * turn_rad * reach_m / (2 * erp);
+  }
+  // What is said of an arm that blew up: joints are named unless the library itself gave up.
+  static constexpr const char* kBlownUp =
+      "joint [0-9]+ \\([a-z]+\\): its link is .* m from the base and turns at .* rad/s|"
+      "ODE stopped \\(message .*";
+};
+
+struct ArmNames {
+  template <class Arm>
+  static std::string GetName(int) {
+    return ArmTraits<Arm>::kName;
+  }
+};
+
+}  // namespace armwright::physics_test
