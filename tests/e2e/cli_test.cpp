@@ -165,7 +165,7 @@ TEST_F(Cli, GivesTheLimitsOfARobotsJointsTheirUnits) {
   EXPECT_EQ(joints[1].at("kind"), "revolute");
   EXPECT_TRUE(joints[1].at("lower_rad").is_null());
   const std::string table = run({"list", "robots", file}).out;
-  for (const char* limit : {"-0.4 m", "1.5 m", "2 m/s", "300 N", "none"}) {
+  for (const char* limit : {"-0.4000 m", "1.500 m", "2.000 m/s", "300.0 N", "none"}) {
     EXPECT_THAT(table, HasSubstr(limit));
   }
   const std::string arm = run({"list", "robots", "irb4600_40_255"}).out;

@@ -30,6 +30,9 @@ struct ArmTraits<OdeArm> {
   // A large swing loses amplitude to the tangents, and so period, in proportion to the step.
   static constexpr int kPeriodOrder = 1;
 
+  // Of the momentum along a joint that nothing else acts on, in units of momentum x turn in a step.
+  static constexpr double kMomentumError = 1;
+
   // The posture to which the velocities after a step belong.
   static const Eigen::VectorXd& select_posture(const Eigen::VectorXd& before,
                                                const Eigen::VectorXd& after [[maybe_unused]]) {
@@ -41,8 +44,11 @@ struct ArmTraits<OdeArm> {
   static double calc_rate_error(double turn_rad, bool slides) {
     return slides ? 2 * turn_rad : turn_rad * turn_rad / 2;
   }
-  // Of a centre of mass after a first step from rest, beside the straight line: rounding only.
-  static double calc_path_error_m(double turn_rad [[maybe_unused]]) { return 4e-15; }
+  // Of a centre of mass beside the straight line after a first step from rest, in which the joints
+  // moved by `moved` in all (rad and m): rounding only.
+  static double calc_path_error_m(double turn_rad [[maybe_unused]], double moved [[maybe_unused]]) {
+    return 4e-15;
+  }
   // Of the tip from where the joint positions put it: each joint is off its circle by turn^2 / 2
   // times the reach more every step, of which the share ERP is taken back.
   static double calc_gap_m(double turn_rad, double reach_m, std::size_t joints, double erp) {

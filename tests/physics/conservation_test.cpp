@@ -171,7 +171,8 @@ TYPED_TEST(Momentum, AlongTheFirstJointIsTheImpulse) {
                      << a.name << ", gravity " << gravity << (pushed ? ", pushed" : ""));
         const double coarse = measure_momentum_error<TypeParam>(a, gravity, pushed, 800);
         const double fine = measure_momentum_error<TypeParam>(a, gravity, pushed, 1600);
-        EXPECT_LT(fine, (has_slider(a.model) ? 30 : 3) * 10.0 / 1600);
+        const double size = has_slider(a.model) ? 30 : 3;
+        EXPECT_LT(fine, ArmTraits<TypeParam>::kMomentumError * size * 10.0 / 1600);
         EXPECT_NEAR(std::log2(coarse / fine), 1, kOrderTolerance);
       }
     }
