@@ -133,7 +133,7 @@ struct TrackingResult {
       point_error_m;  // points 1..n, as far as they were reached; after a cut-off or divergence in
                       // training the rest is filled with the cut-off error
   double mean_error_m = 0;  // the case's error; meaningful for ok and, under a cut-off policy, for
-                            // cut_off and diverged
+                            // cut_off and diverged; for abandoned a lower bound of it
   std::vector<double> peak_effort_n_m, rms_effort_n_m, saturated_share;  // one a joint
   double energy_j =
       0;  // positive mechanical work of all joints, sum of max(0, effort x displacement)

@@ -3,13 +3,12 @@
 // and throws DivergenceError when it cannot go on.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "sim/ode_arm.hpp"
 #include "sim/tracking.hpp"
+#include "sim/tracking_result.hpp"
 
 namespace armwright {
 
@@ -25,8 +24,6 @@ class TrackingLoop {
   void step(Arm& arm, std::span<const double> targets);
   template <class Arm>
   void record(const Arm& arm, const Segment& segment, int step);
-  void abandon(SimulationStatus status, std::string reason);
-  void finish();
 
   const TrackingSetup& setup_;
   const TrackingJob& job_;
@@ -34,7 +31,6 @@ class TrackingLoop {
   double substep_s_;
   std::vector<std::unique_ptr<Controller>> controllers_;
   std::vector<double> q_, q_before_, effort_;
-  std::vector<double> saturated_steps_;
   TrackingResult result_;
 };
 
@@ -53,7 +49,7 @@ void TrackingLoop::step(Arm& arm, std::span<const double> targets) {
     const double magnitude = std::abs(effort_[i]);
     result_.peak_effort_n_m[i] = std::max(result_.peak_effort_n_m[i], magnitude);
     result_.rms_effort_n_m[i] += magnitude * magnitude;
-    saturated_steps_[i] += controllers_[i]->saturated() ? 1 : 0;
+    result_.saturated_share[i] += controllers_[i]->saturated() ? 1 : 0;
     result_.energy_j += std::max(
         0.0, effort_[i] * calc_displacement(setup_.robot().joints[i].kind, q_before_[i], q_[i]));
   }
@@ -91,23 +87,20 @@ TrackingResult TrackingLoop::run(Arm& arm) {
           record(arm, segment, k);
         }
         if (worst_squared > job_.cutoff_m * job_.cutoff_m) {
-          abandon(SimulationStatus::cut_off,
-                  fmt::format("cut off at point {} ({:.2f} s): the error exceeds {} m",
-                              result_.point_error_m.size() + 1, result_.steps * period_s_,
-                              job_.cutoff_m));
-          finish();
+          apply_cutoff(setup_.task(), job_, result_);
+          complete_result(setup_.task(), job_, result_);
           return std::move(result_);
         }
       }
       result_.point_error_m.push_back(std::sqrt(worst_squared));
+      if (apply_abandonment(setup_.task(), job_, result_)) {
+        break;
+      }
     }
   } catch (const DivergenceError& error) {
-    abandon(SimulationStatus::diverged,
-            fmt::format("diverged at {:.2f} s, on the way to point {}: {}",
-                        (result_.steps + 1) * period_s_, result_.point_error_m.size() + 1,
-                        error.what()));
+    apply_divergence(setup_.task(), job_, error.what(), result_);
   }
-  finish();
+  complete_result(setup_.task(), job_, result_);
   return std::move(result_);
 }
 
