@@ -133,7 +133,8 @@ void BM_GenerationOnTwoCoresAgainstOne(benchmark::State& state) {
   const auto evaluate_generation = [&](ThreadPool& pool) {
     const CaseBlock block{CaseRole::training, "train/1", {number++}};
     const std::vector<std::span<const double>> candidates(35, x);
-    CaseRunner(*problem.problem, pool, stop).run(candidates, block, [](std::size_t, Evaluation) {});
+    CaseRunner(*problem.problem, pool, stop)
+        .run(candidates, block, false, [](std::size_t, Evaluation) {});
   };
   std::vector<double> speedup, serial, parallel;
   const std::uint64_t computed_before = problem.tracking->targets().computed();

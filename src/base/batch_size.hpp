@@ -10,4 +10,8 @@ struct BatchSize {
   std::size_t largest = 1;      // more at once gains nothing; a multiple of the granularity
 };
 
+// Into how large chunks to cut jobs that threads share out: the largest useful ones, but small
+// enough that every thread gets several, so that none waits long for the last. At least 1.
+std::size_t calc_chunk(BatchSize size, std::size_t jobs, std::size_t threads);
+
 }  // namespace armwright

@@ -64,7 +64,12 @@ std::optional<DesignEvaluation> evaluate_with_progress(const TrackingProblem& pr
                                                        const ChosenCases& cases, unsigned jobs,
                                                        StopSignal& stop, RunObserver& observer,
                                                        BarShare share) {
-  constexpr std::uint64_t kCasesPerJob = 10;  // between two looks at the progress
+  // Between two looks at the progress: enough to occupy all threads.
+  constexpr std::uint64_t kCasesPerJob = 10;
+  constexpr std::uint64_t kBatchesPerJob = 4;
+  const std::uint64_t at_once =
+      jobs * std::max<std::uint64_t>(kCasesPerJob,
+                                     kBatchesPerJob * problem.batch_size(CaseRole::test).largest);
   Progress progress;
   progress.phase = Progress::Phase::test;
   progress.done = share.done_before;
@@ -73,7 +78,7 @@ std::optional<DesignEvaluation> evaluate_with_progress(const TrackingProblem& pr
   DesignEvaluation evaluation;
   while (evaluation.results.size() < cases.count) {
     const std::uint64_t first = evaluation.results.size();
-    const std::uint64_t count = std::min(cases.count - first, kCasesPerJob * jobs);
+    const std::uint64_t count = std::min(cases.count - first, at_once);
     auto results = evaluate_design(problem, design, cases.set, first, count, jobs, stop);
     if (!results) {
       return std::nullopt;

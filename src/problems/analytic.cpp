@@ -74,7 +74,7 @@ class AnalyticProblem : public Problem {
       if (definition_.calc_constraints != nullptr) {
         outcomes[job].metrics = definition_.calc_constraints(z);
       }
-      if (definition_.calc_residuals != nullptr) {
+      if (jobs[job].residuals && definition_.calc_residuals != nullptr) {
         outcomes[job].residuals = definition_.calc_residuals(z);
       }
     }

@@ -17,6 +17,8 @@ const char* to_string(EvaluationStatus status) {
       return "timed out";
     case EvaluationStatus::failed:
       return "failed";
+    case EvaluationStatus::abandoned:
+      return "abandoned";
   }
   assert(false && "an evaluation status without a name");
   return "failed";
@@ -42,7 +44,7 @@ Quantity get_scalar_quantity(std::span<const Quantity> objectives) {
 }
 
 bool is_feasible(const Evaluation& evaluation) {
-  return !evaluation.objectives.empty() &&
+  return !evaluation.objectives.empty() && evaluation.status != EvaluationStatus::abandoned &&
          std::all_of(evaluation.constraint_values.begin(), evaluation.constraint_values.end(),
                      [](double g) { return g <= 0; });
 }
@@ -59,7 +61,7 @@ Evaluation Problem::evaluate(std::span<const double> x, const CaseBlock& block) 
   std::vector<CaseJob> jobs;
   jobs.reserve(block.numbers.size());
   for (const std::uint64_t number : block.numbers) {
-    jobs.push_back({x, &block, number});
+    jobs.push_back({.x = x, .block = &block, .number = number, .residuals = true});
   }
   return aggregate(x, simulate(jobs));
 }

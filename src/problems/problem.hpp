@@ -8,9 +8,12 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
+
+#include "base/batch_size.hpp"
 
 namespace armwright {
 
@@ -66,7 +69,8 @@ enum class EvaluationStatus : std::uint8_t {
   diverged,     // at least one simulation diverged
   unreachable,  // at least one case has a target that the arm cannot reach
   timed_out,
-  failed,  // anything else; the reason says what
+  failed,     // anything else; the reason says what
+  abandoned,  // at least one case was given up, as its job allowed: the numbers are bounds
 };
 const char* to_string(EvaluationStatus status);
 
@@ -74,27 +78,35 @@ struct CaseJob {
   std::span<const double> x;
   const CaseBlock* block = nullptr;
   std::uint64_t number = 0;
+  bool residuals = false;  // the outcome shall carry them, where the problem has them
+  // A case may be given up as soon as its error is certain to exceed this; outcomes of cases that
+  // are not given up do not depend on it. For callers who have no use for the exact number then.
+  double abandon_above = std::numeric_limits<double>::infinity();
 };
 
 struct CaseOutcome {
   EvaluationStatus status = EvaluationStatus::ok;
   std::string reason;  // for every status but ok
-  double error = 0;    // the case's own error, finite whenever `has_error`
+  double error = 0;    // the case's own error, finite whenever `has_error`; of an abandoned case
+                       // what it is at least, above its job's bound
   bool has_error =
       true;  // false: the simulation failed and, outside training, no number stands for it
   std::vector<double> metrics;    // the problem's own; `aggregate` knows what they mean
-  std::vector<double> residuals;  // optional: what the error is made of
+  std::vector<double> residuals;  // what the error is made of, if asked for; never of a case that
+                                  // was abandoned
 };
 
+// Of an evaluation with status `abandoned` the objectives and the errors of abandoned cases are
+// lower bounds, the metrics those up to where the cases were abandoned, and there are no residuals.
 struct Evaluation {
   EvaluationStatus status = EvaluationStatus::ok;
-  std::string reason;                     // of the first case that is not ok
+  std::string reason;                     // of the first case with that status
   std::vector<double> objectives;         // finite; empty if no case yielded a number
   std::vector<double> constraint_values;  // g, one a constraint; finite
   std::vector<double> case_errors;  // one a case, in the block's order; a case without error: NaN,
                                     // never shown as a number
   std::vector<double> metrics;      // as described; finite, or empty with the objectives
-  std::vector<double> residuals;    // optional
+  std::vector<double> residuals;    // if the outcomes carry them
   int failed_cases = 0;             // cases that yielded no error
 };
 
@@ -104,7 +116,7 @@ double calc_scalar(const ProblemDescription& problem, std::span<const double> ob
 // What that number is.
 Quantity get_scalar_quantity(std::span<const Quantity> objectives);
 
-// It has objectives, and every constraint is met.
+// It has objectives, which are no mere bounds, and every constraint is met.
 bool is_feasible(const Evaluation& evaluation);
 // By how much constraints are violated: the sum of max(0, g).
 double calc_violation(std::span<const double> constraint_values);
@@ -114,8 +126,11 @@ class Problem {
   virtual ~Problem() = default;
   virtual const ProblemDescription& description() const = 0;
 
+  // How many jobs one call of simulate() should get where cases of that role are many.
+  virtual BatchSize batch_size(CaseRole /*role*/) const { return {}; }
+
   // One outcome a job, in the jobs' order. Never throws for what a decision vector does; x lies
-  // within the bounds.
+  // within the bounds. Quickest where neighbours share their decision vector or their case.
   virtual std::vector<CaseOutcome> simulate(std::span<const CaseJob> jobs) const = 0;
   virtual Evaluation aggregate(std::span<const double> x,
                                std::span<const CaseOutcome> outcomes) const = 0;
@@ -124,7 +139,7 @@ class Problem {
   // any design that works.
   virtual std::vector<double> penalty_objectives() const = 0;
 
-  // Both steps for one candidate on all cases of a block.
+  // Both steps for one candidate on all cases of a block, residuals included.
   Evaluation evaluate(std::span<const double> x, const CaseBlock& block) const;
 };
 

@@ -258,7 +258,9 @@ void add_input(LoadedProblem& loaded, const std::filesystem::path& file) {
       calc_sha256_hex(read_file(file, kInputLimit_bytes));
 }
 
-void load_tracking(const ConfigTable& table, LoadedProblem& loaded) {
+// Returns the SIMD level that the engines use, if any.
+std::optional<SimdLevel> load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
+                                       LoadedProblem& loaded) {
   TrackingConfig config;
   config.name = loaded.name;
   config.summary = loaded.title;
@@ -268,7 +270,8 @@ void load_tracking(const ConfigTable& table, LoadedProblem& loaded) {
   add_input(loaded, urdf);
 
   const ConfigTable physics = table.get_table_or_empty("physics");
-  config.engine = physics.get_choice("engine", engine_names(), "ode");
+  ChosenEngines chosen = choose_engines(physics, engines);
+  config.engines = std::move(chosen.engines);
   const ConfigTable task = table.get_table_or_empty("task");
   config.task = read_task(task, physics);
   config.workspace = read_workspace(table.get_table_or_empty("workspace"));
@@ -296,6 +299,7 @@ void load_tracking(const ConfigTable& table, LoadedProblem& loaded) {
   if (table.has("sweep")) {
     loaded.sweep = read_sweep(table.get_table("sweep"), *loaded.tracking);
   }
+  return chosen.simd;
 }
 
 void load_analytic(const ConfigTable& table, LoadedProblem& loaded) {
@@ -309,7 +313,8 @@ void load_analytic(const ConfigTable& table, LoadedProblem& loaded) {
 
 }  // namespace
 
-LoadedProblem load_problem(std::string_view name_or_path, std::span<const std::string> overrides) {
+LoadedProblem load_problem(std::string_view name_or_path, std::span<const std::string> overrides,
+                           std::span<const EngineRow> engines) {
   const auto path = resolve_config("problems", name_or_path);
   const ConfigTable table = ConfigTable::load(path, overrides);
   LoadedProblem loaded;
@@ -335,9 +340,20 @@ LoadedProblem load_problem(std::string_view name_or_path, std::span<const std::s
   loaded.optimizer = run.get_string("optimizer", "ga");
   loaded.budget = run.get_integer_or("budget", 10000, 0, 1'000'000'000'000);
   loaded.published = read_published(table.get_table_or_empty("published"));
-  analytic ? load_analytic(table, loaded) : load_tracking(table, loaded);
+  std::optional<SimdLevel> simd;
+  if (analytic) {
+    load_analytic(table, loaded);
+  } else {
+    simd = load_tracking(table, engines, loaded);
+  }
   table.refuse_unknown();
-  loaded.resolved_json = table.to_json();
+  if (simd) {  // what "auto" has come to decides the last bits of every result
+    std::vector<std::string> settled(overrides.begin(), overrides.end());
+    settled.push_back(fmt::format("physics.simd={}", to_string(*simd)));
+    loaded.resolved_json = ConfigTable::load(path, settled).to_json();
+  } else {
+    loaded.resolved_json = table.to_json();
+  }
   return loaded;
 }
 

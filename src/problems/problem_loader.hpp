@@ -61,14 +61,18 @@ struct LoadedProblem {
   std::int64_t budget = 0;  // in cases, likewise
   PublishedWinner published;
   std::optional<SweepPlan> sweep;
-  std::string resolved_json;  // the whole configuration after inheritance and overrides
+  // The whole configuration after inheritance and overrides; of engines with SIMD with the level
+  // that they use.
+  std::string resolved_json;
   std::map<std::string, std::string>
       input_hashes;  // file name -> SHA-256 of every file that the configuration refers to
 };
 
-// `overrides` are KEY=VALUE texts on top of the file ("task.speed_m_per_s=2").
+// `overrides` are KEY=VALUE texts on top of the file ("task.speed_m_per_s=2"); `engines` are those
+// to choose from.
 LoadedProblem load_problem(std::string_view name_or_path,
-                           std::span<const std::string> overrides = {});
+                           std::span<const std::string> overrides = {},
+                           std::span<const EngineRow> engines = engine_table());
 
 struct ProblemTitle {
   std::string name;

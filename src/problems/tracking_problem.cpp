@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <optional>
+#include <unordered_map>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -39,9 +42,10 @@ std::vector<double> calc_objectives(const TrackingObjective& objective, double e
 }
 
 // The residuals of an outcome are the errors (m) of the points that count; aggregate() scales them.
-CaseOutcome make_outcome(const TrackingResult& result, bool training, bool count_first_point) {
+CaseOutcome make_outcome(TrackingResult result, CaseRole role, bool residuals,
+                         bool count_first_point) {
   CaseOutcome outcome;
-  outcome.reason = result.reason;
+  outcome.reason = std::move(result.reason);
   switch (result.status) {
     case SimulationStatus::ok:
     case SimulationStatus::cut_off:  // an ordinary, bad result of training: the error counts as the
@@ -49,8 +53,12 @@ CaseOutcome make_outcome(const TrackingResult& result, bool training, bool count
       break;
     case SimulationStatus::diverged:
       outcome.status = EvaluationStatus::diverged;
-      outcome.has_error = training;  // in training it counts like a cut-off; nowhere else does a
-                                     // number stand for it
+      // In training it counts like a cut-off; nowhere else does a number stand for it.
+      outcome.has_error = role == CaseRole::training;
+      break;
+    case SimulationStatus::abandoned:
+      outcome.status = EvaluationStatus::abandoned;
+      residuals = false;  // those of some points only would be a vector of another length
       break;
     case SimulationStatus::unreachable:
       outcome.status = EvaluationStatus::unreachable;
@@ -58,7 +66,7 @@ CaseOutcome make_outcome(const TrackingResult& result, bool training, bool count
       return outcome;
   }
   outcome.error = outcome.has_error ? result.mean_error_m : 0;
-  if (outcome.has_error) {
+  if (residuals && outcome.has_error) {
     outcome.residuals.assign(result.point_error_m.begin() + (count_first_point ? 0 : 1),
                              result.point_error_m.end());
   }
@@ -67,7 +75,8 @@ CaseOutcome make_outcome(const TrackingResult& result, bool training, bool count
   for (const double share : result.saturated_share) {
     saturation += share / joints;
   }
-  outcome.metrics = {result.energy_j, saturation};
+  outcome.metrics.reserve(kFirstJointMetric + 2 * result.peak_effort_n_m.size());
+  outcome.metrics.assign({result.energy_j, saturation});
   for (std::size_t i = 0; i < result.peak_effort_n_m.size(); ++i) {
     outcome.metrics.push_back(result.peak_effort_n_m[i]);
     outcome.metrics.push_back(result.rms_effort_n_m[i]);
@@ -80,7 +89,6 @@ CaseOutcome make_outcome(const TrackingResult& result, bool training, bool count
 TrackingProblem::TrackingProblem(TrackingConfig config)
     : config_(std::move(config)),
       setup_(config_.robot, config_.task),
-      engine_(make_engine(config_.engine)),
       targets_(kTargetCache_bytes) {
   check_design(config_.start);
   description_ = make_tracking_description(config_);
@@ -144,49 +152,85 @@ std::vector<double> TrackingProblem::make_vector(const ArmDesign& design) const 
   return x;
 }
 
+BatchSize TrackingProblem::batch_size(CaseRole role) const {
+  return config_.engines.get(role).batch_size();
+}
+
 std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs) const {
   std::vector<ArmDesign> designs;
   designs.reserve(jobs.size());  // no reallocation: the jobs below point into it
-  std::vector<std::shared_ptr<const TargetTable>> tables;
   std::vector<TrackingJob> tracking;
-  std::map<std::string, TestSet> sets;
+  tracking.reserve(jobs.size());
+  // An engine with SIMD needs some 60 us for a job: sets and tables are looked up once for all
+  // neighbours that share a block. Nothing is taken from the map before the simulation ends.
+  std::optional<TestSet> set;
+  std::vector<std::unordered_map<std::uint64_t, std::shared_ptr<const TargetTable>>> tables;
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     const CaseJob& job = jobs[i];
     if (i == 0 || job.x.data() != jobs[i - 1].x.data()) {
       designs.push_back(make_design(job.x));
     }
-    auto set = sets.find(job.block->set);
-    if (set == sets.end()) {
-      set = sets.emplace(job.block->set, get_set(job.block->set)).first;
+    if (i == 0 || job.block != jobs[i - 1].block) {
+      set = get_set(job.block->set);
+      tables.emplace_back();
     }
-    tables.push_back(get_targets(set->second, job.number));
-    TrackingJob one;
+    std::shared_ptr<const TargetTable>& table = tables.back()[job.number];
+    if (table == nullptr) {
+      table = get_targets(*set, job.number);
+    }
+    TrackingJob& one = tracking.emplace_back();
     one.design = &designs.back();
-    one.targets = tables.back().get();
+    one.targets = table.get();
+    one.abandon_above_m = job.abandon_above;
     if (job.block->role == CaseRole::training) {
       one.cutoff_m = config_.cutoff_error_m;
     }
-    tracking.push_back(one);
   }
-  const auto results = engine_->simulate(setup_, tracking);
+  auto results = simulate(jobs, tracking);
   std::vector<CaseOutcome> outcomes;
   outcomes.reserve(jobs.size());
   for (std::size_t i = 0; i < jobs.size(); ++i) {
-    outcomes.push_back(make_outcome(results[i], jobs[i].block->role == CaseRole::training,
+    outcomes.push_back(make_outcome(std::move(results[i]), jobs[i].block->role, jobs[i].residuals,
                                     config_.task.count_first_point));
   }
   return outcomes;
 }
 
+std::vector<TrackingResult> TrackingProblem::simulate(std::span<const CaseJob> jobs,
+                                                      std::span<const TrackingJob> tracking) const {
+  std::vector<TrackingResult> results;
+  results.reserve(jobs.size());
+  for (std::size_t first = 0; first < jobs.size();) {
+    const PhysicsEngine& engine = config_.engines.get(jobs[first].block->role);
+    std::size_t end = first + 1;
+    while (end < jobs.size() && &config_.engines.get(jobs[end].block->role) == &engine) {
+      ++end;
+    }
+    auto some = engine.simulate(setup_, tracking.subspan(first, end - first));
+    std::ranges::move(some, std::back_inserter(results));
+    first = end;
+  }
+  return results;
+}
+
 TrackingResult TrackingProblem::track(const ArmDesign& design, const TestSet& set,
                                       std::uint64_t number, RecordingOptions recording) const {
+  return std::move(track(design, set, number, 1, recording).front());
+}
+
+std::vector<TrackingResult> TrackingProblem::track(const ArmDesign& design, const TestSet& set,
+                                                   std::uint64_t first, std::size_t count,
+                                                   RecordingOptions recording) const {
   check_design(design);
-  const auto table = get_targets(set, number);
-  TrackingJob job;
-  job.design = &design;
-  job.targets = table.get();
-  job.recording = recording;
-  return std::move(engine_->simulate(setup_, {&job, 1}).front());
+  std::vector<std::shared_ptr<const TargetTable>> tables;
+  std::vector<TrackingJob> jobs(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    tables.push_back(get_targets(set, first + i));
+    jobs[i].design = &design;
+    jobs[i].targets = tables.back().get();
+    jobs[i].recording = recording;
+  }
+  return config_.engines.judging->simulate(setup_, jobs);
 }
 
 Evaluation TrackingProblem::aggregate(std::span<const double> x,
@@ -198,7 +242,11 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
   double failures = 0;
   double numbers = 0;
   for (const CaseOutcome& outcome : outcomes) {
-    if (outcome.status != EvaluationStatus::ok && evaluation.status == EvaluationStatus::ok) {
+    // That the numbers are bounds matters more than why others are missing.
+    const bool is_first_abandoned = outcome.status == EvaluationStatus::abandoned &&
+                                    evaluation.status != EvaluationStatus::abandoned;
+    if (is_first_abandoned ||
+        (outcome.status != EvaluationStatus::ok && evaluation.status == EvaluationStatus::ok)) {
       evaluation.status = outcome.status;
       evaluation.reason = outcome.reason;
     }
@@ -226,7 +274,13 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
   const ArmDesign design = make_design(x);
   const double torque = calc_total_torque_n_m(design);
   evaluation.objectives = calc_objectives(config_.objective, error, torque);
-  evaluation.residuals = calc_residuals(design, outcomes, numbers);
+  // Asked for and not abandoned: a case with an error has a residual for each point that counts.
+  const bool has_residuals = std::ranges::all_of(outcomes, [](const CaseOutcome& outcome) {
+    return !outcome.has_error || !outcome.residuals.empty();
+  });
+  if (has_residuals) {
+    evaluation.residuals = calc_residuals(design, outcomes, numbers);
+  }
   evaluation.metrics = {error, torque, failures, sums[kEnergy] / numbers,
                         sums[kSaturation] / numbers};
   for (std::size_t i = kFirstJointMetric; i < sums.size(); i += 2) {

@@ -21,9 +21,9 @@
 #include <string>
 #include <vector>
 
+#include "problems/engine_choice.hpp"
 #include "problems/problem.hpp"
 #include "problems/target_cache.hpp"
-#include "sim/physics_engine.hpp"
 #include "sim/tracking.hpp"
 
 namespace armwright {
@@ -54,7 +54,7 @@ struct TrackingConfig {
   RobotModel robot;
   TrackingTask task;
   WorkspaceSphere workspace;
-  std::string engine = "ode";
+  EnginePair engines;           // both must be there (choose_engines)
   double cutoff_error_m = 1.0;  // training only
   TrackingObjective objective;
   ArmDesign start;
@@ -69,6 +69,7 @@ class TrackingProblem final : public Problem {
   explicit TrackingProblem(TrackingConfig config);
 
   const ProblemDescription& description() const override { return description_; }
+  BatchSize batch_size(CaseRole role) const override;
   std::vector<CaseOutcome> simulate(std::span<const CaseJob> jobs) const override;
   Evaluation aggregate(std::span<const double> x,
                        std::span<const CaseOutcome> outcomes) const override;
@@ -84,10 +85,15 @@ class TrackingProblem final : public Problem {
   ArmDesign make_design(std::span<const double> x) const;
   std::vector<double> make_vector(
       const ArmDesign& design) const;  // the variables of a design; bounds are not checked
-  // A design on one case, without cut-off, with whatever recording is asked for. Error{usage} if
-  // the design is for another robot, Error{bad_data} if the case has no point that counts.
+  // A design on one case, as it is judged: without cut-off, with whatever recording is asked for.
+  // Error{usage} if the design is for another robot, Error{bad_data} if the case has no point that
+  // counts.
   TrackingResult track(const ArmDesign& design, const TestSet& set, std::uint64_t number,
                        RecordingOptions recording = {}) const;
+  // The same on the cases first, ..., first + count - 1, in one batch.
+  std::vector<TrackingResult> track(const ArmDesign& design, const TestSet& set,
+                                    std::uint64_t first, std::size_t count,
+                                    RecordingOptions recording) const;
   void check_design(const ArmDesign& design) const;
 
   const TrackingConfig& config() const { return config_; }
@@ -95,6 +101,9 @@ class TrackingProblem final : public Problem {
   const TargetCache& targets() const { return targets_; }
 
  private:
+  // One result a job of `tracking`, each from the engine of its case's role.
+  std::vector<TrackingResult> simulate(std::span<const CaseJob> jobs,
+                                       std::span<const TrackingJob> tracking) const;
   // `cases` is how many of the outcomes have an error.
   std::vector<double> calc_residuals(const ArmDesign& design, std::span<const CaseOutcome> outcomes,
                                      double cases) const;
@@ -103,7 +112,6 @@ class TrackingProblem final : public Problem {
   TrackingConfig config_;
   TrackingSetup setup_;
   ProblemDescription description_;
-  std::unique_ptr<PhysicsEngine> engine_;
   std::map<std::string, TestSet> sets_;
   mutable TargetCache targets_;
 };

@@ -47,6 +47,8 @@ const char* to_string(SimulationStatus status) {
       return "diverged";
     case SimulationStatus::unreachable:
       return "unreachable";
+    case SimulationStatus::abandoned:
+      return "abandoned";
   }
   return "?";
 }

@@ -105,7 +105,7 @@ class TrackingSetup {
   ElbowUpKinematics kinematics_;
 };
 
-enum class SimulationStatus : std::uint8_t { ok, cut_off, diverged, unreachable };
+enum class SimulationStatus : std::uint8_t { ok, cut_off, diverged, unreachable, abandoned };
 const char* to_string(SimulationStatus status);
 
 struct RecordingOptions {
@@ -127,7 +127,7 @@ struct TrackingResult {
       point_error_m;  // points 1..n, as far as they were reached; after a cut-off or divergence in
                       // training the rest is filled with the cut-off error
   double mean_error_m = 0;  // the case's error; meaningful for ok and, under a cut-off policy, for
-                            // cut_off and diverged
+                            // cut_off and diverged; for abandoned a lower bound of it
   std::vector<double> peak_effort_n_m, rms_effort_n_m, saturated_share;  // one a joint
   double energy_j = 0;  // positive mechanical work of all joints, sum of max(0, effort x rotation)
   std::vector<double> error_series_m;        // on request
@@ -142,6 +142,10 @@ struct TrackingJob {
   // this error.
   double cutoff_m = std::numeric_limits<double>::infinity();
   RecordingOptions recording;
+  // The simulation is abandoned at the end of the first point after which the case's error is
+  // certain to exceed this: the errors of the points that counted so far, divided by the number of
+  // all that count, do already. After the last point there is nothing left to abandon.
+  double abandon_above_m = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace armwright

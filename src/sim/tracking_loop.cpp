@@ -24,12 +24,30 @@ TrackingLoop::TrackingLoop(const TrackingSetup& setup, const TrackingJob& job)
   }
 }
 
-void TrackingLoop::abandon(SimulationStatus status, std::string reason) {
+void TrackingLoop::cut_short(SimulationStatus status, std::string reason) {
   result_.status = status;
   result_.reason = std::move(reason);
   if (std::isfinite(job_.cutoff_m)) {
     result_.point_error_m.resize(job_.targets->segments.size(), job_.cutoff_m);
   }
+}
+
+bool TrackingLoop::should_abandon() {
+  const std::size_t points = job_.targets->segments.size();
+  const std::size_t done = result_.point_error_m.size();
+  const std::size_t first = setup_.task().count_first_point ? 0 : 1;
+  if (done > first) {
+    error_sum_m_ += result_.point_error_m.back();
+  }
+  const double least_m = error_sum_m_ / static_cast<double>(points - first);
+  if (done == points || !(least_m > job_.abandon_above_m)) {
+    return false;
+  }
+  result_.status = SimulationStatus::abandoned;
+  result_.reason =
+      fmt::format("abandoned after point {} ({:.2f} s): the error is certain to exceed {} m", done,
+                  result_.steps * period_s_, job_.abandon_above_m);
+  return true;
 }
 
 void TrackingLoop::finish() {
@@ -39,12 +57,13 @@ void TrackingLoop::finish() {
     result_.saturated_share.push_back(saturated_steps_[i] / steps);
   }
   const std::size_t first = setup_.task().count_first_point ? 0 : 1;
-  if (result_.point_error_m.size() == job_.targets->segments.size()) {
+  const std::size_t points = job_.targets->segments.size();
+  if (result_.point_error_m.size() == points || result_.status == SimulationStatus::abandoned) {
     double sum = 0;
     for (std::size_t k = first; k < result_.point_error_m.size(); ++k) {
       sum += result_.point_error_m[k];
     }
-    result_.mean_error_m = sum / static_cast<double>(result_.point_error_m.size() - first);
+    result_.mean_error_m = sum / static_cast<double>(points - first);
   }
 }
 

@@ -25,7 +25,9 @@ class TrackingLoop {
   void step(Arm& arm, std::span<const double> targets);
   template <class Arm>
   void record(const Arm& arm, const Segment& segment, int step);
-  void abandon(SimulationStatus status, std::string reason);
+  void cut_short(SimulationStatus status, std::string reason);
+  // At the end of a point: whether the rest is not worth simulating.
+  bool should_abandon();
   void finish();
 
   const TrackingSetup& setup_;
@@ -35,6 +37,7 @@ class TrackingLoop {
   std::vector<std::unique_ptr<Controller>> controllers_;
   std::vector<double> q_, q_before_, effort_;
   std::vector<double> saturated_steps_;
+  double error_sum_m_ = 0;  // of the points so far that count
   TrackingResult result_;
 };
 
@@ -90,21 +93,24 @@ TrackingResult TrackingLoop::run(Arm& arm) {
           record(arm, segment, k);
         }
         if (worst_squared > job_.cutoff_m * job_.cutoff_m) {
-          abandon(SimulationStatus::cut_off,
-                  fmt::format("cut off at point {} ({:.2f} s): the error exceeds {} m",
-                              result_.point_error_m.size() + 1, result_.steps * period_s_,
-                              job_.cutoff_m));
+          cut_short(SimulationStatus::cut_off,
+                    fmt::format("cut off at point {} ({:.2f} s): the error exceeds {} m",
+                                result_.point_error_m.size() + 1, result_.steps * period_s_,
+                                job_.cutoff_m));
           finish();
           return std::move(result_);
         }
       }
       result_.point_error_m.push_back(std::sqrt(worst_squared));
+      if (should_abandon()) {
+        break;
+      }
     }
   } catch (const DivergenceError& error) {
-    abandon(SimulationStatus::diverged,
-            fmt::format("diverged at {:.2f} s, on the way to point {}: {}",
-                        (result_.steps + 1) * period_s_, result_.point_error_m.size() + 1,
-                        error.what()));
+    cut_short(SimulationStatus::diverged,
+              fmt::format("diverged at {:.2f} s, on the way to point {}: {}",
+                          (result_.steps + 1) * period_s_, result_.point_error_m.size() + 1,
+                          error.what()));
   }
   finish();
   return std::move(result_);

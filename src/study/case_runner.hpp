@@ -1,6 +1,7 @@
-// Fans evaluations out over threads, one simulated case at a time, so that one candidate on many
-// cases uses all cores as well as many candidates on one. Results do not depend on the number of
-// threads.
+// Fans evaluations out over threads. What is shared out are chunks of consecutive (candidate, case)
+// pairs, a candidate's cases side by side, so that one candidate on many cases uses all threads and
+// SIMD lanes as well as many candidates on one. Results depend neither on the number of threads nor
+// on the chunks.
 #pragma once
 
 #include <cstddef>
@@ -22,10 +23,11 @@ class CaseRunner {
   // case is done.
   using OnDone = std::function<void(std::size_t candidate, Evaluation evaluation)>;
 
-  // Every candidate on every case of the block. Those that a stop leaves unfinished `on_done` never
-  // hears of. Rethrows what `on_done` throws.
+  // Every candidate on every case of the block. A stop counts between chunks; candidates that it
+  // leaves unfinished `on_done` never hears of. Evaluations carry residuals only if asked for.
+  // Rethrows what `on_done` throws.
   void run(std::span<const std::span<const double>> candidates, const CaseBlock& block,
-           const OnDone& on_done);
+           bool residuals, const OnDone& on_done);
 
  private:
   const Problem& problem_;

@@ -19,6 +19,7 @@ static_assert(sizeof(double) == 8 && sizeof(std::uint64_t) == 8);
 
 constexpr std::uint8_t kEvaluationType = 1;
 constexpr std::uint8_t kEndType = 2;
+constexpr unsigned kStatuses = 1 + static_cast<unsigned>(EvaluationStatus::abandoned);
 
 // The fields are listed once, in visit_fields, and three visitors measure, write and read them.
 
@@ -27,7 +28,7 @@ void visit_evaluation(Fields& fields, Record& record) {
   auto& evaluation = record.evaluation;
   fields.choice(record.clipped, 2);
   fields.choice(record.cases.role, 3);
-  fields.choice(evaluation.status, 5);
+  fields.choice(evaluation.status, kStatuses);
   fields.number(evaluation.failed_cases);
   fields.number(record.index);
   fields.number(record.generation);
@@ -201,7 +202,7 @@ bool could_begin_payload(std::string_view probe, std::uint32_t payload_bytes) {
     EvaluationRecord record;
     read.choice(record.clipped, 2);
     read.choice(record.cases.role, 3);
-    read.choice(record.evaluation.status, 5);
+    read.choice(record.evaluation.status, kStatuses);
     return read.good;
   }
   std::uint64_t evaluations = 0;

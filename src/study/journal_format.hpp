@@ -8,7 +8,7 @@
 //                | u64 generation
 //                | text set | list numbers (u64) | list x | text reason
 //                | list objectives | list constraint_values | list case_errors | list metrics
-//                | list residuals (empty in validation and test)
+//                | list residuals (empty unless the optimizer uses them)
 //   end        = u8 2 | u64 evaluations | text reason
 //   text       = u32 length | bytes          list = u32 count | 8 bytes each
 #pragma once

@@ -70,13 +70,12 @@ std::optional<std::vector<Evaluation>> Judge::evaluate(
   observer_.on_progress(progress);
   std::mutex mutex;
   std::size_t done = 0;
-  runner_.run(candidates, block, [&](std::size_t candidate, Evaluation evaluation) {
+  runner_.run(candidates, block, false, [&](std::size_t candidate, Evaluation evaluation) {
     EvaluationRecord record;
     record.index = missing[candidate];
     record.x = designs[record.index];
     record.cases = block;
     record.evaluation = std::move(evaluation);
-    record.evaluation.residuals.clear();  // for optimizers, and none is asking
     journal_.append(record);
     evaluations[record.index] = std::move(record.evaluation);
     const std::lock_guard lock(mutex);

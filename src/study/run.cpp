@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "optimizers/output_log.hpp"
@@ -128,9 +130,13 @@ std::optional<std::vector<TrackingResult>> evaluate_design(const TrackingProblem
   problem.check_design(design);
   std::vector<TrackingResult> results(cases);
   ThreadPool pool(jobs);
-  pool.run(results.size(), [&](std::size_t i) {
+  const std::size_t chunk = calc_chunk(problem.batch_size(CaseRole::test), cases, pool.size());
+  pool.run((results.size() + chunk - 1) / chunk, [&](std::size_t number) {
     if (!stop.requested()) {
-      results[i] = problem.track(design, set, first + i);
+      const std::size_t begin = number * chunk;
+      const std::size_t count = std::min(chunk, results.size() - begin);
+      std::ranges::move(problem.track(design, set, first + begin, count, {}),
+                        results.begin() + static_cast<std::ptrdiff_t>(begin));
     }
   });
   return stop.requested() ? std::nullopt : std::optional(std::move(results));

@@ -20,6 +20,8 @@ RunEvaluator::RunEvaluator(const RunPlan& plan, CaseRunner& runner, StopSignal& 
       stop_(stop),
       journal_(journal),
       observer_(observer),
+      wants_residuals_(plan.optimizer.capabilities.residuals ||
+                       plan.optimizer.requirements.residuals),
       journal_ended_(recorded.ended),
       candidates_(plan) {
   for (EvaluationRecord& record : recorded.training) {
@@ -188,16 +190,17 @@ std::vector<Score> RunEvaluator::evaluate(std::span<const std::vector<double>> p
   const std::uint64_t replayed = points.size() - missing.size();
   std::uint64_t finished = replayed;
   const std::uint64_t cases_each = block_.numbers.size();
-  runner_.run(candidates, block_, [&](std::size_t candidate, Evaluation evaluation) {
-    const std::size_t i = missing[candidate];
-    records[i].evaluation = std::move(evaluation);
-    journal_.append(records[i]);
-    answered[i] = true;
-    const std::lock_guard lock(mutex);
-    if (++finished < points.size()) {  // the last one's is the report on all, below
-      report(finished * cases_each, replayed * cases_each);
-    }
-  });
+  runner_.run(candidates, block_, wants_residuals_,
+              [&](std::size_t candidate, Evaluation evaluation) {
+                const std::size_t i = missing[candidate];
+                records[i].evaluation = std::move(evaluation);
+                journal_.append(records[i]);
+                answered[i] = true;
+                const std::lock_guard lock(mutex);
+                if (++finished < points.size()) {  // the last one's is the report on all, below
+                  report(finished * cases_each, replayed * cases_each);
+                }
+              });
 
   // A stop can leave holes; the optimizer learns the results before the first, and a resumed run
   // evaluates only the holes.

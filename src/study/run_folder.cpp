@@ -3,12 +3,14 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
+#include "sim/simd_level.hpp"
 #include "study/build_info.hpp"
 
 namespace armwright {
@@ -75,6 +77,26 @@ json read_manifest(const std::filesystem::path& file) {
   }
 }
 
+// What to do where the recorded SIMD level is another one than now; empty where it is not.
+std::string explain_simd(const json& recorded, const json& now) {
+  const json::json_pointer level("/problem/physics/simd");
+  if (!recorded.contains(level) || !recorded[level].is_string() || !now.contains(level) ||
+      recorded[level] == now[level]) {
+    return "";
+  }
+  const auto name = recorded[level].get<std::string>();
+  const auto possible = supported_simd_names();
+  if (std::ranges::find(possible, name) == possible.end()) {
+    return fmt::format(
+        "\nThe SIMD level decides the last bits of every result, and this CPU lacks {}: go on with "
+        "the run on a machine that has it",
+        sanitize(name));
+  }
+  return fmt::format(
+      "\nThe SIMD level decides the last bits of every result: to go on, pass --simd {}",
+      sanitize(name));
+}
+
 }  // namespace
 
 RunFolder::RunFolder(const std::filesystem::path& path, const RunPlan& plan,
@@ -91,8 +113,9 @@ RunFolder::RunFolder(const std::filesystem::path& path, const RunPlan& plan,
     throw Error(
         ErrorKind::usage,
         fmt::format("{} holds a run with another configuration:\n  {}\nGo on with the recorded "
-                    "one, or use --new or --out for another folder",
-                    path.string(), join(differences, "\n  ")));
+                    "one, or use --new or --out for another folder{}",
+                    path.string(), join(differences, "\n  "),
+                    explain_simd(manifest["configuration"], json::parse(to_json(plan)))));
   }
   for (const auto& [key, now] : describe_build()) {
     const std::string recorded = manifest["build"].value(key, "(not recorded)");

@@ -44,7 +44,7 @@ json evaluation_to_json(const Evaluation& evaluation) {
 EvaluationStatus parse_status(const std::string& text) {
   for (const auto status :
        {EvaluationStatus::ok, EvaluationStatus::diverged, EvaluationStatus::unreachable,
-        EvaluationStatus::timed_out, EvaluationStatus::failed}) {
+        EvaluationStatus::timed_out, EvaluationStatus::failed, EvaluationStatus::abandoned}) {
     if (text == to_string(status)) {
       return status;
     }

@@ -72,7 +72,7 @@ inline constexpr double kNever = std::numeric_limits<double>::infinity();
 
 inline TrackingJob make_job(const ArmDesign& design, const TargetTable& targets,
                             double cutoff_m = kNever, RecordingOptions recording = {}) {
-  return {&design, &targets, cutoff_m, recording};
+  return {&design, &targets, cutoff_m, recording, kNever};
 }
 
 inline TrackingResult simulate_one(const TrackingSetup& setup, const TrackingJob& job) {

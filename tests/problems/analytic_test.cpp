@@ -277,6 +277,7 @@ TEST(EvaluationStatusText, EveryStatusHasItsName) {
   EXPECT_STREQ(to_string(EvaluationStatus::unreachable), "unreachable");
   EXPECT_STREQ(to_string(EvaluationStatus::timed_out), "timed out");
   EXPECT_STREQ(to_string(EvaluationStatus::failed), "failed");
+  EXPECT_STREQ(to_string(EvaluationStatus::abandoned), "abandoned");
 }
 
 }  // namespace

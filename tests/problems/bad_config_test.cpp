@@ -86,7 +86,8 @@ const std::vector<Mistake> kPhysics = {
     {"[physics]\nerp = 2", "3: physics.erp is 2; it must be a finite number >= 0 and <= 1"},
     {"[physics]\ncfm = -1", "3: physics.cfm is -1; it must be a finite number >= 0 and <= 1"},
     {"[physics]\ndamping = 1",
-     "3: unknown key physics.damping. Valid here: engine, gravity_m_per_s2, substeps, erp, cfm"},
+     "3: unknown key physics.damping. Valid here: engine, judging_engine, precision, simd, "
+     "gravity_m_per_s2, substeps, erp, cfm"},
 };
 INSTANTIATE_TEST_SUITE_P(Physics, BadSection, testing::ValuesIn(kPhysics));
 

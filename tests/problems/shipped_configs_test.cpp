@@ -127,7 +127,8 @@ TEST_P(ShippedExperiment, HasTheSettingsOfTheThesis) {
   EXPECT_EQ(task.physics.substeps, 1);
   EXPECT_EQ(task.physics.erp, 0.25);
   EXPECT_EQ(task.physics.cfm, 0);
-  EXPECT_EQ(config.engine, "ode");
+  EXPECT_EQ(config.engines.training_name, "ode");
+  EXPECT_EQ(config.engines.judging_name, "ode");
 
   EXPECT_EQ(config.workspace.centre_m, Eigen::Vector3d(1.4, 0, 0.9));
   EXPECT_EQ(config.workspace.radius_m, 0.8);

@@ -332,6 +332,30 @@ TEST(TrackingAggregate, NoNumberAtAllLeavesObjectivesAndMetricsEmpty) {
   EXPECT_THAT(evaluation.case_errors, SizeIs(2));
 }
 
+// A diverged case has its number in training; that of an abandoned one is a bound, and so is all
+// that is made of it.
+TEST(TrackingAggregate, AnAbandonedCaseMakesABoundOfTheWhole) {
+  const auto problem = load("q2-e3");
+  CaseOutcome diverged = make_outcome(1, 1, 0, 1);
+  diverged.status = EvaluationStatus::diverged;
+  diverged.reason = "diverged at 0.10 s";
+  diverged.residuals = {1};
+  CaseOutcome abandoned = make_outcome(0.5, 1, 0, 1);
+  abandoned.status = EvaluationStatus::abandoned;
+  abandoned.reason = "abandoned after point 2";
+  CaseOutcome another = abandoned;
+  another.reason = "abandoned after point 3";
+  const Evaluation evaluation =
+      problem->aggregate(get_start(*problem), std::vector{diverged, abandoned, another, diverged});
+  EXPECT_EQ(evaluation.status, EvaluationStatus::abandoned);
+  EXPECT_EQ(evaluation.reason, "abandoned after point 2");
+  EXPECT_EQ(evaluation.failed_cases, 0);
+  EXPECT_THAT(evaluation.case_errors, ElementsAre(1, 0.5, 0.5, 1));
+  EXPECT_EQ(evaluation.metrics.at(0), 0.75);
+  EXPECT_THAT(evaluation.residuals, IsEmpty());
+  EXPECT_FALSE(is_feasible(evaluation)) << "nobody may take it for the best";
+}
+
 TEST(TrackingAggregate, DivergenceWithANumberKeepsItsStatus) {
   const auto problem = load("q1-complex");
   CaseOutcome cut_off = make_outcome(1, 1, 0, 1);  // training: the cut-off error stands for it

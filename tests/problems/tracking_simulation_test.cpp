@@ -304,5 +304,42 @@ TEST(TrackingFileSets, CaseOfOneMoveNeedsItsFirstPointCounted) {
   EXPECT_GT(result.mean_error_m, 0);
 }
 
+// What a caller who only cares for designs better than a bound gets of a case that is none.
+TEST(TrackingSimulation, AnAbandonedCaseSaysWhatItsErrorIsAtLeast) {
+  const auto problem = load({"workspace.points=6"});
+  const auto x = get_corner(*problem, -1);
+  const CaseBlock block = make_block(CaseRole::test, "test/2", {0});
+  CaseJob job{.x = x, .block = &block, .number = 0, .residuals = true};
+  const CaseOutcome whole = problem->simulate({&job, 1}).at(0);
+  ASSERT_EQ(whole.status, EvaluationStatus::ok) << whole.reason;
+  EXPECT_THAT(whole.residuals, SizeIs(5));
+  job.abandon_above = whole.error;
+  expect_same(problem->simulate({&job, 1}).at(0), whole);
+  job.abandon_above = 0.25 * whole.error;
+  const CaseOutcome part = problem->simulate({&job, 1}).at(0);
+  EXPECT_EQ(part.status, EvaluationStatus::abandoned);
+  EXPECT_THAT(part.reason, StartsWith("abandoned after point "));
+  EXPECT_TRUE(part.has_error);
+  EXPECT_GT(part.error, job.abandon_above);
+  EXPECT_LT(part.error, whole.error);
+  EXPECT_THAT(part.residuals, IsEmpty());
+  EXPECT_THAT(part.metrics, SizeIs(whole.metrics.size()));
+}
+
+TEST(TrackingSimulation, ResidualsAreThereIfAskedFor) {
+  const auto problem = load({"workspace.points=3"});
+  const auto x = get_start(*problem);
+  const CaseBlock block = make_block(CaseRole::training, "train/1", {0});
+  CaseJob job{.x = x, .block = &block, .number = 0};
+  const CaseOutcome without = problem->simulate({&job, 1}).at(0);
+  EXPECT_THAT(without.residuals, IsEmpty());
+  EXPECT_THAT(problem->aggregate(x, {&without, 1}).residuals, IsEmpty());
+  job.residuals = true;
+  const CaseOutcome with = problem->simulate({&job, 1}).at(0);
+  EXPECT_THAT(with.residuals, SizeIs(2));
+  expect_same(with, without);
+  EXPECT_THAT(problem->aggregate(x, {&with, 1}).residuals, SizeIs(2));
+}
+
 }  // namespace
 }  // namespace armwright

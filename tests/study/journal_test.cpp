@@ -60,7 +60,7 @@ TEST(Journal, KeepsEveryFieldBitByBit) {
 
 TEST(Journal, KeepsEveryStatus) {
   const TemporaryFolder folder;
-  const auto last = static_cast<std::uint8_t>(EvaluationStatus::failed);
+  const auto last = static_cast<std::uint8_t>(EvaluationStatus::abandoned);
   {
     JournalContent content;
     Journal journal(folder / "journal", content);

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "base/expect_error.hpp"
+#include "problems/lanes_engine.hpp"
 #include "study/run.hpp"
 #include "study/run_support.hpp"
 
@@ -155,6 +156,49 @@ TEST_F(RunTest, AnotherConfigurationIsRefusedWithTheDifference) {
       AllOf(HasSubstr("holds a run with another configuration"),
             HasSubstr("run.budget: recorded 40, now 48"),
             HasSubstr("problem.task.speed_m_per_s: recorded 1.5, now 2"), HasSubstr("--new")));
+}
+
+// Results differ between SIMD levels in the last bits, so a run keeps to the one it began with.
+TEST_F(RunTest, AnotherSimdLevelIsRefusedWithWhatToDo) {
+  const auto make_plan = [](const std::string& simd) {
+    RunPlan plan = make_small_plan();
+    plan.problem =
+        load_problem("q1-complex",
+                     std::vector<std::string>{"workspace.points=4", "sets.validation_cases=3",
+                                              "sets.test_cases=4", "physics.engine=lanes",
+                                              "physics.simd=" + simd},
+                     engines_with_lanes());
+    return plan;
+  };
+  const std::string best = to_string(find_best_simd());
+  ASSERT_NE(best, "scalar") << "every machine that this is built for has more";
+  run(make_plan("auto"), "a");
+  EXPECT_TRUE(run(make_plan(best), "a")) << "auto is " << best << " here";
+  EXPECT_THAT(usage_error_of([&] { run(make_plan("scalar"), "a"); }),
+              AllOf(HasSubstr("problem.physics.simd: recorded \"" + best + "\", now \"scalar\""),
+                    HasSubstr("to go on, pass --simd " + best)));
+  // As if it came from another machine.
+  const auto manifest = temporary_ / "a" / "manifest.json";
+  std::string text = read_file(manifest, 1 << 24);
+  const std::string recorded = "\"simd\": \"" + best + "\"";
+  ASSERT_NE(text.find(recorded), std::string::npos);
+  text.replace(text.find(recorded), recorded.size(), "\"simd\": \"avx8192\"");
+  std::ofstream(manifest, std::ios::binary) << text;
+  EXPECT_THAT(usage_error_of([&] { run(make_plan("auto"), "a"); }),
+              HasSubstr("this CPU lacks avx8192: go on with the run on a machine that has it"));
+}
+
+TEST_F(RunTest, ResultsOfBatchesDoNotDependOnTheNumberOfThreads) {
+  RunPlan plan = make_small_plan();
+  plan.problem =
+      load_problem("q1-complex",
+                   std::vector<std::string>{"workspace.points=4", "sets.validation_cases=7",
+                                            "sets.test_cases=90", "physics.engine=lanes"},
+                   engines_with_lanes());
+  run(plan, "one", 1);
+  run(plan, "three", 3);
+  expect_same_evaluations(read("one"), read("three"));
+  EXPECT_EQ(read_result("one"), read_result("three"));
 }
 
 TEST_F(RunTest, AReplayThatDiffersNamesTheEvaluation) {

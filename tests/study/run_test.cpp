@@ -9,6 +9,7 @@
 
 #include "base/expect_error.hpp"
 #include "base/text.hpp"
+#include "problems/lanes_engine.hpp"
 #include "study/judge.hpp"
 #include "study/run_folder.hpp"
 #include "study/run_support.hpp"
@@ -82,17 +83,24 @@ TEST_F(RunTest, TheWinnerIsTheBestOnTheValidationSetAndItsTestIsComplete) {
   }
 }
 
-TEST_F(RunTest, ResidualsAreRecordedWhereAnOptimizerMayAskForThem) {
-  run(make_small_plan(), "a");
-  const JournalContent journal = read("a");
-  ASSERT_FALSE(journal.training.empty());
-  for (const EvaluationRecord& record : journal.training) {
-    EXPECT_FALSE(record.evaluation.residuals.empty()) << record.index;
-  }
-  ASSERT_FALSE(journal.judgements.empty());
-  for (const EvaluationRecord& record : journal.judgements) {
-    EXPECT_FALSE(record.evaluation.case_errors.empty()) << record.index;
-    EXPECT_TRUE(record.evaluation.residuals.empty()) << record.index;
+TEST(EvaluateDesign, InBatchesItIsWhatCaseByCaseGives) {
+  const auto problem =
+      load_problem("q1-complex",
+                   std::vector<std::string>{"workspace.points=3", "physics.judging_engine=lanes"},
+                   engines_with_lanes())
+          .tracking;
+  const ArmDesign& design = problem->config().start;
+  const TestSet set = problem->get_set("test/2");
+  for (const unsigned jobs : {1U, 3U}) {
+    StopSignal stop;
+    const auto results = evaluate_design(*problem, design, set, 5, 70, jobs, stop);
+    ASSERT_TRUE(results);
+    ASSERT_EQ(results->size(), 70u);
+    for (std::uint64_t i = 0; i < 70; ++i) {
+      EXPECT_EQ((*results)[i].mean_error_m, problem->track(design, set, 5 + i).mean_error_m) << i;
+    }
+    stop.request(StopReason::interrupted);
+    EXPECT_FALSE(evaluate_design(*problem, design, set, 5, 70, jobs, stop));
   }
 }
 
