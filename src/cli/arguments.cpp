@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <thread>
 
 #include "base/error.hpp"
@@ -86,28 +87,84 @@ unsigned JobsOption::get() const {
   return static_cast<unsigned>(parse_count("--jobs (ARMWRIGHT_JOBS)", text, 1, kMostJobs));
 }
 
-void OverrideOptions::add_to(CLI::App& command) {
+void EngineFlags::add_to(CLI::App& command, bool with_training) {
+  trains = with_training;
+  command
+      .add_option("--engine", engine,
+                  trains ? "Physics engine, the same as --set physics.engine=NAME\n"
+                           "(armwright list engines)"
+                         : "Physics engine (armwright list engines; default: the one that the\n"
+                           "problem is judged with)")
+      ->type_name("NAME");
+  if (trains) {
+    command
+        .add_option("--judging-engine", judging_engine,
+                    "Another engine for validation and test, the same as\n"
+                    "--set physics.judging_engine=NAME (default: the same)")
+        ->type_name("NAME");
+    command
+        .add_option("--precision", precision,
+                    "double or float, the latter quicker and in training only; for engines with\n"
+                    "SIMD, the same as --set physics.precision=...")
+        ->type_name("NAME");
+  }
+  command
+      .add_option("--simd", simd,
+                  "Instruction set of engines with SIMD, the same as --set physics.simd=LEVEL\n"
+                  "(default: auto, the best of this machine)")
+      ->type_name("LEVEL");
+}
+
+std::vector<std::string> EngineFlags::get() const {
+  std::vector<std::string> overrides;
+  const auto add = [&](std::string_view key, std::string_view what, const std::string& value,
+                       const std::vector<std::string>& valid) {
+    if (value.empty()) {
+      return;
+    }
+    if (std::ranges::find(valid, value) == valid.end()) {
+      throw Error(ErrorKind::usage, describe_unknown(what, value, valid));
+    }
+    overrides.push_back(fmt::format("physics.{}={}", key, value));
+  };
+  std::vector<std::string> levels = simd_names();
+  levels.insert(levels.begin(), "auto");
+  add("engine", "engine", engine, engine_names());
+  add("judging_engine", "engine", trains ? judging_engine : engine, engine_names());
+  add("precision", "precision", precision, precision_names());
+  add("simd", "SIMD level", simd, levels);
+  return overrides;
+}
+
+std::string_view get_override_key(std::string_view assignment) {
+  constexpr std::string_view kBlanks = " \t";
+  std::string_view key = assignment.substr(0, assignment.find('='));
+  key.remove_prefix(std::min(key.size(), key.find_first_not_of(kBlanks)));
+  return key.substr(0, key.find_last_not_of(kBlanks) + 1);
+}
+
+void OverrideOptions::add_to(CLI::App& command, bool with_training) {
   command
       .add_option("--set", set,
                   "Change a setting of the problem, as in task.speed_m_per_s=2; repeatable.\n"
                   "'armwright list problems NAME' shows all settings")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
-  command
-      .add_option("--engine", engine,
-                  "Physics engine, the same as --set physics.engine=NAME\n"
-                  "(armwright list engines)")
-      ->type_name("NAME");
+  engines.add_to(command, with_training);
 }
 
 std::vector<std::string> OverrideOptions::get() const {
   std::vector<std::string> overrides = set;
-  if (!engine.empty()) {
-    const auto names = engine_names();
-    if (std::find(names.begin(), names.end(), engine) == names.end()) {
-      throw Error(ErrorKind::usage, describe_unknown("engine", engine, names));
+  for (std::string& flag : engines.get()) {
+    const std::string_view key = get_override_key(flag);
+    const auto same = std::ranges::find(set, key, get_override_key);
+    if (same != set.end()) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("--set {} is contradicted or repeated by a flag that means --set {}; "
+                              "give only one of them",
+                              sanitize(*same), flag));
     }
-    overrides.push_back("physics.engine=" + engine);
+    overrides.push_back(std::move(flag));
   }
   return overrides;
 }

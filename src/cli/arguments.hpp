@@ -35,13 +35,31 @@ struct JobsOption {
   unsigned get() const;  // all cores unless told otherwise
 };
 
-// --set and --engine: what is changed about a problem.
-struct OverrideOptions {
-  std::vector<std::string> set;
+// Which physics engine, and how: short for settings of the problem's table [physics].
+struct EngineFlags {
   std::string engine;
-  void add_to(CLI::App& command);
+  std::string judging_engine;
+  std::string precision;
+  std::string simd;
+  bool trains = false;
+
+  // A command that trains knows --judging-engine and --precision besides. In others there is one
+  // engine, and --engine means it.
+  void add_to(CLI::App& command, bool with_training);
+  // As KEY=VALUE texts. Error{usage} for a name that does not exist.
   std::vector<std::string> get() const;
 };
+
+// --set and the flags above: what is changed about a problem.
+struct OverrideOptions {
+  std::vector<std::string> set;
+  EngineFlags engines;
+  void add_to(CLI::App& command, bool with_training = false);
+  // Error{usage} where --set and another flag set the same.
+  std::vector<std::string> get() const;
+};
+// The part before the '=' of a KEY=VALUE text, without blanks around it.
+std::string_view get_override_key(std::string_view assignment);
 
 // --test-set, --test-cases and --cases: what a design is evaluated on.
 struct CaseOptions {

@@ -15,7 +15,6 @@
 #include "cli/table.hpp"
 #include "cli/terminal.hpp"
 #include "sim/controller.hpp"
-#include "sim/physics_engine.hpp"
 #include "sim/reference_signal.hpp"
 
 namespace armwright {
@@ -58,14 +57,6 @@ ListKind make_plain_kind(const std::string& name, std::vector<ListItem> (*list)(
   return {name, list, explain, explain_as_json};
 }
 
-std::vector<ListItem> list_engines() {
-  std::vector<ListItem> items;
-  for (const EngineRow& row : engine_table()) {
-    items.push_back({row.name, row.summary});
-  }
-  return items;
-}
-
 std::vector<ListItem> list_signals() {
   // In the order of the names; physics and formulas are with the signals themselves.
   constexpr const char* kMeanings[] = {
@@ -99,7 +90,7 @@ std::vector<ListKind> list_kinds() {
   return {make_problem_kind(),
           make_optimizer_kind(),
           make_robot_kind(),
-          make_plain_kind("engines", list_engines),
+          make_engine_kind(),
           make_design_kind(),
           make_plain_kind("signals", list_signals),
           make_plain_kind("controllers", list_controllers)};

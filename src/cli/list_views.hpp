@@ -3,10 +3,12 @@
 
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "cli/terminal.hpp"
+#include "sim/physics_engine.hpp"
 
 namespace armwright {
 
@@ -30,6 +32,7 @@ struct ListKind {
 ListKind make_problem_kind();
 ListKind make_optimizer_kind();
 ListKind make_robot_kind();
+ListKind make_engine_kind(std::span<const EngineRow> table = engine_table());
 ListKind make_design_kind();
 
 // "NAME: SUMMARY" as a first line.

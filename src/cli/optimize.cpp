@@ -259,7 +259,7 @@ void add_optimize(CLI::App& app, Session& session) {
                    "Which training cases: fresh:K or fixed:K (default: the problem's;\n"
                    "fixed where an optimizer has no generations)")
       ->type_name("KIND:K");
-  options->overrides.add_to(*command);
+  options->overrides.add_to(*command, true);
   command
       ->add_option("--validation-cases", options->validation_cases,
                    "Cases on which the candidates for the win are judged (default: the\n"

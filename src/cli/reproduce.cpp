@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <iterator>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -34,6 +35,7 @@ test cases are ours: the thesis drew its own. The ratio is our mean error over t
 struct ReproduceOptions {
   std::string cases;
   std::vector<std::string> tables;
+  EngineFlags engines;
   JobsOption jobs;
   std::string csv;
   bool json = false;
@@ -109,12 +111,15 @@ std::vector<std::string> choose_designs(const std::vector<std::string>& tables) 
 
 std::vector<Entry> load_entries(const ReproduceOptions& options) {
   std::vector<Entry> entries;
+  const std::vector<std::string> flags = options.engines.get();
   CaseOptions cases;
   cases.cases = options.cases;
   for (const std::string& name : choose_designs(options.tables)) {
     const DesignFile file = load_design(name);
     for (const PublishedResult& published : file.published) {
-      LoadedProblem problem = load_problem(published.problem, published.overrides);
+      std::vector<std::string> overrides = published.overrides;
+      std::ranges::copy(flags, std::back_inserter(overrides));
+      LoadedProblem problem = load_problem(published.problem, overrides);
       require_tracking(problem).check_design(file.design);
       ChosenCases chosen = choose_cases(problem, cases);
       entries.push_back({name, file.design, published, std::move(problem), std::move(chosen)});
@@ -223,11 +228,13 @@ int run_reproduce(const ReproduceOptions& options, Session& session) {
     share.total += entry.cases.count;
   }
   if (!options.quiet) {
-    write_message(fmt::format(
-        "{} on {} in all; about {} on {}", format_count(entries.size(), "published result"),
-        format_count(share.total, "case"),
-        format_duration(static_cast<double>(share.total) / (kCasesPerJobAndSecond * jobs)),
-        format_count(jobs, "thread")));
+    const bool slow = options.engines.engine.empty() || options.engines.engine == "ode";
+    const double expected_s = static_cast<double>(share.total) / (kCasesPerJobAndSecond * jobs);
+    write_message(fmt::format("{} on {} in all; {}on {}",
+                              format_count(entries.size(), "published result"),
+                              format_count(share.total, "case"),
+                              slow ? fmt::format("about {} ", format_duration(expected_s)) : "",
+                              format_count(jobs, "thread")));
   }
   catch_signals(session.stop);
   ProgressBar bar(options.quiet, {"error", "m"});
@@ -275,6 +282,7 @@ void add_reproduce(CLI::App& app, Session& session) {
   command->add_option("--table", options->tables, "Only this design, as in A.10; repeatable")
       ->type_name("NAME")
       ->allow_extra_args(false);
+  options->engines.add_to(*command, false);
   options->jobs.add_to(*command);
   auto* as_json =
       command->add_flag("--json", options->json, "Print the results as JSON")->group("Output");

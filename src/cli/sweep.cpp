@@ -175,6 +175,14 @@ int run_sweep(const SweepOptions& options, Session& session) {
   std::vector<LoadedProblem> problems;
   for (const std::string& value : sweep.values) {
     auto all = overrides;
+    for (const std::string& flag : options.overrides.engines.get()) {
+      if (get_override_key(flag) == sweep.parameter) {
+        throw Error(ErrorKind::usage,
+                    fmt::format("--parameter {} is what varies, but a flag means --set {}; leave "
+                                "the flag out",
+                                sanitize(sweep.parameter), flag));
+      }
+    }
     all.push_back(sweep.parameter + "=" + value);
     problems.push_back(load_problem(options.problem, all));
     require_tracking(problems.back()).check_design(design.design);

@@ -93,6 +93,8 @@ TEST_F(Cli, NamesTheNearestOfWhatItDoesNotKnow) {
                  {"unknown option 'populaton'; did you mean 'population'?"});
   expect_refused({"optimize", "q1-complex", "--engine", "od"}, 2,
                  {"unknown engine 'od'; did you mean 'ode'?"});
+  expect_refused({"reproduce", "--simd", "avx3"}, 2,
+                 {"unknown SIMD level 'avx3'; did you mean 'avx2'?"});
   expect_refused({"evaluate", "tabel-a5"}, 2,
                  {"unknown design 'tabel-a5'; did you mean 'table-a5'?"});
   expect_refused({"reproduce", "--table", "A.12"}, 2,
@@ -122,6 +124,15 @@ TEST_F(Cli, RefusesWrongValuesAndSaysWhatIsAllowed) {
   refuse({"--set", "task.sped_m_per_s=2"}, {"did you mean 'task.speed_m_per_s'?"});
   refuse({"--set", "task.speed_m_per_s=-2"}, {"task.speed_m_per_s", "-2"});
   refuse({"--opt", "population=1"}, {"population", "'1'"});
+  refuse({"--engine", "ode", "--set", "physics.engine=ode"},
+         {"--set physics.engine=ode", "give only one"});
+  refuse({"--engine", "ode", "--simd", "scalar"}, {"physics.simd", "'ode' has none to choose"});
+  refuse({"--precision", "float"}, {"physics.precision", "'ode' always computes in double"});
+  expect_refused({"evaluate", "table-a5", "--simd", "scalar"}, 2, {"'ode' has none to choose"});
+  expect_refused({"evaluate", "table-a5", "--precision", "float"}, 2, {"unknown flag"});
+  expect_refused({"sweep", "q1-complex", "--design", "table-a5", "--engine", "ode", "--parameter",
+                  "physics.engine", "--values", "ode"},
+                 2, {"--parameter physics.engine is what varies"});
   refuse({"--color", "pink"}, {"unknown --color 'pink'", "auto, always, never"});
   expect_refused({"optimize", "sphere"}, 2, {"ARMWRIGHT_SEED", "'one'"},
                  {{{"ARMWRIGHT_SEED", "one"}}, ""});
