@@ -54,7 +54,7 @@ struct TrackingConfig {
   RobotModel robot;
   TrackingTask task;
   WorkspaceSphere workspace;
-  EnginePair engines;  // both must be there (choose_engines)
+  EnginePair engines;           // both must be there (choose_engines)
   double cutoff_error_m = 1.0;  // training only
   TrackingObjective objective;
   ArmDesign start;
