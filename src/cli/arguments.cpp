@@ -103,10 +103,7 @@ void OverrideOptions::add_to(CLI::App& command) {
 std::vector<std::string> OverrideOptions::get() const {
   std::vector<std::string> overrides = set;
   if (!engine.empty()) {
-    const auto names = engine_names();
-    if (std::find(names.begin(), names.end(), engine) == names.end()) {
-      throw Error(ErrorKind::usage, describe_unknown("engine", engine, names));
-    }
+    find_engine(engine);
     overrides.push_back("physics.engine=" + engine);
   }
   return overrides;

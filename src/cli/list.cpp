@@ -63,6 +63,9 @@ std::vector<ListItem> list_engines() {
   for (const EngineRow& row : engine_table()) {
     items.push_back({row.name, row.summary});
   }
+  for (const MissingEngine& missing : missing_engine_table()) {
+    items.push_back({missing.name, "not there: " + missing.reason});
+  }
   return items;
 }
 

@@ -28,8 +28,17 @@ struct EngineRow {
   std::unique_ptr<PhysicsEngine> (*make)();
 };
 
+// An optional engine that this build leaves out.
+struct MissingEngine {
+  std::string name;
+  std::string reason;  // and what to do about it
+};
+
 const std::vector<EngineRow>& engine_table();
+const std::vector<MissingEngine>& missing_engine_table();
 std::vector<std::string> engine_names();
-std::unique_ptr<PhysicsEngine> make_engine(std::string_view name);  // Error{usage} if there is none
+// Error{usage} if there is none of that name, or this build leaves it out.
+const EngineRow& find_engine(std::string_view name);
+std::unique_ptr<PhysicsEngine> make_engine(std::string_view name);
 
 }  // namespace armwright
