@@ -46,6 +46,16 @@ TrackingTask read_task(const ConfigTable& table, const ConfigTable& physics) {
   return task;
 }
 
+std::string read_engine(const ConfigTable& physics) {
+  const std::string engine = physics.get_string("engine", "ode");
+  for (const MissingEngine& missing : missing_engine_table()) {
+    if (missing.name == engine) {
+      physics.refuse("engine", missing.reason);
+    }
+  }
+  return physics.get_choice("engine", engine_names(), "ode");
+}
+
 WorkspaceSphere read_workspace(const ConfigTable& table) {
   WorkspaceSphere sphere;
   if (table.has("centre_m")) {
@@ -264,11 +274,12 @@ void load_tracking(const ConfigTable& table, LoadedProblem& loaded) {
   config.summary = loaded.title;
   const ConfigTable robot = table.get_table("robot");
   const auto urdf = resolve_named(robot, "urdf", "robots");
-  config.robot = load_urdf(urdf);
+  config.mass_scale = robot.get_number_or("mass_scale", 1, {.lower = 0.01, .upper = 100});
+  config.robot = scale_masses(load_urdf(urdf), config.mass_scale);
   add_input(loaded, urdf);
 
   const ConfigTable physics = table.get_table_or_empty("physics");
-  config.engine = physics.get_choice("engine", engine_names(), "ode");
+  config.engine = read_engine(physics);
   const ConfigTable task = table.get_table_or_empty("task");
   config.task = read_task(task, physics);
   config.workspace = read_workspace(table.get_table_or_empty("workspace"));
