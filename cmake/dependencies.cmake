@@ -32,3 +32,21 @@ if(ARMWRIGHT_WITH_CERES)
   find_package(Ceres 2.1 REQUIRED)
   list(APPEND ARMWRIGHT_OPTIMIZER_LIBRARIES Ceres::ceres)
 endif()
+
+# A third engine to check the others with: there where the library is, never asked for. (Its own CMake package wants OpenGL, which only
+# its pictures need.)
+find_library(MUJOCO_LIBRARY mujoco)
+find_path(MUJOCO_INCLUDE_DIR mujoco/mujoco.h)
+set(mujoco_found OFF)
+if(MUJOCO_LIBRARY AND MUJOCO_INCLUDE_DIR)
+  file(STRINGS ${MUJOCO_INCLUDE_DIR}/mujoco/mujoco.h mujoco_version REGEX "^#define mjVERSION_HEADER")
+  string(REGEX REPLACE ".* ([0-9])([0-9])([0-9]).*" "\\1.\\2.\\3" mujoco_version "${mujoco_version}")
+  if(mujoco_version VERSION_GREATER_EQUAL 2.2 AND mujoco_version VERSION_LESS 2.3)
+    set(mujoco_found ON) # 2.3 has other data structures
+  endif()
+endif()
+option(ARMWRIGHT_WITH_MUJOCO "Engine mujoco, to check the others with" ${mujoco_found})
+if(ARMWRIGHT_WITH_MUJOCO AND NOT mujoco_found)
+  message(FATAL_ERROR "ARMWRIGHT_WITH_MUJOCO is ON, but there is no MuJoCo 2.2; install the Debian package libmujoco-dev or leave the "
+                      "option OFF")
+endif()

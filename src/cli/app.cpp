@@ -25,6 +25,7 @@ constexpr const char* kFooter = R"(Examples:
   armwright list optimizers ga                     # one optimizer and its options
   armwright optimize q1-complex --seed 1           # tune the arm as the thesis did; resumes if interrupted
   armwright evaluate table-a10 --problem q2-e6     # a published design on 500 test cases
+  armwright verify table-a10                       # does it hold under other engines, time steps and masses?
   armwright reproduce                              # the thesis's published results beside ours
 
 'armwright COMMAND --help' explains a command, with examples.
@@ -34,7 +35,7 @@ Results go to standard output, progress and messages to standard error. NO_COLOR
 Exit codes:
   0    done
   2    wrong use or configuration
-  3    done, but something failed (a case without a number, nothing feasible found)
+  3    done, but something failed (a case without a number, nothing feasible found, a design that does not hold)
   4    an input file cannot be used
   5    another process writes this folder
   74   reading or writing failed
@@ -184,6 +185,7 @@ int run_app(int argc, char** argv) {
     add_optimize(app, session);
     add_evaluate(app, session);
     add_sweep(app, session);
+    add_verify(app, session);
     add_reproduce(app, session);
     add_testset(app, session);
     add_show(app, session);

@@ -29,6 +29,27 @@ TestSet choose_set(const LoadedProblem& problem, const CaseOptions& options) {
 
 }  // namespace
 
+LoadedProblem load_its_problem(const DesignFile& design, const std::string& problem,
+                               std::vector<std::string> overrides, bool quiet) {
+  if (!problem.empty()) {
+    return load_problem(problem, overrides);
+  }
+  if (design.published.empty()) {
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("--problem is missing, and design '{}' does not say what it was made for; "
+                    "name one (armwright list problems)",
+                    sanitize(design.name)));
+  }
+  const PublishedResult& published = design.published.front();
+  overrides.insert(overrides.begin(), published.overrides.begin(), published.overrides.end());
+  if (!quiet) {
+    write_message(fmt::format("no --problem given: using {}, which {} was published for",
+                              published.problem, design.name));
+  }
+  return load_problem(published.problem, overrides);
+}
+
 const TrackingProblem& require_tracking(const LoadedProblem& problem) {
   if (problem.tracking == nullptr) {
     throw Error(

@@ -1,5 +1,5 @@
-// A given design on a set of test cases, with progress on stderr: what evaluate, sweep and
-// reproduce have in common.
+// A given design on a set of test cases, with progress on stderr: what evaluate, sweep,
+// verify and reproduce have in common.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/arguments.hpp"
+#include "problems/design_file.hpp"
 #include "study/run.hpp"
 #include "study/summary.hpp"
 
@@ -20,6 +21,11 @@ struct ChosenCases {
 
 // Error{usage} if there are not so many cases.
 ChosenCases choose_cases(const LoadedProblem& problem, const CaseOptions& options);
+
+// The problem of that name; if there is none, the one that the design was published for, saying so
+// on stderr unless `quiet`. Error{usage} if the design was published for none.
+LoadedProblem load_its_problem(const DesignFile& design, const std::string& problem,
+                               std::vector<std::string> overrides, bool quiet);
 
 // The problem's tracking side; Error{usage} for an analytic function, which no arm's design can be
 // evaluated on.

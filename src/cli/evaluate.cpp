@@ -177,27 +177,6 @@ std::string format_text(const EvaluatedDesign& evaluated, const Style& style) {
          format_profile(evaluated, style);
 }
 
-LoadedProblem load_its_problem(const EvaluateOptions& options, const DesignFile& design) {
-  std::vector<std::string> overrides = options.overrides.get();
-  if (!options.problem.empty()) {
-    return load_problem(options.problem, overrides);
-  }
-  if (design.published.empty()) {
-    throw Error(
-        ErrorKind::usage,
-        fmt::format("--problem is missing, and design '{}' does not say what it was made for; "
-                    "name one (armwright list problems)",
-                    sanitize(design.name)));
-  }
-  const PublishedResult& published = design.published.front();
-  overrides.insert(overrides.begin(), published.overrides.begin(), published.overrides.end());
-  if (!options.quiet) {
-    write_message(fmt::format("no --problem given: using {}, which {} was published for",
-                              published.problem, design.name));
-  }
-  return load_problem(published.problem, overrides);
-}
-
 int run_evaluate(const EvaluateOptions& options, Session& session) {
   if (options.trajectory.empty() != options.trajectory_case.empty()) {
     throw Error(
@@ -210,7 +189,8 @@ int run_evaluate(const EvaluateOptions& options, Session& session) {
   }
   const unsigned jobs = options.jobs.get();
   DesignFile design = load_design(options.design);
-  LoadedProblem problem = load_its_problem(options, design);
+  LoadedProblem problem =
+      load_its_problem(design, options.problem, options.overrides.get(), options.quiet);
   const TrackingProblem& tracking = require_tracking(problem);
   tracking.check_design(design.design);
   ChosenCases cases = choose_cases(problem, options.cases);

@@ -21,6 +21,12 @@ const EngineRow& find(std::span<const EngineRow> table, const std::string& name)
     }
     names.push_back(row.name);
   }
+  for (const MissingEngine& missing : missing_engine_table()) {
+    if (missing.name == name) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("engine '{}' is not there: {}", name, missing.reason));
+    }
+  }
   throw Error(ErrorKind::usage, describe_unknown("engine", name, names));
 }
 
@@ -61,6 +67,9 @@ ListKind make_engine_kind(std::span<const EngineRow> table) {
     for (const EngineRow& row : table) {
       items.push_back(
           {row.name, row.summary + (row.simd ? "; SIMD here: " + describe_simd() : "")});
+    }
+    for (const MissingEngine& missing : missing_engine_table()) {
+      items.push_back({missing.name, "not there: " + missing.reason});
     }
     return items;
   };

@@ -39,6 +39,7 @@ void add_list(CLI::App& app, Session& session);
 void add_optimize(CLI::App& app, Session& session);
 void add_evaluate(CLI::App& app, Session& session);
 void add_sweep(CLI::App& app, Session& session);
+void add_verify(CLI::App& app, Session& session);
 void add_reproduce(CLI::App& app, Session& session);
 void add_testset(CLI::App& app, Session& session);
 void add_show(CLI::App& app, Session& session);

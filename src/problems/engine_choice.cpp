@@ -18,6 +18,12 @@ const EngineRow& read_engine(const ConfigTable& physics, std::string_view key,
   for (const EngineRow& row : table) {
     names.push_back(row.name);
   }
+  for (const MissingEngine& missing : missing_engine_table()) {
+    if (physics.get_string(key, fallback) == missing.name &&
+        std::ranges::find(names, missing.name) == names.end()) {
+      physics.refuse(key, missing.reason);
+    }
+  }
   const std::string name = physics.get_choice(key, names, fallback);
   return *std::ranges::find(table, name, &EngineRow::name);
 }

@@ -266,7 +266,8 @@ std::optional<SimdLevel> load_tracking(const ConfigTable& table, std::span<const
   config.summary = loaded.title;
   const ConfigTable robot = table.get_table("robot");
   const auto urdf = resolve_named(robot, "urdf", "robots");
-  config.robot = load_urdf(urdf);
+  config.mass_scale = robot.get_number_or("mass_scale", 1, {.lower = 0.01, .upper = 100});
+  config.robot = scale_masses(load_urdf(urdf), config.mass_scale);
   add_input(loaded, urdf);
 
   const ConfigTable physics = table.get_table_or_empty("physics");

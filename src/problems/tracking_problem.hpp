@@ -52,6 +52,7 @@ struct TrackingConfig {
   std::string name;
   std::string summary;
   RobotModel robot;
+  double mass_scale = 1;  // what its masses were multiplied by when it was loaded
   TrackingTask task;
   WorkspaceSphere workspace;
   EnginePair engines;           // both must be there (choose_engines)

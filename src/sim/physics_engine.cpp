@@ -10,32 +10,63 @@
 #include "sim/articulated/articulated_engine.hpp"
 #include "sim/ode_arm.hpp"
 #include "sim/tracking_loop.hpp"
+#ifdef ARMWRIGHT_WITH_MUJOCO
+#include "sim/mujoco_arm.hpp"
+#endif
 
 namespace armwright {
 namespace {
+
+// For engines that step one arm at a time. `make_arm` makes the arm of a job whose targets can be
+// reached, at its start.
+template <class MakeArm>
+std::vector<TrackingResult> simulate_one_by_one(const TrackingSetup& setup,
+                                                std::span<const TrackingJob> jobs,
+                                                const MakeArm& make_arm) {
+  std::vector<TrackingResult> results;
+  results.reserve(jobs.size());
+  for (const TrackingJob& job : jobs) {
+    if (!job.targets->unreachable.empty()) {
+      TrackingResult result;
+      result.status = SimulationStatus::unreachable;
+      result.reason = job.targets->unreachable;
+      results.push_back(std::move(result));
+      continue;
+    }
+    const TrackingSetup& own = job.setup != nullptr ? *job.setup : setup;
+    auto arm = make_arm(own, job.targets->start_rad);
+    results.push_back(TrackingLoop(own, job).run(arm));
+  }
+  return results;
+}
 
 class OdeEngine final : public PhysicsEngine {
  public:
   std::vector<TrackingResult> simulate(const TrackingSetup& setup,
                                        std::span<const TrackingJob> jobs) const override {
-    std::vector<TrackingResult> results;
-    results.reserve(jobs.size());
-    for (const TrackingJob& job : jobs) {
-      if (!job.targets->unreachable.empty()) {
-        TrackingResult result;
-        result.status = SimulationStatus::unreachable;
-        result.reason = job.targets->unreachable;
-        results.push_back(std::move(result));
-        continue;
-      }
-      const TrackingSetup& own = job.setup != nullptr ? *job.setup : setup;
-      OdeArm arm(own.robot(), job.targets->start_rad, own.task().physics);
-      results.push_back(TrackingLoop(own, job).run(arm));
-    }
-    return results;
+    return simulate_one_by_one(setup, jobs,
+                               [](const TrackingSetup& own, std::span<const double> start) {
+                                 return OdeArm(own.robot(), start, own.task().physics);
+                               });
   }
   BatchSize batch_size() const override { return {}; }
 };
+
+#ifdef ARMWRIGHT_WITH_MUJOCO
+class MujocoEngine final : public PhysicsEngine {
+ public:
+  std::vector<TrackingResult> simulate(const TrackingSetup& setup,
+                                       std::span<const TrackingJob> jobs) const override {
+    const MujocoModel model(setup.robot(), setup.task().physics);
+    return simulate_one_by_one(
+        setup, jobs, [&](const TrackingSetup& own, std::span<const double> start) {
+          return &own == &setup ? MujocoArm(model, start)
+                                : MujocoArm(own.robot(), start, own.task().physics);
+        });
+  }
+  BatchSize batch_size() const override { return {}; }
+};
+#endif
 
 constexpr std::array kPrecisions = {Precision::double_, Precision::single};
 
@@ -84,6 +115,23 @@ const std::vector<EngineRow>& engine_table() {
       {"articulated",
        "joint coordinates, many simulations at once in SIMD lanes: a hundred times as fast", true,
        make_articulated_engine},
+#ifdef ARMWRIGHT_WITH_MUJOCO
+      {"mujoco", "MuJoCo, joint coordinates, semi-implicit Euler: to check the others with", false,
+       [](const EngineOptions&) -> std::unique_ptr<PhysicsEngine> {
+         return std::make_unique<MujocoEngine>();
+       }},
+#endif
+  };
+  return table;
+}
+
+const std::vector<MissingEngine>& missing_engine_table() {
+  static const std::vector<MissingEngine> table = {
+#ifndef ARMWRIGHT_WITH_MUJOCO
+      {"mujoco",
+       "this armwright was built without MuJoCo; install the Debian package libmujoco-dev and "
+       "build with the CMake option ARMWRIGHT_WITH_MUJOCO=ON"},
+#endif
   };
   return table;
 }
@@ -100,6 +148,12 @@ const EngineRow& find_engine(std::string_view name) {
   for (const EngineRow& row : engine_table()) {
     if (row.name == name) {
       return row;
+    }
+  }
+  for (const MissingEngine& missing : missing_engine_table()) {
+    if (missing.name == name) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("engine '{}' is not there: {}", name, missing.reason));
     }
   }
   throw Error(ErrorKind::usage, describe_unknown("engine", name, engine_names()));

@@ -46,9 +46,17 @@ struct EngineRow {
   std::unique_ptr<PhysicsEngine> (*make)(const EngineOptions& options);
 };
 
+// An optional engine that this build leaves out.
+struct MissingEngine {
+  std::string name;
+  std::string reason;  // and what to do about it
+};
+
 const std::vector<EngineRow>& engine_table();
+const std::vector<MissingEngine>& missing_engine_table();
 std::vector<std::string> engine_names();
-const EngineRow& find_engine(std::string_view name);  // Error{usage} if there is none
+// Error{usage} if there is none of that name, or this build leaves it out.
+const EngineRow& find_engine(std::string_view name);
 
 // Precision and SIMD level as the engine will use them: of one with SIMD the level is set to the
 // best of this machine where none is given. Error{usage} for a choice that the engine does not

@@ -88,4 +88,16 @@ RobotModel add_load(RobotModel model, double mass_kg) {
   return model;
 }
 
+RobotModel scale_masses(RobotModel model, double factor) {
+  if (!std::isfinite(factor) || factor <= 0) {
+    throw Error(ErrorKind::usage,
+                fmt::format("the masses' factor is {}; it must be finite and > 0", factor));
+  }
+  for (Link& link : model.links) {
+    link.inertial.mass_kg *= factor;
+    link.inertial.inertia_kg_m2 *= factor;
+  }
+  return model;
+}
+
 }  // namespace armwright

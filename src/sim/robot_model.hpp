@@ -95,4 +95,8 @@ RobotModel parse_urdf(std::string_view xml, const std::string& name);
 // Error{bad_data} if the tip lies in the last joint, which leaves no direction.
 RobotModel add_load(RobotModel model, double mass_kg);
 
+// Every moving link's mass and inertia times `factor`, as if of another density. Error{usage}
+// unless it is finite and > 0.
+RobotModel scale_masses(RobotModel model, double factor);
+
 }  // namespace armwright

@@ -50,6 +50,7 @@ TEST_F(Cli, EveryCommandExplainsItselfWithAnExample) {
                                                   {"optimize"},
                                                   {"evaluate"},
                                                   {"sweep"},
+                                                  {"verify"},
                                                   {"reproduce"},
                                                   {"testset"},
                                                   {"testset", "export"},

@@ -8,10 +8,17 @@
 #include <string>
 
 #include "sim/ode_arm.hpp"
+#ifdef ARMWRIGHT_WITH_MUJOCO
+#include "sim/mujoco_arm.hpp"
+#endif
 
 namespace armwright::physics_test {
 
+#ifdef ARMWRIGHT_WITH_MUJOCO
+using ArmTypes = testing::Types<OdeArm, MujocoArm>;
+#else
 using ArmTypes = testing::Types<OdeArm>;
+#endif
 
 template <class Arm>
 struct ArmTraits;
@@ -54,11 +61,47 @@ struct ArmTraits<OdeArm> {
   static double calc_gap_m(double turn_rad, double reach_m, std::size_t joints, double erp) {
     return static_cast<double>(joints) * turn_rad * turn_rad * reach_m / (2 * erp);
   }
+  // A link that turns fast leaves its circle.
+  static constexpr bool kMovesAlongTangents = true;
   // What is said of an arm that blew up: joints are named unless the library itself gave up.
   static constexpr const char* kBlownUp =
       "joint [0-9]+ \\([a-z]+\\): its link is .* m from the base and turns at .* rad/s|"
       "ODE stopped \\(message .*";
 };
+
+// Joint coordinates: semi-implicit Euler itself, so that only rounding is left.
+struct ReducedArmTraits {
+  static constexpr double kErrorOverEuler = 1 + 1e-6;
+  static constexpr double kDistanceToEuler = 1e-6;
+  // Its symplectic map keeps the amplitude: the period is off by the square of the step.
+  static constexpr int kPeriodOrder = 2;
+  static constexpr double kMomentumError = 2;
+  static const Eigen::VectorXd& select_posture(const Eigen::VectorXd& before [[maybe_unused]],
+                                               const Eigen::VectorXd& after) {
+    return after;
+  }
+  static double calc_rate_error(double turn_rad [[maybe_unused]], bool slides [[maybe_unused]]) {
+    return 1e-12;
+  }
+  // Links move along circles of some metres, and along rails that turn.
+  static double calc_path_error_m(double turn_rad, double moved) {
+    return 4e-15 + 4 * turn_rad * moved;
+  }
+  static double calc_gap_m(double turn_rad [[maybe_unused]], double reach_m,
+                           std::size_t joints [[maybe_unused]], double erp [[maybe_unused]]) {
+    return 1e-13 * reach_m;
+  }
+  static constexpr bool kMovesAlongTangents = false;
+  static constexpr const char* kBlownUp =
+      "joint [0-9]+ \\([a-z]+\\): its link is .* m from the base and turns at .* rad/s";
+};
+
+#ifdef ARMWRIGHT_WITH_MUJOCO
+template <>
+struct ArmTraits<MujocoArm> : ReducedArmTraits {
+  static constexpr const char* kName = "MujocoArm";
+};
+#endif
 
 struct ArmNames {
   template <class Arm>

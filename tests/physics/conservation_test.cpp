@@ -161,7 +161,7 @@ double measure_momentum_error(const MomentumCase& a, double gravity, bool pushed
 }
 
 // Rates and positions after a step are not of the same instant: the difference is of first order,
-// of the size of the momentum (3 N m s of the turning arms, 10 N s along the rail, 30 N m s with a
+// of the size of the momentum (6 N m s of the turning arms, 10 N s along the rail, 30 N m s with a
 // mass that slides far out) times the turn in a step (rates up to 10 rad/s).
 TYPED_TEST(Momentum, AlongTheFirstJointIsTheImpulse) {
   for (const MomentumCase& a : make_momentum_cases()) {

@@ -117,12 +117,17 @@ TYPED_TEST(Divergence, BeginsAtAMillionRadiansPerSecond) {
 }
 
 // The centre of mass is at most 0.34 m from the hinge and the distance that counts is |x| + |y| +
-// |z|, so that in 0.1 s and at 1e4 rad/s it gets 0.34 to 0.48 km away, at 1e5 rad/s 3.4 to 4.8 km.
+// |z|, so that in 0.1 s and at 1e4 rad/s it gets 0.34 to 0.48 km away, at 1e5 rad/s 3.4 to 4.8 km,
+// if it leaves its circle at all.
 TYPED_TEST(Divergence, BeginsAtAKilometre) {
   EXPECT_EQ(kick<TypeParam>(1e4, 0.1), "(no error)");
-  EXPECT_THAT(kick<TypeParam>(1e5, 0.1),
-              MatchesRegex("joint 1 \\(pivot\\): its link is .*e\\+03 m from the "
-                           "base and turns at 1e\\+05 rad/s"));
+  if constexpr (ArmTraits<TypeParam>::kMovesAlongTangents) {
+    EXPECT_THAT(kick<TypeParam>(1e5, 0.1),
+                MatchesRegex("joint 1 \\(pivot\\): its link is .*e\\+03 m from the "
+                             "base and turns at 1e\\+05 rad/s"));
+  } else {
+    EXPECT_EQ(kick<TypeParam>(1e5, 0.1), "(no error)");
+  }
 }
 
 // A link on a level rail, pushed for one step of 10 s: it is there where it says, or too far away.

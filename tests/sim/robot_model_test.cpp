@@ -408,5 +408,33 @@ TEST(AddLoad, NeedsATipThatPointsSomewhere) {
   }
 }
 
+TEST(ScaleMasses, ScalesWhatMovesAndNothingElse) {
+  const RobotModel arm = load_arm();
+  const RobotModel heavy = scale_masses(arm, 1.25);
+  for (std::size_t i = 0; i < arm.joint_count(); ++i) {
+    const Inertial& before = arm.links[i].inertial;
+    const Inertial& after = heavy.links[i].inertial;
+    EXPECT_EQ(after.mass_kg, 1.25 * before.mass_kg);
+    EXPECT_EQ(after.inertia_kg_m2, 1.25 * before.inertia_kg_m2);
+    EXPECT_EQ(after.com_m, before.com_m);
+  }
+  EXPECT_EQ(heavy.base.inertial.mass_kg, arm.base.inertial.mass_kg);
+  EXPECT_EQ(scale_masses(arm, 1).links[2].inertial.inertia_kg_m2,
+            arm.links[2].inertial.inertia_kg_m2);
+}
+
+TEST(ScaleMasses, RefusesWhatIsNoFactor) {
+  for (const double factor : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(),
+                              std::numeric_limits<double>::infinity()}) {
+    try {
+      scale_masses(load_arm(), factor);
+      FAIL() << factor;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::usage);
+      EXPECT_THAT(error.what(), HasSubstr("it must be finite and > 0"));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace armwright

@@ -1,0 +1,146 @@
+// armwright verify, and the settings that it stands on.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "base/temporary_folder.hpp"
+#include "e2e/program.hpp"
+#include "sim/physics_engine.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class Verify : public testing::Test {
+ protected:
+  Outcome run(const std::vector<std::string>& arguments) {
+    return run_program(folder_.path(), arguments);
+  }
+  json verify(std::vector<std::string> arguments, int exit_code) {
+    arguments.insert(arguments.begin(), "verify");
+    arguments.insert(arguments.end(), {"--json", "--quiet"});
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, exit_code) << outcome.err;
+    EXPECT_THAT(outcome.err, IsEmpty());
+    return json::parse(outcome.out);
+  }
+  TemporaryFolder folder_;
+};
+
+json find_row(const json& verified, const std::string& engine, int substeps, double mass_factor) {
+  for (const json& row : verified["rows"]) {
+    if (row["engine"] == engine && row["substeps"] == substeps &&
+        row["mass_factor"] == mass_factor) {
+      return row;
+    }
+  }
+  ADD_FAILURE() << "no row " << engine << " " << substeps << " " << mass_factor;
+  return {};
+}
+
+// The published design is tuned to one step of the simulation in a control period: 0.08 mm become
+// 0.1 m, in every engine.
+TEST_F(Verify, ShowsThatTableA10FailsWithTwoSubsteps) {
+  const json verified = verify({"table-a10", "--cases", "2"}, 3);
+  EXPECT_EQ(verified["problem"], "q2-e6");
+  EXPECT_EQ(verified["holds"], false);
+  EXPECT_EQ(verified["rows"].size(), engine_names().size() * 4 * 3);
+  EXPECT_EQ(verified["rows"][0]["own_setting"], true);
+  for (const std::string& engine : engine_names()) {
+    const json once = find_row(verified, engine, 1, 1);
+    EXPECT_EQ(once["verdict"], "holds") << engine;
+    EXPECT_NEAR(once["median_ratio"], 1, 0.01) << engine;
+    EXPECT_NEAR(once["median_error_m"], 0.074e-3, 0.02e-3) << engine;
+    const json twice = find_row(verified, engine, 2, 1);
+    EXPECT_EQ(twice["verdict"], "fails") << engine;
+    EXPECT_EQ(twice["failures"], 2) << engine;
+    EXPECT_GT(twice["median_ratio"], 1000) << engine;
+  }
+  EXPECT_THAT(verified["conclusion"].get<std::string>(), HasSubstr("It fails with 2 substeps"));
+}
+
+TEST_F(Verify, ShowsThatTableA5GetsWorseWithTwoSubstepsAndFailsWithMore) {
+  const json verified = verify({"table-a5", "--problem", "q1-complex", "--cases", "2"}, 3);
+  for (const std::string& engine : engine_names()) {
+    EXPECT_EQ(find_row(verified, engine, 1, 0.9)["verdict"], "holds") << engine;
+    EXPECT_EQ(find_row(verified, engine, 1, 1.1)["verdict"], "holds") << engine;
+    EXPECT_EQ(find_row(verified, engine, 2, 1)["verdict"], "worse") << engine;
+    EXPECT_EQ(find_row(verified, engine, 5, 1)["verdict"], "fails") << engine;
+    EXPECT_EQ(find_row(verified, engine, 10, 1)["verdict"], "fails") << engine;
+  }
+}
+
+// Its rows are what `evaluate` gives under the same settings.
+TEST_F(Verify, TriesWhatItSays) {
+  const json verified = verify({"table-a5", "--problem", "q1-complex", "--cases", "1", "--set",
+                                "robot.mass_scale=2", "--set", "physics.substeps=3"},
+                               3);
+  EXPECT_EQ(verified["rows"].size(), engine_names().size() * 5 * 3);
+  const json evaluated =
+      json::parse(run({"evaluate", "table-a5", "--problem", "q1-complex", "--cases", "1", "--set",
+                       "robot.mass_scale=1.8", "--set", "physics.substeps=2", "--json", "-q"})
+                      .out);
+  EXPECT_EQ(find_row(verified, "ode", 2, 0.9)["mean_error_m"],
+            evaluated["summary"]["mean_error_m"]);
+}
+
+TEST_F(Verify, PrintsATableAndAConclusion) {
+  const Outcome outcome = run({"verify", "table-a10", "--cases", "1"});
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("table-a10 on q2-e6: the first 1 case of test/2"),
+                                 HasSubstr("its own setting"), HasSubstr("table-a10 holds in "),
+                                 HasSubstr("\nengine  substeps  masses")));
+  EXPECT_THAT(outcome.err, HasSubstr("no --problem given: using q2-e6"));
+}
+
+// Soft controllers hardly notice the time step, and this workspace asks little of them.
+TEST_F(Verify, EndsWithZeroWhereEverythingHolds) {
+  const json verified = verify({"table-a1", "--problem", "q1-complex", "--cases", "1", "--set",
+                                "physics.gravity_m_per_s2=0", "--set", "task.speed_m_per_s=0.05",
+                                "--set", "task.ik_bug=true", "--set", "workspace.points=3"},
+                               0);
+  EXPECT_EQ(verified["holds"], true);
+}
+
+TEST_F(Verify, ExplainsItselfAndRefusesWhatIsWrong) {
+  EXPECT_THAT(run({"verify", "--help"}).out, HasSubstr("Examples:\n  armwright verify table-a10"));
+  const auto refuse = [&](const std::vector<std::string>& arguments, const std::string& part) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_THAT(outcome.out, IsEmpty());
+    EXPECT_THAT(outcome.err, HasSubstr(part));
+  };
+  refuse({"verify", "table-a1"}, "--problem is missing");
+  refuse({"verify", "table-a5", "--problem", "sphere"}, "'sphere' is an analytic function");
+  refuse({"verify", "table-a5", "--cases", "0"}, "--cases is '0'");
+  refuse({"evaluate", "table-a5", "--set", "robot.mass_scale=0"},
+         "robot.mass_scale is 0; it must be a finite number >= 0.01 and <= 100");
+}
+
+// Whichever of the two it is.
+TEST_F(Verify, AnEngineIsThereOrSaysWhatIsMissing) {
+  for (const MissingEngine& missing : missing_engine_table()) {
+    const Outcome flag = run({"evaluate", "table-a10", "--engine", missing.name});
+    EXPECT_EQ(flag.exit_code, 2);
+    EXPECT_THAT(flag.err, AllOf(HasSubstr(missing.name), HasSubstr(missing.reason)));
+    const Outcome set = run({"evaluate", "table-a10", "--set", "physics.engine=" + missing.name});
+    EXPECT_EQ(set.exit_code, 2);
+    EXPECT_THAT(set.err, AllOf(HasSubstr("physics.engine is"), HasSubstr(missing.reason)));
+  }
+  const std::string listed = run({"list", "engines"}).out;
+  for (const std::string& name : engine_names()) {
+    EXPECT_THAT(listed, HasSubstr(name));
+  }
+  for (const MissingEngine& missing : missing_engine_table()) {
+    EXPECT_THAT(listed, AllOf(HasSubstr(missing.name), HasSubstr("not there: " + missing.reason)));
+  }
+}
+
+}  // namespace
+}  // namespace armwright
