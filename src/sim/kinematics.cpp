@@ -93,7 +93,7 @@ Eigen::Vector3d calc_tip_position(const RobotModel& model, std::span<const doubl
   return pose * model.tip_pose.translation();
 }
 
-ElbowUpKinematics::ElbowUpKinematics(const RobotModel& model, bool ik_bug) : ik_bug_(ik_bug) {
+ElbowUpKinematics::ElbowUpKinematics(const RobotModel& model, bool ik_bug) {
   if (model.joint_count() != kJoints) {
     refuse(model, fmt::format(
                       "it has {} moving joints; it must have {}: a vertical one and three parallel "
@@ -108,9 +108,9 @@ ElbowUpKinematics::ElbowUpKinematics(const RobotModel& model, bool ik_bug) : ik_
   }
   const std::array<double, kJoints> zero{};
   const std::vector<Eigen::Isometry3d> poses = calc_link_poses(model, zero);
-  sign_[0] = find_axis_sign(model, 0, poses[0], Eigen::Vector3d::UnitZ(), "vertical, +z or -z");
+  arm_.sign[0] = find_axis_sign(model, 0, poses[0], Eigen::Vector3d::UnitZ(), "vertical, +z or -z");
   for (std::size_t i = 1; i < kJoints; ++i) {
-    sign_[i] = find_axis_sign(model, i, poses[i], Eigen::Vector3d::UnitY(), "+y or -y");
+    arm_.sign[i] = find_axis_sign(model, i, poses[i], Eigen::Vector3d::UnitY(), "+y or -y");
   }
   const Eigen::Vector3d first = poses[0].translation();
   if (first.head<2>().norm() > kGeometryTolerance) {
@@ -133,16 +133,17 @@ ElbowUpKinematics::ElbowUpKinematics(const RobotModel& model, bool ik_bug) : ik_
   const Eigen::Vector3d upper_arm = poses[2].translation() - shoulder;
   const Eigen::Vector3d forearm = poses[3].translation() - poses[2].translation();
   const Eigen::Vector3d last_link = tip - poses[3].translation();
-  shoulder_radius_m_ = shoulder.x();
-  shoulder_height_m_ = shoulder.z();
-  upper_arm_m_ = calc_length(upper_arm);
-  forearm_m_ = calc_length(forearm);
-  last_link_m_ = calc_length(last_link);
-  upper_arm_zero_rad_ = calc_elevation(upper_arm);
-  forearm_zero_rad_ = calc_elevation(forearm);
-  last_link_zero_rad_ = calc_elevation(last_link);
+  arm_.shoulder_radius_m = shoulder.x();
+  arm_.shoulder_height_m = shoulder.z();
+  arm_.upper_arm_m = calc_length(upper_arm);
+  arm_.forearm_m = calc_length(forearm);
+  arm_.last_link_m = calc_length(last_link);
+  arm_.upper_arm_zero_rad = calc_elevation(upper_arm);
+  arm_.forearm_zero_rad = calc_elevation(forearm);
+  arm_.last_link_zero_rad = calc_elevation(last_link);
+  arm_.shoulder_offset_m = ik_bug ? kIkBugOffset_m : 0;
 
-  const std::array<double, 3> lengths{upper_arm_m_, forearm_m_, last_link_m_};
+  const std::array<double, 3> lengths{arm_.upper_arm_m, arm_.forearm_m, arm_.last_link_m};
   for (std::size_t i = 0; i < lengths.size(); ++i) {
     if (lengths[i] < kGeometryTolerance) {
       refuse(model, fmt::format("link '{}' has no length: {} lies on the axis of joint {} ('{}')",
@@ -155,55 +156,16 @@ ElbowUpKinematics::ElbowUpKinematics(const RobotModel& model, bool ik_bug) : ik_
   }
 }
 
-ElbowUpKinematics::Wrist ElbowUpKinematics::calc_wrist(const Eigen::Vector3d& target_m) const {
-  Wrist wrist{};
-  wrist.heading_rad = std::atan2(target_m.y(), target_m.x());
-  wrist.up_m = target_m.z() + last_link_m_ - shoulder_height_m_;
-  if (ik_bug_) {
-    const double cosine = std::cos(wrist.heading_rad);
-    const double sine = std::sin(wrist.heading_rad);
-    const double shoulder_x = shoulder_radius_m_ * cosine + kIkBugOffset_m * sine;
-    const double shoulder_y = shoulder_radius_m_ * sine - kIkBugOffset_m * cosine;
-    wrist.forward_m = std::hypot(target_m.x() - shoulder_x, target_m.y() - shoulder_y);
-  } else {
-    wrist.forward_m = std::hypot(target_m.x(), target_m.y()) - shoulder_radius_m_;
-  }
-  wrist.distance_m = std::hypot(wrist.up_m, wrist.forward_m);
-  return wrist;
-}
-
 bool ElbowUpKinematics::solve(const Eigen::Vector3d& target_m, std::span<double, 4> q) const {
-  const Wrist wrist = calc_wrist(target_m);
-  const double a = forearm_m_;
-  const double b = wrist.distance_m;
-  const double c = upper_arm_m_;
-  const double cos_beta = (b * b + c * c - a * a) / (2 * b * c);
-  const double cos_gamma = (a * a + c * c - b * b) / (2 * a * c);
-  if (!(std::abs(cos_beta) <= 1) || !(std::abs(cos_gamma) <= 1)) {
-    return false;  // the negations catch a NaN: a wrist in the shoulder, a target that is no number
-  }
-  const double upper_arm_elevation = std::atan2(wrist.up_m, wrist.forward_m) + std::acos(cos_beta);
-  const double forearm_elevation = upper_arm_elevation - (kPi - std::acos(cos_gamma));
-  constexpr double kLastLinkElevation = -kPi / 2;
-
-  // A positive rotation about +y tips a link down, so the angles of joints 2 to i add up to its
-  // elevation at angle zero less the one it is to have.
-  const double q2 = upper_arm_zero_rad_ - upper_arm_elevation;
-  const double q23 = forearm_zero_rad_ - forearm_elevation;
-  const double q234 = last_link_zero_rad_ - kLastLinkElevation;
-  q[0] = sign_[0] * wrist.heading_rad;
-  q[1] = sign_[1] * q2;
-  q[2] = sign_[2] * (q23 - q2);
-  q[3] = sign_[3] * (q234 - q23);
-  return true;
+  return targets::solve(arm_, target_m.data(), q.data());
 }
 
 std::string ElbowUpKinematics::describe_unreachable(const Eigen::Vector3d& target_m) const {
   return fmt::format(
       "target {} m is out of reach: the wrist would be {:.6g} m from the shoulder, possible is "
       "{:.6g} to {:.6g} m",
-      describe(target_m), calc_wrist(target_m).distance_m, std::abs(upper_arm_m_ - forearm_m_),
-      upper_arm_m_ + forearm_m_);
+      describe(target_m), targets::calc_wrist_distance(arm_, target_m.data()),
+      std::abs(arm_.upper_arm_m - arm_.forearm_m), arm_.upper_arm_m + arm_.forearm_m);
 }
 
 }  // namespace armwright

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "sim/articulated/targets.hpp"
 #include "sim/robot_model.hpp"
 
 namespace armwright {
@@ -24,7 +25,7 @@ Eigen::Vector3d calc_tip_position(const RobotModel& model, std::span<const doubl
 
 // The thesis's error in the inverse kinematics, reproduced on request: it started link 1 at a point
 // 122.5 mm to the side of the common plane (the y component of its base link vector, thesis Table
-// B.1).
+// B.1), so that the wrist's horizontal distance became sqrt(f^2 + 0.1225^2).
 inline constexpr double kIkBugOffset_m = 0.1225;
 
 // Closed-form inverse kinematics of a palletising arm: a vertical first axis (the world's z axis),
@@ -32,11 +33,13 @@ inline constexpr double kIkBugOffset_m = 0.1225;
 // through the first axis; links may lie beside that plane as long as the tip does not. Elbow up,
 // the last link pointing straight down (thesis section 5.1). With a and c the lengths of joint 3-4
 // and joint 2-3, p1 the shoulder, p3 the wrist, f and e its horizontal and vertical distance from
-// the shoulder, b = hypot(e, f):
-//   beta = acos((b^2 + c^2 - a^2) / 2bc) at the shoulder,
-//   gamma = acos((a^2 + c^2 - b^2) / 2ac) at the elbow,
+// the shoulder, b = hypot(e, f), and S four times the area of the triangle shoulder-elbow-wrist
+// (Heron), S^2 = ((a + c)^2 - b^2) (b^2 - (a - c)^2):
+//   beta = acos((b^2 + c^2 - a^2) / 2bc) = atan2(S, b^2 + c^2 - a^2) at the shoulder,
+//   gamma = acos((a^2 + c^2 - b^2) / 2ac) at the elbow, pi - gamma = atan2(S, b^2 - a^2 - c^2),
 //   elevation of link 1 = atan2(e, f) + beta,
 //   elevation of elbow-wrist = elevation of link 1 - (pi - gamma).
+// Within reach is |a - c| <= b <= a + c, b > 0.
 class ElbowUpKinematics {
  public:
   // Reads its dimensions from the model. Error{bad_data} names what the robot lacks where it is not
@@ -50,23 +53,10 @@ class ElbowUpKinematics {
   // to MAX m".
   std::string describe_unreachable(const Eigen::Vector3d& target_m) const;
 
- private:
-  struct Wrist {
-    double heading_rad, forward_m, up_m, distance_m;
-  };
-  Wrist calc_wrist(const Eigen::Vector3d& target_m) const;
+  const targets::ElbowUpArm& arm() const { return arm_; }
 
-  bool ik_bug_;
-  std::array<double, 4>
-      sign_;  // -1 where a joint's axis is the opposite of +z (the first) or +y (the others)
-  double shoulder_radius_m_;   // g: of joint 2 from the first axis
-  double shoulder_height_m_;   // h
-  double upper_arm_m_;         // c
-  double forearm_m_;           // a
-  double last_link_m_;         // d
-  double upper_arm_zero_rad_;  // elevation of each part at angle 0
-  double forearm_zero_rad_;
-  double last_link_zero_rad_;
+ private:
+  targets::ElbowUpArm arm_;
 };
 
 }  // namespace armwright

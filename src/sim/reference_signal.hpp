@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-namespace armwright {
+#include "sim/articulated/targets.hpp"
 
-enum class SignalShape { step, ramp, trapezoid, triangular, complex };
+namespace armwright {
 
 const std::vector<std::string>& signal_names();    // in the order of the enum
 SignalShape find_signal(const std::string& name);  // the name must be one of signal_names()
@@ -26,16 +26,12 @@ class ReferenceSignal {
   ReferenceSignal(SignalShape shape, double distance_m, double speed_m_per_s,
                   double acceleration_m_per_s2);
 
-  double duration_s() const { return duration_s_; }  // t_m
-  double calc_distance(double t_s) const;            // s(t) in m, for t >= 0
+  double duration_s() const { return curve_.duration_s; }  // t_m
+  double calc_distance(double t_s) const;                  // s(t) in m, for t >= 0
+  const targets::SignalCurve& curve() const { return curve_; }
 
  private:
-  SignalShape shape_;
-  double distance_m_;
-  double speed_m_per_s_;
-  double duration_s_;
-  double ramp_up_s_ = 0;              // trapezoid: how long it accelerates
-  double acceleration_m_per_s2_ = 0;  // trapezoid and triangular: the one used
+  targets::SignalCurve curve_;
 };
 
 }  // namespace armwright

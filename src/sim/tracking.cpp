@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "sim/articulated/chain_model.hpp"
+#include "sim/simd_level.hpp"
 
 namespace armwright {
 namespace {
@@ -17,6 +18,18 @@ constexpr double kTimeTolerance = 1e-9;  // in control periods
 
 int calc_steps_covering(double duration_s, double period_s) {
   return static_cast<int>(std::ceil(duration_s / period_s - kTimeTolerance));
+}
+
+// How many of a segment's steps end before the target has arrived, without any tolerance.
+int count_moving_steps(const Segment& segment, double period_s) {
+  int steps = segment.window_start;
+  while ((steps + 1) * period_s < segment.duration_s) {
+    ++steps;
+  }
+  while (steps > 0 && steps * period_s >= segment.duration_s) {
+    --steps;
+  }
+  return steps;
 }
 
 }  // namespace
@@ -68,15 +81,22 @@ ReferenceSignal TrackingSetup::make_signal(double distance_m) const {
   return {task_.signal, distance_m, speed, task_.trapezoid_acceleration_m_per_s2};
 }
 
+targets::Move TrackingSetup::make_move(const Segment& segment) const {
+  targets::Move move;
+  const Eigen::Vector3d way = segment.to_m - segment.from_m;
+  Eigen::Vector3d::Map(move.from_m) = segment.from_m;
+  Eigen::Vector3d::Map(move.to_m) = segment.to_m;
+  Eigen::Vector3d::Map(move.way_m) = way;
+  move.curve = make_signal(way.norm()).curve();
+  move.period_s = task_.control_period_s;
+  return move;
+}
+
 Eigen::Vector3d TrackingSetup::calc_target_position(const Segment& segment,
                                                     int step_in_segment) const {
-  const Eigen::Vector3d move = segment.to_m - segment.from_m;
-  const double distance = move.norm();
-  const double time = (step_in_segment + 1) * task_.control_period_s;
-  if (time >= segment.duration_s) {
-    return segment.to_m;  // the point itself, not the start plus a rounded move
-  }
-  return segment.from_m + move * (make_signal(distance).calc_distance(time) / distance);
+  Eigen::Vector3d position;
+  targets::calc_position(make_move(segment), step_in_segment, position.data());
+  return position;
 }
 
 TargetTable TrackingSetup::make_targets(const TestCase& test_case) const {
@@ -103,17 +123,24 @@ TargetTable TrackingSetup::make_targets(const TestCase& test_case) const {
     return table;
   }
   table.start_rad.assign(q.begin(), q.end());
-  table.angles_rad.reserve(static_cast<std::size_t>(table.steps) * table.joints);
+  table.angles_rad.resize(static_cast<std::size_t>(table.steps) * table.joints);
+  const targets::SolveMove solve_move = targets::get_solve_move(find_best_simd());
   for (std::size_t k = 0; k < table.segments.size(); ++k) {
     const Segment& segment = table.segments[k];
-    for (int step = 0; step < segment.steps; ++step) {
-      const Eigen::Vector3d target = calc_target_position(segment, step);
-      if (!kinematics_.solve(target, q)) {
-        table.unreachable = fmt::format("on the way to point {}: {}", k + 1,
-                                        kinematics_.describe_unreachable(target));
-        return table;
-      }
-      table.angles_rad.insert(table.angles_rad.end(), q.begin(), q.end());
+    const std::size_t first = static_cast<std::size_t>(segment.first_step) * table.joints;
+    double* const angles = table.angles_rad.data() + first;
+    // Once arrived the target stays, and so do the angles.
+    const int distinct = std::min(segment.steps, count_moving_steps(segment, period) + 1);
+    const int reached = solve_move(kinematics_.arm(), make_move(segment), distinct, angles);
+    if (reached < distinct) {
+      table.unreachable =
+          fmt::format("on the way to point {}: {}", k + 1,
+                      kinematics_.describe_unreachable(calc_target_position(segment, reached)));
+      table.angles_rad.resize(first + static_cast<std::size_t>(reached) * table.joints);
+      return table;
+    }
+    for (int step = distinct; step < segment.steps; ++step) {
+      std::copy_n(angles + (distinct - 1) * q.size(), q.size(), angles + step * q.size());
     }
   }
   return table;

@@ -105,6 +105,7 @@ class TrackingSetup {
 
  private:
   ReferenceSignal make_signal(double distance_m) const;
+  targets::Move make_move(const Segment& segment) const;
   RobotModel robot_;
   TrackingTask task_;
   ElbowUpKinematics kinematics_;
