@@ -32,6 +32,25 @@ int count_moving_steps(const Segment& segment, double period_s) {
   return steps;
 }
 
+constexpr int kJoints = 4;  // of an arm that the kinematics can solve
+
+// Fills whole rows from `begin` to `end` with the one before them, if there are any to fill.
+void repeat_angles(double* begin, const double* end) {
+  if (begin == end) {
+    return;
+  }
+  const double a = begin[-4];
+  const double b = begin[-3];
+  const double c = begin[-2];
+  const double d = begin[-1];
+  for (; begin != end; begin += kJoints) {
+    begin[0] = a;
+    begin[1] = b;
+    begin[2] = c;
+    begin[3] = d;
+  }
+}
+
 }  // namespace
 
 double calc_largest_torque_n_m(const JointDrive& joint) {
@@ -116,7 +135,7 @@ TargetTable TrackingSetup::make_targets(const TestCase& test_case) const {
     table.segments.push_back(segment);
   }
 
-  std::array<double, 4> q{};
+  std::array<double, kJoints> q{};
   const Eigen::Vector3d& start = test_case.points_m.front();
   if (!kinematics_.solve(start, q)) {
     table.unreachable = "start: " + kinematics_.describe_unreachable(start);
@@ -139,9 +158,7 @@ TargetTable TrackingSetup::make_targets(const TestCase& test_case) const {
       table.angles_rad.resize(first + static_cast<std::size_t>(reached) * table.joints);
       return table;
     }
-    for (int step = distinct; step < segment.steps; ++step) {
-      std::copy_n(angles + (distinct - 1) * q.size(), q.size(), angles + step * q.size());
-    }
+    repeat_angles(angles + distinct * kJoints, angles + segment.steps * kJoints);
   }
   return table;
 }
