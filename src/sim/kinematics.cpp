@@ -19,11 +19,12 @@ constexpr std::size_t kJoints = 4;
 // microradian.
 constexpr double kGeometryTolerance = 1e-6;
 
+// Without libm's atan2 and hypot, whose last bits depend on its version.
 double calc_elevation(const Eigen::Vector3d& v) {
-  return std::atan2(v.z(), v.x());
+  return targets::calc_angle(v.z(), v.x());
 }
 double calc_length(const Eigen::Vector3d& v) {
-  return std::hypot(v.x(), v.z());
+  return std::sqrt(v.x() * v.x() + v.z() * v.z());
 }
 
 // The pose of the link that a joint at q moves, from the pose of the link that carries the joint.

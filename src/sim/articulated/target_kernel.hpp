@@ -138,6 +138,7 @@ template <class V>
 ARMWRIGHT_INLINE int solve_move(const ElbowUpArm& arm, const Move& move, int steps, double* rows) {
   constexpr int kLanes = V::kLanes;
   constexpr double kNumbers[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+  static_assert(kLanes <= 8);
   V lane;
   __builtin_memcpy(static_cast<void*>(&lane), kNumbers, sizeof lane);
   for (int first = 0; first < steps; first += kLanes) {

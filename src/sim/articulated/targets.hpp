@@ -51,6 +51,7 @@ struct Move {
   double period_s = 0;  // h
 };
 
+double calc_angle(double y, double x);  // atan2; lane_trigonometry.hpp says how exact
 double calc_distance(const SignalCurve& curve, double t_s);
 void calc_position(const Move& move, int step, double position_m[3]);
 // How far the wrist is from the shoulder with the tip at the target.

@@ -6,6 +6,10 @@ namespace armwright::targets {
 struct ScalarLevel;
 using Number = lanes::Single<double, ScalarLevel>;
 
+double calc_angle(double y, double x) {
+  return calc_atan2(Number(y), Number(x)).v;
+}
+
 double calc_distance(const SignalCurve& curve, double t_s) {
   return calc_distance(curve, Number(t_s)).v;
 }
