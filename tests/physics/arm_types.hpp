@@ -7,6 +7,7 @@
 #include <Eigen/Dense>
 #include <string>
 
+#include "sim/articulated/articulated_arm.hpp"
 #include "sim/ode_arm.hpp"
 #ifdef ARMWRIGHT_WITH_MUJOCO
 #include "sim/mujoco_arm.hpp"
@@ -15,9 +16,9 @@
 namespace armwright::physics_test {
 
 #ifdef ARMWRIGHT_WITH_MUJOCO
-using ArmTypes = testing::Types<OdeArm, MujocoArm>;
+using ArmTypes = testing::Types<OdeArm, ArticulatedArm, MujocoArm>;
 #else
-using ArmTypes = testing::Types<OdeArm>;
+using ArmTypes = testing::Types<OdeArm, ArticulatedArm>;
 #endif
 
 template <class Arm>
@@ -63,6 +64,8 @@ struct ArmTraits<OdeArm> {
   }
   // A link that turns fast leaves its circle.
   static constexpr bool kMovesAlongTangents = true;
+  // How far a link slides along a level rail before it is a kilometre away, in |x| + |y| + |z|.
+  static constexpr double kFarthestSlide_m = 714;
   // What is said of an arm that blew up: joints are named unless the library itself gave up.
   static constexpr const char* kBlownUp =
       "joint [0-9]+ \\([a-z]+\\): its link is .* m from the base and turns at .* rad/s|"
@@ -92,8 +95,18 @@ struct ReducedArmTraits {
     return 1e-13 * reach_m;
   }
   static constexpr bool kMovesAlongTangents = false;
+  static constexpr double kFarthestSlide_m = 714;
   static constexpr const char* kBlownUp =
       "joint [0-9]+ \\([a-z]+\\): its link is .* m from the base and turns at .* rad/s";
+};
+
+// What counts is how far joints turned or slid, plus their rates: a million in all.
+template <>
+struct ArmTraits<ArticulatedArm> : ReducedArmTraits {
+  static constexpr const char* kName = "ArticulatedArm";
+  static constexpr double kFarthestSlide_m = 1e6 / 1.1;  // in a step of 10 s
+  static constexpr const char* kBlownUp =
+      "joint [0-9]+ \\([a-z]+\\): it is at .* (rad|m) and moves at .* (rad|m)/s";
 };
 
 #ifdef ARMWRIGHT_WITH_MUJOCO

@@ -27,6 +27,10 @@ bool have_same_timeline(const TargetTable& a, const TargetTable& b) {
   return true;
 }
 
+bool have_same_shape(const ChainModel& a, const ChainModel& b) {
+  return &a == &b || (a.flags() == b.flags() && a.tilted_gravity() == b.tilted_gravity());
+}
+
 template <class T>
 class ArticulatedEngine final : public PhysicsEngine {
  public:
@@ -35,7 +39,12 @@ class ArticulatedEngine final : public PhysicsEngine {
   std::vector<TrackingResult> simulate(const TrackingSetup& setup,
                                        std::span<const TrackingJob> jobs) const override {
     std::vector<TrackingResult> results(jobs.size());
-    std::vector<std::vector<std::size_t>> alike;  // jobs of one timeline each
+    // Jobs of one timeline and of arms of one shape each: these decide which code is run, which
+    // must not depend on the company that a job is in.
+    std::vector<std::vector<std::size_t>> alike;
+    const auto get_chain = [&](std::size_t job) -> const ChainModel& {
+      return (jobs[job].setup != nullptr ? *jobs[job].setup : setup).chain();
+    };
     for (std::size_t i = 0; i < jobs.size(); ++i) {
       const TargetTable& targets = *jobs[i].targets;
       if (!targets.unreachable.empty()) {
@@ -44,7 +53,8 @@ class ArticulatedEngine final : public PhysicsEngine {
         continue;
       }
       const auto found = std::find_if(alike.begin(), alike.end(), [&](const auto& group) {
-        return have_same_timeline(*jobs[group.front()].targets, targets);
+        return have_same_timeline(*jobs[group.front()].targets, targets) &&
+               have_same_shape(get_chain(group.front()), get_chain(i));
       });
       (found == alike.end() ? alike.emplace_back() : *found).push_back(i);
     }
