@@ -57,7 +57,7 @@ UnfinishedRun read_unfinished(const std::filesystem::path& folder) {
     run.evaluations = journal.training.size();
     run.judgements = journal.judgements.size();
     for (const EvaluationRecord& record : journal.training) {
-      run.cases += record.cases.numbers.size();
+      run.cases += record.calc_charge();
     }
   }
   return run;

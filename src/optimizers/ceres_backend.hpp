@@ -27,7 +27,11 @@ enum class ResidualTransform { automatic, logarithm, none };
 // the step, which also scales the residuals anew (the idea of implicit filtering; Gilmore and
 // Kelley 1995, An implicit filtering algorithm for optimization of functions with many local
 // minima).
+//
+// With exact derivatives there is no step; it starts again, with the residuals scaled anew, as long
+// as that gains something.
 struct LevenbergSettings {
+  bool exact = false;                                          // derivatives
   ResidualTransform transform = ResidualTransform::automatic;  // the logarithm where every variable
                                                                // is logarithmic
   double floor = 0.1;

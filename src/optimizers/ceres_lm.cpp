@@ -2,6 +2,8 @@
 
 #ifdef ARMWRIGHT_WITH_CERES
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -9,6 +11,7 @@
 #include <numeric>
 #include <optional>
 
+#include "base/error.hpp"
 #include "optimizers/ceres_support.hpp"
 
 namespace armwright {
@@ -54,6 +57,18 @@ class ResidualsOf {
       residual = (logarithm_ ? std::log1p(share * share) : share) / std::sqrt(count);
     }
     return residuals;
+  }
+
+  // How fast each of them changes with the residual it is made of; after they were asked for.
+  std::vector<double> calc_slopes(const Score& score) const {
+    std::vector<double> slopes = score.residuals;
+    const auto root = std::sqrt(static_cast<double>(slopes.size()));
+    const double unit = logarithm_ ? floor_share_ * scale_ : scale_;
+    for (double& slope : slopes) {
+      const double share = slope / unit;
+      slope = (logarithm_ ? 2 * share / (1 + share * share) : 1) / (unit * root);
+    }
+    return slopes;
   }
 
  private:
@@ -145,9 +160,27 @@ class LevenbergMarquardt : public Optimizer {
  public:
   explicit LevenbergMarquardt(const LevenbergSettings& settings) : settings_(settings) {}
 
+  void check_problem(const ProblemDescription& problem) const override {
+    if (settings_.exact && !problem.has_jacobian) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("optimizer 'ceres:lm': option derivatives is exact, but problem {} "
+                              "offers no exact derivatives: {}; or use derivatives=differences",
+                              problem.name,
+                              problem.jacobian_advice.empty() ? "only arms on an engine that "
+                                                                "computes them do"
+                                                              : problem.jacobian_advice));
+    }
+  }
+
   void minimize(Evaluator& evaluator, std::uint64_t /*seed*/) override {
+    check_problem(evaluator.problem());
     const bool logarithm = uses_logarithm(settings_.transform, evaluator.problem());
     HeldException held;
+    if (settings_.exact) {
+      minimize_exactly(evaluator, held, logarithm);
+      held.rethrow_unless_stopped();
+      return;
+    }
     DifferenceSettings differences = settings_.differences;
     if (differences.step == 0) {
       differences.step = logarithm ? kRoughStep : kSmoothStep;
@@ -176,6 +209,33 @@ class LevenbergMarquardt : public Optimizer {
   }
 
  private:
+  void minimize_exactly(Evaluator& evaluator, HeldException& held, bool logarithm) const {
+    std::optional<DifferencedFunction::Best> best;
+    const auto calc = [&](const DifferencedFunction::Best& one) {
+      return calc_scalar(evaluator.problem(), one.score.objectives);
+    };
+    for (bool is_going = true; is_going;) {
+      is_going = held.run([&] {
+        ResidualsOf residuals_of(logarithm, settings_.floor);
+        DifferencedFunction function(evaluator, std::ref(residuals_of), [&](const Score& score) {
+          return residuals_of.calc_slopes(score);
+        });
+        if (best) {
+          function.learn(*best);
+        }
+        const std::vector<double> centre = best ? best->coordinates : function.space().start();
+        const std::size_t residual_count = function.look_at(centre, false).values.size();
+        if (residual_count == 0) {
+          return false;
+        }
+        solve(evaluator, function, held, centre, residual_count);
+        const bool has_gained = !best || calc(*function.best()) < calc(*best);
+        best = function.best();
+        return has_gained;
+      });
+    }
+  }
+
   void solve(const Evaluator& evaluator, DifferencedFunction& function, HeldException& held,
              const std::vector<double>& centre, std::size_t residual_count) const {
     const CentredBox box(function.space(), centre);

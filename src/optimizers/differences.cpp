@@ -30,16 +30,43 @@ DifferencedFunction::Shift DifferencedFunction::add_shifts(
 
 std::vector<Score> DifferencedFunction::evaluate(const std::vector<std::vector<double>>& batch) {
   std::vector<Score> scores = function_.evaluate_batch(batch);
-  const auto calc = [&](const Score& score) {
-    return calc_scalar(function_.evaluator().problem(), score.objectives);
-  };
   for (std::size_t i = 0; i < batch.size(); ++i) {
-    if (scores[i].status == EvaluationStatus::ok &&
-        (!best_ || calc(scores[i]) < calc(best_->score))) {
-      best_ = {batch[i], scores[i]};
-    }
+    remember_best(batch[i], scores[i]);
   }
   return scores;
+}
+
+void DifferencedFunction::remember_best(const std::vector<double>& coordinates,
+                                        const Score& score) {
+  const auto calc = [&](const Score& one) {
+    return calc_scalar(function_.evaluator().problem(), one.objectives);
+  };
+  if (score.status == EvaluationStatus::ok && (!best_ || calc(score) < calc(best_->score))) {
+    best_ = {coordinates, score};
+  }
+}
+
+const DifferencedFunction::Place& DifferencedFunction::look_exactly(
+    const std::vector<double>& coordinates) {
+  const Score score = function_.evaluate_with_jacobian(coordinates);
+  remember_best(coordinates, score);
+  Place& place = places_[coordinates];
+  place.values = values_of_(score);
+  const std::vector<double> residual_slopes = residual_slopes_(score);
+  const std::vector<double> point_slopes = space().calc_point_slopes(coordinates);
+  const std::size_t n = coordinates.size();
+  if (place.values.empty() || score.jacobian.size() != place.values.size() * n) {
+    place.values.clear();  // a place without derivatives is of no use
+    return place;
+  }
+  place.derivatives.assign(n, std::vector<double>(place.values.size()));
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t k = 0; k < place.values.size(); ++k) {
+      const double slope = residual_slopes[k] * score.jacobian[k * n + i] * point_slopes[i];
+      place.derivatives[i][k] = std::isfinite(slope) ? slope : 0;
+    }
+  }
+  return place;
 }
 
 const DifferencedFunction::Place& DifferencedFunction::look_at(
@@ -49,6 +76,9 @@ const DifferencedFunction::Place& DifferencedFunction::look_at(
   if (is_known &&
       (!with_derivatives || known->second.values.empty() || !known->second.derivatives.empty())) {
     return known->second;
+  }
+  if (with_derivatives && residual_slopes_) {
+    return look_exactly(coordinates);
   }
   std::vector<std::vector<double>> batch;
   if (!is_known) {

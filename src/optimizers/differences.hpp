@@ -1,5 +1,8 @@
-// Derivatives by differences, for optimizers that need some: of a vector of values (residuals, or
-// one merit) with respect to the coordinates of search_space.hpp. Every shifted point is an
+// Derivatives for optimizers that need some: of a vector of values (residuals, or one merit) with
+// respect to the coordinates of search_space.hpp. By differences, or exact where the problem offers
+// that.
+//
+// Differences: every shifted point is an
 // evaluation like any other: all those of one place are asked for as one batch and counted.
 //
 //   forward: (v(u + h e_i) - v(u)) / h         the error falls with h, n points
@@ -8,6 +11,9 @@
 // h is a share of the box. A shift that would leave the box goes the other way; where a side is
 // missing, or its evaluation failed, the base point stands for it, and where nothing is left the
 // derivative is 0.
+//
+// Exact: the Jacobian of the residuals (Evaluator::evaluate_with_jacobian) and the chain rule. A
+// place whose values are known already is evaluated again for it.
 #pragma once
 
 #include <functional>
@@ -26,6 +32,10 @@ struct DifferenceSettings {
   double step = 0.005;  // share of the box, at most 0.5
 };
 
+// What makes exact derivatives possible: those of each value with respect to the residual of the
+// same number, on which alone it depends. Empty where the evaluation failed.
+using ResidualSlopes = std::function<std::vector<double>(const Score&)>;
+
 class DifferencedFunction {
  public:
   // What is differentiated; empty where the evaluation failed.
@@ -39,6 +49,11 @@ class DifferencedFunction {
 
   DifferencedFunction(Evaluator& evaluator, ValuesOf values_of, const DifferenceSettings& settings)
       : function_(evaluator), values_of_(std::move(values_of)), settings_(settings) {}
+  // With exact derivatives.
+  DifferencedFunction(Evaluator& evaluator, ValuesOf values_of, ResidualSlopes residual_slopes)
+      : function_(evaluator),
+        values_of_(std::move(values_of)),
+        residual_slopes_(std::move(residual_slopes)) {}
 
   const SearchSpace& space() const { return function_.space(); }
 
@@ -70,9 +85,12 @@ class DifferencedFunction {
                    std::vector<std::vector<double>>& batch) const;
 
   std::vector<Score> evaluate(const std::vector<std::vector<double>>& batch);
+  void remember_best(const std::vector<double>& coordinates, const Score& score);
+  const Place& look_exactly(const std::vector<double>& coordinates);
 
   ScalarFunction function_;
   ValuesOf values_of_;
+  ResidualSlopes residual_slopes_;  // of exact derivatives
   DifferenceSettings settings_;
   std::map<std::vector<double>, Place> places_;
   std::optional<Best> best_;

@@ -26,13 +26,23 @@ class StartedElsewhere : public Evaluator {
       return {};
     }
     const auto count = std::min(std::ssize(points), static_cast<std::ptrdiff_t>(allowance_));
-    std::vector<Score> scores = evaluator_.evaluate(points.first(static_cast<std::size_t>(count)));
-    allowance_ -= std::ssize(scores);
-    has_evaluated_ = has_evaluated_ || !scores.empty();
-    return scores;
+    return count_down(evaluator_.evaluate(points.first(static_cast<std::size_t>(count))), 1);
+  }
+  std::vector<Score> evaluate_with_jacobian(std::span<const std::vector<double>> points) override {
+    if (stopped()) {
+      return {};
+    }
+    const std::int64_t charge = calc_jacobian_charge(problem_.variables.size());
+    const auto count =
+        std::min(std::ssize(points), static_cast<std::ptrdiff_t>(allowance_ / charge));
+    if (count < std::ssize(points)) {
+      points = points.first(static_cast<std::size_t>(count));
+      is_spent_ = true;
+    }
+    return count_down(evaluator_.evaluate_with_jacobian(points), charge);
   }
 
-  bool stopped() const override { return allowance_ == 0 || evaluator_.stopped(); }
+  bool stopped() const override { return allowance_ == 0 || is_spent_ || evaluator_.stopped(); }
   std::int64_t remaining() const override { return std::min(allowance_, evaluator_.remaining()); }
   void begin_generation() override { evaluator_.begin_generation(); }
   void recommend(std::span<const double> x) override { evaluator_.recommend(x); }
@@ -40,9 +50,16 @@ class StartedElsewhere : public Evaluator {
   bool has_evaluated() const { return has_evaluated_; }
 
  private:
+  std::vector<Score> count_down(std::vector<Score> scores, std::int64_t charge) {
+    allowance_ -= std::ssize(scores) * charge;
+    has_evaluated_ = has_evaluated_ || !scores.empty();
+    return scores;
+  }
+
   Evaluator& evaluator_;
   ProblemDescription problem_;
   std::int64_t allowance_;
+  bool is_spent_ = false;  // what is left is too little for what was asked for
   bool has_evaluated_ = false;
 };
 
@@ -73,6 +90,9 @@ class Multistart : public Optimizer {
       inner_->minimize(restarted, inner_seed);
       idle_starts = restarted.has_evaluated() ? 0 : idle_starts + 1;
     }
+  }
+  void check_problem(const ProblemDescription& problem) const override {
+    inner_->check_problem(problem);
   }
   void log_to(const std::filesystem::path& file) override { inner_->log_to(file); }
 

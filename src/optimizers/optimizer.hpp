@@ -98,6 +98,9 @@ class Optimizer {
   // Returns when evaluator.stopped() or when it has nothing more to try. Throws OptimizerFailure,
   // and whatever the evaluator throws.
   virtual void minimize(Evaluator& evaluator, std::uint64_t seed) = 0;
+  // Whether it can work on the problem with the options it was made with; explain_unsuitable() has
+  // asked already what does not depend on them. Error{usage} says what to do.
+  virtual void check_problem(const ProblemDescription& /*problem*/) const {}
   // For those that run in processes of their own: where what these print goes from now on. What is
   // there already is removed. Error{io}.
   virtual void log_to(const std::filesystem::path& /*file*/) {}

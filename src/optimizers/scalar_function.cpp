@@ -31,6 +31,15 @@ Score ScalarFunction::evaluate_point(const std::vector<double>& point) {
   return std::move(scores.front());
 }
 
+Score ScalarFunction::evaluate_with_jacobian(std::span<const double> coordinates) {
+  const std::vector<double> point = space_.to_point(coordinates);
+  std::vector<Score> scores = evaluator_.evaluate_with_jacobian({&point, 1});
+  if (scores.empty()) {
+    throw EvaluatorStopped{};
+  }
+  return std::move(scores.front());
+}
+
 std::vector<Score> ScalarFunction::evaluate_batch(
     std::span<const std::vector<double>> coordinates) {
   std::vector<std::vector<double>> points;

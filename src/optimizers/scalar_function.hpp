@@ -34,6 +34,7 @@ class ScalarFunction {
   Score evaluate(std::span<const double> coordinates);
   Score evaluate_point(const std::vector<double>& point);  // a decision vector
   std::vector<Score> evaluate_batch(std::span<const std::vector<double>> coordinates);
+  Score evaluate_with_jacobian(std::span<const double> coordinates);  // with respect to the point
 
  private:
   Evaluator& evaluator_;

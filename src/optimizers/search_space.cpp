@@ -52,6 +52,14 @@ std::vector<double> SearchSpace::to_coordinates(std::span<const double> x) const
   return coordinates;
 }
 
+std::vector<double> SearchSpace::calc_point_slopes(std::span<const double> coordinates) const {
+  std::vector<double> slopes = to_point(coordinates);
+  for (std::size_t i = 0; i < slopes.size(); ++i) {
+    slopes[i] = variables_[i].scale == Scale::linear ? 1 : slopes[i];
+  }
+  return slopes;
+}
+
 std::vector<double> SearchSpace::draw_between(std::span<const double> lower,
                                               std::span<const double> upper,
                                               RandomStream& random) const {

@@ -28,6 +28,8 @@ class SearchSpace {
   // lies outside comes out outside.
   std::vector<double> to_point(std::span<const double> coordinates) const;
   std::vector<double> to_coordinates(std::span<const double> x) const;
+  // How fast the point changes with each coordinate: 1, or of a logarithmic variable its value.
+  std::vector<double> calc_point_slopes(std::span<const double> coordinates) const;
 
   // Coordinates drawn uniformly between `lower` and `upper`, one number of the stream each. Those
   // lie in the box but for roundings; what is drawn lies in it.

@@ -57,11 +57,13 @@ double calc_violation(std::span<const double> constraint_values) {
   return violation;
 }
 
-Evaluation Problem::evaluate(std::span<const double> x, const CaseBlock& block) const {
+Evaluation Problem::evaluate(std::span<const double> x, const CaseBlock& block,
+                             bool jacobian) const {
   std::vector<CaseJob> jobs;
   jobs.reserve(block.numbers.size());
   for (const std::uint64_t number : block.numbers) {
-    jobs.push_back({.x = x, .block = &block, .number = number, .residuals = true});
+    jobs.push_back(
+        {.x = x, .block = &block, .number = number, .residuals = true, .jacobian = jacobian});
   }
   return aggregate(x, simulate(jobs));
 }

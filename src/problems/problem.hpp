@@ -52,6 +52,10 @@ struct ProblemDescription {
   // Evaluations carry residuals: calc_scalar() of the objectives is the sum of their squares, or
   // the logarithm of that sum.
   bool has_residuals = false;
+  // The residuals' exact derivatives can be asked for (CaseJob::jacobian); otherwise what to do
+  // about it, if anything can be done.
+  bool has_jacobian = false;
+  std::string jacobian_advice;
 };
 
 enum class CaseRole : std::uint8_t { training, validation, test };
@@ -79,6 +83,7 @@ struct CaseJob {
   const CaseBlock* block = nullptr;
   std::uint64_t number = 0;
   bool residuals = false;  // the outcome shall carry them, where the problem has them
+  bool jacobian = false;   // with their derivatives, likewise
   // A case may be given up as soon as its error is certain to exceed this; outcomes of cases that
   // are not given up do not depend on it. For callers who have no use for the exact number then.
   double abandon_above = std::numeric_limits<double>::infinity();
@@ -94,6 +99,8 @@ struct CaseOutcome {
   std::vector<double> metrics;    // the problem's own; `aggregate` knows what they mean
   std::vector<double> residuals;  // what the error is made of, if asked for; never of a case that
                                   // was abandoned
+  // Their derivatives, if asked for: a row a residual, a column a decision variable, row after row.
+  std::vector<double> jacobian;
 };
 
 // Of an evaluation with status `abandoned` the objectives and the errors of abandoned cases are
@@ -107,6 +114,7 @@ struct Evaluation {
                                     // never shown as a number
   std::vector<double> metrics;      // as described; finite, or empty with the objectives
   std::vector<double> residuals;    // if the outcomes carry them
+  std::vector<double> jacobian;     // of the residuals, like an outcome's, if the outcomes have one
   int failed_cases = 0;             // cases that yielded no error
 };
 
@@ -140,7 +148,8 @@ class Problem {
   virtual std::vector<double> penalty_objectives() const = 0;
 
   // Both steps for one candidate on all cases of a block, residuals included.
-  Evaluation evaluate(std::span<const double> x, const CaseBlock& block) const;
+  Evaluation evaluate(std::span<const double> x, const CaseBlock& block,
+                      bool jacobian = false) const;
 };
 
 }  // namespace armwright

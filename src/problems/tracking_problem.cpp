@@ -84,6 +84,20 @@ CaseOutcome make_outcome(TrackingResult result, CaseRole role, bool residuals,
   return outcome;
 }
 
+// Of every parameter: a design that is 1 there and 0 elsewhere.
+std::vector<ArmDesign> make_directions(const TrackingConfig& config) {
+  ArmDesign zero = config.start;
+  for (JointDrive& joint : zero.joints) {
+    joint.gains.assign(joint.gains.size(), 0.0);
+    joint.limits = {};
+  }
+  std::vector<ArmDesign> directions(config.parameters.size(), zero);
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    get_parameter(directions[i], config.parameters[i]) = 1;
+  }
+  return directions;
+}
+
 }  // namespace
 
 TrackingProblem::TrackingProblem(TrackingConfig config)
@@ -92,6 +106,13 @@ TrackingProblem::TrackingProblem(TrackingConfig config)
       targets_(kTargetCache_bytes) {
   check_design(config_.start);
   description_ = make_tracking_description(config_);
+  description_.has_jacobian = config_.engines.training->has_derivatives();
+  if (!description_.has_jacobian) {
+    description_.jacobian_advice =
+        fmt::format("engine '{}' computes no derivatives; choose --engine articulated, which does",
+                    config_.engines.training_name);
+  }
+  directions_ = make_directions(config_);
 }
 
 void TrackingProblem::check_design(const ArmDesign& design) const {
@@ -192,6 +213,13 @@ std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     outcomes.push_back(make_outcome(std::move(results[i]), jobs[i].block->role, jobs[i].residuals,
                                     config_.task.count_first_point));
+    const PhysicsEngine& engine = config_.engines.get(jobs[i].block->role);
+    if (jobs[i].jacobian && engine.has_derivatives() && !outcomes[i].residuals.empty()) {
+      outcomes[i].jacobian = engine.calc_derivatives(setup_, tracking[i], directions_);
+      const std::size_t counted = outcomes[i].residuals.size() * directions_.size();
+      outcomes[i].jacobian.erase(outcomes[i].jacobian.begin(),
+                                 outcomes[i].jacobian.end() - static_cast<std::ptrdiff_t>(counted));
+    }
   }
   return outcomes;
 }
@@ -280,6 +308,7 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
   });
   if (has_residuals) {
     evaluation.residuals = calc_residuals(design, outcomes, numbers);
+    evaluation.jacobian = calc_jacobian(design, outcomes, evaluation.residuals);
   }
   evaluation.metrics = {error, torque, failures, sums[kEnergy] / numbers,
                         sums[kSaturation] / numbers};
@@ -310,6 +339,42 @@ std::vector<double> TrackingProblem::calc_residuals(const ArmDesign& design,
     }
   }
   return residuals;
+}
+
+std::vector<double> TrackingProblem::calc_jacobian(const ArmDesign& design,
+                                                   std::span<const CaseOutcome> outcomes,
+                                                   std::span<const double> residuals) const {
+  std::vector<double> jacobian;
+  const std::size_t n = directions_.size();
+  // A residual r = sqrt(c v) of a value v: dr = r / (2 v) dv.
+  const auto calc_share = [](double residual, double value) {
+    return value > 0 ? residual / (2 * value) : 0;
+  };
+  std::size_t row = 0;
+  for (const CaseOutcome& outcome : outcomes) {
+    if (!outcome.has_error) {
+      continue;
+    }
+    if (outcome.jacobian.empty()) {
+      return {};  // not asked for
+    }
+    for (std::size_t k = 0; k < outcome.residuals.size(); ++k, ++row) {
+      const double share = calc_share(residuals[row], outcome.residuals[k]);
+      for (std::size_t i = 0; i < n; ++i) {
+        jacobian.push_back(share * outcome.jacobian[k * n + i]);
+      }
+    }
+  }
+  for (std::size_t joint = 0; row < residuals.size(); ++joint, ++row) {  // with torque
+    const EffortLimits& limits = design.joints[joint].limits;
+    const double share = calc_share(residuals[row], calc_largest_torque_n_m(design.joints[joint]));
+    for (const ArmDesign& direction : directions_) {
+      const EffortLimits& change = direction.joints[joint].limits;
+      jacobian.push_back(share *
+                         (-limits.min_n_m < limits.max_n_m ? change.max_n_m : -change.min_n_m));
+    }
+  }
+  return jacobian;
 }
 
 std::vector<double> TrackingProblem::penalty_objectives() const {

@@ -108,11 +108,15 @@ class TrackingProblem final : public Problem {
   // `cases` is how many of the outcomes have an error.
   std::vector<double> calc_residuals(const ArmDesign& design, std::span<const CaseOutcome> outcomes,
                                      double cases) const;
+  // Of calc_residuals()'s `residuals`.
+  std::vector<double> calc_jacobian(const ArmDesign& design, std::span<const CaseOutcome> outcomes,
+                                    std::span<const double> residuals) const;
   std::shared_ptr<const TargetTable> get_targets(const TestSet& set, std::uint64_t number) const;
 
   TrackingConfig config_;
   TrackingSetup setup_;
   ProblemDescription description_;
+  std::vector<ArmDesign> directions_;  // how the design changes with each variable
   std::map<std::string, TestSet> sets_;
   mutable TargetCache targets_;
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <stdexcept>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -84,6 +85,12 @@ std::string describe_engines_with_simd() {
 }
 
 }  // namespace
+
+std::vector<double> PhysicsEngine::calc_derivatives(
+    const TrackingSetup& /*setup*/, const TrackingJob& /*job*/,
+    std::span<const ArmDesign> /*directions*/) const {
+  throw std::logic_error("this engine has no derivatives");
+}
 
 const char* to_string(Precision precision) {
   return precision == Precision::double_ ? "double" : "float";

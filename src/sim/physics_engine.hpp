@@ -24,6 +24,16 @@ class PhysicsEngine {
   // lack of memory.
   virtual std::vector<TrackingResult> simulate(const TrackingSetup& setup,
                                                std::span<const TrackingJob> jobs) const = 0;
+  // Whether calc_derivatives() works.
+  virtual bool has_derivatives() const { return false; }
+  // Exact derivatives of the errors (m) of the job's points as simulate() would compute them: a row
+  // for each point of the timeline, a column for each direction, row after row. A direction is a
+  // design whose gains and limits are the derivatives of the job's with respect to some variable.
+  // Where a simulation has a kink (a limit, the largest of several, a turn that is left out), those
+  // of the branch that it took; 0 for a point that was not reached, whose error is 0, or whose
+  // derivative exceeds all numbers. Nothing for a case that cannot be simulated. Thread-safe.
+  virtual std::vector<double> calc_derivatives(const TrackingSetup& setup, const TrackingJob& job,
+                                               std::span<const ArmDesign> directions) const;
   // How many jobs one call should get; any number is simulated alike.
   virtual BatchSize batch_size() const = 0;
 };

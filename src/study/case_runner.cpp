@@ -8,10 +8,12 @@
 namespace armwright {
 
 void CaseRunner::run(std::span<const std::span<const double>> candidates, const CaseBlock& block,
-                     bool residuals, const OnDone& on_done) {
+                     bool residuals, const OnDone& on_done, bool jacobian) {
   const std::size_t cases = block.numbers.size();
   const std::size_t pairs = candidates.size() * cases;
-  const std::size_t chunk = calc_chunk(problem_.batch_size(block.role), pairs, pool_.size());
+  // Derivatives take far longer than the simulation that lanes make fast.
+  const BatchSize size = jacobian ? BatchSize{} : problem_.batch_size(block.role);
+  const std::size_t chunk = calc_chunk(size, pairs, pool_.size());
   std::vector<CaseOutcome> outcomes(pairs);
   std::vector<std::atomic<std::size_t>> missing(candidates.size());
   for (std::atomic<std::size_t>& cases_left : missing) {
@@ -29,7 +31,8 @@ void CaseRunner::run(std::span<const std::span<const double>> candidates, const 
       jobs.push_back({.x = candidates[pair / cases],
                       .block = &block,
                       .number = block.numbers[pair % cases],
-                      .residuals = residuals});
+                      .residuals = residuals,
+                      .jacobian = jacobian});
     }
     std::ranges::move(problem_.simulate(jobs),
                       outcomes.begin() + static_cast<std::ptrdiff_t>(first));

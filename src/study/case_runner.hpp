@@ -25,9 +25,9 @@ class CaseRunner {
 
   // Every candidate on every case of the block. A stop counts between chunks; candidates that it
   // leaves unfinished `on_done` never hears of. Evaluations carry residuals only if asked for.
-  // Rethrows what `on_done` throws.
+  // `jacobian`: with their derivatives, of problems that have them. Rethrows what `on_done` throws.
   void run(std::span<const std::span<const double>> candidates, const CaseBlock& block,
-           bool residuals, const OnDone& on_done);
+           bool residuals, const OnDone& on_done, bool jacobian = false);
 
  private:
   const Problem& problem_;

@@ -19,6 +19,7 @@ static_assert(sizeof(double) == 8 && sizeof(std::uint64_t) == 8);
 
 constexpr std::uint8_t kEvaluationType = 1;
 constexpr std::uint8_t kEndType = 2;
+constexpr std::uint8_t kJacobianType = 3;
 constexpr unsigned kStatuses = 1 + static_cast<unsigned>(EvaluationStatus::abandoned);
 
 // The fields are listed once, in visit_fields, and three visitors measure, write and read them.
@@ -41,6 +42,9 @@ void visit_evaluation(Fields& fields, Record& record) {
   fields.list(evaluation.case_errors);
   fields.list(evaluation.metrics);
   fields.list(evaluation.residuals);
+  if (record.with_jacobian) {
+    fields.list(evaluation.jacobian);
+  }
 }
 
 template <class Fields, class Record>
@@ -153,9 +157,8 @@ void encode_as(std::uint8_t type, const Record& record, std::string& buffer) {
 }
 
 template <class Record>
-std::optional<journal_format::Record> decode_as(std::string_view fields) {
+std::optional<journal_format::Record> decode_as(std::string_view fields, Record record = {}) {
   Read read{fields};
-  Record record;
   visit_fields(read, record);
   if (!read.good || !read.rest.empty()) {
     return std::nullopt;
@@ -166,7 +169,7 @@ std::optional<journal_format::Record> decode_as(std::string_view fields) {
 }  // namespace
 
 void encode(const EvaluationRecord& record, std::string& buffer) {
-  encode_as(kEvaluationType, record, buffer);
+  encode_as(record.with_jacobian ? kJacobianType : kEvaluationType, record, buffer);
 }
 
 void encode(const EndRecord& record, std::string& buffer) {
@@ -198,7 +201,7 @@ bool could_begin_payload(std::string_view probe, std::uint32_t payload_bytes) {
   Read read{probe};
   std::uint8_t type = 0;
   read.number(type);
-  if (type == kEvaluationType) {
+  if (type == kEvaluationType || type == kJacobianType) {
     EvaluationRecord record;
     read.choice(record.clipped, 2);
     read.choice(record.cases.role, 3);
@@ -222,6 +225,11 @@ std::optional<Record> decode_payload(std::string_view payload) {
       return decode_as<EvaluationRecord>(payload.substr(1));
     case kEndType:
       return decode_as<EndRecord>(payload.substr(1));
+    case kJacobianType: {
+      EvaluationRecord record;
+      record.with_jacobian = true;
+      return decode_as(payload.substr(1), std::move(record));
+    }
     default:
       return std::nullopt;
   }

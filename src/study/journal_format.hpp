@@ -3,12 +3,13 @@
 //
 //   file       = "AWJRNL01" record*
 //   record     = u32 payload length | u32 CRC-32 of the payload | payload
-//   payload    = evaluation | end
+//   payload    = evaluation | evaluation with Jacobian | end
 //   evaluation = u8 1 | u8 clipped | u8 role | u8 status | i32 failed_cases | u64 index
 //                | u64 generation
 //                | text set | list numbers (u64) | list x | text reason
 //                | list objectives | list constraint_values | list case_errors | list metrics
 //                | list residuals (empty unless the optimizer uses them)
+//   evaluation with Jacobian = u8 3 | as above | list jacobian (a row a residual, row after row)
 //   end        = u8 2 | u64 evaluations | text reason
 //   text       = u32 length | bytes          list = u32 count | 8 bytes each
 #pragma once

@@ -23,7 +23,7 @@ struct BrokenEvaluator : std::runtime_error {
 };
 
 struct MemoryEvaluatorSettings {
-  std::int64_t budget = 0;  // evaluations
+  std::int64_t budget = 0;  // evaluations; one with derivatives costs calc_jacobian_charge()
   bool fresh =
       false;  // every generation on a case of its own, counted from 0; otherwise case 0 always
   std::int64_t fail_every = 0;          // evaluations number k, 2k, 3k, ... fail; 0: none
@@ -40,10 +40,12 @@ class MemoryEvaluator : public Evaluator {
     std::vector<double> evaluated;
     Score score;
     std::int64_t generation = 0;  // 0: none was begun
+    bool with_jacobian = false;
 
     bool operator==(const Entry& other) const {
       return asked == other.asked && evaluated == other.evaluated &&
-             generation == other.generation && score.objectives == other.score.objectives;
+             generation == other.generation && with_jacobian == other.with_jacobian &&
+             score.objectives == other.score.objectives;
     }
   };
 
@@ -53,26 +55,19 @@ class MemoryEvaluator : public Evaluator {
   const ProblemDescription& problem() const override { return problem_.description(); }
 
   std::vector<Score> evaluate(std::span<const std::vector<double>> points) override {
-    if (stopped()) {
-      ++calls_after_stop_;
-      return {};
+    return evaluate(points, false);
+  }
+  std::vector<Score> evaluate_with_jacobian(std::span<const std::vector<double>> points) override {
+    if (!problem().has_jacobian) {
+      throw std::logic_error("derivatives were asked for of a problem that has none");
     }
-    batch_sizes_.push_back(points.size());
-    std::vector<Score> scores;
-    for (const std::vector<double>& point : points) {
-      if (stopped()) {
-        break;
-      }
-      scores.push_back(evaluate_one(point));
-    }
-    return scores;
+    return evaluate(points, true);
   }
 
-  bool stopped() const override { return remaining() == 0; }
+  bool stopped() const override { return is_spent_ || remaining() == 0; }
 
   std::int64_t remaining() const override {
-    return std::min(settings_.budget, settings_.stop_after) -
-           static_cast<std::int64_t>(trace_.size());
+    return std::min(settings_.budget, settings_.stop_after) - charged_;
   }
 
   void begin_generation() override { ++generations_; }
@@ -81,6 +76,7 @@ class MemoryEvaluator : public Evaluator {
   }
 
   const std::vector<Entry>& trace() const { return trace_; }
+  std::int64_t charged() const { return charged_; }                             // of the budget
   const std::vector<std::size_t>& batch_sizes() const { return batch_sizes_; }  // as asked for
   const std::vector<std::vector<double>>& recommended() const { return recommended_; }
   std::int64_t generations() const { return generations_; }
@@ -102,7 +98,26 @@ class MemoryEvaluator : public Evaluator {
   }
 
  private:
-  Score evaluate_one(const std::vector<double>& asked) {
+  std::vector<Score> evaluate(std::span<const std::vector<double>> points, bool with_jacobian) {
+    const std::int64_t charge =
+        with_jacobian ? calc_jacobian_charge(problem().variables.size()) : 1;
+    if (stopped()) {
+      ++calls_after_stop_;
+      return {};
+    }
+    batch_sizes_.push_back(points.size());
+    std::vector<Score> scores;
+    for (const std::vector<double>& point : points) {
+      is_spent_ = is_spent_ || remaining() < charge;
+      if (stopped()) {
+        break;
+      }
+      scores.push_back(evaluate_one(point, with_jacobian));
+    }
+    return scores;
+  }
+
+  Score evaluate_one(const std::vector<double>& asked, bool with_jacobian) {
     const std::vector<DecisionVariable>& variables = problem().variables;
     if (asked.size() != variables.size()) {
       throw OptimizerFailure("a point of the wrong dimension was asked for");
@@ -111,7 +126,11 @@ class MemoryEvaluator : public Evaluator {
     if (number == settings_.throw_at) {
       throw BrokenEvaluator();
     }
-    Entry entry{.asked = asked, .evaluated = asked, .score = {}, .generation = generations_};
+    Entry entry{.asked = asked,
+                .evaluated = asked,
+                .score = {},
+                .generation = generations_,
+                .with_jacobian = with_jacobian};
     for (std::size_t i = 0; i < asked.size(); ++i) {
       entry.evaluated[i] = std::clamp(asked[i], variables[i].lower, variables[i].upper);
     }
@@ -121,13 +140,15 @@ class MemoryEvaluator : public Evaluator {
       entry.score.status = EvaluationStatus::diverged;
     } else {
       const auto case_number = static_cast<std::uint64_t>(settings_.fresh ? generations_ - 1 : 0);
-      const Evaluation evaluation =
-          problem_.evaluate(entry.evaluated, {CaseRole::training, "train/test", {case_number}});
+      const CaseBlock block{CaseRole::training, "train/test", {case_number}};
+      const Evaluation evaluation = problem_.evaluate(entry.evaluated, block, with_jacobian);
       entry.score.objectives = evaluation.objectives;
       entry.score.constraint_values = evaluation.constraint_values;
       entry.score.residuals = evaluation.residuals;
+      entry.score.jacobian = evaluation.jacobian;
     }
     trace_.push_back(entry);
+    charged_ += with_jacobian ? calc_jacobian_charge(variables.size()) : 1;
     if (stopped()) {
       stopped_at_ = Clock::now();
     }
@@ -137,6 +158,8 @@ class MemoryEvaluator : public Evaluator {
   const Problem& problem_;
   MemoryEvaluatorSettings settings_;
   std::vector<Entry> trace_;
+  std::int64_t charged_ = 0;
+  bool is_spent_ = false;  // what is left is too little for what was asked for
   std::vector<std::size_t> batch_sizes_;
   std::vector<std::vector<double>> recommended_;
   std::int64_t generations_ = 0;

@@ -61,6 +61,7 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   const RunPlan& plan = request.plan;
   check_plan(plan);
   const auto optimizer = plan.optimizer.make(plan.options);
+  optimizer->check_problem(plan.problem.problem->description());
   const RunFolder folder(request.folder, plan, request.command_line);
   if (are_derived_files_there(folder.path())) {
     observer.on_message(

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <numeric>
 #include <span>
+#include <stdexcept>
 #include <utility>
 
 #include "base/bits.hpp"
@@ -109,6 +110,8 @@ void RunEvaluator::check_replay(const EvaluationRecord& request,
         break;
       }
     }
+  } else if (recorded.with_jacobian != request.with_jacobian) {
+    difference = "one was asked for with derivatives, the other without";
   } else if (recorded.generation != request.generation || recorded.clipped != request.clipped) {
     difference = "its generation or clipping differs";
   }
@@ -146,6 +149,7 @@ void RunEvaluator::take_remaining_recorded() {
       start_generation();
     }
     ++counts_.replayed;
+    replayed_cases_ += record->calc_charge();
     Score score;  // nobody is asking any more
     take(std::move(*record), score);
     record.reset();
@@ -153,11 +157,21 @@ void RunEvaluator::take_remaining_recorded() {
   report(0, 0);
 }
 
-std::vector<Score> RunEvaluator::evaluate(std::span<const std::vector<double>> points) {
+std::vector<Score> RunEvaluator::evaluate_with_jacobian(
+    std::span<const std::vector<double>> points) {
+  if (!problem().has_jacobian) {
+    throw std::logic_error("derivatives were asked for of a problem that has none");
+  }
+  return evaluate(points, true);
+}
+
+std::vector<Score> RunEvaluator::evaluate(std::span<const std::vector<double>> points,
+                                          bool with_jacobian) {
   if (stopped()) {
     return {};
   }
-  const auto allowed = static_cast<std::size_t>(std::max<std::int64_t>(0, remaining()));
+  const std::int64_t charge = with_jacobian ? calc_jacobian_charge(problem().variables.size()) : 1;
+  const auto allowed = static_cast<std::size_t>(std::max<std::int64_t>(0, remaining() / charge));
   if (points.size() > allowed) {
     points = points.first(allowed);
     budget_spent_ = true;
@@ -170,6 +184,7 @@ std::vector<Score> RunEvaluator::evaluate(std::span<const std::vector<double>> p
   for (std::size_t i = 0; i < points.size(); ++i) {
     EvaluationRecord& record = records.emplace_back(make_request(points[i]));
     record.index = counts_.evaluations + i;
+    record.with_jacobian = with_jacobian;
     if (record.index < recorded_.size() && recorded_[record.index]) {
       check_replay(record, *recorded_[record.index]);
       record.evaluation = std::move(recorded_[record.index]->evaluation);
@@ -189,18 +204,20 @@ std::vector<Score> RunEvaluator::evaluate(std::span<const std::vector<double>> p
   std::mutex mutex;
   const std::uint64_t replayed = points.size() - missing.size();
   std::uint64_t finished = replayed;
-  const std::uint64_t cases_each = block_.numbers.size();
-  runner_.run(candidates, block_, wants_residuals_,
-              [&](std::size_t candidate, Evaluation evaluation) {
-                const std::size_t i = missing[candidate];
-                records[i].evaluation = std::move(evaluation);
-                journal_.append(records[i]);
-                answered[i] = true;
-                const std::lock_guard lock(mutex);
-                if (++finished < points.size()) {  // the last one's is the report on all, below
-                  report(finished * cases_each, replayed * cases_each);
-                }
-              });
+  const std::uint64_t cases_each = block_.numbers.size() * static_cast<std::uint64_t>(charge);
+  runner_.run(
+      candidates, block_, wants_residuals_ || with_jacobian,
+      [&](std::size_t candidate, Evaluation evaluation) {
+        const std::size_t i = missing[candidate];
+        records[i].evaluation = std::move(evaluation);
+        journal_.append(records[i]);
+        answered[i] = true;
+        const std::lock_guard lock(mutex);
+        if (++finished < points.size()) {  // the last one's is the report on all, below
+          report(finished * cases_each, replayed * cases_each);
+        }
+      },
+      with_jacobian);
 
   // A stop can leave holes; the optimizer learns the results before the first, and a resumed run
   // evaluates only the holes.
@@ -208,6 +225,7 @@ std::vector<Score> RunEvaluator::evaluate(std::span<const std::vector<double>> p
       static_cast<std::size_t>(std::ranges::find(answered, false) - answered.begin());
   stopped_ = complete < points.size();
   counts_.replayed += replayed;
+  replayed_cases_ += replayed * cases_each;
   std::vector<Score> scores(complete);
   for (std::size_t i = 0; i < complete; ++i) {
     take(std::move(records[i]), scores[i]);
@@ -222,7 +240,7 @@ std::vector<Score> RunEvaluator::evaluate(std::span<const std::vector<double>> p
 void RunEvaluator::take(EvaluationRecord record, Score& score) {
   Evaluation& evaluation = record.evaluation;
   ++counts_.evaluations;
-  counts_.cases += record.cases.numbers.size();
+  counts_.cases += record.calc_charge();
   counts_.clipped += record.clipped ? 1 : 0;
   counts_.failed += evaluation.status == EvaluationStatus::ok ? 0 : 1;
   if (is_feasible(evaluation)) {
@@ -232,6 +250,7 @@ void RunEvaluator::take(EvaluationRecord record, Score& score) {
   score.status = evaluation.status;
   score.clipped = record.clipped;
   score.residuals = std::move(evaluation.residuals);
+  score.jacobian = std::move(evaluation.jacobian);
   if (!evaluation.objectives.empty()) {
     score.objectives = std::move(evaluation.objectives);
     score.constraint_values = std::move(evaluation.constraint_values);
@@ -248,7 +267,7 @@ void RunEvaluator::report(std::uint64_t more_cases, std::uint64_t more_replayed)
   Progress progress;
   progress.done = counts_.cases + more_cases;
   progress.total = static_cast<std::uint64_t>(plan_.budget) / cases_each * cases_each;
-  progress.replayed = counts_.replayed * cases_each + more_replayed;
+  progress.replayed = replayed_cases_ + more_replayed;
   progress.generation = counts_.generations;
   progress.best_objective = candidates_.best_objective();
   observer_.on_progress(progress);

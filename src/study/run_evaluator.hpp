@@ -53,7 +53,10 @@ class RunEvaluator final : public Evaluator {
                JournalContent recorded, RunObserver& observer);
 
   const ProblemDescription& problem() const override;
-  std::vector<Score> evaluate(std::span<const std::vector<double>> points) override;
+  std::vector<Score> evaluate(std::span<const std::vector<double>> points) override {
+    return evaluate(points, false);
+  }
+  std::vector<Score> evaluate_with_jacobian(std::span<const std::vector<double>> points) override;
   bool stopped() const override;
   std::int64_t remaining() const override;
   void begin_generation() override;
@@ -75,6 +78,7 @@ class RunEvaluator final : public Evaluator {
   std::vector<Candidate> select_candidates() const { return candidates_.select(); }
 
  private:
+  std::vector<Score> evaluate(std::span<const std::vector<double>> points, bool with_jacobian);
   EvaluationRecord make_request(std::span<const double> x) const;
   void check_replay(const EvaluationRecord& request, const EvaluationRecord& recorded) const;
   void start_generation();
@@ -93,6 +97,7 @@ class RunEvaluator final : public Evaluator {
   bool wants_residuals_;  // the optimizer; for others they are neither made nor recorded
   bool journal_ended_;
   RunCounts counts_;
+  std::uint64_t replayed_cases_ = 0;  // those of counts_.replayed
   std::string first_failure_;
   CaseBlock block_;
   CandidatePool candidates_;

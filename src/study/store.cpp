@@ -25,7 +25,7 @@ std::string make_convergence_csv(const ProblemDescription& problem, const Journa
   std::vector<Row> rows;
   std::uint64_t cases = 0;
   for (const EvaluationRecord& record : journal.training) {
-    cases += record.cases.numbers.size();
+    cases += record.calc_charge();
     if (!is_feasible(record.evaluation)) {
       continue;
     }

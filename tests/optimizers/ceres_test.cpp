@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/expect_error.hpp"
 #include "optimizers/test_problems.hpp"
 #include "problems/analytic.hpp"
 #include "study/memory_evaluator.hpp"
@@ -99,6 +100,66 @@ TEST_F(Ceres, LmLooksBeyondRipples) {
   const double wide = run("ceres:lm", problem, {.budget = 200}).best().value();
   const double narrow = run("ceres:lm", problem, {.budget = 200}, {"step=0.0005"}).best().value();
   EXPECT_LT(wide, 0.1 * narrow);
+}
+
+// Extended Rosenbrock in two variables with its Jacobian; a logarithmic one that does not matter.
+std::unique_ptr<Problem> make_exact_rosenbrock() {
+  return std::make_unique<JacobianProblem>(
+      std::vector<DecisionVariable>{{"x", "", -5, 10, -1.2, Scale::linear},
+                                    {"y", "", -5, 10, 1, Scale::linear},
+                                    {"z", "", 1, 100, 10, Scale::logarithmic}},
+      [](std::span<const double> x) {
+        return std::vector<double>{10 * (x[1] - x[0] * x[0]), 1 - x[0], 0.1};
+      },
+      [](std::span<const double> x) {
+        return std::vector<double>{-20 * x[0], 10, 0, -1, 0, 0, 0, 0, 0};
+      });
+}
+
+TEST_F(Ceres, LmTakesExactDerivativesWhereToldTo) {
+  const auto problem = make_exact_rosenbrock();
+  const MemoryEvaluator exact =
+      run("ceres:lm", *problem, {.budget = 1000}, {"derivatives=exact", "function_tolerance=0"});
+  EXPECT_NEAR(exact.best().value(), 0.01, 1e-12);
+  EXPECT_LT(exact.charged(), 1000);  // ends by itself
+  std::int64_t charge = 0;
+  for (const MemoryEvaluator::Entry& entry : exact.trace()) {
+    charge += entry.with_jacobian ? 2 : 1;
+  }
+  EXPECT_EQ(exact.charged(), charge);
+  EXPECT_EQ(exact.trace().front().asked, start_of(*problem));
+}
+
+TEST_F(Ceres, LmMeetsTheBudgetWithExactDerivatives) {
+  const auto problem = make_exact_rosenbrock();
+  for (std::int64_t budget = 0; budget < 20; ++budget) {
+    const MemoryEvaluator evaluator =
+        run("ceres:lm", *problem, {.budget = budget}, {"derivatives=exact"});
+    EXPECT_LE(evaluator.charged(), budget);
+    EXPECT_GE(evaluator.charged(), budget - 1);  // too little may be left for derivatives
+    EXPECT_LE(evaluator.calls_after_stop(), 1);
+  }
+  const OptimizerRow row = load_optimizer("multistart:ceres:lm");
+  MemoryEvaluator evaluator(*problem, {.budget = 200});
+  const std::vector<std::string> assignments = {"derivatives=exact", "evaluations_per_start=20"};
+  row.make(Options::parse(row.name, row.options, assignments))->minimize(evaluator, 1);
+  EXPECT_GE(evaluator.charged(), 199);
+  EXPECT_LE(evaluator.charged(), 200);
+}
+
+TEST_F(Ceres, LmSaysWhatToDoWithoutExactDerivatives) {
+  const auto problem = make_analytic("rosenbrock", 10);
+  MemoryEvaluator evaluator(*problem, {.budget = 100});
+  for (const std::string name : {"ceres:lm", "multistart:ceres:lm"}) {
+    const OptimizerRow row = load_optimizer(name);
+    const std::vector<std::string> exact = {"derivatives=exact"};
+    const auto optimizer = row.make(Options::parse(name, row.options, exact));
+    EXPECT_THAT(usage_error_of([&] { optimizer->check_problem(problem->description()); }),
+                HasSubstr("option derivatives is exact, but problem rosenbrock offers no exact "
+                          "derivatives"));
+    EXPECT_THROW(optimizer->minimize(evaluator, 1), Error);
+  }
+  EXPECT_TRUE(evaluator.trace().empty());
 }
 
 TEST_F(Ceres, LmEvaluatesWhateverTheSmallestStep) {

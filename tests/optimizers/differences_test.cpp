@@ -98,5 +98,64 @@ TEST(Differences, TheEndOfTheBudgetComesOut) {
   EXPECT_EQ(evaluator.trace().size(), 2u);
 }
 
+// Residuals u v and v^2 of two logarithmic variables of either sign and a linear one.
+std::unique_ptr<Problem> make_products() {
+  return std::make_unique<JacobianProblem>(
+      std::vector<DecisionVariable>{{"u", "", 1, 100, 5, Scale::logarithmic},
+                                    {"v", "", -100, -1, -5, Scale::logarithmic},
+                                    {"w", "", -1, 1, 0.5, Scale::linear}},
+      [](std::span<const double> x) {
+        return std::vector<double>{x[0] * x[1], x[1] * x[1] + 3 * x[2]};
+      },
+      [](std::span<const double> x) { return std::vector<double>{x[1], x[0], 0, 0, 2 * x[1], 3}; });
+}
+
+std::vector<double> double_residuals(const Score& score) {
+  std::vector<double> values = score.residuals;
+  for (double& value : values) {
+    value *= 2;
+  }
+  return values;
+}
+
+TEST(ExactDerivatives, AreTheChainRuleAndTheirEvaluationIsChargedFor) {
+  const auto problem = make_products();
+  MemoryEvaluator evaluator(*problem, {.budget = 100});
+  DifferencedFunction function(evaluator, double_residuals, [](const Score& score) {
+    return std::vector<double>(score.residuals.size(), 2.0);
+  });
+  const std::vector<double> at = {std::log(4), std::log(3), 0.25};
+  EXPECT_THAT(function.look_at(at, false).derivatives, IsEmpty());
+  EXPECT_EQ(evaluator.charged(), 1);
+  // By ln u, ln |v| and w; roundings of exp and log.
+  const auto& place = function.look_at(at, true);
+  EXPECT_THAT(place.values, ElementsAre(DoubleNear(-24, 1e-13), DoubleNear(19.5, 1e-13)));
+  EXPECT_THAT(place.derivatives,
+              ElementsAre(ElementsAre(DoubleNear(-24, 1e-13), DoubleNear(0, 1e-13)),
+                          ElementsAre(DoubleNear(-24, 1e-13), DoubleNear(36, 1e-13)),
+                          ElementsAre(DoubleNear(0, 1e-13), DoubleNear(6, 1e-13))));
+  EXPECT_EQ(evaluator.charged(), 1 + 2);  // 1 + 3/4, rounded up
+  EXPECT_EQ(evaluator.trace().size(), 2U);
+  function.look_at(at, true);
+  function.look_at(at, false);
+  EXPECT_EQ(evaluator.charged(), 3);
+}
+
+TEST(ExactDerivatives, AFailedPlaceHasNone) {
+  const auto problem = make_products();
+  MemoryEvaluator evaluator(*problem, {.budget = 100, .fail_every = 1});
+  DifferencedFunction function(evaluator, double_residuals,
+                               [](const Score& score) { return score.residuals; });
+  const auto& place = function.look_at({1, 1, 0}, true);
+  EXPECT_THAT(place.values, IsEmpty());
+  EXPECT_THAT(place.derivatives, IsEmpty());
+}
+
+TEST(ExactDerivatives, ChargesAreOneAndAQuarterAVariableRoundedUp) {
+  for (const auto& [variables, charge] : {std::pair{1, 2}, {4, 2}, {5, 3}, {8, 3}, {20, 6}}) {
+    EXPECT_EQ(calc_jacobian_charge(static_cast<std::size_t>(variables)), charge);
+  }
+}
+
 }  // namespace
 }  // namespace armwright

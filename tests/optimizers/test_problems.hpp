@@ -95,6 +95,36 @@ class ResidualProblem : public TestProblem {
   Residuals residuals_;
 };
 
+// The same with a Jacobian, a row a residual, row after row.
+class JacobianProblem : public ResidualProblem {
+ public:
+  JacobianProblem(std::vector<DecisionVariable> variables, Residuals residuals, Residuals jacobian)
+      : ResidualProblem(std::move(variables), std::move(residuals)),
+        jacobian_(std::move(jacobian)) {
+    description_.has_jacobian = true;
+  }
+
+  std::vector<CaseOutcome> simulate(std::span<const CaseJob> jobs) const override {
+    std::vector<CaseOutcome> outcomes = ResidualProblem::simulate(jobs);
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+      if (jobs[i].jacobian) {
+        outcomes[i].jacobian = jacobian_(jobs[i].x);
+      }
+    }
+    return outcomes;
+  }
+
+  Evaluation aggregate(std::span<const double> x,
+                       std::span<const CaseOutcome> outcomes) const override {
+    Evaluation evaluation = ResidualProblem::aggregate(x, outcomes);
+    evaluation.jacobian = outcomes[0].jacobian;
+    return evaluation;
+  }
+
+ private:
+  Residuals jacobian_;
+};
+
 // A bent bowl over three decades, logarithmic variables of either sign, minimum 0 at (900, -30, 2).
 inline std::unique_ptr<Problem> make_log_bowl() {
   return std::make_unique<FunctionProblem>(

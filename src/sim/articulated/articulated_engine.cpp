@@ -1,5 +1,6 @@
 #include "sim/articulated/articulated_engine.hpp"
 
+#include "sim/articulated/derivatives.hpp"
 #include "sim/articulated/lane_block.hpp"
 
 namespace armwright {
@@ -66,6 +67,15 @@ class ArticulatedEngine final : public PhysicsEngine {
       }
     }
     return results;
+  }
+
+  bool has_derivatives() const override { return true; }
+  std::vector<double> calc_derivatives(const TrackingSetup& setup, const TrackingJob& job,
+                                       std::span<const ArmDesign> directions) const override {
+    if (!job.targets->unreachable.empty()) {
+      return {};
+    }
+    return calc_point_derivatives(setup, job, directions);
   }
 
   BatchSize batch_size() const override {

@@ -1,0 +1,200 @@
+// Exact derivatives of simulations against differences of the same simulations.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "tracking_arms.hpp"
+
+namespace armwright::physics_test {
+namespace {
+
+// One number of the design, in the order in which derivatives are asked for.
+double& get_number(ArmDesign& design, std::size_t which) {
+  JointDrive& joint = design.joints[which / 5];
+  const std::size_t k = which % 5;
+  return k < 3 ? joint.gains[k] : k == 3 ? joint.limits.min_n_m : joint.limits.max_n_m;
+}
+constexpr std::size_t kNumbers = 20;
+
+// Along the numbers themselves, so that derivatives are those by their logarithms, as errors are:
+// m for a factor of e.
+std::vector<ArmDesign> make_directions(const ArmDesign& design) {
+  ArmDesign zero = design;
+  for (std::size_t i = 0; i < kNumbers; ++i) {
+    get_number(zero, i) = 0;
+  }
+  std::vector<ArmDesign> directions(kNumbers, zero);
+  for (std::size_t i = 0; i < kNumbers; ++i) {
+    ArmDesign copy = design;
+    get_number(directions[i], i) = get_number(copy, i);
+  }
+  return directions;
+}
+
+std::unique_ptr<PhysicsEngine> make_articulated() {
+  return make_engine("articulated", {.simd = SimdLevel::scalar});
+}
+
+std::vector<double> calc_errors(const PhysicsEngine& engine, const TrackingSetup& setup,
+                                const ArmDesign& design, const TargetTable& targets) {
+  const TrackingJob job = make_job(design, targets);
+  return engine.simulate(setup, {&job, 1}).front().point_error_m;
+}
+
+// Central differences, a row a point; `step` in units of the number itself.
+std::vector<double> calc_differences(const PhysicsEngine& engine, const TrackingSetup& setup,
+                                     const ArmDesign& design, const TargetTable& targets,
+                                     double step) {
+  std::vector<double> differences(targets.segments.size() * kNumbers);
+  for (std::size_t i = 0; i < kNumbers; ++i) {
+    ArmDesign above = design;
+    ArmDesign below = design;
+    get_number(above, i) *= 1 + step;
+    get_number(below, i) *= 1 - step;
+    const auto high = calc_errors(engine, setup, above, targets);
+    const auto low = calc_errors(engine, setup, below, targets);
+    for (std::size_t k = 0; k < high.size(); ++k) {
+      differences[k * kNumbers + i] = (high[k] - low[k]) / (2 * step);
+    }
+  }
+  return differences;
+}
+
+// How far from the differences the derivatives are. Where differences of two steps disagree, there
+// is a kink between (another step attains the maximum, a limit is just met) or much curvature;
+// where they agree to `kAgreement` of the scale it is smooth, and extrapolating them to no step at
+// all leaves an error far below that.
+struct Comparison {
+  int smooth = 0;
+  int with_influence = 0;  // of the smooth ones
+  int rough = 0;
+  double worst = 0;  // of the smooth ones, as a share of the scale
+};
+constexpr double kAgreement = 3e-6;
+
+Comparison compare(const TrackingSetup& setup, const ArmDesign& design,
+                   const TargetTable& targets) {
+  constexpr double kStep = 4e-5;
+  const auto engine = make_articulated();
+  const auto wide = calc_differences(*engine, setup, design, targets, kStep);
+  const auto narrow = calc_differences(*engine, setup, design, targets, kStep / 2);
+  const TrackingJob job = make_job(design, targets);
+  const auto exact = engine->calc_derivatives(setup, job, make_directions(design));
+  const auto errors = calc_errors(*engine, setup, design, targets);
+  EXPECT_EQ(exact.size(), wide.size());
+  Comparison comparison;
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    // Errors are rounded to some 1e-15 m, which differences divide by the step: 1e-10 m. The scale
+    // never falls below the errors themselves, 1e-4 m at least.
+    const double scale = std::max(std::abs(wide[i]), errors[i / kNumbers]);
+    if (std::abs(wide[i] - narrow[i]) > kAgreement * scale) {
+      ++comparison.rough;
+      continue;
+    }
+    ++comparison.smooth;
+    comparison.with_influence += std::abs(wide[i]) > 0.01 * errors[i / kNumbers] ? 1 : 0;
+    const double limit = (4 * narrow[i] - wide[i]) / 3;
+    comparison.worst = std::max(comparison.worst, std::abs(exact[i] - limit) / scale);
+  }
+  return comparison;
+}
+
+void expect_agreement(const Comparison& comparison) {
+  // A kink that moves the differences by less than what they must agree to, and the extrapolated
+  // ones by little more, goes unseen.
+  EXPECT_LT(comparison.worst, 3 * kAgreement);
+  // Most places are smooth, and in many the number matters.
+  EXPECT_GT(comparison.smooth, 4 * comparison.rough);
+  EXPECT_GT(comparison.with_influence, comparison.smooth / 10);
+}
+
+class Derivatives : public testing::Test {
+ protected:
+  TrackingSetup setup_{load_irb4600(), make_e6_task()};
+  TargetTable targets_ = setup_.make_targets(make_case(7));
+};
+
+TEST_F(Derivatives, AreTheLimitsOfDifferences) {
+  for (const ArmDesign& design : {kTableA1, kTableA5, kTableA10}) {
+    expect_agreement(compare(setup_, design, targets_));
+  }
+}
+
+// A hair off parallel, the third axis begins a group of its own, at a general angle: the code for
+// chains of any shape.
+TEST_F(Derivatives, HoldForAnyShapeOfChain) {
+  RobotModel robot = load_irb4600();
+  robot.joints[2].axis = (robot.joints[2].axis + 3e-7 * Eigen::Vector3d(0.6, 0, 0.8)).normalized();
+  const TrackingSetup setup(robot, make_e6_task());
+  const Comparison comparison = compare(setup, kTableA1, targets_);
+  expect_agreement(comparison);
+  // The arm is the same to 3e-7 rad, and so are its derivatives, but for what is rough.
+  const TrackingJob job = make_job(kTableA1, targets_);
+  const auto directions = make_directions(kTableA1);
+  const auto a = make_articulated()->calc_derivatives(setup_, job, directions);
+  const auto b = make_articulated()->calc_derivatives(setup, job, directions);
+  ASSERT_EQ(a.size(), b.size());
+  EXPECT_NE(a, b);  // other code
+  double largest = 0;
+  double difference = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    largest = std::max(largest, std::abs(a[i]));
+    difference = std::max(difference, std::abs(a[i] - b[i]));
+  }
+  EXPECT_LT(difference, 1e-3 * largest);
+}
+
+TEST_F(Derivatives, DoNotDependOnHowManyAreAskedForAtOnce) {
+  const auto engine = make_articulated();
+  const TrackingJob job = make_job(kTableA5, targets_);
+  const auto directions = make_directions(kTableA5);
+  const auto all = engine->calc_derivatives(setup_, job, directions);
+  for (const std::size_t i : {0UL, 6UL, 19UL}) {
+    const auto one = engine->calc_derivatives(setup_, job, std::span(directions).subspan(i, 1));
+    ASSERT_EQ(one.size(), targets_.segments.size());
+    for (std::size_t k = 0; k < one.size(); ++k) {
+      EXPECT_EQ(one[k], all[k * kNumbers + i]);
+    }
+  }
+  EXPECT_EQ(make_engine("articulated")->calc_derivatives(setup_, job, directions), all);
+  EXPECT_TRUE(engine->calc_derivatives(setup_, job, {}).empty());
+}
+
+// Points that were not reached count as the cut-off error, which depends on nothing.
+TEST_F(Derivatives, AreZeroFromACutOffOnAndFiniteWhereAnArmDiverges) {
+  const auto engine = make_articulated();
+  const TrackingJob job = make_job(kLimp, targets_, 0.3);
+  const TrackingResult result = engine->simulate(setup_, {&job, 1}).front();
+  ASSERT_EQ(result.status, SimulationStatus::cut_off) << result.reason;
+  const auto derivatives = engine->calc_derivatives(setup_, job, make_directions(kLimp));
+  ASSERT_EQ(derivatives.size(), targets_.segments.size() * kNumbers);
+  for (std::size_t k = 0; k < targets_.segments.size(); ++k) {
+    const bool reached = result.point_error_m[k] < 0.3;
+    for (std::size_t i = 0; i < kNumbers && !reached; ++i) {
+      EXPECT_EQ(derivatives[k * kNumbers + i], 0);
+    }
+  }
+  const TrackingJob exploding = make_job(kExploding, targets_);
+  for (const double slope :
+       engine->calc_derivatives(setup_, exploding, make_directions(kExploding))) {
+    EXPECT_TRUE(std::isfinite(slope));
+  }
+}
+
+TEST_F(Derivatives, NeitherExistForUnreachableTargetsNorFromOde) {
+  TargetTable unreachable = targets_;
+  unreachable.unreachable = "too far";
+  const auto directions = make_directions(kTableA1);
+  const TrackingJob job = make_job(kTableA1, unreachable);
+  EXPECT_TRUE(make_articulated()->calc_derivatives(setup_, job, directions).empty());
+  EXPECT_TRUE(make_articulated()->has_derivatives());
+  const auto ode = make_engine("ode");
+  EXPECT_FALSE(ode->has_derivatives());
+  EXPECT_THROW(ode->calc_derivatives(setup_, job, directions), std::logic_error);
+}
+
+}  // namespace
+}  // namespace armwright::physics_test
