@@ -1,0 +1,197 @@
+// What a step of the thesis's arm costs in every engine, on the same task: its four controllers,
+// the dynamics and the measures of 64 test cases. Times are those of the thread's CPU, without the
+// target tables, which all engines share. Every ratio is to ODE on some of the same cases within
+// the same run, by turns, so that a machine that slows down slows down both; errors stand beside.
+#include <benchmark/benchmark.h>
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "engines/parts.hpp"
+#include "problems/design_file.hpp"
+#include "problems/problem_loader.hpp"
+#include "sim/articulated/chain_model.hpp"
+#include "study/case_runner.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr std::size_t kCases = 64;
+constexpr std::size_t kOdeCases = 4;
+
+double measure_cpu_s(const auto& work) {
+  const auto now = [] {
+    timespec time{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  };
+  const double start = now();
+  work();
+  return now() - start;
+}
+
+double measure_wall_s(const auto& work) {
+  timespec start{}, end{};
+  clock_gettime(CLOCK_MONOTONIC, &start);
+  work();
+  clock_gettime(CLOCK_MONOTONIC, &end);
+  return static_cast<double>(end.tv_sec - start.tv_sec) +
+         1e-9 * static_cast<double>(end.tv_nsec - start.tv_nsec);
+}
+
+double calc_median(std::vector<double> values) {
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+struct Task {
+  LoadedProblem problem;
+  ArmDesign design;
+  std::vector<TargetTable> targets;
+  std::vector<TrackingJob> jobs;
+
+  explicit Task(const char* problem_name)
+      : problem(load_problem(problem_name)), design(load_design(problem.published.design).design) {
+    const TestSet set = problem.tracking->get_set("test/2");
+    for (std::size_t i = 0; i < kCases; ++i) {
+      targets.push_back(problem.tracking->setup().make_targets(set.make_case(i)));
+    }
+    for (const TargetTable& table : targets) {
+      TrackingJob& job = jobs.emplace_back();
+      job.design = &design;
+      job.targets = &table;
+    }
+  }
+};
+
+struct Measured {
+  double seconds = 0, steps = 0, error_m = 0;
+};
+Measured simulate(const PhysicsEngine& engine, const Task& task, std::size_t cases) {
+  Measured measured;
+  std::vector<TrackingResult> results;
+  measured.seconds = measure_cpu_s([&] {
+    results = engine.simulate(task.problem.tracking->setup(), std::span(task.jobs).first(cases));
+  });
+  for (const TrackingResult& result : results) {
+    measured.steps += result.steps;
+    measured.error_m += result.mean_error_m / static_cast<double>(cases);
+  }
+  return measured;
+}
+
+void run_engine(benchmark::State& state, const char* problem_name, const std::string& engine_name,
+                const EngineOptions& options) {
+  const Task task(problem_name);
+  const auto engine = make_engine(engine_name, options);
+  const auto ode = make_engine("ode");
+  const bool fast = find_engine(engine_name).simd;
+  std::vector<double> own, ratio;
+  double error_m = 0;
+  for (auto _ : state) {
+    const Measured a = simulate(*engine, task, fast ? kCases : kOdeCases);
+    const Measured b = simulate(*ode, task, kOdeCases);
+    own.push_back(a.seconds / a.steps);
+    ratio.push_back(b.seconds / b.steps / own.back());
+  }
+  error_m = simulate(*engine, task, kCases).error_m;
+  state.counters["ns_per_step"] = 1e9 * calc_median(own);
+  state.counters["times_as_fast_as_ode"] = calc_median(ratio);
+  state.counters["mean_error_mm"] = 1e3 * error_m;
+}
+
+void run_part(benchmark::State& state, SimdLevel level, benchmarks::Part part) {
+  const LoadedProblem problem = load_problem("q1-complex");
+  const articulated::ChainModel& chain = problem.tracking->setup().chain();
+  const benchmarks::PartsChain numbers{chain.joints(), chain.flags().data(), chain.tilted_gravity(),
+                                       chain.numbers().data()};
+  std::vector<double> seconds;
+  constexpr int kRounds = 20000;
+  int lanes = 1;
+  for (auto _ : state) {
+    seconds.push_back(
+        measure_cpu_s([&] { lanes = benchmarks::run_part(level, part, numbers, kRounds); }));
+  }
+  state.counters["ns_per_step"] = 1e9 * calc_median(seconds) / kRounds / lanes;
+}
+
+// The same number of simulations on one thread and on two, and shared out in two ways; target
+// tables made before. By the wall's clock.
+void run_sharing(benchmark::State& state) {
+  const std::vector<std::string> overrides = {"physics.engine=articulated"};
+  const LoadedProblem problem = load_problem("q1-complex", overrides);
+  const auto x = problem.tracking->make_vector(load_design("table-a5").design);
+  StopSignal stop;
+  ThreadPool one(1);
+  ThreadPool two(2);
+  const auto evaluate = [&](ThreadPool& pool, std::size_t designs, std::size_t cases) {
+    CaseBlock block{CaseRole::training, "train/1", std::vector<std::uint64_t>(cases)};
+    std::iota(block.numbers.begin(), block.numbers.end(), 0);
+    const std::vector<std::span<const double>> candidates(designs, x);
+    CaseRunner(*problem.problem, pool, stop)
+        .run(candidates, block, false, [](std::size_t, Evaluation) {});
+  };
+  std::vector<double> speedup, ratio;
+  evaluate(one, 1, kCases);  // the tables
+  for (auto _ : state) {
+    const double serial = measure_wall_s([&] { evaluate(one, 16, kCases); });
+    const double parallel = measure_wall_s([&] { evaluate(two, 16, kCases); });
+    speedup.push_back(serial / parallel);
+    const double many_cases = measure_wall_s([&] { evaluate(one, 1, kCases); });
+    const double many_designs = measure_wall_s([&] { evaluate(one, kCases, 1); });
+    ratio.push_back(many_designs / many_cases);
+  }
+  state.counters["two_cores_over_one"] = calc_median(speedup);
+  state.counters["rate_1x64_over_64x1"] = calc_median(ratio);
+}
+
+void add_rows() {
+  for (const char* problem : {"q2-e6", "q1-complex"}) {
+    for (const EngineRow& row : engine_table()) {
+      const auto add = [&](const std::string& label, const EngineOptions& options) {
+        benchmark::RegisterBenchmark((std::string(problem) + "/" + label).c_str(),
+                                     [problem, name = row.name, options](benchmark::State& state) {
+                                       run_engine(state, problem, name, options);
+                                     })
+            ->Iterations(9)
+            ->Unit(benchmark::kMillisecond);
+      };
+      if (!row.simd) {
+        add(row.name, {});
+        continue;
+      }
+      for (const std::string& level : supported_simd_names()) {
+        for (const Precision precision : {Precision::double_, Precision::single}) {
+          add(row.name + "/" + level + "/" + to_string(precision), {precision, parse_simd(level)});
+        }
+      }
+    }
+  }
+  for (const std::string& level : supported_simd_names()) {
+    for (const benchmarks::Part part : benchmarks::kParts) {
+      benchmark::RegisterBenchmark(
+          ("part/" + level + "/" + to_string(part)).c_str(),
+          [level, part](benchmark::State& state) { run_part(state, parse_simd(level), part); })
+          ->Iterations(25)
+          ->Unit(benchmark::kMillisecond);
+    }
+  }
+  benchmark::RegisterBenchmark("sharing", run_sharing)
+      ->Iterations(40)
+      ->Unit(benchmark::kMillisecond);
+}
+
+}  // namespace
+}  // namespace armwright
+
+int main(int argc, char** argv) {
+  armwright::add_rows();
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+}
