@@ -16,13 +16,24 @@
 namespace armwright {
 namespace {
 
-std::vector<std::string> make_command(const std::string& out, const std::string& jobs) {
-  return {"optimize", "q1-complex",
-          "--budget", "1400",
-          "--set",    "sets.test_cases=20",
-          "--jobs",   jobs,
-          "--set",    "sets.validation_cases=5",
-          "--out",    out,
+// 1400 evaluations with either engine, for the fast one of a hundred cases each: long enough to be
+// killed ten times.
+struct Setting {
+  const char* engine;
+  const char* schedule;
+  const char* budget;
+};
+
+std::vector<std::string> make_command(const Setting& setting, const std::string& out,
+                                      const std::string& jobs) {
+  return {"optimize",   "q1-complex",
+          "--engine",   setting.engine,
+          "--schedule", setting.schedule,
+          "--budget",   setting.budget,
+          "--set",      "sets.test_cases=20",
+          "--jobs",     jobs,
+          "--set",      "sets.validation_cases=5",
+          "--out",      out,
           "--quiet"};
 }
 
@@ -53,16 +64,21 @@ void expect_same_run(const std::filesystem::path& a, const std::filesystem::path
   }
 }
 
-TEST(KillAndResume, TenKillsAndAnyNumberOfThreadsChangeNothing) {
+class KillAndResume : public testing::TestWithParam<Setting> {};
+
+TEST_P(KillAndResume, TenKillsAndAnyNumberOfThreadsChangeNothing) {
   const TemporaryFolder folder;
-  ASSERT_EQ(run_program(folder.path(), make_command("one", "1")).exit_code, 0);
-  ASSERT_EQ(run_program(folder.path(), make_command("two", "2")).exit_code, 0);
+  const auto make = [](const std::string& out, const std::string& jobs) {
+    return make_command(GetParam(), out, jobs);
+  };
+  ASSERT_EQ(run_program(folder.path(), make("one", "1")).exit_code, 0);
+  ASSERT_EQ(run_program(folder.path(), make("two", "2")).exit_code, 0);
   expect_same_run(folder / "one", folder / "two");
 
   RandomStream random("test/kill-and-resume", 1);
   int kills = 0;
   while (kills < 10) {
-    Program program(folder.path(), make_command("killed", kills % 2 == 0 ? "2" : "1"));
+    Program program(folder.path(), make("killed", kills % 2 == 0 ? "2" : "1"));
     const auto wait_ms = static_cast<long>(random.uniform(20, 300));
     std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
     ASSERT_TRUE(program.is_running()) << "the run ended before it could be killed ten times";
@@ -70,11 +86,16 @@ TEST(KillAndResume, TenKillsAndAnyNumberOfThreadsChangeNothing) {
     EXPECT_EQ(program.wait().exit_code, -SIGKILL);
     ++kills;
   }
-  const Outcome last = run_program(folder.path(), make_command("killed", "2"));
+  const Outcome last = run_program(folder.path(), make("killed", "2"));
   EXPECT_EQ(last.exit_code, 0) << last.err;
   EXPECT_FALSE(read_journal(folder / "killed" / "journal").training.empty());
   expect_same_run(folder / "one", folder / "killed");
 }
+
+INSTANTIATE_TEST_SUITE_P(Engines, KillAndResume,
+                         testing::Values(Setting{"ode", "fresh:1", "1400"},
+                                         Setting{"articulated", "fresh:100", "140000"}),
+                         [](const auto& test) { return test.param.engine; });
 
 }  // namespace
 }  // namespace armwright

@@ -1,0 +1,79 @@
+// The engines beside each other on the published designs and the whole test set of the thesis's
+// size: joint coordinates against MuJoCo, which also has them, and against ODE, which has not.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "problems/design_file.hpp"
+#include "problems/problem_loader.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr std::uint64_t kCases = 500;
+
+struct Published {
+  const char* problem;
+  const char* design;
+};
+
+class EnginesAgree : public testing::TestWithParam<Published> {
+ protected:
+  static std::vector<double> simulate(const std::string& engine) {
+    const std::vector<std::string> overrides = {"physics.engine=" + engine};
+    const LoadedProblem loaded = load_problem(GetParam().problem, overrides);
+    const TrackingProblem& problem = *loaded.tracking;
+    const ArmDesign design = load_design(GetParam().design).design;
+    std::vector<double> errors_m;
+    for (const TrackingResult& result :
+         problem.track(design, problem.get_set("test/2"), 0, kCases)) {
+      EXPECT_EQ(result.status, SimulationStatus::ok) << result.reason;
+      errors_m.push_back(result.mean_error_m);
+    }
+    return errors_m;
+  }
+
+  static double calc_mean(const std::vector<double>& values) {
+    double sum = 0;
+    for (const double value : values) {
+      sum += value;
+    }
+    return sum / static_cast<double>(values.size());
+  }
+};
+
+TEST_P(EnginesAgree, ArticulatedWithOdeToAPercent) {
+  const auto articulated = simulate("articulated");
+  const auto ode = simulate("ode");
+  ASSERT_EQ(articulated.size(), kCases);
+  EXPECT_NEAR(calc_mean(articulated) / calc_mean(ode), 1, 0.01);
+  EXPECT_NE(articulated, ode);  // or it would be the same engine
+}
+
+TEST_P(EnginesAgree, ArticulatedWithMujocoToAMillionthInEveryCase) {
+  const std::vector<std::string> names = engine_names();
+  if (std::ranges::find(names, "mujoco") == names.end()) {
+    GTEST_SKIP() << "built without MuJoCo";
+  }
+  const auto articulated = simulate("articulated");
+  const auto mujoco = simulate("mujoco");
+  double worst = 0;
+  for (std::size_t i = 0; i < kCases; ++i) {
+    worst = std::max(worst, std::abs(articulated[i] / mujoco[i] - 1));
+  }
+  EXPECT_LT(worst, 1e-6);
+  EXPECT_GT(worst, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Designs, EnginesAgree,
+                         testing::Values(Published{"q2-e6", "table-a10"},
+                                         Published{"q1-complex", "table-a5"}),
+                         [](const auto& test) {
+                           return std::string(test.param.design) == "table-a10" ? "A10" : "A5";
+                         });
+
+}  // namespace
+}  // namespace armwright
