@@ -24,10 +24,7 @@ double calc_angle_about(const Vector3d& axis, const Vector3d& from, const Vector
 }
 
 double snap(double value) {
-  if (std::abs(value) < kSameDirection) {
-    return 0;
-  }
-  return std::abs(std::abs(value) - 1) < kSameDirection ? std::copysign(1.0, value) : value;
+  return std::abs(value) < kSameDirection ? 0 : value;
 }
 
 }  // namespace
@@ -184,8 +181,12 @@ void ChainModel::connect(std::vector<Link>& links) {
       const Vector3d way = link.origin - before.origin;
       link.offset = {way.dot(before.x), way.dot(before.z.cross(before.x)), way.dot(before.z)};
       if (!link.same_axis) {
+        // Of a small twist the cosine alone rounds to one; it must not without its sine.
         link.twist_cos = snap(before.z.dot(link.z));
         link.twist_sin = link.twist_cos == 0 ? 1 : snap(before.z.cross(link.z).norm());
+        if (link.twist_sin == 0) {
+          link.twist_cos = std::copysign(1.0, link.twist_cos);
+        }
       }
     }
     // A micrometre's millionth is the rounding of metres.
