@@ -45,17 +45,20 @@ ProblemDescription describe(std::size_t constraints) {
 TEST(GaFitness, SeveralObjectivesCountAsTheirWeightedSum) {
   ProblemDescription problem;
   problem.objective_weights = {2, 10};
-  const Score score{.objectives = {3, 7}, .constraint_values = {}, .residuals = {}};
+  const Score score{.objectives = {3, 7}, .constraint_values = {}, .residuals = {}, .jacobian = {}};
   EXPECT_EQ(calc_fitness(problem, score).objective, 76);
 }
 
 TEST(GaFitness, AddsUpViolationsAndKnowsWhatItIsNotTold) {
-  const Score met{.objectives = {3, 7}, .constraint_values = {-1, 0}, .residuals = {}};
+  const Score met{
+      .objectives = {3, 7}, .constraint_values = {-1, 0}, .residuals = {}, .jacobian = {}};
   EXPECT_EQ(calc_fitness(describe(2), met).violation, 0);
   EXPECT_EQ(calc_fitness(describe(2), met).objective, 3);
-  const Score violated{.objectives = {3}, .constraint_values = {2, -5, 0.5}, .residuals = {}};
+  const Score violated{
+      .objectives = {3}, .constraint_values = {2, -5, 0.5}, .residuals = {}, .jacobian = {}};
   EXPECT_EQ(calc_fitness(describe(3), violated).violation, 2.5);
-  const Score failed{.objectives = {1e12}, .constraint_values = {}, .residuals = {}};
+  const Score failed{
+      .objectives = {1e12}, .constraint_values = {}, .residuals = {}, .jacobian = {}};
   EXPECT_EQ(calc_fitness(describe(1), failed).violation, std::numeric_limits<double>::infinity());
   EXPECT_EQ(calc_fitness(describe(0), failed).violation, 0);
 }

@@ -233,7 +233,8 @@ TEST(Analytic, AggregateLeavesOutCasesWithoutANumber) {
                  .reason = "took too long",
                  .has_error = false,
                  .metrics = {},
-                 .residuals = {}};
+                 .residuals = {},
+                 .jacobian = {}};
   outcomes[2].error = 4;
   const Evaluation some = problem->aggregate(x, outcomes);
   EXPECT_THAT(some.objectives, ElementsAre(3));

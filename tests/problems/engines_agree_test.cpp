@@ -29,7 +29,7 @@ class EnginesAgree : public testing::TestWithParam<Published> {
     const ArmDesign design = load_design(GetParam().design).design;
     std::vector<double> errors_m;
     for (const TrackingResult& result :
-         problem.track(design, problem.get_set("test/2"), 0, kCases)) {
+         problem.track(design, problem.get_set("test/2"), 0, kCases, {})) {
       EXPECT_EQ(result.status, SimulationStatus::ok) << result.reason;
       errors_m.push_back(result.mean_error_m);
     }
