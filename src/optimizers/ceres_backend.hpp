@@ -29,7 +29,7 @@ enum class ResidualTransform { automatic, logarithm, none };
 // minima).
 //
 // With exact derivatives there is no step; it starts again, with the residuals scaled anew, as long
-// as that gains something.
+// as that gains something. Slopes without bounds, those of chaos, are cut to what a step can use.
 struct LevenbergSettings {
   bool exact = false;                                          // derivatives
   ResidualTransform transform = ResidualTransform::automatic;  // the logarithm where every variable

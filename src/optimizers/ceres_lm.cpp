@@ -10,6 +10,7 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <span>
 
 #include "base/error.hpp"
 #include "optimizers/ceres_support.hpp"
@@ -107,6 +108,9 @@ class CentredBox {
   std::vector<double> centre_;
 };
 
+// Steepest slope of a residual, in units of what its values are divided by and a tenth of the box.
+constexpr double kSteepest = 10;
+
 class ResidualCost : public ceres::CostFunction {
  public:
   ResidualCost(DifferencedFunction& function, const CentredBox& box, HeldException& held,
@@ -132,6 +136,10 @@ class ResidualCost : public ceres::CostFunction {
           jacobian[k * dimension + i] = place.derivatives[i][k] * box_.unit(i);
         }
       }
+      for (std::size_t k = 0; jacobian != nullptr && function_.is_exact() && k < residual_count_;
+           ++k) {
+        limit_steepness({jacobian + k * dimension, dimension});
+      }
       return true;
     });
     if (is_known || jacobian == nullptr) {
@@ -146,6 +154,20 @@ class ResidualCost : public ceres::CostFunction {
   }
 
  private:
+  // A motion that is about to lose control answers to gains without bounds, and the slope says
+  // nothing of what lies a step away. It keeps its direction (gradient clipping; Pascanu, Mikolov
+  // and Bengio 2013, On the difficulty of training recurrent neural networks).
+  void limit_steepness(std::span<double> row) const {
+    const double steepest = kSteepest / std::sqrt(static_cast<double>(residual_count_));
+    const double largest =
+        std::abs(*std::ranges::max_element(row, {}, [](double slope) { return std::abs(slope); }));
+    if (largest > steepest) {
+      for (double& slope : row) {
+        slope *= steepest / largest;
+      }
+    }
+  }
+
   DifferencedFunction& function_;
   const CentredBox& box_;
   HeldException& held_;

@@ -55,6 +55,7 @@ class DifferencedFunction {
         values_of_(std::move(values_of)),
         residual_slopes_(std::move(residual_slopes)) {}
 
+  bool is_exact() const { return residual_slopes_ != nullptr; }
   const SearchSpace& space() const { return function_.space(); }
 
   // Throw EvaluatorStopped, and whatever the evaluator throws. The derivatives of a failed place
