@@ -131,7 +131,7 @@ OptimizerRow make_lm_row() {
   };
   return {
       .name = "ceres:lm",
-      .summary = "Levenberg-Marquardt on the residuals, derivatives by differences or exact",
+      .summary = "Levenberg-Marquardt on residuals, derivatives by differences or exact",
       .source =
           "Levenberg 1944, A method for the solution of certain non-linear problems in least "
           "squares; Marquardt 1963, An algorithm for least-squares estimation of nonlinear "

@@ -2,7 +2,9 @@
 // whole: it names file, line, field, the value found and what is allowed.
 #include <gmock/gmock.h>
 
+#include "base/text.hpp"
 #include "problems/problem_folder.hpp"
+#include "sim/physics_engine.hpp"
 
 namespace armwright {
 namespace {
@@ -77,7 +79,7 @@ INSTANTIATE_TEST_SUITE_P(Task, BadSection, testing::ValuesIn(kTask));
 
 const std::vector<Mistake> kPhysics = {
     {"[physics]\nengine = 'odee'",
-     "3: unknown physics.engine 'odee'; did you mean 'ode'? Valid: ode"},
+     "3: unknown physics.engine 'odee'; did you mean 'ode'? Valid: " + join(engine_names(), ", ")},
     {"[physics]\ngravity_m_per_s2 = -9.81",
      "3: physics.gravity_m_per_s2 is -9.81; it must be a finite number >= 0 and <= 1000"},
     {"[physics]\nsubsteps = 0", "3: physics.substeps is 0; it must be an integer from 1 to 1000"},
@@ -238,7 +240,7 @@ TEST(BadConfig, EveryUnknownKeyIsNamedAtOnce) {
             std::string("p.toml:2: unknown key colour. Valid here: ") + kTopKeys +
                 "\np.toml:4: unknown key task.speed; did you mean 'task.speed_m_per_s'? Valid "
                 "here: " +
-                kTaskKeys + "\np.toml:7: unknown key robot.url. Valid here: urdf");
+                kTaskKeys + "\np.toml:7: unknown key robot.url. Valid here: urdf, mass_scale");
 }
 
 TEST(BadConfig, WhatIsMissingIsNamed) {
