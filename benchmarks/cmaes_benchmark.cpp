@@ -117,7 +117,8 @@ class TargetEvaluator : public Evaluator {
       ++count_;
       scores.push_back({.objectives = {setting_.function.calc(point)},
                         .constraint_values = {},
-                        .residuals = {}});
+                        .residuals = {},
+                        .jacobian = {}});
       hit_ = hit_ || scores.back().objectives[0] < setting_.target;
     }
     return scores;
