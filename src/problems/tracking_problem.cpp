@@ -178,8 +178,7 @@ BatchSize TrackingProblem::batch_size(CaseRole role) const {
 }
 
 std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs) const {
-  std::vector<ArmDesign> designs;
-  designs.reserve(jobs.size());  // no reallocation: the jobs below point into it
+  std::unordered_map<const double*, ArmDesign> designs;  // by where the decision vector lies
   std::vector<TrackingJob> tracking;
   tracking.reserve(jobs.size());
   // An engine with SIMD needs some 60 us for a job: sets and tables are looked up once for all
@@ -188,8 +187,9 @@ std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs
   std::vector<std::unordered_map<std::uint64_t, std::shared_ptr<const TargetTable>>> tables;
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     const CaseJob& job = jobs[i];
-    if (i == 0 || job.x.data() != jobs[i - 1].x.data()) {
-      designs.push_back(make_design(job.x));
+    const auto [design, is_new] = designs.try_emplace(job.x.data());
+    if (is_new) {
+      design->second = make_design(job.x);
     }
     if (i == 0 || job.block != jobs[i - 1].block) {
       set = get_set(job.block->set);
@@ -200,7 +200,7 @@ std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs
       table = get_targets(*set, job.number);
     }
     TrackingJob& one = tracking.emplace_back();
-    one.design = &designs.back();
+    one.design = &design->second;
     one.targets = table.get();
     one.abandon_above_m = job.abandon_above;
     if (job.block->role == CaseRole::training) {

@@ -1,7 +1,7 @@
-// Fans evaluations out over threads. What is shared out are chunks of consecutive (candidate, case)
-// pairs, a candidate's cases side by side, so that one candidate on many cases uses all threads and
-// SIMD lanes as well as many candidates on one. Results depend neither on the number of threads nor
-// on the chunks.
+// Fans evaluations out over threads. What is shared out are chunks of (candidate, case) pairs,
+// ordered so that SIMD lanes work side by side on the same case where there are several candidates,
+// so that one candidate on many cases uses all threads and lanes as well as many candidates on one.
+// Results depend neither on the number of threads nor on the chunks.
 #pragma once
 
 #include <cstddef>

@@ -91,6 +91,11 @@ class SegmentKernel {
   }
 
   ARMWRIGHT_INLINE void control(int step) {
+    if (!call_.shared_targets) {  // as many streams of memory as lanes: more than is foreseen
+      for (int lane = 0; lane < V::kLanes; ++lane) {
+        __builtin_prefetch(call_.targets[lane] + (step + kStepsAhead) * joints());
+      }
+    }
     const V period_s = call_.period_s;
     const V frequency = T{1} / call_.period_s;
     chain_.for_up([&](auto i) __attribute__((always_inline)) {
@@ -195,6 +200,8 @@ class SegmentKernel {
     call.alive &= ~which;
     return call.alive != 0;
   }
+
+  static constexpr int kStepsAhead = 12;
 
   SegmentCall<T>& call_;
   V* state_;
