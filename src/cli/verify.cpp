@@ -141,6 +141,11 @@ LoadedProblem load_variant(const DesignFile& design, const VerifyOptions& option
   std::vector<std::string> overrides = options.overrides.get();
   overrides.push_back("physics.engine=" + setting.engine);
   overrides.push_back("physics.judging_engine=" + setting.engine);
+  // Designs are judged in double, and only some engines have a SIMD level.
+  overrides.push_back("physics.precision=double");
+  if (!find_engine(setting.engine).simd) {
+    overrides.push_back("physics.simd=auto");
+  }
   overrides.push_back(fmt::format("physics.substeps={}", setting.substeps));
   overrides.push_back("robot.mass_scale=" + format_exact(own_mass_scale * setting.mass_factor));
   return load_its_problem(design, options.problem, std::move(overrides), true);

@@ -119,8 +119,7 @@ const std::vector<EngineRow>& engine_table() {
        [](const EngineOptions&) -> std::unique_ptr<PhysicsEngine> {
          return std::make_unique<OdeEngine>();
        }},
-      {"articulated",
-       "joint coordinates, many simulations at once in SIMD lanes: a hundred times as fast", true,
+      {"articulated", "joint coordinates, many simulations at once in SIMD lanes", true,
        make_articulated_engine},
 #ifdef ARMWRIGHT_WITH_MUJOCO
       {"mujoco", "MuJoCo, joint coordinates, semi-implicit Euler: to check the others with", false,

@@ -136,8 +136,8 @@ struct TrackingResult {
   double mean_error_m = 0;  // the case's error; meaningful for ok and, under a cut-off policy, for
                             // cut_off and diverged; for abandoned a lower bound of it
   std::vector<double> peak_effort_n_m, rms_effort_n_m, saturated_share;  // one a joint
-  double energy_j =
-      0;  // positive mechanical work of all joints, sum of max(0, effort x displacement)
+  // Positive mechanical work of all joints: the sum of max(0, effort x displacement).
+  double energy_j = 0;
   std::vector<double> error_series_m;        // on request
   std::vector<TrajectorySample> trajectory;  // on request
 };

@@ -8,7 +8,7 @@
 namespace armwright {
 namespace {
 
-// The error of a case whose other points have none; of those that count.
+// The case's error if the points that are still missing had none; over the points that count.
 double calc_mean_error(const TrackingTask& task, const TrackingJob& job,
                        const TrackingResult& result) {
   const std::size_t first = task.count_first_point ? 0 : 1;

@@ -91,6 +91,14 @@ TEST_F(Verify, TriesWhatItSays) {
             evaluated["summary"]["mean_error_m"]);
 }
 
+TEST_F(Verify, AnEnginesOwnChoicesAreNotTheOthers) {
+  const json verified =
+      verify({"table-a5", "--problem", "q1-complex", "--cases", "1", "--engine", "articulated",
+              "--simd", "scalar", "--set", "physics.precision=float"},
+             3);
+  EXPECT_EQ(verified["rows"].size(), engine_names().size() * 4 * 3);
+}
+
 TEST_F(Verify, PrintsATableAndAConclusion) {
   const Outcome outcome = run({"verify", "table-a10", "--cases", "1"});
   EXPECT_EQ(outcome.exit_code, 3);

@@ -1,5 +1,8 @@
 #include "sim/articulated/articulated_engine.hpp"
 
+#include <algorithm>
+#include <stdexcept>
+
 #include "sim/articulated/derivatives.hpp"
 #include "sim/articulated/lane_block.hpp"
 
@@ -32,6 +35,17 @@ bool have_same_shape(const ChainModel& a, const ChainModel& b) {
   return &a == &b || (a.flags() == b.flags() && a.tilted_gravity() == b.tilted_gravity());
 }
 
+// Error{usage} as from every engine where the design's numbers make no controller.
+void check_design(const ArmDesign& design, const RobotModel& robot) {
+  const ControllerRow& row = find_controller(design.controller);
+  if (row.name != "pid") {
+    throw std::logic_error("the lanes know no controller but pid");
+  }
+  for (std::size_t i = 0; i < design.joints.size(); ++i) {
+    row.make(design.joints[i].gains, design.joints[i].limits, robot.joints[i].kind);
+  }
+}
+
 template <class T>
 class ArticulatedEngine final : public PhysicsEngine {
  public:
@@ -47,6 +61,9 @@ class ArticulatedEngine final : public PhysicsEngine {
       return (jobs[job].setup != nullptr ? *jobs[job].setup : setup).chain();
     };
     for (std::size_t i = 0; i < jobs.size(); ++i) {
+      if (i == 0 || jobs[i].design != jobs[i - 1].design) {
+        check_design(*jobs[i].design, setup.robot());
+      }
       const TargetTable& targets = *jobs[i].targets;
       if (!targets.unreachable.empty()) {
         results[i].status = SimulationStatus::unreachable;

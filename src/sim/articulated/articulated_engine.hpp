@@ -1,7 +1,7 @@
 // The engine `articulated`: joint coordinates, batches of simulations in SIMD lanes. Each lane
 // is one (design, test case) pair. What a lane computes does not depend on its neighbours or on its
-// place, so results are the same for any batch, any number of threads and any machine at one SIMD
-// level. Semi-implicit Euler in the same step order as the engine `ode`.
+// place, so results are the same for any batch and any number of threads, with one build and one
+// SIMD level. Semi-implicit Euler in the same step order as the engine `ode`.
 #pragma once
 
 #include <memory>

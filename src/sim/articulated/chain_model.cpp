@@ -189,7 +189,7 @@ void ChainModel::connect(std::vector<Link>& links) {
         }
       }
     }
-    // A micrometre's millionth is the rounding of metres.
+    // Lengths below 1e-12 m are rounding.
     for (double* component : {&link.offset.y(), &link.offset.z()}) {
       *component = std::abs(*component) < kSameDirection ? 0 : *component;
     }

@@ -31,16 +31,13 @@ LaneBlock<T>::LaneBlock(const TrackingSetup& setup, const Kernel<T>& kernel,
   state_size_ = calc_size(calc_state_packs(n), kernel.lanes);
   model_size_ = calc_size(calc_model_packs(n), kernel.lanes);
   record_size_ = calc_size(calc_record_packs(n), kernel.lanes);
-  flags_.assign(joints_, 0xff);  // what all arms have in common
+  const ChainModel& chain = setup_of(chosen.front()).chain();
+  flags_ = chain.flags();
+  tilted_gravity_ = chain.tilted_gravity();
+  prismatic_ = chain.prismatic();
   for (const std::size_t job : chosen) {
     own_models_ |= jobs[job].setup != nullptr;
     recording_ |= jobs[job].recording.error_series || jobs[job].recording.trajectory;
-    const ChainModel& chain = setup_of(job).chain();
-    tilted_gravity_ |= chain.tilted_gravity();
-    prismatic_ |= chain.prismatic();
-    for (std::size_t i = 0; i < joints_; ++i) {
-      flags_[i] &= chain.flags()[i];
-    }
   }
   states_ = AlignedNumbers<T>(groups * state_size_);
   models_ = AlignedNumbers<T>((own_models_ ? groups : 1) * model_size_);
@@ -232,6 +229,9 @@ void LaneBlock<T>::read_records(std::size_t slot, const Segment& segment, int st
   const std::size_t job = slots_[slot];
   const RecordingOptions& recording = jobs_[job].recording;
   const TrackingSetup& setup = setup_of(job);
+  if (!recording.error_series && !recording.trajectory) {
+    return;  // only a neighbour's are asked for
+  }
   TrackingResult& result = results_[job];
   for (int step = 0; step < steps; ++step) {
     const T* numbers =

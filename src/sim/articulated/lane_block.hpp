@@ -6,6 +6,7 @@
 #include <memory>
 #include <new>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "sim/articulated/chain_model.hpp"
@@ -33,7 +34,8 @@ class AlignedNumbers {
 template <class T>
 class LaneBlock {
  public:
-  // `chosen`: the jobs' numbers, all of one timeline; results[i] is that of jobs[i].
+  // `chosen`: the jobs' numbers, all of one timeline and of arms of one shape; results[i] is that
+  // of jobs[i].
   LaneBlock(const TrackingSetup& setup, const Kernel<T>& kernel, std::span<const TrackingJob> jobs,
             std::span<const std::size_t> chosen, std::vector<TrackingResult>& results);
   void run();

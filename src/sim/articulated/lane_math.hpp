@@ -1,11 +1,11 @@
 // Sine, cosine and rounding for all lanes at once, without branches and tables.
 //
-// Range: |x| <= 1e6 (double), 1e4 (float); beyond it the result is wrong, and far beyond not finite.
-// The engine takes a joint that has turned farther for diverged. Error within the range: at most
-// two units in the last place of the larger of sine and cosine; absolute, 2.2e-16 (double) or 9e-8
-// (float). The argument is reduced to [-pi/4, pi/4] by pi/2 in three parts, of which the
-// first two have 20 (float: 16 and 11) trailing zero bits, so that their products with the quadrant
-// are exact (Cody and Waite 1980). Coefficients: double, fdlibm's kernels of sine and cosine (Sun
+// Range: |x| <= 1e6 (double), 1e4 (float); beyond it the result is wrong, and far beyond not
+// finite. The engine takes a joint that has turned farther for diverged. Error within the range: at
+// most two units in the last place of the larger of sine and cosine; absolute, 2.2e-16 (double) or
+// 9e-8 (float). The argument is reduced to [-pi/4, pi/4] by pi/2 in three parts, of which the first
+// two have at least 20 (float: 13) trailing zero bits, so that their products with the quadrant are
+// exact (Cody and Waite 1980). Coefficients: double, fdlibm's kernels of sine and cosine (Sun
 // Microsystems 1993); float, Cephes' sinf and cosf (Moshier 1992).
 #pragma once
 

@@ -1,7 +1,7 @@
 // A pack of numbers that go through the same arithmetic side by side, one a SIMD lane, on the
-// compiler's vector types. The dynamics are written once for any "lane type" V: a Pack, a plain
-// double or float (one lane), or a number that carries derivatives along. What V must offer beyond
-// + - * / and the conversions from its scalar: the free functions below.
+// compiler's vector types. The dynamics are written once for any "lane type" V: a Pack, a Pair of
+// packs, a Single (one lane), or a lane of numbers that carry derivatives along. A lane type has
+// the type Scalar, the constant kLanes, + - * / and the free functions below.
 //
 // Code that includes this header is compiled once for every instruction set. `Isa` is in the type,
 // so that no two of these compilations ever share a function; for the same reason nothing here uses
@@ -28,7 +28,7 @@ struct Bits<float> {
   using Type = std::int32_t;
 };
 
-// GCC takes a vector type that depends on template parameters for what it is only from outside.
+// GCC ignores vector_size on a dependent type unless the type is a member of another template.
 template <class T, int W>
 struct VectorOf {
   typedef T Type __attribute__((vector_size(sizeof(T) * W)));
@@ -100,15 +100,15 @@ ARMWRIGHT_PACK ARMWRIGHT_P abs(ARMWRIGHT_P a) {
 ARMWRIGHT_PACK ARMWRIGHT_P min(ARMWRIGHT_P a, ARMWRIGHT_P b) {
 #if defined(__x86_64__)
   if constexpr (sizeof(a.v) == 16 && sizeof(T) == 8) {
-    return __builtin_ia32_minpd(a.v, b.v);
+    return _mm_min_pd(a.v, b.v);
   } else if constexpr (sizeof(a.v) == 16) {
-    return __builtin_ia32_minps(a.v, b.v);
+    return _mm_min_ps(a.v, b.v);
   }
 #if defined(__AVX__)
   else if constexpr (sizeof(a.v) == 32 && sizeof(T) == 8) {
-    return __builtin_ia32_minpd256(a.v, b.v);
+    return _mm256_min_pd(a.v, b.v);
   } else if constexpr (sizeof(a.v) == 32) {
-    return __builtin_ia32_minps256(a.v, b.v);
+    return _mm256_min_ps(a.v, b.v);
   }
 #endif
 #if defined(__AVX512F__)
@@ -124,15 +124,15 @@ ARMWRIGHT_PACK ARMWRIGHT_P min(ARMWRIGHT_P a, ARMWRIGHT_P b) {
 ARMWRIGHT_PACK ARMWRIGHT_P max(ARMWRIGHT_P a, ARMWRIGHT_P b) {
 #if defined(__x86_64__)
   if constexpr (sizeof(a.v) == 16 && sizeof(T) == 8) {
-    return __builtin_ia32_maxpd(a.v, b.v);
+    return _mm_max_pd(a.v, b.v);
   } else if constexpr (sizeof(a.v) == 16) {
-    return __builtin_ia32_maxps(a.v, b.v);
+    return _mm_max_ps(a.v, b.v);
   }
 #if defined(__AVX__)
   else if constexpr (sizeof(a.v) == 32 && sizeof(T) == 8) {
-    return __builtin_ia32_maxpd256(a.v, b.v);
+    return _mm256_max_pd(a.v, b.v);
   } else if constexpr (sizeof(a.v) == 32) {
-    return __builtin_ia32_maxps256(a.v, b.v);
+    return _mm256_max_ps(a.v, b.v);
   }
 #endif
 #if defined(__AVX512F__)
@@ -180,7 +180,7 @@ ARMWRIGHT_PACK std::uint32_t find_less(ARMWRIGHT_P a, ARMWRIGHT_P b) {
 #undef ARMWRIGHT_PACK
 #undef ARMWRIGHT_P
 
-// One lane. Overloads for the plain types, found like those of Pack.
+// One number, for machines without SIMD.
 template <class T, class Isa>
 struct Single {
   using Scalar = T;

@@ -12,11 +12,11 @@ template <int W, class Isa>
 ARMWRIGHT_INLINE Pack<double, W, Isa> sqrt(Pack<double, W, Isa> a) {
 #if defined(__x86_64__)
   if constexpr (W == 2) {
-    return __builtin_ia32_sqrtpd(a.v);
+    return _mm_sqrt_pd(a.v);
   }
 #if defined(__AVX__)
   else if constexpr (W == 4) {
-    return __builtin_ia32_sqrtpd256(a.v);
+    return _mm256_sqrt_pd(a.v);
   }
 #endif
 #if defined(__AVX512F__)
