@@ -15,99 +15,29 @@
 // (chain_shape.hpp).
 #pragma once
 
-#include "sim/articulated/chain_shape.hpp"
-#include "sim/articulated/lane_math.hpp"
+#include "sim/articulated/chain_posture.hpp"
 
 namespace armwright::articulated {
 
-template <class V>
-struct Vec3 {
-  V x, y, z;
-};
-
-template <class V>
-ARMWRIGHT_INLINE void rotate(V c, V s, V& x, V& y) {  // by the angle of c, s
-  const V turned = c * x - s * y;
-  y = s * x + c * y;
-  x = turned;
-}
-template <class V>
-ARMWRIGHT_INLINE void rotate_back(V c, V s, V& x, V& y) {
-  const V turned = c * x + s * y;
-  y = c * y - s * x;
-  x = turned;
-}
-// The symmetric tensor (xx, xy; xy, yy) likewise.
-template <class V>
-ARMWRIGHT_INLINE void rotate_tensor(V c, V s, V& xx, V& xy, V& yy) {
-  const V cs = c * s;
-  const V ss = s * s;
-  const V difference = yy - xx;
-  const V cross = cs * xy;
-  const V trace = xx + yy;
-  xx = xx + ss * difference - (cross + cross);
-  xy = xy - (ss + ss) * xy - cs * difference;
-  yy = trace - xx;
-}
-
 template <class V, class Chain>
-class ChainDynamics {
+class ChainDynamics : public ChainPosture<V, Chain> {
+  using Posture = ChainPosture<V, Chain>;
+  using Posture::arm_x_, Posture::arm_y_, Posture::c_, Posture::s_;  // what is set for a posture
+  using Posture::chain_;
+  using Posture::get, Posture::joints, Posture::single;
+  using Posture::turn_inwards, Posture::turn_outwards, Posture::twist_inwards;
+
  public:
   ARMWRIGHT_INLINE ChainDynamics(const Chain& chain, const V* model, V*& scratch)
-      : chain_(chain), model_(model) {
+      : Posture(chain, model, scratch) {
     if constexpr (Chain::kJoints == 0) {
-      List* const lists[] = {&c_,  &s_,  &arm_x_, &arm_y_, &xx_,  &xy_,  &xz_,  &yy_,
-                             &yz_, &sx_, &sy_,    &bias_,  &fx_,  &fy_,  &fz_,  &nx_,
-                             &ny_, &nz_, &cfx_,   &cfy_,   &cfz_, &cnx_, &cny_, &cnz_};
+      List* const lists[] = {&xx_, &xy_, &xz_, &yy_, &yz_,  &sx_,  &sy_,  &bias_, &fx_,  &fy_,
+                             &fz_, &nx_, &ny_, &nz_, &cfx_, &cfy_, &cfz_, &cnx_,  &cny_, &cnz_};
       for (List* list : lists) {
         list->place(scratch, joints());
       }
       mass_.place(scratch, joints() * joints());
     }
-  }
-
-  // Everything that follows from the angles alone. The first joint's own sine and cosine are needed
-  // for the tip and under gravity that is not parallel to its axis.
-  ARMWRIGHT_INLINE void set_posture(const V* q, bool with_first) {
-    V angle = V(0);
-    chain_.for_down(
-        chain_.end(), [&](auto i) __attribute__((always_inline)) {
-          const V own = chain_.slides(i) ? get(kAngle, i) : q[i] + get(kAngle, i);
-          angle = chain_.last_of_group(i) ? own : angle + own;
-          if (i > 0 || with_first || chain_.tilted_gravity()) {
-            lanes::calc_sine_cosine(angle, s_[i], c_[i]);
-          }
-          if (chain_.same_axis(i)) {
-            arm_x_[i] = c_[i] * get(kOffsetX, i);
-            arm_y_[i] = V(0) - s_[i] * get(kOffsetX, i);
-          }
-        });
-  }
-
-  // Where the tip is in the base's frame; after set_posture(q, true).
-  ARMWRIGHT_INLINE Vec3<V> calc_tip(const V* q) const {
-    Vec3<V> p{single(kTipX), single(kTipY), single(kTipZ)};
-    chain_.for_down(
-        chain_.end(), [&](auto i) __attribute__((always_inline)) {
-          if (chain_.slides(i)) {
-            p.z += q[i];
-          }
-          if (chain_.same_axis(i)) {
-            p.x += arm_x_[i];
-            p.y += arm_y_[i];
-          } else {
-            rotate(c_[i], s_[i], p.x, p.y);
-            if (i > 0) {
-              twist_inwards(i, p.y, p.z);
-              p.x += get(kOffsetX, i);
-              if (!chain_.along_x(i)) {
-                p.y += get(kOffsetY, i);
-                p.z += get(kOffsetZ, i);
-              }
-            }
-          }
-        });
-    return p;
   }
 
   // M and b of the posture that was set.
@@ -156,42 +86,9 @@ class ChainDynamics {
   }
 
  private:
-  using List = PackList<V, Chain::kJoints>;
+  using typename Posture::List;
 
-  ARMWRIGHT_INLINE int joints() const { return chain_.joints(); }
-  ARMWRIGHT_INLINE V get(ModelField field, int i) const { return model_[field * joints() + i]; }
-  ARMWRIGHT_INLINE V single(ModelSingle field) const {
-    return model_[kModelFields * joints() + field];
-  }
   ARMWRIGHT_INLINE V& entry(int row, int column) { return mass_[row * joints() + column]; }
-
-  // Between the frame before a group and the group's, turned by the twist alone.
-  ARMWRIGHT_INLINE void twist_inwards(int i, V& y, V& z) const {
-    if (chain_.right_angle(i)) {
-      const V turned = y;
-      y = V(0) - z;
-      z = turned;
-    } else {
-      rotate(get(kTwistCos, i), get(kTwistSin, i), y, z);
-    }
-  }
-  ARMWRIGHT_INLINE void twist_outwards(int i, V& y, V& z) const {
-    if (chain_.right_angle(i)) {
-      const V turned = z;
-      z = V(0) - y;
-      y = turned;
-    } else {
-      rotate_back(get(kTwistCos, i), get(kTwistSin, i), y, z);
-    }
-  }
-  ARMWRIGHT_INLINE void turn_inwards(int i, Vec3<V>& v) const {
-    rotate(c_[i], s_[i], v.x, v.y);
-    twist_inwards(i, v.y, v.z);
-  }
-  ARMWRIGHT_INLINE void turn_outwards(int i, Vec3<V>& v) const {
-    twist_outwards(i, v.y, v.z);
-    rotate_back(c_[i], s_[i], v.x, v.y);
-  }
 
   // The link's moments in its group's frame.
   ARMWRIGHT_INLINE void turn_first_moments(int i) {
@@ -438,10 +335,11 @@ class ChainDynamics {
     }
     if (chain_.same_axis(i)) {
       shift_in_group(i, o);
-    } else if (i > 0 && chain_.in_base_group(i - 1)) {
-      leave_to_base(i, o);
     } else if (i > 0) {
       leave_group(i, o);
+      if (chain_.in_base_group(i - 1)) {
+        o.xx += o.yy;  // from here on: the moment of inertia about the axis
+      }
     }
   }
 
@@ -594,47 +492,6 @@ class ChainDynamics {
     }
   }
 
-  // To the group on the base, of which only forces in the plane and moments about the axis count.
-  template <class Index>
-  ARMWRIGHT_INLINE void leave_to_base(Index i, Outer& o) {
-    const V x = get(kOffsetX, i);
-    const V y = get(kOffsetY, i);
-    const bool straight = chain_.along_x(i);
-    const auto turn = [&](Vec3<V> & force, Vec3<V> & moment) __attribute__((always_inline)) {
-      turn_inwards(i, force);
-      turn_inwards(i, moment);
-      moment.z += x * force.y;
-      if (!straight) {
-        moment.z -= y * force.x;
-      }
-    };
-    turn(o.f, o.n);
-    chain_.for_from(
-        i, [&](auto j) __attribute__((always_inline)) {
-          Vec3<V> force{cfx_[j], cfy_[j], cfz_[j]};
-          Vec3<V> moment{cnx_[j], cny_[j], cnz_[j]};
-          turn(force, moment);
-          cfx_[j] = force.x;
-          cfy_[j] = force.y;
-          cnz_[j] = moment.z;
-        });
-    rotate_tensor(c_[i], s_[i], o.xx, o.xy, o.yy);
-    if (chain_.right_angle(i)) {
-      o.yy = o.zz;
-    } else {
-      rotate(c_[i], s_[i], o.xz, o.yz);
-      rotate_tensor(get(kTwistCos, i), get(kTwistSin, i), o.yy, o.yz, o.zz);
-    }
-    turn_inwards(i, o.h);
-    const V xhx = x * o.h.x;
-    o.xx += xhx + xhx;
-    if (!straight) {
-      const V yhy = y * o.h.y;
-      o.yy += yhy + yhy;
-    }
-    o.xx += o.yy;  // from here on: the moment of inertia about the axis
-  }
-
   template <class Index>
   ARMWRIGHT_INLINE void come_back_to_base_link(Index i, Outer& o) {
     o.f.x += fx_[i];
@@ -660,10 +517,6 @@ class ChainDynamics {
     }
   }
 
-  Chain chain_;
-  const V* model_;
-  List c_, s_;                             // of the angle from joint i to its group's end
-  List arm_x_, arm_y_;                     // offset of joint i from the one before in its group
   List xx_, xy_, xz_, yy_, yz_, sx_, sy_;  // moments in the group's frame
   List bias_;
   List fx_, fy_, fz_, nx_, ny_, nz_;                   // of the links, at qdd = 0
