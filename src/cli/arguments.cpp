@@ -87,6 +87,13 @@ unsigned JobsOption::get() const {
   return static_cast<unsigned>(parse_count("--jobs (ARMWRIGHT_JOBS)", text, 1, kMostJobs));
 }
 
+void add_design_argument(CLI::App& command, std::string& design) {
+  command
+      .add_option("DESIGN", design,
+                  "A design file, or the name of a shipped one (armwright list designs)")
+      ->required();
+}
+
 void EngineFlags::add_to(CLI::App& command, bool with_training) {
   trains = with_training;
   command

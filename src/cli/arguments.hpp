@@ -35,6 +35,9 @@ struct JobsOption {
   unsigned get() const;  // all cores unless told otherwise
 };
 
+// The argument DESIGN.
+void add_design_argument(CLI::App& command, std::string& design);
+
 // Which physics engine, and how: short for settings of the problem's table [physics].
 struct EngineFlags {
   std::string engine;

@@ -234,10 +234,7 @@ void add_evaluate(CLI::App& app, Session& session) {
   auto options = std::make_shared<EvaluateOptions>();
   CLI::App* command = add_command(
       app, session, "evaluate", "Evaluate a design on test cases, without optimization", kExamples);
-  command
-      ->add_option("DESIGN", options->design,
-                   "A design file, or the name of a shipped one (armwright list designs)")
-      ->required();
+  add_design_argument(*command, options->design);
   command
       ->add_option("--problem,-p", options->problem,
                    "Robot, task and physics to evaluate it under (default: what the design was\n"

@@ -210,10 +210,7 @@ void add_verify(CLI::App& app, Session& session) {
   CLI::App* command = add_command(
       app, session, "verify",
       "Try whether a design holds under other engines, time steps and masses", kExamples);
-  command
-      ->add_option("DESIGN", options->design,
-                   "A design file, or the name of a shipped one (armwright list designs)")
-      ->required();
+  add_design_argument(*command, options->design);
   command
       ->add_option("--problem,-p", options->problem,
                    "Robot, task and physics that are its own setting (default: what the design\n"
