@@ -1,9 +1,7 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "cli/list_views.hpp"
 #include "cli/table.hpp"
@@ -12,23 +10,6 @@ namespace armwright {
 namespace {
 
 using nlohmann::json;
-
-const EngineRow& find(std::span<const EngineRow> table, const std::string& name) {
-  std::vector<std::string> names;
-  for (const EngineRow& row : table) {
-    if (row.name == name) {
-      return row;
-    }
-    names.push_back(row.name);
-  }
-  for (const MissingEngine& missing : missing_engine_table()) {
-    if (missing.name == name) {
-      throw Error(ErrorKind::usage,
-                  fmt::format("engine '{}' is not there: {}", name, missing.reason));
-    }
-  }
-  throw Error(ErrorKind::usage, describe_unknown("engine", name, names));
-}
 
 // "scalar, sse2, avx2; unless told otherwise avx2"
 std::string describe_simd() {
@@ -77,8 +58,9 @@ ListKind make_engine_kind(std::span<const EngineRow> table) {
       .name = "engines",
       .list = list,
       .explain = [table](const std::string& name,
-                         const Style& style) { return explain(find(table, name), style); },
-      .explain_as_json = [table](const std::string& name) { return to_json(find(table, name)); },
+                         const Style& style) { return explain(find_engine(name, table), style); },
+      .explain_as_json =
+          [table](const std::string& name) { return to_json(find_engine(name, table)); },
       .list_as_json =
           [table] {
             json all = json::array();

@@ -11,6 +11,7 @@
 #include "sim/articulated/articulated_engine.hpp"
 #include "sim/ode_arm.hpp"
 #include "sim/tracking_loop.hpp"
+#include "sim/tracking_result.hpp"
 #ifdef ARMWRIGHT_WITH_MUJOCO
 #include "sim/mujoco_arm.hpp"
 #endif
@@ -27,14 +28,12 @@ std::vector<TrackingResult> simulate_one_by_one(const TrackingSetup& setup,
   std::vector<TrackingResult> results;
   results.reserve(jobs.size());
   for (const TrackingJob& job : jobs) {
-    if (!job.targets->unreachable.empty()) {
-      TrackingResult result;
-      result.status = SimulationStatus::unreachable;
-      result.reason = job.targets->unreachable;
-      results.push_back(std::move(result));
+    TrackingResult unreachable;
+    if (apply_unreachable(job, unreachable)) {
+      results.push_back(std::move(unreachable));
       continue;
     }
-    const TrackingSetup& own = job.setup != nullptr ? *job.setup : setup;
+    const TrackingSetup& own = job.choose_setup(setup);
     auto arm = make_arm(own, job.targets->start_rad);
     results.push_back(TrackingLoop(own, job).run(arm));
   }
@@ -150,11 +149,13 @@ std::vector<std::string> engine_names() {
   return names;
 }
 
-const EngineRow& find_engine(std::string_view name) {
-  for (const EngineRow& row : engine_table()) {
+const EngineRow& find_engine(std::string_view name, std::span<const EngineRow> table) {
+  std::vector<std::string> names;
+  for (const EngineRow& row : table) {
     if (row.name == name) {
       return row;
     }
+    names.push_back(row.name);
   }
   for (const MissingEngine& missing : missing_engine_table()) {
     if (missing.name == name) {
@@ -162,7 +163,7 @@ const EngineRow& find_engine(std::string_view name) {
                   fmt::format("engine '{}' is not there: {}", name, missing.reason));
     }
   }
-  throw Error(ErrorKind::usage, describe_unknown("engine", name, engine_names()));
+  throw Error(ErrorKind::usage, describe_unknown("engine", name, names));
 }
 
 EngineOptions resolve_options(const EngineRow& engine, EngineOptions options) {

@@ -66,7 +66,8 @@ const std::vector<EngineRow>& engine_table();
 const std::vector<MissingEngine>& missing_engine_table();
 std::vector<std::string> engine_names();
 // Error{usage} if there is none of that name, or this build leaves it out.
-const EngineRow& find_engine(std::string_view name);
+const EngineRow& find_engine(std::string_view name,
+                             std::span<const EngineRow> table = engine_table());
 
 // Precision and SIMD level as the engine will use them: of one with SIMD the level is set to the
 // best of this machine where none is given. Error{usage} for a choice that the engine does not

@@ -156,6 +156,11 @@ struct TrackingJob {
   double abandon_above_m = std::numeric_limits<double>::infinity();
   // Where the design changes the arm itself: its own setup, of the same task and number of joints.
   const TrackingSetup* setup = nullptr;
+
+  // The setup to simulate it with: its own, or that of the batch.
+  const TrackingSetup& choose_setup(const TrackingSetup& of_batch) const {
+    return setup != nullptr ? *setup : of_batch;
+  }
 };
 
 }  // namespace armwright

@@ -27,6 +27,15 @@ void fill_points(const TrackingJob& job, TrackingResult& result) {
 
 }  // namespace
 
+bool apply_unreachable(const TrackingJob& job, TrackingResult& result) {
+  if (job.targets->unreachable.empty()) {
+    return false;
+  }
+  result.status = SimulationStatus::unreachable;
+  result.reason = job.targets->unreachable;
+  return true;
+}
+
 void apply_cutoff(const TrackingTask& task, const TrackingJob& job, TrackingResult& result) {
   result.status = SimulationStatus::cut_off;
   result.reason = fmt::format("cut off at point {} ({:.2f} s): the error exceeds {} m",

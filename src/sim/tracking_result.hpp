@@ -7,6 +7,8 @@
 
 namespace armwright {
 
+// Whether the job's targets cannot be reached; then nothing is simulated, and the result says so.
+bool apply_unreachable(const TrackingJob& job, TrackingResult& result);
 // The error of the point that is being measured exceeds the job's cut-off: that point and the rest
 // count as the cut-off error.
 void apply_cutoff(const TrackingTask& task, const TrackingJob& job, TrackingResult& result);

@@ -5,6 +5,7 @@
 
 #include "sim/articulated/derivatives.hpp"
 #include "sim/articulated/lane_block.hpp"
+#include "sim/tracking_result.hpp"
 
 namespace armwright {
 namespace {
@@ -58,18 +59,16 @@ class ArticulatedEngine final : public PhysicsEngine {
     // must not depend on the company that a job is in.
     std::vector<std::vector<std::size_t>> alike;
     const auto get_chain = [&](std::size_t job) -> const ChainModel& {
-      return (jobs[job].setup != nullptr ? *jobs[job].setup : setup).chain();
+      return jobs[job].choose_setup(setup).chain();
     };
     for (std::size_t i = 0; i < jobs.size(); ++i) {
       if (i == 0 || jobs[i].design != jobs[i - 1].design) {
         check_design(*jobs[i].design, setup.robot());
       }
-      const TargetTable& targets = *jobs[i].targets;
-      if (!targets.unreachable.empty()) {
-        results[i].status = SimulationStatus::unreachable;
-        results[i].reason = targets.unreachable;
+      if (apply_unreachable(jobs[i], results[i])) {
         continue;
       }
+      const TargetTable& targets = *jobs[i].targets;
       const auto found = std::find_if(alike.begin(), alike.end(), [&](const auto& group) {
         return have_same_timeline(*jobs[group.front()].targets, targets) &&
                have_same_shape(get_chain(group.front()), get_chain(i));

@@ -69,7 +69,7 @@ LaneBlock<T>::LaneBlock(const TrackingSetup& setup, const Kernel<T>& kernel,
 
 template <class T>
 const TrackingSetup& LaneBlock<T>::setup_of(std::size_t job) const {
-  return jobs_[job].setup != nullptr ? *jobs_[job].setup : setup_;
+  return jobs_[job].choose_setup(setup_);
 }
 
 template <class T>

@@ -24,7 +24,7 @@ template <class Number>
 std::vector<Number> calc_squared_errors(const TrackingSetup& setup, const TrackingJob& job,
                                         const std::vector<NumberDrive<Number>>& drives) {
   using V = lanes::NumberLane<Number>;
-  const TrackingSetup& own = job.setup != nullptr ? *job.setup : setup;
+  const TrackingSetup& own = job.choose_setup(setup);
   const ChainModel& chain = own.chain();
   const int n = chain.joints();
   const std::vector<V> model(chain.numbers().begin(), chain.numbers().end());
