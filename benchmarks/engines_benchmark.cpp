@@ -3,7 +3,6 @@
 // target tables, which all engines share. Every ratio is to ODE on some of the same cases within
 // the same run, by turns, so that a machine that slows down slows down both; errors stand beside.
 #include <benchmark/benchmark.h>
-#include <time.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "engines/parts.hpp"
+#include "measure.hpp"
 #include "problems/design_file.hpp"
 #include "problems/problem_loader.hpp"
 #include "sim/articulated/chain_model.hpp"
@@ -22,32 +22,6 @@ namespace {
 
 constexpr std::size_t kCases = 64;
 constexpr std::size_t kOdeCases = 4;
-
-double measure_cpu_s(const auto& work) {
-  const auto now = [] {
-    timespec time{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-  };
-  const double start = now();
-  work();
-  return now() - start;
-}
-
-double measure_wall_s(const auto& work) {
-  timespec start{}, end{};
-  clock_gettime(CLOCK_MONOTONIC, &start);
-  work();
-  clock_gettime(CLOCK_MONOTONIC, &end);
-  return static_cast<double>(end.tv_sec - start.tv_sec) +
-         1e-9 * static_cast<double>(end.tv_nsec - start.tv_nsec);
-}
-
-double calc_median(std::vector<double> values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 struct Task {
   LoadedProblem problem;
@@ -139,11 +113,11 @@ void run_sharing(benchmark::State& state) {
   std::vector<double> speedup, ratio;
   evaluate(one, 1, kCases);  // the tables
   for (auto _ : state) {
-    const double serial = measure_wall_s([&] { evaluate(one, 16, kCases); });
-    const double parallel = measure_wall_s([&] { evaluate(two, 16, kCases); });
+    const double serial = measure_s([&] { evaluate(one, 16, kCases); });
+    const double parallel = measure_s([&] { evaluate(two, 16, kCases); });
     speedup.push_back(serial / parallel);
-    const double many_cases = measure_wall_s([&] { evaluate(one, 1, kCases); });
-    const double many_designs = measure_wall_s([&] { evaluate(one, kCases, 1); });
+    const double many_cases = measure_s([&] { evaluate(one, 1, kCases); });
+    const double many_designs = measure_s([&] { evaluate(one, kCases, 1); });
     ratio.push_back(many_designs / many_cases);
   }
   state.counters["two_cores_over_one"] = calc_median(speedup);

@@ -5,10 +5,10 @@
 #include <ode/ode.h>
 
 #include <algorithm>
-#include <chrono>
 #include <numeric>
 #include <vector>
 
+#include "measure.hpp"
 #include "problems/design_file.hpp"
 #include "problems/problem_loader.hpp"
 #include "sim/ode_arm.hpp"
@@ -16,18 +16,6 @@
 
 namespace armwright {
 namespace {
-
-double measure_s(const auto& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-double calc_median(std::vector<double> values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // The same bodies and hinges in plain ODE, driven by recorded efforts and nothing else.
 void replay_in_bare_ode(const RobotModel& model, std::span<const double> start_rad,
