@@ -5,9 +5,9 @@
 #include <signal.h>
 
 #include <chrono>
-#include <cstring>
 #include <thread>
 
+#include "base/bits.hpp"
 #include "base/random.hpp"
 #include "base/temporary_folder.hpp"
 #include "e2e/program.hpp"
@@ -35,10 +35,6 @@ std::vector<std::string> make_command(const Setting& setting, const std::string&
           "--set",      "sets.validation_cases=5",
           "--out",      out,
           "--quiet"};
-}
-
-bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
 void expect_same_run(const std::filesystem::path& a, const std::filesystem::path& b) {

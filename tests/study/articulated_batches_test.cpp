@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstring>
 #include <mutex>
 #include <numeric>
 
+#include "base/bits.hpp"
 #include "base/random.hpp"
 #include "problems/problem_loader.hpp"
 #include "study/case_runner.hpp"
@@ -48,10 +48,6 @@ std::vector<Evaluation> evaluate(const Problem& problem,
     });
   }
   return evaluations;
-}
-
-bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
 TEST(ArticulatedBatches, PopulationsSplitInAnyWayEvaluateToTheSameBits) {
