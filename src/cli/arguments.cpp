@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "cli/session.hpp"
+#include "study/run_plan.hpp"
 #include "sim/physics_engine.hpp"
 
 namespace armwright {
@@ -48,17 +49,11 @@ double parse_duration_s(std::string_view flag, std::string_view text) {
 }
 
 Schedule parse_schedule(std::string_view text) {
-  constexpr std::int64_t kMostCases = 1'000'000;
-  const auto parts = split(text, ':');
-  const auto cases = parts.size() == 2 ? parse_integer(parts[1]) : std::nullopt;
-  if (!cases || *cases < 1 || *cases > kMostCases || (parts[0] != "fresh" && parts[0] != "fixed")) {
-    refuse(
-        "--schedule", text,
-        fmt::format("fresh:K (the next K training cases for every generation) or fixed:K (always "
-                    "the first K), K from 1 to {}",
-                    kMostCases));
+  const auto schedule = read_schedule(text);
+  if (!schedule) {
+    refuse("--schedule", text, kScheduleForms);
   }
-  return {parts[0] == "fresh", static_cast<int>(*cases)};
+  return *schedule;
 }
 
 CLI::App* add_command(CLI::App& parent, Session& session, const std::string& name,

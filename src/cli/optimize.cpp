@@ -127,7 +127,7 @@ void announce(const RunRequest& request) {
   write_message(fmt::format("optimizer {}, seed {}, budget {}, schedule {}:{}, {}",
                             plan.optimizer.name, plan.seed,
                             format_count(static_cast<unsigned long long>(plan.budget), "case"),
-                            plan.schedule.fresh ? "fresh" : "fixed", plan.schedule.cases,
+                            to_text(plan.schedule),
                             format_count(request.jobs, "thread")));
   if (plan.problem.schedule.fresh && !plan.schedule.fresh) {
     write_message(

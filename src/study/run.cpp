@@ -63,7 +63,7 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   const auto optimizer = plan.optimizer.make(plan.options);
   optimizer->check_problem(plan.problem.problem->description());
   const RunFolder folder(request.folder, plan, request.command_line);
-  if (are_derived_files_there(folder.path())) {
+  if (are_derived_files_there(folder.path(), request.derived)) {
     observer.on_message(
         fmt::format("{}: this run is complete; use --new for another one", folder.path().string()));
     return load_result(folder.path());
@@ -119,7 +119,7 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
     journal.append(EndRecord{result.end_reason, result.counts.evaluations});
   }
   journal.close();
-  write_derived_files(folder, plan, result, read_journal(folder.journal()));
+  write_derived_files(folder, plan, result, read_journal(folder.journal()), request.derived);
   return result;
 }
 

@@ -11,6 +11,7 @@
 #include "study/run_plan.hpp"
 #include "study/run_result.hpp"
 #include "study/stop.hpp"
+#include "study/store.hpp"
 
 namespace armwright {
 
@@ -19,6 +20,7 @@ struct RunRequest {
   std::filesystem::path folder;
   unsigned jobs = 1;                      // threads
   std::vector<std::string> command_line;  // for the manifest
+  DerivedFiles derived = DerivedFiles::all;
 };
 
 // The result, or nothing if `stop` ended the run early; everything evaluated so far is in the

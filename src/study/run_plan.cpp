@@ -27,6 +27,20 @@ Schedule choose_schedule(const LoadedProblem& problem, const OptimizerRow& optim
   return problem.schedule;
 }
 
+std::optional<Schedule> read_schedule(std::string_view text) {
+  constexpr std::int64_t kMostCases = 1'000'000;
+  const auto parts = split(text, ':');
+  const auto cases = parts.size() == 2 ? parse_integer(parts[1]) : std::nullopt;
+  if (!cases || *cases < 1 || *cases > kMostCases || (parts[0] != "fresh" && parts[0] != "fixed")) {
+    return std::nullopt;
+  }
+  return Schedule{parts[0] == "fresh", static_cast<int>(*cases)};
+}
+
+std::string to_text(const Schedule& schedule) {
+  return fmt::format("{}:{}", schedule.fresh ? "fresh" : "fixed", schedule.cases);
+}
+
 void check_plan(const RunPlan& plan) {
   const OptimizerRow& row = plan.optimizer;
   const std::string unsuitable = explain_unsuitable(row, plan.problem.problem->description());

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,6 +20,13 @@ struct Selection {
                   // recommendations)
   int best = 5;   // and the N with the best training objective
 };
+
+// "fresh:K" or "fixed:K"; nothing if the text is neither.
+std::optional<Schedule> read_schedule(std::string_view text);
+std::string to_text(const Schedule& schedule);
+inline constexpr std::string_view kScheduleForms =
+    "fresh:K (the next K training cases for every generation) or fixed:K (always the first K), K "
+    "from 1 to 1000000";
 
 struct RunPlan {
   LoadedProblem problem;

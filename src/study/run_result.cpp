@@ -4,9 +4,9 @@
 
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
+#include "study/json_values.hpp"
 
 namespace armwright {
 namespace {
@@ -14,14 +14,6 @@ namespace {
 using nlohmann::json;
 
 constexpr int kFormat = 2;
-
-json optional_to_json(const std::optional<double>& value) {
-  return value ? json(*value) : json(nullptr);
-}
-
-std::optional<double> optional_from_json(const json& value) {
-  return value.is_null() ? std::nullopt : std::optional(value.get<double>());
-}
 
 json errors_to_json(const std::vector<double>& errors) {
   json list = json::array();
@@ -92,16 +84,6 @@ JudgedCandidate candidate_from_json(const json& j) {
   }
   judged.validation = evaluation_from_json(j.at("validation"));
   return judged;
-}
-
-json summary_to_json(const ErrorSummary& summary) {
-  return {{"cases", summary.cases},
-          {"without_number", summary.without_number},
-          {"failures", summary.failures},
-          {"mean", optional_to_json(summary.mean)},
-          {"median", optional_to_json(summary.median)},
-          {"percentile_95", optional_to_json(summary.percentile_95)},
-          {"worst", optional_to_json(summary.worst)}};
 }
 
 }  // namespace

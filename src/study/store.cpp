@@ -151,13 +151,19 @@ std::string make_trajectory_csv(const TrackingProblem& problem, const TrackingRe
   return csv;
 }
 
-bool are_derived_files_there(const std::filesystem::path& folder) {
+bool are_derived_files_there(const std::filesystem::path& folder, DerivedFiles derived) {
   const auto is_there = [&](const char* name) { return std::filesystem::exists(folder / name); };
-  if (!is_there("result.json") || !is_there("convergence.csv") || !is_there("results.sqlite")) {
+  if (!is_there("result.json")) {
     return false;
   }
   const RunResult result = load_result(folder);
   if (!result.failure.empty()) {
+    return false;
+  }
+  if (derived == DerivedFiles::winner) {
+    return !result.winner || !result.tracking || is_there("winner.toml");
+  }
+  if (!is_there("convergence.csv") || !is_there("results.sqlite")) {
     return false;
   }
   if (result.objectives.size() > 1 && !is_there("front.csv")) {
@@ -168,23 +174,28 @@ bool are_derived_files_there(const std::filesystem::path& folder) {
 }
 
 void write_derived_files(const RunFolder& folder, const RunPlan& plan, const RunResult& result,
-                         JournalContent journal) {
+                         JournalContent journal, DerivedFiles derived) {
   const auto& path = folder.path();
-  write_file_atomically(path / "convergence.csv",
-                        make_convergence_csv(plan.problem.problem->description(), journal));
-  journal.judgements = select_judgements(journal, result);
-  write_database(path / "results.sqlite", plan.problem.problem->description(), journal);
-  if (result.objectives.size() > 1) {
+  const bool all = derived == DerivedFiles::all;
+  if (all) {
+    write_file_atomically(path / "convergence.csv",
+                          make_convergence_csv(plan.problem.problem->description(), journal));
+    journal.judgements = select_judgements(journal, result);
+    write_database(path / "results.sqlite", plan.problem.problem->description(), journal);
+  }
+  if (all && result.objectives.size() > 1) {
     write_file_atomically(path / "front.csv", make_front_csv(result));
   }
   if (result.winner && plan.problem.tracking) {
     const TrackingProblem& tracking = *plan.problem.tracking;
     const auto& x = result.judged[*result.winner].candidate.x;
     write_file_atomically(path / "winner.toml", make_winner_toml(plan, result, x));
-    const TrackingResult motion =
-        tracking.track(tracking.make_design(x), tracking.get_set(plan.problem.sets.test), 0,
-                       {.error_series = false, .trajectory = true});
-    write_file_atomically(path / "winner-trajectory.csv", make_trajectory_csv(tracking, motion));
+    if (all) {
+      const TrackingResult motion =
+          tracking.track(tracking.make_design(x), tracking.get_set(plan.problem.sets.test), 0,
+                         {.error_series = false, .trajectory = true});
+      write_file_atomically(path / "winner-trajectory.csv", make_trajectory_csv(tracking, motion));
+    }
   }
   write_file_atomically(folder.result(), to_json(result));
 }

@@ -1,0 +1,316 @@
+// make_study_plan(): from a file, flags, or both.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "base/config.hpp"
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "problems/config_files.hpp"
+#include "study/compare/study_plan.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr std::int64_t kMostCases = 1'000'000'000'000;
+constexpr int kMostReplicates = 10'000;
+constexpr int kMostSelected = 10'000;
+constexpr int kMostCheckpoints = 1000;
+
+struct NamedOptimizer {
+  std::string name;
+  std::string label;
+  std::vector<std::string> options;
+  bool baseline = false;  // a resolved plan says so
+};
+
+struct NamedProblem {
+  std::string name;
+  std::string label;
+  std::vector<std::string> settings;
+  std::optional<Schedule> schedule;
+  std::string configuration_sha256;  // as recorded by a resolved plan; empty: not known
+};
+
+// What file and flags say, before it is looked up.
+struct RawPlan {
+  std::vector<NamedProblem> problems;
+  std::vector<NamedOptimizer> optimizers;
+  std::vector<std::string> settings;
+  std::optional<Schedule> schedule;
+};
+
+std::vector<std::string> get_strings_or_none(const ConfigTable& table, std::string_view key) {
+  return table.has(key) ? table.get_strings(key) : std::vector<std::string>{};
+}
+
+std::optional<Schedule> read_schedule_key(const ConfigTable& table) {
+  if (!table.has("schedule")) {
+    return std::nullopt;
+  }
+  const auto schedule = read_schedule(table.get_string("schedule"));
+  if (!schedule) {
+    table.refuse("schedule", fmt::format("it must be {}", kScheduleForms));
+  }
+  return schedule;
+}
+
+// Keys that would give one optimizer more than another.
+void refuse_privileges(const ConfigTable& table) {
+  for (const char* key : {"budget", "replicates", "schedule", "seed", "start_spread", "sets"}) {
+    if (table.has(key)) {
+      table.refuse(key, "it is the same for every optimizer of a comparison: it belongs to the top "
+                        "of the file");
+    }
+  }
+}
+
+RawPlan read_file_plan(const ConfigTable& table, StudyPlan& plan) {
+  RawPlan raw;
+  plan.title = table.get_string("title", "");
+  table.get_string("description", "");
+  plan.name = table.get_string("name", "");
+  table.get_string("plan_sha256", "");
+  plan.seed = static_cast<std::uint64_t>(
+      table.get_integer_or("seed", 1, 0, std::numeric_limits<std::int64_t>::max()));
+  plan.replicates =
+      static_cast<int>(table.get_integer_or("replicates", plan.replicates, 1, kMostReplicates));
+  plan.budget = table.get_integer_or("budget", 0, 1, kMostCases);
+  plan.start_spread =
+      table.get_number_or("start_spread", plan.start_spread, {.lower = 0, .upper = 2});
+  plan.checkpoints =
+      static_cast<int>(table.get_integer_or("checkpoints", plan.checkpoints, 1, kMostCheckpoints));
+  plan.final_engine = table.get_string("final_engine", "");
+  plan.baselines = table.get_bool_or("baselines", true);
+  const ConfigTable selection = table.get_table_or_empty("selection");
+  plan.selection.last =
+      static_cast<int>(selection.get_integer_or("last", plan.selection.last, 1, kMostSelected));
+  plan.selection.best =
+      static_cast<int>(selection.get_integer_or("best", plan.selection.best, 0, kMostSelected));
+  raw.schedule = read_schedule_key(table);
+  raw.settings = get_strings_or_none(table, "set");
+  for (const std::string& name : get_strings_or_none(table, "problems")) {
+    raw.problems.push_back({name, "", {}, {}, ""});
+  }
+  for (const ConfigTable& problem : table.get_tables_or_empty("problem")) {
+    raw.problems.push_back({problem.get_string("name"), problem.get_string("label", ""),
+                            get_strings_or_none(problem, "set"), read_schedule_key(problem),
+                            problem.get_string("configuration_sha256", "")});
+    for (const char* key : {"training_set", "validation_set", "test_set"}) {
+      problem.get_string(key, "");  // of a resolved plan: they follow from the rest
+    }
+  }
+  for (const std::string& name : get_strings_or_none(table, "optimizers")) {
+    raw.optimizers.push_back({name, "", {}, false});
+  }
+  for (const ConfigTable& optimizer : table.get_tables_or_empty("optimizer")) {
+    refuse_privileges(optimizer);
+    raw.optimizers.push_back({optimizer.get_string("name"), optimizer.get_string("label", ""),
+                              get_strings_or_none(optimizer, "options"),
+                              optimizer.get_bool_or("baseline", false)});
+    get_strings_or_none(optimizer, "inputs");  // of a resolved plan: they follow from the rest
+  }
+  table.refuse_unknown();
+  return raw;
+}
+
+std::string make_study_name(const StudyPlan& plan) {
+  std::string name = "study";
+  for (const StudyProblem& problem : plan.problems) {
+    name += "-" + problem.label;
+  }
+  constexpr std::size_t kLongest = 80;
+  return name.substr(0, kLongest);
+}
+
+// Only the same cases for all make a pair: of fresh ones, optimizers without generations see none.
+Schedule choose_study_schedule(const LoadedProblem& problem, const std::optional<Schedule>& asked) {
+  if (asked) {
+    return *asked;
+  }
+  return problem.schedule.fresh ? Schedule{.fresh = false, .cases = problem.fixed_cases}
+                                : problem.schedule;
+}
+
+void refuse_repeated(std::string_view what, std::span<const std::string> labels) {
+  for (auto label = labels.begin(); label != labels.end(); ++label) {
+    if (label->empty() || sanitize(*label) != *label) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("{} label '{}' is not printable text", what, sanitize(*label)));
+    }
+    if (std::find(labels.begin(), label, *label) != label) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("two {}s of the study are called '{}'; give one of them another "
+                              "label",
+                              what, *label));
+    }
+  }
+}
+
+void load_problems(const RawPlan& raw, StudyPlan& plan) {
+  std::vector<std::string> labels;
+  for (const NamedProblem& named : raw.problems) {
+    StudyProblem problem;
+    problem.name = named.name;
+    problem.settings = raw.settings;
+    for (const std::string& setting : named.settings) {
+      if (std::ranges::find(problem.settings, setting) == problem.settings.end()) {
+        problem.settings.push_back(setting);
+      }
+    }
+    problem.loaded = load_problem(named.name, problem.settings);
+    problem.label = named.label.empty() ? problem.loaded.name : named.label;
+    problem.schedule =
+        choose_study_schedule(problem.loaded, named.schedule ? named.schedule : raw.schedule);
+    const std::string hash = calc_configuration_hash(problem.loaded);
+    if (!named.configuration_sha256.empty() && named.configuration_sha256 != hash) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("problem '{}' is not the one that the plan was made with: its "
+                              "configuration has the hash {}, the plan says {}. Take "
+                              "configuration_sha256 out of the plan to use what is there now",
+                              problem.label, hash, named.configuration_sha256));
+    }
+    labels.push_back(problem.label);
+    plan.problems.push_back(std::move(problem));
+  }
+  if (plan.problems.empty()) {
+    throw Error(ErrorKind::usage, "the study names no problem; give --problems a,b or a file with "
+                                  "problems = [...]");
+  }
+  refuse_repeated("problem", labels);
+}
+
+StudyOptimizer load_study_optimizer(const NamedOptimizer& named) {
+  StudyOptimizer optimizer;
+  optimizer.name = named.name;
+  optimizer.label = named.label.empty() ? named.name : named.label;
+  optimizer.options = named.options;
+  optimizer.baseline = named.baseline;
+  optimizer.row = load_optimizer(named.name);
+  optimizer.parsed = Options::parse(optimizer.row.name, optimizer.row.options, named.options);
+  return optimizer;
+}
+
+void load_optimizers(const RawPlan& raw, StudyPlan& plan) {
+  if (raw.optimizers.empty()) {
+    throw Error(ErrorKind::usage, "the study names no optimizer; give --optimizers a,b or a file "
+                                  "with optimizers = [...]");
+  }
+  bool has_random = false, has_local = false;
+  for (const NamedOptimizer& named : raw.optimizers) {
+    plan.optimizers.push_back(load_study_optimizer(named));
+    const OptimizerRow& row = plan.optimizers.back().row;
+    has_random = has_random || row.name == kRandomBaseline;
+    has_local = has_local || row.capabilities.local;
+  }
+  const auto add = [&](std::string_view name) {
+    try {
+      plan.optimizers.push_back(load_study_optimizer({std::string(name), "", {}, true}));
+    } catch (const Error& error) {
+      throw Error(error.kind(),
+                  fmt::format("{} (it stands in every comparison as a baseline; name another local "
+                              "search, or leave the baselines out: --no-baselines, or baselines = "
+                              "false)",
+                              error.what()));
+    }
+  };
+  if (plan.baselines && !has_random) {
+    add(kRandomBaseline);
+  }
+  if (plan.baselines && !has_local) {
+    add(kLocalBaseline);
+  }
+  std::vector<std::string> labels;
+  for (const StudyOptimizer& optimizer : plan.optimizers) {
+    labels.push_back(optimizer.label);
+  }
+  refuse_repeated("optimizer", labels);
+}
+
+void check_cells(const StudyPlan& plan) {
+  for (const StudyProblem& problem : plan.problems) {
+    if (plan.budget < problem.schedule.cases) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("a budget of {} cases does not pay for one evaluation on {}, which "
+                              "takes {}",
+                              plan.budget, problem.label, problem.schedule.cases));
+    }
+  }
+  std::vector<std::string> without_generations;
+  for (const StudyOptimizer& optimizer : plan.optimizers) {
+    if (!optimizer.row.capabilities.generations) {
+      without_generations.push_back(optimizer.label);
+    }
+  }
+  const bool fresh = std::ranges::any_of(plan.problems, [](const StudyProblem& problem) {
+    return problem.schedule.fresh;
+  });
+  if (fresh && !without_generations.empty()) {
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("schedule fresh gives every generation new training cases, so only optimizers "
+                    "with generations can be compared on it, and these have none: {}. Use "
+                    "schedule fixed:K for all{}",
+                    join(without_generations, ", "),
+                    plan.baselines ? ", or take the baselines out (--no-baselines)" : ""));
+  }
+  for (const Cell& cell : list_cells(plan)) {
+    if (cell.replicate == 1) {
+      const RunPlan run = make_run_plan(plan, cell);
+      check_plan(run);
+      run.optimizer.make(run.options)->check_problem(run.problem.problem->description());
+    }
+  }
+}
+
+}  // namespace
+
+StudyPlan make_study_plan(const StudyRequest& request) {
+  StudyPlan plan;
+  RawPlan raw;
+  if (!request.file.empty()) {
+    const auto path = resolve_config("studies", request.file);
+    raw = read_file_plan(ConfigTable::load(path), plan);
+    if (plan.name.empty()) {
+      plan.name = path.stem().string();
+    }
+  }
+  if (!request.problems.empty()) {
+    raw.problems.clear();
+    for (const std::string& name : request.problems) {
+      raw.problems.push_back({name, "", {}, {}, ""});
+    }
+  }
+  if (!request.optimizers.empty()) {
+    raw.optimizers.clear();
+    for (const std::string& name : request.optimizers) {
+      raw.optimizers.push_back({name, "", {}, false});
+    }
+  }
+  raw.settings.insert(raw.settings.end(), request.settings.begin(), request.settings.end());
+  if (request.schedule) {
+    raw.schedule = request.schedule;
+  }
+  plan.seed = request.seed.value_or(plan.seed);
+  plan.replicates = request.replicates.value_or(plan.replicates);
+  plan.budget = request.budget.value_or(plan.budget);
+  plan.baselines = plan.baselines && request.baselines;
+  load_problems(raw, plan);
+  if (plan.budget == 0) {
+    throw Error(ErrorKind::usage,
+                "the study names no budget; give --budget CASES or budget = CASES: how many "
+                "training cases every optimizer may simulate on a problem");
+  }
+  load_optimizers(raw, plan);
+  if (plan.name.empty()) {
+    plan.name = make_study_name(plan);
+  }
+  if (!plan.final_engine.empty()) {
+    find_engine(plan.final_engine);
+  }
+  check_cells(plan);
+  return plan;
+}
+
+}  // namespace armwright

@@ -1,0 +1,220 @@
+#include "study/compare/study_folder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "base/config.hpp"
+#include "base/error.hpp"
+#include "base/file.hpp"
+#include "base/hash.hpp"
+#include "base/text.hpp"
+#include "study/compare/escape.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kPlanFile = "study.toml";
+constexpr std::size_t kPlanLimit_bytes = std::size_t{16} << 20;
+
+// A JSON string is a TOML string.
+std::string quote(const std::string& text) {
+  return json(text).dump(-1, ' ', true, json::error_handler_t::replace);
+}
+
+std::string quote_list(std::span<const std::string> texts) {
+  std::vector<std::string> quoted;
+  for (const std::string& text : texts) {
+    quoted.push_back(quote(text));
+  }
+  return "[" + join(quoted, ", ") + "]";
+}
+
+std::vector<std::string> list_options(const StudyOptimizer& optimizer) {
+  std::vector<std::string> all;
+  for (const auto& [name, value] : optimizer.parsed.values()) {
+    const auto spec = std::ranges::find(optimizer.row.options, name, &OptionSpec::name);
+    if (spec == optimizer.row.options.end() || spec->changes_result) {
+      all.push_back(name + "=" + to_text(value));
+    }
+  }
+  return all;
+}
+
+std::string format_number(double value) {
+  const std::string digits = format_exact(value);
+  return digits.find_first_of(".e") == std::string::npos ? digits + ".0" : digits;
+}
+
+std::string make_body(const StudyPlan& plan) {
+  std::string text = fmt::format(
+      "name = {}\ntitle = {}\nseed = {}\nreplicates = {}\nbudget = {}\nstart_spread = {}\n"
+      "checkpoints = {}\nfinal_engine = {}\nbaselines = {}\n\n[selection]\nlast = {}\nbest = {}\n",
+      quote(plan.name), quote(plan.title), plan.seed, plan.replicates, plan.budget,
+      format_number(plan.start_spread), plan.checkpoints, quote(plan.final_engine),
+      plan.baselines ? "true" : "false", plan.selection.last, plan.selection.best);
+  for (const StudyProblem& problem : plan.problems) {
+    const CaseSets& sets = problem.loaded.sets;
+    text += fmt::format(
+        "\n[[problem]]\nname = {}\nlabel = {}\nset = {}\nschedule = {}\nvalidation_set = {}\n"
+        "test_set = {}\nconfiguration_sha256 = {}\n",
+        quote(problem.name), quote(problem.label), quote_list(problem.settings),
+        quote(to_text(problem.schedule)), quote(sets.validation), quote(sets.test),
+        quote(calc_configuration_hash(problem.loaded)));
+  }
+  for (const StudyOptimizer& optimizer : plan.optimizers) {
+    std::vector<std::string> inputs;
+    for (const auto& [file, hash] : optimizer.row.input_hashes) {
+      inputs.push_back(file + " " + hash);
+    }
+    text += fmt::format(
+        "\n[[optimizer]]\nname = {}\nlabel = {}\nbaseline = {}\noptions = {}\ninputs = {}\n",
+        quote(optimizer.name), quote(optimizer.label), optimizer.baseline ? "true" : "false",
+        quote_list(list_options(optimizer)), quote_list(inputs));
+  }
+  return text;
+}
+
+json index_by_label(const json& list) {
+  json by_label = json::object();
+  for (const json& entry : list) {
+    by_label[entry.at("label").get<std::string>()] = entry;
+  }
+  return by_label;
+}
+
+std::filesystem::path get_problem_file(const std::filesystem::path& folder,
+                                       const std::string& label) {
+  return folder / "problems" / (escape_name(label) + ".json");
+}
+
+// What differs between a problem's recorded configuration and the present one.
+std::vector<std::string> describe_problem_change(const std::filesystem::path& folder,
+                                                 const StudyProblem& problem) {
+  const auto file = get_problem_file(folder, problem.label);
+  if (!std::filesystem::exists(file)) {
+    return {};
+  }
+  return describe_differences(read_file(file, kPlanLimit_bytes), problem.loaded.resolved_json);
+}
+
+}  // namespace
+
+std::string to_toml(const StudyPlan& plan) {
+  const std::string body = make_body(plan);
+  return fmt::format("plan_sha256 = \"{}\"\n{}", calc_sha256_hex(body), body);
+}
+
+std::string calc_plan_hash(const StudyPlan& plan) {
+  return calc_sha256_hex(make_body(plan));
+}
+
+bool is_study_folder(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(path / kPlanFile, ignored);
+}
+
+StudyPlan load_study_plan(const std::filesystem::path& folder) {
+  if (!is_study_folder(folder)) {
+    throw Error(ErrorKind::usage, fmt::format("{}: is not the folder of a study (it has no {})",
+                                              folder.string(), kPlanFile));
+  }
+  StudyRequest request;
+  request.file = (folder / kPlanFile).string();
+  return make_study_plan(request);
+}
+
+StudyFolder::StudyFolder(const std::filesystem::path& path, const StudyPlan& plan)
+    : path_(path), lock_((make_folder(path), path)) {
+  const std::string text = to_toml(plan);
+  if (!is_study_folder(path)) {
+    for (const auto& entry : std::filesystem::directory_iterator(path)) {
+      const std::string name = entry.path().filename().string();
+      if (name != "lock" && name != "problems" && !name.ends_with(".new")) {
+        throw Error(ErrorKind::usage,
+                    fmt::format("{}: holds '{}' but no {}, so it is not the folder of a study; "
+                                "choose another with --out, or --new",
+                                path.string(), sanitize(name), kPlanFile));
+      }
+    }
+  } else {
+    extend(plan, text);
+  }
+  make_folder(path / "problems");
+  for (const StudyProblem& problem : plan.problems) {
+    write_file_atomically(get_problem_file(path, problem.label),
+                          json::parse(problem.loaded.resolved_json).dump(2) + "\n");
+  }
+  if (!is_study_folder(path) || !additions_.empty()) {
+    write_file_atomically(path / kPlanFile, text);
+  }
+}
+
+void StudyFolder::extend(const StudyPlan& plan, const std::string& text) {
+  const auto file = path_ / kPlanFile;
+  json recorded = json::parse(ConfigTable::load(file).to_json());
+  json now = json::parse(ConfigTable::parse(text, file.string()).to_json());
+  std::vector<std::string> differences;
+  for (const char* key : {"problem", "optimizer"}) {
+    const json before = index_by_label(recorded.at(key));
+    const json after = index_by_label(now.at(key));
+    for (const auto& [label, entry] : before.items()) {
+      if (!after.contains(label)) {
+        differences.push_back(
+            fmt::format("{} {} is recorded, and the plan leaves it out", key, sanitize(label)));
+        continue;
+      }
+      for (const std::string& difference :
+           describe_differences(entry.dump(), after[label].dump())) {
+        differences.push_back(fmt::format("{} {}: {}", key, sanitize(label), difference));
+      }
+    }
+    for (const auto& [label, entry] : after.items()) {
+      if (!before.contains(label)) {
+        additions_.push_back(fmt::format("{} {}", key, sanitize(label)));
+      }
+    }
+    recorded.erase(key);
+    now.erase(key);
+  }
+  for (const StudyProblem& problem : plan.problems) {
+    for (const std::string& difference : describe_problem_change(path_, problem)) {
+      differences.push_back(fmt::format("problem {}: {}", problem.label, difference));
+    }
+  }
+  const auto replicates = recorded.at("replicates").get<int>();
+  if (replicates < plan.replicates) {
+    additions_.push_back(
+        fmt::format("replicates {} to {}", replicates + 1, plan.replicates));
+  }
+  if (replicates <= plan.replicates) {
+    now["replicates"] = replicates;
+  }
+  for (const char* key : {"plan_sha256", "title", "baselines"}) {
+    recorded.erase(key);
+    now.erase(key);
+  }
+  for (const std::string& difference : describe_differences(recorded.dump(), now.dump())) {
+    differences.push_back(difference);
+  }
+  if (!differences.empty()) {
+    throw Error(ErrorKind::usage,
+                fmt::format("{} holds a study whose cells would not compare with those of this "
+                            "plan:\n  {}\nA plan may only grow. Go on with the recorded one, or use "
+                            "--new or --out for another folder",
+                            path_.string(), join(differences, "\n  ")));
+  }
+  if (!additions_.empty()) {
+    int number = 1;
+    while (std::filesystem::exists(path_ / fmt::format("study-{:03}.toml", number))) {
+      ++number;
+    }
+    write_file_atomically(path_ / fmt::format("study-{:03}.toml", number),
+                          read_file(file, kPlanLimit_bytes));
+  }
+}
+
+}  // namespace armwright

@@ -1,0 +1,126 @@
+#include "study/compare/study_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <set>
+
+#include "base/hash.hpp"
+#include "base/random.hpp"
+#include "base/text.hpp"
+#include "optimizers/search_space.hpp"
+#include "problems/replicate.hpp"
+#include "study/compare/escape.hpp"
+
+namespace armwright {
+namespace {
+
+std::string make_stream(const StudyPlan& plan, const Cell& cell) {
+  return fmt::format("study/{}/{}/{}", plan.seed, plan.problems[cell.problem].label,
+                     cell.replicate);
+}
+
+// A draw from the box of the given share about the problem's own start, as far as that lies within
+// the bounds.
+std::vector<double> draw_start(const StudyPlan& plan, const Cell& cell) {
+  const SearchSpace space(plan.problems[cell.problem].loaded.problem->description().variables);
+  std::vector<double> lower = space.lower();
+  std::vector<double> upper = space.upper();
+  for (std::size_t i = 0; i < space.dimension(); ++i) {
+    const double reach = plan.start_spread * (upper[i] - lower[i]) / 2;
+    lower[i] = std::max(lower[i], space.start()[i] - reach);
+    upper[i] = std::min(upper[i], space.start()[i] + reach);
+  }
+  RandomStream random(make_stream(plan, cell) + "/start");
+  return space.to_point(space.draw_between(lower, upper, random));
+}
+
+// 63 bits of the cell's name, so that it can be typed as --seed.
+std::uint64_t make_seed(const std::string& stream) {
+  const auto hash = calc_sha256(stream);
+  std::uint64_t seed = 0;
+  std::memcpy(&seed, hash.data(), sizeof seed);
+  return seed >> 1;
+}
+
+}  // namespace
+
+std::string calc_configuration_hash(const LoadedProblem& problem) {
+  std::string text = problem.resolved_json;
+  for (const auto& [file, hash] : problem.input_hashes) {
+    text += fmt::format("\n{} {}", file, hash);
+  }
+  return calc_sha256_hex(text);
+}
+
+std::vector<Cell> list_cells(const StudyPlan& plan) {
+  std::vector<Cell> cells;
+  for (int replicate = 1; replicate <= plan.replicates; ++replicate) {
+    for (std::size_t problem = 0; problem < plan.problems.size(); ++problem) {
+      for (std::size_t optimizer = 0; optimizer < plan.optimizers.size(); ++optimizer) {
+        cells.push_back({problem, optimizer, replicate});
+      }
+    }
+  }
+  return cells;
+}
+
+RunPlan make_run_plan(const StudyPlan& plan, const Cell& cell) {
+  const StudyProblem& problem = plan.problems[cell.problem];
+  const StudyOptimizer& optimizer = plan.optimizers[cell.optimizer];
+  RunPlan run;
+  run.problem = make_replicate(
+      problem.loaded,
+      fmt::format("train/study-{}-{}-{}", plan.seed, problem.label, cell.replicate),
+      draw_start(plan, cell));
+  run.optimizer = optimizer.row;
+  run.options = optimizer.parsed;
+  run.seed = make_seed(make_stream(plan, cell) + "/" + optimizer.label);
+  run.budget = plan.budget;
+  run.schedule = problem.schedule;
+  run.selection = plan.selection;
+  return run;
+}
+
+std::filesystem::path make_cell_path(const StudyPlan& plan, const Cell& cell) {
+  return std::filesystem::path("cells") / escape_name(plan.problems[cell.problem].label) /
+         escape_name(plan.optimizers[cell.optimizer].label) /
+         fmt::format("r{:02}", cell.replicate);
+}
+
+std::vector<std::int64_t> calc_checkpoints(std::int64_t budget, int cases, int count) {
+  const std::int64_t evaluations = budget / cases;
+  std::set<std::int64_t> chosen;
+  for (int i = 0; i < count && evaluations > 0; ++i) {
+    const double share = count == 1 ? 1 : static_cast<double>(i) / (count - 1);
+    const double exact = std::pow(static_cast<double>(evaluations), share);
+    chosen.insert(std::clamp(std::llround(exact), 1LL, static_cast<long long>(evaluations)) *
+                  cases);
+  }
+  return {chosen.begin(), chosen.end()};
+}
+
+StudyCost calc_cost(const StudyPlan& plan) {
+  StudyCost cost;
+  const auto runs = static_cast<std::int64_t>(plan.optimizers.size()) * plan.replicates;
+  for (const StudyProblem& problem : plan.problems) {
+    const CaseSets& sets = problem.loaded.sets;
+    const bool fronts = problem.loaded.problem->description().objectives.size() > 1;
+    const std::int64_t judged = plan.selection.last * (fronts ? 2 : 1) + plan.selection.best;
+    const auto tested = static_cast<std::int64_t>(
+        calc_checkpoints(plan.budget, problem.schedule.cases, plan.checkpoints).size());
+    cost.cells += runs;
+    cost.training += runs * plan.budget;
+    cost.validation += runs * judged * sets.validation_cases;
+    // The winner, the start, the incumbents at the checkpoints, a front.
+    cost.test += runs * (2 + tested + (fronts ? judged : 0)) * sets.test_cases;
+    if (!plan.final_engine.empty() && problem.loaded.tracking) {
+      cost.test += static_cast<std::int64_t>(plan.optimizers.size()) * sets.test_cases;
+    }
+  }
+  return cost;
+}
+
+}  // namespace armwright

@@ -1,0 +1,107 @@
+// The plan of a comparison: problems x optimizers x replicates, all on the same footing.
+//
+// A cell is one run: optimizer `o` on problem `p` in replicate `r`. What a replicate gives is the
+// same for every optimizer: the training cases (set train/STUDY-SEED-P-R), the place to start from
+// (a uniform draw from a box about the problem's own start, on the variables' scales) and, through
+// the training cases, all noise. The optimizer's own random numbers come from a stream named after
+// the cell. Nothing derives from the plan as a whole, so that it can be extended.
+//
+// There is one budget, in simulated training cases, and one schedule, for all optimizers: a plan in
+// which one of them would get more cannot be written.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "study/run_plan.hpp"
+
+namespace armwright {
+
+struct StudyProblem {
+  std::string label;  // unique in the plan: what tables, folders and streams say
+  std::string name;   // as asked for: a shipped name or a path
+  std::vector<std::string> settings;  // KEY=VALUE, all that is changed about it
+  LoadedProblem loaded;
+  Schedule schedule;
+};
+
+struct StudyOptimizer {
+  std::string label;                 // unique in the plan
+  std::string name;                  // as asked for
+  std::vector<std::string> options;  // KEY=VALUE
+  bool baseline = false;             // not asked for: every comparison has it unless told otherwise
+  OptimizerRow row;
+  Options parsed;
+};
+
+struct StudyPlan {
+  std::string name;  // of its folder
+  std::string title;
+  std::uint64_t seed = 1;
+  int replicates = 15;
+  std::int64_t budget = 0;  // simulated training cases a cell
+  // Width of the box that starts are drawn from, as a share of the bounds' box.
+  double start_spread = 0.1;
+  Selection selection{.last = 5, .best = 5};
+  int checkpoints = 20;      // budgets, logarithmically spaced, at which incumbents are tested
+  std::string final_engine;  // the best design of every optimizer and problem once more; or empty
+  bool baselines = true;     // random search and a local search are in the pool by themselves
+  std::vector<StudyProblem> problems;
+  std::vector<StudyOptimizer> optimizers;
+};
+
+// What stands in every comparison (facts: a method that does not beat these is of no use).
+inline constexpr std::string_view kRandomBaseline = "random";
+inline constexpr std::string_view kLocalBaseline = "nlopt:neldermead";
+
+// What a plan can be made of: a file, flags, or both; flags come last.
+struct StudyRequest {
+  std::string file;  // a path, or the name of a shipped study; empty: flags alone
+  std::vector<std::string> problems;
+  std::vector<std::string> optimizers;
+  std::vector<std::string> settings;  // of every problem
+  std::optional<int> replicates;
+  std::optional<std::int64_t> budget;
+  std::optional<Schedule> schedule;
+  std::optional<std::uint64_t> seed;
+  bool baselines = true;
+};
+
+// Reads, completes and checks everything. Error{usage} or Error{bad_data}.
+StudyPlan make_study_plan(const StudyRequest& request);
+
+// SHA-256 of a problem's resolved configuration and of the files that it refers to.
+std::string calc_configuration_hash(const LoadedProblem& problem);
+
+struct Cell {
+  std::size_t problem = 0;
+  std::size_t optimizer = 0;
+  int replicate = 1;  // from 1
+};
+// Replicate by replicate, so that an interrupted study has something of everything.
+std::vector<Cell> list_cells(const StudyPlan& plan);
+
+// The run that the cell is.
+RunPlan make_run_plan(const StudyPlan& plan, const Cell& cell);
+// "cells/q1-complex/ga/r01", relative to the study's folder.
+std::filesystem::path make_cell_path(const StudyPlan& plan, const Cell& cell);
+
+// Budgets at which incumbents are tested: from one evaluation to the whole, logarithmically spaced,
+// whole evaluations, without repetitions.
+std::vector<std::int64_t> calc_checkpoints(std::int64_t budget, int cases, int count);
+
+// How many test cases the whole plan simulates at most.
+struct StudyCost {
+  std::int64_t cells = 0;
+  std::int64_t training = 0;
+  std::int64_t validation = 0;
+  std::int64_t test = 0;
+};
+StudyCost calc_cost(const StudyPlan& plan);
+
+}  // namespace armwright
