@@ -1,0 +1,15 @@
+// The best design of every optimizer and problem once more, on the test set and another engine: a
+// comparison on a quick engine says nothing of designs that only live there.
+#pragma once
+
+#include "study/compare/study_result.hpp"
+
+namespace armwright {
+
+// Adds OptimizerResult::final_check where the plan has a final engine and the problem an arm. What
+// was simulated is kept in final/PROBLEM/OPTIMIZER.json and not made again for the same design.
+// False if stopped.
+bool add_final_checks(const StudyPlan& plan, const std::filesystem::path& study, unsigned jobs,
+                      StopSignal& stop, RunObserver& observer, StudyResult& result);
+
+}  // namespace armwright

@@ -1,0 +1,123 @@
+// What a comparison has found: every number that its tables and its verdict show, computed from the
+// cells and nothing else. The same cells give the same bytes.
+//
+// Each optimizer has one value a replicate: of one objective the winner's on the test set
+// (calc_test_value()), of several the share of the hypervolume that its front misses. Pairs are
+// replicates: the same training cases and the same start. Running times come from curves on the test
+// set: the budget from which on the best incumbent so far, re-simulated there, is at the target or
+// below; they are as coarse as the checkpoints.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "study/compare/cell.hpp"
+#include "study/statistics/bootstrap.hpp"
+#include "study/statistics/effect_size.hpp"
+#include "study/statistics/friedman.hpp"
+#include "study/statistics/ranking.hpp"
+#include "study/statistics/spread.hpp"
+#include "study/statistics/wilcoxon.hpp"
+
+namespace armwright {
+
+inline constexpr double kSignificance = 0.05;
+// Of fewer pairs no outcome is significant: 2 / 2^5 > 0.05.
+inline constexpr int kFewestPairs = 6;
+inline constexpr double kIntervalLevel = 0.95;
+inline constexpr int kResamples = 2000;
+// Targets of expected running times: this share of the way from the start to the best known is left.
+inline constexpr double kRunningTimeTargets[] = {0.1, 0.01, 0.001};
+// Of profiles (Moré and Wild 2009).
+inline constexpr double kProfileTolerances[] = {1e-1, 1e-3, 1e-5};
+
+struct RunningTime {
+  double target = 0;  // the value
+  int reached = 0;    // replicates
+  double expected = 0;  // simulated cases, with restarts; infinite if never reached
+  Interval interval;
+};
+
+// The best design of an optimizer on a problem, by the validation set, on another engine.
+struct FinalCheck {
+  int replicate = 0;
+  std::string engine;
+  double value = 0;
+  ErrorSummary errors;
+};
+
+struct OptimizerResult {
+  std::vector<double> values;  // one a replicate
+  int infinite = 0;            // replicates without a value
+  int failed = 0;              // in which the optimizer itself failed
+  Spread spread;
+  Interval median_interval;
+  double mean_rank = 0;
+  double anytime_area = 0;  // of the runtime ECDF over all targets
+  std::vector<RunningTime> running_times;
+  std::vector<double> ecdf;                // at ProblemResult::checkpoints
+  std::vector<Spread> curve;               // likewise
+  double cases = 0;                        // of the budget that were used, median
+  std::optional<FinalCheck> final_check;
+};
+
+struct PairResult {
+  std::size_t a = 0;  // optimizers; a's median is not worse than b's
+  std::size_t b = 0;
+  SignedRankTest test;
+  double p_holm = 1;
+  double a12 = 0.5;  // that a run of a is better than one of b
+  WinTieLoss wins;
+  bool is_significant() const { return test.pairs + test.zeros >= kFewestPairs && p_holm < kSignificance; }
+};
+
+struct ProblemResult {
+  std::string label;
+  Quantity quantity;  // what the values are
+  bool has_front = false;
+  std::vector<double> reference_point;  // of the hypervolume
+  double best_known = 0;                // of all values on the way, on the test set; may be infinite
+  double start = 0;                     // median value of the starts
+  std::vector<std::int64_t> checkpoints;
+  std::vector<double> targets;
+  std::vector<OptimizerResult> optimizers;
+  std::optional<FriedmanTest> friedman;  // blocks are replicates; nothing of fewer than 2
+  std::vector<PairResult> pairs;         // every two, Holm's correction over all of the problem
+  std::vector<std::size_t> order;        // by median, then mean rank, then the plan's order
+};
+
+struct Profile {
+  double tolerance = 0;
+  std::vector<std::vector<double>> shares;  // a row an optimizer, at the abscissae
+};
+
+// Over problems, each counting once, by its medians.
+struct OverallResult {
+  RankingStability ranking;
+  std::optional<FriedmanTest> friedman;
+  std::vector<PairResult> pairs;
+  std::vector<double> kappas;  // abscissae of data profiles: simplex gradients
+  std::vector<double> alphas;  // and of performance profiles: times the quickest's cost
+  std::vector<Profile> data_profiles;
+  std::vector<Profile> performance_profiles;
+};
+
+struct StudyResult {
+  std::vector<CellOutcome> cells;  // problem by problem, optimizer by optimizer, by replicate
+  std::vector<ProblemResult> problems;
+  OverallResult overall;
+  std::vector<Cell> missing;  // that have not ended; they count as infinite
+};
+
+// From the study's folder. Error{bad_data} for a cell that cannot be read.
+StudyResult analyze_study(const StudyPlan& plan, const std::filesystem::path& study);
+
+// The parts of it.
+ProblemResult analyze_problem(const StudyPlan& plan, std::size_t problem,
+                              std::span<const CellOutcome> cells);
+OverallResult analyze_overall(const StudyPlan& plan, std::span<const ProblemResult> problems,
+                              std::span<const CellOutcome> cells);
+
+}  // namespace armwright

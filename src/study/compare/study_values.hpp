@@ -1,0 +1,18 @@
+// What the parts of a study's analysis share. Internal to study/compare.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "study/compare/study_result.hpp"
+#include "study/statistics/running_time.hpp"
+
+namespace armwright {
+
+// The best value on the test set so far, at each checkpoint.
+std::vector<TracePoint> make_trace(const CellOutcome& cell);
+
+// Every two of the optimizers; values[o][i] and values[p][i] are a pair.
+std::vector<PairResult> compare_pairs(std::span<const std::vector<double>> values);
+
+}  // namespace armwright

@@ -1,0 +1,204 @@
+#include "study/compare/verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/text.hpp"
+
+namespace armwright {
+namespace {
+
+const PairResult& find_pair(std::span<const PairResult> pairs, std::size_t a, std::size_t b) {
+  return *std::ranges::find_if(pairs, [&](const PairResult& pair) {
+    return (pair.a == a && pair.b == b) || (pair.a == b && pair.b == a);
+  });
+}
+
+std::string join_names(std::vector<std::string> names) {
+  if (names.size() < 2) {
+    return names.empty() ? "" : names.front();
+  }
+  const std::string last = names.back();
+  names.pop_back();
+  return join(names, ", ") + " and " + last;
+}
+
+std::string format_a12(double a12) {
+  return fmt::format("{:.2f}", a12);
+}
+
+// Whom the first of the order beats, and whom it cannot be told apart from.
+struct Standing {
+  std::vector<const PairResult*> beaten;
+  std::vector<std::size_t> equal;
+};
+
+Standing find_standing(std::span<const PairResult> pairs, std::span<const std::size_t> order) {
+  Standing standing;
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    const PairResult& pair = find_pair(pairs, order[0], order[i]);
+    if (pair.is_significant()) {
+      standing.beaten.push_back(&pair);
+    } else {
+      standing.equal.push_back(order[i]);
+    }
+  }
+  return standing;
+}
+
+std::string describe_beaten(const StudyPlan& plan, std::size_t best,
+                            std::span<const PairResult* const> beaten) {
+  std::vector<std::string> names;
+  double least_a12 = 1, most_a12 = 0, worst_p = 0;
+  for (const PairResult* pair : beaten) {
+    const std::size_t other = pair->a == best ? pair->b : pair->a;
+    const double a12 = pair->a == best ? pair->a12 : 1 - pair->a12;
+    names.push_back(plan.optimizers[other].label);
+    least_a12 = std::min(least_a12, a12);
+    most_a12 = std::max(most_a12, a12);
+    worst_p = std::max(worst_p, pair->p_holm);
+  }
+  const std::string a12 = format_a12(least_a12) == format_a12(most_a12)
+                              ? format_a12(least_a12)
+                              : format_a12(least_a12) + " to " + format_a12(most_a12);
+  const bool one = beaten.size() == 1;
+  return fmt::format("{} beats {} (A12 {}, p {} {} after Holm)", plan.optimizers[best].label,
+                     join_names(names), a12, one ? "=" : "at most", format_p(worst_p));
+}
+
+// "at 5000 simulations": what every optimizer had.
+std::string describe_budget(const StudyPlan& plan) {
+  return fmt::format("at {} simulations", plan.budget);
+}
+
+std::vector<std::string> describe_problem(const StudyPlan& plan, const ProblemResult& problem) {
+  const std::string where = fmt::format("On {} {}", problem.label, describe_budget(plan));
+  if (plan.optimizers.size() < 2) {
+    return {where + " there is nothing to compare: one optimizer took part."};
+  }
+  const bool nothing_found = std::ranges::all_of(problem.optimizers, [](const OptimizerResult& one) {
+    return one.infinite == std::ssize(one.values);
+  });
+  if (nothing_found) {
+    return {where + " no optimizer found a design that has a value on the test set."};
+  }
+  if (plan.replicates < kFewestPairs) {
+    return {fmt::format("{} nothing can be concluded: there are {} replicates, and of fewer than "
+                        "{} no outcome is significant.",
+                        where, plan.replicates, kFewestPairs)};
+  }
+  const std::size_t best = problem.order.front();
+  const Standing standing = find_standing(problem.pairs, problem.order);
+  std::vector<std::string> equal = {plan.optimizers[best].label};
+  for (const std::size_t i : standing.equal) {
+    equal.push_back(plan.optimizers[i].label);
+  }
+  std::vector<std::string> sentences;
+  if (!standing.beaten.empty()) {
+    sentences.push_back(
+        fmt::format("{} {}.", where, describe_beaten(plan, best, standing.beaten)));
+  }
+  if (equal.size() == plan.optimizers.size()) {
+    sentences.push_back(fmt::format("{} {} cannot be told apart.", where, join_names(equal)));
+  } else if (equal.size() > 1) {
+    sentences.push_back(
+        fmt::format("On {} {} cannot be told apart.", problem.label, join_names(equal)));
+  }
+  return sentences;
+}
+
+std::vector<std::string> describe_overall(const StudyPlan& plan, const StudyResult& result) {
+  if (plan.problems.size() < 2 || plan.optimizers.size() < 2) {
+    return {};
+  }
+  std::vector<std::string> sentences;
+  const RankingStability& stability = result.overall.ranking;
+  std::vector<std::string> leaders;
+  for (const std::size_t i : stability.full.leaders) {
+    leaders.push_back(plan.optimizers[i].label);
+  }
+  const auto changes = std::ranges::count_if(
+      stability.without, [](const RankingWithout& one) { return one.leader_changes; });
+  sentences.push_back(fmt::format(
+      "Over the {} problems {} {} the best mean rank ({:.2f} of {}); leaving one problem out, that "
+      "changes in {} of {} cases.",
+      plan.problems.size(), join_names(leaders), leaders.size() == 1 ? "has" : "share",
+      stability.full.mean_ranks[stability.full.leaders.front()], plan.optimizers.size(), changes,
+      stability.without.size()));
+  if (std::ssize(plan.problems) < kFewestPairs) {
+    sentences.push_back(
+        fmt::format("That is no more than a description: of {} problems, fewer than {}, nothing "
+                    "can be concluded about others.",
+                    plan.problems.size(), kFewestPairs));
+    return sentences;
+  }
+  const std::size_t best = stability.full.order.front();
+  const Standing standing = find_standing(result.overall.pairs, stability.full.order);
+  sentences.push_back(
+      standing.beaten.empty()
+          ? fmt::format("Over problems {} cannot be told apart from any other.",
+                        plan.optimizers[best].label)
+          : fmt::format("Over problems {}.", describe_beaten(plan, best, standing.beaten)));
+  return sentences;
+}
+
+std::vector<std::string> describe_limits(const StudyPlan& plan, const StudyResult& result) {
+  std::vector<std::string> sentences;
+  std::vector<std::string> failed;
+  for (std::size_t o = 0; o < plan.optimizers.size(); ++o) {
+    int runs = 0;
+    for (const ProblemResult& problem : result.problems) {
+      runs += problem.optimizers[o].failed;
+    }
+    if (runs > 0) {
+      failed.push_back(fmt::format("{} ({} of {} runs)", plan.optimizers[o].label, runs,
+                                   plan.problems.size() * static_cast<std::size_t>(plan.replicates)));
+    }
+  }
+  if (!failed.empty()) {
+    sentences.push_back(fmt::format("Failed by a fault of their own, and counted with what they "
+                                    "had found by then: {}.",
+                                    join_names(failed)));
+  }
+  if (!result.missing.empty()) {
+    sentences.push_back(fmt::format("{} of {} cells have not ended and count as if they had found "
+                                    "nothing.",
+                                    result.missing.size(), result.cells.size()));
+  }
+  if (!plan.baselines) {
+    sentences.push_back(
+        "The baselines (random search and a local search) were left out on request: whether any "
+        "of these optimizers is better than those was not asked.");
+  }
+  if (std::ranges::any_of(plan.problems,
+                          [](const StudyProblem& problem) { return problem.schedule.fresh; })) {
+    sentences.push_back("Training cases were new in every generation, the same for all optimizers "
+                        "only generation by generation; budgets buy unequal numbers of "
+                        "generations.");
+  }
+  return sentences;
+}
+
+}  // namespace
+
+std::string format_p(double p) {
+  constexpr double kSmallest = 1e-6;
+  return p < kSmallest ? "< 1e-06" : fmt::format("{:.2g}", p);
+}
+
+std::vector<std::string> describe_verdict(const StudyPlan& plan, const StudyResult& result) {
+  std::vector<std::string> verdict;
+  const auto add = [&](const std::vector<std::string>& sentences) {
+    verdict.insert(verdict.end(), sentences.begin(), sentences.end());
+  };
+  for (const ProblemResult& problem : result.problems) {
+    add(describe_problem(plan, problem));
+  }
+  add(describe_overall(plan, result));
+  add(describe_limits(plan, result));
+  return verdict;
+}
+
+}  // namespace armwright
