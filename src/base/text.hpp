@@ -31,6 +31,9 @@ std::string join(std::span<const std::string> parts, std::string_view separator)
 // The shortest decimal that reads back as exactly the same double.
 std::string format_exact(double value);
 
+// One field of a CSV file (RFC 4180).
+std::string quote_csv(std::string_view text);
+
 // Printable UTF-8 for a terminal or a log: control characters (escape codes too) and invalid bytes
 // become '?'.
 std::string sanitize(std::string_view text);

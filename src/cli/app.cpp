@@ -27,6 +27,7 @@ constexpr const char* kFooter = R"(Examples:
   armwright evaluate table-a10 --problem q2-e6     # a published design on 500 test cases
   armwright verify table-a10                       # does it hold under other engines, time steps and masses?
   armwright reproduce                              # the thesis's published results beside ours
+  armwright export results/q1 --format csv         # its evaluations for other programs: csv, ioh, coco, json
 
 'armwright COMMAND --help' explains a command, with examples.
 
@@ -189,6 +190,8 @@ int run_app(int argc, char** argv) {
     add_reproduce(app, session);
     add_testset(app, session);
     add_show(app, session);
+    add_export(app, session);
+    add_import(app, session);
     add_check_plugin(app, session);
     add_new_plugin(app, session);
     return parse_and_run(app, session, argc, argv);

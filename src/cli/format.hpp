@@ -22,7 +22,5 @@ std::string format_count(unsigned long long count, std::string_view singular);
 
 // The words as a POSIX shell would have to be given them.
 std::string quote_command(std::span<const std::string> words);
-// One field of a CSV file (RFC 4180).
-std::string quote_csv(std::string_view text);
 
 }  // namespace armwright

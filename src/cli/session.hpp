@@ -43,6 +43,8 @@ void add_verify(CLI::App& app, Session& session);
 void add_reproduce(CLI::App& app, Session& session);
 void add_testset(CLI::App& app, Session& session);
 void add_show(CLI::App& app, Session& session);
+void add_export(CLI::App& app, Session& session);
+void add_import(CLI::App& app, Session& session);
 void add_check_plugin(CLI::App& app, Session& session);
 void add_new_plugin(CLI::App& app, Session& session);
 

@@ -56,7 +56,9 @@ TEST_F(Cli, EveryCommandExplainsItselfWithAnExample) {
                                                   {"testset", "export"},
                                                   {"testset", "import"},
                                                   {"testset", "hash"},
-                                                  {"show"}}) {
+                                                  {"show"},
+                                                  {"export"},
+                                                  {"import"}}) {
     auto arguments = command;
     arguments.push_back("--help");
     const Outcome outcome = run(arguments);

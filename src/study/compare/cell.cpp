@@ -159,6 +159,7 @@ std::string to_json(const CellOutcome& outcome) {
       {"format", kFormat},
       {"problem", outcome.problem},
       {"label", outcome.optimizer},
+      {"optimizer", outcome.optimizer_name},
       {"replicate", outcome.replicate},
       {"end_reason", outcome.end_reason},
       {"failure", outcome.failure},
@@ -189,6 +190,7 @@ CellOutcome parse_cell(const std::string& text, const std::filesystem::path& fil
     CellOutcome outcome;
     outcome.problem = j.at("problem");
     outcome.optimizer = j.at("label");
+    outcome.optimizer_name = j.at("optimizer");
     outcome.replicate = j.at("replicate");
     outcome.end_reason = j.at("end_reason");
     outcome.failure = j.at("failure");
@@ -231,6 +233,7 @@ std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
   CellOutcome outcome;
   outcome.problem = plan.problems[cell.problem].label;
   outcome.optimizer = plan.optimizers[cell.optimizer].label;
+  outcome.optimizer_name = plan.optimizers[cell.optimizer].row.name;
   outcome.replicate = cell.replicate;
   outcome.end_reason = result->end_reason;
   outcome.failure = result->failure;

@@ -28,6 +28,7 @@ struct CurvePoint {
 struct CellOutcome {
   std::string problem;    // label
   std::string optimizer;  // label
+  std::string optimizer_name;
   int replicate = 1;
   std::string end_reason;
   std::string failure;  // of the optimizer; empty if it did not fail

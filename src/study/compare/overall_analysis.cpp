@@ -64,6 +64,7 @@ CellOutcome make_missing(const StudyPlan& plan, const Cell& cell) {
   CellOutcome outcome;
   outcome.problem = plan.problems[cell.problem].label;
   outcome.optimizer = plan.optimizers[cell.optimizer].label;
+  outcome.optimizer_name = plan.optimizers[cell.optimizer].row.name;
   outcome.replicate = cell.replicate;
   outcome.end_reason = "not ended";
   outcome.value = outcome.validation_value = outcome.start_value = kInfinity;

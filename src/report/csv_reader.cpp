@@ -1,0 +1,60 @@
+#include "report/csv_reader.hpp"
+
+#include <fmt/format.h>
+
+#include "base/error.hpp"
+
+namespace armwright {
+
+std::string CsvReader::read_field() {
+  if (!rest_.starts_with('"')) {
+    const std::string_view field = rest_.substr(0, rest_.find_first_of(",\r\n"));
+    if (field.find('"') != std::string_view::npos) {
+      throw Error(ErrorKind::bad_data, fmt::format("row {}: a quote amid a field", row_));
+    }
+    rest_.remove_prefix(field.size());
+    return std::string(field);
+  }
+  std::string field;
+  while (true) {
+    rest_.remove_prefix(1);
+    const std::size_t quote = rest_.find('"');
+    if (quote == std::string_view::npos) {
+      throw Error(ErrorKind::bad_data, fmt::format("row {}: a quote is not closed", row_));
+    }
+    field += rest_.substr(0, quote);
+    rest_.remove_prefix(quote + 1);
+    if (!rest_.starts_with('"')) {
+      break;
+    }
+    field += '"';
+  }
+  if (!rest_.empty() && std::string_view(",\r\n").find(rest_.front()) == std::string_view::npos) {
+    throw Error(ErrorKind::bad_data, fmt::format("row {}: text behind a closing quote", row_));
+  }
+  return field;
+}
+
+bool CsvReader::read_row(std::vector<std::string>& fields) {
+  fields.clear();
+  if (rest_.empty()) {
+    return false;
+  }
+  ++row_;
+  while (true) {
+    fields.push_back(read_field());
+    if (!rest_.starts_with(',')) {
+      break;
+    }
+    rest_.remove_prefix(1);
+  }
+  if (rest_.starts_with("\r\n")) {
+    rest_.remove_prefix(1);
+  }
+  if (!rest_.empty()) {
+    rest_.remove_prefix(1);
+  }
+  return true;
+}
+
+}  // namespace armwright

@@ -1,0 +1,118 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "base/text.hpp"
+#include "report/export_folder.hpp"
+#include "report/tables.hpp"
+#include "study/build_info.hpp"
+
+namespace armwright {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+constexpr int kFormat = 1;
+
+// Texts from plugins may hold anything; JSON is UTF-8.
+std::string dump(const json& value) {
+  return value.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+json to_json(const TracedEvaluation& evaluation) {
+  json j = {{"evaluation", evaluation.number},
+            {"simulated_cases", evaluation.simulated_cases},
+            {"status", to_string(evaluation.status)},
+            {"feasible", evaluation.feasible},
+            {"objective", evaluation.objective ? json(*evaluation.objective) : json(nullptr)},
+            {"objectives", evaluation.objectives},
+            {"constraints", evaluation.constraint_values},
+            {"metrics", evaluation.metrics},
+            {"x", evaluation.x}};
+  if (!evaluation.reason.empty()) {
+    j["reason"] = sanitize(evaluation.reason);
+  }
+  return j;
+}
+
+json make_winner(const RunTrace& trace) {
+  if (!trace.test) {
+    return nullptr;
+  }
+  json errors = json::array();
+  for (const double error : trace.test->case_errors) {
+    errors.push_back(std::isnan(error) ? json(nullptr) : json(error));
+  }
+  return {{"x", trace.winner},
+          {"test_set", trace.tested_on ? json(trace.tested_on->set) : json(nullptr)},
+          {"status", to_string(trace.test->status)},
+          {"objectives", trace.test->objectives},
+          {"constraints", trace.test->constraint_values},
+          {"metrics", trace.test->metrics},
+          {"failed_cases", trace.test->failed_cases},
+          {"case_errors", errors}};
+}
+
+// All but its evaluations, the closing brace included.
+std::string make_run(const RunTrace& trace) {
+  const TracedEvaluation* best = trace.find_best();
+  const json run = {{"label", trace.run.label},
+                    {"optimizer", trace.run.optimizer},
+                    {"replicate", trace.run.replicate},
+                    {"seed", trace.seed},
+                    {"end_reason", trace.end_reason},
+                    {"best", best != nullptr ? to_json(*best) : json(nullptr)},
+                    {"winner", make_winner(trace)}};
+  return dump(run);
+}
+
+void write_run(OutputFile& file, const RunTrace& trace) {
+  std::string head = make_run(trace);
+  head.pop_back();
+  file.write(head + ",\"evaluations\":[");
+  const char* separator = "\n";
+  for (const TracedEvaluation& evaluation : trace.evaluations) {
+    file.write(separator + dump(to_json(evaluation)));
+    separator = ",\n";
+  }
+  file.write("]}");
+}
+
+void write_problem(OutputFile& file, const ProblemRuns& problem) {
+  std::string head = dump({{"name", problem.name},
+                           {"variables", problem.names.variables},
+                           {"objectives", problem.names.objectives},
+                           {"constraints", problem.constraints},
+                           {"metrics", problem.names.metrics}});
+  head.pop_back();
+  file.write(head + ",\"runs\":[");
+  const char* separator = "\n";
+  for (const LabelRuns& label : problem.labels) {
+    for (const RunEntry& run : label.runs) {
+      file.write(separator);
+      write_run(file, read_trace(run));
+      separator = ",\n";
+    }
+  }
+  file.write("]}");
+}
+
+}  // namespace
+
+void write_json(const Survey& survey, const std::filesystem::path& folder) {
+  OutputFile file(folder / kRunsJson);
+  file.write(fmt::format("{{\"format\":{},\"armwright\":{},\"problems\":[", kFormat,
+                         dump(json(get_version()))));
+  const char* separator = "\n";
+  for (const ProblemRuns& problem : survey.problems) {
+    file.write(separator);
+    write_problem(file, problem);
+    separator = ",\n";
+  }
+  file.write("]}\n");
+  file.close();
+  write_test_cases(survey, folder);
+}
+
+}  // namespace armwright

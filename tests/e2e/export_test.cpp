@@ -1,0 +1,330 @@
+// Real runs, exported and read again: by strict readers in Python that know nothing of ours, and by
+// armwright itself.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "base/temporary_folder.hpp"
+#include "base/text.hpp"
+#include "e2e/program.hpp"
+#include "problems/design_file.hpp"
+#include "problems/problem_loader.hpp"
+#include "study/journal.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+struct Cell {
+  std::string problem;  // in cell.json
+  std::string label;
+  std::string function;  // what is run
+  std::string optimizer;
+};
+
+// What has to be escaped somewhere: the first two problems and labels are even equal once it is.
+const std::string kSphere = "1st 'sphere', \"round\": 100 % ünï/..\\cödé";
+const std::string kRosenbrock = "1st 'sphere'; \"round\": 100 % ünï/..\\cödé";
+const std::string kConstrained = "../constrained";
+const std::string kGa = "ga, 'p=12' \"x\"|50%";
+const std::string kRandom = "ga; 'p=12' \"x\"|50%";
+
+const std::vector<Cell>& list_cells() {
+  static const std::vector<Cell> cells = {
+      {kSphere, kGa, "sphere", "ga"},
+      {kSphere, kRandom, "sphere", "random"},
+      {kRosenbrock, kGa, "rosenbrock", "ga"},
+      {kRosenbrock, kRandom, "rosenbrock", "random"},
+      {kConstrained, kRandom, "constrained", "random"},
+      {kConstrained, "", "constrained", "ga"},
+  };
+  return cells;
+}
+
+constexpr int kReplicates = 2;
+constexpr int kBudget = 150;
+
+std::filesystem::path get_cell_folder(std::size_t cell, int replicate) {
+  return std::filesystem::path("study/cells") / std::to_string(cell) / "label" /
+         std::to_string(replicate);
+}
+
+// A study as its folder looks, made once of single runs; and one run on an arm.
+class Export : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<TemporaryFolder>();
+    for (std::size_t i = 0; i < list_cells().size(); ++i) {
+      for (int replicate = 1; replicate <= kReplicates; ++replicate) {
+        const Cell& cell = list_cells()[i];
+        const auto path = get_cell_folder(i, replicate);
+        const Outcome outcome =
+            run({"optimize", cell.function, "--optimizer", cell.optimizer, "--seed",
+                 std::to_string(replicate), "--budget", std::to_string(kBudget), "--out", path});
+        ASSERT_TRUE(outcome.exit_code == 0 || outcome.exit_code == 3) << outcome.err;
+        std::ofstream(*folder_ / (path / "cell.json")) << json{{"problem", cell.problem},
+                                                               {"label", cell.label},
+                                                               {"optimizer", cell.optimizer},
+                                                               {"replicate", replicate}};
+      }
+    }
+    std::filesystem::create_directories(*folder_ / "study/cells/0/label/3");
+    const Outcome outcome = run({"optimize", "q1-complex", "--engine", "articulated", "--simd",
+                                 "sse2", "--budget", "70", "--set", "sets.validation_cases=3",
+                                 "--set", "sets.test_cases=4", "--out", "arm"});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  }
+  static void TearDownTestSuite() { folder_.reset(); }
+
+  static Outcome run(const std::vector<std::string>& arguments) {
+    return run_program(folder_->path(), arguments);
+  }
+  static std::filesystem::path path(const std::string& name) { return *folder_ / name; }
+
+  static void expect_refused(const std::vector<std::string>& arguments, int exit_code,
+                             const testing::Matcher<std::string>& message) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, exit_code);
+    EXPECT_THAT(outcome.out, IsEmpty());
+    EXPECT_THAT(outcome.err, message);
+  }
+
+  // What a reader has read of it.
+  static json read(const std::string& reader, const std::string& folder) {
+    const std::string command = std::string("python3 ") + ARMWRIGHT_TEST_DATA + "/../report/" +
+                                reader + " '" + path(folder).string() + "' 2>&1";
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(popen(command.c_str(), "r"), pclose);
+    std::string text;
+    for (int c = std::fgetc(pipe.get()); c != EOF; c = std::fgetc(pipe.get())) {
+      text += static_cast<char>(c);
+    }
+    const json read = json::parse(text, nullptr, false);
+    EXPECT_FALSE(read.is_discarded()) << text;
+    return read;
+  }
+
+  // Of a run, from its journal: evaluations and the best feasible objective.
+  static std::pair<std::uint64_t, double> look_up(const std::filesystem::path& run_folder) {
+    const JournalContent journal = read_journal(path(run_folder / "journal"));
+    double best = HUGE_VAL;
+    for (const EvaluationRecord& record : journal.training) {
+      if (is_feasible(record.evaluation)) {
+        best = std::min(best, record.evaluation.objectives.front());
+      }
+    }
+    return {journal.training.size(), best};
+  }
+
+  inline static std::unique_ptr<TemporaryFolder> folder_;
+};
+
+TEST_F(Export, AsIohIsReadByAStrictReader) {
+  const Outcome outcome = run({"export", "study", "--format", "ioh", "--out", "ioh"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.out, HasSubstr("12 runs"));
+  EXPECT_THAT(outcome.err, HasSubstr("1 cell"));
+  const json all = read("read_ioh.py", "ioh");
+  ASSERT_EQ(all.size(), 3u) << all;
+  for (std::size_t i = 0; i < list_cells().size(); ++i) {
+    const Cell& cell = list_cells()[i];
+    const json& runs = all.at(cell.label).at(cell.problem);
+    ASSERT_EQ(runs.size(), static_cast<std::size_t>(kReplicates));
+    for (int replicate = 1; replicate <= kReplicates; ++replicate) {
+      const auto [evaluations, best] = look_up(get_cell_folder(i, replicate));
+      const json& read_run = runs.at(std::to_string(replicate));
+      EXPECT_EQ(read_run[0], evaluations);
+      EXPECT_EQ(read_run[1], std::isfinite(best) ? best : std::numeric_limits<double>::max());
+    }
+  }
+}
+
+TEST_F(Export, AsCocoIsReadByAStrictReader) {
+  const Outcome outcome = run({"export", "study", "--format", "coco", "--out", "coco"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const json all = read("read_coco.py", "coco");
+  ASSERT_EQ(all.size(), 3u) << all;
+  const std::vector<std::string> problems = {kConstrained, kSphere, kRosenbrock};  // as they sort
+  const std::map<std::string, std::string> ids = {
+      {"", "unnamed"}, {kGa, "ga___p_12___x__50_"}, {kRandom, "ga___p_12___x__50_-2"}};
+  for (std::size_t i = 0; i < list_cells().size(); ++i) {
+    const Cell& cell = list_cells()[i];
+    const auto function = std::ranges::find(problems, cell.problem) - problems.begin() + 1;
+    double reference = HUGE_VAL;
+    for (std::size_t j = 0; j < list_cells().size(); ++j) {
+      for (int replicate = 1; replicate <= kReplicates; ++replicate) {
+        if (list_cells()[j].problem == cell.problem) {
+          reference = std::min(reference, look_up(get_cell_folder(j, replicate)).second);
+        }
+      }
+    }
+    const json& runs = all.at(ids.at(cell.label)).at(std::to_string(function));
+    ASSERT_EQ(runs.size(), static_cast<std::size_t>(kReplicates));
+    for (int replicate = 1; replicate <= kReplicates; ++replicate) {
+      const auto [evaluations, best] = look_up(get_cell_folder(i, replicate));
+      const json& read_run = runs.at(std::to_string(replicate));
+      EXPECT_EQ(read_run[0], evaluations);
+      const double difference = std::isfinite(best) ? best - reference : 1e10 - reference;
+      EXPECT_NEAR(read_run[1].get<double>(), difference, 1e-9 * std::abs(difference));
+    }
+  }
+}
+
+TEST_F(Export, TablesBearEveryEvaluationWithEveryDigit) {
+  ASSERT_EQ(run({"export", "study", "--format", "json", "--out", "json"}).exit_code, 0);
+  ASSERT_EQ(run({"export", "study", "--format", "csv", "--out", "csv"}).exit_code, 0);
+  const json root = json::parse(read_text(path("json/runs.json")));
+  std::map<std::string, json> runs;  // by problem, label and replicate
+  for (const json& problem : root.at("problems")) {
+    for (const json& one : problem.at("runs")) {
+      runs[json{problem.at("name"), one.at("label"), one.at("replicate")}.dump()] = one;
+    }
+  }
+  ASSERT_EQ(runs.size(), 12u);
+  for (std::size_t i = 0; i < list_cells().size(); ++i) {
+    const Cell& cell = list_cells()[i];
+    const JournalContent journal = read_journal(path(get_cell_folder(i, 2) / "journal"));
+    const json& evaluations = runs.at(json{cell.problem, cell.label, 2}.dump()).at("evaluations");
+    ASSERT_EQ(evaluations.size(), journal.training.size());
+    for (std::size_t k = 0; k < evaluations.size(); ++k) {
+      const Evaluation& evaluation = journal.training[k].evaluation;
+      EXPECT_EQ(evaluations[k].at("x"), json(journal.training[k].x));
+      EXPECT_EQ(evaluations[k].at("objectives"), json(evaluation.objectives));
+      EXPECT_EQ(evaluations[k].at("constraints"), json(evaluation.constraint_values));
+      EXPECT_EQ(evaluations[k].at("feasible"), is_feasible(evaluation));
+      EXPECT_EQ(evaluations[k].at("simulated_cases"), k + 1);
+    }
+  }
+  // One file a problem, however alike their names.
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(path("csv/evaluations"))) {
+    files.push_back(entry.path().filename());
+  }
+  std::ranges::sort(files);
+  EXPECT_THAT(files,
+              ElementsAre("1st__sphere____round___100___n__.._c_d_-2.csv",
+                          "1st__sphere____round___100___n__.._c_d_.csv", "_._constrained.csv"));
+  const std::string table = read_text(path("csv/evaluations/_._constrained.csv"));
+  EXPECT_THAT(table, StartsWith("problem,label,optimizer,replicate,evaluation,simulated_cases,"
+                                "status,feasible,objective,objective.f,constraint.1,constraint.2,"
+                                "constraint.3,"));
+  EXPECT_EQ(std::ranges::count(table, '\n'), 1 + 2 * kReplicates * kBudget);
+  EXPECT_THAT(read_text(path("csv/evaluations/1st__sphere____round___100___n__.._c_d_.csv")),
+              HasSubstr("\n\"1st 'sphere', \"\"round\"\": 100 % ünï/..\\cödé\",\"ga, 'p=12' "
+                        "\"\"x\"\"|50%\",ga,1,1,1,ok,1,"));
+}
+
+TEST_F(Export, OfASingleRunIsThatRun) {
+  const Outcome outcome =
+      run({"export", get_cell_folder(0, 1).string(), "--format", "ioh", "--out", "single"});
+  ASSERT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, IsEmpty());
+  const json all = read("read_ioh.py", "single");
+  EXPECT_EQ(all.at("ga").at("sphere").size(), 1u) << all;
+}
+
+TEST_F(Export, OverwritesNothingAndLeavesNothingHalfDone) {
+  ASSERT_EQ(run({"export", "study", "--format", "json"}).exit_code, 0);
+  EXPECT_TRUE(std::filesystem::exists(path("study/export-json/runs.json")));
+  expect_refused({"export", "study", "--format", "json"}, 2,
+                 AllOf(HasSubstr("study/export-json: is there already"), HasSubstr("--out")));
+  expect_refused({"export", "study", "--format", "jsn", "--out", "x"}, 2,
+                 HasSubstr("unknown --format 'jsn'; did you mean 'json'? Valid: csv, ioh"));
+  expect_refused({"export", "nowhere", "--format", "json", "--out", "x"}, 2,
+                 HasSubstr("nowhere: is neither the folder of a run"));
+  std::filesystem::create_directories(path("damaged/cells"));
+  std::filesystem::copy(path("study/cells/0"), path("damaged/cells/0"),
+                        std::filesystem::copy_options::recursive);
+  std::ofstream(path("damaged/cells/0/label/1/result.json")) << "{}";
+  expect_refused({"export", "damaged", "--format", "json", "--out", "x"}, 4,
+                 HasSubstr("damaged/cells/0/label/1/result.json"));
+  for (const std::string& name : folder_->list()) {
+    EXPECT_FALSE(name.starts_with("x")) << name;
+  }
+}
+
+TEST_F(Export, AsCocoHasRoomFor24Problems) {
+  for (int i = 1; i <= 25; ++i) {
+    const auto cell = path("many/cells") / std::to_string(i) / "ga/1";
+    std::filesystem::create_directories(cell);
+    std::filesystem::copy(path(get_cell_folder(0, 1)), cell,
+                          std::filesystem::copy_options::recursive |
+                              std::filesystem::copy_options::overwrite_existing);
+    std::ofstream(cell / "cell.json") << json{
+        {"problem", std::to_string(i)}, {"label", "ga"}, {"optimizer", "ga"}, {"replicate", 1}};
+  }
+  expect_refused({"export", "many", "--format", "coco"}, 2,
+                 AllOf(HasSubstr("at most 24 problems"), HasSubstr("here are 25")));
+  std::filesystem::remove_all(path("many/cells/25"));
+  EXPECT_EQ(run({"export", "many", "--format", "coco"}).exit_code, 0);
+  EXPECT_EQ(read("read_coco.py", "many/export-coco").at("ga").size(), 24u);
+}
+
+TEST_F(Export, HasTheWinnersDesignAndTheTestCasesThatItMet) {
+  ASSERT_EQ(run({"export", "arm", "--format", "csv", "--out", "arm-csv"}).exit_code, 0);
+  EXPECT_EQ(read_text(path("arm-csv/designs/q1-complex-ga-1.toml")),
+            read_text(path("arm/winner.toml")));
+  const auto evaluate = [&](const std::vector<std::string>& cases) {
+    std::vector<std::string> words = {"evaluate", "arm/winner.toml", "--problem", "q1-complex",
+                                      "--engine", "articulated",     "--simd",    "sse2",
+                                      "--json"};
+    words.insert(words.end(), cases.begin(), cases.end());
+    const Outcome outcome = run(words);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return json::parse(outcome.out).at("cases");
+  };
+  const json on_file = evaluate({"--test-cases", "arm-csv/test-cases/q1-complex.json"});
+  EXPECT_EQ(on_file.size(), 4u);
+  EXPECT_EQ(on_file, evaluate({"--test-set", "2", "--cases", "4"}));
+  // And as the run itself has judged it.
+  const json result = json::parse(read_text(path("arm/result.json")));
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(on_file[i].at("mean_error_m"), result.at("winner").at("test").at("case_errors")[i]);
+  }
+}
+
+TEST_F(Export, ComesBackAsADesignBitForBit) {
+  const JournalContent journal = read_journal(path("arm/journal"));
+  const auto best = std::ranges::min_element(
+      journal.training, {},
+      [](const EvaluationRecord& record) { return record.evaluation.objectives.front(); });
+  for (const std::string format : {"csv", "json", "ioh"}) {
+    const std::string out = "back-" + format;
+    ASSERT_EQ(run({"export", "arm", "--format", format, "--out", out}).exit_code, 0);
+    const Outcome outcome = run({"import", out, "--out", out + ".toml"});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    const DesignFile design = load_design(path(out + ".toml").string());
+    EXPECT_EQ(load_problem("q1-complex").tracking->make_vector(design.design), best->x);
+    EXPECT_EQ(run({"import", out}).out, read_text(path(out + ".toml")));
+  }
+  EXPECT_EQ(run({"evaluate", "back-ioh.toml", "--problem", "q1-complex", "--cases", "1"}).exit_code,
+            0);
+}
+
+TEST_F(Export, IsImportedOnlyWhereItIsClearWhatIsMeant) {
+  ASSERT_EQ(run({"export", "study", "--format", "ioh", "--out", "choose"}).exit_code, 0);
+  expect_refused({"import", "choose"}, 2,
+                 AllOf(HasSubstr("holds runs on 3 problems"), HasSubstr("--problem: ../constr")));
+  expect_refused({"import", "choose", "--problem", "../constraine"}, 2,
+                 HasSubstr("did you mean '../constrained'?"));
+  expect_refused({"import", "choose", "--problem", kSphere, "--replicate", "3"}, 2,
+                 HasSubstr("unknown --replicate '3'"));
+  expect_refused({"import", "choose", "--problem", kSphere, "--config", "sphere"}, 2,
+                 HasSubstr("is an analytic function"));
+  expect_refused({"import", "choose", "--problem", kSphere, "--config", "q1-complex"}, 4,
+                 AllOf(HasSubstr("are x1, x2"), HasSubstr("joint_1.p, joint_1.i")));
+  expect_refused({"import", "study"}, 2, HasSubstr("holds no export"));
+}
+
+}  // namespace
+}  // namespace armwright

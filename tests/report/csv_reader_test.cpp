@@ -1,0 +1,54 @@
+#include "report/csv_reader.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+
+namespace armwright {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::vector<std::vector<std::string>> read(std::string_view text) {
+  CsvReader reader(text);
+  std::vector<std::vector<std::string>> rows;
+  std::vector<std::string> fields;
+  while (reader.read_row(fields)) {
+    rows.push_back(fields);
+  }
+  return rows;
+}
+
+TEST(CsvReader, ReadsWhatQuoteCsvWrites) {
+  const std::vector<std::string> nasty = {"a,b", "say \"x\"", "",   "two\r\nlines",
+                                          "'",   " ",         "\"", "ü"};
+  std::string text;
+  for (const std::string& field : nasty) {
+    text += (text.empty() ? "" : ",") + quote_csv(field);
+  }
+  EXPECT_THAT(read(text + "\n1,2\n"), ElementsAre(nasty, ElementsAre("1", "2")));
+}
+
+TEST(CsvReader, TakesEitherLineEndAndNoneAtTheEnd) {
+  EXPECT_THAT(read("a,b\r\n1,\r\n,\"2\""),
+              ElementsAre(ElementsAre("a", "b"), ElementsAre("1", ""), ElementsAre("", "2")));
+  EXPECT_THAT(read(""), ElementsAre());
+}
+
+TEST(CsvReader, RefusesStrayQuotesAndNamesTheRow) {
+  for (const char* text : {"a\n\"b", "a\nb\"c", "a\n\"b\"c"}) {
+    try {
+      read(text);
+      ADD_FAILURE() << text;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::bad_data);
+      EXPECT_THAT(error.what(), HasSubstr("row 2: "));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace armwright

@@ -1,0 +1,34 @@
+// Traces made by hand, for tests of what the formats make of them.
+#pragma once
+
+#include <initializer_list>
+#include <optional>
+
+#include "report/run_traces.hpp"
+
+namespace armwright {
+
+// A run of one variable, x = 0.5, whose evaluations have these objectives, one case each; nothing:
+// the evaluation failed.
+inline RunTrace make_trace(std::initializer_list<std::optional<double>> objectives) {
+  RunTrace trace;
+  trace.run = {"run", "some problem", "some label", "ga", 3};
+  trace.names = {{"width"}, {"error"}, {}};
+  for (const auto& objective : objectives) {
+    TracedEvaluation evaluation;
+    evaluation.number = trace.evaluations.size() + 1;
+    evaluation.simulated_cases = evaluation.number;
+    evaluation.x = {0.5};
+    evaluation.feasible = objective.has_value();
+    evaluation.objective = objective;
+    if (objective) {
+      evaluation.objectives = {*objective};
+    } else {
+      evaluation.status = EvaluationStatus::failed;
+    }
+    trace.evaluations.push_back(std::move(evaluation));
+  }
+  return trace;
+}
+
+}  // namespace armwright
