@@ -24,6 +24,7 @@ constexpr const char* kFooter = R"(Examples:
   armwright list problems                          # what can be optimized
   armwright list optimizers ga                     # one optimizer and its options
   armwright optimize q1-complex --seed 1           # tune the arm as the thesis did; resumes if interrupted
+  armwright compare --preset smoke                 # which optimizer is better, and how sure is that?
   armwright evaluate table-a10 --problem q2-e6     # a published design on 500 test cases
   armwright verify table-a10                       # does it hold under other engines, time steps and masses?
   armwright reproduce                              # the thesis's published results beside ours
@@ -184,6 +185,7 @@ int run_app(int argc, char** argv) {
     app.require_subcommand(1);
     add_list(app, session);
     add_optimize(app, session);
+    add_compare(app, session);
     add_evaluate(app, session);
     add_sweep(app, session);
     add_verify(app, session);

@@ -124,7 +124,7 @@ void announce(const RunRequest& request) {
   const RunPlan& plan = request.plan;
   const bool known = std::filesystem::exists(request.folder / "manifest.json");
   write_message(fmt::format("{}: {}", plan.problem.name, plan.problem.title));
-  write_message(fmt::format("optimizer {}, seed {}, budget {}, schedule {}:{}, {}",
+  write_message(fmt::format("optimizer {}, seed {}, budget {}, schedule {}, {}",
                             plan.optimizer.name, plan.seed,
                             format_count(static_cast<unsigned long long>(plan.budget), "case"),
                             to_text(plan.schedule),

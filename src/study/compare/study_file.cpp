@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "problems/config_files.hpp"
+#include "study/compare/case_sets.hpp"
 #include "study/compare/study_plan.hpp"
 
 namespace armwright {
@@ -310,6 +311,7 @@ StudyPlan make_study_plan(const StudyRequest& request) {
     find_engine(plan.final_engine);
   }
   check_cells(plan);
+  check_sets_are_disjoint(plan);
   return plan;
 }
 

@@ -67,14 +67,17 @@ std::vector<Cell> list_cells(const StudyPlan& plan) {
   return cells;
 }
 
+std::string make_training_set_name(const StudyPlan& plan, const Cell& cell) {
+  return fmt::format("train/study-{}-{}-{}", plan.seed, plan.problems[cell.problem].label,
+                     cell.replicate);
+}
+
 RunPlan make_run_plan(const StudyPlan& plan, const Cell& cell) {
   const StudyProblem& problem = plan.problems[cell.problem];
   const StudyOptimizer& optimizer = plan.optimizers[cell.optimizer];
   RunPlan run;
-  run.problem = make_replicate(
-      problem.loaded,
-      fmt::format("train/study-{}-{}-{}", plan.seed, problem.label, cell.replicate),
-      draw_start(plan, cell));
+  run.problem =
+      make_replicate(problem.loaded, make_training_set_name(plan, cell), draw_start(plan, cell));
   run.optimizer = optimizer.row;
   run.options = optimizer.parsed;
   run.seed = make_seed(make_stream(plan, cell) + "/" + optimizer.label);

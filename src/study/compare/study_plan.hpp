@@ -86,6 +86,8 @@ struct Cell {
 // Replicate by replicate, so that an interrupted study has something of everything.
 std::vector<Cell> list_cells(const StudyPlan& plan);
 
+// The replicate's training cases, the same for every optimizer.
+std::string make_training_set_name(const StudyPlan& plan, const Cell& cell);
 // The run that the cell is.
 RunPlan make_run_plan(const StudyPlan& plan, const Cell& cell);
 // "cells/q1-complex/ga/r01", relative to the study's folder.

@@ -1,0 +1,266 @@
+// armwright compare: optimizers on the same footing, resumable and extendable.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <limits>
+#include <numeric>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "cli/arguments.hpp"
+#include "cli/format.hpp"
+#include "cli/progress_bar.hpp"
+#include "cli/session.hpp"
+#include "cli/signals.hpp"
+#include "cli/study_view.hpp"
+#include "cli/terminal.hpp"
+#include "study/compare/final_check.hpp"
+#include "study/compare/study_runner.hpp"
+#include "study/compare/study_tables.hpp"
+#include "study/run_folder.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  armwright compare --preset smoke                 # a small one, in seconds
+  armwright compare configs/studies/q1.toml        # what the file says; resumes where it was
+  armwright compare q1 --dry-run                   # a shipped study: plan, cost and expected time
+  armwright compare --problems q1-complex,q2-e6 --optimizers ga,cmaes --replicates 20 --budget 5000 \
+      --engine articulated
+  armwright compare q1 --replicates 30             # more replicates: only what is new is run
+
+Every optimizer gets the same budget of simulated training cases, and in replicate r the same training cases and the
+same start as all others. Each run's winner is chosen on a validation set and judged on a test set that is the same
+for all. Random search and a local search take part as baselines. The verdict follows from the statistics: see
+docs/comparing.md. The folder (default: results/NAME) holds the plan, every run with its journal, and tables.)";
+
+struct CompareOptions {
+  std::string file;
+  std::string preset;
+  std::vector<std::string> problems;
+  std::vector<std::string> optimizers;
+  std::string replicates;
+  std::string budget;
+  std::string schedule;
+  std::string seed;
+  bool no_baselines = false;
+  OverrideOptions overrides;
+  JobsOption jobs;
+  std::string time_limit;
+  std::string out;
+  bool another = false;
+  bool dry_run = false;
+  bool json = false;
+  bool quiet = false;
+};
+
+StudyRequest make_request(const CompareOptions& options) {
+  StudyRequest request;
+  if (!options.file.empty() && !options.preset.empty()) {
+    throw Error(ErrorKind::usage, "a study file and --preset are given; choose one of them");
+  }
+  request.file = options.preset.empty() ? options.file : options.preset;
+  request.problems = options.problems;
+  request.optimizers = options.optimizers;
+  request.settings = options.overrides.get();
+  if (!options.replicates.empty()) {
+    request.replicates =
+        static_cast<int>(parse_count("--replicates", options.replicates, 1, 10'000));
+  }
+  if (!options.budget.empty()) {
+    request.budget = parse_count("--budget", options.budget, 1, 1'000'000'000'000);
+  }
+  if (!options.schedule.empty()) {
+    request.schedule = parse_schedule(options.schedule);
+  }
+  if (!options.seed.empty()) {
+    request.seed = static_cast<std::uint64_t>(
+        parse_count("--seed", options.seed, 0, std::numeric_limits<std::int64_t>::max()));
+  }
+  request.baselines = !options.no_baselines;
+  return request;
+}
+
+std::filesystem::path choose_folder(const CompareOptions& options, const StudyPlan& plan) {
+  if (options.out.empty()) {
+    return choose_run_folder("results", plan.name, options.another);
+  }
+  auto path = std::filesystem::path(options.out).lexically_normal();
+  if (!path.has_filename()) {
+    path = path.parent_path();
+  }
+  return choose_run_folder(path.parent_path(), path.filename().string(), options.another);
+}
+
+// How long one process takes for the whole plan, from a few simulations of each problem's start.
+double measure_duration_s(const StudyPlan& plan) {
+  constexpr int kCases = 32;
+  double total_s = 0;
+  for (const StudyProblem& problem : plan.problems) {
+    const auto runs = static_cast<double>(plan.optimizers.size()) * plan.replicates;
+    const auto& description = problem.loaded.problem->description();
+    std::vector<double> x;
+    for (const DecisionVariable& variable : description.variables) {
+      x.push_back(variable.start);
+    }
+    StudyPlan one = plan;
+    one.problems = {problem};
+    const StudyCost cost = calc_cost(one);
+    const auto measure = [&](CaseRole role, const std::string& set) {
+      CaseBlock block{role, set, std::vector<std::uint64_t>(kCases)};
+      std::iota(block.numbers.begin(), block.numbers.end(), std::uint64_t{0});
+      problem.loaded.problem->evaluate(x, block);  // makes the targets, which are kept
+      const auto start = std::chrono::steady_clock::now();
+      problem.loaded.problem->evaluate(x, block);
+      const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+      return taken.count() / kCases;
+    };
+    constexpr double kOverhead_s = 0.03;  // files and a process's own work, a cell
+    total_s += runs * kOverhead_s +
+               static_cast<double>(cost.training) *
+                   measure(CaseRole::training, problem.loaded.sets.training) +
+               static_cast<double>(cost.validation + cost.test) *
+                   measure(CaseRole::test, problem.loaded.sets.test);
+  }
+  return total_s;
+}
+
+void announce(const CompareOptions& options, const StudyPlan& plan, unsigned jobs,
+              const std::filesystem::path& folder) {
+  const Style style = make_style(Stream::error, "never");
+  std::string text = describe_plan(plan, style) +
+                     describe_cost(plan, measure_duration_s(plan) / jobs, jobs) +
+                     fmt::format("plan {}", calc_plan_hash(plan).substr(0, 16));
+  if (!options.dry_run) {
+    text += fmt::format("\nfolder {} ({})", folder.string(),
+                        is_study_folder(folder) ? "found" : "new");
+  }
+  for (const std::string& line : split(text, '\n')) {
+    write_message(line);
+  }
+}
+
+int run_compare(const CompareOptions& options, Session& session) {
+  if (options.file.empty() && options.preset.empty() && options.problems.empty()) {
+    throw Error(ErrorKind::usage, "compare what? Give a study file, --preset NAME, or --problems "
+                                  "and --optimizers. See 'armwright compare --help'");
+  }
+  const unsigned jobs = options.jobs.get();
+  if (!options.time_limit.empty()) {
+    const std::chrono::duration<double> limit(parse_duration_s("--time-limit", options.time_limit));
+    session.stop.set_deadline(StopSignal::Clock::now() +
+                              std::chrono::duration_cast<StopSignal::Clock::duration>(limit));
+  }
+  const StudyPlan plan = make_study_plan(make_request(options));
+  const auto path = choose_folder(options, plan);
+  if (!options.quiet || options.dry_run) {
+    announce(options, plan, jobs, path);
+  }
+  if (options.dry_run) {
+    write_stdout(to_toml(plan));
+    return exit_code::kDone;
+  }
+  const StudyFolder folder(path, plan);
+  for (const std::string& addition : folder.additions()) {
+    write_message("new in the plan: " + addition);
+  }
+  catch_signals(session.stop);
+  ProgressBar bar(options.quiet, {});
+  const CellsResult cells = run_cells(plan, path, jobs, session.stop, bar);
+  const auto stopped = [&] {
+    bar.clear();
+    write_message(fmt::format("{}; nothing is lost. To go on:\n{}",
+                              describe_stop(session.stop.reason()),
+                              quote_command(session.command_line)));
+    return get_stop_code(session.stop.reason());
+  };
+  if (cells.stopped) {
+    return stopped();
+  }
+  StudyResult result = analyze_study(plan, path);
+  if (!add_final_checks(plan, path, jobs, session.stop, bar, result)) {
+    return stopped();
+  }
+  bar.clear();
+  write_study_tables(plan, result, path);
+  if (options.json) {
+    write_stdout(to_json(plan, result));
+  } else {
+    write_stdout(describe_study(plan, result, path, make_style(Stream::out, session.color)));
+  }
+  const bool failed = std::ranges::any_of(
+      result.cells, [](const CellOutcome& cell) { return !cell.failure.empty(); });
+  return failed || !result.missing.empty() ? exit_code::kFailed : exit_code::kDone;
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app, Session& session) {
+  auto options = std::make_shared<CompareOptions>();
+  CLI::App* command =
+      add_command(app, session, "compare",
+                  "Settle which optimizer to use: runs on the same footing, statistics, a verdict",
+                  kExamples);
+  command->add_option("STUDY", options->file,
+                      "A study file, or the name of a shipped one (armwright list studies)");
+  command->add_option("--preset", options->preset, "A shipped study by its name: smoke, q1, ...")
+      ->type_name("NAME");
+  command
+      ->add_option("--problems,-p", options->problems,
+                   "Problems to compare on, instead of the file's")
+      ->type_name("A,B,...")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command
+      ->add_option("--optimizers,-o", options->optimizers,
+                   "Optimizers to compare, instead of the file's")
+      ->type_name("A,B,...")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command
+      ->add_option("--replicates", options->replicates,
+                   "Runs of every optimizer on every problem (default: 15)")
+      ->type_name("N");
+  command
+      ->add_option("--budget", options->budget,
+                   "Training cases to simulate in every run, the same for all")
+      ->type_name("CASES");
+  command
+      ->add_option("--schedule", options->schedule,
+                   "Which training cases: fixed:K, or fresh:K where all optimizers have\n"
+                   "generations (default: fixed, K as the problem has it)")
+      ->type_name("KIND:K");
+  command
+      ->add_option("--seed", options->seed,
+                   "Of the study: draws starts, training cases and the optimizers'\n"
+                   "streams (default: 1)")
+      ->type_name("N");
+  command->add_flag("--no-baselines", options->no_baselines,
+                    "Leave out random search and the local search that always take part; the\n"
+                    "verdict says so");
+  options->overrides.add_to(*command, true);
+  options->jobs.add_to(*command);
+  command
+      ->add_option("--time-limit", options->time_limit,
+                   "Stop, resumably, after a time: 90, 90s, 10m, 2h")
+      ->type_name("DURATION");
+  command->add_flag("--dry-run", options->dry_run,
+                    "Print the resolved plan and what it costs, and run nothing");
+  command->add_option("--out", options->out, "The study's folder (default: results/NAME)")
+      ->type_name("FOLDER")
+      ->group("Output");
+  command
+      ->add_flag("--new", options->another,
+                 "Another study beside one that is there: FOLDER-002, FOLDER-003, ...")
+      ->group("Output");
+  command->add_flag("--json", options->json, "Print the result as JSON")->group("Output");
+  command->add_flag("--quiet,-q", options->quiet, "No plan and no progress")->group("Output");
+  command->callback([options, &session] {
+    session.action = [options, &session] { return run_compare(*options, session); };
+  });
+}
+
+}  // namespace armwright

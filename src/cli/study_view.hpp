@@ -1,0 +1,22 @@
+// A comparison as `armwright compare` shows it: the plan before anything runs, tables and verdict
+// when all has.
+#pragma once
+
+#include <string>
+
+#include "cli/terminal.hpp"
+#include "study/compare/study_folder.hpp"
+#include "study/compare/study_result.hpp"
+
+namespace armwright {
+
+// Problems, optimizers, cells, cost and what is paired. `cases_per_s` is what one process simulates
+// (0: not measured).
+std::string describe_plan(const StudyPlan& plan, const Style& style);
+std::string describe_cost(const StudyPlan& plan, double expected_s, unsigned jobs);
+
+// A table a problem, the ranking over problems, the verdict.
+std::string describe_study(const StudyPlan& plan, const StudyResult& result,
+                           const std::filesystem::path& folder, const Style& style);
+
+}  // namespace armwright
