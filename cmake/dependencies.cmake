@@ -13,6 +13,7 @@ pkg_check_modules(URDFDOM REQUIRED IMPORTED_TARGET urdfdom)
 pkg_check_modules(TOMLPLUSPLUS REQUIRED IMPORTED_TARGET tomlplusplus)
 pkg_check_modules(TINYXML2 REQUIRED IMPORTED_TARGET tinyxml2)
 find_path(RANDOM123_INCLUDE_DIR Random123/philox.h REQUIRED)
+find_path(BOOST_INCLUDE_DIR boost/math/distributions/fisher_f.hpp REQUIRED) # Boost.Math is headers only
 
 # The optimizer libraries are optional: without one its optimizers are listed as unavailable, with the reason.
 option(ARMWRIGHT_WITH_NLOPT "Optimizers of NLopt (nlopt:*)" ON)

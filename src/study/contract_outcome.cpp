@@ -4,10 +4,12 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <limits>
 
 #include "study/contract_checks.hpp"
+#include "study/statistics/pareto.hpp"
 
 namespace armwright {
 namespace {
@@ -26,7 +28,7 @@ double calc_success(const ContractTrial& trial, std::int64_t budget, std::uint64
   for (const MemoryEvaluator::Entry& entry : evaluator.trace()) {
     objectives.push_back(entry.score.objectives);
   }
-  return calc_hypervolume(std::move(objectives));
+  return calc_hypervolume(objectives, std::array{kLargestObjective, kLargestObjective});
 }
 
 double calc_median_success(const ContractTrial& trial, std::int64_t budget) {

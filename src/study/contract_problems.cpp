@@ -1,6 +1,5 @@
 #include "study/contract_problems.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "problems/analytic.hpp"
@@ -112,20 +111,6 @@ std::vector<ContractProblem> make_contract_problems(const OptimizerRow& row) {
     return !explain_unsuitable(row, one.problem->description()).empty();
   });
   return problems;
-}
-
-double calc_hypervolume(std::vector<std::vector<double>> objectives) {
-  constexpr double kReference = 11;
-  std::ranges::sort(objectives);
-  double volume = 0;
-  double lowest = kReference;
-  for (const std::vector<double>& f : objectives) {
-    if (f[0] < kReference && f[1] < lowest) {
-      volume += (kReference - f[0]) * (lowest - f[1]);
-      lowest = f[1];
-    }
-  }
-  return volume;
 }
 
 }  // namespace armwright

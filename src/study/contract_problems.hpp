@@ -19,8 +19,7 @@ struct ContractProblem {
 std::vector<ContractProblem> make_contract_problems();
 std::vector<ContractProblem> make_contract_problems(const OptimizerRow& row);
 
-// The area between a front of two objectives and the point (11, 11), which no objective of the
-// two-objective problem exceeds; larger is better (Zitzler and Thiele 1998, hypervolume).
-double calc_hypervolume(std::vector<std::vector<double>> objectives);
+// No objective of the two-objective problem exceeds it: the reference point of hypervolumes.
+inline constexpr double kLargestObjective = 11;
 
 }  // namespace armwright

@@ -225,11 +225,5 @@ TEST(ContractSuite, FindsOutWhoCannotBeResumed) {
   EXPECT_BROKEN("Resume", row, "is not what optimizer 'broken' asks for now");
 }
 
-TEST(Hypervolume, IsTheAreaUnderTheReferencePoint) {
-  EXPECT_EQ(calc_hypervolume({{1, 1}}), 100);
-  EXPECT_EQ(calc_hypervolume({{1, 6}, {6, 1}, {7, 7}, {20, 0}}), 75);
-  EXPECT_EQ(calc_hypervolume({}), 0);
-}
-
 }  // namespace
 }  // namespace armwright

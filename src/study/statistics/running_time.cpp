@@ -1,0 +1,129 @@
+#include "study/statistics/running_time.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "base/random.hpp"
+#include "study/statistics/values.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kLargest = std::numeric_limits<double>::max();
+
+int count_successes(std::span<const Trial> trials) {
+  if (trials.empty()) {
+    throw std::invalid_argument("running time: there are no trials");
+  }
+  int successes = 0;
+  for (const Trial& trial : trials) {
+    check_range(trial.cost, 0, kLargest, "running time: the cost of a trial");
+    successes += trial.reached ? 1 : 0;
+  }
+  return successes;
+}
+
+void check_running_times(std::span<const double> running_times) {
+  if (running_times.empty()) {
+    throw std::invalid_argument("running time: there are none");
+  }
+  for (const double time : running_times) {
+    check_range(time, 0, kInfinity, "a running time");
+  }
+}
+
+// At least one trial must have reached the target.
+double draw_running_time(std::span<const Trial> trials, RandomStream& random) {
+  double cost = 0;
+  while (true) {
+    const Trial& trial = trials[random.below(trials.size())];
+    cost += trial.cost;
+    if (trial.reached) {
+      return cost;
+    }
+  }
+}
+
+}  // namespace
+
+double calc_cost_to_target(std::span<const TracePoint> trace, double target) {
+  if (std::isnan(target)) {
+    throw std::invalid_argument("trace: the target is NaN");
+  }
+  double cost = 0;
+  double reached_at = kInfinity;
+  for (const TracePoint& point : trace) {
+    check_range(point.cost, cost, kLargest, "trace: a cost");
+    check_values({&point.best_value, 1}, "trace");
+    cost = point.cost;
+    if (point.best_value <= target && point.best_value < kInfinity) {
+      reached_at = std::min(reached_at, cost);
+    }
+  }
+  return reached_at;
+}
+
+double calc_expected_running_time(std::span<const Trial> trials) {
+  const int successes = count_successes(trials);
+  double cost = 0;
+  for (const Trial& trial : trials) {
+    cost += trial.cost;
+  }
+  return successes == 0 ? kInfinity : cost / successes;
+}
+
+std::vector<double> simulate_running_times(std::span<const Trial> trials, int count,
+                                           std::string_view stream) {
+  const int successes = count_successes(trials);
+  RandomStream random(stream);
+  std::vector<double> times;
+  for (int i = 0; i < count; ++i) {
+    times.push_back(successes == 0 ? kInfinity : draw_running_time(trials, random));
+  }
+  return times;
+}
+
+Interval calc_expected_running_time_interval(std::span<const Trial> trials, double level,
+                                             int resamples, std::string_view stream) {
+  const int successes = count_successes(trials);
+  RandomStream random(stream);
+  std::vector<double> means;
+  for (int resample = 0; resample < resamples; ++resample) {
+    double sum = successes == 0 ? kInfinity : 0;
+    for (int i = 0; i < successes; ++i) {
+      sum += draw_running_time(trials, random);
+    }
+    means.push_back(sum / std::max(successes, 1));
+  }
+  return calc_percentile_interval(means, level);
+}
+
+std::vector<double> calc_runtime_ecdf(std::span<const double> running_times,
+                                      std::span<const double> costs) {
+  check_running_times(running_times);
+  std::vector<double> shares;
+  for (const double cost : costs) {
+    // What was never reached is not reached at any cost.
+    const auto reached = std::ranges::count_if(
+        running_times, [&](double time) { return time <= cost && time < kInfinity; });
+    shares.push_back(static_cast<double>(reached) / static_cast<double>(running_times.size()));
+  }
+  return shares;
+}
+
+double calc_anytime_area(std::span<const double> running_times, double lowest, double highest) {
+  check_running_times(running_times);
+  if (!(lowest > 0 && lowest < highest && highest < kInfinity)) {
+    throw std::invalid_argument("anytime area: costs must be 0 < lowest < highest < infinity");
+  }
+  double sum = 0;
+  for (const double time : running_times) {
+    sum += std::log(highest / std::clamp(time, lowest, highest));
+  }
+  return sum / std::log(highest / lowest) / static_cast<double>(running_times.size());
+}
+
+}  // namespace armwright
