@@ -50,9 +50,6 @@ double calc_convergence_target(double start_value, double best_value, double tau
   check_values({&best_value, 1}, "convergence: the best value");
   check_range(tau, 0, 1, "convergence: tau");
   const double best = std::min(start_value, best_value);
-  if (best == kInfinity) {
-    return -kInfinity;
-  }
   if (start_value == kInfinity) {
     return std::numeric_limits<double>::max();
   }

@@ -17,8 +17,8 @@ namespace armwright {
 // The right side above; tau from 0 to 1. The start counts among what was found: fL > f0 is taken
 // for f0, and with fL = f0 every solver that has evaluated the start, or a point as good, has
 // converged. If the start has no value (f0 infinite), any finite value converges: there is no
-// finite share of an infinite way. If nobody found a finite value, none does (the target is
-// -infinity). Throws std::invalid_argument for NaN, -infinity and other tau.
+// finite share of an infinite way (the target is the largest finite number). Throws
+// std::invalid_argument for NaN, -infinity and other tau.
 double calc_convergence_target(double start_value, double best_value, double tau);
 
 // costs[p][s]: what it cost solver s to converge on problem p, +infinity if it did not; then it

@@ -38,6 +38,7 @@ TEST(Hypervolume, IsTheVolumeOfUnitedBoxes) {
   EXPECT_EQ(calc_hypervolume(Points{{1, 2, 3}}, kReference), 6);
   // Boxes of 3 x 1 x 1 along each axis, the cube of 1 common to all.
   EXPECT_EQ(calc_hypervolume(Points{{1, 3, 3}, {3, 1, 3}, {3, 3, 1}}, kReference), 7);
+  EXPECT_EQ(calc_hypervolume(Points{{1, 2, 3}}, std::array{2.0, 4.0, 8.0}), 10);
   EXPECT_EQ(calc_hypervolume(Points{{3, 5}, {1, 9}}, std::array{4.0, 8.0}), 3);
   EXPECT_EQ(calc_hypervolume(Points{{3}, {-1}, {7}}, std::array{4.0}), 5);
 }

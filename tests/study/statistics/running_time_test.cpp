@@ -40,6 +40,7 @@ TEST(ExpectedRunningTime, ChargesFailuresToTheSuccesses) {
   EXPECT_EQ(calc_expected_running_time(trials), 120);
   EXPECT_EQ(calc_expected_running_time(std::vector<Trial>{{10, true}, {30, true}}), 20);
   EXPECT_EQ(calc_expected_running_time(std::vector<Trial>{{100, false}}), kInf);
+  EXPECT_EQ(calc_expected_running_time(std::vector<Trial>{{0, false}}), kInf);
 }
 
 TEST(ExpectedRunningTime, IsTheMeanWithSimulatedRestarts) {

@@ -173,6 +173,8 @@ TEST(EffectSize, WinsAreCountedPairByPair) {
   EXPECT_EQ(count.ties, 1);
   EXPECT_EQ(count.losses, 2);
   EXPECT_THAT([] { count_wins(std::vector{1.0}, {}); }, refuses("cannot be paired"));
+  EXPECT_THAT([] { count_wins(std::vector{kNan}, std::vector{1.0}); }, refuses("is nan"));
+  EXPECT_THAT([] { count_wins(std::vector{1.0}, std::vector{kNan}); }, refuses("is nan"));
 }
 
 }  // namespace
