@@ -191,6 +191,9 @@ RunTrace read_trace(const RunEntry& run) {
   trace.tested_on = find_tested(journal);
   if (result.winner) {
     trace.test = result.test;
+    if (!result.test.objectives.empty()) {
+      trace.test_objective = calc_target(result, result.test);
+    }
     trace.winner = result.judged[*result.winner].candidate.x;
   }
   std::uint64_t simulated_cases = 0;
