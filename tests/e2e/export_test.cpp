@@ -266,6 +266,27 @@ TEST_F(Export, OfASingleRunIsThatRun) {
   EXPECT_EQ(all.at("ga").at("sphere").size(), 1u) << all;
 }
 
+TEST_F(Export, OfARunThatFoundNothingFeasibleHasNoInfinityInJson) {
+  // The genetic algorithm's first individual violates a constraint.
+  const Outcome outcome = run({"optimize", "constrained", "--optimizer", "ga", "--budget", "1",
+                               "--seed", "1", "--out", "infeasible"});
+  ASSERT_EQ(outcome.exit_code, 3) << outcome.err;
+  for (const std::string format : {"ioh", "coco", "csv", "json"}) {
+    ASSERT_EQ(run({"export", "infeasible", "--format", format}).exit_code, 0) << format;
+  }
+  EXPECT_EQ(read("read_ioh.py", "infeasible/export-ioh").at("ga").at("constrained").at("1"),
+            json({1, std::numeric_limits<double>::max(), 1}));
+  EXPECT_EQ(read("read_coco.py", "infeasible/export-coco").at("ga").at("1").at("1"),
+            json({1, 1e10, 1, 1}));
+  const json root = json::parse(read_text(path("infeasible/export-json/runs.json")));
+  EXPECT_TRUE(root.at("problems")[0].at("runs")[0].at("best").is_null());
+  EXPECT_EQ(root.at("problems")[0].at("runs")[0].at("evaluations").size(), 1u);
+  for (const std::string format : {"ioh", "csv", "json"}) {
+    expect_refused({"import", "infeasible/export-" + format}, 2,
+                   HasSubstr("no run that was chosen found anything feasible"));
+  }
+}
+
 TEST_F(Export, OverwritesNothingAndLeavesNothingHalfDone) {
   ASSERT_EQ(run({"export", "study", "--format", "json"}).exit_code, 0);
   EXPECT_TRUE(std::filesystem::exists(path("study/export-json/runs.json")));

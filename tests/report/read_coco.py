@@ -168,7 +168,8 @@ def main():
             require(file.is_dir() or file in read, f"{file}: a stray file")
     require(result, "no algorithm")
     for function, differences in best.items():
-        require(min(differences) == 0, f"function {function}: no run reaches the reference")
+        nothing_feasible = references[function] == 0 and min(differences) == 1e10
+        require(min(differences) == 0 or nothing_feasible, f"function {function}: no run reaches the reference")
     json.dump(result, sys.stdout)
 
 
