@@ -307,6 +307,20 @@ TEST_F(Export, OverwritesNothingAndLeavesNothingHalfDone) {
   }
 }
 
+TEST_F(Export, RefusesRunsOnOneProblemWithOtherVariables) {
+  for (const std::size_t cell : {0, 4}) {
+    const auto copy = path("mixed/cells") / std::to_string(cell) / "label";
+    std::filesystem::create_directories(copy);
+    std::filesystem::copy(path(get_cell_folder(cell, 1)), copy / "1");
+    std::ofstream(copy / "1/cell.json") << json{
+        {"problem", "p"}, {"label", std::to_string(cell)}, {"optimizer", "ga"}, {"replicate", 1}};
+  }
+  expect_refused({"export", "mixed", "--format", "csv"}, 4,
+                 AllOf(HasSubstr("mixed/cells/0/label/1 and "),
+                       HasSubstr("mixed/cells/4/label/1 are both runs on 'p', but with other "
+                                 "variables")));
+}
+
 TEST_F(Export, AsCocoHasRoomFor24Problems) {
   for (int i = 1; i <= 25; ++i) {
     const auto cell = path("many/cells") / std::to_string(i) / "ga/1";
