@@ -16,6 +16,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -51,7 +52,7 @@ class EvaluationTrigger {
 // above.
 std::string format_constraint_digits(std::span<const double> constraint_values);
 
-// What counts of the others runs on the problem.
+// What is known only from all runs on the problem.
 struct CocoScale {
   double reference = 0;      // Fref
   double infeasible = 1e10;  // what stands for the objective of evaluations that are not feasible

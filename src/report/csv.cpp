@@ -63,22 +63,13 @@ void write_evaluations(OutputFile& file, const ProblemRuns& problem, const RunTr
 std::string make_run_row(const RunTrace& trace, const std::string& design) {
   const TracedEvaluation& last = trace.evaluations.back();
   const TracedEvaluation* best = trace.find_best();
-  std::optional<double> mean_test;
-  std::optional<int> failed_cases;
-  if (trace.test) {
-    const Evaluation& test = *trace.test;
-    failed_cases = test.failed_cases;
-    if (!test.objectives.empty()) {
-      mean_test = test.objectives.front();
-    }
-  }
-  return fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", make_run_fields(trace.run), trace.seed,
-                     last.number, last.simulated_cases, quote_csv(trace.end_reason),
-                     best != nullptr ? fmt::format("{}", best->number) : "",
-                     best != nullptr ? format_exact(*best->objective) : "",
-                     trace.tested_on ? quote_csv(trace.tested_on->set) : "",
-                     format_optional(mean_test),
-                     failed_cases ? fmt::format("{}", *failed_cases) : "", quote_csv(design));
+  return fmt::format(
+      "{},{},{},{},{},{},{},{},{},{},{}\n", make_run_fields(trace.run), trace.seed, last.number,
+      last.simulated_cases, quote_csv(trace.end_reason),
+      best != nullptr ? fmt::format("{}", best->number) : "",
+      best != nullptr ? format_exact(*best->objective) : "",
+      trace.tested_on ? quote_csv(trace.tested_on->set) : "", format_optional(trace.test_objective),
+      trace.test ? fmt::format("{}", trace.test->failed_cases) : "", quote_csv(design));
 }
 
 }  // namespace

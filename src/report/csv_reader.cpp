@@ -1,7 +1,5 @@
 #include "report/csv_reader.hpp"
 
-#include <fmt/format.h>
-
 #include "base/error.hpp"
 
 namespace armwright {
@@ -10,7 +8,7 @@ std::string CsvReader::read_field() {
   if (!rest_.starts_with('"')) {
     const std::string_view field = rest_.substr(0, rest_.find_first_of(",\r\n"));
     if (field.find('"') != std::string_view::npos) {
-      throw Error(ErrorKind::bad_data, fmt::format("row {}: a quote amid a field", row_));
+      throw Error(ErrorKind::bad_data, "a quote amid a field");
     }
     rest_.remove_prefix(field.size());
     return std::string(field);
@@ -20,7 +18,7 @@ std::string CsvReader::read_field() {
     rest_.remove_prefix(1);
     const std::size_t quote = rest_.find('"');
     if (quote == std::string_view::npos) {
-      throw Error(ErrorKind::bad_data, fmt::format("row {}: a quote is not closed", row_));
+      throw Error(ErrorKind::bad_data, "a quote is not closed");
     }
     field += rest_.substr(0, quote);
     rest_.remove_prefix(quote + 1);
@@ -30,7 +28,7 @@ std::string CsvReader::read_field() {
     field += '"';
   }
   if (!rest_.empty() && std::string_view(",\r\n").find(rest_.front()) == std::string_view::npos) {
-    throw Error(ErrorKind::bad_data, fmt::format("row {}: text behind a closing quote", row_));
+    throw Error(ErrorKind::bad_data, "text behind a closing quote");
   }
   return field;
 }

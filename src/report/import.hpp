@@ -11,9 +11,9 @@ namespace armwright {
 
 // Which runs to look at; nothing: all.
 struct ImportChoice {
-  std::optional<std::string> problem;
-  std::optional<std::string> label;
-  std::optional<std::uint64_t> replicate;
+  std::optional<std::string> problem = {};
+  std::optional<std::string> label = {};
+  std::optional<std::uint64_t> replicate = {};
 };
 
 // The best feasible evaluation of a run.

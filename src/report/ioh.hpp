@@ -14,6 +14,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "report/run_traces.hpp"
 

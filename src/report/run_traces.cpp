@@ -152,17 +152,17 @@ void include_trace(ProblemRuns& problem, const RunTrace& trace) {
 }  // namespace
 
 FoundRuns find_runs(const fs::path& folder) {
-  if (fs::exists(folder / "manifest.json")) {
-    const RunResult result = load_result(folder);
-    return {{{folder, result.problem, result.optimizer, result.optimizer, 1}}, 0};
+  if (fs::is_directory(folder / "cells")) {
+    return find_cells(folder);
   }
-  if (!fs::is_directory(folder / "cells")) {
+  if (!fs::exists(folder / "manifest.json")) {
     throw Error(ErrorKind::usage,
                 fmt::format("{}: is neither the folder of a run (it has no manifest.json) nor that "
                             "of a study (it has no folder cells)",
                             folder.string()));
   }
-  return find_cells(folder);
+  const RunResult result = load_result(folder);
+  return {{{folder, result.problem, result.optimizer, result.optimizer, 1}}, 0};
 }
 
 const TracedEvaluation* RunTrace::find_best() const {
@@ -191,6 +191,9 @@ RunTrace read_trace(const RunEntry& run) {
   trace.tested_on = find_tested(journal);
   if (result.winner) {
     trace.test = result.test;
+    if (!result.test.objectives.empty()) {
+      trace.test_objective = calc_target(result, result.test);
+    }
     trace.winner = result.judged[*result.winner].candidate.x;
   }
   std::uint64_t simulated_cases = 0;

@@ -67,6 +67,7 @@ struct RunTrace {
   TraceNames names;
   std::vector<TracedEvaluation> evaluations;
   std::optional<UsedCases> tested_on;         // what the winner was tested on, if there is one
+  std::optional<double> test_objective;       // its objective there, if it has one
   std::optional<Evaluation> test;             // and how it did there
   std::vector<double> winner;                 // empty if there is none
   const TracedEvaluation* find_best() const;  // feasible, the earliest of equals; or null

@@ -4,8 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <limits>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -100,8 +104,8 @@ class Export : public testing::Test {
     EXPECT_THAT(outcome.err, message);
   }
 
-  // What a reader has read of it.
-  static json read(const std::string& reader, const std::string& folder) {
+  // What a reader prints: what it has read, or why it refuses to.
+  static std::string read_text_of(const std::string& reader, const std::string& folder) {
     const std::string command = std::string("python3 ") + ARMWRIGHT_TEST_DATA + "/../report/" +
                                 reader + " '" + path(folder).string() + "' 2>&1";
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(popen(command.c_str(), "r"), pclose);
@@ -109,21 +113,39 @@ class Export : public testing::Test {
     for (int c = std::fgetc(pipe.get()); c != EOF; c = std::fgetc(pipe.get())) {
       text += static_cast<char>(c);
     }
+    return text;
+  }
+  static json read(const std::string& reader, const std::string& folder) {
+    const std::string text = read_text_of(reader, folder);
     const json read = json::parse(text, nullptr, false);
     EXPECT_FALSE(read.is_discarded()) << text;
     return read;
   }
+  // The file without its last line.
+  static void cut_last_line(const std::string& file) {
+    const std::string text = read_text(path(file));
+    std::ofstream(path(file)) << text.substr(0, text.rfind('\n', text.size() - 2) + 1);
+  }
 
-  // Of a run, from its journal: evaluations and the best feasible objective.
-  static std::pair<std::uint64_t, double> look_up(const std::filesystem::path& run_folder) {
+  // Of a run, from its journal.
+  struct Recorded {
+    std::uint64_t evaluations = 0;
+    std::uint64_t rows = 0;  // improvements, and the last evaluation if it is none
+    double best = HUGE_VAL;  // of the feasible ones
+  };
+  static Recorded look_up(const std::filesystem::path& run_folder) {
     const JournalContent journal = read_journal(path(run_folder / "journal"));
-    double best = HUGE_VAL;
+    Recorded recorded;
+    recorded.evaluations = journal.training.size();
     for (const EvaluationRecord& record : journal.training) {
-      if (is_feasible(record.evaluation)) {
-        best = std::min(best, record.evaluation.objectives.front());
+      const bool improves =
+          is_feasible(record.evaluation) && record.evaluation.objectives.front() < recorded.best;
+      if (improves) {
+        recorded.best = record.evaluation.objectives.front();
       }
+      recorded.rows += improves || record.index + 1 == recorded.evaluations ? 1 : 0;
     }
-    return {journal.training.size(), best};
+    return recorded;
   }
 
   inline static std::unique_ptr<TemporaryFolder> folder_;
@@ -141,10 +163,11 @@ TEST_F(Export, AsIohIsReadByAStrictReader) {
     const json& runs = all.at(cell.label).at(cell.problem);
     ASSERT_EQ(runs.size(), static_cast<std::size_t>(kReplicates));
     for (int replicate = 1; replicate <= kReplicates; ++replicate) {
-      const auto [evaluations, best] = look_up(get_cell_folder(i, replicate));
+      const auto [evaluations, rows, best] = look_up(get_cell_folder(i, replicate));
       const json& read_run = runs.at(std::to_string(replicate));
       EXPECT_EQ(read_run[0], evaluations);
       EXPECT_EQ(read_run[1], std::isfinite(best) ? best : std::numeric_limits<double>::max());
+      EXPECT_EQ(read_run[2], rows);
     }
   }
 }
@@ -164,20 +187,30 @@ TEST_F(Export, AsCocoIsReadByAStrictReader) {
     for (std::size_t j = 0; j < list_cells().size(); ++j) {
       for (int replicate = 1; replicate <= kReplicates; ++replicate) {
         if (list_cells()[j].problem == cell.problem) {
-          reference = std::min(reference, look_up(get_cell_folder(j, replicate)).second);
+          reference = std::min(reference, look_up(get_cell_folder(j, replicate)).best);
         }
       }
     }
     const json& runs = all.at(ids.at(cell.label)).at(std::to_string(function));
     ASSERT_EQ(runs.size(), static_cast<std::size_t>(kReplicates));
     for (int replicate = 1; replicate <= kReplicates; ++replicate) {
-      const auto [evaluations, best] = look_up(get_cell_folder(i, replicate));
+      const auto [evaluations, rows, best] = look_up(get_cell_folder(i, replicate));
       const json& read_run = runs.at(std::to_string(replicate));
       EXPECT_EQ(read_run[0], evaluations);
       const double difference = std::isfinite(best) ? best - reference : 1e10 - reference;
       EXPECT_NEAR(read_run[1].get<double>(), difference, 1e-9 * std::abs(difference));
     }
   }
+}
+
+TEST_F(Export, IsReadStrictly) {
+  const std::string run_folder = get_cell_folder(5, 1);
+  ASSERT_EQ(run({"export", run_folder, "--format", "ioh", "--out", "cut-ioh"}).exit_code, 0);
+  cut_last_line("cut-ioh/ga/data_f1_constrained/IOHprofiler_f1_DIM4.dat");
+  EXPECT_THAT(read_text_of("read_ioh.py", "cut-ioh"), HasSubstr("run 1: the last row is"));
+  ASSERT_EQ(run({"export", run_folder, "--format", "coco", "--out", "cut-coco"}).exit_code, 0);
+  cut_last_line("cut-coco/ga/data_f1/bbobexp_f1_DIM4.tdat");
+  EXPECT_THAT(read_text_of("read_coco.py", "cut-coco"), HasSubstr("run 1: .tdat has rows at"));
 }
 
 TEST_F(Export, TablesBearEveryEvaluationWithEveryDigit) {
@@ -212,14 +245,14 @@ TEST_F(Export, TablesBearEveryEvaluationWithEveryDigit) {
   }
   std::ranges::sort(files);
   EXPECT_THAT(files,
-              ElementsAre("1st__sphere____round___100___n__.._c_d_-2.csv",
-                          "1st__sphere____round___100___n__.._c_d_.csv", "_._constrained.csv"));
+              ElementsAre("1st__sphere____round___100____n__.._c_d_-2.csv",
+                          "1st__sphere____round___100____n__.._c_d_.csv", "_._constrained.csv"));
   const std::string table = read_text(path("csv/evaluations/_._constrained.csv"));
   EXPECT_THAT(table, StartsWith("problem,label,optimizer,replicate,evaluation,simulated_cases,"
                                 "status,feasible,objective,objective.f,constraint.1,constraint.2,"
                                 "constraint.3,"));
   EXPECT_EQ(std::ranges::count(table, '\n'), 1 + 2 * kReplicates * kBudget);
-  EXPECT_THAT(read_text(path("csv/evaluations/1st__sphere____round___100___n__.._c_d_.csv")),
+  EXPECT_THAT(read_text(path("csv/evaluations/1st__sphere____round___100____n__.._c_d_.csv")),
               HasSubstr("\n\"1st 'sphere', \"\"round\"\": 100 % ünï/..\\cödé\",\"ga, 'p=12' "
                         "\"\"x\"\"|50%\",ga,1,1,1,ok,1,"));
 }
@@ -231,6 +264,27 @@ TEST_F(Export, OfASingleRunIsThatRun) {
   EXPECT_THAT(outcome.err, IsEmpty());
   const json all = read("read_ioh.py", "single");
   EXPECT_EQ(all.at("ga").at("sphere").size(), 1u) << all;
+}
+
+TEST_F(Export, OfARunThatFoundNothingFeasibleHasNoInfinityInJson) {
+  // The genetic algorithm's first individual violates a constraint.
+  const Outcome outcome = run({"optimize", "constrained", "--optimizer", "ga", "--budget", "1",
+                               "--seed", "1", "--out", "infeasible"});
+  ASSERT_EQ(outcome.exit_code, 3) << outcome.err;
+  for (const std::string format : {"ioh", "coco", "csv", "json"}) {
+    ASSERT_EQ(run({"export", "infeasible", "--format", format}).exit_code, 0) << format;
+  }
+  EXPECT_EQ(read("read_ioh.py", "infeasible/export-ioh").at("ga").at("constrained").at("1"),
+            json({1, std::numeric_limits<double>::max(), 1}));
+  EXPECT_EQ(read("read_coco.py", "infeasible/export-coco").at("ga").at("1").at("1"),
+            json({1, 1e10, 1, 1}));
+  const json root = json::parse(read_text(path("infeasible/export-json/runs.json")));
+  EXPECT_TRUE(root.at("problems")[0].at("runs")[0].at("best").is_null());
+  EXPECT_EQ(root.at("problems")[0].at("runs")[0].at("evaluations").size(), 1u);
+  for (const std::string format : {"ioh", "csv", "json"}) {
+    expect_refused({"import", "infeasible/export-" + format}, 2,
+                   HasSubstr("no run that was chosen found anything feasible"));
+  }
 }
 
 TEST_F(Export, OverwritesNothingAndLeavesNothingHalfDone) {
@@ -251,6 +305,20 @@ TEST_F(Export, OverwritesNothingAndLeavesNothingHalfDone) {
   for (const std::string& name : folder_->list()) {
     EXPECT_FALSE(name.starts_with("x")) << name;
   }
+}
+
+TEST_F(Export, RefusesRunsOnOneProblemWithOtherVariables) {
+  for (const std::size_t cell : {0, 4}) {
+    const auto copy = path("mixed/cells") / std::to_string(cell) / "label";
+    std::filesystem::create_directories(copy);
+    std::filesystem::copy(path(get_cell_folder(cell, 1)), copy / "1");
+    std::ofstream(copy / "1/cell.json") << json{
+        {"problem", "p"}, {"label", std::to_string(cell)}, {"optimizer", "ga"}, {"replicate", 1}};
+  }
+  expect_refused({"export", "mixed", "--format", "csv"}, 4,
+                 AllOf(HasSubstr("mixed/cells/0/label/1 and "),
+                       HasSubstr("mixed/cells/4/label/1 are both runs on 'p', but with other "
+                                 "variables")));
 }
 
 TEST_F(Export, AsCocoHasRoomFor24Problems) {
@@ -307,6 +375,7 @@ TEST_F(Export, ComesBackAsADesignBitForBit) {
     EXPECT_EQ(load_problem("q1-complex").tracking->make_vector(design.design), best->x);
     EXPECT_EQ(run({"import", out}).out, read_text(path(out + ".toml")));
   }
+  EXPECT_EQ(read("read_ioh.py", "back-ioh").at("ga").at("q1-complex").size(), 1u);
   EXPECT_EQ(run({"evaluate", "back-ioh.toml", "--problem", "q1-complex", "--cases", "1"}).exit_code,
             0);
 }
@@ -322,7 +391,7 @@ TEST_F(Export, IsImportedOnlyWhereItIsClearWhatIsMeant) {
   expect_refused({"import", "choose", "--problem", kSphere, "--config", "sphere"}, 2,
                  HasSubstr("is an analytic function"));
   expect_refused({"import", "choose", "--problem", kSphere, "--config", "q1-complex"}, 4,
-                 AllOf(HasSubstr("are x1, x2"), HasSubstr("joint_1.p, joint_1.i")));
+                 AllOf(HasSubstr("are x_1, x_2"), HasSubstr("joint_1.p, joint_1.i")));
   expect_refused({"import", "study"}, 2, HasSubstr("holds no export"));
 }
 
