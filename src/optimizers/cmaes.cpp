@@ -34,6 +34,7 @@ class CmaEs : public Optimizer {
                   .uncertainty_handling = options.get_bool("uncertainty_handling"),
                   .tolerances = {.function = options.get_number("tol_fun"),
                                  .step = options.get_number("tol_x")},
+                  .feasibility_first = options.get_bool("feasibility_first"),
                   .constraint_weight = options.get_number("constraint_weight")} {
     if (settings_.cma.population == 1) {
       throw Error(ErrorKind::usage,
@@ -116,6 +117,10 @@ std::vector<OptionSpec> make_option_specs() {
        .fallback = 1e-12,
        .lower = 0,
        .upper = 1},
+      {.name = "feasibility_first",
+       .description = "of two points the one that violates the constraints less ranks before the "
+                      "other, and only then the objective counts; false: constraint_weight decides",
+       .fallback = true},
       make_constraint_weight_option(),
   };
 }

@@ -104,4 +104,27 @@ ContractFinding check_learning(const OptimizerRow& row, const Options& options) 
   return contests > 0 ? ContractFinding{} : make_broken("no function suits it");
 }
 
+// Half of the way from the start to the optimum of the function `constrained`, of which random
+// search meets the constraints now and then and comes nowhere near.
+ContractFinding check_constraints(const OptimizerRow& row, const Options& options) {
+  if (!row.capabilities.constraints) {
+    return make_exempt("it does not declare 'constraints'");
+  }
+  constexpr std::int64_t kBudget = 5000;
+  constexpr double kWorst = -40;  // the optimum is -44, the start 0
+  for (const ContractProblem& problem : make_contract_problems(row)) {
+    if (problem.problem->description().constraints.empty()) {
+      continue;
+    }
+    const double best = -calc_median_success({row, options, problem}, kBudget);
+    if (!(best <= kWorst)) {
+      return make_broken(fmt::format(
+          "on {}: its best feasible value is {} ({} evaluations, median of 5 seeds), and "
+          "{} is easily reached",
+          problem.name, best, kBudget, kWorst));
+    }
+  }
+  return {};
+}
+
 }  // namespace armwright
