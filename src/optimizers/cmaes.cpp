@@ -51,6 +51,14 @@ class CmaEs : public Optimizer {
   CmaSearchSettings settings_;
 };
 
+// Less than for others: the steps shrink soon where the penalty bends sharply
+// (docs/constrained.md).
+OptionSpec make_weight_option() {
+  OptionSpec option = make_constraint_weight_option();
+  option.fallback = 10.0;
+  return option;
+}
+
 std::vector<OptionSpec> make_option_specs() {
   const auto rate = [](std::string name, std::string description, double upper) {
     return OptionSpec{.name = std::move(name),
@@ -117,11 +125,12 @@ std::vector<OptionSpec> make_option_specs() {
        .fallback = 1e-12,
        .lower = 0,
        .upper = 1},
+      make_weight_option(),
       {.name = "feasibility_first",
        .description = "of two points the one that violates the constraints less ranks before the "
-                      "other, and only then the objective counts; false: constraint_weight decides",
-       .fallback = true},
-      make_constraint_weight_option(),
+                      "other, and only then the objective counts; constraint_weight has then no "
+                      "influence",
+       .fallback = false},
   };
 }
 

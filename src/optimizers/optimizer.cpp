@@ -203,7 +203,8 @@ std::string explain_unsuitable(const OptimizerRow& row, const ProblemDescription
     }
     return fmt::format(
         "it works on residuals, which know no constraints, and this problem has {}; "
-        "these see constraints: {}",
+        "these see constraints: {}; and all that have an option constraint_weight, as cmaes, "
+        "take them for a penalty",
         problem.constraints.size(), join(able, ", "));
   }
   if (required.residuals && !problem.has_residuals) {

@@ -7,9 +7,9 @@ namespace armwright {
 OptionSpec make_constraint_weight_option() {
   return {.name = "constraint_weight",
           .description =
-              "the objective grows by this times the violation of the constraints, "
-              "which this optimizer does not know, in units of the problem's own; without "
-              "constraints no influence",
+              "the objective grows by this times the violation of the constraints, which this "
+              "optimizer does not know, in units of the objective's scale where the problem names "
+              "one; without constraints no influence",
           .fallback = 1000.0,
           .lower = 0,
           .upper = 1e12};

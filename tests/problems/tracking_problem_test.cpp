@@ -111,12 +111,12 @@ TEST(TrackingVariables, DescriptionNamesWhatIsMeasured) {
   EXPECT_THAT(get_all(torque.objectives), ElementsAre("total torque (N m)"));
   EXPECT_THAT(get_all(torque.constraints), ElementsAre("error / limit - 1 (1)"));
   EXPECT_EQ(torque.limits.at(0).quantity.unit, "m");
-  EXPECT_EQ(torque.violation_scale, 963686);
+  EXPECT_EQ(torque.violation_scale, 100000);
   const ProblemDescription error = load("q2-error")->description();
   EXPECT_THAT(get_all(error.objectives), ElementsAre("error (m)"));
   EXPECT_THAT(get_all(error.constraints), ElementsAre("total torque / limit - 1 (1)"));
   EXPECT_EQ(error.limits.at(0).quantity.unit, "N m");
-  EXPECT_EQ(error.violation_scale, 0.0058);
+  EXPECT_EQ(error.violation_scale, 0.0005);
   EXPECT_EQ(load("q2-error", {"objective.logarithm=true"})->description().violation_scale, 1);
 }
 
