@@ -79,7 +79,8 @@ std::string format_tracking_test(const RunResult& result, const Style& style) {
   if (const auto energy = get_metric(result, "energy")) {
     table.add_row({"mean energy", format_quantity(*energy, "J")});
   }
-  if (get_target(result).unit != "m" && !result.test.objectives.empty()) {
+  const bool is_shown = get_target(result).unit == "m" || get_target(result).name == "total torque";
+  if (!is_shown && !result.test.objectives.empty()) {
     add_target(result, table);
   }
   return style.bold(fmt::format("On the test set {}", sanitize(result.test_set))) + "\n" +
@@ -100,9 +101,8 @@ std::string format_constraint(const RunResult& result, std::size_t i, double g) 
     return format_quantity(g, result.constraints[i].unit) + (g > 0 ? " (violated)" : " (met)");
   }
   const Limit& limit = result.limits[i];
-  return fmt::format("{} ({:.1f} % {})",
-                     format_quantity((1 + g) * limit.value, limit.quantity.unit), 100 * std::abs(g),
-                     g > 0 ? "above" : "below");
+  return fmt::format("{} ({} % {})", format_quantity((1 + g) * limit.value, limit.quantity.unit),
+                     100 * std::abs(g), g > 0 ? "above" : "below");
 }
 
 std::string describe_feasibility(const Evaluation& evaluation) {
@@ -184,6 +184,10 @@ std::string describe_no_winner(const RunResult& result) {
   if (result.counts.feasible == 0 && !result.first_failure.empty()) {
     return "No design worked, so there is no winner. The first failed with: " +
            sanitize(result.first_failure);
+  }
+  if (result.counts.feasible > 0) {
+    return "Of the designs that were good in training none has a number on the validation set, so "
+           "there is no winner.";
   }
   std::string nearest;
   if (result.least_violation && result.limits.size() == 1) {

@@ -218,8 +218,12 @@ TEST_F(CliOptimize, SaysWhetherTheWinnerKeepsTheLimit) {
   EXPECT_EQ(result["least_violation"], 0);
   EXPECT_THAT(run({"show", "results/q2-torque-cmaes-seed1"}).out, HasSubstr("feasible"));
 
-  const Outcome none = run(small + std::vector<std::string>{"--set", "objective.error_limit_m=1e-9",
-                                                            "--out", "results/none"});
+  const std::vector<std::string> impossible = {"--set", "objective.error_limit_m=1e-9"};
+  const Outcome missed = run(small + impossible + std::vector<std::string>{"--new"});
+  EXPECT_EQ(missed.exit_code, 3);  // a design that the optimizer recommends is judged all the same
+  EXPECT_THAT(missed.out, AllOf(HasSubstr("% above)"), HasSubstr("NOT feasible")));
+  const Outcome none = run(small + impossible +
+                           std::vector<std::string>{"--optimizer", "ga", "--out", "results/none"});
   EXPECT_EQ(none.exit_code, 3) << none.err;  // done, but something failed
   EXPECT_THAT(none.out, AllOf(HasSubstr("No design met the constraints"),
                               HasSubstr("The nearest had error ")));
