@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/text.hpp"
 #include "cli/format.hpp"
@@ -78,7 +79,8 @@ std::string format_tracking_test(const RunResult& result, const Style& style) {
   if (const auto energy = get_metric(result, "energy")) {
     table.add_row({"mean energy", format_quantity(*energy, "J")});
   }
-  if (get_target(result).unit != "m" && !result.test.objectives.empty()) {
+  const bool is_shown = get_target(result).unit == "m" || get_target(result).name == "total torque";
+  if (!is_shown && !result.test.objectives.empty()) {
     add_target(result, table);
   }
   return style.bold(fmt::format("On the test set {}", sanitize(result.test_set))) + "\n" +
@@ -90,11 +92,47 @@ std::string format_function_test(const RunResult& result, const Style& style) {
   if (!result.test.objectives.empty()) {
     add_target(result, table);
   }
-  for (std::size_t i = 0; i < result.test.constraint_values.size(); ++i) {
-    table.add_row({fmt::format("constraint {}", i + 1),
-                   format_significant(result.test.constraint_values[i]) + " (met where <= 0)"});
-  }
   return table.format(style, 2);
+}
+
+// A constraint's value as a user thinks of it: what keeps the limit, or else g.
+std::string format_constraint(const RunResult& result, std::size_t i, double g) {
+  if (result.limits.empty()) {
+    return format_quantity(g, result.constraints[i].unit) + (g > 0 ? " (violated)" : " (met)");
+  }
+  const Limit& limit = result.limits[i];
+  return fmt::format("{} ({} % {})", format_quantity((1 + g) * limit.value, limit.quantity.unit),
+                     100 * std::abs(g), g > 0 ? "above" : "below");
+}
+
+std::string describe_feasibility(const Evaluation& evaluation) {
+  if (is_proven_feasible(evaluation)) {
+    return "feasible";
+  }
+  return evaluation.failed_cases > 0
+             ? fmt::format(
+                   "not shown: {} without a number",
+                   format_count(static_cast<unsigned long long>(evaluation.failed_cases), "case"))
+             : "NOT feasible";
+}
+
+std::string format_constraints(const RunResult& result, const Style& style) {
+  const Evaluation& validation = result.judged[*result.winner].validation;
+  Table table({{"", false}, {"at most"}, {"on the validation set"}, {"on the test set"}});
+  for (std::size_t i = 0; i < result.constraints.size(); ++i) {
+    const auto value = [&](const Evaluation& evaluation) {
+      return evaluation.constraint_values.empty()
+                 ? std::string("-")
+                 : format_constraint(result, i, evaluation.constraint_values.at(i));
+    };
+    const bool has_limit = !result.limits.empty();
+    table.add_row(
+        {sanitize(has_limit ? result.limits[i].quantity.name : result.constraints[i].name),
+         has_limit ? format_quantity(result.limits[i].value, result.limits[i].quantity.unit) : "0",
+         value(validation), value(result.test)});
+  }
+  table.add_row({"all", "", describe_feasibility(validation), describe_feasibility(result.test)});
+  return style.bold("Constraints") + "\n" + table.format(style, 2);
 }
 
 std::string format_published(const RunResult& result, const Style& style) {
@@ -147,7 +185,22 @@ std::string describe_no_winner(const RunResult& result) {
     return "No design worked, so there is no winner. The first failed with: " +
            sanitize(result.first_failure);
   }
-  return "No design met the constraints, so there is no winner.";
+  if (result.counts.feasible > 0) {
+    return "Of the designs that were good in training none has a number on the validation set, so "
+           "there is no winner.";
+  }
+  std::string nearest;
+  if (result.least_violation && result.limits.size() == 1) {
+    const Limit& limit = result.limits.front();
+    nearest = fmt::format(
+        " The nearest had {} {}, where {} are allowed.", sanitize(limit.quantity.name),
+        format_quantity((1 + *result.least_violation) * limit.value, limit.quantity.unit),
+        format_quantity(limit.value, limit.quantity.unit));
+  } else if (result.least_violation) {
+    nearest = fmt::format(" The nearest violated them by {} in sum.",
+                          format_significant(*result.least_violation));
+  }
+  return "No design met the constraints, so there is no winner." + nearest;
 }
 
 std::string describe_result(const RunResult& result, const std::filesystem::path& folder,
@@ -175,6 +228,9 @@ std::string describe_result(const RunResult& result, const std::filesystem::path
     text += is_tracking(result) ? format_tracking_test(result, style)
                                 : format_function_test(result, style);
     text += "\n";
+    if (!result.constraints.empty()) {
+      text += format_constraints(result, style) + "\n";
+    }
     if (result.published.error_m || result.published.total_torque_n_m) {
       text += format_published(result, style) + "\n";
     }
@@ -189,24 +245,29 @@ std::string describe_result(const RunResult& result, const std::filesystem::path
 }
 
 std::string describe_judged(const RunResult& result, const Style& style) {
-  Table table({{"", false},
-               {"evaluation"},
-               {"generation"},
-               {"training"},
-               {"validation"},
-               {"without number"}});
+  std::vector<Column> columns = {{"", false},  {"evaluation"}, {"generation"},
+                                 {"training"}, {"validation"}, {"without number"}};
+  if (!result.constraints.empty()) {
+    columns.push_back({"constraints", false});
+  }
+  Table table(std::move(columns));
   for (std::size_t i = 0; i < result.judged.size(); ++i) {
     const Candidate& candidate = result.judged[i].candidate;
     const Evaluation& validation = result.judged[i].validation;
     const auto value = [&](double objective) {
       return format_quantity(objective, get_target(result).unit);
     };
-    table.add_row({result.winner == i ? "winner" : "",
-                   candidate.recommended ? "recommended" : fmt::format("{}", candidate.evaluation),
-                   candidate.generation > 0 ? fmt::format("{}", candidate.generation) : "-",
-                   candidate.recommended ? "-" : value(candidate.training_objective),
-                   validation.objectives.empty() ? "-" : value(calc_target(result, validation)),
-                   fmt::format("{}", validation.failed_cases)});
+    std::vector<std::string> cells = {
+        result.winner == i ? "winner" : "",
+        candidate.recommended ? "recommended" : fmt::format("{}", candidate.evaluation),
+        candidate.generation > 0 ? fmt::format("{}", candidate.generation) : "-",
+        candidate.recommended ? "-" : value(candidate.training_objective),
+        validation.objectives.empty() ? "-" : value(calc_target(result, validation)),
+        fmt::format("{}", validation.failed_cases)};
+    if (!result.constraints.empty()) {
+      cells.push_back(describe_feasibility(validation));
+    }
+    table.add_row(std::move(cells));
   }
   return style.bold("Judged on the validation set") + "\n" + table.format(style, 2);
 }
@@ -226,12 +287,7 @@ Table make_summary_table(const ErrorSummary& summary) {
 }
 
 int get_result_code(const RunResult& result) {
-  const auto feasible = [](const Evaluation& evaluation) {
-    return std::all_of(evaluation.constraint_values.begin(), evaluation.constraint_values.end(),
-                       [](double g) { return g <= 0; });
-  };
-  const bool good = result.failure.empty() && result.winner &&
-                    result.test_summary.without_number == 0 && feasible(result.test);
+  const bool good = result.failure.empty() && result.winner && is_proven_feasible(result.test);
   return good ? exit_code::kDone : exit_code::kFailed;
 }
 

@@ -12,6 +12,7 @@
 #include "base/random.hpp"
 #include "optimizers/cma_box.hpp"
 #include "optimizers/cma_uncertainty.hpp"
+#include "optimizers/feasibility.hpp"
 #include "optimizers/scalar_function.hpp"
 
 namespace armwright {
@@ -31,6 +32,7 @@ class CmaSearch {
       : settings_(settings),
         evaluator_(evaluator),
         box_(evaluator.problem().variables),
+        order_(evaluator.problem()),
         random_("optimizer/cmaes", seed) {}
 
   void search() {
@@ -156,6 +158,9 @@ class CmaSearch {
     if (scores.size() < points.size()) {
       return std::nullopt;
     }
+    if (settings_.feasibility_first) {
+      return order_.rate(scores);
+    }
     std::vector<double> values;
     values.reserve(scores.size());
     for (const Score& score : scores) {
@@ -212,6 +217,7 @@ class CmaSearch {
   const CmaSearchSettings& settings_;
   Evaluator& evaluator_;
   CmaBox box_;
+  FeasibilityOrder order_;
   RandomStream random_;
   std::size_t base_population_ = 0;
   std::size_t large_population_ = 0;  // of the last restart with a larger one

@@ -22,6 +22,7 @@ struct CmaSearchSettings {
   CmaRestarts restarts = CmaRestarts::none;
   bool uncertainty_handling = false;  // cma_uncertainty.hpp
   CmaTolerances tolerances;
+  bool feasibility_first = false;  // feasibility.hpp; otherwise calc_merit() with the weight
   double constraint_weight = 0;
 };
 

@@ -34,6 +34,7 @@ class CmaEs : public Optimizer {
                   .uncertainty_handling = options.get_bool("uncertainty_handling"),
                   .tolerances = {.function = options.get_number("tol_fun"),
                                  .step = options.get_number("tol_x")},
+                  .feasibility_first = options.get_bool("feasibility_first"),
                   .constraint_weight = options.get_number("constraint_weight")} {
     if (settings_.cma.population == 1) {
       throw Error(ErrorKind::usage,
@@ -49,6 +50,14 @@ class CmaEs : public Optimizer {
  private:
   CmaSearchSettings settings_;
 };
+
+// Less than for others: the steps shrink soon where the penalty bends sharply
+// (docs/constrained.md).
+OptionSpec make_weight_option() {
+  OptionSpec option = make_constraint_weight_option();
+  option.fallback = 10.0;
+  return option;
+}
 
 std::vector<OptionSpec> make_option_specs() {
   const auto rate = [](std::string name, std::string description, double upper) {
@@ -116,7 +125,12 @@ std::vector<OptionSpec> make_option_specs() {
        .fallback = 1e-12,
        .lower = 0,
        .upper = 1},
-      make_constraint_weight_option(),
+      make_weight_option(),
+      {.name = "feasibility_first",
+       .description = "of two points the one that violates the constraints less ranks before the "
+                      "other, and only then the objective counts; constraint_weight has then no "
+                      "influence",
+       .fallback = false},
   };
 }
 

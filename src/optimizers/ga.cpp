@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -109,17 +108,6 @@ class GeneticAlgorithm : public Optimizer {
 };
 
 }  // namespace
-
-Fitness calc_fitness(const ProblemDescription& problem, const Score& score) {
-  const bool is_failed = score.constraint_values.size() < problem.constraints.size();
-  return {.violation = is_failed ? std::numeric_limits<double>::infinity()
-                                 : calc_violation(score.constraint_values),
-          .objective = calc_scalar(problem, score.objectives)};
-}
-
-bool is_fitter(const Fitness& a, const Fitness& b) {
-  return a.violation != b.violation ? a.violation < b.violation : a.objective < b.objective;
-}
 
 std::vector<std::size_t> rank(std::span<const Fitness> population) {
   std::vector<std::size_t> ranking(population.size());

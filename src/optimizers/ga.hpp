@@ -12,11 +12,9 @@
 // - A variable of linear scale is mutated by adding, not by multiplying, so that zero is not a
 //   trap and the sign can change. The step spans the same share of the box as the factor spans of
 //   a logarithmic box from base/100 to base*100.
-// - Constraints: feasibility first (Deb 2000, An efficient constraint handling method for genetic
-//   algorithms).
+// - Constraints: feasibility first (feasibility.hpp).
 // - `generations` and `include_prototype` as options.
-// Limits: several objectives count as their weighted sum; constraint violations are added up as
-// they are, in whatever units the problem gives them. Crossover never leaves the span of the
+// Limits: several objectives count as their weighted sum. Crossover never leaves the span of the
 // parents (extent <= 1/2), so an optimum outside the first generation's span, a factor of 10 about
 // the start, is approached by mutations alone, which is slow.
 #pragma once
@@ -26,6 +24,7 @@
 #include <vector>
 
 #include "base/random.hpp"
+#include "optimizers/feasibility.hpp"
 #include "optimizers/optimizer.hpp"
 
 namespace armwright {
@@ -33,12 +32,6 @@ namespace armwright {
 std::vector<OptimizerRow> make_ga_rows();
 
 using Genome = std::vector<double>;
-
-struct Fitness {
-  double violation =
-      0;  // sum of max(0, g); infinite where a failed evaluation tells no constraint values
-  double objective = 0;
-};
 
 struct CrossoverSettings {
   double probability = 0;  // of each gene
@@ -49,9 +42,6 @@ struct MutationSettings {
   double probability = 0;  // of each gene
   double factor = 1;       // the gene is multiplied by exp(U(-ln factor, ln factor))
 };
-
-Fitness calc_fitness(const ProblemDescription& problem, const Score& score);
-bool is_fitter(const Fitness& a, const Fitness& b);
 
 // Indices of the population, the fittest first; equals keep their order.
 std::vector<std::size_t> rank(std::span<const Fitness> population);

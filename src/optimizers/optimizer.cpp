@@ -194,6 +194,19 @@ std::string explain_unsuitable(const OptimizerRow& row, const ProblemDescription
     return fmt::format("it needs a problem of at least {} decision variables, and this one has {}",
                        required.variables, problem.variables.size());
   }
+  if (required.residuals && !problem.has_residuals && !problem.constraints.empty()) {
+    std::vector<std::string> able;
+    for (const OptimizerRow& one : optimizer_table()) {
+      if (one.capabilities.constraints && one.unavailable.empty()) {
+        able.push_back(one.name);
+      }
+    }
+    return fmt::format(
+        "it works on residuals, which know no constraints, and this problem has {}; "
+        "these see constraints: {}; and all that have an option constraint_weight, as cmaes, "
+        "take them for a penalty",
+        problem.constraints.size(), join(able, ", "));
+  }
   if (required.residuals && !problem.has_residuals) {
     return "it works on residuals, of whose squares the objective is the sum, and this problem "
            "offers none";

@@ -46,7 +46,7 @@ void PagmoBridge::require_finite(std::span<const double> coordinates) const {
 
 std::vector<double> PagmoBridge::calc_fitness(const Score& score) const {
   if (method_.multi_objective) {
-    const double violation = calc_violation(score.constraint_values);
+    const double violation = problem().violation_scale * calc_violation(score.constraint_values);
     std::vector<double> fitness = score.objectives;
     for (double& objective : fitness) {
       objective += constraint_weight_ * violation;
@@ -58,7 +58,9 @@ std::vector<double> PagmoBridge::calc_fitness(const Score& score) const {
   }
   std::vector<double> fitness = {calc_scalar(problem(), score.objectives)};
   if (score.constraint_values.size() == constraint_count()) {
-    fitness.insert(fitness.end(), score.constraint_values.begin(), score.constraint_values.end());
+    // Some methods weigh objective and constraints against each other.
+    std::ranges::transform(score.constraint_values, std::back_inserter(fitness),
+                           [this](double g) { return problem().violation_scale * g; });
   } else {
     fitness.resize(1 + constraint_count(), kViolatedBeyondMeasure);
   }

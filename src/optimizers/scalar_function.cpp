@@ -7,8 +7,9 @@ namespace armwright {
 OptionSpec make_constraint_weight_option() {
   return {.name = "constraint_weight",
           .description =
-              "the objective grows by this times the violation of the constraints, "
-              "which this optimizer does not know; without constraints no influence",
+              "the objective grows by this times the violation of the constraints, which this "
+              "optimizer does not know, in units of the objective's scale where the problem names "
+              "one; without constraints no influence",
           .fallback = 1000.0,
           .lower = 0,
           .upper = 1e12};
@@ -16,7 +17,7 @@ OptionSpec make_constraint_weight_option() {
 
 double calc_merit(const ProblemDescription& problem, const Score& score, double constraint_weight) {
   return calc_scalar(problem, score.objectives) +
-         constraint_weight * calc_violation(score.constraint_values);
+         constraint_weight * problem.violation_scale * calc_violation(score.constraint_values);
 }
 
 Score ScalarFunction::evaluate(std::span<const double> coordinates) {

@@ -17,9 +17,11 @@ struct EvaluatorStopped {};
 // The weight of constraint violations for optimizers that know no constraints, and its option.
 OptionSpec make_constraint_weight_option();
 
-// f + weight * sum of max(0, g): an exact penalty for optimizers that know no constraints (Fletcher
-// 1983, Penalty functions). f is calc_scalar() of the objectives; a failed evaluation is its
-// penalty.
+// f + weight * s * sum of max(0, g): an exact penalty for optimizers that know no constraints
+// (Fletcher 1983, Penalty functions). f is calc_scalar() of the objectives, s the problem's
+// violation_scale, so that a weight means the same in whatever unit f is; a failed evaluation is
+// its penalty. Limits: its minimum is the constrained one only where weight * s exceeds the
+// constraints' multipliers, and the higher it is, the sharper the bend that a search has to follow.
 double calc_merit(const ProblemDescription& problem, const Score& score, double constraint_weight);
 
 class ScalarFunction {

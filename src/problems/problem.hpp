@@ -36,6 +36,12 @@ struct Quantity {
   std::string unit;
 };
 
+// A quantity that shall not exceed a value.
+struct Limit {
+  Quantity quantity;
+  double value = 0;  // > 0
+};
+
 // What is fixed about a problem. Objectives are minimised; a constraint g is met where g <= 0.
 struct ProblemDescription {
   std::string name;
@@ -43,6 +49,12 @@ struct ProblemDescription {
   std::vector<DecisionVariable> variables;
   std::vector<Quantity> objectives;  // at least one
   std::vector<Quantity> constraints;
+  // What the constraints stand for, as many as there are: g = quantity / value - 1. Empty: nothing
+  // is known of them but g.
+  std::vector<Limit> limits;
+  // What a violation of 1 is worth in units of calc_scalar(): optimizers that add violations to the
+  // objective multiply them by it, whatever unit the objective has.
+  double violation_scale = 1;
   std::vector<Quantity> metrics;      // of an evaluation, beside the objectives
   std::string cost_unit;              // what one case is: "simulated test case"
   std::vector<double> known_optimum;  // analytic functions: a minimiser; empty if unknown

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 #include "base/config.hpp"
 #include "base/error.hpp"
@@ -12,6 +14,7 @@
 #include "problems/analytic.hpp"
 #include "problems/config_files.hpp"
 #include "problems/design_file.hpp"
+#include "problems/tracking_description.hpp"
 
 namespace armwright {
 namespace {
@@ -87,12 +90,18 @@ void check_length(const ConfigTable& table, const TrackingTask& task,
 
 TrackingObjective read_objective(const ConfigTable& table) {
   using Kind = TrackingObjective::Kind;
-  static const std::vector<std::string> kinds = {"error", "error_and_torque", "error_vs_torque"};
+  static const std::vector<std::pair<std::string, Kind>> rows = {
+      {"error", Kind::error},
+      {"error_and_torque", Kind::error_and_torque},
+      {"error_vs_torque", Kind::error_vs_torque},
+      {"torque_with_error_limit", Kind::torque_with_error_limit},
+      {"error_with_torque_limit", Kind::error_with_torque_limit}};
+  std::vector<std::string> kinds;
+  std::ranges::transform(rows, std::back_inserter(kinds),
+                         [](const auto& row) { return row.first; });
   TrackingObjective objective;
   const std::string kind = table.get_choice("kind", kinds, "error");
-  objective.kind = kind == "error"              ? Kind::error
-                   : kind == "error_and_torque" ? Kind::error_and_torque
-                                                : Kind::error_vs_torque;
+  objective.kind = std::ranges::find(rows, kind, [](const auto& row) { return row.first; })->second;
   objective.logarithm = table.get_bool_or("logarithm", false);
   if (objective.logarithm && objective.kind == Kind::error_vs_torque) {
     table.refuse("logarithm", "two objectives are compared as they are; leave it out");
@@ -102,7 +111,41 @@ TrackingObjective read_objective(const ConfigTable& table) {
   objective.error_scale_m = table.get_number_or("error_scale_m", objective.error_scale_m, positive);
   objective.torque_scale_n_m =
       table.get_number_or("torque_scale_n_m", objective.torque_scale_n_m, positive);
+  // Read where they count only: elsewhere a limit is refused, as it would hold nobody back.
+  if (objective.kind == Kind::torque_with_error_limit) {
+    objective.error_limit_m = table.get_number("error_limit_m", positive);
+  }
+  if (objective.kind == Kind::error_with_torque_limit) {
+    objective.total_torque_limit_n_m = table.get_number("total_torque_limit_n_m", positive);
+  }
   return objective;
+}
+
+// Objectives with a limit of which nothing can come, whatever the design.
+void check_limits(const ConfigTable& table, const TrackingConfig& config) {
+  using Kind = TrackingObjective::Kind;
+  ArmDesign weakest = config.start;
+  bool changes_torque = false;
+  for (const DesignParameter& parameter : config.parameters) {
+    if (parameter.kind != DesignParameter::Kind::gain) {
+      get_parameter(weakest, parameter) /= config.bounds_factor;
+      changes_torque = true;
+    }
+  }
+  const double least_n_m = calc_total_torque_n_m(weakest);
+  if (config.objective.kind == Kind::torque_with_error_limit && !changes_torque) {
+    table.refuse(
+        "kind", fmt::format("no effort limit is optimized, so that the total torque is always {:g} "
+                            "N m; add effort_min and effort_max to variables.optimize",
+                            least_n_m));
+  }
+  if (config.objective.kind == Kind::error_with_torque_limit &&
+      least_n_m > config.objective.total_torque_limit_n_m) {
+    table.refuse("total_torque_limit_n_m",
+                 fmt::format("no design within the bounds has less than {:g} N m; raise it or "
+                             "variables.bounds_factor",
+                             least_n_m));
+  }
 }
 
 // "p", "i", "d", "effort_min", "effort_max", for every joint or for those with a
@@ -295,6 +338,7 @@ std::optional<SimdLevel> load_tracking(const ConfigTable& table, std::span<const
                                  config.start.joints.size(), config.robot.joint_count()));
   }
   config.parameters = read_parameters(variables, config);
+  check_limits(table.get_table_or_empty("objective"), config);
   loaded.tracking = make_tracking(std::move(config), variables, urdf);
   loaded.problem = loaded.tracking;
   if (table.has("sweep")) {

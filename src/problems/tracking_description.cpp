@@ -92,8 +92,23 @@ ProblemDescription make_tracking_description(const TrackingConfig& config) {
       description.objective_weights = {1 / objective.error_scale_m,
                                        objective.torque_weight / objective.torque_scale_n_m};
       break;
+    case TrackingObjective::Kind::torque_with_error_limit:
+      description.objectives = {objective.logarithm ? Quantity{"ln(total torque / 1 N m)", "1"}
+                                                    : Quantity{"total torque", "N m"}};
+      description.limits = {{{"error", "m"}, objective.error_limit_m}};
+      description.violation_scale = objective.logarithm ? 1 : objective.torque_scale_n_m;
+      break;
+    case TrackingObjective::Kind::error_with_torque_limit:
+      description.objectives = {objective.logarithm ? Quantity{"ln(error / 1 m)", "1"}
+                                                    : Quantity{"error", "m"}};
+      description.limits = {{{"total torque", "N m"}, objective.total_torque_limit_n_m}};
+      description.violation_scale = objective.logarithm ? 1 : objective.error_scale_m;
+      break;
   }
-  description.has_residuals = true;
+  for (const Limit& limit : description.limits) {
+    description.constraints.push_back({limit.quantity.name + " / limit - 1", "1"});
+  }
+  description.has_residuals = description.limits.empty();
   description.metrics = {{"error", "m"},
                          {"total_torque", "N m"},
                          {"failures", "1"},

@@ -31,7 +31,10 @@ std::vector<double> calc_objectives(const TrackingObjective& objective, double e
   };
   switch (objective.kind) {
     case TrackingObjective::Kind::error:
+    case TrackingObjective::Kind::error_with_torque_limit:
       return {apply_scale(error_m)};
+    case TrackingObjective::Kind::torque_with_error_limit:
+      return {apply_scale(torque_n_m)};
     case TrackingObjective::Kind::error_and_torque:
       return {apply_scale(error_m / objective.error_scale_m +
                           objective.torque_weight * torque_n_m / objective.torque_scale_n_m)};
@@ -39,6 +42,21 @@ std::vector<double> calc_objectives(const TrackingObjective& objective, double e
       break;
   }
   return {error_m, torque_n_m};
+}
+
+std::vector<double> calc_constraints(const TrackingObjective& objective, double error_m,
+                                     double torque_n_m) {
+  switch (objective.kind) {
+    case TrackingObjective::Kind::torque_with_error_limit:
+      return {error_m / objective.error_limit_m - 1};
+    case TrackingObjective::Kind::error_with_torque_limit:
+      return {torque_n_m / objective.total_torque_limit_n_m - 1};
+    case TrackingObjective::Kind::error:
+    case TrackingObjective::Kind::error_and_torque:
+    case TrackingObjective::Kind::error_vs_torque:
+      break;
+  }
+  return {};
 }
 
 // The residuals of an outcome are the errors (m) of the points that count; aggregate() scales them.
@@ -106,8 +124,9 @@ TrackingProblem::TrackingProblem(TrackingConfig config)
       targets_(kTargetCache_bytes) {
   check_design(config_.start);
   description_ = make_tracking_description(config_);
-  description_.has_jacobian = config_.engines.training->has_derivatives();
-  if (!description_.has_jacobian) {
+  const bool has_derivatives = config_.engines.training->has_derivatives();
+  description_.has_jacobian = description_.has_residuals && has_derivatives;
+  if (!has_derivatives) {
     description_.jacobian_advice =
         fmt::format("engine '{}' computes no derivatives; choose --engine articulated, which does",
                     config_.engines.training_name);
@@ -302,10 +321,12 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
   const ArmDesign design = make_design(x);
   const double torque = calc_total_torque_n_m(design);
   evaluation.objectives = calc_objectives(config_.objective, error, torque);
+  evaluation.constraint_values = calc_constraints(config_.objective, error, torque);
   // Asked for and not abandoned: a case with an error has a residual for each point that counts.
-  const bool has_residuals = std::ranges::all_of(outcomes, [](const CaseOutcome& outcome) {
-    return !outcome.has_error || !outcome.residuals.empty();
-  });
+  const bool has_residuals =
+      description_.has_residuals && std::ranges::all_of(outcomes, [](const CaseOutcome& outcome) {
+        return !outcome.has_error || !outcome.residuals.empty();
+      });
   if (has_residuals) {
     evaluation.residuals = calc_residuals(design, outcomes, numbers);
     evaluation.jacobian = calc_jacobian(design, outcomes, evaluation.residuals);
@@ -379,15 +400,16 @@ std::vector<double> TrackingProblem::calc_jacobian(const ArmDesign& design,
 
 std::vector<double> TrackingProblem::penalty_objectives() const {
   // Ten times the error of a design that is cut off at once on every case, and as much torque as
-  // the box allows.
+  // the box allows; where torque alone is minimised, ten times that.
   ArmDesign strongest = config_.start;
   for (const DesignParameter& parameter : config_.parameters) {
     if (parameter.kind != DesignParameter::Kind::gain) {
       get_parameter(strongest, parameter) *= config_.bounds_factor;
     }
   }
+  const bool is_torque = config_.objective.kind == TrackingObjective::Kind::torque_with_error_limit;
   return calc_objectives(config_.objective, 10 * config_.cutoff_error_m,
-                         calc_total_torque_n_m(strongest));
+                         (is_torque ? 10 : 1) * calc_total_torque_n_m(strongest));
 }
 
 }  // namespace armwright

@@ -9,6 +9,21 @@
 #include "base/bits.hpp"
 
 namespace armwright {
+namespace {
+
+// At most `count` of them, the first and the last included, at even distances. The last
+// improvements of a long run lie together, close to a limit, and all exceed it where new cases are
+// a little harder: some from further back are judged as well.
+std::vector<Candidate> spread(const std::vector<Candidate>& candidates, std::size_t count) {
+  count = std::min(count, candidates.size());
+  std::vector<Candidate> some;
+  for (std::size_t i = 0; i < count; ++i) {
+    some.push_back(candidates[i * (candidates.size() - 1) / std::max<std::size_t>(count - 1, 1)]);
+  }
+  return some;
+}
+
+}  // namespace
 
 CandidatePool::CandidatePool(const RunPlan& plan)
     : problem_(plan.problem.problem->description()),
@@ -75,10 +90,12 @@ std::vector<Candidate> CandidatePool::thin_front() const {
 }
 
 std::vector<Candidate> CandidatePool::select() const {
-  std::vector<Candidate> candidates = candidates_;
+  std::vector<Candidate> all = candidates_;
   if (fresh_ && incumbent_) {
-    candidates.push_back(*incumbent_);  // the last generation's best
+    all.push_back(*incumbent_);  // the last generation's best
   }
+  const std::vector<Candidate> candidates =
+      problem_.constraints.empty() ? all : spread(all, static_cast<std::size_t>(selection_.last));
   const auto known = [](const std::vector<Candidate>& chosen, const Candidate& candidate) {
     return std::any_of(chosen.begin(), chosen.end(),
                        [&](const Candidate& other) { return same_bits(other.x, candidate.x); });
@@ -92,7 +109,7 @@ std::vector<Candidate> CandidatePool::select() const {
     }
   }
   std::vector<Candidate> by_objective;
-  std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(by_objective),
+  std::copy_if(all.begin(), all.end(), std::back_inserter(by_objective),
                [](const Candidate& candidate) { return !candidate.recommended; });
   std::stable_sort(by_objective.begin(), by_objective.end(),
                    [](const Candidate& a, const Candidate& b) {

@@ -34,7 +34,8 @@ class CandidatePool {
   // one's before there is any; NaN if there is none.
   double best_objective() const;
   // The designs to judge on the validation set, oldest first, no two the same: the last and the
-  // best candidates; with several objectives the front, thinned out.
+  // best candidates; with constraints, instead of the last, some of the whole run; with several
+  // objectives the front, thinned out.
   std::vector<Candidate> select() const;
 
  private:

@@ -68,6 +68,8 @@ const std::vector<ContractCheck>& contract_checks() {
       {"Resume", "stopped and resumed, gives the same result", check_resume},
       {"Leaks", "leaves no memory, descriptor or process behind", check_leaks},
       {"Learning", "beats random search", check_learning},
+      {"Constraints", "finds designs that meet constraints if it knows or weighs them",
+       check_constraints},
   };
   return checks;
 }

@@ -49,5 +49,6 @@ ContractFinding check_resume(const OptimizerRow& row, const Options& options);
 // What is there afterwards (contract_outcome.cpp).
 ContractFinding check_leaks(const OptimizerRow& row, const Options& options);
 ContractFinding check_learning(const OptimizerRow& row, const Options& options);
+ContractFinding check_constraints(const OptimizerRow& row, const Options& options);
 
 }  // namespace armwright

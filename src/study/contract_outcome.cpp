@@ -106,4 +106,26 @@ ContractFinding check_learning(const OptimizerRow& row, const Options& options) 
   return contests > 0 ? ContractFinding{} : make_broken("no function suits it");
 }
 
+ContractFinding check_constraints(const OptimizerRow& row, const Options& options) {
+  const bool weighs = std::ranges::count(row.options, "constraint_weight", &OptionSpec::name) > 0;
+  if (!row.capabilities.constraints && !weighs) {
+    return make_exempt("it declares neither 'constraints' nor an option constraint_weight");
+  }
+  constexpr std::int64_t kBudget = 2000;
+  constexpr double kWorst = -10;  // the start is feasible, and 38.75; most come within 1 % of -44
+  for (const ContractProblem& problem : make_contract_problems(row)) {
+    if (problem.problem->description().constraints.empty()) {
+      continue;
+    }
+    const double best = -calc_median_success({row, options, problem}, kBudget);
+    if (!(best <= kWorst)) {
+      return make_broken(fmt::format(
+          "on {}: its best feasible value is {} ({} evaluations, median of 5 seeds), and "
+          "{} is easily reached",
+          problem.name, best, kBudget, kWorst));
+    }
+  }
+  return {};
+}
+
 }  // namespace armwright

@@ -30,6 +30,8 @@ RunResult make_result(const RunPlan& plan) {
   }
   result.objectives = description.objectives;
   result.objective_weights = description.objective_weights;
+  result.constraints = description.constraints;
+  result.limits = description.limits;
   result.test_set = plan.problem.sets.test;
   result.tracking = plan.problem.tracking != nullptr;
   result.published = plan.problem.published;
@@ -98,6 +100,7 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   }
   result.counts = evaluator.counts();
   result.first_failure = evaluator.first_failure();
+  result.least_violation = evaluator.least_violation();
   auto judged = judge.validate(evaluator.select_candidates());
   if (!judged) {
     journal.close();

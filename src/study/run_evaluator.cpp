@@ -247,6 +247,10 @@ void RunEvaluator::take(EvaluationRecord record, Score& score) {
     ++counts_.feasible;
     candidates_.consider(record);
   }
+  if (!evaluation.constraint_values.empty()) {
+    const double violation = calc_violation(evaluation.constraint_values);
+    least_violation_ = std::min(least_violation_.value_or(violation), violation);
+  }
   score.status = evaluation.status;
   score.clipped = record.clipped;
   score.residuals = std::move(evaluation.residuals);

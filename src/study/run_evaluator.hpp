@@ -66,6 +66,8 @@ class RunEvaluator final : public Evaluator {
   const RunCounts& counts() const { return counts_; }
   // Why the first evaluation without objectives has none; empty if there is no such.
   const std::string& first_failure() const { return first_failure_; }
+  // The smallest of an evaluation; nothing without constraints, or if none had a number.
+  std::optional<double> least_violation() const { return least_violation_; }
   // Once the optimizer has returned by itself: Error{bad_data} if the journal holds more
   // evaluations than it asked for.
   void check_replay_complete() const;
@@ -99,6 +101,7 @@ class RunEvaluator final : public Evaluator {
   RunCounts counts_;
   std::uint64_t replayed_cases_ = 0;  // those of counts_.replayed
   std::string first_failure_;
+  std::optional<double> least_violation_;
   CaseBlock block_;
   CandidatePool candidates_;
 };

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "base/error.hpp"
@@ -23,8 +25,17 @@ json errors_to_json(const std::vector<double>& errors) {
   return list;
 }
 
+json quantity_to_json(const Quantity& quantity) {
+  return {{"name", quantity.name}, {"unit", quantity.unit}};
+}
+
+Quantity quantity_from_json(const json& j) {
+  return {j.at("name"), j.at("unit")};
+}
+
 json evaluation_to_json(const Evaluation& evaluation) {
-  return {{"status", to_string(evaluation.status)},
+  return {{"feasible", is_proven_feasible(evaluation)},
+          {"status", to_string(evaluation.status)},
           {"reason", evaluation.reason},
           {"objectives", evaluation.objectives},
           {"constraint_values", evaluation.constraint_values},
@@ -92,6 +103,10 @@ double get_failure_error(const RunResult& result) {
   return result.tracking ? kFailureError_m : std::numeric_limits<double>::infinity();
 }
 
+bool is_proven_feasible(const Evaluation& evaluation) {
+  return is_feasible(evaluation) && evaluation.failed_cases == 0;
+}
+
 Quantity get_target(const RunResult& result) {
   return get_scalar_quantity(result.objectives);
 }
@@ -102,8 +117,15 @@ double calc_target(const RunResult& result, const Evaluation& evaluation) {
 
 std::string to_json(const RunResult& result) {
   json objectives = json::array();
-  for (const Quantity& objective : result.objectives) {
-    objectives.push_back({{"name", objective.name}, {"unit", objective.unit}});
+  std::ranges::transform(result.objectives, std::back_inserter(objectives), quantity_to_json);
+  json constraints = json::array();
+  for (std::size_t i = 0; i < result.constraints.size(); ++i) {
+    constraints.push_back(quantity_to_json(result.constraints[i]));
+    if (!result.limits.empty()) {
+      const Limit& limit = result.limits[i];
+      constraints.back()["limit"] = quantity_to_json(limit.quantity);
+      constraints.back()["limit"]["value"] = limit.value;
+    }
   }
   json judged = json::array();
   for (const JudgedCandidate& candidate : result.judged) {
@@ -129,6 +151,8 @@ std::string to_json(const RunResult& result) {
       {"metrics", result.metric_names},
       {"objectives", objectives},
       {"objective_weights", result.objective_weights},
+      {"constraints", constraints},
+      {"least_violation", optional_to_json(result.least_violation)},
       {"candidates", judged},
       {"winner", nullptr},
       {"test_set", result.test_set},
@@ -170,8 +194,20 @@ RunResult parse_result(const std::string& text, const std::filesystem::path& fil
     result.variable_names = j.at("variables").get<std::vector<std::string>>();
     result.metric_names = j.at("metrics").get<std::vector<std::string>>();
     for (const json& objective : j.at("objectives")) {
-      result.objectives.push_back({objective.at("name"), objective.at("unit")});
+      result.objectives.push_back(quantity_from_json(objective));
     }
+    // Results of earlier versions have neither constraints nor the least violation.
+    for (const json& constraint : j.value("constraints", json::array())) {
+      result.constraints.push_back(quantity_from_json(constraint));
+      if (constraint.contains("limit")) {
+        const json& limit = constraint["limit"];
+        result.limits.push_back({quantity_from_json(limit), limit.at("value")});
+      }
+    }
+    if (!result.limits.empty() && result.limits.size() != result.constraints.size()) {
+      throw std::runtime_error("some of its constraints have a limit and others none");
+    }
+    result.least_violation = optional_from_json(j.value("least_violation", json(nullptr)));
     if (result.objectives.empty()) {
       throw std::runtime_error("it names no objective");
     }

@@ -35,6 +35,11 @@ struct RunResult {
   std::vector<std::string> metric_names;
   std::vector<Quantity> objectives;
   std::vector<double> objective_weights;  // as in ProblemDescription
+  std::vector<Quantity> constraints;      // likewise
+  std::vector<Limit> limits;              // likewise
+  // Of all training evaluations the smallest, where the problem has constraints; nothing if none
+  // had a number.
+  std::optional<double> least_violation;
   std::string test_set;
   bool tracking = false;  // the problem is an arm's
   PublishedWinner published;
@@ -42,6 +47,9 @@ struct RunResult {
 
 // Above which error a test case has failed: kFailureError_m for an arm, never for a function.
 double get_failure_error(const RunResult& result);
+
+// Every constraint is met, and no case is without a number: what a result may call feasible.
+bool is_proven_feasible(const Evaluation& evaluation);
 
 // What the winner was chosen by: the objective, or the weighted sum of several.
 Quantity get_target(const RunResult& result);

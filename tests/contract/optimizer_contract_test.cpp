@@ -171,6 +171,9 @@ TEST(ContractSuite, FindsOutWhoMisdeclares) {
   EXPECT_BROKEN("Batches", make_row(one, {.batch = true}), "one point at a time");
   EXPECT_BROKEN("Batches", make_row(one, {.generations = true}), "begins none");
   EXPECT_BROKEN("Learning", make_row(one), "no better than random search");
+  EXPECT_EQ(find("Constraints", make_row(one)).outcome, ContractOutcome::exempt);
+  EXPECT_BROKEN("Constraints", make_row(one, {.constraints = true}),
+                "on constrained: its best feasible value is 38.75");
 }
 
 TEST(ContractSuite, FindsOutWhoPlansWithTheBudget) {

@@ -196,5 +196,46 @@ TEST_F(CliOptimize, ShowRefusesWhatIsNoRun) {
   EXPECT_THAT(outcome.err, HasSubstr("is not the folder of a run"));
 }
 
+// Four points and few cases, so that it is quick; the limit is one that a good deal of designs
+// keep.
+TEST_F(CliOptimize, SaysWhetherTheWinnerKeepsTheLimit) {
+  const std::vector<std::string> small = {"optimize", "q2-torque",
+                                          "--engine", "articulated",
+                                          "--budget", "2000",
+                                          "--set",    "workspace.points=4",
+                                          "--set",    "sets.validation_cases=5",
+                                          "--set",    "sets.test_cases=10"};
+  const Outcome kept =
+      run(small + std::vector<std::string>{"--set", "objective.error_limit_m=0.02"});
+  ASSERT_EQ(kept.exit_code, 0) << kept.err << kept.out;
+  EXPECT_THAT(kept.out,
+              AllOf(HasSubstr("Constraints"), HasSubstr("20.00 mm"), HasSubstr("% below)")));
+  const json result = json::parse(read("results/q2-torque-cmaes-seed1/result.json"));
+  EXPECT_EQ(result["constraints"][0]["limit"]["value"], 0.02);
+  EXPECT_EQ(result["constraints"][0]["limit"]["unit"], "m");
+  EXPECT_EQ(result["winner"]["test"]["feasible"], true);
+  EXPECT_LE(result["winner"]["test"]["metrics"][0], 0.02);
+  EXPECT_EQ(result["least_violation"], 0);
+  EXPECT_THAT(run({"show", "results/q2-torque-cmaes-seed1"}).out, HasSubstr("feasible"));
+
+  const std::vector<std::string> impossible = {"--set", "objective.error_limit_m=1e-9"};
+  const Outcome missed = run(small + impossible + std::vector<std::string>{"--new"});
+  EXPECT_EQ(missed.exit_code, 3);  // a design that the optimizer recommends is judged all the same
+  EXPECT_THAT(missed.out, AllOf(HasSubstr("% above)"), HasSubstr("NOT feasible")));
+  const Outcome none = run(small + impossible +
+                           std::vector<std::string>{"--optimizer", "ga", "--out", "results/none"});
+  EXPECT_EQ(none.exit_code, 3) << none.err;  // done, but something failed
+  EXPECT_THAT(none.out, AllOf(HasSubstr("No design met the constraints"),
+                              HasSubstr("The nearest had error ")));
+  EXPECT_GT(json::parse(read("results/none/result.json"))["least_violation"], 0);
+}
+
+TEST_F(CliOptimize, NamesWhoSeesConstraintsWhereAnotherCannot) {
+  const Outcome refused = run({"optimize", "q2-torque", "--optimizer", "ceres:lm"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, testing::AnyOf(HasSubstr("these see constraints: ga, "),
+                                          HasSubstr("built without Ceres Solver")));
+}
+
 }  // namespace
 }  // namespace armwright

@@ -266,5 +266,67 @@ TEST(CmaEs, ImpossiblePopulationsAreRefused) {
   EXPECT_TRUE(evaluator.trace().empty());
 }
 
+// The problem of Rosen and Suzuki: the optimum is -44, on two of its three constraints.
+std::vector<double> find_feasible(const std::string& optimizer, std::int64_t budget,
+                                  const std::vector<std::string>& assignments = {}) {
+  const auto problem = make_analytic("constrained");
+  const OptimizerRow& row = find_optimizer(optimizer);
+  std::vector<double> best;
+  for (std::uint64_t seed = 1; seed <= 9; ++seed) {
+    MemoryEvaluator evaluator(*problem, {.budget = budget});
+    row.make(Options::parse(row.name, row.options, assignments))->minimize(evaluator, seed);
+    best.push_back(evaluator.best().value());
+  }
+  std::ranges::sort(best);
+  return best;
+}
+
+TEST(CmaEs, WalksAlongConstraints) {
+  const double random = find_feasible("random", 2000).front();
+  for (const char* rule : {"feasibility_first=true", "feasibility_first=false"}) {
+    const std::vector<double> best = find_feasible("cmaes", 2000, {rule});
+    RecordProperty(rule, std::to_string(best[4]) + ", worst " + std::to_string(best.back()));
+    EXPECT_LT(best.back(), -44 * 0.97) << rule;  // every seed within a few percent
+    EXPECT_LT(best.back(), random) << rule;
+  }
+}
+
+TEST(CmaEs, TheUnitOfTheObjectiveChangesNothing) {
+  // In thousandths of the unit, and a violation worth as much less.
+  class Thousandths : public Problem {
+   public:
+    Thousandths() : inner_(make_analytic("constrained")), description_(inner_->description()) {
+      description_.violation_scale = 0x1p-10;
+    }
+    const ProblemDescription& description() const override { return description_; }
+    std::vector<CaseOutcome> simulate(std::span<const CaseJob> jobs) const override {
+      return inner_->simulate(jobs);
+    }
+    Evaluation aggregate(std::span<const double> x,
+                         std::span<const CaseOutcome> outcomes) const override {
+      Evaluation evaluation = inner_->aggregate(x, outcomes);
+      evaluation.objectives[0] *= 0x1p-10;
+      return evaluation;
+    }
+    std::vector<double> penalty_objectives() const override { return {1e12}; }
+
+   private:
+    std::unique_ptr<Problem> inner_;
+    ProblemDescription description_;
+  };
+  const Thousandths other;
+  const auto problem = make_analytic("constrained");
+  for (const char* rule : {"feasibility_first=true", "feasibility_first=false"}) {
+    MemoryEvaluator one(*problem, {.budget = 1000});
+    MemoryEvaluator two(other, {.budget = 1000});
+    minimize(one, 1, {rule, "tol_fun=0"});
+    minimize(two, 1, {rule, "tol_fun=0"});
+    ASSERT_EQ(one.trace().size(), two.trace().size());
+    for (std::size_t i = 0; i < one.trace().size(); ++i) {
+      ASSERT_EQ(one.trace()[i].asked, two.trace()[i].asked) << rule << ", evaluation " << i;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace armwright

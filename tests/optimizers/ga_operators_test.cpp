@@ -36,48 +36,6 @@ DecisionVariable linear(double lower, double upper) {
   return {"v", "", lower, upper, lower, Scale::linear};
 }
 
-ProblemDescription describe(std::size_t constraints) {
-  ProblemDescription problem;
-  problem.constraints.resize(constraints);
-  return problem;
-}
-
-TEST(GaFitness, SeveralObjectivesCountAsTheirWeightedSum) {
-  ProblemDescription problem;
-  problem.objective_weights = {2, 10};
-  const Score score{.objectives = {3, 7}, .constraint_values = {}, .residuals = {}, .jacobian = {}};
-  EXPECT_EQ(calc_fitness(problem, score).objective, 76);
-}
-
-TEST(GaFitness, AddsUpViolationsAndKnowsWhatItIsNotTold) {
-  const Score met{
-      .objectives = {3, 7}, .constraint_values = {-1, 0}, .residuals = {}, .jacobian = {}};
-  EXPECT_EQ(calc_fitness(describe(2), met).violation, 0);
-  EXPECT_EQ(calc_fitness(describe(2), met).objective, 3);
-  const Score violated{
-      .objectives = {3}, .constraint_values = {2, -5, 0.5}, .residuals = {}, .jacobian = {}};
-  EXPECT_EQ(calc_fitness(describe(3), violated).violation, 2.5);
-  const Score failed{
-      .objectives = {1e12}, .constraint_values = {}, .residuals = {}, .jacobian = {}};
-  EXPECT_EQ(calc_fitness(describe(1), failed).violation, std::numeric_limits<double>::infinity());
-  EXPECT_EQ(calc_fitness(describe(0), failed).violation, 0);
-}
-
-TEST(GaFitness, FeasibilityComesFirst) {
-  const Fitness good{0, 1};
-  const Fitness poor{0, 100};
-  const Fitness nearly{0.1, -5};
-  const Fitness far{2, -50};
-  const Fitness far_and_worse{2, -40};
-  EXPECT_TRUE(is_fitter(good, poor));
-  EXPECT_FALSE(is_fitter(poor, good));
-  EXPECT_TRUE(is_fitter(poor, nearly));
-  EXPECT_TRUE(is_fitter(nearly, far));
-  EXPECT_FALSE(is_fitter(far, nearly));
-  EXPECT_TRUE(is_fitter(far, far_and_worse));
-  EXPECT_FALSE(is_fitter(good, good));
-}
-
 TEST(GaFitness, RankingKeepsTheOrderOfEquals) {
   const std::vector<double> objectives = {3, 1, 2, 1, 0};
   EXPECT_THAT(rank(make_population(objectives)), ElementsAre(4, 1, 3, 2, 0));

@@ -29,6 +29,15 @@ TEST(Merit, IsTheWeightedSumAndThePenaltyOfWhatIsViolated) {
   EXPECT_EQ(calc_merit(problem, score, 0), 8);
 }
 
+TEST(Merit, AViolationWeighsInTheProblemsOwnUnits) {
+  ProblemDescription problem = make_weighted();
+  problem.violation_scale = 1e6;
+  Score score;
+  score.objectives = {3, 4};
+  score.constraint_values = {0.25, -100, 0.5};
+  EXPECT_EQ(calc_merit(problem, score, 2), 8 + 1.5e6);
+}
+
 TEST(Merit, OfAFailedEvaluationIsItsPenalty) {
   Score score;
   score.objectives = {1e12, 1e12};

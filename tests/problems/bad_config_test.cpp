@@ -114,7 +114,24 @@ INSTANTIATE_TEST_SUITE_P(Workspace, BadSection, testing::ValuesIn(kWorkspace));
 const std::vector<Mistake> kObjective = {
     {"[objective]\nkind = 'errors'",
      "3: unknown objective.kind 'errors'; did you mean 'error'? Valid: error, "
-     "error_and_torque, error_vs_torque"},
+     "error_and_torque, error_vs_torque, torque_with_error_limit, error_with_torque_limit"},
+    {"[objective]\nkind = 'torque_with_error_limit'",
+     "2: objective.error_limit_m is missing; it must be a finite number > 0 and <= 1000000000000"},
+    {"[objective]\nkind = 'torque_with_error_limit'\nerror_limit_m = 0",
+     "4: objective.error_limit_m is 0; it must be a finite number > 0 and <= 1000000000000"},
+    {"[objective]\nkind = 'error_with_torque_limit'",
+     "2: objective.total_torque_limit_n_m is missing; it must be a finite number > 0 and <= "
+     "1000000000000"},
+    {"[objective]\nkind = 'error_with_torque_limit'\ntotal_torque_limit_n_m = -3",
+     "4: objective.total_torque_limit_n_m is -3; it must be a finite number > 0 and <= "
+     "1000000000000"},
+    // A limit that this kind would not keep.
+    {"[objective]\nkind = 'error_and_torque'\nerror_limit_m = 0.1",
+     "4: unknown key objective.error_limit_m. Valid here: kind, logarithm, torque_weight, "
+     "error_scale_m, torque_scale_n_m"},
+    {"[objective]\nkind = 'error_with_torque_limit'\ntotal_torque_limit_n_m = 851",
+     "4: objective.total_torque_limit_n_m is 851; no design within the bounds has less than 852 N "
+     "m; raise it or variables.bounds_factor"},
     {"[objective]\nkind = 'error_vs_torque'\nlogarithm = true",
      "4: objective.logarithm is true; two objectives are compared as they are; leave it out"},
     {"[objective]\ntorque_weight = -1",
@@ -257,6 +274,15 @@ TEST(BadConfig, WhatIsMissingIsNamed) {
             "p.toml:1: variables is missing; it must be a table, [variables]");
   EXPECT_EQ(folder.refusal_of("kind = 'analytic'"),
             "p.toml:1: function is missing; it must be a table, [function]");
+}
+
+TEST(BadConfig, TorqueThatIsNoVariableIsNotMinimised) {
+  EXPECT_EQ(ProblemFolder().refusal_of(
+                "extends = \"base\"\n[objective]\nkind = 'torque_with_error_limit'\n"
+                "error_limit_m = 0.1\n[variables]\noptimize = ['p', 'i']\n"),
+            "p.toml:3: objective.kind is 'torque_with_error_limit'; no effort limit is optimized, "
+            "so that the total torque is always 85200 N m; add effort_min and effort_max to "
+            "variables.optimize");
 }
 
 TEST(BadConfig, TextThatIsNoTomlIsRefusedAtItsLine) {

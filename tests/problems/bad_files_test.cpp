@@ -12,7 +12,7 @@ namespace {
 constexpr const char* kProblems =
     "constrained, ellipsoid, initial, initial-0cm, initial-45cm, initial-90cm, q1-complex, "
     "q1-ramp, q1-step, q1-trapezoid, q1-triangular, q2-e1, q2-e2, q2-e3, q2-e4, q2-e5, q2-e6, "
-    "q2-pareto, q3-load, q4-speed, rastrigin, rosenbrock, sphere";
+    "q2-error, q2-pareto, q2-torque, q3-load, q4-speed, rastrigin, rosenbrock, sphere";
 constexpr const char* kDesigns =
     "table-a1, table-a10, table-a11, table-a5, table-a6, table-a7, table-a8, table-a9";
 constexpr const char* kOrPath = " (or the path of a .toml file)";

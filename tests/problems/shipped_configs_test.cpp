@@ -207,7 +207,7 @@ TEST(ShippedProblems, AreAllKnownHere) {
   for (const Experiment& experiment : make_experiments()) {
     expected.push_back(experiment.name);
   }
-  expected.push_back("q2-pareto");
+  expected.insert(expected.end(), {"q2-pareto", "q2-torque", "q2-error"});
   EXPECT_THAT(list_configs("problems"), testing::UnorderedElementsAreArray(expected));
   std::vector<std::string> listed;
   for (const ProblemTitle& problem : list_problems()) {
@@ -233,6 +233,32 @@ TEST(ShippedProblems, TheParetoProblemIsE6WithoutWeights) {
   const Evaluation both = front.problem->evaluate(start, block);
   EXPECT_DOUBLE_EQ(calc_scalar(description, both.objectives),
                    e6.problem->evaluate(start, block).objectives.at(0));
+}
+
+// One task, one set of cases, and a limit that the published winner of E6 keeps.
+TEST(ShippedProblems, TheLimitedOnesAreE6TakenApart) {
+  const LoadedProblem e6 = load_problem("q2-e6");
+  const CaseBlock block{CaseRole::training, e6.sets.training, {0, 1, 2, 3, 4}};
+  const std::vector<double> published = e6.tracking->make_vector(load_design("table-a10").design);
+  const Evaluation whole = e6.problem->evaluate(published, block);
+  for (const std::string name : {"q2-torque", "q2-error"}) {
+    SCOPED_TRACE(name);
+    const LoadedProblem loaded = load_problem(name);
+    EXPECT_FALSE(loaded.schedule.fresh);
+    EXPECT_EQ(loaded.schedule.cases, 5);
+    EXPECT_EQ(loaded.budget, 35000);
+    EXPECT_EQ(loaded.sets.training, e6.sets.training);
+    const ProblemDescription& description = loaded.problem->description();
+    const bool is_torque = name == "q2-torque";
+    ASSERT_THAT(description.limits, SizeIs(1));
+    EXPECT_EQ(description.limits[0].value, is_torque ? 1e-4 : 30000);
+    const Evaluation own = loaded.problem->evaluate(published, block);
+    EXPECT_EQ(own.case_errors, whole.case_errors);  // the same task
+    EXPECT_THAT(own.objectives, ElementsAre(whole.metrics[is_torque ? 1 : 0]));
+    EXPECT_TRUE(is_feasible(own));
+    EXPECT_FALSE(is_feasible(loaded.problem->evaluate(
+        loaded.tracking->make_vector(loaded.tracking->config().start), block)));
+  }
 }
 
 TEST(ShippedProblems, OnlyQ4Sweeps) {

@@ -107,6 +107,17 @@ TEST(TrackingVariables, DescriptionNamesWhatIsMeasured) {
                   "joint_4.peak_effort (N m)", "joint_4.rms_effort (N m)"));
   EXPECT_THAT(get_all(load("q2-e1")->description().objectives),
               ElementsAre("error and torque (1)"));
+  const ProblemDescription torque = load("q2-torque")->description();
+  EXPECT_THAT(get_all(torque.objectives), ElementsAre("total torque (N m)"));
+  EXPECT_THAT(get_all(torque.constraints), ElementsAre("error / limit - 1 (1)"));
+  EXPECT_EQ(torque.limits.at(0).quantity.unit, "m");
+  EXPECT_EQ(torque.violation_scale, 100000);
+  const ProblemDescription error = load("q2-error")->description();
+  EXPECT_THAT(get_all(error.objectives), ElementsAre("error (m)"));
+  EXPECT_THAT(get_all(error.constraints), ElementsAre("total torque / limit - 1 (1)"));
+  EXPECT_EQ(error.limits.at(0).quantity.unit, "N m");
+  EXPECT_EQ(error.violation_scale, 0.0005);
+  EXPECT_EQ(load("q2-error", {"objective.logarithm=true"})->description().violation_scale, 1);
 }
 
 TEST(TrackingVariables, VectorAndDesignAreTheSameThing) {
@@ -246,14 +257,65 @@ TEST(TrackingAggregate, TorqueCountsAsTheFormulaSays) {
   EXPECT_EQ(load("q1-complex")->aggregate(x, outcomes).metrics.at(1), 155200);
 }
 
+TEST(TrackingAggregate, ALimitIsAConstraintInSharesOfItself) {
+  const std::vector<CaseOutcome> outcomes = {make_outcome(0.01, 1, 0, 1),
+                                             make_outcome(0.03, 1, 0, 1)};
+  const auto torque = load("q2-torque", {"objective.error_limit_m=0.025"});
+  const std::vector<double> x = get_start(*torque);
+  const Evaluation least_torque = torque->aggregate(x, outcomes);
+  EXPECT_THAT(least_torque.objectives, ElementsAre(85200));
+  ASSERT_THAT(least_torque.constraint_values, SizeIs(1));
+  EXPECT_NEAR(least_torque.constraint_values[0], 0.02 / 0.025 - 1, 1e-15);  // met
+
+  const auto error = load("q2-error", {"objective.total_torque_limit_n_m=40000"});
+  const Evaluation least_error = error->aggregate(x, outcomes);
+  EXPECT_THAT(least_error.objectives, ElementsAre(0.02));
+  ASSERT_THAT(least_error.constraint_values, SizeIs(1));
+  EXPECT_NEAR(least_error.constraint_values[0], 1.13, 1e-15);  // 85200 / 40000 - 1
+  EXPECT_FALSE(is_feasible(least_error));
+}
+
+TEST(TrackingAggregate, ALimitCountsCasesAsTheObjectiveDoes) {
+  const auto problem = load("q2-torque", {"objective.error_limit_m=0.5"});
+  const std::vector<double> x = get_start(*problem);
+  CaseOutcome diverged = make_outcome(1, 1, 0, 1);  // with 1 m for every point, as in training
+  diverged.status = EvaluationStatus::diverged;
+  const CaseOutcome good = make_outcome(0.25, 1, 0, 1);
+  EXPECT_THAT(problem->aggregate(x, std::vector{good, diverged}).constraint_values,
+              ElementsAre(0.25));
+  // A case without number says nothing; it is counted, and no result calls that feasible.
+  const CaseOutcome none = make_failure(EvaluationStatus::unreachable, "out of reach");
+  const Evaluation half = problem->aggregate(x, std::vector{good, none});
+  EXPECT_THAT(half.constraint_values, ElementsAre(-0.5));
+  EXPECT_EQ(half.failed_cases, 1);
+  EXPECT_THAT(problem->aggregate(x, std::vector{none}).constraint_values, IsEmpty());
+  EXPECT_FALSE(is_feasible(problem->aggregate(x, std::vector{none})));
+  CaseOutcome abandoned = good;
+  abandoned.status = EvaluationStatus::abandoned;
+  EXPECT_FALSE(is_feasible(problem->aggregate(x, std::vector{abandoned})));
+}
+
+TEST(TrackingAggregate, WithALimitThereAreNoResiduals) {
+  CaseOutcome outcome = make_outcome(0.01, 1, 0, 1);
+  outcome.residuals = {0.01, 0.01};
+  for (const char* name : {"q2-torque", "q2-error"}) {
+    const auto problem = load(name, {"physics.engine=articulated"});
+    EXPECT_FALSE(problem->description().has_residuals);
+    EXPECT_FALSE(problem->description().has_jacobian);
+    EXPECT_THAT(problem->aggregate(get_start(*problem), std::vector{outcome}).residuals, IsEmpty());
+  }
+}
+
 TEST(TrackingAggregate, TheLogarithmIsThatOfTheSameNumber) {
   const std::vector<CaseOutcome> outcomes = {make_outcome(0.01, 1, 0, 1)};
-  for (const char* name : {"q1-complex", "q2-e3"}) {
+  for (const char* name : {"q1-complex", "q2-e3", "q2-torque", "q2-error"}) {
     const auto plain = load(name);
     const auto logarithmic = load(name, {"objective.logarithm=true"});
     const std::vector<double> x = get_start(*plain);
     EXPECT_EQ(logarithmic->aggregate(x, outcomes).objectives.at(0),
               std::log(plain->aggregate(x, outcomes).objectives.at(0)));
+    EXPECT_EQ(logarithmic->aggregate(x, outcomes).constraint_values,
+              plain->aggregate(x, outcomes).constraint_values);
     EXPECT_EQ(logarithmic->penalty_objectives().at(0), std::log(plain->penalty_objectives().at(0)));
     EXPECT_TRUE(std::isfinite(
         logarithmic->aggregate(x, std::vector{make_outcome(0, 1, 0, 1)}).objectives[0]));
@@ -370,7 +432,7 @@ TEST(TrackingAggregate, DivergenceWithANumberKeepsItsStatus) {
 }
 
 TEST(TrackingPenalty, IsWorseThanAnythingThatTrainingCanGive) {
-  for (const std::string name : {"q1-complex", "q2-e1", "q2-e5"}) {
+  for (const std::string name : {"q1-complex", "q2-e1", "q2-e5", "q2-torque", "q2-error"}) {
     for (const std::string cutoff : {"0.1", "1", "50"}) {
       SCOPED_TRACE(name + ", cut-off " + cutoff);
       const auto problem = load(name, {"training.cutoff_error_m=" + cutoff});
