@@ -212,12 +212,17 @@ class SegmentKernel {
   PackList<V, Chain::kJoints> effort_, acceleration_, way_;
 };
 
-// Kernels of their own for the shape above and for up to eight turning joints; one for any chain.
+// The address sanitizer makes straight-line code so long that the compiler takes half an hour for
+// it. Under it chains of known lengths take the path for any: the same code, with loops.
+#ifdef __SANITIZE_ADDRESS__
+inline constexpr bool kHasKnownLengths = false;
+#else
+inline constexpr bool kHasKnownLengths = true;
+#endif
+
+// Kernels of their own for the shape above and for up to eight turning joints.
 template <class V>
-void run_segment(SegmentCall<typename V::Scalar>& call) {
-  if (call.prismatic) {
-    return SegmentKernel<V, ChainShape<0, kAnyShape, true>>::run(call);
-  }
+void run_known_length(SegmentCall<typename V::Scalar>& call) {
   if (call.joints == 4 && !call.tilted_gravity && has_shape(call.flags, 4, kPalletiser)) {
     return SegmentKernel<V, ChainShape<4, kPalletiser, false>>::run(call);
   }
@@ -238,9 +243,18 @@ void run_segment(SegmentCall<typename V::Scalar>& call) {
       return SegmentKernel<V, ChainShape<7, kAnyShape, false>>::run(call);
     case 8:
       return SegmentKernel<V, ChainShape<8, kAnyShape, false>>::run(call);
-    default:
-      return SegmentKernel<V, ChainShape<0, kAnyShape, true>>::run(call);
   }
+}
+
+template <class V>
+void run_segment(SegmentCall<typename V::Scalar>& call) {
+  constexpr int kLongestKnown = 8;
+  if constexpr (kHasKnownLengths) {
+    if (!call.prismatic && call.joints <= kLongestKnown) {
+      return run_known_length<V>(call);
+    }
+  }
+  SegmentKernel<V, ChainShape<0, kAnyShape, true>>::run(call);
 }
 
 }  // namespace armwright::articulated
