@@ -3,6 +3,8 @@
 // them held (semi-implicit Euler: qd += h qdd(q, qd); q += h qd), measures at its end.
 #pragma once
 
+#include <type_traits>
+
 #include "sim/articulated/chain_dynamics.hpp"
 
 namespace armwright::articulated {
@@ -219,12 +221,15 @@ inline constexpr bool kHasKnownLengths = false;
 #else
 inline constexpr bool kHasKnownLengths = true;
 #endif
+using AnyChain = ChainShape<0, kAnyShape, true>;
+using Palletiser =
+    std::conditional_t<kHasKnownLengths, ChainShape<4, kPalletiser, false>, AnyChain>;
 
 // Kernels of their own for the shape above and for up to eight turning joints.
 template <class V>
 void run_known_length(SegmentCall<typename V::Scalar>& call) {
   if (call.joints == 4 && !call.tilted_gravity && has_shape(call.flags, 4, kPalletiser)) {
-    return SegmentKernel<V, ChainShape<4, kPalletiser, false>>::run(call);
+    return SegmentKernel<V, Palletiser>::run(call);
   }
   switch (call.joints) {
     case 1:
@@ -254,7 +259,7 @@ void run_segment(SegmentCall<typename V::Scalar>& call) {
       return run_known_length<V>(call);
     }
   }
-  SegmentKernel<V, ChainShape<0, kAnyShape, true>>::run(call);
+  SegmentKernel<V, AnyChain>::run(call);
 }
 
 }  // namespace armwright::articulated

@@ -74,9 +74,9 @@ std::vector<Number> calc_squared_errors(const TrackingSetup& setup, const Tracki
     // Fewer kernels than for simulations: every one takes long to compile.
     if (n == 4 && !call.prismatic && !call.tilted_gravity &&
         has_shape(call.flags, 4, kPalletiser)) {
-      SegmentKernel<V, ChainShape<4, kPalletiser, false>>::run(call);
+      SegmentKernel<V, Palletiser>::run(call);
     } else {
-      SegmentKernel<V, ChainShape<0, kAnyShape, true>>::run(call);
+      SegmentKernel<V, AnyChain>::run(call);
     }
     if (call.event[0] != LaneEvent::none) {
       break;
