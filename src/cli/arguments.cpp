@@ -9,8 +9,8 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "cli/session.hpp"
-#include "study/run_plan.hpp"
 #include "sim/physics_engine.hpp"
+#include "study/run_plan.hpp"
 
 namespace armwright {
 namespace {

@@ -135,8 +135,8 @@ void announce(const CompareOptions& options, const StudyPlan& plan, unsigned job
                      describe_cost(plan, measure_duration_s(plan) / jobs, jobs) +
                      fmt::format("plan {}", calc_plan_hash(plan).substr(0, 16));
   if (!options.dry_run) {
-    text += fmt::format("\nfolder {} ({})", folder.string(),
-                        is_study_folder(folder) ? "found" : "new");
+    text +=
+        fmt::format("\nfolder {} ({})", folder.string(), is_study_folder(folder) ? "found" : "new");
   }
   for (const std::string& line : split(text, '\n')) {
     write_message(line);
@@ -145,8 +145,9 @@ void announce(const CompareOptions& options, const StudyPlan& plan, unsigned job
 
 int run_compare(const CompareOptions& options, Session& session) {
   if (options.file.empty() && options.preset.empty() && options.problems.empty()) {
-    throw Error(ErrorKind::usage, "compare what? Give a study file, --preset NAME, or --problems "
-                                  "and --optimizers. See 'armwright compare --help'");
+    throw Error(ErrorKind::usage,
+                "compare what? Give a study file, --preset NAME, or --problems "
+                "and --optimizers. See 'armwright compare --help'");
   }
   const unsigned jobs = options.jobs.get();
   if (!options.time_limit.empty()) {
@@ -200,10 +201,9 @@ int run_compare(const CompareOptions& options, Session& session) {
 
 void add_compare(CLI::App& app, Session& session) {
   auto options = std::make_shared<CompareOptions>();
-  CLI::App* command =
-      add_command(app, session, "compare",
-                  "Settle which optimizer to use: runs on the same footing, statistics, a verdict",
-                  kExamples);
+  CLI::App* command = add_command(
+      app, session, "compare",
+      "Settle which optimizer to use: runs on the same footing, statistics, a verdict", kExamples);
   command->add_option("STUDY", options->file,
                       "A study file, or the name of a shipped one (armwright list studies)");
   command->add_option("--preset", options->preset, "A shipped study by its name: smoke, q1, ...")

@@ -127,8 +127,7 @@ void announce(const RunRequest& request) {
   write_message(fmt::format("optimizer {}, seed {}, budget {}, schedule {}, {}",
                             plan.optimizer.name, plan.seed,
                             format_count(static_cast<unsigned long long>(plan.budget), "case"),
-                            to_text(plan.schedule),
-                            format_count(request.jobs, "thread")));
+                            to_text(plan.schedule), format_count(request.jobs, "thread")));
   if (plan.problem.schedule.fresh && !plan.schedule.fresh) {
     write_message(
         fmt::format("the problem's own schedule is fresh:{}, a new case for every "

@@ -46,8 +46,9 @@ std::string describe_problem(const StudyPlan& plan, const ProblemResult& problem
   const bool has_final = std::ranges::any_of(
       problem.optimizers, [](const OptimizerResult& one) { return one.final_check.has_value(); });
   const bool has_cost = std::isfinite(problem.best_known) && !problem.has_front;
-  std::vector<Column> columns = {{"optimizer", false}, {"median"},        {"quartiles"},
-                                 {"mean rank"},        {"without value"}, {"leader better: A12, p"}};
+  std::vector<Column> columns = {{"optimizer", false}, {"median"},
+                                 {"quartiles"},        {"mean rank"},
+                                 {"without value"},    {"leader better: A12, p"}};
   if (has_cost) {
     columns.push_back({"cases to 1 %"});
   }
@@ -78,10 +79,10 @@ std::string describe_problem(const StudyPlan& plan, const ProblemResult& problem
     }
     table.add_row(std::move(row));
   }
-  std::string text = style.bold(problem.label) +
-                     fmt::format("  {} on the test set, {} runs each\n", problem.quantity.name,
-                                 plan.replicates) +
-                     table.format(style, 2);
+  std::string text =
+      style.bold(problem.label) +
+      fmt::format("  {} on the test set, {} runs each\n", problem.quantity.name, plan.replicates) +
+      table.format(style, 2);
   if (problem.friedman) {
     text += fmt::format("  Friedman test (Iman-Davenport): F = {:.3g}, p = {}\n",
                         problem.friedman->f, format_p(problem.friedman->f_p_value));
@@ -89,8 +90,7 @@ std::string describe_problem(const StudyPlan& plan, const ProblemResult& problem
   return text + "\n";
 }
 
-std::string describe_ranking(const StudyPlan& plan, const StudyResult& result,
-                             const Style& style) {
+std::string describe_ranking(const StudyPlan& plan, const StudyResult& result, const Style& style) {
   Table table({{"optimizer", false}, {"mean rank"}});
   const Ranking& ranking = result.overall.ranking.full;
   for (const std::size_t o : ranking.order) {
@@ -112,8 +112,8 @@ std::string describe_plan(const StudyPlan& plan, const Style& style) {
     const std::string settings =
         problem.settings.empty() ? "" : " (" + join(problem.settings, ", ") + ")";
     table.add_row({"problem", fmt::format("{}: schedule {}, {} test cases{}", problem.label,
-                                          to_text(problem.schedule),
-                                          problem.loaded.sets.test_cases, settings)});
+                                          to_text(problem.schedule), problem.loaded.sets.test_cases,
+                                          settings)});
   }
   table.add_row({"optimizers", list_labels(plan, false)});
   const std::string baselines = list_labels(plan, true);
@@ -136,9 +136,10 @@ std::string describe_cost(const StudyPlan& plan, double expected_s, unsigned job
       "{} cells; at most {} simulated cases: training {}, validation {}, test {}\n", cost.cells,
       cost.training + cost.validation + cost.test, cost.training, cost.validation, cost.test);
   if (expected_s > 0) {
-    text += fmt::format("about {} with {} (measured on a few simulations; optimizers that think "
-                        "long take longer)\n",
-                        format_duration(expected_s), format_count(jobs, "process") );
+    text += fmt::format(
+        "about {} with {} (measured on a few simulations; optimizers that think "
+        "long take longer)\n",
+        format_duration(expected_s), format_count(jobs, "process"));
   }
   return text;
 }
@@ -158,9 +159,10 @@ std::string describe_study(const StudyPlan& plan, const StudyResult& result,
       text += "  " + line + "\n";
     }
   }
-  return text + fmt::format("\n* significant at {} after Holm's correction over the problem's "
-                            "pairs. Tables: {}\n",
-                            kSignificance, (folder / "tables").string());
+  return text + fmt::format(
+                    "\n* significant at {} after Holm's correction over the problem's "
+                    "pairs. Tables: {}\n",
+                    kSignificance, (folder / "tables").string());
 }
 
 }  // namespace armwright

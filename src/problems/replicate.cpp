@@ -26,9 +26,7 @@ class StartedElsewhere final : public Problem {
                        std::span<const CaseOutcome> outcomes) const override {
     return problem_->aggregate(x, outcomes);
   }
-  std::vector<double> penalty_objectives() const override {
-    return problem_->penalty_objectives();
-  }
+  std::vector<double> penalty_objectives() const override { return problem_->penalty_objectives(); }
 
  private:
   std::shared_ptr<const Problem> problem_;

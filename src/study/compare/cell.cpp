@@ -127,9 +127,9 @@ bool test_progress(const StudyPlan& plan, const RunPlan& run, const RunResult& r
   outcome.start_value = calc_test_value(problem, bench.get(designs.front()));
   for (const std::int64_t budget : checkpoints) {
     const Incumbent* incumbent = find_incumbent(budget);
-    outcome.curve.push_back(
-        {budget, incumbent == nullptr ? kInfinity
-                                      : calc_test_value(problem, bench.get(incumbent->x))});
+    outcome.curve.push_back({budget, incumbent == nullptr
+                                         ? kInfinity
+                                         : calc_test_value(problem, bench.get(incumbent->x))});
   }
   for (std::size_t i = 0; has_front && i < result.judged.size(); ++i) {
     const Evaluation& evaluation = bench.get(result.judged[i].candidate.x);
@@ -143,8 +143,8 @@ bool test_progress(const StudyPlan& plan, const RunPlan& run, const RunResult& r
 }  // namespace
 
 double calc_test_value(const ProblemDescription& problem, const Evaluation& evaluation) {
-  const bool violated = std::ranges::any_of(
-      evaluation.constraint_values, [](double g) { return g > kConstraintTolerance; });
+  const bool violated = std::ranges::any_of(evaluation.constraint_values,
+                                            [](double g) { return g > kConstraintTolerance; });
   return evaluation.objectives.empty() || evaluation.failed_cases > 0 || violated
              ? kInfinity
              : calc_scalar(problem, evaluation.objectives);

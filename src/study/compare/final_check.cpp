@@ -88,10 +88,10 @@ bool add_final_checks(const StudyPlan& plan, const std::filesystem::path& study,
   Progress progress;
   progress.phase = Progress::Phase::test;
   for (const StudyProblem& problem : plan.problems) {
-    progress.total += problem.loaded.tracking ? plan.optimizers.size() *
-                                                    static_cast<std::size_t>(
-                                                        problem.loaded.sets.test_cases)
-                                              : 0;
+    progress.total +=
+        problem.loaded.tracking
+            ? plan.optimizers.size() * static_cast<std::size_t>(problem.loaded.sets.test_cases)
+            : 0;
   }
   ThreadPool pool(jobs);
   for (std::size_t p = 0; p < plan.problems.size(); ++p) {
@@ -128,9 +128,9 @@ bool add_final_checks(const StudyPlan& plan, const std::filesystem::path& study,
       if (stop.requested()) {
         return false;
       }
-      check = FinalCheck{best->replicate, plan.final_engine,
-                         calc_test_value(description, evaluation),
-                         summarize(evaluation.case_errors, kFailureError_m)};
+      check =
+          FinalCheck{best->replicate, plan.final_engine, calc_test_value(description, evaluation),
+                     summarize(evaluation.case_errors, kFailureError_m)};
       save_check(file, *check, *best);
     }
   }

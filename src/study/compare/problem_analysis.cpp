@@ -205,9 +205,8 @@ ProblemResult analyze_problem(const StudyPlan& plan, std::size_t number,
         continue;
       }
       runs.push_back(&cell);
-      const double value = result.has_front
-                               ? calc_missed_volume(cell, ideal, result.reference_point)
-                               : cell.value;
+      const double value =
+          result.has_front ? calc_missed_volume(cell, ideal, result.reference_point) : cell.value;
       one.values.push_back(value);
       one.infinite += std::isfinite(value) ? 0 : 1;
       one.failed += cell.failure.empty() ? 0 : 1;

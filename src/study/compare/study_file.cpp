@@ -61,8 +61,9 @@ std::optional<Schedule> read_schedule_key(const ConfigTable& table) {
 void refuse_privileges(const ConfigTable& table) {
   for (const char* key : {"budget", "replicates", "schedule", "seed", "start_spread", "sets"}) {
     if (table.has(key)) {
-      table.refuse(key, "it is the same for every optimizer of a comparison: it belongs to the top "
-                        "of the file");
+      table.refuse(key,
+                   "it is the same for every optimizer of a comparison: it belongs to the top "
+                   "of the file");
     }
   }
 }
@@ -176,8 +177,9 @@ void load_problems(const RawPlan& raw, StudyPlan& plan) {
     plan.problems.push_back(std::move(problem));
   }
   if (plan.problems.empty()) {
-    throw Error(ErrorKind::usage, "the study names no problem; give --problems a,b or a file with "
-                                  "problems = [...]");
+    throw Error(ErrorKind::usage,
+                "the study names no problem; give --problems a,b or a file with "
+                "problems = [...]");
   }
   refuse_repeated("problem", labels);
 }
@@ -195,8 +197,9 @@ StudyOptimizer load_study_optimizer(const NamedOptimizer& named) {
 
 void load_optimizers(const RawPlan& raw, StudyPlan& plan) {
   if (raw.optimizers.empty()) {
-    throw Error(ErrorKind::usage, "the study names no optimizer; give --optimizers a,b or a file "
-                                  "with optimizers = [...]");
+    throw Error(ErrorKind::usage,
+                "the study names no optimizer; give --optimizers a,b or a file "
+                "with optimizers = [...]");
   }
   bool has_random = false, has_local = false;
   for (const NamedOptimizer& named : raw.optimizers) {
@@ -244,9 +247,8 @@ void check_cells(const StudyPlan& plan) {
       without_generations.push_back(optimizer.label);
     }
   }
-  const bool fresh = std::ranges::any_of(plan.problems, [](const StudyProblem& problem) {
-    return problem.schedule.fresh;
-  });
+  const bool fresh = std::ranges::any_of(
+      plan.problems, [](const StudyProblem& problem) { return problem.schedule.fresh; });
   if (fresh && !without_generations.empty()) {
     throw Error(
         ErrorKind::usage,

@@ -187,8 +187,7 @@ void StudyFolder::extend(const StudyPlan& plan, const std::string& text) {
   }
   const auto replicates = recorded.at("replicates").get<int>();
   if (replicates < plan.replicates) {
-    additions_.push_back(
-        fmt::format("replicates {} to {}", replicates + 1, plan.replicates));
+    additions_.push_back(fmt::format("replicates {} to {}", replicates + 1, plan.replicates));
   }
   if (replicates <= plan.replicates) {
     now["replicates"] = replicates;
@@ -201,11 +200,12 @@ void StudyFolder::extend(const StudyPlan& plan, const std::string& text) {
     differences.push_back(difference);
   }
   if (!differences.empty()) {
-    throw Error(ErrorKind::usage,
-                fmt::format("{} holds a study whose cells would not compare with those of this "
-                            "plan:\n  {}\nA plan may only grow. Go on with the recorded one, or use "
-                            "--new or --out for another folder",
-                            path_.string(), join(differences, "\n  ")));
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("{} holds a study whose cells would not compare with those of this "
+                    "plan:\n  {}\nA plan may only grow. Go on with the recorded one, or use "
+                    "--new or --out for another folder",
+                    path_.string(), join(differences, "\n  ")));
   }
   if (!additions_.empty()) {
     int number = 1;

@@ -89,8 +89,7 @@ RunPlan make_run_plan(const StudyPlan& plan, const Cell& cell) {
 
 std::filesystem::path make_cell_path(const StudyPlan& plan, const Cell& cell) {
   return std::filesystem::path("cells") / escape_name(plan.problems[cell.problem].label) /
-         escape_name(plan.optimizers[cell.optimizer].label) /
-         fmt::format("r{:02}", cell.replicate);
+         escape_name(plan.optimizers[cell.optimizer].label) / fmt::format("r{:02}", cell.replicate);
 }
 
 std::vector<std::int64_t> calc_checkpoints(std::int64_t budget, int cases, int count) {

@@ -23,8 +23,8 @@
 namespace armwright {
 
 struct StudyProblem {
-  std::string label;  // unique in the plan: what tables, folders and streams say
-  std::string name;   // as asked for: a shipped name or a path
+  std::string label;                  // unique in the plan: what tables, folders and streams say
+  std::string name;                   // as asked for: a shipped name or a path
   std::vector<std::string> settings;  // KEY=VALUE, all that is changed about it
   LoadedProblem loaded;
   Schedule schedule;

@@ -3,9 +3,9 @@
 //
 // Each optimizer has one value a replicate: of one objective the winner's on the test set
 // (calc_test_value()), of several the share of the hypervolume that its front misses. Pairs are
-// replicates: the same training cases and the same start. Running times come from curves on the test
-// set: the budget from which on the best incumbent so far, re-simulated there, is at the target or
-// below; they are as coarse as the checkpoints.
+// replicates: the same training cases and the same start. Running times come from curves on the
+// test set: the budget from which on the best incumbent so far, re-simulated there, is at the
+// target or below; they are as coarse as the checkpoints.
 #pragma once
 
 #include <cstdint>
@@ -28,14 +28,15 @@ inline constexpr double kSignificance = 0.05;
 inline constexpr int kFewestPairs = 6;
 inline constexpr double kIntervalLevel = 0.95;
 inline constexpr int kResamples = 2000;
-// Targets of expected running times: this share of the way from the start to the best known is left.
+// Targets of expected running times: this share of the way from the start to the best known is
+// left.
 inline constexpr double kRunningTimeTargets[] = {0.1, 0.01, 0.001};
 // Of profiles (Moré and Wild 2009).
 inline constexpr double kProfileTolerances[] = {1e-1, 1e-3, 1e-5};
 
 struct RunningTime {
-  double target = 0;  // the value
-  int reached = 0;    // replicates
+  double target = 0;    // the value
+  int reached = 0;      // replicates
   double expected = 0;  // simulated cases, with restarts; infinite if never reached
   Interval interval;
 };
@@ -57,9 +58,9 @@ struct OptimizerResult {
   double mean_rank = 0;
   double anytime_area = 0;  // of the runtime ECDF over all targets
   std::vector<RunningTime> running_times;
-  std::vector<double> ecdf;                // at ProblemResult::checkpoints
-  std::vector<Spread> curve;               // likewise
-  double cases = 0;                        // of the budget that were used, median
+  std::vector<double> ecdf;   // at ProblemResult::checkpoints
+  std::vector<Spread> curve;  // likewise
+  double cases = 0;           // of the budget that were used, median
   std::optional<FinalCheck> final_check;
 };
 
@@ -70,7 +71,9 @@ struct PairResult {
   double p_holm = 1;
   double a12 = 0.5;  // that a run of a is better than one of b
   WinTieLoss wins;
-  bool is_significant() const { return test.pairs + test.zeros >= kFewestPairs && p_holm < kSignificance; }
+  bool is_significant() const {
+    return test.pairs + test.zeros >= kFewestPairs && p_holm < kSignificance;
+  }
 };
 
 struct ProblemResult {
@@ -78,8 +81,8 @@ struct ProblemResult {
   Quantity quantity;  // what the values are
   bool has_front = false;
   std::vector<double> reference_point;  // of the hypervolume
-  double best_known = 0;                // of all values on the way, on the test set; may be infinite
-  double start = 0;                     // median value of the starts
+  double best_known = 0;  // of all values on the way, on the test set; may be infinite
+  double start = 0;       // median value of the starts
   std::vector<std::int64_t> checkpoints;
   std::vector<double> targets;
   std::vector<OptimizerResult> optimizers;

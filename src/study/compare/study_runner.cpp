@@ -81,8 +81,8 @@ class Runner {
   Runner(const StudyPlan& plan, const std::filesystem::path& study, StopSignal& stop,
          RunObserver& observer)
       : plan_(plan), study_(study), stop_(stop), observer_(observer) {
-    progress_.total =
-        list_cells(plan).size() * static_cast<std::uint64_t>(std::max<std::int64_t>(plan.budget, 1));
+    progress_.total = list_cells(plan).size() *
+                      static_cast<std::uint64_t>(std::max<std::int64_t>(plan.budget, 1));
     for (const Cell& cell : list_cells(plan)) {
       if (load_cell(plan, cell, study)) {
         progress_.done += static_cast<std::uint64_t>(plan.budget);
@@ -111,9 +111,8 @@ class Runner {
       std::rethrow_exception(failure_);
     }
     result_.stopped = stop_.requested();
-    std::ranges::sort(result_.broken, {}, [&](const BrokenCell& broken) {
-      return make_cell_path(plan_, broken.cell);
-    });
+    std::ranges::sort(result_.broken, {},
+                      [&](const BrokenCell& broken) { return make_cell_path(plan_, broken.cell); });
     return std::move(result_);
   }
 
@@ -170,8 +169,7 @@ class Runner {
   // Until the cell is done or broken. False if everything is over.
   bool follow(ChildProcess& worker, std::size_t number) {
     std::string message;
-    while (worker.receive([this] { return must_end(); }, message) ==
-           ChildProcess::Event::message) {
+    while (worker.receive([this] { return must_end(); }, message) == ChildProcess::Event::message) {
       PacketReader packet(message);
       const auto kind = packet.get<Note>();
       const auto count = packet.get<std::uint64_t>();

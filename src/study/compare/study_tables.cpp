@@ -46,12 +46,12 @@ std::string make_cells(const StudyResult& result) {
     };
     csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
                        quote_csv(cell.problem), quote_csv(cell.optimizer), cell.replicate,
-                       number(cell.value), number(cell.validation_value),
-                       number(cell.start_value), number(cell.violation), number(errors.mean),
-                       number(errors.median), number(errors.percentile_95), number(errors.worst),
-                       errors.failures, errors.cases, cell.evaluations, cell.cases, cell.clipped,
-                       cell.failed_evaluations, quote_csv(cell.end_reason),
-                       quote_csv(cell.failure), list(cell.objectives), list(cell.metrics));
+                       number(cell.value), number(cell.validation_value), number(cell.start_value),
+                       number(cell.violation), number(errors.mean), number(errors.median),
+                       number(errors.percentile_95), number(errors.worst), errors.failures,
+                       errors.cases, cell.evaluations, cell.cases, cell.clipped,
+                       cell.failed_evaluations, quote_csv(cell.end_reason), quote_csv(cell.failure),
+                       list(cell.objectives), list(cell.metrics));
   }
   return csv;
 }
@@ -64,13 +64,12 @@ std::string make_summary(const StudyPlan& plan, const StudyResult& result) {
   for (const ProblemResult& problem : result.problems) {
     for (std::size_t o = 0; o < problem.optimizers.size(); ++o) {
       const OptimizerResult& one = problem.optimizers[o];
-      csv += fmt::format(
-          "{},{},{},{},{},{},{},{},{},{},{},{},{},{}", quote_csv(problem.label), name(plan, o),
-          quote_csv(problem.quantity.unit), one.values.size(), one.infinite, one.failed,
-          number(one.spread.median), number(one.spread.lower_quartile),
-          number(one.spread.upper_quartile), number(one.median_interval.lower),
-          number(one.median_interval.upper), number(one.mean_rank), number(one.anytime_area),
-          number(one.cases));
+      csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}", quote_csv(problem.label),
+                         name(plan, o), quote_csv(problem.quantity.unit), one.values.size(),
+                         one.infinite, one.failed, number(one.spread.median),
+                         number(one.spread.lower_quartile), number(one.spread.upper_quartile),
+                         number(one.median_interval.lower), number(one.median_interval.upper),
+                         number(one.mean_rank), number(one.anytime_area), number(one.cases));
       if (const auto& check = one.final_check) {
         csv += fmt::format(",{},{},{},{},{}\n", check->engine, check->replicate,
                            number(check->value), check->errors.failures, check->errors.cases);
@@ -109,8 +108,7 @@ std::string make_pairs(const StudyPlan& plan, const StudyResult& result) {
 }
 
 std::string make_friedman(const StudyResult& result) {
-  std::string csv =
-      "problem,chi_squared,degrees,p,iman_davenport_f,f_degrees_1,f_degrees_2,f_p\n";
+  std::string csv = "problem,chi_squared,degrees,p,iman_davenport_f,f_degrees_1,f_degrees_2,f_p\n";
   const auto add = [&](const std::string& where, const std::optional<FriedmanTest>& test) {
     if (test) {
       csv += fmt::format("{},{},{},{},{},{},{},{}\n", quote_csv(where), number(test->chi_squared),
@@ -195,8 +193,8 @@ std::string make_ranking(const StudyPlan& plan, const StudyResult& result) {
   for (const RankingWithout& without : stability.without) {
     for (std::size_t o = 0; o < plan.optimizers.size(); ++o) {
       csv += fmt::format("{},{},{},{},{}\n", quote_csv(plan.problems[without.problem].label),
-                         name(plan, o), number(without.ranking.mean_ranks[o]),
-                         number(without.tau), without.leader_changes ? 1 : 0);
+                         name(plan, o), number(without.ranking.mean_ranks[o]), number(without.tau),
+                         without.leader_changes ? 1 : 0);
     }
   }
   return csv;
@@ -277,11 +275,11 @@ json pair_to_json(const StudyPlan& plan, const PairResult& pair) {
 json optimizer_to_json(const OptimizerResult& one) {
   json times = json::array();
   for (const RunningTime& time : one.running_times) {
-    times.push_back({{"target", value_to_json(time.target)},
-                     {"reached", time.reached},
-                     {"expected_cases", value_to_json(time.expected)},
-                     {"interval",
-                      {value_to_json(time.interval.lower), value_to_json(time.interval.upper)}}});
+    times.push_back(
+        {{"target", value_to_json(time.target)},
+         {"reached", time.reached},
+         {"expected_cases", value_to_json(time.expected)},
+         {"interval", {value_to_json(time.interval.lower), value_to_json(time.interval.upper)}}});
   }
   json values = json::array();
   for (const double value : one.values) {
@@ -376,9 +374,8 @@ void write_study_tables(const StudyPlan& plan, const StudyResult& result,
   write("ecdf.csv", make_ecdf(plan, result));
   write("data_profiles.csv", make_profiles(plan, "simplex_gradients", result.overall.kappas,
                                            result.overall.data_profiles));
-  write("performance_profiles.csv",
-        make_profiles(plan, "times_the_quickest", result.overall.alphas,
-                      result.overall.performance_profiles));
+  write("performance_profiles.csv", make_profiles(plan, "times_the_quickest", result.overall.alphas,
+                                                  result.overall.performance_profiles));
   write("ranking.csv", make_ranking(plan, result));
   write("sets.csv", make_sets(plan));
   if (has_fronts(result)) {

@@ -78,16 +78,17 @@ std::vector<std::string> describe_problem(const StudyPlan& plan, const ProblemRe
   if (plan.optimizers.size() < 2) {
     return {where + " there is nothing to compare: one optimizer took part."};
   }
-  const bool nothing_found = std::ranges::all_of(problem.optimizers, [](const OptimizerResult& one) {
-    return one.infinite == std::ssize(one.values);
-  });
+  const bool nothing_found = std::ranges::all_of(
+      problem.optimizers,
+      [](const OptimizerResult& one) { return one.infinite == std::ssize(one.values); });
   if (nothing_found) {
     return {where + " no optimizer found a design that has a value on the test set."};
   }
   if (plan.replicates < kFewestPairs) {
-    return {fmt::format("{} nothing can be concluded: there are {} replicates, and of fewer than "
-                        "{} no outcome is significant.",
-                        where, plan.replicates, kFewestPairs)};
+    return {
+        fmt::format("{} nothing can be concluded: there are {} replicates, and of fewer than "
+                    "{} no outcome is significant.",
+                    where, plan.replicates, kFewestPairs)};
   }
   const std::size_t best = problem.order.front();
   const Standing standing = find_standing(problem.pairs, problem.order);
@@ -97,8 +98,7 @@ std::vector<std::string> describe_problem(const StudyPlan& plan, const ProblemRe
   }
   std::vector<std::string> sentences;
   if (!standing.beaten.empty()) {
-    sentences.push_back(
-        fmt::format("{} {}.", where, describe_beaten(plan, best, standing.beaten)));
+    sentences.push_back(fmt::format("{} {}.", where, describe_beaten(plan, best, standing.beaten)));
   }
   if (equal.size() == plan.optimizers.size()) {
     sentences.push_back(fmt::format("{} {} cannot be told apart.", where, join_names(equal)));
@@ -153,19 +153,22 @@ std::vector<std::string> describe_limits(const StudyPlan& plan, const StudyResul
       runs += problem.optimizers[o].failed;
     }
     if (runs > 0) {
-      failed.push_back(fmt::format("{} ({} of {} runs)", plan.optimizers[o].label, runs,
-                                   plan.problems.size() * static_cast<std::size_t>(plan.replicates)));
+      failed.push_back(
+          fmt::format("{} ({} of {} runs)", plan.optimizers[o].label, runs,
+                      plan.problems.size() * static_cast<std::size_t>(plan.replicates)));
     }
   }
   if (!failed.empty()) {
-    sentences.push_back(fmt::format("Failed by a fault of their own, and counted with what they "
-                                    "had found by then: {}.",
-                                    join_names(failed)));
+    sentences.push_back(
+        fmt::format("Failed by a fault of their own, and counted with what they "
+                    "had found by then: {}.",
+                    join_names(failed)));
   }
   if (!result.missing.empty()) {
-    sentences.push_back(fmt::format("{} of {} cells have not ended and count as if they had found "
-                                    "nothing.",
-                                    result.missing.size(), result.cells.size()));
+    sentences.push_back(
+        fmt::format("{} of {} cells have not ended and count as if they had found "
+                    "nothing.",
+                    result.missing.size(), result.cells.size()));
   }
   if (!plan.baselines) {
     sentences.push_back(
@@ -174,9 +177,10 @@ std::vector<std::string> describe_limits(const StudyPlan& plan, const StudyResul
   }
   if (std::ranges::any_of(plan.problems,
                           [](const StudyProblem& problem) { return problem.schedule.fresh; })) {
-    sentences.push_back("Training cases were new in every generation, the same for all optimizers "
-                        "only generation by generation; budgets buy unequal numbers of "
-                        "generations.");
+    sentences.push_back(
+        "Training cases were new in every generation, the same for all optimizers "
+        "only generation by generation; budgets buy unequal numbers of "
+        "generations.");
   }
   return sentences;
 }
