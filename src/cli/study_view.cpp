@@ -137,9 +137,9 @@ std::string describe_cost(const StudyPlan& plan, double expected_s, unsigned job
       cost.training + cost.validation + cost.test, cost.training, cost.validation, cost.test);
   if (expected_s > 0) {
     text += fmt::format(
-        "about {} with {} (measured on a few simulations; optimizers that think "
-        "long take longer)\n",
-        format_duration(expected_s), format_count(jobs, "process"));
+        "about {} with --jobs {} (measured on a few simulations; optimizers that think long "
+        "take longer)\n",
+        format_duration(expected_s), jobs);
   }
   return text;
 }

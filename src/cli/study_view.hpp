@@ -10,9 +10,9 @@
 
 namespace armwright {
 
-// Problems, optimizers, cells, cost and what is paired. `cases_per_s` is what one process simulates
-// (0: not measured).
+// Problems, optimizers, and what is paired.
 std::string describe_plan(const StudyPlan& plan, const Style& style);
+// Cells, simulated cases, and how long it may take.
 std::string describe_cost(const StudyPlan& plan, double expected_s, unsigned jobs);
 
 // A table a problem, the ranking over problems, the verdict.

@@ -55,6 +55,25 @@ class Reporter final : public RunObserver {
   Clock::time_point last_ = Clock::now();
 };
 
+// The study's lock is ours, so whoever holds a cell's is a worker of a process that was killed, and
+// about to die with it.
+void run_when_free(const StudyPlan& plan, const Cell& cell, const std::filesystem::path& study,
+                   StopSignal& stop, RunObserver& observer) {
+  constexpr int kMostTries = 100;
+  constexpr std::chrono::milliseconds kPause{50};
+  for (int tries = 1;; ++tries) {
+    try {
+      run_cell(plan, cell, study, stop, observer);
+      return;
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::busy || tries == kMostTries) {
+        throw;
+      }
+    }
+    std::this_thread::sleep_for(kPause);
+  }
+}
+
 // A worker's life: one cell after the other, until there are no more.
 void work(const StudyPlan& plan, std::span<const Cell> cells, const std::filesystem::path& study,
           ParentLink& parent) {
@@ -67,7 +86,7 @@ void work(const StudyPlan& plan, std::span<const Cell> cells, const std::filesys
     }
     Reporter reporter(parent);
     try {
-      run_cell(plan, cells[number], study, never, reporter);
+      run_when_free(plan, cells[number], study, never, reporter);
       parent.send(make_note(Note::done, ""));
     } catch (const Error& error) {
       const bool is_io = error.kind() == ErrorKind::io;

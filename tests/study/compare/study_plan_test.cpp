@@ -1,0 +1,164 @@
+#include "study/compare/study_plan.hpp"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <set>
+
+#include "base/expect_error.hpp"
+#include "study/compare/case_sets.hpp"
+#include "study/compare/escape.hpp"
+#include "study/compare/study_support.hpp"
+
+namespace armwright {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::vector<std::string> get_labels(const StudyPlan& plan) {
+  std::vector<std::string> labels;
+  for (const StudyOptimizer& optimizer : plan.optimizers) {
+    labels.push_back(optimizer.label);
+  }
+  return labels;
+}
+
+StudyPlan load(const TemporaryFolder& folder, const std::string& toml) {
+  const auto file = folder / "mine.toml";
+  std::ofstream(file) << toml;
+  StudyRequest request;
+  request.file = file.string();
+  return make_study_plan(request);
+}
+
+constexpr const char* kHead = "problems = ['sphere']\nbudget = 100\nreplicates = 3\n";
+
+TEST(StudyPlan, BaselinesTakePartUnlessAskedNotTo) {
+  StudyRequest request = make_small_request();
+  EXPECT_THAT(get_labels(make_study_plan(request)),
+              ElementsAre("ga", "cmaes", "random", "nlopt:neldermead"));
+  request.optimizers = {"random", "nlopt:cobyla"};  // there already, or another local search
+  EXPECT_THAT(get_labels(make_study_plan(request)), ElementsAre("random", "nlopt:cobyla"));
+  request.baselines = false;
+  request.optimizers = {"ga"};
+  EXPECT_THAT(get_labels(make_study_plan(request)), ElementsAre("ga"));
+}
+
+TEST(StudyPlan, NoOptimizerCanBeGivenMoreThanOthers) {
+  const TemporaryFolder folder;
+  for (const std::string privilege : {"budget = 200", "replicates = 9", "schedule = 'fixed:2'",
+                                      "seed = 4", "start_spread = 0.5"}) {
+    const std::string toml = std::string(kHead) +
+                             "optimizers = ['ga']\n[[optimizer]]\nname = 'cmaes'\n" + privilege +
+                             "\n";
+    EXPECT_THAT(usage_error_of([&] { load(folder, toml); }),
+                HasSubstr("it is the same for every optimizer of a comparison"));
+  }
+  const std::string unknown =
+      std::string(kHead) + "optimizers = ['ga']\n[[optimizer]]\nname = 'cmaes'\nevaluations = 5\n";
+  EXPECT_THAT(usage_error_of([&] { load(folder, unknown); }),
+              HasSubstr("unknown key optimizer[0].evaluations"));
+}
+
+TEST(StudyPlan, MistakesAreNamed) {
+  const TemporaryFolder folder;
+  const auto expect = [&](const std::string& toml, const std::string& message) {
+    EXPECT_THAT(usage_error_of([&] { load(folder, toml); }), HasSubstr(message));
+  };
+  expect("optimizers = ['ga']\nbudget = 10\n", "the study names no problem");
+  expect("problems = ['sphere']\nbudget = 10\n", "the study names no optimizer");
+  expect("problems = ['sphere']\noptimizers = ['ga']\n", "the study names no budget");
+  expect(std::string(kHead) + "optimizers = ['gaa']\n", "did you mean 'ga'?");
+  expect(std::string(kHead) + "optimizers = ['ga', 'ga']\n",
+         "two optimizers of the study are called 'ga'");
+  expect("problems = ['sphere', 'sphere']\nbudget = 100\noptimizers = ['ga']\n",
+         "two problems of the study are called 'sphere'");
+  expect(std::string(kHead) + "optimizers = ['ga']\nschedule = 'sometimes'\n",
+         "schedule is 'sometimes'; it must be fresh:K");
+  expect(std::string(kHead) + "optimizers = ['ga']\nschedule = 'fixed:101'\n",
+         "a budget of 100 cases does not pay for one evaluation");
+}
+
+TEST(StudyPlan, FreshCasesAreForOptimizersWithGenerationsOnly) {
+  StudyRequest request = make_small_request();
+  request.schedule = Schedule{.fresh = true, .cases = 1};
+  EXPECT_THAT(
+      usage_error_of([&] { make_study_plan(request); }),
+      HasSubstr("only optimizers with generations can be compared on it, and these have none: "
+                "random, nlopt:neldermead"));
+  request.baselines = false;
+  EXPECT_TRUE(make_study_plan(request).problems.front().schedule.fresh);
+}
+
+TEST(StudyPlan, AReplicateGivesEveryOptimizerTheSameStartAndCases) {
+  StudyRequest request = make_small_request();
+  request.problems = {"q1-complex"};
+  request.settings = {"physics.engine=articulated", "sets.test_cases=3", "sets.validation_cases=3"};
+  const StudyPlan plan = make_study_plan(request);
+  std::set<std::uint64_t> seeds;
+  std::set<double> starts;
+  std::set<std::string> sets;
+  for (const Cell& cell : list_cells(plan)) {
+    const RunPlan run = make_run_plan(plan, cell);
+    const RunPlan first = make_run_plan(plan, {cell.problem, 0, cell.replicate});
+    const auto& variables = run.problem.problem->description().variables;
+    for (std::size_t i = 0; i < variables.size(); ++i) {
+      EXPECT_EQ(variables[i].start, first.problem.problem->description().variables[i].start);
+      EXPECT_GE(variables[i].start, variables[i].lower);
+      EXPECT_LE(variables[i].start, variables[i].upper);
+    }
+    EXPECT_EQ(run.problem.sets.training, first.problem.sets.training);
+    EXPECT_EQ(run.budget, plan.budget);
+    EXPECT_EQ(run.schedule.cases, first.schedule.cases);
+    seeds.insert(run.seed);
+    starts.insert(variables.front().start);
+    sets.insert(run.problem.sets.training);
+  }
+  EXPECT_EQ(seeds.size(), list_cells(plan).size());  // every cell has a stream of its own
+  EXPECT_EQ(starts.size(), 6u);                      // every replicate a start
+  EXPECT_EQ(sets.size(), 6u);                        // and a training set
+}
+
+TEST(StudyPlan, SetsHaveNoCaseInCommonAndAreNamedByHash) {
+  StudyRequest request = make_small_request();
+  request.problems = {"q1-complex"};
+  request.settings = {"sets.test_cases=3", "sets.validation_cases=3"};
+  const auto sets = list_used_sets(make_study_plan(request));
+  std::set<std::string> hashes;
+  for (const UsedSet& set : sets) {
+    EXPECT_EQ(set.sha256.size(), 64u);
+    hashes.insert(set.sha256);
+  }
+  EXPECT_EQ(hashes.size(), 2u + 6u);  // test, validation, a training set a replicate
+}
+
+TEST(StudyPlan, TheResolvedPlanReadsBackAsItself) {
+  const TemporaryFolder folder;
+  const StudyPlan plan = load(folder, std::string(kHead) + R"(
+optimizers = ["random"]
+[[optimizer]]
+name = "ga"
+label = "ga, \"small\" \\ ü"
+options = ["population=8"]
+)");
+  std::ofstream(folder / "resolved.toml") << to_toml(plan);
+  StudyRequest request;
+  request.file = (folder / "resolved.toml").string();
+  EXPECT_EQ(to_toml(make_study_plan(request)), to_toml(plan));
+}
+
+TEST(StudyPlan, CheckpointsAreWholeEvaluationsUpToTheBudget) {
+  EXPECT_THAT(calc_checkpoints(2000, 5, 4), ElementsAre(5, 35, 270, 2000));
+  EXPECT_THAT(calc_checkpoints(12, 5, 20), ElementsAre(5, 10));
+  EXPECT_THAT(calc_checkpoints(7, 1, 1), ElementsAre(7));
+}
+
+TEST(StudyPlan, NamesOfFilesAreNeverAlikeHiddenOrElsewhere) {
+  EXPECT_EQ(escape_name("nlopt:cobyla"), "nlopt%3Acobyla");
+  EXPECT_EQ(escape_name("../x"), "%2E.%2Fx");
+  EXPECT_EQ(escape_name("a%3A"), "a%253A");
+}
+
+}  // namespace
+}  // namespace armwright

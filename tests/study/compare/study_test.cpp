@@ -1,0 +1,169 @@
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "base/expect_error.hpp"
+#include "study/compare/study_support.hpp"
+#include "study/compare/verdict.hpp"
+
+namespace armwright {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+TEST_F(StudyTest, TablesAreTheSameBytesForAnyNumberOfProcesses) {
+  const StudyPlan plan = make_study_plan(make_small_request());
+  study(plan, "one", 1);
+  study(plan, "three", 3);
+  EXPECT_EQ(read_tree(temporary_ / "one" / "tables"), read_tree(temporary_ / "three" / "tables"));
+  EXPECT_EQ(read_cells("one"), read_cells("three"));
+  EXPECT_EQ(read_cells("one").size(), 2u * 48u);
+}
+
+TEST_F(StudyTest, AnOptimizerAddedLaterHasTheCellsItWouldHaveHadAtOnce) {
+  StudyRequest request = make_small_request();
+  study(make_study_plan(request), "grown");
+  const auto before = read_cells("grown");
+  request.optimizers.push_back("lhs");
+  request.replicates = 7;
+  const StudyPlan larger = make_study_plan(request);
+  study(larger, "grown");
+  study(larger, "at-once");
+  EXPECT_EQ(read_cells("grown"), read_cells("at-once"));
+  EXPECT_EQ(read_tree(temporary_ / "grown" / "tables"),
+            read_tree(temporary_ / "at-once" / "tables"));
+  const auto after = read_cells("grown");
+  for (const auto& [path, text] : before) {
+    EXPECT_EQ(after.at(path), text) << path;
+  }
+  EXPECT_TRUE(std::filesystem::exists(temporary_ / "grown" / "study-001.toml"));
+}
+
+TEST_F(StudyTest, AStoppedStudyGoesOnToTheSameTables) {
+  const StudyPlan plan = make_study_plan(make_small_request());
+  study(plan, "whole");
+  const auto path = temporary_ / "stopped";
+  class StopAfterTenCells final : public SilentObserver {
+   public:
+    StopAfterTenCells(StopSignal& stop, std::uint64_t budget) : stop_(stop), budget_(budget) {}
+    void on_progress(const Progress& progress) override {
+      if (progress.done >= 10 * budget_) {
+        stop_.request(StopReason::interrupted);
+      }
+    }
+
+   private:
+    StopSignal& stop_;
+    std::uint64_t budget_;
+  };
+  {
+    StudyFolder folder(path, plan);
+    StopSignal stop;
+    StopAfterTenCells observer(stop, static_cast<std::uint64_t>(plan.budget));
+    EXPECT_TRUE(run_cells(plan, path, 2, stop, observer).stopped);
+  }
+  EXPECT_FALSE(analyze_study(plan, path).missing.empty());
+  study(plan, "stopped");
+  EXPECT_EQ(read_tree(path / "tables"), read_tree(temporary_ / "whole" / "tables"));
+}
+
+TEST_F(StudyTest, WhatWouldMakeCellsIncomparableIsRefusedWithTheDifference) {
+  StudyRequest request = make_small_request();
+  study(make_study_plan(request), "study");
+  const auto expect = [&](const StudyRequest& changed, const std::string& message) {
+    EXPECT_THAT(
+        usage_error_of([&] { StudyFolder(temporary_ / "study", make_study_plan(changed)); }),
+        HasSubstr(message));
+  };
+  StudyRequest changed = request;
+  changed.budget = 121;
+  expect(changed, "budget: recorded 120, now 121");
+  changed = request;
+  changed.replicates = 5;
+  expect(changed, "replicates: recorded 6, now 5");
+  changed = request;
+  changed.optimizers = {"ga"};
+  expect(changed, "optimizer cmaes is recorded, and the plan leaves it out");
+  changed = request;
+  changed.settings = {"function.dimension=4"};
+  expect(changed, "problem sphere: function.dimension: recorded 3, now 4");
+  changed = request;
+  changed.seed = 2;
+  expect(changed, "seed: recorded 1, now 2");
+}
+
+TEST_F(StudyTest, TheVerdictFollowsFromTheStatistics) {
+  const StudyPlan plan = make_study_plan(make_small_request());
+  const StudyResult result = study(plan, "study");
+  const auto verdict = describe_verdict(plan, result);
+  for (const ProblemResult& problem : result.problems) {
+    const std::size_t best = problem.order.front();
+    for (const PairResult& pair : problem.pairs) {
+      if (pair.a != best && pair.b != best) {
+        continue;
+      }
+      const std::string& other = plan.optimizers[pair.a == best ? pair.b : pair.a].label;
+      const std::string beats =
+          "On " + problem.label + " at 120 simulations " + plan.optimizers[best].label + " beats ";
+      const bool says_so = std::ranges::any_of(verdict, [&](const std::string& sentence) {
+        return sentence.starts_with(beats) && sentence.find(other) != std::string::npos;
+      });
+      EXPECT_EQ(says_so, pair.is_significant()) << problem.label << " " << other;
+    }
+  }
+  EXPECT_THAT(verdict,
+              Contains(HasSubstr("of 2 problems, fewer than 6, nothing can be concluded")));
+}
+
+TEST_F(StudyTest, OfFewerThanSixPairsNothingIsConcluded) {
+  StudyRequest request = make_small_request();
+  request.replicates = 5;
+  const StudyPlan plan = make_study_plan(request);
+  const StudyResult result = study(plan, "study");
+  for (const ProblemResult& problem : result.problems) {
+    for (const PairResult& pair : problem.pairs) {
+      EXPECT_FALSE(pair.is_significant());
+    }
+  }
+  EXPECT_THAT(describe_verdict(plan, result),
+              Contains(HasSubstr("nothing can be concluded: there are 5 replicates")));
+}
+
+TEST_F(StudyTest, TheVerdictSaysThatBaselinesWereLeftOut) {
+  StudyRequest request = make_small_request();
+  request.baselines = false;
+  const StudyPlan plan = make_study_plan(request);
+  EXPECT_THAT(describe_verdict(plan, study(plan, "study")),
+              Contains(HasSubstr("baselines (random search and a local search) were left out")));
+}
+
+TEST_F(StudyTest, FrontsAreComparedByTheHypervolumeTheyMiss) {
+  StudyRequest request;
+  request.problems = {"q2-pareto"};
+  request.optimizers = {"pagmo:nsga2", "cmaes"};
+  request.settings = {"physics.engine=articulated", "workspace.points=4", "sets.validation_cases=3",
+                      "sets.test_cases=4"};
+  request.replicates = 3;
+  request.budget = 300;
+  request.baselines = false;
+  const StudyPlan plan = make_study_plan(request);
+  const StudyResult result = study(plan, "study");
+  const ProblemResult& problem = result.problems.front();
+  EXPECT_TRUE(problem.has_front);
+  EXPECT_EQ(problem.reference_point.size(), 2u);
+  for (const OptimizerResult& one : problem.optimizers) {
+    for (const double value : one.values) {
+      EXPECT_GT(value, 0);
+      EXPECT_LE(value, 1);
+    }
+  }
+  EXPECT_LT(problem.optimizers[0].spread.median, 1);
+  const auto tables = read_tree(temporary_ / "study" / "tables");
+  EXPECT_TRUE(tables.contains("fronts.csv"));
+  EXPECT_GT(std::ranges::count(tables.at("attainment.csv"), '\n'), 2);
+}
+
+}  // namespace
+}  // namespace armwright
