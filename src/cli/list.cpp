@@ -28,6 +28,7 @@ constexpr const char* kExamples = R"(Examples:
   armwright list optimizers ga                     # what it is, can do, and its options (for --opt)
   armwright list optimizers ga --markdown          # the same as a page, as under docs/optimizers
   armwright list designs --json
+  armwright list studies q1                        # a comparison of optimizers: who, on what, at what cost
 
 Terms: a problem is a robot with a task, or a function, to be minimised; an optimizer minimises it; a design is what
 comes out: the gains and effort limits of all joints. An engine does the physics, a signal says how the target moves
@@ -92,6 +93,7 @@ std::vector<ListKind> list_kinds() {
           make_robot_kind(),
           make_engine_kind(),
           make_design_kind(),
+          make_study_kind(),
           make_plain_kind("signals", list_signals),
           make_plain_kind("controllers", list_controllers)};
 }

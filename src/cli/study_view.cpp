@@ -102,11 +102,7 @@ std::string describe_ranking(const StudyPlan& plan, const StudyResult& result, c
 
 }  // namespace
 
-std::string describe_plan(const StudyPlan& plan, const Style& style) {
-  std::string text;
-  if (!plan.title.empty()) {
-    text += style.bold(plan.title) + "\n";
-  }
+std::string describe_plan(const StudyPlan& plan) {
   Table table({{"", false}, {"", false, true}});
   for (const StudyProblem& problem : plan.problems) {
     const std::string settings =
@@ -127,7 +123,7 @@ std::string describe_plan(const StudyPlan& plan, const Style& style) {
   table.add_row({"paired", fmt::format("start and training cases of a replicate are the same for "
                                        "all optimizers; study seed {}",
                                        plan.seed)});
-  return text + table.format(style, 0, get_text_width(Stream::error));
+  return table.format(Style(false), 0, get_text_width(Stream::error));
 }
 
 std::string describe_cost(const StudyPlan& plan, double expected_s, unsigned jobs) {

@@ -11,7 +11,7 @@
 namespace armwright {
 
 // Problems, optimizers, and what is paired.
-std::string describe_plan(const StudyPlan& plan, const Style& style);
+std::string describe_plan(const StudyPlan& plan);
 // Cells, simulated cases, and how long it may take.
 std::string describe_cost(const StudyPlan& plan, double expected_s, unsigned jobs);
 

@@ -16,6 +16,9 @@ std::string get_extension(std::string_view kind) {
 }
 
 std::string get_singular(std::string_view kind) {
+  if (kind == "studies") {
+    return "study";
+  }
   return std::string(kind.substr(0, kind.size() - 1));  // "problems" -> "problem"
 }
 

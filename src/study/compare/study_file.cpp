@@ -269,6 +269,10 @@ void check_cells(const StudyPlan& plan) {
 
 }  // namespace
 
+std::string read_study_title(const std::string& file) {
+  return ConfigTable::load(resolve_config("studies", file)).get_string("title", "");
+}
+
 StudyPlan make_study_plan(const StudyRequest& request) {
   StudyPlan plan;
   RawPlan raw;

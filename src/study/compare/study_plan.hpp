@@ -78,6 +78,9 @@ StudyPlan make_study_plan(const StudyRequest& request);
 // SHA-256 of a problem's resolved configuration and of the files that it refers to.
 std::string calc_configuration_hash(const LoadedProblem& problem);
 
+// Of a study's file alone, without loading what it names.
+std::string read_study_title(const std::string& file);
+
 struct Cell {
   std::size_t problem = 0;
   std::size_t optimizer = 0;

@@ -73,6 +73,15 @@ std::string describe_budget(const StudyPlan& plan) {
   return fmt::format("at {} simulations", plan.budget);
 }
 
+// With which the clearest of all differences would be significant.
+int calc_fewest_replicates(std::size_t pairs) {
+  int replicates = kFewestPairs;
+  while (std::ldexp(2.0, -replicates) * static_cast<double>(pairs) >= kSignificance) {
+    ++replicates;
+  }
+  return replicates;
+}
+
 std::vector<std::string> describe_problem(const StudyPlan& plan, const ProblemResult& problem) {
   const std::string where = fmt::format("On {} {}", problem.label, describe_budget(plan));
   if (plan.optimizers.size() < 2) {
@@ -89,6 +98,16 @@ std::vector<std::string> describe_problem(const StudyPlan& plan, const ProblemRe
         fmt::format("{} nothing can be concluded: there are {} replicates, and of fewer than "
                     "{} no outcome is significant.",
                     where, plan.replicates, kFewestPairs)};
+  }
+  const double least_p =
+      std::ldexp(2.0, -plan.replicates) * static_cast<double>(problem.pairs.size());
+  if (least_p >= kSignificance) {
+    return {
+        fmt::format("{} nothing can be concluded: with {} replicates and {} pairs of optimizers "
+                    "no difference, however clear, is significant after Holm's correction; {} "
+                    "replicates would do.",
+                    where, plan.replicates, problem.pairs.size(),
+                    calc_fewest_replicates(problem.pairs.size()))};
   }
   const std::size_t best = problem.order.front();
   const Standing standing = find_standing(problem.pairs, problem.order);

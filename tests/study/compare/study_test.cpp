@@ -95,7 +95,9 @@ TEST_F(StudyTest, WhatWouldMakeCellsIncomparableIsRefusedWithTheDifference) {
 }
 
 TEST_F(StudyTest, TheVerdictFollowsFromTheStatistics) {
-  const StudyPlan plan = make_study_plan(make_small_request());
+  StudyRequest request = make_small_request();
+  request.replicates = 9;  // enough for six pairs
+  const StudyPlan plan = make_study_plan(request);
   const StudyResult result = study(plan, "study");
   const auto verdict = describe_verdict(plan, result);
   for (const ProblemResult& problem : result.problems) {
@@ -131,6 +133,16 @@ TEST_F(StudyTest, OfFewerThanSixPairsNothingIsConcluded) {
               Contains(HasSubstr("nothing can be concluded: there are 5 replicates")));
 }
 
+TEST_F(StudyTest, WhereNoDifferenceCouldBeSignificantTheVerdictSaysSo) {
+  StudyRequest request = make_small_request();
+  request.optimizers = {"ga", "cmaes", "lhs"};  // with the baselines ten pairs: 10 x 2 / 2^6 > 0.05
+  const StudyPlan plan = make_study_plan(request);
+  EXPECT_THAT(describe_verdict(plan, study(plan, "study")),
+              Contains(HasSubstr("with 6 replicates and 10 pairs of optimizers no difference, "
+                                 "however clear, is significant after Holm's correction; 9 "
+                                 "replicates would do")));
+}
+
 TEST_F(StudyTest, TheVerdictSaysThatBaselinesWereLeftOut) {
   StudyRequest request = make_small_request();
   request.baselines = false;
@@ -142,11 +154,11 @@ TEST_F(StudyTest, TheVerdictSaysThatBaselinesWereLeftOut) {
 TEST_F(StudyTest, FrontsAreComparedByTheHypervolumeTheyMiss) {
   StudyRequest request;
   request.problems = {"q2-pareto"};
-  request.optimizers = {"pagmo:nsga2", "cmaes"};
+  request.optimizers = {"pagmo:maco", "cmaes"};
   request.settings = {"physics.engine=articulated", "workspace.points=4", "sets.validation_cases=3",
                       "sets.test_cases=4"};
   request.replicates = 3;
-  request.budget = 300;
+  request.budget = 1000;
   request.baselines = false;
   const StudyPlan plan = make_study_plan(request);
   const StudyResult result = study(plan, "study");
@@ -160,6 +172,7 @@ TEST_F(StudyTest, FrontsAreComparedByTheHypervolumeTheyMiss) {
     }
   }
   EXPECT_LT(problem.optimizers[0].spread.median, 1);
+  EXPECT_LT(problem.optimizers[1].spread.median, 1);
   const auto tables = read_tree(temporary_ / "study" / "tables");
   EXPECT_TRUE(tables.contains("fronts.csv"));
   EXPECT_GT(std::ranges::count(tables.at("attainment.csv"), '\n'), 2);
