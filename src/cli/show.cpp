@@ -1,4 +1,4 @@
-// armwright show: what a run's folder holds.
+// armwright show: what a run's folder holds, or a study's.
 
 #include <fmt/format.h>
 
@@ -12,7 +12,10 @@
 #include "cli/format.hpp"
 #include "cli/result_view.hpp"
 #include "cli/session.hpp"
+#include "cli/study_view.hpp"
 #include "cli/terminal.hpp"
+#include "study/compare/final_check.hpp"
+#include "study/compare/study_tables.hpp"
 #include "study/journal.hpp"
 #include "study/run.hpp"
 
@@ -23,6 +26,7 @@ using nlohmann::json;
 
 constexpr const char* kExamples = R"(Examples:
   armwright show results/q1-complex-ga-seed1
+  armwright show results/q1                        # a comparison: its tables and verdict
   armwright show results/q1-complex-ga-seed1 --json | jq .winner.test_summary
 
 Of a run that has not come to its end it says how far it is, and how to go on.)";
@@ -63,8 +67,33 @@ UnfinishedRun read_unfinished(const std::filesystem::path& folder) {
   return run;
 }
 
+int show_study(const ShowOptions& options, const Session& session) {
+  const std::filesystem::path folder = options.folder;
+  const StudyPlan plan = load_study_plan(folder);
+  StudyResult result = analyze_study(plan, folder);
+  load_final_checks(plan, folder, result);
+  if (options.json) {
+    write_stdout(to_json(plan, result));
+  } else if (result.missing.empty()) {
+    write_stdout(describe_study(plan, result, folder, make_style(Stream::out, session.color)));
+  } else {
+    const std::vector<std::string> command = {session.command_line.front(), "compare",
+                                              (folder / "study.toml").string(), "--out",
+                                              folder.string()};
+    write_stdout(
+        fmt::format("{}: this study has not come to its end\n  {} of {} have ended\nTo go "
+                    "on:\n  {}\n",
+                    sanitize(folder.string()), result.cells.size() - result.missing.size(),
+                    format_count(result.cells.size(), "cell"), sanitize(quote_command(command))));
+  }
+  return exit_code::kDone;
+}
+
 int run_show(const ShowOptions& options, const Session& session) {
   const std::filesystem::path folder = options.folder;
+  if (is_study_folder(folder)) {
+    return show_study(options, session);
+  }
   const bool a_run = std::filesystem::exists(folder / "manifest.json");
   if (!a_run || std::filesystem::exists(folder / "result.json")) {
     const RunResult result = load_result(folder);  // says so, if it is none
@@ -99,9 +128,9 @@ int run_show(const ShowOptions& options, const Session& session) {
 
 void add_show(CLI::App& app, Session& session) {
   auto options = std::make_shared<ShowOptions>();
-  CLI::App* command =
-      add_command(app, session, "show", "Show the result of a run, or how far it is", kExamples);
-  command->add_option("FOLDER", options->folder, "The run's folder, as optimize named it")
+  CLI::App* command = add_command(
+      app, session, "show", "Show the result of a run or a study, or how far it is", kExamples);
+  command->add_option("FOLDER", options->folder, "The folder, as optimize or compare named it")
       ->required();
   command->add_flag("--json", options->json, "Print it as JSON")->group("Output");
   command->callback([options, &session] {

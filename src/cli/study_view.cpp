@@ -27,6 +27,22 @@ std::string list_labels(const StudyPlan& plan, bool baselines) {
   return join(labels, ", ");
 }
 
+// The same without its unit, for a column where that stands already.
+std::string format_number(double value, const Quantity& quantity) {
+  const std::string text = format_value(value, quantity);
+  return text.substr(0, text.find(' '));
+}
+
+std::string describe_check(const std::optional<FinalCheck>& check, const Quantity& quantity) {
+  if (!check) {
+    return "-";
+  }
+  const std::string value = format_value(check->value, quantity);
+  return check->errors.failures == 0
+             ? value
+             : fmt::format("{}, {} of {} fail", value, check->errors.failures, check->errors.cases);
+}
+
 // The comparison with the problem's leader in a few characters.
 std::string describe_against_leader(const ProblemResult& problem, std::size_t optimizer) {
   const std::size_t leader = problem.order.front();
@@ -46,15 +62,13 @@ std::string describe_problem(const StudyPlan& plan, const ProblemResult& problem
   const bool has_final = std::ranges::any_of(
       problem.optimizers, [](const OptimizerResult& one) { return one.final_check.has_value(); });
   const bool has_cost = std::isfinite(problem.best_known) && !problem.has_front;
-  std::vector<Column> columns = {{"optimizer", false}, {"median"},
-                                 {"quartiles"},        {"mean rank"},
-                                 {"without value"},    {"leader better: A12, p"}};
+  std::vector<Column> columns = {{"optimizer", false}, {"median"},   {"quartiles"},
+                                 {"mean rank"},        {"no value"}, {"A12, p"}};
   if (has_cost) {
     columns.push_back({"cases to 1 %"});
   }
   if (has_final) {
-    columns.push_back({fmt::format("best design on {}", plan.final_engine)});
-    columns.push_back({"failures"});
+    columns.push_back({"best on " + plan.final_engine});
   }
   Table table(columns);
   for (const std::size_t o : problem.order) {
@@ -62,20 +76,17 @@ std::string describe_problem(const StudyPlan& plan, const ProblemResult& problem
     std::vector<std::string> row = {
         plan.optimizers[o].label + (plan.optimizers[o].baseline ? " (baseline)" : ""),
         format_value(one.spread.median, problem.quantity),
-        format_value(one.spread.lower_quartile, problem.quantity) + " to " +
-            format_value(one.spread.upper_quartile, problem.quantity),
+        format_number(one.spread.lower_quartile, problem.quantity) + " to " +
+            format_number(one.spread.upper_quartile, problem.quantity),
         fmt::format("{:.2f}", one.mean_rank),
-        one.infinite == 0 ? "" : fmt::format("{} of {}", one.infinite, one.values.size()),
+        one.infinite == 0 ? "" : fmt::format("{}", one.infinite),
         describe_against_leader(problem, o)};
     if (has_cost) {
       const double expected = one.running_times[1].expected;
       row.push_back(std::isfinite(expected) ? fmt::format("{:.0f}", expected) : "-");
     }
     if (has_final) {
-      row.push_back(one.final_check ? format_value(one.final_check->value, problem.quantity) : "-");
-      row.push_back(one.final_check ? fmt::format("{} of {}", one.final_check->errors.failures,
-                                                  one.final_check->errors.cases)
-                                    : "-");
+      row.push_back(describe_check(one.final_check, problem.quantity));
     }
     table.add_row(std::move(row));
   }

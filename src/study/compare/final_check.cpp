@@ -78,37 +78,14 @@ LoadedProblem load_on_engine(const StudyProblem& problem, const std::string& eng
   return load_problem(problem.name, settings);
 }
 
-}  // namespace
-
-bool add_final_checks(const StudyPlan& plan, const std::filesystem::path& study, unsigned jobs,
-                      StopSignal& stop, RunObserver& observer, StudyResult& result) {
-  if (plan.final_engine.empty()) {
-    return true;
-  }
-  Progress progress;
-  progress.phase = Progress::Phase::test;
-  for (const StudyProblem& problem : plan.problems) {
-    progress.total +=
-        problem.loaded.tracking
-            ? plan.optimizers.size() * static_cast<std::size_t>(problem.loaded.sets.test_cases)
-            : 0;
-  }
-  ThreadPool pool(jobs);
-  for (std::size_t p = 0; p < plan.problems.size(); ++p) {
+// Adds what is recorded; of the rest `on_missing` is told the problem, the best design's cell, the
+// file and where the check belongs.
+void visit_checks(const StudyPlan& plan, const std::filesystem::path& study, StudyResult& result,
+                  const auto& on_missing) {
+  for (std::size_t p = 0; p < plan.problems.size() && !plan.final_engine.empty(); ++p) {
     const StudyProblem& problem = plan.problems[p];
-    if (!problem.loaded.tracking) {
-      continue;
-    }
-    const LoadedProblem judged = load_on_engine(problem, plan.final_engine);
-    const ProblemDescription& description = judged.problem->description();
-    CaseRunner runner(*judged.problem, pool, stop);
-    CaseBlock block{CaseRole::test, judged.sets.test,
-                    std::vector<std::uint64_t>(static_cast<std::size_t>(judged.sets.test_cases))};
-    std::iota(block.numbers.begin(), block.numbers.end(), std::uint64_t{0});
-    for (std::size_t o = 0; o < plan.optimizers.size(); ++o) {
+    for (std::size_t o = 0; o < plan.optimizers.size() && problem.loaded.tracking; ++o) {
       const std::string& optimizer = plan.optimizers[o].label;
-      observer.on_progress(progress);
-      progress.done += block.numbers.size();
       const CellOutcome* best = find_best(result.cells, problem.label, optimizer);
       if (best == nullptr) {
         continue;
@@ -117,22 +94,63 @@ bool add_final_checks(const StudyPlan& plan, const std::filesystem::path& study,
           study / "final" / escape_name(problem.label) / (escape_name(optimizer) + ".json");
       auto& check = result.problems[p].optimizers[o].final_check;
       check = load_check(file, plan, *best);
-      if (check) {
-        progress.replayed += block.numbers.size();
-        continue;
+      if (!check) {
+        on_missing(p, *best, file, check);
       }
-      Evaluation evaluation;
-      const std::span<const double> x = best->x;
-      runner.run({&x, 1}, block, false,
-                 [&](std::size_t, Evaluation done) { evaluation = std::move(done); });
-      if (stop.requested()) {
-        return false;
-      }
-      check =
-          FinalCheck{best->replicate, plan.final_engine, calc_test_value(description, evaluation),
-                     summarize(evaluation.case_errors, kFailureError_m)};
-      save_check(file, *check, *best);
     }
+  }
+}
+
+}  // namespace
+
+void load_final_checks(const StudyPlan& plan, const std::filesystem::path& study,
+                       StudyResult& result) {
+  visit_checks(plan, study, result, [](std::size_t, const CellOutcome&, const auto&, auto&) {});
+}
+
+bool add_final_checks(const StudyPlan& plan, const std::filesystem::path& study, unsigned jobs,
+                      StopSignal& stop, RunObserver& observer, StudyResult& result) {
+  struct Missing {
+    std::size_t problem;
+    const CellOutcome* best;
+    std::filesystem::path file;
+    std::optional<FinalCheck>* check;
+  };
+  std::vector<Missing> missing;
+  visit_checks(plan, study, result,
+               [&](std::size_t problem, const CellOutcome& best, const auto& file, auto& check) {
+                 missing.push_back({problem, &best, file, &check});
+               });
+  Progress progress;
+  progress.phase = Progress::Phase::test;
+  for (const Missing& one : missing) {
+    progress.total += static_cast<std::uint64_t>(plan.problems[one.problem].loaded.sets.test_cases);
+  }
+  ThreadPool pool(jobs);
+  std::optional<LoadedProblem> judged;  // of the problem at hand
+  std::size_t judged_problem = plan.problems.size();
+  for (const Missing& one : missing) {
+    if (judged_problem != one.problem) {
+      judged = load_on_engine(plan.problems[one.problem], plan.final_engine);
+      judged_problem = one.problem;
+    }
+    observer.on_progress(progress);
+    CaseBlock block{CaseRole::test, judged->sets.test,
+                    std::vector<std::uint64_t>(static_cast<std::size_t>(judged->sets.test_cases))};
+    std::iota(block.numbers.begin(), block.numbers.end(), std::uint64_t{0});
+    Evaluation evaluation;
+    const std::span<const double> x = one.best->x;
+    CaseRunner(*judged->problem, pool, stop)
+        .run({&x, 1}, block, false,
+             [&](std::size_t, Evaluation done) { evaluation = std::move(done); });
+    if (stop.requested()) {
+      return false;
+    }
+    progress.done += block.numbers.size();
+    *one.check = FinalCheck{one.best->replicate, plan.final_engine,
+                            calc_test_value(judged->problem->description(), evaluation),
+                            summarize(evaluation.case_errors, kFailureError_m)};
+    save_check(one.file, **one.check, *one.best);
   }
   return true;
 }

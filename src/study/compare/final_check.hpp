@@ -6,6 +6,9 @@
 
 namespace armwright {
 
+// Adds those that are recorded, and simulates nothing.
+void load_final_checks(const StudyPlan& plan, const std::filesystem::path& study,
+                       StudyResult& result);
 // Adds OptimizerResult::final_check where the plan has a final engine and the problem an arm. What
 // was simulated is kept in final/PROBLEM/OPTIMIZER.json and not made again for the same design.
 // False if stopped.
