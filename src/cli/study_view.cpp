@@ -167,9 +167,11 @@ std::string describe_study(const StudyPlan& plan, const StudyResult& result,
     }
   }
   return text + fmt::format(
-                    "\n* significant at {} after Holm's correction over the problem's "
-                    "pairs. Tables: {}\n",
-                    kSignificance, (folder / "tables").string());
+                    "\nA12: how often a run of the table's first is better than one of this "
+                    "optimizer's. p: of the\ndifference in pairs (Wilcoxon, after Holm); * below "
+                    "{}. Cases to 1 %: expected, with restarts,\nuntil 1 % of the way from the "
+                    "start to the best known is left.\nTables: {}\n",
+                    kSignificance, sanitize((folder / "tables").string()));
 }
 
 }  // namespace armwright

@@ -20,6 +20,14 @@ std::vector<double> make_grid(double first, double last, int steps) {
   return grid;
 }
 
+double calc_share_left(const ProblemResult& problem, double median) {
+  if (problem.has_front || !std::isfinite(median)) {
+    return median;  // a share already; or nothing found, nothing done
+  }
+  const double way = problem.start - problem.best_known;
+  return way > 0 ? (median - problem.best_known) / way : 0;
+}
+
 // What it cost every optimizer to converge on every (problem, replicate), in evaluations.
 struct Costs {
   std::vector<std::vector<double>> table;
@@ -86,7 +94,7 @@ OverallResult analyze_overall(const StudyPlan& plan, std::span<const ProblemResu
     auto& row = medians.emplace_back();
     for (std::size_t o = 0; o < problem.optimizers.size(); ++o) {
       row.push_back(problem.optimizers[o].spread.median);
-      by_optimizer[o].push_back(row.back());
+      by_optimizer[o].push_back(calc_share_left(problem, row.back()));
     }
   }
   overall.ranking = calc_ranking_stability(medians);

@@ -74,6 +74,11 @@ struct PairResult {
   bool is_significant() const {
     return test.pairs + test.zeros >= kFewestPairs && p_holm < kSignificance;
   }
+  // And in which direction: the pairs may say otherwise than the medians.
+  bool is_beaten_by(std::size_t winner) const {
+    const bool a_is_better = test.negative_rank_sum > test.positive_rank_sum;
+    return is_significant() && winner == (a_is_better ? a : b);
+  }
 };
 
 struct ProblemResult {
@@ -96,7 +101,8 @@ struct Profile {
   std::vector<std::vector<double>> shares;  // a row an optimizer, at the abscissae
 };
 
-// Over problems, each counting once, by its medians.
+// Over problems, each counting once, by its medians. What pairs compare is the share of the way
+// from the start to the best known that the median leaves, which means the same on every problem.
 struct OverallResult {
   RankingStability ranking;
   std::optional<FriedmanTest> friedman;

@@ -39,7 +39,7 @@ Standing find_standing(std::span<const PairResult> pairs, std::span<const std::s
   Standing standing;
   for (std::size_t i = 1; i < order.size(); ++i) {
     const PairResult& pair = find_pair(pairs, order[0], order[i]);
-    if (pair.is_significant()) {
+    if (pair.is_beaten_by(order[0])) {
       standing.beaten.push_back(&pair);
     } else {
       standing.equal.push_back(order[i]);
@@ -73,10 +73,16 @@ std::string describe_budget(const StudyPlan& plan) {
   return fmt::format("at {} simulations", plan.budget);
 }
 
+// Whether the clearest of all differences, after Holm's correction over so many tests, would be.
+bool can_be_significant(std::ptrdiff_t pairs_of_values, std::size_t tests) {
+  const double least_p = std::ldexp(2.0, -static_cast<int>(pairs_of_values));
+  return least_p * static_cast<double>(tests) < kSignificance;
+}
+
 // With which the clearest of all differences would be significant.
 int calc_fewest_replicates(std::size_t pairs) {
   int replicates = kFewestPairs;
-  while (std::ldexp(2.0, -replicates) * static_cast<double>(pairs) >= kSignificance) {
+  while (!can_be_significant(replicates, pairs)) {
     ++replicates;
   }
   return replicates;
@@ -99,9 +105,7 @@ std::vector<std::string> describe_problem(const StudyPlan& plan, const ProblemRe
                     "{} no outcome is significant.",
                     where, plan.replicates, kFewestPairs)};
   }
-  const double least_p =
-      std::ldexp(2.0, -plan.replicates) * static_cast<double>(problem.pairs.size());
-  if (least_p >= kSignificance) {
+  if (!can_be_significant(plan.replicates, problem.pairs.size())) {
     return {
         fmt::format("{} nothing can be concluded: with {} replicates and {} pairs of optimizers "
                     "no difference, however clear, is significant after Holm's correction; {} "
@@ -111,7 +115,7 @@ std::vector<std::string> describe_problem(const StudyPlan& plan, const ProblemRe
   }
   const std::size_t best = problem.order.front();
   const Standing standing = find_standing(problem.pairs, problem.order);
-  std::vector<std::string> equal = {plan.optimizers[best].label};
+  std::vector<std::string> equal;
   for (const std::size_t i : standing.equal) {
     equal.push_back(plan.optimizers[i].label);
   }
@@ -119,11 +123,12 @@ std::vector<std::string> describe_problem(const StudyPlan& plan, const ProblemRe
   if (!standing.beaten.empty()) {
     sentences.push_back(fmt::format("{} {}.", where, describe_beaten(plan, best, standing.beaten)));
   }
-  if (equal.size() == plan.optimizers.size()) {
-    sentences.push_back(fmt::format("{} {} cannot be told apart.", where, join_names(equal)));
-  } else if (equal.size() > 1) {
-    sentences.push_back(
-        fmt::format("On {} {} cannot be told apart.", problem.label, join_names(equal)));
+  if (std::ranges::none_of(problem.pairs, &PairResult::is_significant)) {
+    sentences.push_back(where + " no two optimizers can be told apart.");
+  } else if (!equal.empty()) {
+    sentences.push_back(fmt::format("{} {} cannot be told apart from {}.",
+                                    standing.beaten.empty() ? where : "On " + problem.label,
+                                    plan.optimizers[best].label, join_names(equal)));
   }
   return sentences;
 }
@@ -151,6 +156,14 @@ std::vector<std::string> describe_overall(const StudyPlan& plan, const StudyResu
         fmt::format("That is no more than a description: of {} problems, fewer than {}, nothing "
                     "can be concluded about others.",
                     plan.problems.size(), kFewestPairs));
+    return sentences;
+  }
+  if (!can_be_significant(std::ssize(plan.problems), result.overall.pairs.size())) {
+    sentences.push_back(
+        fmt::format("That is no more than a description: with {} problems and {} "
+                    "pairs of optimizers no difference is significant after Holm's "
+                    "correction.",
+                    plan.problems.size(), result.overall.pairs.size()));
     return sentences;
   }
   const std::size_t best = stability.full.order.front();
