@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <limits>
 #include <numeric>
@@ -16,6 +17,7 @@
 #include "cli/signals.hpp"
 #include "cli/study_view.hpp"
 #include "cli/terminal.hpp"
+#include "study/compare/escape.hpp"
 #include "study/compare/final_check.hpp"
 #include "study/compare/study_runner.hpp"
 #include "study/compare/study_tables.hpp"
@@ -86,7 +88,7 @@ StudyRequest make_request(const CompareOptions& options) {
 
 std::filesystem::path choose_folder(const CompareOptions& options, const StudyPlan& plan) {
   if (options.out.empty()) {
-    return choose_run_folder("results", plan.name, options.another);
+    return choose_run_folder("results", escape_name(plan.name), options.another);
   }
   auto path = std::filesystem::path(options.out).lexically_normal();
   if (!path.has_filename()) {
@@ -133,6 +135,12 @@ void announce(const CompareOptions& options, const StudyPlan& plan, unsigned job
   std::string text = fmt::format("{}: {}\n", plan.name, plan.title) + describe_plan(plan) +
                      describe_cost(plan, measure_duration_s(plan) / jobs, jobs) +
                      fmt::format("plan {}", calc_plan_hash(plan).substr(0, 16));
+  if (is_study_folder(folder)) {
+    const auto cells = list_cells(plan);
+    const auto there = std::ranges::count_if(
+        cells, [&](const Cell& cell) { return load_cell(plan, cell, folder).has_value(); });
+    text += fmt::format("\n{} of {} cells are there already", there, cells.size());
+  }
   if (!options.dry_run) {
     text +=
         fmt::format("\nfolder {} ({})", folder.string(), is_study_folder(folder) ? "found" : "new");
@@ -154,8 +162,9 @@ int run_compare(const CompareOptions& options, Session& session) {
     session.stop.set_deadline(StopSignal::Clock::now() +
                               std::chrono::duration_cast<StopSignal::Clock::duration>(limit));
   }
-  const StudyPlan plan = make_study_plan(make_request(options));
+  StudyPlan plan = make_study_plan(make_request(options));
   const auto path = choose_folder(options, plan);
+  adopt_recorded(path, plan);
   if (!options.quiet || options.dry_run) {
     announce(options, plan, jobs, path);
   }

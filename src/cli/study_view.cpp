@@ -54,7 +54,7 @@ std::string describe_against_leader(const ProblemResult& problem, std::size_t op
   });
   const double a12 = pair->a == leader ? pair->a12 : 1 - pair->a12;
   return fmt::format("{:.2f}, p {}{}", a12, format_p(pair->p_holm),
-                     pair->is_significant() ? " *" : "");
+                     pair->is_beaten_by(leader) ? " *" : "");
 }
 
 std::string describe_problem(const StudyPlan& plan, const ProblemResult& problem,
@@ -76,8 +76,10 @@ std::string describe_problem(const StudyPlan& plan, const ProblemResult& problem
     std::vector<std::string> row = {
         plan.optimizers[o].label + (plan.optimizers[o].baseline ? " (baseline)" : ""),
         format_value(one.spread.median, problem.quantity),
-        format_number(one.spread.lower_quartile, problem.quantity) + " to " +
-            format_number(one.spread.upper_quartile, problem.quantity),
+        std::isfinite(one.spread.lower_quartile)
+            ? format_number(one.spread.lower_quartile, problem.quantity) + " to " +
+                  format_number(one.spread.upper_quartile, problem.quantity)
+            : "-",
         fmt::format("{:.2f}", one.mean_rank),
         one.infinite == 0 ? "" : fmt::format("{}", one.infinite),
         describe_against_leader(problem, o)};
@@ -95,8 +97,8 @@ std::string describe_problem(const StudyPlan& plan, const ProblemResult& problem
       fmt::format("  {} on the test set, {} runs each\n", problem.quantity.name, plan.replicates) +
       table.format(style, 2);
   if (problem.friedman) {
-    text += fmt::format("  Friedman test (Iman-Davenport): F = {:.3g}, p = {}\n",
-                        problem.friedman->f, format_p(problem.friedman->f_p_value));
+    text += fmt::format("  Friedman test (Iman-Davenport): F = {:.3g}, p {}\n", problem.friedman->f,
+                        format_p(problem.friedman->f_p_value));
   }
   return text + "\n";
 }

@@ -13,6 +13,7 @@
 #include <csignal>
 #include <cstring>
 #include <system_error>
+#include <thread>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -97,6 +98,15 @@ ChildProcess::~ChildProcess() {
   } catch (const std::exception&) {
     // Its last words are lost; nobody who could be told is left.
   }
+}
+
+bool ChildProcess::end_gently(std::chrono::milliseconds patience) const {
+  constexpr std::chrono::milliseconds kPause{5};
+  ::kill(pid_, SIGTERM);  // not reaped yet, so that the number is its own
+  for (const auto end = Clock::now() + patience; Clock::now() < end && !has_ended(pid_);) {
+    std::this_thread::sleep_for(kPause);
+  }
+  return has_ended(pid_);
 }
 
 ChildProcess::Event ChildProcess::receive(const std::function<bool()>& must_give_up,

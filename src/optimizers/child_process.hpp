@@ -39,6 +39,9 @@ class ChildProcess {
   // The same for sending; never `message` nor `finished`, but nothing if all is sent.
   std::optional<Event> send(std::string_view message, const std::function<bool()>& must_give_up);
 
+  // Asks it to end (SIGTERM), which it may take as long for as `patience`; whether it has ended.
+  bool end_gently(std::chrono::milliseconds patience) const;
+
  private:
   using Clock = std::chrono::steady_clock;
   struct SocketPair {

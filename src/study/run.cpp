@@ -66,8 +66,10 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   optimizer->check_problem(plan.problem.problem->description());
   const RunFolder folder(request.folder, plan, request.command_line);
   if (are_derived_files_there(folder.path(), request.derived)) {
-    observer.on_message(
-        fmt::format("{}: this run is complete; use --new for another one", folder.path().string()));
+    if (request.derived == DerivedFiles::all) {  // of a comparison's cell nobody asked
+      observer.on_message(fmt::format("{}: this run is complete; use --new for another one",
+                                      folder.path().string()));
+    }
     return load_result(folder.path());
   }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <functional>
 #include <map>
 
@@ -31,7 +32,11 @@ void visit_sets(const StudyPlan& plan, const Visitor& visit) {
     meet("test", sets.test, sets.test_cases);
     meet("validation", sets.validation, sets.validation_cases);
     for (int replicate = 1; replicate <= plan.replicates; ++replicate) {
-      meet("training", make_training_set_name(plan, {p, 0, replicate}), problem.schedule.cases);
+      // Of fresh cases no more than the budget pays for.
+      constexpr std::int64_t kMostHashed = 10'000;
+      const auto cases = problem.schedule.fresh ? std::min(plan.budget, kMostHashed)
+                                                : std::int64_t{problem.schedule.cases};
+      meet("training", make_training_set_name(plan, {p, 0, replicate}), static_cast<int>(cases));
     }
   }
 }

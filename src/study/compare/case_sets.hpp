@@ -12,7 +12,7 @@ struct UsedSet {
   std::string problem;  // label
   std::string role;     // "training", "validation", "test"
   std::string name;
-  int cases = 0;       // the first of the set; of a fresh schedule those of the first generation
+  int cases = 0;  // the first of the set; of a fresh schedule as many as the budget could reach
   std::string sha256;  // of their points; empty for a function, which has none
 };
 

@@ -10,6 +10,7 @@
 #include "base/bits.hpp"
 #include "base/error.hpp"
 #include "base/file.hpp"
+#include "base/text.hpp"
 #include "study/case_runner.hpp"
 #include "study/compare/incumbents.hpp"
 #include "study/json_values.hpp"
@@ -83,7 +84,8 @@ std::vector<double> get_start(const ProblemDescription& problem) {
   return start;
 }
 
-void set_winner(const ProblemDescription& problem, const RunResult& result, CellOutcome& outcome) {
+void set_winner(const ProblemDescription& problem, const RunResult& result, double tolerance,
+                CellOutcome& outcome) {
   outcome.value = kInfinity;
   outcome.validation_value = kInfinity;
   if (!result.winner) {
@@ -91,8 +93,8 @@ void set_winner(const ProblemDescription& problem, const RunResult& result, Cell
   }
   const JudgedCandidate& winner = result.judged[*result.winner];
   outcome.x = winner.candidate.x;
-  outcome.validation_value = calc_test_value(problem, winner.validation);
-  outcome.value = calc_test_value(problem, result.test);
+  outcome.validation_value = calc_test_value(problem, winner.validation, tolerance);
+  outcome.value = calc_test_value(problem, result.test, tolerance);
   outcome.violation = calc_violation(result.test.constraint_values);
   outcome.errors = result.test_summary;
   outcome.objectives = result.test.objectives;
@@ -124,16 +126,18 @@ bool test_progress(const StudyPlan& plan, const RunPlan& run, const RunResult& r
   if (!bench.add(designs)) {
     return false;
   }
-  outcome.start_value = calc_test_value(problem, bench.get(designs.front()));
+  outcome.start_value =
+      calc_test_value(problem, bench.get(designs.front()), plan.constraint_tolerance);
   for (const std::int64_t budget : checkpoints) {
     const Incumbent* incumbent = find_incumbent(budget);
     outcome.curve.push_back({budget, incumbent == nullptr
                                          ? kInfinity
-                                         : calc_test_value(problem, bench.get(incumbent->x))});
+                                         : calc_test_value(problem, bench.get(incumbent->x),
+                                                           plan.constraint_tolerance)});
   }
   for (std::size_t i = 0; has_front && i < result.judged.size(); ++i) {
     const Evaluation& evaluation = bench.get(result.judged[i].candidate.x);
-    if (std::isfinite(calc_test_value(problem, evaluation))) {
+    if (std::isfinite(calc_test_value(problem, evaluation, plan.constraint_tolerance))) {
       outcome.front.push_back(evaluation.objectives);
     }
   }
@@ -142,9 +146,10 @@ bool test_progress(const StudyPlan& plan, const RunPlan& run, const RunResult& r
 
 }  // namespace
 
-double calc_test_value(const ProblemDescription& problem, const Evaluation& evaluation) {
-  const bool violated = std::ranges::any_of(evaluation.constraint_values,
-                                            [](double g) { return g > kConstraintTolerance; });
+double calc_test_value(const ProblemDescription& problem, const Evaluation& evaluation,
+                       double tolerance) {
+  const bool violated =
+      std::ranges::any_of(evaluation.constraint_values, [&](double g) { return g > tolerance; });
   return evaluation.objectives.empty() || evaluation.failed_cases > 0 || violated
              ? kInfinity
              : calc_scalar(problem, evaluation.objectives);
@@ -161,6 +166,7 @@ std::string to_json(const CellOutcome& outcome) {
       {"label", outcome.optimizer},
       {"optimizer", outcome.optimizer_name},
       {"replicate", outcome.replicate},
+      {"configuration_sha256", outcome.configuration_sha256},
       {"end_reason", outcome.end_reason},
       {"failure", outcome.failure},
       {"evaluations", outcome.evaluations},
@@ -192,6 +198,7 @@ CellOutcome parse_cell(const std::string& text, const std::filesystem::path& fil
     outcome.optimizer = j.at("label");
     outcome.optimizer_name = j.at("optimizer");
     outcome.replicate = j.at("replicate");
+    outcome.configuration_sha256 = j.at("configuration_sha256");
     outcome.end_reason = j.at("end_reason");
     outcome.failure = j.at("failure");
     outcome.evaluations = j.at("evaluations");
@@ -235,13 +242,15 @@ std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
   outcome.optimizer = plan.optimizers[cell.optimizer].label;
   outcome.optimizer_name = plan.optimizers[cell.optimizer].row.name;
   outcome.replicate = cell.replicate;
+  outcome.configuration_sha256 = calc_configuration_hash(plan.problems[cell.problem].loaded);
   outcome.end_reason = result->end_reason;
   outcome.failure = result->failure;
   outcome.evaluations = result->counts.evaluations;
   outcome.cases = result->counts.cases;
   outcome.clipped = result->counts.clipped;
   outcome.failed_evaluations = result->counts.failed;
-  set_winner(request.plan.problem.problem->description(), *result, outcome);
+  set_winner(request.plan.problem.problem->description(), *result, plan.constraint_tolerance,
+             outcome);
   if (!test_progress(plan, request.plan, *result, request.folder, stop, outcome)) {
     return std::nullopt;
   }
@@ -255,7 +264,19 @@ std::optional<CellOutcome> load_cell(const StudyPlan& plan, const Cell& cell,
   if (!std::filesystem::exists(file)) {
     return std::nullopt;
   }
-  return parse_cell(read_file(file, kCellLimit_bytes), file);
+  CellOutcome outcome = parse_cell(read_file(file, kCellLimit_bytes), file);
+  const StudyProblem& problem = plan.problems[cell.problem];
+  if (outcome.problem != problem.label ||
+      outcome.optimizer != plan.optimizers[cell.optimizer].label ||
+      outcome.replicate != cell.replicate ||
+      outcome.configuration_sha256 != calc_configuration_hash(problem.loaded)) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("{}: is of another cell ({} on {}, replicate {}, or of another "
+                            "configuration); remove it, and the same command makes the right one",
+                            file.string(), sanitize(outcome.optimizer), sanitize(outcome.problem),
+                            outcome.replicate));
+  }
+  return outcome;
 }
 
 }  // namespace armwright

@@ -15,10 +15,9 @@
 namespace armwright {
 
 // The value of a design on the test set, to be minimised: the (scalar) objective; infinite if it
-// has none, if a case is without number, or if a constraint is violated by more than
-// kConstraintTolerance.
-inline constexpr double kConstraintTolerance = 0.05;
-double calc_test_value(const ProblemDescription& problem, const Evaluation& evaluation);
+// has none, if a case is without number, or if a constraint is violated by more than `tolerance`.
+double calc_test_value(const ProblemDescription& problem, const Evaluation& evaluation,
+                       double tolerance);
 
 struct CurvePoint {
   std::int64_t budget = 0;
@@ -30,6 +29,7 @@ struct CellOutcome {
   std::string optimizer;  // label
   std::string optimizer_name;
   int replicate = 1;
+  std::string configuration_sha256;  // of the problem
   std::string end_reason;
   std::string failure;  // of the optimizer; empty if it did not fail
   std::uint64_t evaluations = 0;
@@ -59,7 +59,7 @@ CellOutcome parse_cell(const std::string& json, const std::filesystem::path& fil
 std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
                                     const std::filesystem::path& study, StopSignal& stop,
                                     RunObserver& observer);
-// What is recorded of a cell; nothing if it has not ended.
+// What is recorded of a cell; nothing if it has not ended. Error{bad_data} if it is another one's.
 std::optional<CellOutcome> load_cell(const StudyPlan& plan, const Cell& cell,
                                      const std::filesystem::path& study);
 

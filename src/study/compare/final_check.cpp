@@ -67,14 +67,16 @@ void save_check(const std::filesystem::path& file, const FinalCheck& check,
 
 // The problem as it is, but judged on the final engine.
 LoadedProblem load_on_engine(const StudyProblem& problem, const std::string& engine) {
+  constexpr std::string_view kReplaced[] = {"physics.engine", "physics.judging_engine",
+                                            "physics.precision", "physics.simd"};
   std::vector<std::string> settings;
   for (const std::string& setting : problem.settings) {
-    if (!setting.starts_with("physics.engine") && !setting.starts_with("physics.judging_engine") &&
-        !setting.starts_with("physics.precision") && !setting.starts_with("physics.simd")) {
+    if (std::ranges::find(kReplaced, setting.substr(0, setting.find('='))) == std::end(kReplaced)) {
       settings.push_back(setting);
     }
   }
   settings.push_back("physics.engine=" + engine);
+  settings.push_back("physics.judging_engine=" + engine);
   return load_problem(problem.name, settings);
 }
 
@@ -147,9 +149,10 @@ bool add_final_checks(const StudyPlan& plan, const std::filesystem::path& study,
       return false;
     }
     progress.done += block.numbers.size();
-    *one.check = FinalCheck{one.best->replicate, plan.final_engine,
-                            calc_test_value(judged->problem->description(), evaluation),
-                            summarize(evaluation.case_errors, kFailureError_m)};
+    *one.check = FinalCheck{
+        one.best->replicate, plan.final_engine,
+        calc_test_value(judged->problem->description(), evaluation, plan.constraint_tolerance),
+        summarize(evaluation.case_errors, kFailureError_m)};
     save_check(one.file, **one.check, *one.best);
   }
   return true;

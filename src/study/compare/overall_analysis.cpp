@@ -55,8 +55,7 @@ Costs calc_costs(const StudyPlan& plan, std::span<const CellOutcome> cells, doub
       const double target = calc_convergence_target(start, best, tolerance);
       std::vector<double> row;
       for (std::size_t o = 0; o < optimizers; ++o) {
-        const double cases =
-            target == -kInfinity ? kInfinity : calc_cost_to_target(make_trace(get_cell(o)), target);
+        const double cases = calc_cost_to_target(make_trace(get_cell(o)), target);
         row.push_back(cases / problem.schedule.cases);
       }
       costs.table.push_back(std::move(row));
@@ -101,7 +100,9 @@ OverallResult analyze_overall(const StudyPlan& plan, std::span<const ProblemResu
   if (medians.size() > 1 && plan.optimizers.size() > 1) {
     overall.friedman = calc_friedman_test(medians);
   }
-  overall.pairs = compare_pairs(by_optimizer);
+  if (medians.size() > 1) {
+    overall.pairs = compare_pairs(by_optimizer);
+  }
   constexpr double kMostTimes = 100;
   constexpr int kSteps = 40;
   overall.alphas = make_grid(1, kMostTimes, kSteps);

@@ -36,7 +36,7 @@ std::vector<double> calc_reference_point(std::span<const CellOutcome> cells, std
     const auto [least, most] = std::ranges::minmax_element(front, by_objective);
     const double lower = all[*least][k];
     const double upper = all[*most][k];
-    const double extent = upper > lower ? upper - lower : std::max(std::abs(upper), 1e-300);
+    const double extent = upper > lower ? upper - lower : upper != 0 ? std::abs(upper) : 1;
     ideal[k] = lower;
     reference[k] = upper + 0.1 * extent;
   }
@@ -111,11 +111,12 @@ void add_running_times(const StudyPlan& plan, const ProblemResult& problem,
     time.target = calc_convergence_target(problem.start, problem.best_known, share);
     std::vector<Trial> trials;
     for (const CellOutcome* run : runs) {
-      const double cost = std::isfinite(time.target)
-                              ? calc_cost_to_target(make_trace(*run), time.target)
-                              : kInfinity;
+      const double cost = calc_cost_to_target(make_trace(*run), time.target);
       const bool reached = std::isfinite(cost);
-      trials.push_back({reached ? cost : static_cast<double>(plan.budget), reached});
+      // One that gave up early has spent no more than that.
+      const double spent =
+          run->cases > 0 ? static_cast<double>(run->cases) : static_cast<double>(plan.budget);
+      trials.push_back({reached ? cost : spent, reached});
       time.reached += reached ? 1 : 0;
     }
     if (time.reached > 0) {
@@ -143,11 +144,12 @@ void add_curve(const ProblemResult& problem, std::span<const CellOutcome* const>
 
 std::vector<TracePoint> make_trace(const CellOutcome& cell) {
   std::vector<TracePoint> trace;
-  double best = kInfinity;
-  for (const CurvePoint& point : cell.curve) {
-    best = std::min(best, point.value);
-    trace.push_back({static_cast<double>(point.budget), best});
+  double worst = -kInfinity;
+  for (auto point = cell.curve.rbegin(); point != cell.curve.rend(); ++point) {
+    worst = std::max(worst, point->value);
+    trace.push_back({static_cast<double>(point->budget), worst});
   }
+  std::ranges::reverse(trace);
   return trace;
 }
 

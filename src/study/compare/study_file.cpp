@@ -6,6 +6,8 @@
 
 #include "base/config.hpp"
 #include "base/error.hpp"
+#include "base/file.hpp"
+#include "base/hash.hpp"
 #include "base/text.hpp"
 #include "problems/config_files.hpp"
 #include "study/compare/case_sets.hpp"
@@ -38,7 +40,8 @@ struct NamedProblem {
 struct RawPlan {
   std::vector<NamedProblem> problems;
   std::vector<NamedOptimizer> optimizers;
-  std::vector<std::string> settings;
+  std::vector<std::string> settings;       // of every problem, under its own
+  std::vector<std::string> last_settings;  // over its own
   std::optional<Schedule> schedule;
 };
 
@@ -73,7 +76,7 @@ RawPlan read_file_plan(const ConfigTable& table, StudyPlan& plan) {
   plan.title = table.get_string("title", "");
   table.get_string("description", "");
   plan.name = table.get_string("name", "");
-  table.get_string("plan_sha256", "");
+  table.get_string("plan_sha256", "");  // check_plan_hash() has looked at the text
   plan.seed = static_cast<std::uint64_t>(
       table.get_integer_or("seed", 1, 0, std::numeric_limits<std::int64_t>::max()));
   plan.replicates =
@@ -83,6 +86,8 @@ RawPlan read_file_plan(const ConfigTable& table, StudyPlan& plan) {
       table.get_number_or("start_spread", plan.start_spread, {.lower = 0, .upper = 2});
   plan.checkpoints =
       static_cast<int>(table.get_integer_or("checkpoints", plan.checkpoints, 1, kMostCheckpoints));
+  plan.constraint_tolerance = table.get_number_or("constraint_tolerance", plan.constraint_tolerance,
+                                                  {.lower = 0, .upper = 1});
   plan.final_engine = table.get_string("final_engine", "");
   plan.baselines = table.get_bool_or("baselines", true);
   const ConfigTable selection = table.get_table_or_empty("selection");
@@ -155,11 +160,8 @@ void load_problems(const RawPlan& raw, StudyPlan& plan) {
   for (const NamedProblem& named : raw.problems) {
     StudyProblem problem;
     problem.name = named.name;
-    problem.settings = raw.settings;
-    for (const std::string& setting : named.settings) {
-      if (std::ranges::find(problem.settings, setting) == problem.settings.end()) {
-        problem.settings.push_back(setting);
-      }
+    for (const auto* settings : {&raw.settings, &named.settings, &raw.last_settings}) {
+      problem.settings.insert(problem.settings.end(), settings->begin(), settings->end());
     }
     problem.loaded = load_problem(named.name, problem.settings);
     problem.label = named.label.empty() ? problem.loaded.name : named.label;
@@ -269,6 +271,36 @@ void check_cells(const StudyPlan& plan) {
 
 }  // namespace
 
+void check_plan_hash(const std::filesystem::path& path) {
+  constexpr std::size_t kLimit_bytes = std::size_t{16} << 20;
+  constexpr std::string_view kKey = "plan_sha256 = \"";
+  const std::string text = read_file(path, kLimit_bytes);
+  const std::size_t end = text.find('\n');
+  if (!text.starts_with(kKey) || end == std::string::npos) {
+    return;
+  }
+  const std::string hash = calc_sha256_hex(text.substr(end + 1));
+  if (text.substr(kKey.size(), hash.size()) != hash) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("{}: is a resolved plan that somebody has changed: its hash is not "
+                            "plan_sha256. As a plan of your own, without that line and under "
+                            "another name, it can be what you like",
+                            path.string()));
+  }
+}
+
+void keep_baselines(const std::filesystem::path& recorded, StudyPlan& plan) {
+  for (const ConfigTable& table : ConfigTable::load(recorded).get_tables_or_empty("optimizer")) {
+    const std::string label = table.get_string("label");
+    if (table.get_bool_or("baseline", false) &&
+        std::ranges::find(plan.optimizers, label, &StudyOptimizer::label) ==
+            plan.optimizers.end()) {
+      plan.optimizers.push_back(load_study_optimizer(
+          {table.get_string("name"), label, table.get_strings("options"), true}));
+    }
+  }
+}
+
 std::string read_study_title(const std::string& file) {
   return ConfigTable::load(resolve_config("studies", file)).get_string("title", "");
 }
@@ -279,6 +311,7 @@ StudyPlan make_study_plan(const StudyRequest& request) {
   if (!request.file.empty()) {
     const auto path = resolve_config("studies", request.file);
     raw = read_file_plan(ConfigTable::load(path), plan);
+    check_plan_hash(path);
     if (plan.name.empty()) {
       plan.name = path.stem().string();
     }
@@ -295,7 +328,7 @@ StudyPlan make_study_plan(const StudyRequest& request) {
       raw.optimizers.push_back({name, "", {}, false});
     }
   }
-  raw.settings.insert(raw.settings.end(), request.settings.begin(), request.settings.end());
+  raw.last_settings = request.settings;
   if (request.schedule) {
     raw.schedule = request.schedule;
   }
@@ -315,6 +348,15 @@ StudyPlan make_study_plan(const StudyRequest& request) {
   }
   if (!plan.final_engine.empty()) {
     find_engine(plan.final_engine);
+  }
+  for (const StudyProblem& problem : plan.problems) {
+    if (plan.start_spread == 0 && !problem.loaded.tracking) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("start_spread is 0, and {} has no training cases: the replicates of "
+                              "a deterministic optimizer would all be the same run; it must be "
+                              "above 0 there",
+                              problem.label));
+    }
   }
   check_cells(plan);
   check_sets_are_disjoint(plan);

@@ -52,10 +52,12 @@ std::string format_number(double value) {
 std::string make_body(const StudyPlan& plan) {
   std::string text = fmt::format(
       "name = {}\ntitle = {}\nseed = {}\nreplicates = {}\nbudget = {}\nstart_spread = {}\n"
-      "checkpoints = {}\nfinal_engine = {}\nbaselines = {}\n\n[selection]\nlast = {}\nbest = {}\n",
+      "constraint_tolerance = {}\ncheckpoints = {}\nfinal_engine = {}\nbaselines = "
+      "{}\n\n[selection]\nlast = {}\nbest = {}\n",
       quote(plan.name), quote(plan.title), plan.seed, plan.replicates, plan.budget,
-      format_number(plan.start_spread), plan.checkpoints, quote(plan.final_engine),
-      plan.baselines ? "true" : "false", plan.selection.last, plan.selection.best);
+      format_number(plan.start_spread), format_number(plan.constraint_tolerance), plan.checkpoints,
+      quote(plan.final_engine), plan.baselines ? "true" : "false", plan.selection.last,
+      plan.selection.best);
   for (const StudyProblem& problem : plan.problems) {
     const CaseSets& sets = problem.loaded.sets;
     text += fmt::format(
@@ -78,9 +80,10 @@ std::string make_body(const StudyPlan& plan) {
   return text;
 }
 
-json index_by_label(const json& list) {
+json index_by_label(const json& list, const char* ignored_key) {
   json by_label = json::object();
-  for (const json& entry : list) {
+  for (json entry : list) {
+    entry.erase(ignored_key);
     by_label[entry.at("label").get<std::string>()] = entry;
   }
   return by_label;
@@ -98,7 +101,14 @@ std::vector<std::string> describe_problem_change(const std::filesystem::path& fo
   if (!std::filesystem::exists(file)) {
     return {};
   }
-  return describe_differences(read_file(file, kPlanLimit_bytes), problem.loaded.resolved_json);
+  try {
+    return describe_differences(read_file(file, kPlanLimit_bytes), problem.loaded.resolved_json);
+  } catch (const json::exception& error) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("{}: is not what armwright wrote ({}); choose another folder with "
+                            "--out, or --new",
+                            file.string(), error.what()));
+  }
 }
 
 }  // namespace
@@ -110,6 +120,12 @@ std::string to_toml(const StudyPlan& plan) {
 
 std::string calc_plan_hash(const StudyPlan& plan) {
   return calc_sha256_hex(make_body(plan));
+}
+
+void adopt_recorded(const std::filesystem::path& folder, StudyPlan& plan) {
+  if (is_study_folder(folder) && plan.baselines) {
+    keep_baselines(folder / kPlanFile, plan);
+  }
 }
 
 bool is_study_folder(const std::filesystem::path& path) {
@@ -155,12 +171,21 @@ StudyFolder::StudyFolder(const std::filesystem::path& path, const StudyPlan& pla
 
 void StudyFolder::extend(const StudyPlan& plan, const std::string& text) {
   const auto file = path_ / kPlanFile;
+  if (!ConfigTable::load(file).has("plan_sha256")) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("{}: is not a plan that armwright recorded; choose another folder with "
+                            "--out, or --new",
+                            file.string()));
+  }
+  check_plan_hash(file);
   json recorded = json::parse(ConfigTable::load(file).to_json());
   json now = json::parse(ConfigTable::parse(text, file.string()).to_json());
   std::vector<std::string> differences;
   for (const char* key : {"problem", "optimizer"}) {
-    const json before = index_by_label(recorded.at(key));
-    const json after = index_by_label(now.at(key));
+    // Which file a problem came from and who asked for a baseline do not matter.
+    const char* ignored = key == std::string_view("problem") ? "name" : "baseline";
+    const json before = index_by_label(recorded.at(key), ignored);
+    const json after = index_by_label(now.at(key), ignored);
     for (const auto& [label, entry] : before.items()) {
       if (!after.contains(label)) {
         differences.push_back(
@@ -192,7 +217,7 @@ void StudyFolder::extend(const StudyPlan& plan, const std::string& text) {
   if (replicates <= plan.replicates) {
     now["replicates"] = replicates;
   }
-  for (const char* key : {"plan_sha256", "title", "baselines"}) {
+  for (const char* key : {"plan_sha256", "name", "title", "baselines"}) {
     recorded.erase(key);
     now.erase(key);
   }

@@ -72,6 +72,15 @@ std::string make_training_set_name(const StudyPlan& plan, const Cell& cell) {
                      cell.replicate);
 }
 
+Selection choose_selection(const StudyPlan& plan, const StudyProblem& problem) {
+  const ProblemDescription& description = problem.loaded.problem->description();
+  Selection selection = plan.selection;
+  if (description.objectives.size() > 1 || !description.constraints.empty()) {
+    selection.last = std::max(selection.last, Selection{}.last);
+  }
+  return selection;
+}
+
 RunPlan make_run_plan(const StudyPlan& plan, const Cell& cell) {
   const StudyProblem& problem = plan.problems[cell.problem];
   const StudyOptimizer& optimizer = plan.optimizers[cell.optimizer];
@@ -83,7 +92,7 @@ RunPlan make_run_plan(const StudyPlan& plan, const Cell& cell) {
   run.seed = make_seed(make_stream(plan, cell) + "/" + optimizer.label);
   run.budget = plan.budget;
   run.schedule = problem.schedule;
-  run.selection = plan.selection;
+  run.selection = choose_selection(plan, problem);
   return run;
 }
 
@@ -110,7 +119,8 @@ StudyCost calc_cost(const StudyPlan& plan) {
   for (const StudyProblem& problem : plan.problems) {
     const CaseSets& sets = problem.loaded.sets;
     const bool fronts = problem.loaded.problem->description().objectives.size() > 1;
-    const std::int64_t judged = plan.selection.last * (fronts ? 2 : 1) + plan.selection.best;
+    const Selection selection = choose_selection(plan, problem);
+    const std::int64_t judged = selection.last + selection.best;
     const auto tested = static_cast<std::int64_t>(
         calc_checkpoints(plan.budget, problem.schedule.cases, plan.checkpoints).size());
     cost.cells += runs;

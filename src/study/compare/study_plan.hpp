@@ -48,6 +48,9 @@ struct StudyPlan {
   // Width of the box that starts are drawn from, as a share of the bounds' box.
   double start_spread = 0.1;
   Selection selection{.last = 5, .best = 5};
+  // By how much a constraint may be violated on validation and test sets, which nobody trained on,
+  // for a design to count as feasible there.
+  double constraint_tolerance = 0;
   int checkpoints = 20;      // budgets, logarithmically spaced, at which incumbents are tested
   std::string final_engine;  // the best design of every optimizer and problem once more; or empty
   bool baselines = true;     // random search and a local search are in the pool by themselves
@@ -55,7 +58,7 @@ struct StudyPlan {
   std::vector<StudyOptimizer> optimizers;
 };
 
-// What stands in every comparison (facts: a method that does not beat these is of no use).
+// What stands in every comparison: a method that does not beat these is of no use.
 inline constexpr std::string_view kRandomBaseline = "random";
 inline constexpr std::string_view kLocalBaseline = "nlopt:neldermead";
 
@@ -78,6 +81,13 @@ StudyPlan make_study_plan(const StudyRequest& request);
 // SHA-256 of a problem's resolved configuration and of the files that it refers to.
 std::string calc_configuration_hash(const LoadedProblem& problem);
 
+// Error{bad_data} if the file is a resolved plan (to_toml()) that was changed since.
+void check_plan_hash(const std::filesystem::path& path);
+
+// Baselines that a recorded plan has and this one would do without, having grown others of its
+// kind, stay in it.
+void keep_baselines(const std::filesystem::path& recorded, StudyPlan& plan);
+
 // Of a study's file alone, without loading what it names.
 std::string read_study_title(const std::string& file);
 
@@ -91,6 +101,9 @@ std::vector<Cell> list_cells(const StudyPlan& plan);
 
 // The replicate's training cases, the same for every optimizer.
 std::string make_training_set_name(const StudyPlan& plan, const Cell& cell);
+// Of one objective without constraints the plan's; otherwise at least as many as `optimize` judges,
+// since a front, and designs that keep a limit on unseen cases, are not found among the last few.
+Selection choose_selection(const StudyPlan& plan, const StudyProblem& problem);
 // The run that the cell is.
 RunPlan make_run_plan(const StudyPlan& plan, const Cell& cell);
 // "cells/q1-complex/ga/r01", relative to the study's folder.

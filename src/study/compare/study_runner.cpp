@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <csignal>
 #include <exception>
 #include <limits>
 #include <memory>
@@ -18,8 +19,6 @@
 
 namespace armwright {
 namespace {
-
-constexpr std::uint64_t kNoMoreCells = std::numeric_limits<std::uint64_t>::max();
 
 // What a worker tells of its cell.
 enum class Note : std::uint8_t { progress, message, done, broken, io_error };
@@ -55,6 +54,13 @@ class Reporter final : public RunObserver {
   Clock::time_point last_ = Clock::now();
 };
 
+// A signal handler reaches nothing but globals; a worker is a process of its own, and has but one.
+std::atomic<StopSignal*> g_worker_stop = nullptr;
+
+extern "C" void stop_worker(int /*signal*/) {
+  g_worker_stop.load()->request(StopReason::terminated);
+}
+
 // The study's lock is ours, so whoever holds a cell's is a worker of a process that was killed, and
 // about to die with it.
 void run_when_free(const StudyPlan& plan, const Cell& cell, const std::filesystem::path& study,
@@ -74,19 +80,21 @@ void run_when_free(const StudyPlan& plan, const Cell& cell, const std::filesyste
   }
 }
 
-// A worker's life: one cell after the other, until there are no more.
+// A worker's life: one cell after the other, until it is asked to end.
 void work(const StudyPlan& plan, std::span<const Cell> cells, const std::filesystem::path& study,
           ParentLink& parent) {
-  StopSignal never;
+  StopSignal stop;
+  g_worker_stop = &stop;
+  std::signal(SIGTERM, stop_worker);
   while (true) {
     const std::string order = parent.receive();
     const auto number = PacketReader(order).get<std::uint64_t>();
-    if (number == kNoMoreCells) {
-      return;
-    }
     Reporter reporter(parent);
     try {
-      run_when_free(plan, cells[number], study, never, reporter);
+      run_when_free(plan, cells[number], study, stop, reporter);
+      if (stop.requested()) {
+        return;
+      }
       parent.send(make_note(Note::done, ""));
     } catch (const Error& error) {
       const bool is_io = error.kind() == ErrorKind::io;
@@ -160,32 +168,39 @@ class Runner {
     return failure_ != nullptr || stop_.requested();
   }
 
-  // Hands cells to one worker, and to a new one in its place if it dies.
+  // Hands cells to one worker, and to a new one in its place if it dies. A cell whose process dies
+  // is tried once more: what killed it may have had nothing to do with it.
   void attend(std::unique_ptr<ChildProcess>& worker) {
-    const auto is_over = [this] { return must_end(); };
     for (std::size_t number = next_++; number < cells_.size() && !must_end(); number = next_++) {
-      try {
-        PacketWriter order;
-        order.put(std::uint64_t{number});
-        if (worker->send(order.bytes(), is_over) || !follow(*worker, number)) {
-          return;
-        }
-      } catch (const ChildFailure& failure) {
-        note_broken(number, fmt::format("its process {}", failure.what()));
+      std::string death;
+      if (!hand_over(*worker, number, death)) {
         worker = start_worker();
-      }
-    }
-    if (!must_end()) {
-      PacketWriter order;
-      order.put(kNoMoreCells);
-      std::string nothing;
-      if (!worker->send(order.bytes(), is_over)) {
-        worker->receive(is_over, nothing);
+        if (!hand_over(*worker, number, death)) {
+          note_broken(number, fmt::format("its process {}, twice", death));
+          worker = start_worker();
+        }
       }
     }
   }
 
-  // Until the cell is done or broken. False if everything is over.
+  // False if the worker has died of it.
+  bool hand_over(ChildProcess& worker, std::size_t number, std::string& death) {
+    try {
+      PacketWriter order;
+      order.put(std::uint64_t{number});
+      if (!worker.send(order.bytes(), [this] { return must_end(); }) && !follow(worker, number)) {
+        // In the midst of a cell: its optimizer may have processes of its own to be ended.
+        constexpr std::chrono::seconds kPatience{3};
+        worker.end_gently(kPatience);
+      }
+    } catch (const ChildFailure& failure) {
+      death = failure.what();
+      return false;
+    }
+    return true;
+  }
+
+  // Until the cell is done or broken. False if everything is over before that.
   bool follow(ChildProcess& worker, std::size_t number) {
     std::string message;
     while (worker.receive([this] { return must_end(); }, message) == ChildProcess::Event::message) {

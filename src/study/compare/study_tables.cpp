@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -201,22 +202,25 @@ std::string make_ranking(const StudyPlan& plan, const StudyResult& result) {
 }
 
 bool has_fronts(const StudyResult& result) {
-  for (const ProblemResult& problem : result.problems) {
-    if (problem.has_front) {
-      return true;
-    }
-  }
-  return false;
+  return std::ranges::any_of(result.problems, &ProblemResult::has_front);
 }
 
 std::string make_fronts(const StudyResult& result) {
-  std::string csv = "problem,optimizer,replicate,objectives\n";
+  std::size_t most = 0;
+  for (const CellOutcome& cell : result.cells) {
+    most = std::max(most, cell.front.empty() ? 0 : cell.front.front().size());
+  }
+  std::string csv = "problem,optimizer,replicate";
+  for (std::size_t k = 1; k <= most; ++k) {
+    csv += fmt::format(",objective_{}", k);
+  }
+  csv += "\n";
   for (const CellOutcome& cell : result.cells) {
     for (const auto& point : cell.front) {
       csv += fmt::format("{},{},{}", quote_csv(cell.problem), quote_csv(cell.optimizer),
                          cell.replicate);
-      for (const double value : point) {
-        csv += "," + number(value);
+      for (std::size_t k = 0; k < most; ++k) {
+        csv += "," + (k < point.size() ? number(point[k]) : "");
       }
       csv += "\n";
     }

@@ -9,7 +9,8 @@
 
 namespace armwright {
 
-// The best value on the test set so far, at each checkpoint.
+// At each checkpoint the worst value on the test set from there on: what the run has for good. The
+// best so far would be a selection on the test set, which profits from luck.
 std::vector<TracePoint> make_trace(const CellOutcome& cell);
 
 // Every two of the optimizers; values[o][i] and values[p][i] are a pair.

@@ -25,6 +25,12 @@ std::string join_names(std::vector<std::string> names) {
   return join(names, ", ") + " and " + last;
 }
 
+constexpr double kSmallestP = 1e-6;
+
+std::string format_number(double p) {
+  return fmt::format("{:.2g}", std::max(p, kSmallestP));
+}
+
 std::string format_a12(double a12) {
   return fmt::format("{:.2f}", a12);
 }
@@ -64,8 +70,9 @@ std::string describe_beaten(const StudyPlan& plan, std::size_t best,
                               ? format_a12(least_a12)
                               : format_a12(least_a12) + " to " + format_a12(most_a12);
   const bool one = beaten.size() == 1;
-  return fmt::format("{} beats {} (A12 {}, p {} {} after Holm)", plan.optimizers[best].label,
-                     join_names(names), a12, one ? "=" : "at most", format_p(worst_p));
+  return fmt::format("{} beats {} (A12 {}, p {}{} after Holm)", plan.optimizers[best].label,
+                     join_names(names), a12, one ? "" : "at most ",
+                     one ? format_p(worst_p) : format_number(worst_p));
 }
 
 // "at 5000 simulations": what every optimizer had.
@@ -88,10 +95,17 @@ int calc_fewest_replicates(std::size_t pairs) {
   return replicates;
 }
 
-std::vector<std::string> describe_problem(const StudyPlan& plan, const ProblemResult& problem) {
+std::vector<std::string> describe_problem(const StudyPlan& plan, const ProblemResult& problem,
+                                          std::span<const Cell> missing_cells) {
   const std::string where = fmt::format("On {} {}", problem.label, describe_budget(plan));
   if (plan.optimizers.size() < 2) {
     return {where + " there is nothing to compare: one optimizer took part."};
+  }
+  const bool missing = std::ranges::any_of(missing_cells, [&](const Cell& cell) {
+    return plan.problems[cell.problem].label == problem.label;
+  });
+  if (missing) {
+    return {where + " there is no verdict: not all cells have ended."};
   }
   const bool nothing_found = std::ranges::all_of(
       problem.optimizers,
@@ -134,7 +148,7 @@ std::vector<std::string> describe_problem(const StudyPlan& plan, const ProblemRe
 }
 
 std::vector<std::string> describe_overall(const StudyPlan& plan, const StudyResult& result) {
-  if (plan.problems.size() < 2 || plan.optimizers.size() < 2) {
+  if (plan.problems.size() < 2 || plan.optimizers.size() < 2 || !result.missing.empty()) {
     return {};
   }
   std::vector<std::string> sentences;
@@ -220,8 +234,7 @@ std::vector<std::string> describe_limits(const StudyPlan& plan, const StudyResul
 }  // namespace
 
 std::string format_p(double p) {
-  constexpr double kSmallest = 1e-6;
-  return p < kSmallest ? "< 1e-06" : fmt::format("{:.2g}", p);
+  return p < kSmallestP ? "< 1e-06" : "= " + format_number(p);
 }
 
 std::vector<std::string> describe_verdict(const StudyPlan& plan, const StudyResult& result) {
@@ -230,7 +243,7 @@ std::vector<std::string> describe_verdict(const StudyPlan& plan, const StudyResu
     verdict.insert(verdict.end(), sentences.begin(), sentences.end());
   };
   for (const ProblemResult& problem : result.problems) {
-    add(describe_problem(plan, problem));
+    add(describe_problem(plan, problem, result.missing));
   }
   add(describe_overall(plan, result));
   add(describe_limits(plan, result));

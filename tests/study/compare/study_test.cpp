@@ -5,6 +5,7 @@
 
 #include "base/expect_error.hpp"
 #include "study/compare/study_support.hpp"
+#include "study/compare/study_values.hpp"
 #include "study/compare/verdict.hpp"
 
 namespace armwright {
@@ -149,6 +150,76 @@ TEST_F(StudyTest, TheVerdictSaysThatBaselinesWereLeftOut) {
   const StudyPlan plan = make_study_plan(request);
   EXPECT_THAT(describe_verdict(plan, study(plan, "study")),
               Contains(HasSubstr("baselines (random search and a local search) were left out")));
+}
+
+TEST_F(StudyTest, ABaselineStaysWhenAnotherOfItsKindComes) {
+  StudyRequest request = make_small_request();
+  study(make_study_plan(request), "study");
+  request.optimizers.insert(request.optimizers.end(), {"nlopt:cobyla", "random"});
+  StudyPlan plan = make_study_plan(request);
+  adopt_recorded(temporary_ / "study", plan);
+  EXPECT_NO_THROW(study(plan, "study"));
+  EXPECT_EQ(plan.optimizers.size(), 5u);  // nlopt:neldermead too
+}
+
+TEST_F(StudyTest, ACellOfAnotherOptimizerIsRefused) {
+  const StudyPlan plan = make_study_plan(make_small_request());
+  study(plan, "study");
+  const auto get_file = [&](std::size_t optimizer) {
+    return temporary_ / "study" / make_cell_path(plan, {0, optimizer, 1}) / "cell.json";
+  };
+  std::filesystem::copy_file(get_file(0), get_file(1),
+                             std::filesystem::copy_options::overwrite_existing);
+  EXPECT_THAT(error_of(ErrorKind::bad_data, [&] { analyze_study(plan, temporary_ / "study"); }),
+              HasSubstr("is of another cell (ga on sphere, replicate 1"));
+}
+
+TEST_F(StudyTest, ARecordedPlanThatWasChangedIsRefused) {
+  const StudyPlan plan = make_study_plan(make_small_request());
+  study(plan, "study");
+  const auto file = temporary_ / "study" / "study.toml";
+  std::string text = read_file(file, 1 << 20);
+  text.replace(text.find("population=35"), 13, "population=36");
+  std::ofstream(file) << text;
+  EXPECT_THAT(error_of(ErrorKind::bad_data, [&] { StudyFolder(temporary_ / "study", plan); }),
+              HasSubstr("a resolved plan that somebody has changed"));
+}
+
+TEST_F(StudyTest, WithoutAllCellsThereIsNoVerdict) {
+  const StudyPlan plan = make_study_plan(make_small_request());
+  study(plan, "study");
+  std::filesystem::remove(temporary_ / "study" / make_cell_path(plan, {1, 2, 3}) / "cell.json");
+  const StudyResult result = analyze_study(plan, temporary_ / "study");
+  ASSERT_EQ(result.missing.size(), 1u);
+  const auto verdict = describe_verdict(plan, result);
+  EXPECT_THAT(verdict, Contains(HasSubstr("On rosenbrock at 120 simulations there is no verdict")));
+  EXPECT_THAT(verdict, Contains(HasSubstr("1 of 48 cells have not ended")));
+}
+
+// A lower median, but lost pairs: no win.
+TEST(PairResult, TheDirectionIsThatOfThePairs) {
+  std::vector<double> a, b;
+  for (int i = 0; i < 15; ++i) {
+    a.push_back(i == 7 ? 6.95 : i + 0.5);
+    b.push_back(i);
+  }
+  const std::vector<std::vector<double>> values = {a, b};
+  const PairResult pair = compare_pairs(values).front();
+  EXPECT_EQ(pair.a, 0u);  // by the median
+  EXPECT_TRUE(pair.is_significant());
+  EXPECT_FALSE(pair.is_beaten_by(0));
+  EXPECT_TRUE(pair.is_beaten_by(1));
+}
+
+// What a run has for good counts, not what it had once by luck.
+TEST(Trace, IsTheWorstFromThereOn) {
+  CellOutcome cell;
+  cell.curve = {{10, 5}, {20, 1}, {30, 4}, {40, 3}};
+  std::vector<double> values;
+  for (const TracePoint& point : make_trace(cell)) {
+    values.push_back(point.best_value);
+  }
+  EXPECT_THAT(values, testing::ElementsAre(5, 4, 4, 3));
 }
 
 TEST_F(StudyTest, FrontsAreComparedByTheHypervolumeTheyMiss) {
