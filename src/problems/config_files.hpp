@@ -13,10 +13,10 @@ namespace armwright {
 // alike). Error{usage} says where it was looked for.
 std::filesystem::path find_config_folder();
 
-// What a user typed for a file of `kind` ("problems", "designs", "robots", "studies"): a path if it has a
-// slash or the kind's extension, otherwise the name of a shipped file. A relative path is looked
-// for in `beside` first (the folder of the file that names it), then in the current folder, and
-// without a slash among the shipped files. Error{usage} with the valid names and the nearest.
+// What a user typed for a file of `kind` ("problems", "designs", "robots", "studies"): a path if it
+// has a slash or the kind's extension, otherwise the name of a shipped file. A relative path is
+// looked for in `beside` first (the folder of the file that names it), then in the current folder,
+// and without a slash among the shipped files. Error{usage} with the valid names and the nearest.
 std::filesystem::path resolve_config(std::string_view kind, std::string_view name_or_path,
                                      const std::filesystem::path& beside = {});
 

@@ -3,10 +3,10 @@
 //
 // Each optimizer has one value a replicate: of one objective the winner's on the test set
 // (calc_test_value()), of several the share of the hypervolume that its front misses. Pairs are
-// replicates: the same training cases and the same start. Running times come from curves on the test
-// set: the budget from which on every incumbent, re-simulated there, is at the target or below; they
-// are as coarse as the checkpoints. Of several objectives curves, running times and profiles are of
-// their weighted sum.
+// replicates: the same training cases and the same start. Running times come from curves on the
+// test set: the budget from which on every incumbent, re-simulated there, is at the target or
+// below; they are as coarse as the checkpoints. Of several objectives curves, running times and
+// profiles are of their weighted sum.
 #pragma once
 
 #include <cstdint>
