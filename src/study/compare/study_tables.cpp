@@ -35,24 +35,36 @@ std::string make_cells(const StudyResult& result) {
   std::string csv =
       "problem,optimizer,replicate,value,validation_value,start_value,violation,test_mean_error,"
       "test_median_error,test_p95_error,test_worst_error,test_failures,test_cases,evaluations,"
-      "cases,clipped,failed_evaluations,end_reason,failure,objectives,metrics\n";
+      "cases,clipped,failed_evaluations,end_reason,failure\n";
   for (const CellOutcome& cell : result.cells) {
     const ErrorSummary& errors = cell.errors;
-    const auto list = [](const std::vector<double>& values) {
-      std::vector<std::string> texts;
-      for (const double value : values) {
-        texts.push_back(format_exact(value));
+    csv += fmt::format(
+        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", quote_csv(cell.problem),
+        quote_csv(cell.optimizer), cell.replicate, number(cell.value),
+        number(cell.validation_value), number(cell.start_value), number(cell.violation),
+        number(errors.mean), number(errors.median), number(errors.percentile_95),
+        number(errors.worst), errors.failures, errors.cases, cell.evaluations, cell.cases,
+        cell.clipped, cell.failed_evaluations, quote_csv(cell.end_reason), quote_csv(cell.failure));
+  }
+  return csv;
+}
+
+// The winners' objectives and metrics on the test set, a row each.
+std::string make_metrics(const StudyPlan& plan, const StudyResult& result) {
+  std::string csv = "problem,optimizer,replicate,kind,name,unit,value\n";
+  for (const CellOutcome& cell : result.cells) {
+    const auto problem = std::ranges::find(plan.problems, cell.problem, &StudyProblem::label);
+    const ProblemDescription& description = problem->loaded.problem->description();
+    const auto add = [&](const char* kind, std::span<const Quantity> names,
+                         std::span<const double> values) {
+      for (std::size_t i = 0; i < values.size(); ++i) {  // none of a run without a winner
+        csv += fmt::format("{},{},{},{},{},{},{}\n", quote_csv(cell.problem),
+                           quote_csv(cell.optimizer), cell.replicate, kind,
+                           quote_csv(names[i].name), quote_csv(names[i].unit), number(values[i]));
       }
-      return join(texts, " ");
     };
-    csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
-                       quote_csv(cell.problem), quote_csv(cell.optimizer), cell.replicate,
-                       number(cell.value), number(cell.validation_value), number(cell.start_value),
-                       number(cell.violation), number(errors.mean), number(errors.median),
-                       number(errors.percentile_95), number(errors.worst), errors.failures,
-                       errors.cases, cell.evaluations, cell.cases, cell.clipped,
-                       cell.failed_evaluations, quote_csv(cell.end_reason), quote_csv(cell.failure),
-                       list(cell.objectives), list(cell.metrics));
+    add("objective", description.objectives, cell.objectives);
+    add("metric", description.metrics, cell.metrics);
   }
   return csv;
 }
@@ -370,6 +382,7 @@ void write_study_tables(const StudyPlan& plan, const StudyResult& result,
     write_file_atomically(tables / file, text);
   };
   write("cells.csv", make_cells(result));
+  write("metrics.csv", make_metrics(plan, result));
   write("summary.csv", make_summary(plan, result));
   write("pairs.csv", make_pairs(plan, result));
   write("friedman.csv", make_friedman(result));

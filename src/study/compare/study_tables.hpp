@@ -2,6 +2,7 @@
 // derived from the cells; the same cells give the same bytes.
 //
 //   cells.csv              every run: values and errors on the test set, counts
+//   metrics.csv            of every winner, on the test set: objectives, torque, energy, ...
 //   summary.csv            problem x optimizer: medians, quartiles, intervals, failures, ranks
 //   pairs.csv              every two optimizers: Wilcoxon, Holm, A12, wins
 //   friedman.csv           do optimizers differ at all

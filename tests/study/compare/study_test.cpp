@@ -246,6 +246,8 @@ TEST_F(StudyTest, FrontsAreComparedByTheHypervolumeTheyMiss) {
   EXPECT_LT(problem.optimizers[1].spread.median, 1);
   const auto tables = read_tree(temporary_ / "study" / "tables");
   EXPECT_TRUE(tables.contains("fronts.csv"));
+  EXPECT_THAT(tables.at("metrics.csv"),
+              HasSubstr("q2-pareto,pagmo:maco,1,metric,total_torque,N m,"));
   EXPECT_GT(std::ranges::count(tables.at("attainment.csv"), '\n'), 2);
 }
 
