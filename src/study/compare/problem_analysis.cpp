@@ -211,6 +211,7 @@ ProblemResult analyze_problem(const StudyPlan& plan, std::size_t number,
           result.has_front ? calc_missed_volume(cell, ideal, result.reference_point) : cell.value;
       one.values.push_back(value);
       one.infinite += std::isfinite(value) ? 0 : 1;
+      one.infeasible += cell.violation > plan.constraint_tolerance ? 1 : 0;
       one.failed += cell.failure.empty() ? 0 : 1;
       cases.push_back(static_cast<double>(cell.cases));
     }

@@ -53,6 +53,7 @@ struct FinalCheck {
 struct OptimizerResult {
   std::vector<double> values;  // one a replicate
   int infinite = 0;            // replicates without a value
+  int infeasible = 0;          // of these, whose winner violates a constraint on the test set
   int failed = 0;              // in which the optimizer itself failed
   Spread spread;
   Interval median_interval;

@@ -71,15 +71,16 @@ std::string make_metrics(const StudyPlan& plan, const StudyResult& result) {
 
 std::string make_summary(const StudyPlan& plan, const StudyResult& result) {
   std::string csv =
-      "problem,optimizer,unit,runs,without_value,failed,median,lower_quartile,upper_quartile,"
+      "problem,optimizer,unit,runs,without_value,infeasible,failed,median,lower_quartile,upper_"
+      "quartile,"
       "median_lower_95,median_upper_95,mean_rank,anytime_area,median_cases,final_engine,"
       "final_replicate,final_value,final_failures,final_cases\n";
   for (const ProblemResult& problem : result.problems) {
     for (std::size_t o = 0; o < problem.optimizers.size(); ++o) {
       const OptimizerResult& one = problem.optimizers[o];
-      csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}", quote_csv(problem.label),
+      csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", quote_csv(problem.label),
                          name(plan, o), quote_csv(problem.quantity.unit), one.values.size(),
-                         one.infinite, one.failed, number(one.spread.median),
+                         one.infinite, one.infeasible, one.failed, number(one.spread.median),
                          number(one.spread.lower_quartile), number(one.spread.upper_quartile),
                          number(one.median_interval.lower), number(one.median_interval.upper),
                          number(one.mean_rank), number(one.anytime_area), number(one.cases));
@@ -303,6 +304,7 @@ json optimizer_to_json(const OptimizerResult& one) {
   }
   json j = {{"values", values},
             {"without_value", one.infinite},
+            {"infeasible", one.infeasible},
             {"failed", one.failed},
             {"quartiles", spread_to_json(one.spread)},
             {"median_interval",
