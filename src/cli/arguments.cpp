@@ -4,12 +4,14 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <chrono>
 #include <thread>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "cli/session.hpp"
 #include "sim/physics_engine.hpp"
+#include "study/run_folder.hpp"
 #include "study/run_plan.hpp"
 
 namespace armwright {
@@ -80,6 +82,42 @@ unsigned JobsOption::get() const {
     return std::max(1U, std::thread::hardware_concurrency());
   }
   return static_cast<unsigned>(parse_count("--jobs (ARMWRIGHT_JOBS)", text, 1, kMostJobs));
+}
+
+void TimeLimitOption::add_to(CLI::App& command) {
+  command.add_option("--time-limit", text, "Stop, resumably, after a time: 90, 90s, 10m, 2h")
+      ->type_name("DURATION");
+}
+
+void TimeLimitOption::apply(StopSignal& stop) const {
+  if (!text.empty()) {
+    const std::chrono::duration<double> limit(parse_duration_s("--time-limit", text));
+    stop.set_deadline(StopSignal::Clock::now() +
+                      std::chrono::duration_cast<StopSignal::Clock::duration>(limit));
+  }
+}
+
+void FolderOptions::add_to(CLI::App& command, const std::string& what,
+                           const std::string& fallback) {
+  command.add_option("--out", out, fmt::format("The {}'s folder (default: {})", what, fallback))
+      ->type_name("FOLDER")
+      ->group("Output");
+  command
+      .add_flag(
+          "--new", another,
+          fmt::format("Another {} beside one that is there: FOLDER-002, FOLDER-003, ...", what))
+      ->group("Output");
+}
+
+std::filesystem::path FolderOptions::choose(const std::string& name) const {
+  if (out.empty()) {
+    return choose_run_folder("results", name, another);
+  }
+  auto path = std::filesystem::path(out).lexically_normal();
+  if (!path.has_filename()) {
+    path = path.parent_path();  // "results/mine/"
+  }
+  return choose_run_folder(path.parent_path(), path.filename().string(), another);
 }
 
 void add_design_argument(CLI::App& command, std::string& design) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,7 @@ class App;
 
 namespace armwright {
 
+class StopSignal;
 struct Session;
 
 std::int64_t parse_count(std::string_view flag, std::string_view text, std::int64_t lower,
@@ -33,6 +35,23 @@ struct JobsOption {
   std::string text;
   void add_to(CLI::App& command);
   unsigned get() const;  // all cores unless told otherwise
+};
+
+// --time-limit: a run that is stopped by it can be gone on with.
+struct TimeLimitOption {
+  std::string text;
+  void add_to(CLI::App& command);
+  void apply(StopSignal& stop) const;  // from now on
+};
+
+// --out and --new: where what is made goes.
+struct FolderOptions {
+  std::string out;
+  bool another = false;
+  // `what`: "run"; `fallback`: the folder if none is named, as help says it.
+  void add_to(CLI::App& command, const std::string& what, const std::string& fallback);
+  // results/NAME unless told otherwise.
+  std::filesystem::path choose(const std::string& name) const;
 };
 
 // The argument DESIGN.

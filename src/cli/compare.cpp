@@ -21,7 +21,6 @@
 #include "study/compare/final_check.hpp"
 #include "study/compare/study_runner.hpp"
 #include "study/compare/study_tables.hpp"
-#include "study/run_folder.hpp"
 
 namespace armwright {
 namespace {
@@ -51,9 +50,8 @@ struct CompareOptions {
   bool no_baselines = false;
   OverrideOptions overrides;
   JobsOption jobs;
-  std::string time_limit;
-  std::string out;
-  bool another = false;
+  TimeLimitOption time_limit;
+  FolderOptions folder;
   bool dry_run = false;
   bool json = false;
   bool quiet = false;
@@ -84,17 +82,6 @@ StudyRequest make_request(const CompareOptions& options) {
   }
   request.baselines = !options.no_baselines;
   return request;
-}
-
-std::filesystem::path choose_folder(const CompareOptions& options, const StudyPlan& plan) {
-  if (options.out.empty()) {
-    return choose_run_folder("results", escape_name(plan.name), options.another);
-  }
-  auto path = std::filesystem::path(options.out).lexically_normal();
-  if (!path.has_filename()) {
-    path = path.parent_path();
-  }
-  return choose_run_folder(path.parent_path(), path.filename().string(), options.another);
 }
 
 // How long one process takes for the whole plan, from a few simulations of each problem's start.
@@ -157,13 +144,9 @@ int run_compare(const CompareOptions& options, Session& session) {
                 "and --optimizers. See 'armwright compare --help'");
   }
   const unsigned jobs = options.jobs.get();
-  if (!options.time_limit.empty()) {
-    const std::chrono::duration<double> limit(parse_duration_s("--time-limit", options.time_limit));
-    session.stop.set_deadline(StopSignal::Clock::now() +
-                              std::chrono::duration_cast<StopSignal::Clock::duration>(limit));
-  }
+  options.time_limit.apply(session.stop);
   StudyPlan plan = make_study_plan(make_request(options));
-  const auto path = choose_folder(options, plan);
+  const auto path = options.folder.choose(escape_name(plan.name));
   adopt_recorded(path, plan);
   if (!options.quiet || options.dry_run) {
     announce(options, plan, jobs, path);
@@ -251,19 +234,10 @@ void add_compare(CLI::App& app, Session& session) {
                     "verdict says so");
   options->overrides.add_to(*command, true);
   options->jobs.add_to(*command);
-  command
-      ->add_option("--time-limit", options->time_limit,
-                   "Stop, resumably, after a time: 90, 90s, 10m, 2h")
-      ->type_name("DURATION");
+  options->time_limit.add_to(*command);
   command->add_flag("--dry-run", options->dry_run,
                     "Print the resolved plan and what it costs, and run nothing");
-  command->add_option("--out", options->out, "The study's folder (default: results/NAME)")
-      ->type_name("FOLDER")
-      ->group("Output");
-  command
-      ->add_flag("--new", options->another,
-                 "Another study beside one that is there: FOLDER-002, FOLDER-003, ...")
-      ->group("Output");
+  options->folder.add_to(*command, "study", "results/NAME");
   command->add_flag("--json", options->json, "Print the result as JSON")->group("Output");
   command->add_flag("--quiet,-q", options->quiet, "No plan and no progress")->group("Output");
   command->callback([options, &session] {

@@ -46,9 +46,8 @@ struct OptimizeOptions {
   OverrideOptions overrides;
   std::string validation_cases;
   JobsOption jobs;
-  std::string time_limit;
-  std::string out;
-  bool another = false;
+  TimeLimitOption time_limit;
+  FolderOptions folder;
   bool json = false;
   bool quiet = false;
 
@@ -82,17 +81,6 @@ RunPlan make_plan(const OptimizeOptions& options) {
   return plan;
 }
 
-std::filesystem::path choose_folder(const OptimizeOptions& options, const RunPlan& plan) {
-  if (options.out.empty()) {
-    return choose_run_folder("results", make_run_name(plan), options.another);
-  }
-  auto path = std::filesystem::path(options.out).lexically_normal();
-  if (!path.has_filename()) {
-    path = path.parent_path();  // "results/mine/"
-  }
-  return choose_run_folder(path.parent_path(), path.filename().string(), options.another);
-}
-
 // The words that make or resume this run: as typed, but for what would lead to another folder or
 // seed the next time.
 std::vector<std::string> make_command(const OptimizeOptions& options, const Session& session,
@@ -101,10 +89,10 @@ std::vector<std::string> make_command(const OptimizeOptions& options, const Sess
   bool seed_typed = false;
   const auto& typed = session.command_line;
   for (std::size_t i = 0; i < typed.size(); ++i) {
-    if (options.another && (typed[i] == "--new" || typed[i].starts_with("--out="))) {
+    if (options.folder.another && (typed[i] == "--new" || typed[i].starts_with("--out="))) {
       continue;
     }
-    if (options.another && typed[i] == "--out") {
+    if (options.folder.another && typed[i] == "--out") {
       ++i;
       continue;
     }
@@ -114,7 +102,7 @@ std::vector<std::string> make_command(const OptimizeOptions& options, const Sess
   if (!seed_typed && options.seed != "1") {  // from the environment
     words.insert(words.end(), {"--seed", options.seed});
   }
-  if (options.another) {
+  if (options.folder.another) {
     words.insert(words.end(), {"--out", folder.string()});
   }
   return words;
@@ -189,13 +177,9 @@ std::string describe_next(const OptimizeOptions& options, const std::string& pro
 int run_optimize(const OptimizeOptions& options, Session& session) {
   RunRequest request;
   request.jobs = options.jobs.get();
-  if (!options.time_limit.empty()) {
-    const std::chrono::duration<double> limit(parse_duration_s("--time-limit", options.time_limit));
-    session.stop.set_deadline(StopSignal::Clock::now() +
-                              std::chrono::duration_cast<StopSignal::Clock::duration>(limit));
-  }
+  options.time_limit.apply(session.stop);
   request.plan = make_plan(options);
-  request.folder = choose_folder(options, request.plan);
+  request.folder = options.folder.choose(make_run_name(request.plan));
   request.command_line = make_command(options, session, request.folder);
   if (!options.quiet) {
     announce(request);
@@ -265,19 +249,8 @@ void add_optimize(CLI::App& app, Session& session) {
                    "problem's)")
       ->type_name("N");
   options->jobs.add_to(*command);
-  command
-      ->add_option("--time-limit", options->time_limit,
-                   "Stop, resumably, after a time: 90, 90s, 10m, 2h")
-      ->type_name("DURATION");
-  command
-      ->add_option("--out", options->out,
-                   "The run's folder (default: results/PROBLEM-OPTIMIZER-seedN)")
-      ->type_name("FOLDER")
-      ->group("Output");
-  command
-      ->add_flag("--new", options->another,
-                 "Another run beside one that is there: FOLDER-002, FOLDER-003, ...")
-      ->group("Output");
+  options->time_limit.add_to(*command);
+  options->folder.add_to(*command, "run", "results/PROBLEM-OPTIMIZER-seedN");
   command->add_flag("--json", options->json, "Print the result as JSON")->group("Output");
   command->add_flag("--quiet,-q", options->quiet, "No progress")->group("Output");
   command->callback([options, &session] {
