@@ -1,0 +1,21 @@
+// The one door from data to page.
+import type { PageData } from '../data';
+import type { Page, Tab } from '../model';
+import { make_reproduction_tabs } from './reproduction_page';
+import { make_run_tabs } from './run_page';
+import { make_study_tabs } from './study_page';
+
+function make_tabs(data: PageData): Tab[] {
+  switch (data.kind) {
+    case 'run':
+      return make_run_tabs(data);
+    case 'study':
+      return make_study_tabs(data);
+    case 'reproduction':
+      return make_reproduction_tabs(data);
+  }
+}
+
+export function make_page(data: PageData): Page {
+  return { data, tabs: make_tabs(data) };
+}

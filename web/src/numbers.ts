@@ -1,0 +1,71 @@
+// Numbers as the page shows and packs them.
+import type { Packed } from './data';
+
+export const kMillimetres = 1000;
+export const kDegrees = 180 / Math.PI;
+
+// A number with so many significant digits, without an exponent where that is short: "0.0741",
+// "1040562", "2.5e-7".
+export function format_number(value: number | null | undefined, digits = 4): string {
+  if (value === null || value === undefined || !isFinite(value)) {
+    return '–';
+  }
+  if (value === 0) {
+    return '0';
+  }
+  const magnitude = Math.floor(Math.log10(Math.abs(value)));
+  if (magnitude < -4 || magnitude > 8) {
+    return value.toExponential(digits - 1);
+  }
+  const text = value.toFixed(Math.min(20, Math.max(0, digits - 1 - magnitude)));
+  // 1.000 and 0.9999... have the same length before and after rounding up.
+  return text;
+}
+
+export function scale(values: (number | null)[], factor: number): (number | null)[] {
+  return values.map((value) => (value === null ? null : value * factor));
+}
+
+const kAlphabet = 'ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/';
+
+// By hand, as there is no atob() outside a browser.
+function decode_base64(text: string): Uint8Array {
+  const places: number[] = [];
+  for (let i = 0; i < kAlphabet.length; ++i) {
+    places[kAlphabet.charCodeAt(i)] = i;
+  }
+  let length = text.length;
+  while (length > 0 && text.charAt(length - 1) === '=') {
+    --length;
+  }
+  const bytes = new Uint8Array(Math.floor((length * 3) / 4));
+  let bits = 0;
+  let count = 0;
+  let next = 0;
+  for (let i = 0; i < length; ++i) {
+    bits = ((bits << 6) | places[text.charCodeAt(i)]) & 0xffffff;
+    count += 6;
+    if (count >= 8) {
+      count -= 8;
+      bytes[next++] = (bits >> count) & 0xff;
+    }
+  }
+  return bytes;
+}
+
+export function unpack(packed: Packed): Float32Array {
+  const bytes = decode_base64(packed.f32 ?? packed.i16 ?? '');
+  if (packed.f32 !== undefined) {
+    return new Float32Array(bytes.buffer);
+  }
+  const integers = new Int16Array(bytes.buffer);
+  const values = new Float32Array(integers.length);
+  for (let i = 0; i < integers.length; ++i) {
+    values[i] = (packed.offset ?? 0) + (packed.scale ?? 1) * integers[i];
+  }
+  return values;
+}
+
+export function unpack_indices(packed: Packed): Uint32Array {
+  return new Uint32Array(decode_base64(packed.u32 ?? '').buffer);
+}
