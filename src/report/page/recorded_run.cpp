@@ -65,13 +65,25 @@ std::map<std::string, json> list_settings(const json& resolved) {
   return settings;
 }
 
+// As TOML, but a word without its quotes.
+std::string write_value(const json& value) {
+  if (!value.is_string()) {
+    return value.dump();
+  }
+  const auto text = value.get<std::string>();
+  const bool is_word = text.find_first_not_of("abcdefghijklmnopqrstuvwxyz_") == std::string::npos;
+  const bool has_meaning =
+      text.empty() || text == "true" || text == "false" || text == "inf" || text == "nan";
+  return is_word && !has_meaning ? text : value.dump();
+}
+
 std::vector<std::string> list_overrides(const json& from, const json& to) {
   const auto before = list_settings(from);
   std::vector<std::string> overrides;
   for (const auto& [key, value] : list_settings(to)) {
     const auto found = before.find(key);
     if (found == before.end() || found->second != value) {
-      overrides.push_back(key + "=" + value.dump());
+      overrides.push_back(key + "=" + write_value(value));
     }
   }
   return overrides;
@@ -81,19 +93,24 @@ std::vector<std::string> list_overrides(const json& from, const json& to) {
 std::vector<std::string> find_problem_words(const NamedProblem& named, const json& recorded) {
   try {
     const json plain = json::parse(load_problem(named.file.string()).resolved_json);
-    const auto overrides = list_overrides(plain, recorded);
-    const json changed = json::parse(load_problem(named.file.string(), overrides).resolved_json);
-    if (list_settings(changed) != list_settings(recorded)) {
-      return {};
+    const auto all = list_overrides(plain, recorded);
+    // The SIMD level is found anew on another machine, if it need not be said here.
+    std::vector<std::string> fewer = all;
+    std::erase_if(fewer, [](const auto& text) { return text.starts_with("physics.simd="); });
+    for (const auto& overrides : {fewer, all}) {
+      const json changed = json::parse(load_problem(named.file.string(), overrides).resolved_json);
+      if (list_settings(changed) == list_settings(recorded)) {
+        std::vector<std::string> words = {"--problem", named.word};
+        for (const std::string& text : overrides) {
+          words.insert(words.end(), {"--set", text});
+        }
+        return words;
+      }
     }
-    std::vector<std::string> words = {"--problem", named.word};
-    for (const std::string& override : overrides) {
-      words.insert(words.end(), {"--set", override});
-    }
-    return words;
   } catch (const Error&) {
-    return {};  // its file has changed, so that it cannot be used any more
+    // Its file has changed, so that it cannot be used any more.
   }
+  return {};
 }
 
 void read_manifest(RecordedRun& run) {

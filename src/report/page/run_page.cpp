@@ -73,7 +73,7 @@ void add_notes(const RecordedRun& run, const History& history, const PageOptions
     notes.push_back("The journal ends in the middle of a record, which was left out.");
   }
   if (history.left_out > 0) {
-    notes.push_back(fmt::format("Of {} generations every n-th and the last are shown, {} in all.",
+    notes.push_back(fmt::format("Of {} generations {} are shown, evenly spread, and the last.",
                                 history.left_out + history.parts.size(), history.parts.size()));
   }
   if (!run.describe().constraints.empty()) {
