@@ -42,5 +42,12 @@ const bundle = await build({
 const lowered = ts.transpileModule(bundle.outputFiles[0].text, {
   compilerOptions: { target: ts.ScriptTarget.ES5, module: ts.ModuleKind.None, allowJs: true },
 });
-const figures = await transform(lowered.outputText, { minify: true, target: 'es5', charset: 'ascii', legalComments: 'inline' });
+// Its syntax stays as it is: the engine does not read all of what the minifier makes of it.
+const figures = await transform(lowered.outputText, {
+  minifyWhitespace: true,
+  minifyIdentifiers: true,
+  target: 'es5',
+  charset: 'ascii',
+  legalComments: 'inline',
+});
 await writeFile(join(out, 'figures.js'), figures.code);

@@ -83,8 +83,7 @@ export function make_figure_view(figure: Figure, look: Look, clock: Clock): View
   // The time under the cursor of the replay, as a line over the chart: the chart itself stays.
   function move_cursor(): void {
     const time = figure.time;
-    const visible =
-      chart !== null && time !== undefined && clock.replay === time.replay && clock.case_id === time.case(picked);
+    const visible = chart !== null && time !== undefined && clock.replay === time.replay && clock.case_id === time.case(picked);
     cursor.hidden = !visible;
     if (visible && chart !== null) {
       const x = chart.convertToPixel({ xAxisIndex: 0 }, clock.time_s);
@@ -137,11 +136,15 @@ export function make_figure_view(figure: Figure, look: Look, clock: Clock): View
     make_button('CSV', () => download(figure.id + '.csv', 'text/csv', to_csv(figure.table(picked))), {
       title: 'Download the numbers of this figure',
     }),
-    make_button('SVG', () => {
-      const height = figure.height ? Math.round((figure.height * kPaperHeight) / kDefaultHeight) : kPaperHeight;
-      const width = figure.width === 'full' ? kPaperWidth * 1.5 : kPaperWidth;
-      download(figure.id + '.svg', 'image/svg+xml', draw_svg(figure, kLight, picked, width, height));
-    }, { title: 'Download this figure' }),
+    make_button(
+      'SVG',
+      () => {
+        const height = figure.height ? Math.round((figure.height * kPaperHeight) / kDefaultHeight) : kPaperHeight;
+        const width = figure.width === 'full' ? kPaperWidth * 1.5 : kPaperWidth;
+        download(figure.id + '.svg', 'image/svg+xml', draw_svg(figure, kLight, picked, width, height));
+      },
+      { title: 'Download this figure' },
+    ),
   );
   const element = make(
     'figure',

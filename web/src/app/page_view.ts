@@ -83,7 +83,13 @@ export function make_page_view(host: HTMLElement, first_look: Look, toggle_theme
   const panel = make('main', { role: 'tabpanel', tabindex: '-1' });
   const foot = make('footer');
   host.append(
-    make('header', {}, make('div', { class: 'titles' }, title, subtitle), state, make_button('Light / dark', toggle_theme, { class: 'theme' })),
+    make(
+      'header',
+      {},
+      make('div', { class: 'titles' }, title, subtitle),
+      state,
+      make_button('Light / dark', toggle_theme, { class: 'theme' }),
+    ),
     notes,
     list,
     panel,

@@ -108,7 +108,12 @@ export function show_table(title: string, table: DataTable): void {
   const details = make('div', { class: 'details', role: 'status' });
   const dialog = make('dialog', { 'aria-label': title });
   dialog.append(
-    make('div', { class: 'card-head' }, make('h3', {}, title), make_button('Close', () => dialog.close(), { class: 'close-dialog' })),
+    make(
+      'div',
+      { class: 'card-head' },
+      make('h3', {}, title),
+      make_button('Close', () => dialog.close(), { class: 'close-dialog' }),
+    ),
     make_table(table, details),
     details,
   );
