@@ -68,7 +68,13 @@ export interface PageView {
   set_look(look: Look): void;
 }
 
-export function make_page_view(host: HTMLElement, first_look: Look, toggle_theme: () => void): PageView {
+export interface PageEvents {
+  toggle_theme(): void;
+  // On paper the page is light, whatever it is on the screen.
+  on_print(begins: boolean): void;
+}
+
+export function make_page_view(host: HTMLElement, first_look: Look, events: PageEvents): PageView {
   const clock = make_clock();
   let look = first_look;
   let page: Page | null = null;
@@ -88,7 +94,7 @@ export function make_page_view(host: HTMLElement, first_look: Look, toggle_theme
       {},
       make('div', { class: 'titles' }, title, subtitle),
       state,
-      make_button('Light / dark', toggle_theme, { class: 'theme' }),
+      make_button('Light / dark', events.toggle_theme, { class: 'theme' }),
     ),
     notes,
     list,
@@ -167,12 +173,16 @@ export function make_page_view(host: HTMLElement, first_look: Look, toggle_theme
   // On paper all sections follow one another; afterwards the open one comes back.
   window.addEventListener('beforeprint', () => {
     close();
+    events.on_print(true);
     page?.tabs.forEach((tab) => {
       panel.append(make('h2', {}, tab.title));
       append_items({ ...tab, items: tab.items.filter((item) => item.kind !== 'replay') });
     });
   });
-  window.addEventListener('afterprint', () => choose(open, false));
+  window.addEventListener('afterprint', () => {
+    events.on_print(false);
+    choose(open, false);
+  });
   window.addEventListener('hashchange', () => choose(decodeURIComponent(location.hash.slice(1)), false));
 
   return {
