@@ -19,7 +19,7 @@ function make_facts(facts: Fact[]): HTMLElement {
 
 function make_still(id: string, title: string, width: string, ...content: HTMLElement[]): View {
   const element = make('section', { class: 'card ' + width, id: 'figure-' + id, 'data-figure': id }, make('h3', {}, title), ...content);
-  return { element, set_look() {}, dispose() {} };
+  return { element, set_look() {}, update: () => false, settle() {}, dispose() {} };
 }
 
 function make_replay_view(id: string, title: string, page: Page, item: Item, look: Look, clock: Clock): View {
@@ -41,6 +41,8 @@ function make_replay_view(id: string, title: string, page: Page, item: Item, loo
   return {
     element: make('section', { class: 'card full', id: 'figure-' + id, 'data-figure': id }, make('h3', {}, title), host),
     set_look: (next) => replay.set_look(next),
+    update: () => true, // what was recorded stays
+    settle() {},
     dispose: () => {
       stop();
       replay.dispose();
@@ -108,6 +110,24 @@ export function make_page_view(host: HTMLElement, first_look: Look, events: Page
     panel.replaceChildren();
   }
 
+  function update_or_replace(item: Item, index: number): void {
+    if (page !== null && !views[index].update(item)) {
+      const newer = make_view(page, item, look, clock);
+      views[index].element.replaceWith(newer.element);
+      views[index].dispose();
+      views[index] = newer;
+    }
+  }
+
+  // Newer data of the same section go into what is there. False if it has other items now.
+  function update_items(tab: Tab): boolean {
+    const same = tab.items.length === views.length && tab.items.every((item, i) => views[i].element.dataset.figure === item.id);
+    if (same) {
+      tab.items.forEach(update_or_replace);
+    }
+    return same;
+  }
+
   function append_items(tab: Tab): void {
     if (page === null) {
       return;
@@ -140,6 +160,11 @@ export function make_page_view(host: HTMLElement, first_look: Look, events: Page
       }
     });
     append_items(tab);
+  }
+
+  function same_tabs(tabs: Tab[]): boolean {
+    const there = Array.from(list.querySelectorAll<HTMLElement>('[role=tab]'));
+    return there.length === tabs.length && tabs.every((tab, i) => there[i].dataset.tab === tab.id && there[i].textContent === tab.title);
   }
 
   function make_tab_button(tab: Tab): HTMLButtonElement {
@@ -178,6 +203,7 @@ export function make_page_view(host: HTMLElement, first_look: Look, events: Page
       panel.append(make('h2', {}, tab.title));
       append_items({ ...tab, items: tab.items.filter((item) => item.kind !== 'replay') });
     });
+    views.forEach((view) => view.settle());
   });
   window.addEventListener('afterprint', () => {
     events.on_print(false);
@@ -194,12 +220,15 @@ export function make_page_view(host: HTMLElement, first_look: Look, events: Page
       subtitle.textContent = data.subtitle;
       state.textContent = data.progress === null ? '' : `${data.progress.done} of ${data.progress.total} ${data.progress.unit}`;
       notes.replaceChildren(...data.notes.map((note) => make('li', {}, note)));
-      list.replaceChildren(...next.tabs.map(make_tab_button));
+      const shown = next.tabs.find((tab) => tab.id === open);
       foot.replaceChildren(
         make('p', {}, `armwright ${data.program.version} (${data.program.commit}). Made by `, make('code', {}, data.command)),
         make('p', {}, 'Folder: ', make('code', {}, data.folder)),
       );
-      choose(open || decodeURIComponent(location.hash.slice(1)), false);
+      if (shown === undefined || !same_tabs(next.tabs) || !update_items(shown)) {
+        list.replaceChildren(...next.tabs.map(make_tab_button));
+        choose(open || decodeURIComponent(location.hash.slice(1)), false);
+      }
     },
     set_look(next: Look) {
       look = next;
