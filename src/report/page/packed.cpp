@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cstddef>
+#include <string>
+#include <string_view>
 
 namespace armwright {
 namespace {
@@ -12,8 +14,6 @@ void append_little_endian(std::string& bytes, std::uint32_t value) {
     bytes.push_back(static_cast<char>(static_cast<unsigned char>(value >> shift)));
   }
 }
-
-}  // namespace
 
 std::string encode_base64(std::string_view bytes) {
   constexpr std::string_view kDigits =
@@ -32,6 +32,8 @@ std::string encode_base64(std::string_view bytes) {
   }
   return text;
 }
+
+}  // namespace
 
 nlohmann::json pack_f32(std::span<const float> values) {
   std::string bytes;

@@ -5,12 +5,8 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <span>
-#include <string>
-#include <string_view>
 
 namespace armwright {
-
-std::string encode_base64(std::string_view bytes);
 
 nlohmann::json pack_f32(std::span<const float> values);          // {"f32": ...}
 nlohmann::json pack_u32(std::span<const std::uint32_t> values);  // {"u32": ...}

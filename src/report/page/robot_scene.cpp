@@ -26,6 +26,11 @@ json make_numbers(const Eigen::VectorXd& values) {
   return std::vector<double>(values.begin(), values.end());
 }
 
+// The reader of URDF keeps colours as 32-bit numbers: 0.2 is 0.200000003.
+json make_colour(const Eigen::Vector4d& rgba) {
+  return make_numbers((rgba * 1e4).array().round() / 1e4);
+}
+
 json make_limit(double value) {
   return std::isfinite(value) ? json(value) : json(nullptr);
 }
@@ -55,7 +60,7 @@ json make_shape(const VisualShape& shape, std::optional<std::size_t> mesh) {
           {"size", make_numbers(shape.size_m)},
           {"mesh", mesh ? json(*mesh) : json(nullptr)},
           {"pose", make_pose(shape.pose)},
-          {"rgba", make_numbers(shape.rgba)}};
+          {"rgba", make_colour(shape.rgba)}};
 }
 
 json make_joint(const Joint& joint) {
