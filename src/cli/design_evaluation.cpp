@@ -70,8 +70,8 @@ void report_failures(std::span<const CaseFailure> failures, const std::string& w
     write_message(fmt::format("{}case {}: {}", what, failures[i].number, failures[i].reason));
   }
   if (failures.size() > kMostNamed) {
-    write_message(fmt::format("{}and {} more cases without a number", what,
-                              failures.size() - kMostNamed));
+    write_message(
+        fmt::format("{}and {} more cases without a number", what, failures.size() - kMostNamed));
   }
 }
 
