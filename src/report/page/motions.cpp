@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/page/packed.hpp"
 #include "report/page/page_json.hpp"
 #include "sim/reference_signal.hpp"
 
@@ -50,9 +51,9 @@ json make_motion(const std::string& design, const TrackingResult& result) {
           {"steps", steps},
           {"mean_error_m", has_error ? finite_or_null(result.mean_error_m) : json(nullptr)},
           {"point_error_m", finite_or_null(result.point_error_m)},
-          {"q", packed(q)},
-          {"effort", packed(effort)},
-          {"error_m", packed(error)}};
+          {"q", pack_f32(q)},
+          {"effort", pack_f32(effort)},
+          {"error_m", pack_f32(error)}};
 }
 
 json make_segment(const Segment& segment) {
@@ -87,8 +88,8 @@ json make_case(const TrackingProblem& problem, const ReplayRequest& request) {
           {"points_m", std::move(points)},
           {"segments", std::move(segments)},
           {"steps", targets.steps},
-          {"target_m", packed(target)},
-          {"target_q", packed(target_q)},
+          {"target_m", pack_f32(target)},
+          {"target_q", pack_f32(target_q)},
           {"start_q", finite_or_null(targets.start_rad)},
           {"motions", json::array()}};
 }
