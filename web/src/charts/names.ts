@@ -1,54 +1,32 @@
-// Names from data, made fit to be drawn. They are untrusted: whatever could hide, turn around or end
-// text is made visible, and what is long is cut.
+// Names come from users' files: they may be long, and hold anything.
 
-const kUnfit = /[\u0000-\u001f\u007f-\u009f\u061c\u200b-\u200f\u2028-\u202e\u2060-\u2069\ufdd0-\ufdef\ufeff\ufffe\uffff]/g;
-export const kLongestName = 40;
+// Control characters, and those that turn the direction of the text around them.
+const kInvisible = /[\u0000-\u001f\u007f-\u009f\u200b-\u200f\u2028-\u202e\u2060-\u2069\ufeff]+/g;
 
-// With an ellipsis where it was longer. Half of a surrogate pair is no character.
-export function shorten(name: string, most = kLongestName): string {
-  let clean = name.slice(0, 8 * most).replace(kUnfit, '\ufffd');
-  if (clean.length > most) {
-    clean = clean.slice(0, most - 1);
-    const last = clean.charCodeAt(clean.length - 1);
-    clean = (last >= 0xd800 && last <= 0xdbff ? clean.slice(0, -1) : clean) + '…';
+// At most `length` characters, the last an ellipsis where something was cut off.
+export function shorten(name: string, length = 40): string {
+  const clean = name.slice(0, 4 * length).replace(kInvisible, ' ').trim();
+  if (clean.length <= length) {
+    return clean;
   }
-  clean = clean.replace(/[\ud800-\udbff](?![\udc00-\udfff])/g, '\ufffd').replace(/(^|[^\ud800-\udbff])[\udc00-\udfff]/g, '$1\ufffd');
-  return clean.trim() === '' ? '(no name)' : clean;
+  let end = length - 1;
+  const last = clean.charCodeAt(end - 1);
+  if (last >= 0xd800 && last <= 0xdbff) {
+    --end; // not through the middle of a character
+  }
+  return clean.slice(0, end).replace(/ +$/, '') + '…';
 }
 
-// Names to tell series apart by: those that have become the same are numbered.
-export function shorten_all(names: string[], most = kLongestName): string[] {
+// The same for names that stand beside each other: a legend needs them all different.
+export function shorten_all(names: string[], length = 40): string[] {
   const taken: string[] = [];
-  names.forEach((name) => {
-    const short = shorten(name, most);
-    let unique = short;
-    for (let i = 2; taken.indexOf(unique) >= 0; ++i) {
-      unique = shorten(short, most - 5) + ' (' + i + ')';
+  return names.map((name) => {
+    const short = shorten(name, length) || 'unnamed';
+    let label = short;
+    for (let i = 2; taken.indexOf(label) >= 0; ++i) {
+      label = `${shorten(short, length - 5)} (${i})`;
     }
-    taken.push(unique);
+    taken.push(label);
+    return label;
   });
-  return taken;
-}
-
-// Part of a file's name: letters, digits, dots, dashes.
-export function make_slug(name: string): string {
-  const slug = name
-    .toLowerCase()
-    .replace(/[^a-z0-9.]+/g, '-')
-    .slice(0, kLongestName)
-    .replace(/^[-.]+|[-.]+$/g, '');
-  return slug === '' ? 'unnamed' : slug;
-}
-
-export function make_slugs(names: string[]): string[] {
-  const taken: string[] = [];
-  names.forEach((name) => {
-    const slug = make_slug(name);
-    let unique = slug;
-    for (let i = 2; taken.indexOf(unique) >= 0; ++i) {
-      unique = slug + '-' + i;
-    }
-    taken.push(unique);
-  });
-  return taken;
 }

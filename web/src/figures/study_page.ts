@@ -1,5 +1,6 @@
 // The page of a comparison: the verdict first, then what it rests on.
-import { make_slugs, shorten_all } from '../charts/names';
+import { shorten_all } from '../charts/names';
+import { make_slugs } from '../charts/slugs';
 import type { StudyData } from '../data';
 import type { Item, Tab, TextItem } from '../model';
 import { make_cost_quality } from './study_cost';
