@@ -22,6 +22,7 @@ const kOnDark: Rgb[] = [
 ];
 
 const kLeast_m = 1e-5; // what is below is the least
+const kMost_m = 1; // what is above is the most: an arm that runs away must not hide what others do
 const kMostDecades = 4;
 
 // Whole decades around the errors, at most four, as the least ones matter least.
@@ -32,7 +33,7 @@ export function make_colour_scale(errors_m: ArrayLike<number>[], theme: 'light' 
     for (let i = 0; i < errors.length; ++i) {
       if (isFinite(errors[i])) {
         least = Math.min(least, Math.max(kLeast_m, errors[i]));
-        most = Math.max(most, errors[i]);
+        most = Math.max(most, Math.min(kMost_m, errors[i]));
       }
     }
   }
