@@ -23,10 +23,23 @@ function parse_color(hex: string): Rgb {
   return { red: part(1), green: part(3), blue: part(5) };
 }
 
+function parse_rgb(color: string): Rgb {
+  const [red, green, blue] = color.slice(4, -1).split(',').map(Number);
+  return { red, green, blue };
+}
+
 function mix(from: string, to: string, share: number): string {
   const [a, b] = [parse_color(from), parse_color(to)];
   const one = (x: number, y: number) => Math.round(x + (y - x) * Math.min(1, Math.max(0, share)));
   return 'rgb(' + one(a.red, b.red) + ',' + one(a.green, b.green) + ',' + one(a.blue, b.blue) + ')';
+}
+
+// Black or white, whichever stands out more (relative luminance of WCAG 2, with a gamma of 2.2).
+function get_readable(fill: string): string {
+  const light = (part: number) => Math.pow(part / 255, 2.2);
+  const parts = fill.charAt(0) === '#' ? parse_color(fill) : parse_rgb(fill);
+  const luminance = 0.2126 * light(parts.red) + 0.7152 * light(parts.green) + 0.0722 * light(parts.blue);
+  return luminance > 0.18 ? '#14181d' : '#ffffff';
 }
 
 // Blue where the row is better, orange where the column is, nothing in between.
@@ -107,7 +120,7 @@ function draw_pairs(look: Look, scope: Scope, problem: StudyProblem): EChartsOpt
             x,
             y: y - (square.marked ? height * 0.08 : 0),
             text: square.text,
-            fill: look.text,
+            fill: get_readable(square.fill),
             font: (square.marked ? 'bold ' : '') + size.toFixed(1) + 'px ' + look.font,
             textAlign: 'center',
             textVerticalAlign: 'middle',
@@ -121,7 +134,7 @@ function draw_pairs(look: Look, scope: Scope, problem: StudyProblem): EChartsOpt
         children.push({
           type: 'rect',
           shape: { x: x - long / 2, y: below - 0.9, width: long, height: 1.8 },
-          style: { fill: look.text },
+          style: { fill: get_readable(square.fill) },
         });
       }
       return { type: 'group', children };
@@ -200,7 +213,12 @@ export function tabulate_pairs(scope: Scope, problems: StudyProblem[]): DataTabl
   return { columns: many ? [{ label: 'problem' } as (typeof columns)[0]].concat(columns) : columns, rows };
 }
 
-export function make_pairs(scope: Scope): Figure {
+// Of those problems of the scope that have tests; nothing if none has.
+export function make_pairs(all: Scope): Figure | null {
+  const scope: Scope = { ...all, problems: all.problems.filter((problem) => problem.pairs.length > 0) };
+  if (scope.problems.length === 0) {
+    return null;
+  }
   return {
     kind: 'figure',
     id: 'pairs' + scope.suffix,

@@ -271,8 +271,12 @@ export function make_overall_ranks(scope: Scope): Figure | null {
   return make_figure(scope, 'ranks', 'Mean ranks over problems', caption, () => ranks, [ranks]);
 }
 
-// Over the replicates of a problem.
-export function make_problem_ranks(scope: Scope, id: string): Figure {
+// Over the replicates of a problem, of those that have ranks; nothing if none has.
+export function make_problem_ranks(all: Scope, id: string): Figure | null {
+  const scope: Scope = { ...all, problems: all.problems.filter((problem) => problem.results.some((one) => one.mean_rank !== null)) };
+  if (scope.problems.length === 0) {
+    return null;
+  }
   const get = (problem: StudyProblem): Ranks => {
     const ranks = scope.names.map((_, i) => problem.results[i]?.mean_rank ?? NaN);
     return { ranks, intervals: null, cliques: find_cliques(problem, ranks) };
