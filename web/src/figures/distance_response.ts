@@ -69,6 +69,7 @@ export function make_response_figure(response: DistanceResponse, id = response.i
     draw: (look, picked) => {
       const log = positive && (picked.scale ? picked.scale === 'log' : wide);
       const series: Part[] = [];
+      const values = flatten(response.series.map((one) => flatten(make_bars(one, log).map((bar) => [bar[1], bar[2]]))));
       response.series.forEach((one, s) => {
         const style = get_series_style(look, s);
         const point = (i: number): Point => ({
@@ -103,7 +104,7 @@ export function make_response_figure(response: DistanceResponse, id = response.i
           { categories: response.distances_m.map((one) => format_number(one * kCentimetres, 3)) },
           { nameGap: 38, axisLabel: { color: look.muted, fontFamily: look.font, fontSize: 10, rotate: 60, hideOverlap: true } },
         ),
-        make_number_axis(look, 'y', 'average positional error (mm)', { log, min: log ? undefined : 0 }),
+        make_number_axis(look, 'y', 'average positional error (mm)', { log, min: log ? undefined : 0, values }),
         series,
         {
           grid: { left: 68, right: 24, top: top + 8, bottom: 62 },
