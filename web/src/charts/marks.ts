@@ -37,8 +37,13 @@ export function make_plot(look: Look, x: Part | Part[], y: Part | Part[], series
   const shown = series.map((one) => (one.type === 'line' && one.showSymbol === false ? { ...one, symbol: 'none' } : one));
   const option = make_chart(look, x, y, shown, more);
   const legend = option.legend as Part | undefined;
+  if (legend === undefined) {
+    return option;
+  }
+  const has_symbols = (name: string) => shown.some((one) => one.name === name && one.silent !== true && one.symbol !== 'none');
+  const entries = (legend.data as string[]).map((name) => (has_symbols(name) ? { name } : { name, itemStyle: { opacity: 0 } }));
   // Without a screen the width of texts is guessed: some more space keeps entries apart.
-  return legend === undefined ? option : { ...option, legend: { itemGap: 20, ...legend } };
+  return { ...option, legend: { itemGap: 20, itemWidth: 28, ...legend, data: entries } };
 }
 
 // Of curves without symbols: all of them where the pointer is, and no bands.

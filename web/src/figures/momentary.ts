@@ -35,7 +35,7 @@ function get_move(trace: ErrorTrace, index: number): Float32Array {
 }
 
 function name_class(one: ReplayCase, index: number): string {
-  return `class ${index + 1}: ${format_number(one.segments[index].distance_m, 4)} m`;
+  return `class ${index + 1}: ${one.segments[index].distance_m.toFixed(3)} m`;
 }
 
 // Panels of moves, one a distance class: that of the first trace's case.

@@ -82,7 +82,7 @@ export function make_fitness_figure(data: RunData, id = 'fitness'): Figure {
       }
       return make_curve_plot(
         look,
-        make_number_axis(look, 'x', by_cases ? 'simulated training cases' : unit),
+        make_number_axis(look, 'x', by_cases ? 'simulated training cases' : unit, { max: 'dataMax' }),
         make_number_axis(look, 'y', name_axis(shown.name, shown.unit), { log, values }),
         series,
       );
