@@ -159,6 +159,5 @@ export function make_grid_lines(look: Look, x: Scale | null, y: Scale | null): P
 
 // About as wide as the text will be drawn: SVG is made without a screen to measure it on.
 export function estimate_width(text: string, size: number): number {
-  return 0.58 * size * text.length;
+  return 0.62 * size * text.length;
 }
-

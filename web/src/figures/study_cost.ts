@@ -57,7 +57,9 @@ export function place_labels(points: [number, number][], texts: string[], size: 
           height,
         };
         const outside =
-          Math.max(0, frame.x - box.x) + Math.max(0, box.x + width - frame.x - frame.width) + Math.max(0, frame.y - box.y) +
+          Math.max(0, frame.x - box.x) +
+          Math.max(0, box.x + width - frame.x - frame.width) +
+          Math.max(0, frame.y - box.y) +
           Math.max(0, box.y + height - frame.y - frame.height);
         const cost = taken.reduce((sum, other) => sum + overlap(box, other), 0) * 10 + outside * 100 + far * 0.5 + (k % 8) * 0.01;
         if (cost < least) {
@@ -88,6 +90,7 @@ function make_labels(look: Look, places: [number, number][], texts: string[]): P
       texts.forEach((text, i) => {
         const box = boxes[i];
         const [x, y] = points[i];
+        const left = box.x + box.width / 2 < x;
         const near: [number, number] = [Math.min(box.x + box.width, Math.max(box.x, x)), Math.min(box.y + box.height, Math.max(box.y, y))];
         if (Math.abs(near[0] - x) + Math.abs(near[1] - y) > 14) {
           children.push({
@@ -99,14 +102,14 @@ function make_labels(look: Look, places: [number, number][], texts: string[]): P
         children.push({
           type: 'text',
           style: {
-            x: box.x + 1,
+            x: left ? box.x + box.width - 1 : box.x + 1,
             y: box.y + box.height / 2,
             text,
             fill: look.text,
             stroke: look.background,
             lineWidth: 2,
             font: size + 'px ' + look.font,
-            textAlign: 'left',
+            textAlign: left ? 'right' : 'left',
             textVerticalAlign: 'middle',
           },
         });
@@ -122,8 +125,16 @@ function draw_cost(look: Look, scope: Scope, problem: StudyProblem, target: numb
   const times = order.map((o) => problem.results[o].running_times[target]);
   const costs = times.map((time) => (time ? time.expected : null));
   const values = order.map((o) => convert(problem.results[o].median, unit));
-  const x = make_scale(costs, true, costs.some((cost) => cost === null));
-  const y = make_scale(values, true, values.some((value) => value === null));
+  const x = make_scale(
+    costs,
+    true,
+    costs.some((cost) => cost === null),
+  );
+  const y = make_scale(
+    values,
+    true,
+    values.some((value) => value === null),
+  );
   // Those in a strip side by side.
   const places = order.map((_, i): [number, number] => [place_on(x, costs[i], 0.5), place_on(y, values[i], 0.5)]);
   const points = order.map((o, i) => {
@@ -135,10 +146,20 @@ function draw_cost(look: Look, scope: Scope, problem: StudyProblem, target: numb
       symbolSize: 10,
       itemStyle: { color: style.color },
       note:
-        scope.names[o] + '\nmedian ' + describe_value(problem.results[o].median, unit) + '\n' +
+        scope.names[o] +
+        '; median ' +
+        describe_value(problem.results[o].median, unit) +
+        '; ' +
         (time && time.expected !== null
-          ? format_number(time.expected) + ' cases expected (' + format_number(time.interval[0], 3) + ' to ' + format_number(time.interval[1], 3) + '), reached by ' +
-            time.reached + ' of ' + problem.results[o].cells.length
+          ? format_number(time.expected) +
+            ' cases expected (' +
+            format_number(time.interval[0], 3) +
+            ' to ' +
+            format_number(time.interval[1], 3) +
+            '), reached by ' +
+            time.reached +
+            ' of ' +
+            problem.results[o].cells.length
           : 'target not reached'),
     };
   });
@@ -149,7 +170,7 @@ function draw_cost(look: Look, scope: Scope, problem: StudyProblem, target: numb
     make_scaled_axis(look, 'y', name_axis('median ' + problem.quantity.name, unit.unit), y, 'none'),
     [
       make_grid_lines(look, x, y),
-      { type: 'scatter', data: points, z: 3, clip: false },
+      { type: 'scatter', name: 'optimizer', data: points, z: 3, clip: false },
       make_labels(
         look,
         labelled.map((i) => places[i]),

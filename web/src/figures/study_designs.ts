@@ -18,7 +18,6 @@ import {
   get_unit,
   kMostAtFirst,
   make_problem_choices,
-  make_tooltip,
   type Scope,
 } from './study_parts';
 
@@ -62,12 +61,19 @@ function make_axes(look: Look, variables: Variable[]): Part {
   });
   return {
     type: 'custom',
+    name: 'variable',
     data: variables.map((variable, i) => ({
       value: [i, 0, 1],
       note:
-        shorten(variable.name) + (variable.unit === '' || variable.unit === '1' ? '' : ' (' + shorten(variable.unit, 12) + ')') + '\nfrom ' +
-        format_number(variable.lower) + ' to ' + format_number(variable.upper) + (variable.logarithmic ? ', logarithmic' : '') +
-        '\nstart ' + format_number(variable.start),
+        shorten(variable.name) +
+        (variable.unit === '' || variable.unit === '1' ? '' : ' (' + shorten(variable.unit, 12) + ')') +
+        '; from ' +
+        format_number(variable.lower) +
+        ' to ' +
+        format_number(variable.upper) +
+        (variable.logarithmic ? ', logarithmic' : '') +
+        '; start ' +
+        format_number(variable.start),
     })),
     encode: { x: 0, y: [1, 2] },
     clip: false,
@@ -85,7 +91,17 @@ function make_axes(look: Look, variables: Variable[]): Part {
         type: 'group',
         children: [
           { type: 'line', shape: { x1: x, y1: top, x2: x, y2: bottom }, style: { stroke: look.muted, lineWidth: 1 } },
-          { type: 'polygon', shape: { points: [[x - 7, y_start - 4], [x - 7, y_start + 4], [x - 1, y_start]] }, style: { fill: look.muted } },
+          {
+            type: 'polygon',
+            shape: {
+              points: [
+                [x - 7, y_start - 4],
+                [x - 7, y_start + 4],
+                [x - 1, y_start],
+              ],
+            },
+            style: { fill: look.muted },
+          },
           text(x, top - 5, number(variable.upper), look.muted, { textVerticalAlign: 'bottom' }),
           text(x, bottom + 5, number(variable.lower), look.muted, { textVerticalAlign: 'top' }),
           {
@@ -124,7 +140,7 @@ function draw_parallel(look: Look, scope: Scope, problem: StudyProblem, which: s
       name: scope.names[line.optimizer],
       data: line.cell.x.map((value, i) => ({
         value: [i, place(problem.variables[i], value)],
-        note: note + '\n' + shorten(problem.variables[i].name) + ' = ' + format_number(value),
+        note: note + '; ' + shorten(problem.variables[i].name) + ' = ' + format_number(value),
         command: line.cell.command,
       })),
       symbol: style.symbol,
@@ -133,7 +149,12 @@ function draw_parallel(look: Look, scope: Scope, problem: StudyProblem, which: s
       showAllSymbol: true,
       color: style.color,
       itemStyle: { color, opacity: grey ? 0.3 : 0.9 },
-      lineStyle: { color, type: style.dash, width: which === 'best' || chosen >= 0 ? 1.6 : 1, opacity: grey ? 0.18 : which === 'best' ? 0.9 : 0.5 },
+      lineStyle: {
+        color,
+        type: style.dash,
+        width: which === 'best' || chosen >= 0 ? 1.6 : 1,
+        opacity: grey ? 0.18 : which === 'best' ? 0.9 : 0.5,
+      },
       z: grey ? 2 : 3,
     });
   });
@@ -152,6 +173,7 @@ function draw_parallel(look: Look, scope: Scope, problem: StudyProblem, which: s
       left: 8,
       right: 8,
       itemWidth: 24,
+      itemGap: 16,
       data: names,
       selected,
       textStyle: { color: look.text, fontFamily: look.font, fontSize: 11, width: 130, overflow: 'truncate' },
@@ -160,7 +182,6 @@ function draw_parallel(look: Look, scope: Scope, problem: StudyProblem, which: s
       pageTextStyle: { color: look.muted },
       pageIconColor: look.accent,
     },
-    tooltip: make_tooltip(look),
   });
 }
 
@@ -193,7 +214,8 @@ export function make_parallel(all: Scope): Figure | null {
       'Axes named (log) are logarithmic in the magnitude; the sign is that of the numbers at their ends. ' +
       'Where lines of good runs meet, the variable is determined by the problem; where they spread, it hardly matters or there are several solutions. ' +
       'Lines that end at a bound suggest that the bound is in the way. Neighbouring axes say nothing about interactions of others. ' +
-      "What counts as an optimizer's best was chosen on the test set, after the fact. " + describe_size(scope),
+      "What counts as an optimizer's best was chosen on the test set, after the fact. " +
+      describe_size(scope),
     width: 'full',
     height: 440,
     choices: make_problem_choices(scope).concat([which, highlight]),

@@ -49,7 +49,14 @@ function draw_front(look: Look, scope: Scope, problem: StudyProblem, front: Stud
       name,
       data: front.optimizers[o].points.map((point) => ({
         value: at(point.values),
-        note: name + ', replicate ' + point.replicate + '\n' + at(point.values).map((value) => format_number(value)).join(', '),
+        note:
+          name +
+          ', replicate ' +
+          point.replicate +
+          '; ' +
+          at(point.values)
+            .map((value) => format_number(value))
+            .join(', '),
         command: problem.results[o].cells.filter((cell) => cell.replicate === point.replicate)[0]?.command,
       })),
       symbol: style.symbol,
@@ -73,6 +80,7 @@ function draw_front(look: Look, scope: Scope, problem: StudyProblem, front: Stud
   if (reference) {
     series.push({
       type: 'scatter',
+      name: 'reference point',
       data: [{ value: reference, note: 'reference point of the hypervolume' }],
       symbol: 'path://M-5,-1L-1,-1L-1,-5L1,-5L1,-1L5,-1L5,1L1,1L1,5L-1,5L-1,1L-5,1Z',
       symbolSize: 11,
@@ -94,7 +102,10 @@ function draw_front(look: Look, scope: Scope, problem: StudyProblem, front: Stud
 
 // Of those problems of the scope that have fronts; nothing if none has.
 export function make_front(all: Scope): Figure | null {
-  const scope: Scope = { ...all, problems: all.problems.filter((problem) => problem.front !== null && problem.front.objectives.length > 1) };
+  const scope: Scope = {
+    ...all,
+    problems: all.problems.filter((problem) => problem.front !== null && problem.front.objectives.length > 1),
+  };
   if (scope.problems.length === 0) {
     return null;
   }

@@ -32,7 +32,9 @@ function make_unfinished(data: StudyData): TextItem | null {
     title: 'Unfinished',
     paragraphs: [
       progress +
-        (missing > 0 ? missing + (missing === 1 ? ' run has not ended and counts' : ' runs have not ended and count') + ' as without value. ' : '') +
+        (missing > 0
+          ? missing + (missing === 1 ? ' run has not ended and counts' : ' runs have not ended and count') + ' as without value. '
+          : '') +
         'Ranks, tests and the verdict are preliminary, and change as runs end.',
     ],
   };

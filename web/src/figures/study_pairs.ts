@@ -4,7 +4,7 @@ import type { Look } from '../charts/look';
 import { make_axis, make_chart, type Part } from '../charts/parts';
 import type { StudyPair, StudyProblem } from '../data';
 import type { DataTable, Figure } from '../model';
-import { describe_size, end_title, get_order, get_problem, make_problem_choices, make_tooltip, type Scope } from './study_parts';
+import { describe_size, end_title, get_order, get_problem, make_problem_choices, type Scope } from './study_parts';
 import { estimate_width } from '../charts/scales';
 
 // "0.004", "<1e-6"
@@ -57,9 +57,23 @@ function draw_pairs(look: Look, scope: Scope, problem: StudyProblem): EChartsOpt
     const [better, worse] = first_is_a ? [pair.a, pair.b] : [pair.b, pair.a];
     const a12 = first_is_a ? pair.a12 : 1 - pair.a12;
     const note =
-      scope.names[better] + ' against ' + scope.names[worse] + '\nA12 = ' + a12.toFixed(3) + ', p = ' + format_p(pair.p_holm) +
-      ' after Holm (' + format_p(pair.p) + ' before)\n' + (first_is_a ? pair.wins : pair.losses) + ' wins, ' + pair.ties + ' ties, ' +
-      (first_is_a ? pair.losses : pair.wins) + ' losses\n' + (pair.significant ? 'told apart' : 'not told apart');
+      scope.names[better] +
+      ' against ' +
+      scope.names[worse] +
+      '; A12 = ' +
+      a12.toFixed(3) +
+      ', p = ' +
+      format_p(pair.p_holm) +
+      ' after Holm (' +
+      format_p(pair.p) +
+      ' before); ' +
+      (first_is_a ? pair.wins : pair.losses) +
+      ' wins, ' +
+      pair.ties +
+      ' ties, ' +
+      (first_is_a ? pair.losses : pair.wins) +
+      ' losses; ' +
+      (pair.significant ? 'told apart' : 'not told apart');
     data.push({ value: [place[worse], place[better]], note });
     squares.push({ fill: get_a12_color(look, a12), text: a12.toFixed(2), marked: pair.significant });
     data.push({ value: [place[better], place[worse]], note });
@@ -71,6 +85,7 @@ function draw_pairs(look: Look, scope: Scope, problem: StudyProblem): EChartsOpt
   });
   const series: Part = {
     type: 'custom',
+    name: 'pair',
     data,
     encode: { x: 0, y: 1 },
     renderItem: (item: { dataIndex: number }, api: Drawing) => {
@@ -130,7 +145,6 @@ function draw_pairs(look: Look, scope: Scope, problem: StudyProblem): EChartsOpt
   });
   return make_chart(look, make_side('x'), make_side('y'), [series], {
     grid: { left: width + 14, right: 92, top: 14, bottom: Math.min(width, 110) * 0.87 + 18 },
-    tooltip: make_tooltip(look),
     // Only the key: the squares are coloured above, the upper triangle alone by this scale.
     visualMap: {
       type: 'continuous',

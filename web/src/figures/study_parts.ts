@@ -105,29 +105,21 @@ export function get_picked(choice: Choice, picked: Picked): string {
 export function describe_size(scope: Scope): string {
   const n = scope.data.replicates;
   const missing = scope.problems.reduce((sum, problem) => sum + problem.missing, 0);
-  const size = n === 1 ? 'One replicate an optimizer: its value is an anecdote, and nothing can be concluded.' : n + ' replicates an optimizer.';
+  const size =
+    n === 1 ? 'One replicate an optimizer: its value is an anecdote, and nothing can be concluded.' : n + ' replicates an optimizer.';
   return missing === 0
     ? size
-    : size + ' Unfinished: ' + missing + (missing === 1 ? ' run has' : ' runs have') + ' not ended and count' + (missing === 1 ? 's' : '') + ' as without value.';
+    : size +
+        ' Unfinished: ' +
+        missing +
+        (missing === 1 ? ' run has' : ' runs have') +
+        ' not ended and count' +
+        (missing === 1 ? 's' : '') +
+        ' as without value.';
 }
 
 export function end_title(scope: Scope, title: string): string {
   return scope.problems.length === 1 && scope.data.problems.length > 1 ? title + ': ' + shorten(scope.problems[0].label) : title;
-}
-
-// Tooltips as drawn text, not markup: names in them stay names.
-export function make_tooltip(look: Look): Part {
-  return {
-    trigger: 'item',
-    renderMode: 'richText',
-    backgroundColor: look.background,
-    borderColor: look.muted,
-    textStyle: { color: look.text, fontFamily: look.font, fontSize: 12 },
-    formatter: (hovered: { data?: { note?: string }; seriesName?: string; value?: unknown }) => {
-      const note = hovered.data && hovered.data.note;
-      return note ? note.replace(/\{/g, '(').replace(/\}/g, ')') : '';
-    },
-  };
 }
 
 // A chart with its legend at the right, best first; `drawn` are switched on at first.
@@ -167,7 +159,6 @@ export function make_ranked_chart(
           pageIconInactiveColor: look.grid,
         }
       : { show: false },
-    tooltip: make_tooltip(look),
     ...more,
   });
 }

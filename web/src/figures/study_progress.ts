@@ -41,6 +41,8 @@ function draw_convergence(look: Look, scope: Scope, problem: StudyProblem): ECha
   // Room for all that can be switched on.
   const y = make_scale(everything(curves.length > 2 * kMostAtFirst ? drawn : curves), true);
   const x = make_scale(problem.checkpoints, true);
+  // Lines before bands: the legend draws the first series of a name.
+  const bands: Part[] = [];
   const series: Part[] = [make_grid_lines(look, x, y)];
   order.forEach((o, place) => {
     const { q1, median, q3 } = curves[place];
@@ -50,12 +52,19 @@ function draw_convergence(look: Look, scope: Scope, problem: StudyProblem): ECha
       // A quartile without value is beyond any axis.
       return low === null ? null : [cases, low, q3[i] ?? y.high * 10];
     });
-    split_rows(rows).forEach((piece) => series.push(make_band(scope.names[o], piece, style.color)));
+    split_rows(rows).forEach((piece) => bands.push(make_band(scope.names[o], piece, style.color)));
     const points = problem.checkpoints.map((cases, i): Point => {
       const value = median[i] ?? null;
       const note =
-        scope.names[o] + '\n' + cases + ' cases: median ' + describe_value(value, { factor: 1, unit: unit.unit }) + ', quartiles ' +
-        format_number(q1[i]) + ' to ' + format_number(q3[i]);
+        scope.names[o] +
+        '; ' +
+        cases +
+        ' cases: median ' +
+        describe_value(value, { factor: 1, unit: unit.unit }) +
+        ', quartiles ' +
+        format_number(q1[i]) +
+        ' to ' +
+        format_number(q3[i]);
       return { value: [cases, value], note };
     });
     series.push({ ...make_line(look, 0, scope.names[o], points, { style, symbols: true, width: 2 }), symbolSize: 5, z: 3 });
@@ -64,8 +73,8 @@ function draw_convergence(look: Look, scope: Scope, problem: StudyProblem): ECha
   return make_ranked_chart(
     look,
     make_scaled_axis(look, 'x', kCasesAxis, x),
-    make_scaled_axis(look, 'y', name_axis(name, unit.unit) , y),
-    series,
+    make_scaled_axis(look, 'y', name_axis(name, unit.unit), y),
+    series.concat(bands),
     names,
     names.slice(0, kMostAtFirst),
   );
@@ -99,7 +108,9 @@ export function make_convergence(scope: Scope): Figure {
     caption:
       'What the best design known so far is worth on the test set, against the simulated training cases spent: the median over replicates, with the quartiles as a band. ' +
       'Designs are chosen in training and simulated again on the test set, so a curve may rise; where it is missing, half of the runs have no value yet. ' +
-      'The order at one budget says nothing about another one. ' + describe_size(scope) + kFirstOnes(scope.names.length),
+      'The order at one budget says nothing about another one. ' +
+      describe_size(scope) +
+      kFirstOnes(scope.names.length),
     height: 400,
     choices: make_problem_choices(scope),
     draw: (look, picked) => draw_convergence(look, scope, get_problem(scope, picked)),
@@ -123,10 +134,12 @@ function draw_steps(look: Look, scope: Scope, steps: Steps): EChartsOption {
   steps.order.forEach((o) => {
     const points = steps.abscissae.map((at, i): Point => {
       const share = steps.shares[o]?.[i] ?? null;
-      return { value: [at, share], note: scope.names[o] + '\n' + format_number(at, 3) + ': ' + format_number(share, 3) };
+      return { value: [at, share], note: scope.names[o] + '; ' + format_number(at, 3) + ': ' + format_number(share, 3) };
     });
     const line = make_line(look, 0, scope.names[o], points, { style: get_style(look, scope, o), step: 'end', width: 2, symbols: true });
-    series.push({ ...line, symbolSize: 4 });
+    // A mark here and there tells the steps apart; the others are there for the pointer.
+    const every = Math.ceil(points.length / 12);
+    series.push({ ...line, symbolSize: (_: unknown, at: { dataIndex: number }) => (at.dataIndex % every === o % every ? 6 : 2) });
   });
   const names = steps.order.map((o) => scope.names[o]);
   return make_ranked_chart(
@@ -167,7 +180,8 @@ export function make_runtime_ecdf(scope: Scope): Figure {
       'The share of all pairs of a run and a target that are reached, against the simulated training cases spent: higher and further left is better. ' +
       'Targets lie between the start and the best value that any optimizer of this study found, evenly on a logarithmic scale of what is left of the way; they depend on who takes part. ' +
       'A target counts from the budget on from which all later designs are there too, as coarsely as the checkpoints. ' +
-      describe_size(scope) + kFirstOnes(scope.names.length),
+      describe_size(scope) +
+      kFirstOnes(scope.names.length),
     height: 400,
     choices: make_problem_choices(scope),
     draw: (look, picked) => draw_steps(look, scope, get_steps(picked)),
@@ -191,7 +205,10 @@ function make_profile(
     initial: String(Math.min(1, profiles.length - 1)),
   };
   const ranks = scope.data.overall ? scope.data.overall.mean_ranks : [];
-  const order = sort_by(scope.names.map((_, i) => i), (i) => ranks[i] ?? Infinity);
+  const order = sort_by(
+    scope.names.map((_, i) => i),
+    (i) => ranks[i] ?? Infinity,
+  );
   const get_steps = (picked: Picked): Steps => ({
     abscissae,
     x_name,

@@ -9,7 +9,7 @@ import type { StudyProblem } from '../data';
 import type { Figure, Picked } from '../model';
 import { format_number } from '../numbers';
 import { find_pair } from './study_pairs';
-import { describe_size, end_title, get_problem, make_problem_choices, make_tooltip, type Scope, sort_by } from './study_parts';
+import { describe_size, end_title, get_problem, make_problem_choices, type Scope, sort_by } from './study_parts';
 
 export interface Ranks {
   ranks: number[]; // one an optimizer
@@ -24,7 +24,10 @@ const kMargin = 176;
 
 // All longest stretches, in the order of ranks, of which no two are told apart.
 export function find_cliques(problem: StudyProblem, ranks: number[]): number[][] {
-  const order = sort_by(ranks.map((_, i) => i), (i) => ranks[i]);
+  const order = sort_by(
+    ranks.map((_, i) => i),
+    (i) => ranks[i],
+  );
   const told_apart = (a: number, b: number) => {
     const pair = find_pair(problem.pairs, a, b);
     return pair !== undefined && pair.significant;
@@ -106,10 +109,13 @@ function draw_ranks(look: Look, scope: Scope, ranks: Ranks): EChartsOption {
   });
   const leaders: Part = {
     type: 'custom',
+    name: 'mean rank',
     data: order.map((o) => {
       const interval = ranks.intervals && ranks.intervals[o];
       const note =
-        scope.names[o] + '\nmean rank ' + format_number(ranks.ranks[o], 3) +
+        scope.names[o] +
+        '; mean rank ' +
+        format_number(ranks.ranks[o], 3) +
         (interval ? ' (' + format_number(interval[0], 3) + ' to ' + format_number(interval[1], 3) + ')' : '');
       return { value: [ranks.ranks[o], 0], note };
     }),
@@ -133,7 +139,13 @@ function draw_ranks(look: Look, scope: Scope, ranks: Ranks): EChartsOption {
         children: [
           {
             type: 'polyline',
-            shape: { points: [[x, box.y], [x, y], [end, y]] },
+            shape: {
+              points: [
+                [x, box.y],
+                [x, y],
+                [end, y],
+              ],
+            },
             style: { stroke: look.muted, lineWidth: 1, fill: 'none' },
           },
           { type: 'circle', shape: { cx: x, cy: box.y, r: 2.6 }, style: { fill: look.accent } },
@@ -146,9 +158,16 @@ function draw_ranks(look: Look, scope: Scope, ranks: Ranks): EChartsOption {
   };
   const joined: Part = {
     type: 'custom',
+    name: 'bar',
     data: bars.map((bar) => ({
       value: [bar.low, bar.high],
-      note: 'Not told apart: ' + bar.members.length + ' optimizers, mean ranks ' + format_number(bar.low, 3) + ' to ' + format_number(bar.high, 3),
+      note:
+        'Not told apart: ' +
+        bar.members.length +
+        ' optimizers, mean ranks ' +
+        format_number(bar.low, 3) +
+        ' to ' +
+        format_number(bar.high, 3),
     })),
     encode: { x: [0, 1] },
     clip: false,
@@ -182,7 +201,7 @@ function draw_ranks(look: Look, scope: Scope, ranks: Ranks): EChartsOption {
   const y: Part = { type: 'value', show: false, min: 0, max: 1 };
   return make_chart(look, x, y, [leaders, joined], {
     grid: { left: kMargin, right: kMargin, top: kAbove, bottom: 10 },
-    tooltip: make_tooltip(look),
+    legend: { show: false },
   });
 }
 
@@ -198,7 +217,10 @@ function make_figure(scope: Scope, id: string, title: string, caption: string, g
     draw: (look, picked) => draw_ranks(look, scope, get(picked)),
     table: (picked) => {
       const { ranks, intervals, cliques } = get(picked);
-      const order = sort_by(scope.names.map((_, i) => i), (i) => ranks[i]);
+      const order = sort_by(
+        scope.names.map((_, i) => i),
+        (i) => ranks[i],
+      );
       const groups = (i: number) =>
         cliques
           .map((clique, k) => (clique.indexOf(i) >= 0 ? String(k + 1) : ''))
@@ -239,8 +261,13 @@ export function make_overall_ranks(scope: Scope): Figure | null {
       ? 'Of fewer than six problems no difference can be significant: the ranks are a description of these problems, and nothing can be concluded about others. '
       : 'A bar is no proof of equality. ';
   const caption =
-    'Critical-difference diagram: mean ranks over ' + scope.data.problems.length + ' problems, each by its medians. ' + kBars + few +
-    'Mean ranks depend on who takes part. ' + describe_size(scope);
+    'Critical-difference diagram: mean ranks over ' +
+    scope.data.problems.length +
+    ' problems, each by its medians. ' +
+    kBars +
+    few +
+    'Mean ranks depend on who takes part. ' +
+    describe_size(scope);
   return make_figure(scope, 'ranks', 'Mean ranks over problems', caption, () => ranks, [ranks]);
 }
 
@@ -251,8 +278,10 @@ export function make_problem_ranks(scope: Scope, id: string): Figure {
     return { ranks, intervals: null, cliques: find_cliques(problem, ranks) };
   };
   const caption =
-    'Critical-difference diagram: ranks of the runs of a replicate, averaged over the replicates. ' + kBars +
-    'A bar is no proof of equality, and mean ranks depend on who takes part. ' + describe_size(scope);
+    'Critical-difference diagram: ranks of the runs of a replicate, averaged over the replicates. ' +
+    kBars +
+    'A bar is no proof of equality, and mean ranks depend on who takes part. ' +
+    describe_size(scope);
   const figure = make_figure(
     scope,
     id,

@@ -8,7 +8,12 @@ type Row = (Value | Cell)[];
 
 // Rows of all problems under one head: of several, with the problem, and with the unit where units
 // differ.
-function tabulate(scope: Scope, get_problem_unit: (problem: StudyProblem) => Unit, make_columns: (unit: string) => Column[], make_rows: (problem: StudyProblem, unit: Unit) => Row[]): DataTable {
+function tabulate(
+  scope: Scope,
+  get_problem_unit: (problem: StudyProblem) => Unit,
+  make_columns: (unit: string) => Column[],
+  make_rows: (problem: StudyProblem, unit: Unit) => Row[],
+): DataTable {
   const units = scope.problems.map((problem) => get_problem_unit(problem).unit);
   const one_unit = units.every((unit) => unit === units[0]);
   const many = scope.problems.length > 1;
@@ -67,7 +72,15 @@ export function make_ranking_table(scope: Scope): TableItem {
       ];
     });
   const tests = scope.problems
-    .map((problem) => (problem.friedman ? (scope.problems.length > 1 ? problem.label.slice(0, 40) + ': ' : '') + 'F = ' + problem.friedman.statistic.toFixed(1) + ', p = ' + problem.friedman.p.toPrecision(2) : ''))
+    .map((problem) =>
+      problem.friedman
+        ? (scope.problems.length > 1 ? problem.label.slice(0, 40) + ': ' : '') +
+          'F = ' +
+          problem.friedman.statistic.toFixed(1) +
+          ', p = ' +
+          problem.friedman.p.toPrecision(2)
+        : '',
+    )
     .filter((text) => text !== '');
   return {
     kind: 'table',
@@ -77,7 +90,9 @@ export function make_ranking_table(scope: Scope): TableItem {
       'Values on the test set, best median first. A run without value counts as the worst; a dash is a median or quartile that does not exist for that reason. ' +
       'Intervals are bootstrapped. The best design of each optimizer, by the validation set, was simulated once more on the other engine where one is named. ' +
       describe_size(scope) +
-      (tests.length > 0 && tests.length <= 6 ? " Do the optimizers differ at all? Friedman's test in Iman and Davenport's form: " + tests.join('; ') + '.' : ''),
+      (tests.length > 0 && tests.length <= 6
+        ? " Do the optimizers differ at all? Friedman's test in Iman and Davenport's form: " + tests.join('; ') + '.'
+        : ''),
     table: tabulate(scope, get_value_unit, columns, rows),
   };
 }
@@ -170,7 +185,8 @@ export function make_running_times_table(scope: Scope): TableItem {
     title: end_title(scope, 'Expected running times'),
     caption:
       'How many simulated cases it would take on average to reach a target, starting anew with other random numbers until it is reached: all cases spent, divided by the number of runs that got there. ' +
-      'A dash is a target that no run reached. ' + describe_size(scope),
+      'A dash is a target that no run reached. ' +
+      describe_size(scope),
     table: tabulate(scope, (problem) => get_curve_name(problem).unit, columns, rows),
   };
 }
@@ -187,8 +203,18 @@ export function make_overall_table(scope: Scope): TableItem | null {
     { label: 'mean rank', numeric: true, digits: 3 },
     { label: 'from', numeric: true, digits: 3 },
     { label: 'to', numeric: true, digits: 3 },
-  ].concat(problems.map((problem) => ({ label: 'median, ' + problem.label, unit: get_value_unit(problem).unit, numeric: true, digits: 4 })) as never[]);
-  const order = sort_by(scope.names.map((_, i) => i), (i) => overall.mean_ranks[i] ?? Infinity);
+  ].concat(
+    problems.map((problem) => ({
+      label: 'median, ' + problem.label,
+      unit: get_value_unit(problem).unit,
+      numeric: true,
+      digits: 4,
+    })) as never[],
+  );
+  const order = sort_by(
+    scope.names.map((_, i) => i),
+    (i) => overall.mean_ranks[i] ?? Infinity,
+  );
   return {
     kind: 'table',
     id: 'overall',
@@ -196,7 +222,8 @@ export function make_overall_table(scope: Scope): TableItem | null {
     caption:
       'Mean ranks of the medians, each problem counting once, and the medians on the test set; a dash is a median without value. ' +
       (overall.rank_intervals ? 'Intervals are of the mean ranks. ' : '') +
-      'Ranks depend on who takes part. ' + describe_size(scope),
+      'Ranks depend on who takes part. ' +
+      describe_size(scope),
     table: {
       columns,
       rows: order.map((o) => {

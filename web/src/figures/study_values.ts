@@ -22,11 +22,21 @@ import {
 } from './study_parts';
 
 export function describe_cell(scope: Scope, problem: StudyProblem, optimizer: number, cell: StudyCell, unit: Unit): string {
-  const failed = cell.failures > 0 ? '\n' + cell.failures + (cell.failures === 1 ? ' test case' : ' test cases') + ' failed' : '';
-  const failure = cell.failure === '' ? '' : '\nthe optimizer failed';
+  const failed = cell.failures > 0 ? '; ' + cell.failures + (cell.failures === 1 ? ' test case' : ' test cases') + ' failed' : '';
+  const failure = cell.failure === '' ? '' : '; the optimizer failed';
   return (
-    scope.names[optimizer] + ', replicate ' + cell.replicate + '\n' + describe_value(cell.value, unit, problem.quantity) + '\n' +
-    cell.cases + ' cases, ' + cell.evaluations + ' evaluations' + failed + failure
+    scope.names[optimizer] +
+    ', replicate ' +
+    cell.replicate +
+    '; ' +
+    describe_value(cell.value, unit, problem.quantity) +
+    '; ' +
+    cell.cases +
+    ' cases, ' +
+    cell.evaluations +
+    ' evaluations' +
+    failed +
+    failure
   );
 }
 
@@ -46,6 +56,7 @@ type Drawing = {
 function make_boxes(look: Look, data: Part[], colors: string[]): Part {
   return {
     type: 'custom',
+    name: 'quartiles',
     data,
     encode: { x: [1, 2, 3, 4, 5], y: 0 },
     z: 2,
@@ -100,8 +111,16 @@ function draw_values(look: Look, scope: Scope, problem: StudyProblem): EChartsOp
     if (result.cells.length > 0 || result.median !== null) {
       const five = [result.min, result.q1, result.median, result.q3, result.max].map((value) => place_on(x, convert(value, unit)));
       const note =
-        scope.names[order[row]] + '\nmedian ' + describe_value(result.median, unit) + '\nquartiles ' + describe_value(result.q1, unit) +
-        ' to ' + describe_value(result.q3, unit) + '\n' + result.infinite + ' without value';
+        scope.names[order[row]] +
+        '; median ' +
+        describe_value(result.median, unit) +
+        '; quartiles ' +
+        describe_value(result.q1, unit) +
+        ' to ' +
+        describe_value(result.q3, unit) +
+        '; ' +
+        result.infinite +
+        ' without value';
       boxes.push({ value: [row].concat(five), note });
       colors.push(color);
     }
@@ -127,7 +146,7 @@ function draw_values(look: Look, scope: Scope, problem: StudyProblem): EChartsOp
     [
       make_grid_lines(look, x, null),
       make_boxes(look, boxes, colors),
-      { type: 'scatter', data: points, symbolSize: order.length > 20 ? 4 : 6, z: 3 },
+      { type: 'scatter', name: 'run', data: points, symbolSize: order.length > 20 ? 4 : 6, z: 3 },
     ],
     [],
     [],

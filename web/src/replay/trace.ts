@@ -1,0 +1,78 @@
+// The path of a tip, coloured by its error. Its numbers go to the graphics card once a test case;
+// as the time goes on only the range to draw changes.
+import { Color, Group, InstancedInterleavedBuffer, InterleavedBufferAttribute } from 'three';
+import { Line2 } from 'three/addons/lines/Line2.js';
+import { LineGeometry } from 'three/addons/lines/LineGeometry.js';
+import { LineMaterial } from 'three/addons/lines/LineMaterial.js';
+import type { Rgb } from './colours';
+
+const kFaint = 0.35;
+
+// Each piece has both its ends: the i-th goes from moment i to i + 1.
+function make_pieces(values: ArrayLike<number>, moments: number): InstancedInterleavedBuffer {
+  const pieces = new Float32Array(6 * Math.max(0, moments - 1));
+  for (let i = 0; i + 1 < moments; ++i) {
+    for (let k = 0; k < 6; ++k) {
+      pieces[6 * i + k] = values[3 * i + k];
+    }
+  }
+  return new InstancedInterleavedBuffer(pieces, 6, 1);
+}
+
+function set_range(line: Line2, name: string, buffer: InstancedInterleavedBuffer, first: number): void {
+  line.geometry.setAttribute(`instance${name}Start`, new InterleavedBufferAttribute(buffer, 3, 6 * first));
+  line.geometry.setAttribute(`instance${name}End`, new InterleavedBufferAttribute(buffer, 3, 6 * first + 3));
+}
+
+export class Trace {
+  readonly group = new Group();
+  private readonly positions: InstancedInterleavedBuffer;
+  private readonly colours: InstancedInterleavedBuffer;
+  private readonly past: Line2;
+  private readonly now: Line2;
+  private readonly first = new Map<Line2, number>();
+
+  // `tip_m` has 3 numbers a moment, `colour` gives each moment's.
+  constructor(tip_m: Float32Array, colour: (moment: number) => Rgb, width: number) {
+    const moments = tip_m.length / 3;
+    this.positions = make_pieces(tip_m, moments);
+    const colours = new Float32Array(3 * moments);
+    const linear = new Color();
+    for (let i = 0; i < moments; ++i) {
+      linear.setRGB(...colour(i), 'srgb').toArray(colours, 3 * i);
+    }
+    this.colours = make_pieces(colours, moments);
+    this.past = this.make_line(width, kFaint);
+    this.now = this.make_line(width, 1);
+  }
+
+  show(parts: { past: [number, number]; now: [number, number] }): void {
+    this.set_part(this.past, parts.past);
+    this.set_part(this.now, parts.now);
+  }
+
+  dispose(): void {
+    for (const line of [this.past, this.now]) {
+      line.geometry.dispose();
+      line.material.dispose();
+    }
+  }
+
+  private make_line(width: number, opacity: number): Line2 {
+    const material = new LineMaterial({ linewidth: width, vertexColors: true, transparent: opacity < 1, opacity });
+    const line = new Line2(new LineGeometry(), material);
+    line.frustumCulled = false; // its extent is not known to the geometry
+    this.group.add(line);
+    return line;
+  }
+
+  private set_part(line: Line2, [first, last]: [number, number]): void {
+    line.visible = last > first;
+    line.geometry.instanceCount = last - first;
+    if (line.visible && this.first.get(line) !== first) {
+      this.first.set(line, first);
+      set_range(line, '', this.positions, first);
+      set_range(line, 'Color', this.colours, first);
+    }
+  }
+}
