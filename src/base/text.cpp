@@ -150,4 +150,23 @@ std::string quote_csv(std::string_view text) {
   return quoted + '"';
 }
 
+std::string quote_command(std::span<const std::string> words) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./:=,+@%";
+  std::string command;
+  for (const std::string& word : words) {
+    command += command.empty() ? "" : " ";
+    if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) {
+      command += word;
+      continue;
+    }
+    command += '\'';
+    for (const char c : word) {
+      command += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    }
+    command += '\'';
+  }
+  return command;
+}
+
 }  // namespace armwright

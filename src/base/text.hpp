@@ -34,6 +34,9 @@ std::string format_exact(double value);
 // One field of a CSV file (RFC 4180).
 std::string quote_csv(std::string_view text);
 
+// The words as a POSIX shell would have to be given them.
+std::string quote_command(std::span<const std::string> words);
+
 // Printable UTF-8 for a terminal or a log: control characters (escape codes too) and invalid bytes
 // become '?'.
 std::string sanitize(std::string_view text);

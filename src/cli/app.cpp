@@ -192,6 +192,9 @@ int run_app(int argc, char** argv) {
     add_reproduce(app, session);
     add_testset(app, session);
     add_show(app, session);
+    add_report(app, session);
+    add_plot(app, session);
+    add_watch(app, session);
     add_export(app, session);
     add_import(app, session);
     add_check_plugin(app, session);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -19,8 +18,5 @@ std::string format_quantity(double value, std::string_view unit);
 std::string format_duration(double seconds);
 // "1 case", "2 cases"
 std::string format_count(unsigned long long count, std::string_view singular);
-
-// The words as a POSIX shell would have to be given them.
-std::string quote_command(std::span<const std::string> words);
 
 }  // namespace armwright

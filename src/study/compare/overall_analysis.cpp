@@ -1,6 +1,7 @@
 // analyze_overall() and analyze_study(): what holds over problems.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "study/compare/study_result.hpp"
@@ -124,8 +125,33 @@ OverallResult analyze_overall(const StudyPlan& plan, std::span<const ProblemResu
   return overall;
 }
 
-StudyResult analyze_study(const StudyPlan& plan, const std::filesystem::path& study) {
+namespace {
+
+// Over the problems that have all their cells.
+OverallResult analyze_complete(const StudyPlan& plan, const StudyResult& result) {
+  StudyPlan complete = plan;
+  complete.problems.clear();
+  std::vector<ProblemResult> problems;
+  std::vector<CellOutcome> cells;
+  for (std::size_t p = 0; p < plan.problems.size(); ++p) {
+    if (std::ranges::find(result.missing, p, &Cell::problem) != result.missing.end()) {
+      continue;
+    }
+    complete.problems.push_back(plan.problems[p]);
+    problems.push_back(result.problems[p]);
+    std::ranges::copy_if(result.cells, std::back_inserter(cells), [&](const CellOutcome& cell) {
+      return cell.problem == plan.problems[p].label;
+    });
+  }
+  return problems.empty() ? OverallResult{} : analyze_overall(complete, problems, cells);
+}
+
+}  // namespace
+
+StudyResult analyze_study(const StudyPlan& plan, const std::filesystem::path& study,
+                          MissingCells missing) {
   StudyResult result;
+  result.missing_left_out = missing == MissingCells::left_out;
   for (std::size_t p = 0; p < plan.problems.size(); ++p) {
     const std::size_t first = result.cells.size();
     for (std::size_t o = 0; o < plan.optimizers.size(); ++o) {
@@ -134,6 +160,9 @@ StudyResult analyze_study(const StudyPlan& plan, const std::filesystem::path& st
         auto outcome = load_cell(plan, cell, study);
         if (!outcome) {
           result.missing.push_back(cell);
+          if (result.missing_left_out) {
+            continue;
+          }
           outcome = make_missing(plan, cell);
         }
         result.cells.push_back(std::move(*outcome));
@@ -142,7 +171,8 @@ StudyResult analyze_study(const StudyPlan& plan, const std::filesystem::path& st
     result.problems.push_back(
         analyze_problem(plan, p, std::span<const CellOutcome>(result.cells).subspan(first)));
   }
-  result.overall = analyze_overall(plan, result.problems, result.cells);
+  result.overall = result.missing_left_out ? analyze_complete(plan, result)
+                                           : analyze_overall(plan, result.problems, result.cells);
   return result;
 }
 

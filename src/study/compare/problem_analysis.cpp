@@ -136,8 +136,27 @@ void add_curve(const ProblemResult& problem, std::span<const CellOutcome* const>
       const auto point = std::ranges::find(run->curve, budget, &CurvePoint::budget);
       values.push_back(point == run->curve.end() ? kInfinity : point->value);
     }
-    result.curve.push_back(calc_spread(values));
+    result.curve.push_back(values.empty() ? Spread{kInfinity, kInfinity, kInfinity}
+                                          : calc_spread(values));
   }
+}
+
+// Ranks, tests and pairs, over replicates.
+void compare_optimizers(std::span<const std::vector<double>> values, ProblemResult& result) {
+  std::vector<std::vector<double>> blocks(values.front().size());
+  for (std::size_t r = 0; r < blocks.size(); ++r) {
+    for (const auto& its_values : values) {
+      blocks[r].push_back(its_values[r]);
+    }
+  }
+  const Ranking ranking = calc_ranking(blocks);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    result.optimizers[i].mean_rank = ranking.mean_ranks[i];
+  }
+  if (blocks.size() > 1 && values.size() > 1) {
+    result.friedman = calc_friedman_test(blocks);
+  }
+  result.pairs = compare_pairs(values);
 }
 
 }  // namespace
@@ -215,29 +234,23 @@ ProblemResult analyze_problem(const StudyPlan& plan, std::size_t number,
       one.failed += cell.failure.empty() ? 0 : 1;
       cases.push_back(static_cast<double>(cell.cases));
     }
-    one.spread = calc_spread(one.values);
-    one.median_interval =
-        calc_median_interval(one.values, kIntervalLevel, kResamples, stream + "/median");
-    one.cases = calc_spread(cases).median;
+    if (runs.empty()) {
+      one.spread = {kInfinity, kInfinity, kInfinity};
+      one.median_interval = {kInfinity, kInfinity};
+    } else {
+      one.spread = calc_spread(one.values);
+      one.median_interval =
+          calc_median_interval(one.values, kIntervalLevel, kResamples, stream + "/median");
+      one.cases = calc_spread(cases).median;
+    }
     add_running_times(plan, result, runs, stream, one);
     add_curve(result, runs, one);
     values.push_back(one.values);
     result.optimizers.push_back(std::move(one));
   }
-  std::vector<std::vector<double>> blocks(static_cast<std::size_t>(plan.replicates));
-  for (std::size_t r = 0; r < blocks.size(); ++r) {
-    for (const auto& its_values : values) {
-      blocks[r].push_back(its_values[r]);
-    }
+  if (cells.size() == values.size() * static_cast<std::size_t>(plan.replicates)) {
+    compare_optimizers(values, result);
   }
-  const Ranking ranking = calc_ranking(blocks);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    result.optimizers[i].mean_rank = ranking.mean_ranks[i];
-  }
-  if (blocks.size() > 1 && values.size() > 1) {
-    result.friedman = calc_friedman_test(blocks);
-  }
-  result.pairs = compare_pairs(values);
   result.order.resize(values.size());
   std::iota(result.order.begin(), result.order.end(), std::size_t{0});
   std::ranges::stable_sort(result.order, {}, [&](std::size_t i) {

@@ -119,13 +119,22 @@ struct StudyResult {
   std::vector<CellOutcome> cells;  // problem by problem, optimizer by optimizer, by replicate
   std::vector<ProblemResult> problems;
   OverallResult overall;
-  std::vector<Cell> missing;  // that have not ended; they count as infinite
+  std::vector<Cell> missing;      // that have not ended
+  bool missing_left_out = false;  // they are not in `cells`
 };
 
-// From the study's folder. Error{bad_data} for a cell that cannot be read.
-StudyResult analyze_study(const StudyPlan& plan, const std::filesystem::path& study);
+// What becomes of cells that have not ended: they count as if they had found nothing, which is the
+// final word on a study; or they are left out, which shows a study that is under way as far as it
+// is. Then a problem without all its cells has neither ranks nor pairs, and `overall` is of the
+// others (nothing is in it if there is none).
+enum class MissingCells { count_as_infinite, left_out };
 
-// The parts of it.
+// From the study's folder, which is only read. Error{bad_data} for a cell that cannot be read.
+StudyResult analyze_study(const StudyPlan& plan, const std::filesystem::path& study,
+                          MissingCells missing = MissingCells::count_as_infinite);
+
+// The parts of it. Of a problem without all its cells, an optimizer's numbers are of those that are
+// there, infinite if none is, and nothing is compared.
 ProblemResult analyze_problem(const StudyPlan& plan, std::size_t problem,
                               std::span<const CellOutcome> cells);
 OverallResult analyze_overall(const StudyPlan& plan, std::span<const ProblemResult> problems,

@@ -211,10 +211,9 @@ std::vector<std::string> describe_limits(const StudyPlan& plan, const StudyResul
                     join_names(failed)));
   }
   if (!result.missing.empty()) {
-    sentences.push_back(
-        fmt::format("{} of {} cells have not ended and count as if they had found "
-                    "nothing.",
-                    result.missing.size(), result.cells.size()));
+    sentences.push_back(fmt::format(
+        "{} of {} cells have not ended and {}.", result.missing.size(), list_cells(plan).size(),
+        result.missing_left_out ? "are left out" : "count as if they had found nothing"));
   }
   if (!plan.baselines) {
     sentences.push_back(

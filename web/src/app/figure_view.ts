@@ -1,5 +1,5 @@
 // A figure in the page: its choices, the chart, what a point says of itself, the downloads.
-import { echarts, type EChartsType } from '../charts/echarts';
+import { echarts, type EChartsOption, type EChartsType } from '../charts/echarts';
 import { kLight, type Look } from '../charts/look';
 import { draw_svg, get_initial_picks, kDefaultHeight } from '../charts/svg';
 import { to_csv } from '../csv';
@@ -48,7 +48,15 @@ function describe_point(hovered: Hovered | Hovered[], columns: Column[]): HTMLEl
   return box;
 }
 
-export function make_figure_view(figure: Figure, look: Look, clock: Clock): View {
+// Which series are switched on is the reader's choice, and survives being drawn anew.
+function keep_selection(chart: EChartsType, option: EChartsOption): EChartsOption {
+  const before = (chart.getOption() as { legend?: { selected?: Record<string, boolean> }[] } | undefined)?.legend?.[0]?.selected;
+  const legend = (option as { legend?: object }).legend;
+  return before === undefined || legend === undefined ? option : { ...option, legend: { ...legend, selected: before } };
+}
+
+export function make_figure_view(first: Figure, look: Look, clock: Clock): View {
+  let figure = first;
   const picked: Picked = get_initial_picks(figure);
   let current_look = look;
   let chart: EChartsType | null = null;
@@ -62,12 +70,16 @@ export function make_figure_view(figure: Figure, look: Look, clock: Clock): View
   const frame = make('div', { class: 'frame' }, plot, cursor);
   const details = make('div', { class: 'details', role: 'status' });
 
-  function draw(): void {
-    chart?.setOption(
+  function draw(keep: boolean): void {
+    if (chart === null) {
+      return;
+    }
+    const drawn = figure.draw(current_look, picked);
+    chart.setOption(
       {
-        ...figure.draw(current_look, picked),
+        ...(keep ? keep_selection(chart, drawn) : drawn),
         tooltip: {
-          ...((figure.draw(current_look, picked) as { tooltip?: object }).tooltip ?? {}),
+          ...((drawn as { tooltip?: object }).tooltip ?? {}),
           formatter: (hovered: Hovered | Hovered[]) => describe_point(hovered, figure.table(picked).columns),
           backgroundColor: current_look.background,
           borderColor: current_look.muted,
@@ -105,7 +117,7 @@ export function make_figure_view(figure: Figure, look: Look, clock: Clock): View
       return;
     }
     chart = echarts.init(plot, null, { renderer: 'svg' });
-    draw();
+    draw(false);
     chart.on('click', (event) => {
       const { note, command } = get_provenance(event.data);
       show_details(note, command);
@@ -125,7 +137,7 @@ export function make_figure_view(figure: Figure, look: Look, clock: Clock): View
       make_select(choice.label, choice.options, choice.initial, (value) => {
         picked[choice.id] = value;
         show_details(undefined, undefined);
-        draw();
+        draw(false);
       }),
     );
   }
@@ -146,6 +158,7 @@ export function make_figure_view(figure: Figure, look: Look, clock: Clock): View
       { title: 'Download this figure' },
     ),
   );
+  const caption = make('figcaption', {}, figure.caption);
   const element = make(
     'figure',
     { class: figure.width === 'full' ? 'card full' : 'card', id: 'figure-' + figure.id, 'data-figure': figure.id },
@@ -159,7 +172,7 @@ export function make_figure_view(figure: Figure, look: Look, clock: Clock): View
     choices.childElementCount > 0 ? choices : null,
     frame,
     details,
-    make('figcaption', {}, figure.caption),
+    caption,
   );
   const observer = new ResizeObserver(() => {
     mount();
@@ -173,8 +186,19 @@ export function make_figure_view(figure: Figure, look: Look, clock: Clock): View
     element,
     set_look(next: Look) {
       current_look = next;
-      draw();
+      draw(true);
     },
+    update(item) {
+      const choices_of = (one: Figure): string => JSON.stringify(one.choices ?? []);
+      if (item.kind !== 'figure' || choices_of(item) !== choices_of(figure)) {
+        return false;
+      }
+      figure = item;
+      caption.textContent = item.caption;
+      draw(true);
+      return true;
+    },
+    settle: mount,
     dispose() {
       stop_listening();
       observer.disconnect();

@@ -16,14 +16,22 @@ function start(): void {
     return;
   }
   let theme: Theme = load_theme();
-  const get_look = (): Look => (theme === 'dark' ? kDark : kLight);
-  const apply = (): void => document.documentElement.setAttribute('data-theme', theme);
-  apply();
-  const view = make_page_view(host, get_look(), () => {
-    theme = theme === 'dark' ? 'light' : 'dark';
-    store_theme(theme);
-    apply();
-    view.set_look(get_look());
+  let on_paper = false;
+  const apply = (): Look => {
+    const shown = on_paper ? 'light' : theme;
+    document.documentElement.setAttribute('data-theme', shown);
+    return shown === 'dark' ? kDark : kLight;
+  };
+  const view = make_page_view(host, apply(), {
+    toggle_theme() {
+      theme = theme === 'dark' ? 'light' : 'dark';
+      store_theme(theme);
+      view.set_look(apply());
+    },
+    on_print(begins) {
+      on_paper = begins;
+      view.set_look(apply());
+    },
   });
   view.show(make_page(JSON.parse(data.textContent ?? '') as PageData));
   if (document.documentElement.hasAttribute('data-live')) {

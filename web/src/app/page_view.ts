@@ -19,7 +19,7 @@ function make_facts(facts: Fact[]): HTMLElement {
 
 function make_still(id: string, title: string, width: string, ...content: HTMLElement[]): View {
   const element = make('section', { class: 'card ' + width, id: 'figure-' + id, 'data-figure': id }, make('h3', {}, title), ...content);
-  return { element, set_look() {}, dispose() {} };
+  return { element, set_look() {}, update: () => false, settle() {}, dispose() {} };
 }
 
 function make_replay_view(id: string, title: string, page: Page, item: Item, look: Look, clock: Clock): View {
@@ -41,6 +41,8 @@ function make_replay_view(id: string, title: string, page: Page, item: Item, loo
   return {
     element: make('section', { class: 'card full', id: 'figure-' + id, 'data-figure': id }, make('h3', {}, title), host),
     set_look: (next) => replay.set_look(next),
+    update: () => true, // what was recorded stays
+    settle() {},
     dispose: () => {
       stop();
       replay.dispose();
@@ -68,7 +70,13 @@ export interface PageView {
   set_look(look: Look): void;
 }
 
-export function make_page_view(host: HTMLElement, first_look: Look, toggle_theme: () => void): PageView {
+export interface PageEvents {
+  toggle_theme(): void;
+  // On paper the page is light, whatever it is on the screen.
+  on_print(begins: boolean): void;
+}
+
+export function make_page_view(host: HTMLElement, first_look: Look, events: PageEvents): PageView {
   const clock = make_clock();
   let look = first_look;
   let page: Page | null = null;
@@ -88,7 +96,7 @@ export function make_page_view(host: HTMLElement, first_look: Look, toggle_theme
       {},
       make('div', { class: 'titles' }, title, subtitle),
       state,
-      make_button('Light / dark', toggle_theme, { class: 'theme' }),
+      make_button('Light / dark', events.toggle_theme, { class: 'theme' }),
     ),
     notes,
     list,
@@ -100,6 +108,24 @@ export function make_page_view(host: HTMLElement, first_look: Look, toggle_theme
     views.forEach((view) => view.dispose());
     views = [];
     panel.replaceChildren();
+  }
+
+  function update_or_replace(item: Item, index: number): void {
+    if (page !== null && !views[index].update(item)) {
+      const newer = make_view(page, item, look, clock);
+      views[index].element.replaceWith(newer.element);
+      views[index].dispose();
+      views[index] = newer;
+    }
+  }
+
+  // Newer data of the same section go into what is there. False if it has other items now.
+  function update_items(tab: Tab): boolean {
+    const same = tab.items.length === views.length && tab.items.every((item, i) => views[i].element.dataset.figure === item.id);
+    if (same) {
+      tab.items.forEach(update_or_replace);
+    }
+    return same;
   }
 
   function append_items(tab: Tab): void {
@@ -136,6 +162,11 @@ export function make_page_view(host: HTMLElement, first_look: Look, toggle_theme
     append_items(tab);
   }
 
+  function same_tabs(tabs: Tab[]): boolean {
+    const there = Array.from(list.querySelectorAll<HTMLElement>('[role=tab]'));
+    return there.length === tabs.length && tabs.every((tab, i) => there[i].dataset.tab === tab.id && there[i].textContent === tab.title);
+  }
+
   function make_tab_button(tab: Tab): HTMLButtonElement {
     return make_button(
       tab.title,
@@ -167,12 +198,17 @@ export function make_page_view(host: HTMLElement, first_look: Look, toggle_theme
   // On paper all sections follow one another; afterwards the open one comes back.
   window.addEventListener('beforeprint', () => {
     close();
+    events.on_print(true);
     page?.tabs.forEach((tab) => {
       panel.append(make('h2', {}, tab.title));
       append_items({ ...tab, items: tab.items.filter((item) => item.kind !== 'replay') });
     });
+    views.forEach((view) => view.settle());
   });
-  window.addEventListener('afterprint', () => choose(open, false));
+  window.addEventListener('afterprint', () => {
+    events.on_print(false);
+    choose(open, false);
+  });
   window.addEventListener('hashchange', () => choose(decodeURIComponent(location.hash.slice(1)), false));
 
   return {
@@ -184,12 +220,15 @@ export function make_page_view(host: HTMLElement, first_look: Look, toggle_theme
       subtitle.textContent = data.subtitle;
       state.textContent = data.progress === null ? '' : `${data.progress.done} of ${data.progress.total} ${data.progress.unit}`;
       notes.replaceChildren(...data.notes.map((note) => make('li', {}, note)));
-      list.replaceChildren(...next.tabs.map(make_tab_button));
+      const shown = next.tabs.find((tab) => tab.id === open);
       foot.replaceChildren(
         make('p', {}, `armwright ${data.program.version} (${data.program.commit}). Made by `, make('code', {}, data.command)),
         make('p', {}, 'Folder: ', make('code', {}, data.folder)),
       );
-      choose(open || decodeURIComponent(location.hash.slice(1)), false);
+      if (shown === undefined || !same_tabs(next.tabs) || !update_items(shown)) {
+        list.replaceChildren(...next.tabs.map(make_tab_button));
+        choose(open || decodeURIComponent(location.hash.slice(1)), false);
+      }
     },
     set_look(next: Look) {
       look = next;

@@ -42,7 +42,14 @@ function make_cell(cell: Value | Cell, digits: number, details: HTMLElement): HT
   return element;
 }
 
-function make_table(table: DataTable, details: HTMLElement): HTMLElement {
+// Sorted by `order` first: the number of a column and 1 for up, -1 for down; what the reader chooses
+// is left there.
+interface Order {
+  column: number;
+  direction: number;
+}
+
+function make_table(table: DataTable, details: HTMLElement, order: Order = { column: -1, direction: 1 }): HTMLElement {
   const body = make('tbody');
   const headings: HTMLTableCellElement[] = [];
   let rows = table.rows;
@@ -58,8 +65,9 @@ function make_table(table: DataTable, details: HTMLElement): HTMLElement {
     more.textContent = `Show more rows (${rows.length - shown} left)`;
   }
 
-  function sort(column: number): void {
-    const direction = headings[column].getAttribute('aria-sort') === 'ascending' ? -1 : 1;
+  function sort(column: number, direction: number): void {
+    order.column = column;
+    order.direction = direction;
     headings.forEach((heading) => heading.removeAttribute('aria-sort'));
     headings[column].setAttribute('aria-sort', direction > 0 ? 'ascending' : 'descending');
     rows = rows.slice().sort((a, b) => compare(get_value(a[column]), get_value(b[column]), direction));
@@ -72,16 +80,28 @@ function make_table(table: DataTable, details: HTMLElement): HTMLElement {
   const head = make('tr');
   table.columns.forEach((column, i) => {
     const heading = make('th', { scope: 'col', class: column.numeric ? 'number' : '' });
-    heading.append(make_button(get_heading(column), () => sort(i), { class: 'sort', title: 'Sort by this column' }));
+    heading.append(
+      make_button(get_heading(column), () => sort(i, order.column === i ? -order.direction : 1), {
+        class: 'sort',
+        title: 'Sort by this column',
+      }),
+    );
     headings.push(heading);
     head.append(heading);
   });
-  show(kPortion);
+  if (order.column >= 0) {
+    sort(order.column, order.direction);
+  } else {
+    show(kPortion);
+  }
   return make('div', { class: 'table-scroll', tabindex: '0' }, make('table', {}, make('thead', {}, head), body), more);
 }
 
 export function make_table_view(item: TableItem): View {
   const details = make('div', { class: 'details', role: 'status' });
+  const order: Order = { column: -1, direction: 1 };
+  let table = item.table;
+  let body = make_table(table, details, order);
   const element = make(
     'section',
     { class: 'card full', id: 'figure-' + item.id, 'data-figure': item.id },
@@ -93,14 +113,29 @@ export function make_table_view(item: TableItem): View {
       make(
         'div',
         { class: 'buttons' },
-        make_button('CSV', () => download(item.id + '.csv', 'text/csv', to_csv(item.table)), { title: 'Download this table' }),
+        make_button('CSV', () => download(item.id + '.csv', 'text/csv', to_csv(table)), { title: 'Download this table' }),
       ),
     ),
-    make_table(item.table, details),
+    body,
     details,
     item.caption ? make('p', { class: 'caption' }, item.caption) : null,
   );
-  return { element, set_look() {}, dispose() {} };
+  return {
+    element,
+    set_look() {},
+    update(next) {
+      if (next.kind !== 'table' || next.table.columns.length !== table.columns.length) {
+        return false;
+      }
+      table = next.table;
+      const newer = make_table(table, details, order);
+      body.replaceWith(newer);
+      body = newer;
+      return true;
+    },
+    settle() {},
+    dispose() {},
+  };
 }
 
 // The numbers of a figure, for those who cannot or do not want to read the chart.

@@ -1,0 +1,50 @@
+#include "report/page/distance_response.hpp"
+
+#include "report/page/page_json.hpp"
+
+namespace armwright {
+
+using nlohmann::json;
+
+json make_response_series(const TrackingProblem& problem, const std::string& name,
+                          std::span<const TrackingResult> results,
+                          const std::optional<double>& published_mean_m,
+                          const std::string& command) {
+  const auto points = static_cast<std::size_t>(problem.config().workspace.points);
+  return make_response_series({name, command}, get_case_errors(results),
+                              calc_point_statistics(results, points), published_mean_m);
+}
+
+json make_response_series(const SeriesText& text, std::span<const double> case_errors,
+                          const PointStatistics& points,
+                          const std::optional<double>& published_mean_m) {
+  const ErrorSummary summary = summarize(case_errors, kFailureError_m);
+  return {{"name", text.name},
+          {"cases", summary.cases - summary.without_number},
+          {"failures", summary.failures},
+          {"mean_m", finite_or_null(points.mean_m)},
+          {"standard_error_m", finite_or_null(points.standard_error_m)},
+          {"overall_mean_m", finite_or_null(summary.mean)},
+          {"overall_median_m", finite_or_null(summary.median)},
+          {"published_mean_m", finite_or_null(published_mean_m)},
+          {"command", text.command}};
+}
+
+json make_distance_response(const TrackingProblem& problem, const ResponseText& text, json series) {
+  const WorkspaceSphere& workspace = problem.config().workspace;
+  json distances = json::array();
+  json counted = json::array();
+  for (int k = 1; k <= workspace.points; ++k) {
+    distances.push_back(workspace.calc_move_m(k));
+    counted.push_back(k > 1 || problem.config().task.count_first_point);
+  }
+  return {{"id", text.id},
+          {"title", text.title},
+          {"thesis", text.thesis},
+          {"remark", text.remark},
+          {"distances_m", std::move(distances)},
+          {"counted", std::move(counted)},
+          {"series", std::move(series)}};
+}
+
+}  // namespace armwright

@@ -1,0 +1,47 @@
+// Designs' motions on test cases, for the replay and for errors over time. Only .cpp files include
+// this.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "problems/tracking_problem.hpp"
+#include "report/page/page_simulator.hpp"
+
+namespace armwright {
+
+struct NamedDesign {
+  std::string id;    // "winner"
+  std::string name;  // as shown
+  ArmDesign design;
+};
+
+struct ReplayRequest {
+  TestSet set;
+  std::uint64_t number = 0;
+  std::string label;  // "test/2, case 17: the worst of 500"
+};
+
+// "test/2:17"
+std::string make_case_id(const std::string& set, std::uint64_t number);
+
+nlohmann::json make_design_info(const NamedDesign& design);
+nlohmann::json make_task_info(const TrackingTask& task);
+
+struct ReplayText {
+  std::string id;
+  std::string title;
+};
+
+// ReplaySet: every design on every case, by the problem's judging engine; the motion of a
+// simulation that diverged goes as far as it went. `robot` is the index of the robot with its
+// load. The bulk is single precision: a hundredth of a micrometre.
+nlohmann::json make_replay_set(PageSimulator& simulator, const TrackingProblem& problem,
+                               const ReplayText& text, std::size_t robot,
+                               std::span<const NamedDesign> designs,
+                               std::span<const ReplayRequest> cases);
+
+}  // namespace armwright

@@ -1,0 +1,64 @@
+// What a shipped reproduction (configs/reproductions/*.toml) says: what its source optimized
+// without printing the designs, what it swept, and which figures it made of all that.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace armwright {
+
+// The winner of a run under other conditions than those it was optimized for.
+struct ReevaluationConfig {
+  std::string label;  // "q2-e4, IK bug off"
+  std::string run;
+  std::vector<std::string> overrides;
+  std::string where;
+};
+
+// A figure of average errors over the distance. `of` is the label of what is drawn: of a published
+// result, a run or a re-evaluation.
+struct ResponseFigureConfig {
+  struct Series {
+    std::string name;
+    std::string of;
+  };
+  std::string id;
+  std::string title;
+  std::string thesis;  // "Fig. 6.4"
+  std::string remark;
+  std::vector<Series> series;
+};
+
+// Motions to look at: the design of the published result `of` under its conditions, beside others.
+struct ReplayConfig {
+  std::string id;
+  std::string title;
+  std::string of;
+  std::vector<std::string> beside;  // designs
+  std::string training_case;        // "train/1:1"
+};
+
+// A momentary error that is drawn over the time, of the first case of a replay.
+struct MomentaryConfig {
+  std::string name;
+  std::string replay;
+};
+
+struct ReproductionConfig {
+  std::string title;
+  std::string optimizer;
+  std::uint64_t seed = 1;
+  std::string engine;             // that the runs are trained and judged with
+  std::vector<std::string> runs;  // problems
+  std::vector<ReevaluationConfig> reevaluations;
+  std::string sweep;  // a problem with a sweep of its own
+  std::vector<ResponseFigureConfig> figures;
+  std::vector<ReplayConfig> replays;
+  std::vector<MomentaryConfig> momentary;
+};
+
+// A shipped one by name, or a file. Error{usage} names file, line, field and what is allowed.
+ReproductionConfig load_reproduction_config(const std::string& name_or_path = "thesis");
+
+}  // namespace armwright
