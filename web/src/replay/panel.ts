@@ -107,7 +107,7 @@ export class Panel {
     const ticks = make('div', { class: 'replay-ticks' });
     list_decades(scale).forEach((decade) => ticks.append(make('span', {}, format_number(decade * kMillimetres, 1))));
     const target = make('span', { class: 'replay-swatch' });
-    target.style.background = look.series[2];
+    target.style.background = look.text;
     return make(
       'div',
       { class: 'replay-legend' },

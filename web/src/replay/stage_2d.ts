@@ -56,7 +56,7 @@ export class Stage2d implements Stage {
       this.draw_arm(context, snapshot.ghost_q, kGhost, 5);
     }
     this.draw_arm(context, snapshot.q, look.text, 3);
-    this.draw_dot(context, snapshot.target_m, look.series[2], 6);
+    this.draw_dot(context, snapshot.target_m, look.accent, 6);
   }
 
   set_view(view: ViewChoice): void {

@@ -31,6 +31,8 @@ const kDirections: Record<ViewChoice, [number, number, number]> = {
   front: [1, 0, 0.02],
 };
 
+const kFilling = 0.8; // the ball around the arm and its points is never full
+
 class Arm {
   readonly group = new Group();
   private readonly bodies: Object3D[];
@@ -154,7 +156,7 @@ export class Stage3d implements Stage {
     const narrow = Math.min(half, Math.atan(Math.tan(half) * this.camera.aspect));
     const direction = new Vector3(...kDirections[view]).normalize();
     this.controls.target.copy(center);
-    this.camera.position.copy(center).addScaledVector(direction, radius / Math.sin(narrow));
+    this.camera.position.copy(center).addScaledVector(direction, (kFilling * radius) / Math.sin(narrow));
     this.controls.update();
     this.on_change();
   }

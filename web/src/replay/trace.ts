@@ -1,6 +1,6 @@
 // The path of a tip, coloured by its error. Its numbers go to the graphics card once a test case;
 // as the time goes on only the range to draw changes.
-import { Color, Group, InstancedInterleavedBuffer, InterleavedBufferAttribute } from 'three';
+import { Color, Group, InstancedInterleavedBuffer, InterleavedBufferAttribute, Sphere, Vector3 } from 'three';
 import { Line2 } from 'three/addons/lines/Line2.js';
 import { LineGeometry } from 'three/addons/lines/LineGeometry.js';
 import { LineMaterial } from 'three/addons/lines/LineMaterial.js';
@@ -59,9 +59,14 @@ export class Trace {
   }
 
   private make_line(width: number, opacity: number): Line2 {
-    const material = new LineMaterial({ linewidth: width, vertexColors: true, transparent: opacity < 1, opacity });
+    // The move under way is seen through the arm and its load, which else hide the tip.
+    const depthTest = opacity < 1;
+    const material = new LineMaterial({ linewidth: width, vertexColors: true, transparent: true, opacity, depthTest });
     const line = new Line2(new LineGeometry(), material);
-    line.frustumCulled = false; // its extent is not known to the geometry
+    line.renderOrder = depthTest ? 0 : 1;
+    // A range that begins later seems to go beyond the numbers' end, so its extent is not for three to find.
+    line.frustumCulled = false;
+    line.geometry.boundingSphere = new Sphere(new Vector3(0, 0, 1), 5);
     this.group.add(line);
     return line;
   }
