@@ -229,8 +229,9 @@ CellOutcome parse_cell(const std::string& text, const std::filesystem::path& fil
 std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
                                     const std::filesystem::path& study, StopSignal& stop,
                                     RunObserver& observer) {
-  return run_cell(plan, cell, CellRequest{.folder = study / make_cell_path(plan, cell)}, stop,
-                  observer);
+  const CellRequest where{
+      .folder = study / make_cell_path(plan, cell), .jobs = 1, .command_line = {}};
+  return run_cell(plan, cell, where, stop, observer);
 }
 
 std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
