@@ -131,7 +131,7 @@ class Planner {
       part.where = published.where;
       add(part, {});
       for (const ReevaluationConfig& again : config.reevaluations) {
-        if (again.run == name) {
+        if (again.run == part.run) {
           part.label = again.label;
           part.overrides = again.overrides;
           part.where = again.where;
