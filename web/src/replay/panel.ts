@@ -114,7 +114,8 @@ export class Panel {
       make('div', {}, 'Error along the path of the tip (mm)'),
       bar,
       ticks,
-      make('div', {}, target, 'target; the squares of the ground are 0.5 m wide'),
+      make('div', {}, target, 'target'),
+      make('div', {}, 'squares of the ground: 0.5 m'),
     );
   }
 }

@@ -212,12 +212,12 @@ export class Stage3d implements Stage {
     }
   }
 
-  private set_traces({ track, ghost, scale }: Setting): void {
+  private set_traces({ track, ghost, scale, look }: Setting): void {
     this.clear_traces();
     const { r, g, b } = new Color(kGhost).getRGB({ r: 0, g: 0, b: 0 }, 'srgb');
     this.traces = {
-      main: track === null ? null : new Trace(track.tip_m, (moment) => find_colour(scale, track.errors_m[moment]), 3.5),
-      ghost: ghost === null ? null : new Trace(ghost.tip_m, () => [r, g, b], 2),
+      main: track === null ? null : new Trace(track.tip_m, (moment) => find_colour(scale, track.errors_m[moment]), 3.5, look.background),
+      ghost: ghost === null ? null : new Trace(ghost.tip_m, () => [r, g, b], 2, look.background),
     };
     for (const trace of [this.traces.main, this.traces.ghost]) {
       if (trace !== null) {
