@@ -21,10 +21,10 @@ class CliRerun : public testing::Test {
   void make_study(const std::string& optimizers = "ga,cmaes,nlopt:bobyqa",
                   const std::string& budget = "60") {
     const Outcome outcome = run_program(
-        folder_.path(), {"compare", "--problems", "q1-complex", "--optimizers",
-                         "ga,cmaes,nlopt:bobyqa", "--replicates", "2", "--budget", budget,
-                         "--engine", "articulated", "--set", "sets.test_cases=5", "--set",
-                         "sets.validation_cases=5", "--no-baselines", "--out", "study", "--quiet"});
+        folder_.path(),
+        {"compare", "--problems", "q1-complex", "--optimizers", optimizers, "--replicates", "2",
+         "--budget", budget, "--engine", "articulated", "--set", "sets.test_cases=5", "--set",
+         "sets.validation_cases=5", "--no-baselines", "--out", "study", "--quiet"});
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   }
   Outcome rerun(const std::vector<std::string>& words) {

@@ -102,7 +102,7 @@ def main():
                                      f'r{replicate:02}')
                 os.makedirs(where)
                 cell = draw_cell(rng, problem, optimizer, strength, replicate, checkpoints,
-                                 shape['dimension'], shape['objectives'], plan['budget'])
+                                 len(shape['variables']), len(shape['objectives']), plan['budget'])
                 with open(os.path.join(where, 'cell.json'), 'w') as out:
                     json.dump(cell, out)
 
