@@ -262,7 +262,11 @@ export interface TestErrors {
   quantity: Quantity; // of the errors
   engine: string;
   failure_error: number | null; // above it a case has failed
-  designs: { name: string; errors: (number | null)[]; failures: { case: number; error: number | null; reason: string; command: string }[] }[];
+  designs: {
+    name: string;
+    errors: (number | null)[];
+    failures: { case: number; error: number | null; reason: string; command: string }[];
+  }[];
 }
 
 export interface RunFront {
@@ -276,7 +280,19 @@ export interface ArmEvidence {
   // A row a number of the design; the values are in the order of `designs`.
   parameters: { name: string; unit: string; is_variable: boolean; at_bound: string; values: (number | null)[] }[];
   // Of each design on the test set, beside what is published.
-  results: { design: string; mean_m: number | null; median_m: number | null; p95_m: number | null; worst_m: number | null; failures: number; cases: number; total_torque_n_m: number; published_mean_m: number | null; published_torque_n_m: number | null; where: string }[];
+  results: {
+    design: string;
+    mean_m: number | null;
+    median_m: number | null;
+    p95_m: number | null;
+    worst_m: number | null;
+    failures: number;
+    cases: number;
+    total_torque_n_m: number;
+    published_mean_m: number | null;
+    published_torque_n_m: number | null;
+    where: string;
+  }[];
   response: DistanceResponse;
   signals: Signals;
   sweep: Sweep | null;
@@ -399,7 +415,16 @@ export interface ReproductionData extends PageBase {
     command: string;
   }[];
   // What was optimized anew, as the source gives no design.
-  runs: { name: string; problem: string; cases: number; mean_m: number | null; torque_n_m: number; published_torque_n_m: number | null; folder: string; command: string }[];
+  runs: {
+    name: string;
+    problem: string;
+    cases: number;
+    mean_m: number | null;
+    torque_n_m: number;
+    published_torque_n_m: number | null;
+    folder: string;
+    command: string;
+  }[];
   responses: DistanceResponse[];
   signals: Signals;
   sweep: Sweep;
