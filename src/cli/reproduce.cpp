@@ -214,8 +214,8 @@ void announce(const ReproduceOptions& options, const ReproductionPlan& plan,
                             slow ? fmt::format("about {} ", format_duration(expected_s)) : "",
                             format_count(jobs, "thread")));
   if (folder != nullptr) {
-    write_message(fmt::format("folder {} ({} of {} are there already)", folder->path().string(),
-                              there, format_count(plan.parts.size(), "result")));
+    write_message(fmt::format("folder {} ({} of {} results there already)", folder->path().string(),
+                              there, plan.parts.size()));
   }
 }
 

@@ -22,6 +22,19 @@ using Kind = ReproductionPart::Kind;
 
 constexpr const char* kProgram = "armwright";
 
+// A few lost cases decide a mean: a sentence to put behind others, or nothing.
+std::string describe_few_failures(const std::string& name, const ErrorSummary& summary) {
+  if (summary.failures == 0 || 2 * summary.failures > summary.cases || !summary.median) {
+    return "";
+  }
+  constexpr double kMillimetres = 1e3;
+  return fmt::format(
+      " {} loses its target, by more than {:g} mm, in {} of {} cases, which raises its mean; the "
+      "median is {:.3g} mm.",
+      name, kFailureError_m * kMillimetres, summary.failures, summary.cases,
+      *summary.median * kMillimetres);
+}
+
 class ReproductionPage {
  public:
   explicit ReproductionPage(const std::filesystem::path& folder)
@@ -43,6 +56,10 @@ class ReproductionPage {
     if (there < planned) {
       notes_.push_back(fmt::format("This reproduction is unfinished: {} of {} results are there.",
                                    there, planned));
+    }
+    const auto is_anew = [](const PartResult* one) { return one->part.kind == Kind::anew; };
+    if (!config_.remark.empty() && std::ranges::any_of(results_, is_anew)) {
+      notes_.push_back(config_.remark);
     }
     json responses = make_responses();
     json sweep = make_sweep();
@@ -227,6 +244,7 @@ class ReproductionPage {
     for (const ResponseFigureConfig& figure : config_.figures) {
       json series = json::array();
       const PartResult* first = nullptr;
+      std::string remark = figure.remark;
       for (const auto& [name, of] : figure.series) {
         const auto found = record_.results.find(of);
         if (found == record_.results.end()) {
@@ -235,14 +253,15 @@ class ReproductionPage {
         }
         const PartResult& result = found->second;
         first = first == nullptr ? &result : first;
+        remark += describe_few_failures(name, result.calc_summary());
         series.push_back(make_response_series({name, make_command(result.part)}, result.case_errors,
                                               result.points, result.part.published_error_m));
       }
       if (first != nullptr) {
         const LoadedProblem problem = load_problem(first->part.problem, first->part.overrides);
-        responses.push_back(make_distance_response(
-            require_tracking(problem), {figure.id, figure.title, figure.thesis, figure.remark},
-            std::move(series)));
+        responses.push_back(make_distance_response(require_tracking(problem),
+                                                   {figure.id, figure.title, figure.thesis, remark},
+                                                   std::move(series)));
       }
     }
     if (!missing.empty()) {

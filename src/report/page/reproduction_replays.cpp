@@ -130,13 +130,16 @@ ReproductionReplays make_reproduction_replays(const ReproductionRecord& record,
     const auto cases = choose_cases(tracking, replay, result, options);
     made.replays.push_back(make_replay_set(simulator, tracking, {replay.id, replay.title},
                                            robots.find(problem), designs, cases));
-    for (const MomentaryConfig& momentary : config.momentary) {
-      if (momentary.replay == replay.id) {
-        made.momentary.push_back({{"name", momentary.name},
-                                  {"replay", replay.id},
-                                  {"design", designs.front().id},
-                                  {"case", made.replays.back()["cases"][0]["id"]}});
-      }
+  }
+  for (const MomentaryConfig& momentary : config.momentary) {
+    const auto replay = std::ranges::find(made.replays, momentary.replay, [](const json& one) {
+      return one["id"].get<std::string>();
+    });
+    if (replay != made.replays.end()) {
+      made.momentary.push_back({{"name", momentary.name},
+                                {"replay", momentary.replay},
+                                {"design", (*replay)["designs"][0]["id"]},
+                                {"case", (*replay)["cases"][0]["id"]}});
     }
   }
   if (!missing.empty()) {

@@ -42,6 +42,7 @@ ReproductionConfig load_reproduction_config(const std::string& name_or_path) {
   const ConfigTable table = ConfigTable::load(resolve_config("reproductions", name_or_path));
   ReproductionConfig config;
   config.title = table.get_string("title");
+  config.remark = table.get_string("remark", "");
   config.optimizer = table.get_string("optimizer");
   config.seed = static_cast<std::uint64_t>(table.get_integer("seed", 0, kLargestSeed));
   config.engine = table.get_string("engine");

@@ -62,6 +62,7 @@ struct MomentaryConfig {
 
 struct ReproductionConfig {
   std::string title;
+  std::string remark;  // whole sentences on what was optimized anew
   std::string optimizer;
   std::uint64_t seed = 1;
   std::string engine;  // that the runs are trained and judged with

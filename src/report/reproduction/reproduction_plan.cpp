@@ -134,6 +134,7 @@ class Planner {
         if (again.run == part.run) {
           part.label = again.label;
           part.overrides = again.overrides;
+          part.published_torque_n_m.reset();  // the same design: said once
           part.where = again.where;
           add(part, {});
         }

@@ -102,10 +102,13 @@ json record_to_json(const ReproductionRecord& record) {
   for (const auto& [label, result] : record.results) {
     parts[label] = part_to_json(result);
   }
-  return {
-      {"format", kFormat},         {"cases", record.cases ? json(*record.cases) : json(nullptr)},
-      {"set", record.overrides},   {"build", record.build},
-      {"planned", record.planned}, {"parts", parts}};
+  return {{"format", kFormat},
+          {"config", record.config},
+          {"cases", record.cases ? json(*record.cases) : json(nullptr)},
+          {"set", record.overrides},
+          {"build", record.build},
+          {"planned", record.planned},
+          {"parts", parts}};
 }
 
 ReproductionRecord record_from_json(const json& j) {
