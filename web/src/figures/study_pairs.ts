@@ -150,6 +150,7 @@ function draw_pairs(look: Look, scope: Scope, problem: StudyProblem): EChartsOpt
     ...make_axis(look, direction, '', { categories: names, inverse: direction === 'y' }),
     name: undefined,
     axisTick: { show: false },
+    axisLine: { show: false },
     axisLabel: {
       color: look.text,
       fontFamily: look.font,
