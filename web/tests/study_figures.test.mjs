@@ -106,7 +106,9 @@ test('forty optimizers with fifteen replicates draw, the best eight at first', (
   const option = find(tabs, 'convergence').draw(study.kLight, {});
   assert.equal(option.legend.data.length, 40);
   assert.equal(Object.values(option.legend.selected).filter(Boolean).length, 8);
-  const names = find(tabs, 'ranking').table.rows.slice(0, 8).map((row) => row[0]);
+  const names = find(tabs, 'ranking')
+    .table.rows.slice(0, 8)
+    .map((row) => row[0]);
   assert.deepEqual(
     names.filter((name) => !option.legend.selected[name]),
     [],

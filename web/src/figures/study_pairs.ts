@@ -7,9 +7,12 @@ import type { DataTable, Figure } from '../model';
 import { describe_size, end_title, get_order, get_problem, make_problem_choices, type Scope } from './study_parts';
 import { estimate_width } from '../charts/scales';
 
-// "0.004", "<1e-6"
+// "0.25", "0.044", "4e-5", "<1e-6": five characters at most.
 export function format_p(p: number): string {
-  return p < 1e-6 ? '<1e-6' : p >= 0.995 ? '1' : p < 1e-3 ? p.toExponential(0) : p >= 0.1 ? p.toFixed(2) : String(Number(p.toPrecision(2)));
+  if (p < 1e-6) {
+    return '<1e-6';
+  }
+  return p >= 0.995 ? '1' : p >= 0.1 ? p.toFixed(2) : p >= 0.01 ? p.toFixed(3) : p.toExponential(0);
 }
 
 interface Rgb {
@@ -105,7 +108,8 @@ function draw_pairs(look: Look, scope: Scope, problem: StudyProblem): EChartsOpt
       const square = squares[item.dataIndex];
       const [x, y] = api.coord([api.value(0), api.value(1)]);
       const [width, height] = api.size([1, 1]).map(Math.abs);
-      const size = Math.min(11, width / 3.1, height / 1.6);
+      // As much text as fits; of small squares the colours and the marks have to do.
+      const size = width < 28 ? 0 : Math.min(11, width / 3.1, height / 1.6);
       const children: Part[] = [
         {
           type: 'rect',
@@ -146,6 +150,7 @@ function draw_pairs(look: Look, scope: Scope, problem: StudyProblem): EChartsOpt
     ...make_axis(look, direction, '', { categories: names, inverse: direction === 'y' }),
     name: undefined,
     axisTick: { show: false },
+    axisLine: { show: false },
     axisLabel: {
       color: look.text,
       fontFamily: look.font,
