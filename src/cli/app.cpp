@@ -25,6 +25,7 @@ constexpr const char* kFooter = R"(Examples:
   armwright list optimizers ga                     # one optimizer and its options
   armwright optimize q1-complex --seed 1           # tune the arm as the thesis did; resumes if interrupted
   armwright compare --preset smoke                 # which optimizer is better, and how sure is that?
+  armwright rerun results/q1 q1-complex/ga/r03     # one run of a comparison anew: is it the same to the last bit?
   armwright evaluate table-a10 --problem q2-e6     # a published design on 500 test cases
   armwright verify table-a10                       # does it hold under other engines, time steps and masses?
   armwright reproduce                              # the thesis's published results beside ours
@@ -186,12 +187,16 @@ int run_app(int argc, char** argv) {
     add_list(app, session);
     add_optimize(app, session);
     add_compare(app, session);
+    add_rerun(app, session);
     add_evaluate(app, session);
     add_sweep(app, session);
     add_verify(app, session);
     add_reproduce(app, session);
     add_testset(app, session);
     add_show(app, session);
+    add_report(app, session);
+    add_plot(app, session);
+    add_watch(app, session);
     add_export(app, session);
     add_import(app, session);
     add_check_plugin(app, session);

@@ -209,7 +209,7 @@ int run_evaluate(const EvaluateOptions& options, Session& session) {
     write_message(fmt::format("{}; nothing was written", describe_stop(session.stop.reason())));
     return get_stop_code(session.stop.reason());
   }
-  report_failures(*evaluation, "");
+  report_failures(list_failures(evaluation->results), "");
   const EvaluatedDesign evaluated{std::move(design), std::move(problem), std::move(cases),
                                   std::move(*evaluation)};
   if (!options.csv.empty()) {

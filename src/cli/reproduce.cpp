@@ -16,8 +16,7 @@
 #include "cli/signals.hpp"
 #include "cli/table.hpp"
 #include "cli/terminal.hpp"
-#include "problems/config_files.hpp"
-#include "problems/design_file.hpp"
+#include "report/reproduction/reproduction.hpp"
 
 namespace armwright {
 namespace {
@@ -28,107 +27,30 @@ constexpr const char* kExamples = R"(Examples:
   armwright reproduce                              # all published results, on 500 test cases each
   armwright reproduce --cases 20 --table A.10      # a quick look at one design
   armwright reproduce --csv - > reproduced.csv
+  armwright reproduce --out                        # all that the thesis's figures need, kept in results/reproduction
 
 Every published design is evaluated on the problem it was made for, under the conditions its source states. The
-test cases are ours: the thesis drew its own. The ratio is our mean error over the published one.)";
+test cases are ours: the thesis drew its own. The ratio is our mean error over the published one.
+
+With --out, what the thesis optimized without printing the designs (the initial experiment, E1 to E5) is optimized
+anew as well, by its genetic algorithm on the engine articulated, and its E6 design is swept over the speed. All is
+kept in the folder: interrupted by Ctrl-C, a time limit or a crash, the same command goes on where it was.)";
+
+constexpr const char* kDefaultFolder = "results/reproduction";
 
 struct ReproduceOptions {
   std::string cases;
   std::vector<std::string> tables;
   EngineFlags engines;
   JobsOption jobs;
+  TimeLimitOption time_limit;
+  FolderOptions folder;
   std::string csv;
   bool json = false;
   bool quiet = false;
 };
 
-struct Entry {
-  std::string design_name;
-  ArmDesign design;
-  PublishedResult published;
-  LoadedProblem problem;
-  ChosenCases cases;
-};
-
-struct Reproduced {
-  std::string design_name;
-  PublishedResult published;
-  DesignEvaluation evaluation;
-
-  std::optional<double> calc_ratio() const {
-    const auto mean = evaluation.summary.mean;
-    return published.error_m && mean ? std::optional(*mean / *published.error_m) : std::nullopt;
-  }
-};
-
-// "table-a10" -> {"table-a", 10}: so that A.5 comes before A.10.
-std::pair<std::string, long long> get_natural_key(const std::string& name) {
-  const std::size_t digits = name.find_last_not_of("0123456789") + 1;
-  return {name.substr(0, digits), parse_integer(name.substr(digits)).value_or(-1)};
-}
-
-// What people call the table of a shipped design: "table-a10" is A.10.
-std::string get_table_name(const std::string& design) {
-  constexpr std::string_view kPrefix = "table-a";
-  return design.starts_with(kPrefix) ? "A." + design.substr(kPrefix.size()) : design;
-}
-
-std::vector<std::string> choose_designs(const std::vector<std::string>& tables) {
-  std::vector<std::string> designs;
-  for (const std::string& name : list_configs("designs")) {
-    if (!load_design(name).published.empty()) {
-      designs.push_back(name);
-    }
-  }
-  std::sort(designs.begin(), designs.end(), [](const std::string& a, const std::string& b) {
-    return get_natural_key(a) < get_natural_key(b);
-  });
-  if (tables.empty()) {
-    return designs;
-  }
-  std::vector<std::string> valid;
-  for (const std::string& design : designs) {
-    valid.push_back(get_table_name(design));
-  }
-  std::vector<bool> wanted(designs.size());
-  for (const std::string& table : tables) {
-    const auto named = std::find(valid.begin(), valid.end(), table);
-    const auto found = std::find(designs.begin(), designs.end(), table);
-    if (named == valid.end() && found == designs.end()) {
-      throw Error(ErrorKind::usage, describe_unknown("table", table, valid));
-    }
-    wanted[static_cast<std::size_t>(named != valid.end() ? named - valid.begin()
-                                                         : found - designs.begin())] = true;
-  }
-  std::vector<std::string> chosen;
-  for (std::size_t i = 0; i < designs.size(); ++i) {
-    if (wanted[i]) {
-      chosen.push_back(designs[i]);
-    }
-  }
-  return chosen;
-}
-
-std::vector<Entry> load_entries(const ReproduceOptions& options) {
-  std::vector<Entry> entries;
-  const std::vector<std::string> flags = options.engines.get();
-  CaseOptions cases;
-  cases.cases = options.cases;
-  for (const std::string& name : choose_designs(options.tables)) {
-    const DesignFile file = load_design(name);
-    for (const PublishedResult& published : file.published) {
-      std::vector<std::string> overrides = published.overrides;
-      std::ranges::copy(flags, std::back_inserter(overrides));
-      LoadedProblem problem = load_problem(published.problem, overrides);
-      require_tracking(problem).check_design(file.design);
-      ChosenCases chosen = choose_cases(problem, cases);
-      entries.push_back({name, file.design, published, std::move(problem), std::move(chosen)});
-    }
-  }
-  return entries;
-}
-
-std::string describe_conditions(const PublishedResult& published) {
+std::string describe_conditions(const ReproductionPart& published) {
   std::string text = published.problem;
   for (const std::string& change : published.overrides) {
     text += " " + change;
@@ -136,7 +58,7 @@ std::string describe_conditions(const PublishedResult& published) {
   return text;
 }
 
-std::string format_text(const std::vector<Reproduced>& rows, const Style& style) {
+std::string format_text(const std::vector<PartResult>& rows, const Style& style) {
   Table table({{"published as", false},
                {"problem", false},
                {"published mm"},
@@ -151,15 +73,15 @@ std::string format_text(const std::vector<Reproduced>& rows, const Style& style)
   std::size_t compared = 0;
   double least = 0;
   double most = 0;
-  for (const Reproduced& row : rows) {
-    const ErrorSummary& summary = row.evaluation.summary;
+  for (const PartResult& row : rows) {
+    const ErrorSummary summary = row.calc_summary();
     const auto ratio = row.calc_ratio();
-    table.add_row({sanitize(row.published.label), describe_conditions(row.published),
-                   format_mm(row.published.error_m), format_mm(summary.mean),
+    table.add_row({sanitize(row.part.label), describe_conditions(row.part),
+                   format_mm(row.part.published_error_m), format_mm(summary.mean),
                    ratio ? format_significant(*ratio, 3) : "-", format_mm(summary.median),
                    format_mm(summary.worst),
                    fmt::format("{} of {}", summary.failures, summary.cases),
-                   format_significant(row.evaluation.total_torque_n_m)});
+                   format_significant(row.total_torque_n_m)});
     cases += summary.cases;
     failures += summary.failures;
     if (ratio) {
@@ -179,16 +101,16 @@ std::string format_text(const std::vector<Reproduced>& rows, const Style& style)
   return text + "\n";
 }
 
-std::string format_json(const std::vector<Reproduced>& rows) {
+std::string format_json(const std::vector<PartResult>& rows) {
   json list = json::array();
-  for (const Reproduced& row : rows) {
-    const ErrorSummary& summary = row.evaluation.summary;
-    list.push_back({{"label", row.published.label},
-                    {"design", row.design_name},
-                    {"problem", row.published.problem},
-                    {"set", row.published.overrides},
-                    {"where", row.published.where},
-                    {"published_error_m", to_json_value(row.published.error_m)},
+  for (const PartResult& row : rows) {
+    const ErrorSummary summary = row.calc_summary();
+    list.push_back({{"label", row.part.label},
+                    {"design", row.part.design},
+                    {"problem", row.part.problem},
+                    {"set", row.part.overrides},
+                    {"where", row.part.where},
+                    {"published_error_m", to_json_value(row.part.published_error_m)},
                     {"cases", summary.cases},
                     {"mean_error_m", to_json_value(summary.mean)},
                     {"ratio", to_json_value(row.calc_ratio())},
@@ -196,74 +118,172 @@ std::string format_json(const std::vector<Reproduced>& rows) {
                     {"percentile_95_error_m", to_json_value(summary.percentile_95)},
                     {"worst_error_m", to_json_value(summary.worst)},
                     {"failures", summary.failures},
-                    {"total_torque_n_m", row.evaluation.total_torque_n_m}});
+                    {"total_torque_n_m", row.total_torque_n_m}});
   }
   return json{{"results", list}}.dump(1) + "\n";
 }
 
-std::string format_csv(const std::vector<Reproduced>& rows) {
+std::string format_csv(const std::vector<PartResult>& rows) {
   std::string text =
       "label,design,problem,set,published_error_m,cases,mean_error_m,ratio,median_error_m,"
       "percentile_95_error_m,worst_error_m,failures,total_torque_n_m\n";
   const auto number = [](std::optional<double> value) { return value ? format_exact(*value) : ""; };
-  for (const Reproduced& row : rows) {
-    const ErrorSummary& summary = row.evaluation.summary;
+  for (const PartResult& row : rows) {
+    const ErrorSummary summary = row.calc_summary();
     text +=
-        fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", quote_csv(row.published.label),
-                    quote_csv(row.design_name), quote_csv(row.published.problem),
-                    quote_csv(join(row.published.overrides, " ")), number(row.published.error_m),
+        fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", quote_csv(row.part.label),
+                    quote_csv(row.part.design), quote_csv(row.part.problem),
+                    quote_csv(join(row.part.overrides, " ")), number(row.part.published_error_m),
                     summary.cases, number(summary.mean), number(row.calc_ratio()),
                     number(summary.median), number(summary.percentile_95), number(summary.worst),
-                    summary.failures, format_exact(row.evaluation.total_torque_n_m));
+                    summary.failures, format_exact(row.total_torque_n_m));
   }
   return text;
 }
 
-int run_reproduce(const ReproduceOptions& options, Session& session) {
-  constexpr double kCasesPerJobAndSecond = 70;  // ODE on a core of 2020; only for the notice below
-  const unsigned jobs = options.jobs.get();
-  std::vector<Entry> entries = load_entries(options);
-  BarShare share;
-  for (const Entry& entry : entries) {
-    share.total += entry.cases.count;
+// The words that go on with it: as typed, but for --new, which would begin another.
+std::vector<std::string> make_command(const ReproduceOptions& options, const Session& session,
+                                      const ReproductionFolder& folder) {
+  if (!options.folder.another) {
+    return session.command_line;
   }
-  if (!options.quiet) {
-    const bool slow = options.engines.engine.empty() || options.engines.engine == "ode";
-    const double expected_s = static_cast<double>(share.total) / (kCasesPerJobAndSecond * jobs);
-    write_message(fmt::format("{} on {} in all; {}on {}",
-                              format_count(entries.size(), "published result"),
-                              format_count(share.total, "case"),
-                              slow ? fmt::format("about {} ", format_duration(expected_s)) : "",
-                              format_count(jobs, "thread")));
-  }
-  catch_signals(session.stop);
-  ProgressBar bar(options.quiet, {"error", "m"});
-  std::vector<Reproduced> rows;
-  for (Entry& entry : entries) {
-    auto evaluation = evaluate_with_progress(*entry.problem.tracking, entry.design, entry.cases,
-                                             jobs, session.stop, bar, share);
-    entry.problem = {};  // its targets are of no use to the next
-    if (!evaluation) {
-      bar.clear();
-      write_message(fmt::format("{}; nothing was written", describe_stop(session.stop.reason())));
-      return get_stop_code(session.stop.reason());
+  std::vector<std::string> words;
+  for (const std::string& word : session.command_line) {
+    if (word != "--new") {
+      words.push_back(word);
     }
-    share.done_before += entry.cases.count;
-    rows.push_back({entry.design_name, entry.published, std::move(*evaluation)});
   }
-  bar.clear();
-  bool failed = false;
-  for (const Reproduced& row : rows) {
-    report_failures(row.evaluation, row.published.label + ", ");
-    failed = failed || row.evaluation.summary.without_number > 0;
+  words.insert(words.end(), {"--out", folder.path().string()});
+  return words;
+}
+
+// What was optimized anew, beside what is published of it.
+std::string format_runs(const std::vector<PartResult>& results, const Style& style) {
+  Table table({{"optimized anew", false},
+               {"mean mm"},
+               {"median mm"},
+               {"failures"},
+               {"torque N m"},
+               {"published N m"}});
+  bool any = false;
+  for (const PartResult& row : results) {
+    if (row.part.kind == ReproductionPart::Kind::anew) {
+      const ErrorSummary summary = row.calc_summary();
+      const auto& torque = row.part.published_torque_n_m;
+      table.add_row({sanitize(row.part.label), format_mm(summary.mean), format_mm(summary.median),
+                     fmt::format("{} of {}", summary.failures, summary.cases),
+                     format_significant(row.total_torque_n_m),
+                     torque ? format_significant(*torque) : "-"});
+      any = true;
+    }
   }
+  return any ? "\n" + table.format(style) : "";
+}
+
+// ODE and the engine of the runs on a core of 2020; only for the notice below.
+constexpr double kCasesPerJobAndSecond = 70;
+constexpr double kRunCasesPerJobAndSecond = 4000;
+
+void announce(const ReproduceOptions& options, const ReproductionPlan& plan,
+              const ReproductionFolder* folder, unsigned jobs) {
+  std::uint64_t cases = 0;
+  std::size_t there = 0;
+  double expected_s = 0;
+  for (const PlannedPart& part : plan.parts) {
+    const bool is_there = folder != nullptr && folder->find(part.part.label) != nullptr;
+    there += is_there ? 1 : 0;
+    cases += is_there ? 0 : part.cases;
+  }
+  expected_s += static_cast<double>(cases) / (kCasesPerJobAndSecond * jobs);
+  std::size_t runs = 0;
+  for (const RunPlan& run : plan.runs) {
+    if (!std::filesystem::exists(folder->get_run_folder(run.problem.name) / "result.json")) {
+      expected_s += static_cast<double>(run.budget) / (kRunCasesPerJobAndSecond * jobs);
+      ++runs;
+    }
+  }
+  const bool slow = options.engines.engine.empty() || options.engines.engine == "ode";
+  std::string text = fmt::format(
+      "{} on {} in all",
+      format_count(plan.parts.size() - there, folder == nullptr ? "published result" : "result"),
+      format_count(cases, "case"));
+  if (runs > 0) {
+    text += fmt::format(" and {}", format_count(runs, "run"));
+  }
+  write_message(fmt::format("{}; {}on {}", text,
+                            slow ? fmt::format("about {} ", format_duration(expected_s)) : "",
+                            format_count(jobs, "thread")));
+  if (folder != nullptr) {
+    write_message(fmt::format("folder {} ({} of {} results there already)", folder->path().string(),
+                              there, plan.parts.size()));
+  }
+}
+
+void show(const ReproduceOptions& options, const std::vector<PartResult>& results,
+          const Session& session) {
+  std::vector<PartResult> rows;
+  std::ranges::copy_if(results, std::back_inserter(rows), [](const PartResult& result) {
+    return result.part.kind == ReproductionPart::Kind::published;
+  });
   if (!options.csv.empty()) {
     write_output(options.csv, format_csv(rows));
   }
   if (options.json) {
     write_stdout(format_json(rows));
   } else if (options.csv != "-") {
-    write_stdout(format_text(rows, make_style(Stream::out, session.color)));
+    const Style style = make_style(Stream::out, session.color);
+    write_stdout(format_text(rows, style) + format_runs(results, style));
+  }
+}
+
+int run_reproduce(const ReproduceOptions& options, Session& session) {
+  constexpr std::int64_t kMostCases = 1'000'000;
+  const bool is_kept = !options.folder.out.empty() || options.folder.another;
+  ReproductionRequest request;
+  request.tables = options.tables;
+  request.overrides = options.engines.get();
+  request.whole = is_kept;
+  if (!options.cases.empty()) {
+    request.cases =
+        static_cast<std::uint64_t>(parse_count("--cases", options.cases, 1, kMostCases));
+  }
+  ReproductionWork work;
+  work.program = session.command_line.front();
+  work.jobs = options.jobs.get();
+  options.time_limit.apply(session.stop);
+  ReproductionPlan plan = plan_reproduction(request);
+  std::optional<ReproductionFolder> folder;
+  if (is_kept) {
+    folder.emplace(options.folder.choose("reproduction"), plan);
+    work.folder = &*folder;
+  }
+  if (!options.quiet) {
+    announce(options, plan, work.folder, work.jobs);
+  }
+  catch_signals(session.stop);
+  ProgressBar bar(options.quiet, {"error", "m"});
+  if (folder) {
+    for (const std::string& warning : folder->warnings()) {
+      bar.on_message("warning: " + warning + "; what is there already is not computed again");
+    }
+  }
+  const auto results = execute_reproduction(plan, work, session.stop, bar);
+  bar.clear();
+  if (!results) {
+    const char* stop = describe_stop(session.stop.reason());
+    write_message(is_kept ? fmt::format("{}; nothing is lost. To go on:\n{}", stop,
+                                        quote_command(make_command(options, session, *folder)))
+                          : fmt::format("{}; nothing was written", stop));
+    return get_stop_code(session.stop.reason());
+  }
+  bool failed = false;
+  for (const PartResult& result : *results) {
+    report_failures(result.failures, result.part.label + ", ");
+    failed = failed || !result.failures.empty();
+  }
+  show(options, *results, session);
+  if (folder && !options.quiet) {
+    write_message(fmt::format("kept in {}", folder->path().string()));
   }
   return failed ? exit_code::kFailed : exit_code::kDone;
 }
@@ -284,6 +304,10 @@ void add_reproduce(CLI::App& app, Session& session) {
       ->allow_extra_args(false);
   options->engines.add_to(*command, false);
   options->jobs.add_to(*command);
+  options->time_limit.add_to(*command);
+  options->folder.add_to(*command, "reproduction",
+                         fmt::format("nothing is kept;\n--out alone: {}", kDefaultFolder));
+  command->get_option("--out")->expected(0, 1)->default_str(kDefaultFolder);
   auto* as_json =
       command->add_flag("--json", options->json, "Print the results as JSON")->group("Output");
   command->add_option("--csv", options->csv, "Write the results as CSV; - is standard output")

@@ -38,12 +38,16 @@ struct Session {
 void add_list(CLI::App& app, Session& session);
 void add_optimize(CLI::App& app, Session& session);
 void add_compare(CLI::App& app, Session& session);
+void add_rerun(CLI::App& app, Session& session);
 void add_evaluate(CLI::App& app, Session& session);
 void add_sweep(CLI::App& app, Session& session);
 void add_verify(CLI::App& app, Session& session);
 void add_reproduce(CLI::App& app, Session& session);
 void add_testset(CLI::App& app, Session& session);
 void add_show(CLI::App& app, Session& session);
+void add_report(CLI::App& app, Session& session);
+void add_plot(CLI::App& app, Session& session);
+void add_watch(CLI::App& app, Session& session);
 void add_export(CLI::App& app, Session& session);
 void add_import(CLI::App& app, Session& session);
 void add_check_plugin(CLI::App& app, Session& session);

@@ -213,7 +213,8 @@ int run_sweep(const SweepOptions& options, Session& session) {
   bar.clear();
   bool failed = false;
   for (const SweepRow& row : rows) {
-    report_failures(row.evaluation, fmt::format("{}={}, ", sweep.parameter, row.value));
+    report_failures(list_failures(row.evaluation.results),
+                    fmt::format("{}={}, ", sweep.parameter, row.value));
     failed = failed || row.evaluation.summary.without_number > 0;
   }
   if (!options.csv.empty()) {

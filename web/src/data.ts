@@ -262,7 +262,11 @@ export interface TestErrors {
   quantity: Quantity; // of the errors
   engine: string;
   failure_error: number | null; // above it a case has failed
-  designs: { name: string; errors: (number | null)[]; failures: { case: number; error: number | null; reason: string; command: string }[] }[];
+  designs: {
+    name: string;
+    errors: (number | null)[];
+    failures: { case: number; error: number | null; reason: string; command: string }[];
+  }[];
 }
 
 export interface RunFront {
@@ -276,7 +280,19 @@ export interface ArmEvidence {
   // A row a number of the design; the values are in the order of `designs`.
   parameters: { name: string; unit: string; is_variable: boolean; at_bound: string; values: (number | null)[] }[];
   // Of each design on the test set, beside what is published.
-  results: { design: string; mean_m: number | null; median_m: number | null; p95_m: number | null; worst_m: number | null; failures: number; cases: number; total_torque_n_m: number; published_mean_m: number | null; published_torque_n_m: number | null; where: string }[];
+  results: {
+    design: string;
+    mean_m: number | null;
+    median_m: number | null;
+    p95_m: number | null;
+    worst_m: number | null;
+    failures: number;
+    cases: number;
+    total_torque_n_m: number;
+    published_mean_m: number | null;
+    published_torque_n_m: number | null;
+    where: string;
+  }[];
   response: DistanceResponse;
   signals: Signals;
   sweep: Sweep | null;
@@ -299,10 +315,10 @@ export interface StudyCell {
   value: number | null; // null: infinite
   cases: number;
   evaluations: number;
-  seconds: number | null; // CPU or wall time where it was recorded
+  seconds: number | null; // CPU or wall time where it was recorded: so far no run does
   failure: string; // of the optimizer
   failures: number; // test cases that failed
-  x: number[]; // the winner; empty if there is none
+  x: number[]; // the winner, 9 significant digits; empty if there is none
   folder: string;
   command: string; // armwright rerun STUDY CELL
 }
@@ -318,13 +334,19 @@ export interface StudyOptimizerResult {
   q3: number | null;
   max: number | null;
   median_interval: [number | null, number | null];
-  mean_rank: number | null;
+  mean_rank: number | null; // null while cells of the problem are missing
   anytime_area: number | null;
   cases: number | null; // median
   running_times: { target: number; reached: number; expected: number | null; interval: [number | null, number | null] }[];
   curve: { q1: (number | null)[]; median: (number | null)[]; q3: (number | null)[] }; // at the checkpoints
   ecdf: number[]; // likewise
   final_check: { engine: string; value: number | null; failures: number; cases: number; replicate: number } | null;
+}
+
+// Iman and Davenport's F; null if it is infinite, as all rank alike: p is chi-squared's then.
+export interface Friedman {
+  statistic: number | null;
+  p: number;
 }
 
 export interface StudyPair {
@@ -350,7 +372,7 @@ export interface StudyProblem {
   targets: number[];
   variables: { name: string; unit: string; lower: number; upper: number; start: number; logarithmic: boolean }[];
   results: StudyOptimizerResult[]; // one an optimizer
-  friedman: { statistic: number; p: number } | null;
+  friedman: Friedman | null;
   pairs: StudyPair[];
   order: number[]; // best first
   missing: number; // cells that have not ended
@@ -360,16 +382,18 @@ export interface StudyProblem {
 export interface StudyFront {
   objectives: Quantity[];
   reference_point: number[];
-  // One an optimizer: the points of all replicates, and the surface that half of the replicates attain.
+  // One an optimizer: the points that none of their own replicate dominates (at most 200 of each), and
+  // what shares of the replicates attain (of two objectives; 0.25, 0.5 and 0.75). 9 significant digits.
   optimizers: { points: { values: number[]; replicate: number }[]; attainment: { share: number; points: number[][] }[] }[];
 }
 
 export interface StudyOverall {
   mean_ranks: number[]; // one an optimizer
-  rank_intervals: [number, number][] | null;
-  friedman: { statistic: number; p: number } | null;
+  rank_intervals: [number, number][] | null; // 95 %, problems resampled; null of fewer than 6 problems
+  friedman: Friedman | null;
   pairs: StudyPair[];
-  // Sets of optimizers, by index, none of which is told apart from another of the set.
+  // The largest sets of optimizers, by index, none of which is told apart from another of the set; one
+  // may be in several, and a set need not be neighbours by rank. Empty of one problem, where nothing is tested.
   cliques: number[][];
   kappas: number[];
   data_profiles: { tolerance: number; shares: number[][] }[];
@@ -399,7 +423,16 @@ export interface ReproductionData extends PageBase {
     command: string;
   }[];
   // What was optimized anew, as the source gives no design.
-  runs: { name: string; problem: string; cases: number; mean_m: number | null; torque_n_m: number; published_torque_n_m: number | null; folder: string; command: string }[];
+  runs: {
+    name: string;
+    problem: string;
+    cases: number;
+    mean_m: number | null;
+    torque_n_m: number;
+    published_torque_n_m: number | null;
+    folder: string;
+    command: string;
+  }[];
   responses: DistanceResponse[];
   signals: Signals;
   sweep: Sweep;

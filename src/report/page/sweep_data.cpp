@@ -1,30 +1,11 @@
 #include "report/page/sweep_data.hpp"
 
-#include <cmath>
-
 #include "report/page/distance_response.hpp"
 #include "report/page/page_json.hpp"
 
 namespace armwright {
-namespace {
 
 using nlohmann::json;
-
-// Of the mean of the errors that are numbers.
-double calc_standard_error(std::span<const double> errors, const std::optional<double>& mean) {
-  double count = 0;
-  double squares = 0;
-  for (const double error : errors) {
-    if (!std::isnan(error)) {
-      squares += (error - *mean) * (error - *mean);
-      ++count;
-    }
-  }
-  return count > 1 ? std::sqrt(squares / (count - 1) / count)
-                   : std::numeric_limits<double>::quiet_NaN();
-}
-
-}  // namespace
 
 json make_speed_sweep(PageSimulator& simulator, const TrackingProblem& problem,
                       const SweepRequest& request, std::span<const NamedDesign> designs) {
@@ -46,7 +27,7 @@ json make_speed_sweep(PageSimulator& simulator, const TrackingProblem& problem,
       const ErrorSummary summary = summarize_cases(results);
       series[i]["mean_m"].push_back(finite_or_null(summary.mean));
       series[i]["standard_error_m"].push_back(
-          finite_or_null(calc_standard_error(get_case_errors(results), summary.mean)));
+          finite_or_null(calc_standard_error(get_case_errors(results))));
       series[i]["median_m"].push_back(finite_or_null(summary.median));
       series[i]["failures"].push_back(summary.failures);
     }

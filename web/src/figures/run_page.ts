@@ -1,6 +1,81 @@
+// The page of one run.
 import type { RunData } from '../data';
-import type { Tab } from '../model';
+import type { Figure, Item, Tab } from '../model';
+import { make_design_table, make_results_table } from './design_table';
+import { make_response_figure } from './distance_response';
+import { make_joint_figures, make_saturation_table } from './joints';
+import { make_momentary_figure } from './momentary';
+import { make_front_figure } from './run_front';
+import { make_reduction_figure, make_signal_figures } from './signals';
+import { make_sweep_figure } from './sweep';
+import { make_errors_figure, make_failures_table } from './test_errors';
+import { has_training, make_fitness_figure } from './training';
+import { make_case_figure } from './trajectory';
+import { make_variables_figure } from './variables';
+
+function is_there<T>(item: T | null): item is T {
+  return item !== null;
+}
+
+// A tab without anything in it is left out.
+export function keep_filled(tabs: { id: string; title: string; items: (Item | null)[] }[]): Tab[] {
+  return tabs
+    .map((tab) => ({ id: tab.id, title: tab.title, items: tab.items.filter(is_there) }))
+    .filter((tab) => tab.items.length > 0);
+}
+
+// The same figure for the overview, under a name of its own.
+function make_half(figure: Figure, id: string): Figure {
+  return { ...figure, id, width: 'half', height: 360 };
+}
 
 export function make_run_tabs(data: RunData): Tab[] {
-  return [{ id: 'overview', title: 'Overview', items: [{ kind: 'facts', id: 'facts', title: 'About', facts: data.facts }] }];
+  const { arm, test } = data;
+  const set = data.replays[0]; // the figures in time share their cursor with this one
+  const robot = set ? data.robots[set.robot] : undefined;
+  const fitness = has_training(data) ? make_fitness_figure(data) : null;
+  const has_response = arm !== null && arm.response.series.length > 0;
+  const response = has_response ? make_response_figure(arm.response, 'distance-response') : null;
+  const errors = test !== null && test.designs.length > 0 ? make_errors_figure(test) : null;
+  return keep_filled([
+    {
+      id: 'overview',
+      title: 'Overview',
+      items: [
+        data.facts.length > 0 ? { kind: 'facts', id: 'facts', title: 'About', facts: data.facts } : null,
+        arm === null ? null : make_results_table(data, arm),
+        fitness === null ? null : make_half(fitness, 'overview-fitness'),
+        response === null ? null : make_half(response, 'overview-response'),
+      ],
+    },
+    {
+      id: 'training',
+      title: 'Training',
+      items: [fitness, make_variables_figure(data), data.front === null ? null : make_front_figure(data.front, data.variables)],
+    },
+    {
+      id: 'response',
+      title: 'Response',
+      items: [
+        response,
+        arm !== null && arm.sweep !== null && arm.sweep.series.length > 0 ? make_sweep_figure(arm.sweep) : null,
+        errors,
+        set ? make_case_figure(set) : null,
+        ...(arm === null ? [] : make_signal_figures(arm.signals)),
+        arm === null || arm.signals.reduction.distance_m.length === 0 ? null : make_reduction_figure(arm.signals),
+        test === null ? null : make_failures_table(test),
+      ],
+    },
+    {
+      id: 'time',
+      title: 'In time',
+      items: set ? [make_momentary_figure(set), ...make_joint_figures(set, robot), make_saturation_table(set, robot)] : [],
+    },
+    { id: 'design', title: 'Design', items: [arm === null ? null : make_design_table(arm)] },
+    {
+      id: 'replay',
+      title: 'Replay',
+      items: data.replays.length > 0 ? [{ kind: 'replay', id: 'replay', title: 'Replay', sets: data.replays }] : [],
+    },
+  ]);
 }

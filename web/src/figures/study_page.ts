@@ -1,6 +1,107 @@
+// The page of a comparison: the verdict first, then what it rests on.
+import { shorten_all } from '../charts/names';
+import { make_slugs } from '../charts/slugs';
 import type { StudyData } from '../data';
-import type { Tab } from '../model';
+import type { Item, Tab, TextItem } from '../model';
+import { make_cost_quality } from './study_cost';
+import { make_parallel } from './study_designs';
+import { make_front } from './study_front';
+import { make_pairs } from './study_pairs';
+import { make_scope, type Scope } from './study_parts';
+import { make_convergence, make_profiles, make_runtime_ecdf } from './study_progress';
+import { make_overall_ranks, make_problem_ranks } from './study_ranks';
+import { make_cells_table, make_overall_table, make_pairs_table, make_ranking_table, make_running_times_table } from './study_tables';
+import { make_values } from './study_values';
+
+// With more problems than these, tabs would not fit side by side: then figures have a choice.
+const kMostTabs = 6;
+
+function keep(items: (Item | null)[]): Item[] {
+  return items.filter((item) => item !== null) as Item[];
+}
+
+function make_unfinished(data: StudyData): TextItem | null {
+  const missing = data.problems.reduce((sum, problem) => sum + problem.missing, 0);
+  if (data.finished && missing === 0) {
+    return null;
+  }
+  const progress = data.progress ? data.progress.done + ' of ' + data.progress.total + ' ' + data.progress.unit + ' are done. ' : '';
+  return {
+    kind: 'text',
+    id: 'unfinished',
+    title: 'Unfinished',
+    paragraphs: [
+      progress +
+        (missing > 0
+          ? missing +
+            (missing === 1 ? ' run has' : ' runs have') +
+            ' not ended: all numbers are of those that have, and problems that lack runs have no ranks and no tests. '
+          : '') +
+        'What is shown is preliminary and changes as runs end.',
+    ],
+  };
+}
+
+function make_verdict_items(data: StudyData, all: Scope): Item[] {
+  const single = data.problems.length === 1;
+  const verdict: Item = {
+    kind: 'text',
+    id: 'verdict',
+    title: 'Verdict',
+    paragraphs: data.verdict.length > 0 ? data.verdict : ['There is no verdict yet.'],
+  };
+  return keep([
+    make_unfinished(data),
+    verdict,
+    single ? make_problem_ranks(all, 'ranks') : make_overall_ranks(all),
+    single ? make_ranking_table(all) : make_overall_table(all),
+    { kind: 'facts', id: 'facts', title: 'About', facts: data.facts },
+  ]);
+}
+
+function make_problem_items(scope: Scope): Item[] {
+  const single = scope.data.problems.length === 1;
+  return keep([
+    make_convergence(scope),
+    make_values(scope),
+    make_runtime_ecdf(scope),
+    make_cost_quality(scope),
+    make_front(scope),
+    single ? null : make_problem_ranks(scope, 'replicate-ranks' + scope.suffix),
+    make_pairs(scope),
+    single ? null : make_ranking_table(scope),
+    make_running_times_table(scope),
+    make_pairs_table(scope),
+    make_cells_table(scope),
+  ]);
+}
 
 export function make_study_tabs(data: StudyData): Tab[] {
-  return [{ id: 'overview', title: 'Overview', items: [{ kind: 'facts', id: 'facts', title: 'About', facts: data.facts }] }];
+  const all = make_scope(data, data.problems, '');
+  const tabs: Tab[] = [{ id: 'verdict', title: 'Verdict', items: make_verdict_items(data, all) }];
+  const apart = data.problems.length <= kMostTabs;
+  const slugs = make_slugs(data.problems.map((problem) => problem.label));
+  const titles = shorten_all(data.problems.map((problem) => problem.label));
+  const scopes = apart
+    ? data.problems.map((problem, i) => make_scope(data, [problem], data.problems.length > 1 ? '-' + slugs[i] : ''))
+    : [all];
+  scopes.forEach((scope, i) =>
+    tabs.push({
+      id: apart ? 'problem-' + slugs[i] : 'problems',
+      title: apart ? titles[i] : 'Problems',
+      items: make_problem_items(scope),
+    }),
+  );
+  const profiles = make_profiles(all);
+  if (profiles.length > 0) {
+    tabs.push({ id: 'profiles', title: 'Profiles', items: profiles });
+  }
+  const designs = keep(scopes.map(make_parallel));
+  if (designs.length > 0) {
+    tabs.push({ id: 'designs', title: 'Designs', items: designs });
+  }
+  if (data.replays.length > 0) {
+    tabs.push({ id: 'replay', title: 'Replay', items: [{ kind: 'replay', id: 'replay', title: 'Replay', sets: data.replays }] });
+  }
+  return tabs;
 }

@@ -1,0 +1,12 @@
+// Bytes as text (RFC 4648, with padding).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace armwright {
+
+std::string to_base64(std::span<const std::uint8_t> bytes);
+
+}  // namespace armwright

@@ -1,0 +1,39 @@
+#include "report/page/page_assets.hpp"
+
+#include "base/error.hpp"
+
+#ifdef ARMWRIGHT_WITH_PAGE
+
+extern "C" {
+extern const char armwright_page_js_begin[];
+extern const char armwright_page_js_end[];
+extern const char armwright_page_css_begin[];
+extern const char armwright_page_css_end[];
+extern const char armwright_figures_js_begin[];
+extern const char armwright_figures_js_end[];
+}
+
+namespace armwright {
+
+PageAssets get_page_assets() {
+  return {{armwright_page_js_begin, armwright_page_js_end},
+          {armwright_page_css_begin, armwright_page_css_end},
+          {armwright_figures_js_begin, armwright_figures_js_end}};
+}
+
+}  // namespace armwright
+
+#else
+
+namespace armwright {
+
+PageAssets get_page_assets() {
+  throw Error(ErrorKind::usage,
+              "this build has no page: it was configured with -DARMWRIGHT_WITH_PAGE=OFF; install the "
+              "Debian packages nodejs, npm, duktape-dev and libcpp-httplib-dev and configure it with "
+              "ON");
+}
+
+}  // namespace armwright
+
+#endif

@@ -1,0 +1,105 @@
+// What a study's page says over problems.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "report/page/page_json.hpp"
+#include "report/page/study_parts.hpp"
+#include "study/statistics/cliques.hpp"
+#include "study/statistics/ranks.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kMostCliques = 200;
+
+json make_profiles(std::span<const Profile> profiles) {
+  json list = json::array();
+  for (const Profile& profile : profiles) {
+    list.push_back({{"tolerance", profile.tolerance}, {"shares", profile.shares}});
+  }
+  return list;
+}
+
+bool has_all_cells(const StudyResult& result, std::size_t problem) {
+  return std::ranges::find(result.missing, problem, &Cell::problem) == result.missing.end();
+}
+
+// Of each optimizer's mean rank, were these problems drawn from more of their kind. Nothing of
+// fewer problems than conclusions take.
+json make_rank_intervals(const StudyPlan& plan, const StudyResult& result) {
+  std::vector<std::vector<double>> ranks(plan.optimizers.size());
+  for (std::size_t p = 0; p < result.problems.size(); ++p) {
+    if (!has_all_cells(result, p)) {
+      continue;
+    }
+    std::vector<double> medians;
+    for (const OptimizerResult& one : result.problems[p].optimizers) {
+      medians.push_back(one.spread.median);
+    }
+    const auto its_ranks = calc_ranks(medians);
+    for (std::size_t o = 0; o < ranks.size(); ++o) {
+      ranks[o].push_back(its_ranks[o]);
+    }
+  }
+  if (std::ssize(ranks.front()) < kFewestPairs) {
+    return nullptr;
+  }
+  const auto calc_mean = [](std::span<const double> values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  };
+  json intervals = json::array();
+  for (std::size_t o = 0; o < ranks.size(); ++o) {
+    const Interval interval =
+        calc_bootstrap_interval(ranks[o], calc_mean, kIntervalLevel, kResamples,
+                                fmt::format("page/mean rank/{}", plan.optimizers[o].label));
+    intervals.push_back({interval.lower, interval.upper});
+  }
+  return intervals;
+}
+
+json make_cliques(const StudyPlan& plan, std::span<const PairResult> pairs,
+                  std::vector<std::string>& notes) {
+  if (pairs.empty()) {
+    return json::array();  // of one problem nothing is tested
+  }
+  std::vector<std::pair<std::size_t, std::size_t>> told_apart;
+  for (const PairResult& pair : pairs) {
+    if (pair.is_significant()) {
+      told_apart.emplace_back(pair.a, pair.b);
+    }
+  }
+  const auto cliques = find_cliques(plan.optimizers.size(), told_apart, kMostCliques);
+  if (!cliques) {
+    notes.push_back(
+        fmt::format("There are more than {} sets of optimizers that cannot be told apart over the "
+                    "problems; they are left out, the table of pairs has all of it.",
+                    kMostCliques));
+    return json::array();
+  }
+  return *cliques;
+}
+
+}  // namespace
+
+json make_study_overall(const StudyPlan& plan, const StudyResult& result,
+                        std::vector<std::string>& notes) {
+  const OverallResult& overall = result.overall;
+  if (overall.ranking.full.mean_ranks.empty()) {
+    return nullptr;
+  }
+  return {{"mean_ranks", overall.ranking.full.mean_ranks},
+          {"rank_intervals", make_rank_intervals(plan, result)},
+          {"friedman", make_friedman(overall.friedman)},
+          {"pairs", make_study_pairs(overall.pairs)},
+          {"cliques", make_cliques(plan, overall.pairs, notes)},
+          {"kappas", overall.kappas},
+          {"data_profiles", make_profiles(overall.data_profiles)},
+          {"alphas", overall.alphas},
+          {"performance_profiles", make_profiles(overall.performance_profiles)}};
+}
+
+}  // namespace armwright

@@ -1,0 +1,163 @@
+#include "report/reproduction/reproduction.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "base/error.hpp"
+#include "report/page/point_statistics.hpp"
+
+namespace armwright {
+namespace {
+
+// Passes on what a run tells, with its name.
+class RunMessages final : public RunObserver {
+ public:
+  RunMessages(std::string name, RunObserver& observer)
+      : name_(std::move(name)), observer_(observer) {}
+  // Runs have objectives of different units, and there is one bar for all.
+  void on_progress(const Progress& progress) override {
+    Progress shown = progress;
+    shown.best_objective = std::numeric_limits<double>::quiet_NaN();
+    observer_.on_progress(shown);
+  }
+  void on_message(const std::string& message) override {
+    observer_.on_message(fmt::format("{}: {}", name_, message));
+  }
+
+ private:
+  std::string name_;
+  RunObserver& observer_;
+};
+
+class Executor {
+ public:
+  Executor(ReproductionPlan& plan, const ReproductionWork& work, StopSignal& stop,
+           RunObserver& observer)
+      : plan_(plan), work_(work), stop_(stop), observer_(observer) {
+    for (const PlannedPart& part : plan_.parts) {
+      share_.total += is_there(part) ? 0 : part.cases;
+    }
+  }
+
+  std::optional<std::vector<PartResult>> execute() {
+    std::vector<PartResult> results;
+    for (PlannedPart& part : plan_.parts) {
+      if (is_there(part)) {
+        results.push_back(*work_.folder->find(part.part.label));
+      } else {
+        auto result = make_result(part);
+        if (!result) {
+          return std::nullopt;
+        }
+        if (work_.folder != nullptr) {
+          work_.folder->add(*result);
+        }
+        results.push_back(std::move(*result));
+      }
+      part.problem = {};  // its targets are of no use to the next
+    }
+    return results;
+  }
+
+ private:
+  bool is_there(const PlannedPart& part) const {
+    return work_.folder != nullptr && work_.folder->find(part.part.label) != nullptr;
+  }
+
+  std::optional<PartResult> make_result(const PlannedPart& part) {
+    const TrackingProblem& problem = *part.problem.tracking;
+    const auto design = find_design(part);
+    if (!design) {
+      return std::nullopt;
+    }
+    const ChosenCases cases{problem.get_set(part.problem.sets.test), part.cases};
+    const auto evaluation =
+        evaluate_with_progress(problem, *design, cases, work_.jobs, stop_, observer_, share_);
+    if (!evaluation) {
+      return std::nullopt;
+    }
+    share_.done_before += part.cases;
+    const auto points = static_cast<std::size_t>(problem.config().workspace.points);
+    return PartResult{.part = part.part,
+                      .inputs_sha256 = calc_inputs_hash(plan_, part),
+                      .engine = problem.config().engines.judging_name,
+                      .test_set = cases.set.name(),
+                      .case_errors = get_case_errors(evaluation->results),
+                      .failures = list_failures(evaluation->results),
+                      .points = calc_point_statistics(evaluation->results, points),
+                      .total_torque_n_m = evaluation->total_torque_n_m};
+  }
+
+  // Nothing if it has to be optimized anew and that was stopped.
+  std::optional<ArmDesign> find_design(const PlannedPart& part) {
+    if (part.part.run.empty()) {
+      return part.design;
+    }
+    const auto folder = work_.folder->get_run_folder(part.part.run);
+    const auto run = std::ranges::find(plan_.runs, part.part.run,
+                                       [](const RunPlan& one) { return one.problem.name; });
+    if (!execute(*run, folder)) {
+      return std::nullopt;
+    }
+    return load_design((folder / "winner.toml").string()).design;
+  }
+
+  // False if it was stopped.
+  bool execute(const RunPlan& run, const std::filesystem::path& folder) {
+    if (std::filesystem::exists(folder / "result.json")) {
+      return true;
+    }
+    RunRequest request;
+    request.plan = run;
+    request.folder = folder;
+    request.jobs = work_.jobs;
+    request.command_line = make_run_words(work_.program, run, folder);
+    RunMessages messages(run.problem.name, observer_);
+    const auto result = execute_run(request, stop_, messages);
+    if (result && !result->winner) {
+      throw Error(ErrorKind::bad_data,
+                  fmt::format("{}: this run has no winner: none of its designs has a result",
+                              folder.string()));
+    }
+    return result.has_value();
+  }
+
+  ReproductionPlan& plan_;
+  const ReproductionWork& work_;
+  StopSignal& stop_;
+  RunObserver& observer_;
+  BarShare share_;
+};
+
+}  // namespace
+
+std::optional<std::vector<PartResult>> execute_reproduction(ReproductionPlan& plan,
+                                                            const ReproductionWork& work,
+                                                            StopSignal& stop,
+                                                            RunObserver& observer) {
+  if (work.folder == nullptr && !plan.runs.empty()) {
+    throw Error(ErrorKind::usage, "what is optimized anew needs a folder to be kept in");
+  }
+  return Executor(plan, work, stop, observer).execute();
+}
+
+std::vector<std::string> make_run_words(const std::string& program, const RunPlan& run,
+                                        const std::filesystem::path& folder) {
+  return {program,
+          "optimize",
+          run.problem.name,
+          "--optimizer",
+          run.optimizer.name,
+          "--seed",
+          std::to_string(run.seed),
+          "--engine",
+          run.problem.tracking->config().engines.training_name,
+          "--judging-engine",
+          run.problem.tracking->config().engines.judging_name,
+          "--out",
+          folder.string()};
+}
+
+}  // namespace armwright

@@ -1,0 +1,90 @@
+// Opens pages as a reader would: in Debian's Chromium, from disk. Whatever the page writes to the
+// console as an error, throws, or asks of the network is remembered and fails the test at its end.
+import assert from 'node:assert/strict';
+import { existsSync, mkdtempSync, rmSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { pathToFileURL } from 'node:url';
+
+const { chromium } = createRequire(new URL('../../web/package.json', import.meta.url))('playwright-core');
+
+const kProgram = process.env.CHROMIUM ?? '/usr/bin/chromium';
+const kFlags = [
+  '--disable-background-networking',
+  '--disable-component-update',
+  '--disable-quic',
+  '--disable-sync',
+  '--enable-unsafe-swiftshader',
+  '--no-first-run',
+  '--no-sandbox',
+  '--use-angle=swiftshader',
+];
+
+export async function open_browser() {
+  assert.ok(existsSync(kProgram), `${kProgram} is missing: install the Debian package chromium (scripts/setup does)`);
+  const profile = mkdtempSync(join(tmpdir(), 'armwright-chromium-'));
+  const context = await chromium.launchPersistentContext(profile, {
+    executablePath: kProgram,
+    headless: true,
+    args: kFlags,
+    viewport: { width: 1280, height: 900 },
+    colorScheme: 'light',
+    acceptDownloads: true,
+  });
+  return {
+    context,
+    async close() {
+      await context.close();
+      rmSync(profile, { recursive: true, force: true });
+    },
+  };
+}
+
+// A page and what went wrong in it so far.
+export async function open_page(browser, address) {
+  const page = await browser.context.newPage();
+  const faults = [];
+  page.on('console', (message) => {
+    if (message.type() === 'error' || message.type() === 'warning') {
+      faults.push(`${message.type()}: ${message.text()}`);
+    }
+  });
+  page.on('pageerror', (error) => faults.push(`thrown: ${error.message}`));
+  page.on('dialog', (dialog) => {
+    faults.push(`dialog: ${dialog.message()}`);
+    void dialog.dismiss();
+  });
+  const url = address.includes('://') ? address : pathToFileURL(address).href;
+  page.on('request', (request) => {
+    const asked = request.url();
+    const own = asked === url || asked.startsWith('blob:') || asked.startsWith('data:');
+    if (!own && !(url.startsWith('http') && asked.startsWith(new URL(url).origin))) {
+      faults.push(`network: ${asked}`);
+    }
+  });
+  await page.goto(url);
+  await page.waitForSelector('[role=tab]');
+  return {
+    page,
+    expect_no_faults() {
+      assert.deepEqual(faults, []);
+    },
+  };
+}
+
+export async function list_tabs(page) {
+  return page.$$eval('[role=tab]', (tabs) => tabs.map((tab) => tab.dataset.tab));
+}
+
+export async function open_tab(page, id) {
+  await page.click(`[role=tab][data-tab="${id}"]`);
+  await page.waitForSelector(`[role=tab][data-tab="${id}"][aria-selected=true]`);
+}
+
+// The card of a figure or table, its chart drawn.
+export async function find_figure(page, id) {
+  const card = page.locator(`[data-figure="${id}"]`);
+  await card.scrollIntoViewIfNeeded();
+  return card;
+}

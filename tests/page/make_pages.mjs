@@ -1,0 +1,70 @@
+// Makes, with the program itself, the pages that the tests open. Usage: node make_pages.mjs FOLDER
+import { execFileSync } from 'node:child_process';
+import { mkdirSync, rmSync } from 'node:fs';
+import { join } from 'node:path';
+
+export const kFolder = process.env.ARMWRIGHT_PAGES ?? process.argv[2];
+const kProgram = process.env.ARMWRIGHT;
+
+export function run_program(...args) {
+  return execFileSync(kProgram, args, {
+    encoding: 'utf8',
+    stdio: ['ignore', 'pipe', 'inherit'],
+    maxBuffer: 1 << 28,
+  });
+}
+
+function make_run() {
+  const run = join(kFolder, 'run');
+  run_program('optimize', 'q1-complex', '--engine', 'articulated', '--budget', '1400', '--out', run, '--quiet');
+  run_program('report', run, '--out', join(kFolder, 'run.html'), '--quiet');
+}
+
+function make_front() {
+  const run = join(kFolder, 'front');
+  run_program(
+    'optimize',
+    'q2-pareto',
+    '--engine',
+    'articulated',
+    '--optimizer',
+    'pagmo:nsga2',
+    '--budget',
+    '2000',
+    '--out',
+    run,
+    '--quiet',
+  );
+  run_program('report', run, '--out', join(kFolder, 'front.html'), '--quiet');
+}
+
+function make_function() {
+  const run = join(kFolder, 'function');
+  run_program('optimize', 'rosenbrock', '--optimizer', 'nlopt:neldermead', '--budget', '300', '--out', run, '--quiet');
+  run_program('report', run, '--out', join(kFolder, 'function.html'), '--quiet');
+}
+
+function make_study() {
+  const study = join(kFolder, 'study');
+  run_program(
+    ...['compare', '--problems', 'q1-complex,q2-e6', '--optimizers', 'ga,cmaes,nlopt:bobyqa', '--replicates', '6'],
+    ...['--budget', '140', '--engine', 'articulated', '--out', study, '--quiet'],
+  );
+  run_program('report', study, '--out', join(kFolder, 'study.html'), '--quiet');
+}
+
+function make_reproduction() {
+  const folder = join(kFolder, 'reproduction');
+  run_program('reproduce', '--engine', 'articulated', '--cases', '20', '--out', folder, '--quiet');
+  run_program('report', folder, '--out', join(kFolder, 'reproduction.html'), '--quiet');
+}
+
+if (process.argv[2] !== undefined) {
+  rmSync(kFolder, { recursive: true, force: true });
+  mkdirSync(kFolder, { recursive: true });
+  make_run();
+  make_front();
+  make_function();
+  make_study();
+  make_reproduction();
+}

@@ -1,0 +1,226 @@
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { find_figure, list_tabs, open_browser, open_page, open_tab } from './browser.mjs';
+import { check_every_tab } from './every_tab.mjs';
+import { kFolder, run_program } from './make_pages.mjs';
+
+const kFigures = [
+  ...['fitness', 'variables', 'distance-response', 'momentary-error', 'signals-distance', 'signals-speed', 'signals-acceleration'],
+  ...['speed-reduction', 'test-case', 'speed-sweep', 'joint-angles', 'joint-errors', 'joint-torques', 'test-errors', 'design-table'],
+];
+
+let browser;
+before(async () => {
+  browser = await open_browser();
+});
+after(() => browser.close());
+
+async function open_run(name = 'run') {
+  return open_page(browser, join(kFolder, name + '.html'));
+}
+
+async function open_replay(page) {
+  for (const tab of await list_tabs(page)) {
+    await open_tab(page, tab);
+    if ((await page.locator('.replay').count()) > 0) {
+      return;
+    }
+  }
+  assert.fail('no tab has a replay');
+}
+
+const get_state = (page) => page.evaluate(() => ({ ...window.armwright_replay.state }));
+
+test('every tab of a run has its figures', async () => {
+  const { page, expect_no_faults } = await open_run();
+  const found = await check_every_tab(page);
+  for (const figure of kFigures) {
+    assert.ok(found.includes(figure), `${figure} is missing; there are ${found.join(', ')}`);
+  }
+  expect_no_faults();
+  await page.close();
+});
+
+test('a run of several objectives and one of a function have pages, too', async () => {
+  for (const name of ['front', 'function']) {
+    const { page, expect_no_faults } = await open_run(name);
+    const found = await check_every_tab(page);
+    assert.ok(found.includes('fitness'), found.join(', '));
+    assert.equal(found.includes('front'), name === 'front');
+    assert.equal(found.includes('joint-torques'), name === 'front');
+    expect_no_faults();
+    await page.close();
+  }
+});
+
+test('the replay plays, is scrubbed, and shows the robot', async () => {
+  const { page, expect_no_faults } = await open_run();
+  await open_replay(page);
+  await page.waitForFunction(() => window.armwright_replay?.state.frames > 0);
+
+  const scrub = page.locator('.replay input[type=range]').first();
+  await scrub.evaluate((input) => {
+    input.value = String(Number(input.max) / 2);
+    input.dispatchEvent(new Event('input', { bubbles: true }));
+  });
+  const middle = await get_state(page);
+  assert.ok(middle.time_s > 1, `the time is ${middle.time_s} s`);
+
+  await scrub.focus();
+  await page.keyboard.press('ArrowRight');
+  const next = await get_state(page);
+  assert.equal(next.step, middle.step + 1);
+
+  await page.keyboard.press('Home');
+  await page.locator('.replay').getByRole('button', { name: /play/i }).click();
+  await page.waitForFunction(() => window.armwright_replay.state.time_s > 0.3);
+  await page.locator('.replay').getByRole('button', { name: /pause/i }).click();
+  const paused = await get_state(page);
+  await page.waitForTimeout(200);
+  assert.equal((await get_state(page)).step, paused.step);
+
+  // Pixels of the robot: many that are not the background's colour.
+  const share = await page.evaluate(() => {
+    const canvas = document.querySelector('.replay canvas');
+    const copy = document.createElement('canvas');
+    copy.width = canvas.width;
+    copy.height = canvas.height;
+    const context = copy.getContext('2d');
+    context.drawImage(canvas, 0, 0);
+    const { data } = context.getImageData(0, 0, copy.width, copy.height);
+    // The arm is orange: much more red than blue.
+    let orange = 0;
+    for (let i = 0; i < data.length; i += 4) {
+      orange += data[i + 3] > 200 && data[i] > data[i + 2] + 40 ? 1 : 0;
+    }
+    return orange / (data.length / 4);
+  });
+  assert.ok(share > 0.005, `${(100 * share).toFixed(2)} % of the view is the robot's colour`);
+  expect_no_faults();
+  await page.close();
+});
+
+test('the replay and the plots over time share their cursor', async () => {
+  const { page, expect_no_faults } = await open_run();
+  await open_replay(page);
+  await page.waitForFunction(() => window.armwright_replay?.state.frames > 0);
+  const card = await find_figure(page, 'joint-torques');
+  await page.waitForFunction(() => document.querySelectorAll('[data-figure=joint-torques] .plot svg path').length > 5);
+  const box = await card.locator('.plot').boundingBox();
+  await page.mouse.click(box.x + box.width * 0.6, box.y + box.height * 0.5);
+  const state = await get_state(page);
+  assert.ok(state.time_s > 1, `the time is ${state.time_s} s`);
+  const left = await card.locator('.cursor').evaluate((cursor) => cursor.getBoundingClientRect().left);
+  assert.ok(Math.abs(left - (box.x + box.width * 0.6)) < 3, `the cursor is at ${left}`);
+  expect_no_faults();
+  await page.close();
+});
+
+test('a figure says its numbers: under the pointer, as a table, as CSV, as SVG', async () => {
+  const { page, expect_no_faults } = await open_run();
+  await open_tab(page, 'response');
+  const card = await find_figure(page, 'distance-response');
+  await page.waitForFunction(() => document.querySelectorAll('[data-figure=distance-response] .plot svg path').length > 5);
+
+  // Some point is near one of these places.
+  const box = await card.locator('.plot').boundingBox();
+  let shown = '';
+  for (let x = 0.2; x < 0.9 && shown === ''; x += 0.01) {
+    for (let y = 0.15; y < 0.85 && shown === ''; y += 0.02) {
+      await page.mouse.move(box.x + x * box.width, box.y + y * box.height);
+      shown = await card.evaluate((element) => {
+        const tip = element.querySelector('.tip');
+        return tip !== null && tip.offsetParent !== null && getComputedStyle(tip).visibility === 'visible' ? tip.textContent : '';
+      });
+    }
+  }
+  assert.match(shown, /\d/);
+
+  await card.getByRole('button', { name: 'Table' }).click();
+  assert.ok((await page.locator('dialog tbody tr').count()) >= 25);
+  await page.keyboard.press('Escape');
+  assert.equal(await page.locator('dialog').count(), 0);
+
+  const [csv] = await Promise.all([page.waitForEvent('download'), card.getByRole('button', { name: 'CSV' }).click()]);
+  assert.equal(csv.suggestedFilename(), 'distance-response.csv');
+  const lines = readFileSync(await csv.path(), 'utf8')
+    .trim()
+    .split('\r\n');
+  assert.ok(lines.length >= 26, `${lines.length} lines`);
+  assert.match(lines[0], /distance/i);
+
+  const [svg] = await Promise.all([page.waitForEvent('download'), card.getByRole('button', { name: 'SVG' }).click()]);
+  const text = readFileSync(await svg.path(), 'utf8');
+  assert.match(text, /^<svg [^]*<\/svg>\s*$/);
+  const parsed = await page.evaluate(
+    (source) => new DOMParser().parseFromString(source, 'image/svg+xml').querySelector('parsererror') === null,
+    text,
+  );
+  assert.ok(parsed, 'the SVG is not well-formed');
+  // The same code draws without a browser.
+  const plotted = run_program('plot', join(kFolder, 'run.html'), '--figure', 'distance-response', '--out', '-');
+  assert.equal(plotted.trim(), text.trim());
+  expect_no_faults();
+  await page.close();
+});
+
+test('a series is switched off and on', async () => {
+  const { page, expect_no_faults } = await open_run();
+  await open_tab(page, 'training');
+  const card = await find_figure(page, 'fitness');
+  const count = () => card.evaluate((element) => element.querySelectorAll('.plot svg path').length);
+  await page.waitForFunction(() => document.querySelectorAll('[data-figure=fitness] .plot svg path').length > 5);
+  const all = await count();
+  const entry = card.locator('.plot svg text', { hasText: /average|mean/i }).first();
+  await entry.click();
+  await page.waitForTimeout(100);
+  const fewer = await count();
+  assert.ok(fewer < all, `${fewer} paths after ${all}`);
+  await entry.click();
+  await page.waitForTimeout(100);
+  assert.equal(await count(), all);
+  expect_no_faults();
+  await page.close();
+});
+
+test('a table sorts by a column, up and down, by key too', async () => {
+  const { page, expect_no_faults } = await open_run();
+  await open_tab(page, 'design');
+  const card = await find_figure(page, 'design-table');
+  const column = 2;
+  const read = async () =>
+    (await card.locator(`tbody tr td:nth-child(${column + 1})`).evaluateAll((cells) => cells.map((cell) => Number(cell.title)))).filter(
+      (value) => !Number.isNaN(value),
+    );
+  const sort = card.locator('th .sort').nth(column);
+  await sort.click();
+  const up = await read();
+  assert.deepEqual(
+    up,
+    up.slice().sort((a, b) => a - b),
+  );
+  await sort.press('Enter');
+  const down = await read();
+  assert.deepEqual(down, up.slice().reverse());
+  assert.ok(up.length >= 20 && up[0] < up[up.length - 1]);
+  expect_no_faults();
+  await page.close();
+});
+
+test('tabs are reached by keys, and paper shows everything in light', async () => {
+  const { page, expect_no_faults } = await open_run();
+  const tabs = await list_tabs(page);
+  await page.focus(`[role=tab][data-tab="${tabs[0]}"]`);
+  await page.keyboard.press('ArrowRight');
+  assert.equal(await page.getAttribute('[role=tab][aria-selected=true]', 'data-tab'), tabs[1]);
+  await page.keyboard.press('End');
+  assert.equal(await page.getAttribute('[role=tab][aria-selected=true]', 'data-tab'), tabs[tabs.length - 1]);
+
+  await page.click('.theme');
+  const pdf = await page.pdf({ format: 'A4', landscape: true });
+  assert.ok(pdf.length > 100_000, `${pdf.length} bytes of PDF`);
+  expect_no_faults();
+  await page.close();
+});

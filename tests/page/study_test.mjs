@@ -1,0 +1,84 @@
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { find_figure, list_tabs, open_browser, open_page, open_tab } from './browser.mjs';
+import { check_every_tab } from './every_tab.mjs';
+import { kFolder, run_program } from './make_pages.mjs';
+
+let browser;
+before(async () => {
+  browser = await open_browser();
+});
+after(() => browser.close());
+
+const open_study = () => open_page(browser, join(kFolder, 'study.html'));
+
+async function open_tab_of(page, figure) {
+  for (const tab of await list_tabs(page)) {
+    await open_tab(page, tab);
+    if ((await page.locator(`[data-figure^="${figure}"]`).count()) > 0) {
+      return page.locator(`[data-figure^="${figure}"]`).first();
+    }
+  }
+  return assert.fail(`no tab has ${figure}`);
+}
+
+test('every tab of a comparison has its figures', async () => {
+  const { page, expect_no_faults } = await open_study();
+  const found = await check_every_tab(page);
+  for (const figure of ['convergence', 'runtime-ecdf', 'values', 'pairs', 'ranks', 'parallel', 'cost-quality', 'data-profile']) {
+    assert.ok(
+      found.some((name) => name.startsWith(figure)),
+      `${figure} is missing; there are ${found.join(', ')}`,
+    );
+  }
+  expect_no_faults();
+  await page.close();
+});
+
+test('the verdict is on top, word for word as in its file', async () => {
+  const { page, expect_no_faults } = await open_study();
+  const shown = await page.locator('main').innerText();
+  const verdict = readFileSync(join(kFolder, 'study/verdict.txt'), 'utf8');
+  const first = verdict.split('\n').filter((line) => line.trim() !== '')[0];
+  assert.ok(shown.replace(/\s+/g, ' ').includes(first.trim().slice(0, 60)), shown.slice(0, 400));
+  expect_no_faults();
+  await page.close();
+});
+
+test('a cell shows the command that reproduces it, and it does', async () => {
+  const { page, expect_no_faults } = await open_study();
+  const card = await open_tab_of(page, 'cells');
+  await card.locator('tbody .link').first().click();
+  const command = await card.locator('.command code').innerText();
+  assert.match(command, /^\S*armwright rerun /);
+  const cell = command.match(/cells?\/(\S+)|rerun \S+ (\S+)/)?.[2];
+  const said = run_program('rerun', join(kFolder, 'study'), cell.replace(/^'|'$/g, ''), '--out', join(kFolder, 'rerun'), '--quiet');
+  assert.match(said, /identical/);
+  expect_no_faults();
+  await page.close();
+});
+
+test('a point of the box plots names its run', async () => {
+  const { page, expect_no_faults } = await open_study();
+  const card = await open_tab_of(page, 'values');
+  const id = await card.getAttribute('data-figure');
+  await find_figure(page, id);
+  await page.waitForFunction((name) => document.querySelectorAll(`[data-figure="${name}"] .plot svg path`).length > 5, id);
+  const box = await card.locator('.plot').boundingBox();
+  let said = '';
+  for (let y = 0.12; y < 0.9 && said === ''; y += 0.015) {
+    for (let x = 0.1; x < 0.97 && said === ''; x += 0.01) {
+      await page.mouse.move(box.x + x * box.width, box.y + y * box.height);
+      const pointed = await card.locator('.plot').evaluate((plot) => plot.querySelector('.tip')?.textContent ?? '');
+      if (pointed.includes('reproduces')) {
+        await page.mouse.click(box.x + x * box.width, box.y + y * box.height);
+        said = await card.locator('.details').innerText();
+      }
+    }
+  }
+  assert.match(said, /armwright rerun /);
+  expect_no_faults();
+  await page.close();
+});

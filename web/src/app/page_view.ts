@@ -1,0 +1,238 @@
+// The page as a whole: head, tabs, and the view of whatever tab is open.
+import type { Look } from '../charts/look';
+import type { Fact } from '../data';
+import type { Item, Page, Tab } from '../model';
+import { make_replay, type ReplayView } from '../replay/replay';
+import { make_clock, type Clock } from './clock';
+import { make, make_button } from './dom';
+import { make_figure_view } from './figure_view';
+import { make_table_view } from './table_view';
+import type { View } from './view';
+
+function make_facts(facts: Fact[]): HTMLElement {
+  const list = make('dl', { class: 'facts' });
+  for (const fact of facts) {
+    list.append(make('div', {}, make('dt', {}, fact.label), make('dd', {}, fact.value)));
+  }
+  return list;
+}
+
+function make_still(id: string, title: string, width: string, ...content: HTMLElement[]): View {
+  const element = make('section', { class: 'card ' + width, id: 'figure-' + id, 'data-figure': id }, make('h3', {}, title), ...content);
+  return { element, set_look() {}, update: () => false, settle() {}, dispose() {} };
+}
+
+function make_replay_view(id: string, title: string, page: Page, item: Item, look: Look, clock: Clock): View {
+  const host = make('div', { class: 'replay' });
+  const sets = item.kind === 'replay' ? item.sets : [];
+  const replay: ReplayView = make_replay(host, page.data.robots, sets, look, {
+    on_time: (set, case_id, time_s) => clock.set(set, case_id, time_s),
+  });
+  const stop = clock.listen(() => {
+    const state = replay.state;
+    if (clock.replay !== state.set || clock.case_id !== state.case) {
+      replay.choose(clock.replay, clock.case_id);
+    }
+    if (Math.abs(clock.time_s - state.time_s) > 1e-9) {
+      replay.set_time(clock.time_s);
+    }
+  });
+  (window as unknown as { armwright_replay?: ReplayView }).armwright_replay = replay;
+  return {
+    element: make('section', { class: 'card full', id: 'figure-' + id, 'data-figure': id }, make('h3', {}, title), host),
+    set_look: (next) => replay.set_look(next),
+    update: () => true, // what was recorded stays
+    settle() {},
+    dispose: () => {
+      stop();
+      replay.dispose();
+    },
+  };
+}
+
+function make_view(page: Page, item: Item, look: Look, clock: Clock): View {
+  switch (item.kind) {
+    case 'figure':
+      return make_figure_view(item, look, clock);
+    case 'table':
+      return make_table_view(item);
+    case 'text':
+      return make_still(item.id, item.title, 'full', ...item.paragraphs.map((text) => make('p', {}, text)));
+    case 'facts':
+      return make_still(item.id, item.title, 'full', make_facts(item.facts));
+    case 'replay':
+      return make_replay_view(item.id, item.title, page, item, look, clock);
+  }
+}
+
+export interface PageView {
+  show(page: Page): void;
+  set_look(look: Look): void;
+}
+
+export interface PageEvents {
+  toggle_theme(): void;
+  // On paper the page is light, whatever it is on the screen.
+  on_print(begins: boolean): void;
+}
+
+export function make_page_view(host: HTMLElement, first_look: Look, events: PageEvents): PageView {
+  const clock = make_clock();
+  let look = first_look;
+  let page: Page | null = null;
+  let views: View[] = [];
+  let open = '';
+
+  const title = make('h1');
+  const subtitle = make('p', { class: 'subtitle' });
+  const state = make('p', { class: 'state', role: 'status' });
+  const notes = make('ul', { class: 'notes' });
+  const list = make('div', { role: 'tablist', 'aria-label': 'Sections' });
+  const panel = make('main', { role: 'tabpanel', tabindex: '-1' });
+  const foot = make('footer');
+  host.append(
+    make(
+      'header',
+      {},
+      make('div', { class: 'titles' }, title, subtitle),
+      state,
+      make_button('Light / dark', events.toggle_theme, { class: 'theme' }),
+    ),
+    notes,
+    list,
+    panel,
+    foot,
+  );
+
+  function close(): void {
+    views.forEach((view) => view.dispose());
+    views = [];
+    panel.replaceChildren();
+  }
+
+  function update_or_replace(item: Item, index: number): void {
+    if (page !== null && !views[index].update(item)) {
+      const newer = make_view(page, item, look, clock);
+      views[index].element.replaceWith(newer.element);
+      views[index].dispose();
+      views[index] = newer;
+    }
+  }
+
+  // Newer data of the same section go into what is there. False if it has other items now.
+  function update_items(tab: Tab): boolean {
+    const same = tab.items.length === views.length && tab.items.every((item, i) => views[i].element.dataset.figure === item.id);
+    if (same) {
+      tab.items.forEach(update_or_replace);
+    }
+    return same;
+  }
+
+  function append_items(tab: Tab): void {
+    if (page === null) {
+      return;
+    }
+    const grid = make('div', { class: 'cards' });
+    panel.append(grid);
+    for (const item of tab.items) {
+      const view = make_view(page, item, look, clock);
+      views.push(view);
+      grid.append(view.element);
+    }
+  }
+
+  function choose(id: string, focus: boolean): void {
+    const tab = page?.tabs.find((one) => one.id === id) ?? page?.tabs[0];
+    if (tab === undefined) {
+      return;
+    }
+    close();
+    open = tab.id;
+    list.querySelectorAll<HTMLElement>('[role=tab]').forEach((button) => {
+      const chosen = button.dataset.tab === open;
+      button.setAttribute('aria-selected', String(chosen));
+      button.tabIndex = chosen ? 0 : -1;
+      if (chosen) {
+        panel.setAttribute('aria-labelledby', button.id);
+        if (focus) {
+          button.focus();
+        }
+      }
+    });
+    append_items(tab);
+  }
+
+  function same_tabs(tabs: Tab[]): boolean {
+    const there = Array.from(list.querySelectorAll<HTMLElement>('[role=tab]'));
+    return there.length === tabs.length && tabs.every((tab, i) => there[i].dataset.tab === tab.id && there[i].textContent === tab.title);
+  }
+
+  function make_tab_button(tab: Tab): HTMLButtonElement {
+    return make_button(
+      tab.title,
+      () => {
+        choose(tab.id, false);
+        history.replaceState(null, '', '#' + encodeURIComponent(tab.id));
+      },
+      { role: 'tab', id: 'tab-' + tab.id, 'data-tab': tab.id },
+    );
+  }
+
+  list.addEventListener('keydown', (event) => {
+    const ids = page?.tabs.map((tab) => tab.id) ?? [];
+    const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+    const next =
+      step !== undefined
+        ? (ids.indexOf(open) + step + ids.length) % ids.length
+        : event.key === 'Home'
+          ? 0
+          : event.key === 'End'
+            ? ids.length - 1
+            : -1;
+    if (next >= 0) {
+      event.preventDefault();
+      choose(ids[next], true);
+    }
+  });
+
+  // On paper all sections follow one another; afterwards the open one comes back.
+  window.addEventListener('beforeprint', () => {
+    close();
+    events.on_print(true);
+    page?.tabs.forEach((tab) => {
+      panel.append(make('h2', {}, tab.title));
+      append_items({ ...tab, items: tab.items.filter((item) => item.kind !== 'replay') });
+    });
+    views.forEach((view) => view.settle());
+  });
+  window.addEventListener('afterprint', () => {
+    events.on_print(false);
+    choose(open, false);
+  });
+  window.addEventListener('hashchange', () => choose(decodeURIComponent(location.hash.slice(1)), false));
+
+  return {
+    show(next: Page) {
+      page = next;
+      const { data } = next;
+      document.title = data.title;
+      title.textContent = data.title;
+      subtitle.textContent = data.subtitle;
+      state.textContent = data.progress === null ? '' : `${data.progress.done} of ${data.progress.total} ${data.progress.unit}`;
+      notes.replaceChildren(...data.notes.map((note) => make('li', {}, note)));
+      const shown = next.tabs.find((tab) => tab.id === open);
+      foot.replaceChildren(
+        make('p', {}, `armwright ${data.program.version} (${data.program.commit}). Made by `, make('code', {}, data.command)),
+        make('p', {}, 'Folder: ', make('code', {}, data.folder)),
+      );
+      if (shown === undefined || !same_tabs(next.tabs) || !update_items(shown)) {
+        list.replaceChildren(...next.tabs.map(make_tab_button));
+        choose(open || decodeURIComponent(location.hash.slice(1)), false);
+      }
+    },
+    set_look(next: Look) {
+      look = next;
+      views.forEach((view) => view.set_look(next));
+    },
+  };
+}

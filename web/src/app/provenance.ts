@@ -1,0 +1,26 @@
+import { make, make_button } from './dom';
+
+// Where a point or a row comes from, and the command that makes it again.
+export function make_provenance(note: string | undefined, command: string | undefined, on_close: () => void): HTMLElement {
+  const box = make('div', { class: 'provenance' });
+  if (note) {
+    box.append(make('p', {}, note));
+  }
+  if (command) {
+    const text = make('code', {}, command);
+    const copy = make_button('Copy', () => {
+      const range = document.createRange();
+      range.selectNodeContents(text);
+      getSelection()?.removeAllRanges();
+      getSelection()?.addRange(range);
+      // Pages opened from disk may not reach the clipboard; the text is selected all the same.
+      navigator.clipboard?.writeText(command).then(
+        () => (copy.textContent = 'Copied'),
+        () => (copy.textContent = 'Selected: press Ctrl+C'),
+      );
+    });
+    box.append(make('div', { class: 'command' }, text, copy));
+  }
+  box.append(make_button('×', on_close, { class: 'close', 'aria-label': 'Close' }));
+  return box;
+}

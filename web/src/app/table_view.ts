@@ -1,0 +1,158 @@
+// Tables that sort by any column, in the page and in a dialog.
+import { get_value, to_csv, get_heading } from '../csv';
+import type { Cell, DataTable, TableItem, Value } from '../model';
+import { format_number } from '../numbers';
+import { make, make_button } from './dom';
+import { download } from './download';
+import { make_provenance } from './provenance';
+import type { View } from './view';
+
+// More rows than this come in portions, so that a table of 10 000 cells opens at once.
+const kPortion = 200;
+
+// Numbers by size, text by the alphabet, what is missing last, whichever way the rest runs.
+function compare(a: Value, b: Value, direction: number): number {
+  if (a === null || b === null) {
+    return a === b ? 0 : a === null ? 1 : -1;
+  }
+  if (typeof a === 'number' && typeof b === 'number') {
+    return (a - b) * direction;
+  }
+  return String(a).localeCompare(String(b), 'en', { numeric: true }) * direction;
+}
+
+function make_cell(cell: Value | Cell, digits: number, details: HTMLElement): HTMLTableCellElement {
+  const value = get_value(cell);
+  const element = make('td', { class: typeof value === 'number' ? 'number' : '' });
+  const text = typeof value === 'number' ? format_number(value, digits) : (value ?? '–');
+  const { command, note } = cell !== null && typeof cell === 'object' ? cell : { command: undefined, note: undefined };
+  if (command || note) {
+    element.append(
+      make_button(text, () => details.replaceChildren(make_provenance(note, command, () => details.replaceChildren())), {
+        class: 'link',
+        title: 'Where this comes from',
+      }),
+    );
+  } else {
+    element.textContent = text;
+  }
+  if (typeof value === 'number') {
+    element.title = String(value);
+  }
+  return element;
+}
+
+// Sorted by `order` first: the number of a column and 1 for up, -1 for down; what the reader chooses
+// is left there.
+interface Order {
+  column: number;
+  direction: number;
+}
+
+function make_table(table: DataTable, details: HTMLElement, order: Order = { column: -1, direction: 1 }): HTMLElement {
+  const body = make('tbody');
+  const headings: HTMLTableCellElement[] = [];
+  let rows = table.rows;
+  let shown = 0;
+  const more = make_button('Show more rows', () => show(shown + 5 * kPortion), { class: 'more' });
+
+  function show(count: number): void {
+    const end = Math.min(count, rows.length);
+    for (; shown < end; ++shown) {
+      body.append(make('tr', {}, ...rows[shown].map((cell, i) => make_cell(cell, table.columns[i].digits ?? 4, details))));
+    }
+    more.hidden = shown >= rows.length;
+    more.textContent = `Show more rows (${rows.length - shown} left)`;
+  }
+
+  function sort(column: number, direction: number): void {
+    order.column = column;
+    order.direction = direction;
+    headings.forEach((heading) => heading.removeAttribute('aria-sort'));
+    headings[column].setAttribute('aria-sort', direction > 0 ? 'ascending' : 'descending');
+    rows = rows.slice().sort((a, b) => compare(get_value(a[column]), get_value(b[column]), direction));
+    const enough = Math.max(shown, kPortion);
+    body.replaceChildren();
+    shown = 0;
+    show(enough);
+  }
+
+  const head = make('tr');
+  table.columns.forEach((column, i) => {
+    const heading = make('th', { scope: 'col', class: column.numeric ? 'number' : '' });
+    heading.append(
+      make_button(get_heading(column), () => sort(i, order.column === i ? -order.direction : 1), {
+        class: 'sort',
+        title: 'Sort by this column',
+      }),
+    );
+    headings.push(heading);
+    head.append(heading);
+  });
+  if (order.column >= 0) {
+    sort(order.column, order.direction);
+  } else {
+    show(kPortion);
+  }
+  return make('div', { class: 'table-scroll', tabindex: '0' }, make('table', {}, make('thead', {}, head), body), more);
+}
+
+export function make_table_view(item: TableItem): View {
+  const details = make('div', { class: 'details', role: 'status' });
+  const order: Order = { column: -1, direction: 1 };
+  let table = item.table;
+  let body = make_table(table, details, order);
+  const element = make(
+    'section',
+    { class: 'card full', id: 'figure-' + item.id, 'data-figure': item.id },
+    make(
+      'div',
+      { class: 'card-head' },
+      make('h3', {}, item.title),
+      item.thesis ? make('span', { class: 'thesis', title: 'Its counterpart in the thesis' }, 'thesis, ' + item.thesis) : null,
+      make(
+        'div',
+        { class: 'buttons' },
+        make_button('CSV', () => download(item.id + '.csv', 'text/csv', to_csv(table)), { title: 'Download this table' }),
+      ),
+    ),
+    body,
+    details,
+    item.caption ? make('p', { class: 'caption' }, item.caption) : null,
+  );
+  return {
+    element,
+    set_look() {},
+    update(next) {
+      if (next.kind !== 'table' || next.table.columns.length !== table.columns.length) {
+        return false;
+      }
+      table = next.table;
+      const newer = make_table(table, details, order);
+      body.replaceWith(newer);
+      body = newer;
+      return true;
+    },
+    settle() {},
+    dispose() {},
+  };
+}
+
+// The numbers of a figure, for those who cannot or do not want to read the chart.
+export function show_table(title: string, table: DataTable): void {
+  const details = make('div', { class: 'details', role: 'status' });
+  const dialog = make('dialog', { 'aria-label': title });
+  dialog.append(
+    make(
+      'div',
+      { class: 'card-head' },
+      make('h3', {}, title),
+      make_button('Close', () => dialog.close(), { class: 'close-dialog' }),
+    ),
+    make_table(table, details),
+    details,
+  );
+  dialog.addEventListener('close', () => dialog.remove());
+  document.body.append(dialog);
+  dialog.showModal();
+}

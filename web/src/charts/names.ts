@@ -1,0 +1,32 @@
+// Names come from users' files: they may be long, and hold anything.
+
+// Control characters, and those that turn the direction of the text around them.
+const kInvisible = /[\u0000-\u001f\u007f-\u009f\u200b-\u200f\u2028-\u202e\u2060-\u2069\ufeff]+/g;
+
+// At most `length` characters, the last an ellipsis where something was cut off.
+export function shorten(name: string, length = 40): string {
+  const clean = name.slice(0, 4 * length).replace(kInvisible, ' ').trim();
+  if (clean.length <= length) {
+    return clean;
+  }
+  let end = length - 1;
+  const last = clean.charCodeAt(end - 1);
+  if (last >= 0xd800 && last <= 0xdbff) {
+    --end; // not through the middle of a character
+  }
+  return clean.slice(0, end).replace(/ +$/, '') + '…';
+}
+
+// The same for names that stand beside each other: a legend needs them all different.
+export function shorten_all(names: string[], length = 40): string[] {
+  const taken: string[] = [];
+  return names.map((name) => {
+    const short = shorten(name, length) || 'unnamed';
+    let label = short;
+    for (let i = 2; taken.indexOf(label) >= 0; ++i) {
+      label = `${shorten(short, length - 5)} (${i})`;
+    }
+    taken.push(label);
+    return label;
+  });
+}

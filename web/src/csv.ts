@@ -1,0 +1,31 @@
+// Tables as CSV (RFC 4180). Text that a spreadsheet would take for a formula gets an apostrophe in
+// front, as names may come from anywhere.
+import type { Cell, Column, DataTable, Value } from './model';
+
+export function get_value(cell: Value | Cell): Value {
+  return cell !== null && typeof cell === 'object' ? cell.value : cell;
+}
+
+function quote(text: string): string {
+  const harmless = /^[=+\-@\t\r]/.test(text) ? "'" + text : text;
+  return /[",\r\n]/.test(harmless) ? '"' + harmless.replace(/"/g, '""') + '"' : harmless;
+}
+
+export function get_heading(column: Column): string {
+  return column.unit ? column.label + ' (' + column.unit + ')' : column.label;
+}
+
+export function to_csv(table: DataTable): string {
+  const lines = [table.columns.map((column) => quote(get_heading(column))).join(',')];
+  table.rows.forEach((row) => {
+    lines.push(
+      row
+        .map((cell) => {
+          const value = get_value(cell);
+          return value === null ? '' : typeof value === 'number' ? String(value) : quote(value);
+        })
+        .join(','),
+    );
+  });
+  return lines.join('\r\n') + '\r\n';
+}

@@ -1,0 +1,84 @@
+// The winner's numbers beside those of other designs, and what the designs achieve.
+import type { ArmEvidence, RunData } from '../data';
+import type { Column, TableItem, Value } from '../model';
+import { kMillimetres } from '../numbers';
+import { is_number, times } from './quantities';
+
+export function make_design_table(arm: ArmEvidence): TableItem | null {
+  if (arm.parameters.length === 0) {
+    return null;
+  }
+  const some_at_bound = arm.parameters.some((row) => row.at_bound !== '');
+  const total: Value[] = ['total torque', 'N m', 'sum', '', ...arm.designs.map((design) => design.total_torque_n_m)];
+  return {
+    kind: 'table',
+    id: 'design-table',
+    title: 'The design in numbers',
+    caption:
+      'Every number of the winner beside the same of the other designs. Those that are no variable were not optimized. ' +
+      (some_at_bound ? 'Where a number of the winner is at a bound, the optimizer wanted to go further: the bound may be too tight. ' : '') +
+      'The total torque is the sum over the joints of the larger magnitude of the two limits.',
+    table: {
+      columns: [
+        { label: 'number' },
+        { label: 'unit' },
+        { label: 'kind' },
+        { label: 'at bound' },
+        ...arm.designs.map((design): Column => ({ label: design.name, numeric: true, digits: 5 })),
+      ],
+      rows: [
+        ...arm.parameters.map((row): Value[] => [
+          row.name,
+          row.unit,
+          row.is_variable ? 'variable' : 'fixed',
+          row.at_bound,
+          ...arm.designs.map((_, i) => row.values[i] ?? null),
+        ]),
+        ...(arm.designs.some((design) => is_number(design.total_torque_n_m)) ? [total] : []),
+      ],
+    },
+  };
+}
+
+export function make_results_table(data: RunData, arm: ArmEvidence): TableItem | null {
+  if (arm.results.length === 0) {
+    return null;
+  }
+  const has_published = arm.results.some((row) => row.published_mean_m !== null || row.published_torque_n_m !== null);
+  const millimetres = (label: string): Column => ({ label, unit: 'mm', numeric: true });
+  const where = data.test === null ? '' : ` on ${data.test.set}, simulated by ${data.test.engine}`;
+  return {
+    kind: 'table',
+    id: 'results-table',
+    title: 'Result',
+    caption:
+      `Positional errors of each design${where}: mean, median, the error that 95 % of the cases stay below, and the worst case. ` +
+      (has_published ? 'Published: what the source printed of the same design; the last column says where.' : 'Nothing is published of these.'),
+    table: {
+      columns: [
+        { label: 'design' },
+        millimetres('mean'),
+        ...(has_published ? [millimetres('published mean')] : []),
+        millimetres('median'),
+        millimetres('95 %'),
+        millimetres('worst'),
+        { label: 'failures', numeric: true },
+        { label: 'cases', numeric: true },
+        { label: 'total torque', unit: 'N m', numeric: true, digits: 6 },
+        ...(has_published ? [{ label: 'published torque', unit: 'N m', numeric: true, digits: 6 }, { label: 'where' }] : []),
+      ],
+      rows: arm.results.map((row) => [
+        row.design,
+        times(row.mean_m, kMillimetres),
+        ...(has_published ? [times(row.published_mean_m, kMillimetres)] : []),
+        times(row.median_m, kMillimetres),
+        times(row.p95_m, kMillimetres),
+        times(row.worst_m, kMillimetres),
+        row.failures,
+        row.cases,
+        row.total_torque_n_m,
+        ...(has_published ? [row.published_torque_n_m, row.where] : []),
+      ]),
+    },
+  };
+}

@@ -1,0 +1,79 @@
+// All published errors against those simulated again, at a glance.
+import { get_series_style } from '../charts/look';
+import { make_number_axis, make_plot } from '../charts/marks';
+import { shorten } from '../charts/names';
+import { make_line, type Part } from '../charts/parts';
+import type { ReproductionData } from '../data';
+import type { Cell, Figure, Value } from '../model';
+import { format_number, kMillimetres } from '../numbers';
+import { are_positive, find_range, is_number } from './quantities';
+
+export function make_published_figure(data: ReproductionData): Figure | null {
+  const rows = data.rows.filter((row) => is_number(row.published_error_m) && is_number(row.mean_m));
+  const range = find_range(rows.map((row) => row.published_error_m).concat(rows.map((row) => row.mean_m)));
+  if (range === null) {
+    return null;
+  }
+  const mm = (value: number | null) => (value as number) * kMillimetres;
+  const log = are_positive(rows.map((row) => row.published_error_m).concat(rows.map((row) => row.mean_m)));
+  const ends = log ? [(range[0] * kMillimetres) / 2, range[1] * kMillimetres * 2] : [range[0] * kMillimetres, range[1] * kMillimetres];
+  return {
+    kind: 'figure',
+    id: 'published',
+    title: 'Published errors and ours',
+    caption:
+      'The average positional error of each published design as simulated here, against what the thesis printed; on the line they agree. ' +
+      'Above the line the design is worse here than there.',
+    height: 420,
+    draw: (look) => {
+      const style = get_series_style(look, 0);
+      const points = rows.map((row) => ({
+        value: [mm(row.published_error_m), mm(row.mean_m)],
+        name: shorten(row.label, 24),
+        command: row.command || undefined,
+        note: `${row.label}: published ${format_number(mm(row.published_error_m))} mm (${row.where}), here ${format_number(mm(row.mean_m))} mm over ${row.cases} cases.`,
+      }));
+      const series: Part[] = [
+        make_line(look, 0, 'agreement', [[ends[0], ends[0]], [ends[1], ends[1]]], {
+          width: 1.2,
+          style: { color: look.muted, dash: 'dashed', symbol: 'none' },
+        }),
+        {
+          type: 'scatter',
+          name: 'published designs',
+          data: points,
+          symbol: 'circle',
+          symbolSize: 9,
+          itemStyle: { color: style.color },
+          label: {
+            show: true,
+            formatter: (item: { name: string }) => item.name,
+            position: 'left',
+            color: look.text,
+            fontFamily: look.font,
+            fontSize: 11,
+          },
+          labelLayout: { hideOverlap: true, moveOverlap: 'shiftY' },
+        },
+      ];
+      return make_plot(
+        look,
+        make_number_axis(look, 'x', 'published average error (mm)', { log, min: log ? undefined : 0, values: ends }),
+        make_number_axis(look, 'y', 'average error here (mm)', { log, min: log ? undefined : 0, values: ends }),
+        series,
+      );
+    },
+    table: () => ({
+      columns: [
+        { label: 'result' },
+        { label: 'published', unit: 'mm', numeric: true },
+        { label: 'here', unit: 'mm', numeric: true },
+      ],
+      rows: rows.map((row): (Value | Cell)[] => [
+        { value: row.label, command: row.command || undefined },
+        mm(row.published_error_m),
+        mm(row.mean_m),
+      ]),
+    }),
+  };
+}

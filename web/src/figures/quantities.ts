@@ -1,0 +1,63 @@
+// Units as people read them: errors in millimetres, angles in degrees.
+import { kDegrees, kMillimetres } from '../numbers';
+import type { Quantity } from '../data';
+
+export interface Shown {
+  name: string;
+  unit: string;
+  factor: number; // from SI
+}
+
+export function get_shown(quantity: Quantity): Shown {
+  switch (quantity.unit) {
+    case 'm':
+      return { name: quantity.name, unit: 'mm', factor: kMillimetres };
+    case 'rad':
+      return { name: quantity.name, unit: '°', factor: kDegrees };
+    default:
+      return { name: quantity.name, unit: quantity.unit, factor: 1 };
+  }
+}
+
+export function name_axis(name: string, unit: string): string {
+  return unit === '' ? name : `${name} (${unit})`;
+}
+
+export function is_number(value: number | null | undefined): value is number {
+  return typeof value === 'number' && isFinite(value);
+}
+
+export function times(value: number | null | undefined, factor: number): number | null {
+  return is_number(value) ? value * factor : null;
+}
+
+// Whether a logarithmic axis can show them.
+export function are_positive(values: (number | null)[]): boolean {
+  const numbers = values.filter(is_number);
+  return numbers.length > 0 && numbers.every((value) => value > 0);
+}
+
+export function find_range(values: (number | null)[]): [number, number] | null {
+  const numbers = values.filter(is_number);
+  if (numbers.length === 0) {
+    return null;
+  }
+  let low = numbers[0];
+  let high = numbers[0];
+  numbers.forEach((value) => {
+    low = Math.min(low, value);
+    high = Math.max(high, value);
+  });
+  return [low, high];
+}
+
+export function flatten<T>(lists: T[][]): T[] {
+  const all: T[] = [];
+  lists.forEach((list) => list.forEach((one) => all.push(one)));
+  return all;
+}
+
+// "12 cases", "1 case".
+export function count_of(count: number, thing: string): string {
+  return `${count} ${thing}${count === 1 ? '' : 's'}`;
+}

@@ -1,0 +1,73 @@
+// What the figures in time have in common: cases, designs and numbers of a replay set by what was picked.
+import { shorten, shorten_all } from '../charts/names';
+import type { DesignInfo, Motion, Packed, ReplayCase, ReplaySet, Segment } from '../data';
+import type { Choice, Picked } from '../model';
+import { unpack } from '../numbers';
+
+export const kAll = 'all';
+
+export function make_case_choice(set: ReplaySet): Choice {
+  return {
+    id: 'case',
+    label: 'case',
+    options: set.cases.map((one) => ({ value: one.id, label: shorten(one.label, 60) })),
+    initial: set.cases[0].id,
+  };
+}
+
+export function get_case(set: ReplaySet, picked: Picked): ReplayCase {
+  return set.cases.filter((one) => one.id === picked.case)[0] ?? set.cases[0];
+}
+
+export function make_design_choice(set: ReplaySet, with_all: boolean): Choice {
+  const names = shorten_all(set.designs.map((one) => one.name));
+  const options = set.designs.map((one, i) => ({ value: one.id, label: names[i] }));
+  return {
+    id: 'design',
+    label: 'design',
+    options: with_all && options.length > 1 ? [{ value: kAll, label: 'all' }, ...options] : options,
+    initial: with_all && options.length > 1 ? kAll : (set.designs[0]?.id ?? ''),
+  };
+}
+
+export interface Moved {
+  design: DesignInfo;
+  index: number; // of the design, which is its colour
+  name: string;
+  motion: Motion;
+}
+
+// The motions of the picked designs on a case.
+export function get_motions(set: ReplaySet, one: ReplayCase, picked: Picked): Moved[] {
+  const names = shorten_all(set.designs.map((design) => design.name));
+  const moved: Moved[] = [];
+  set.designs.forEach((design, index) => {
+    const wanted = picked.design === undefined || picked.design === kAll || picked.design === design.id;
+    const motion = one.motions.filter((each) => each.design === design.id)[0];
+    if (wanted && motion !== undefined) {
+      moved.push({ design, index, name: names[index], motion });
+    }
+  });
+  return moved;
+}
+
+// Every `count`-th number from `offset` on: a column of what is packed by rows.
+export function get_column(packed: Packed, count: number, offset: number): Float32Array {
+  const all = unpack(packed);
+  const column = new Float32Array(Math.floor(all.length / count));
+  for (let i = 0; i < column.length; ++i) {
+    column[i] = all[i * count + offset];
+  }
+  return column;
+}
+
+// Row k is the state at the end of control period k.
+export function get_time(set: ReplaySet, row: number): number {
+  return (row + 1) * set.task.control_period_s;
+}
+
+// When the errors of a move begin to count.
+export function get_window(set: ReplaySet, segment: Segment): [number, number] {
+  const dt = set.task.control_period_s;
+  return [segment.window_start * dt, segment.steps * dt];
+}

@@ -1,0 +1,262 @@
+// What an optimizer costs against how good it gets.
+import type { EChartsOption } from '../charts/echarts';
+import type { Look } from '../charts/look';
+import type { Part } from '../charts/parts';
+import { estimate_width, make_grid_lines, make_scale, make_scaled_axis, place_on } from '../charts/scales';
+import type { StudyProblem } from '../data';
+import type { Choice, Figure, Picked } from '../model';
+import { format_number } from '../numbers';
+import {
+  convert,
+  describe_size,
+  describe_value,
+  end_title,
+  get_curve_name,
+  get_order,
+  get_picked,
+  get_problem,
+  get_style,
+  get_unit,
+  make_problem_choices,
+  make_ranked_chart,
+  make_symbol,
+  name_axis,
+  type Scope,
+} from './study_parts';
+
+const kMostLabels = 10;
+
+interface Box {
+  x: number;
+  y: number;
+  width: number;
+  height: number;
+}
+
+function overlap(a: Box, b: Box): number {
+  const wide = Math.min(a.x + a.width, b.x + b.width) - Math.max(a.x, b.x);
+  const high = Math.min(a.y + a.height, b.y + b.height) - Math.max(a.y, b.y);
+  return wide > 0 && high > 0 ? wide * high : 0;
+}
+
+// Each label where it covers least of points and other labels, near before far.
+export function place_labels(points: [number, number][], texts: string[], size: number, frame: Box): Box[] {
+  const taken: Box[] = points.map(([x, y]) => ({ x: x - 5, y: y - 5, width: 10, height: 10 }));
+  return texts.map((text, i) => {
+    const width = estimate_width(text, size) + 2;
+    const height = size + 2;
+    let best: Box | null = null;
+    let least = Infinity;
+    [8, 20, 34, 50, 68].forEach((far) => {
+      for (let k = 0; k < 16; ++k) {
+        const angle = (k * Math.PI) / 8;
+        const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
+        const box = {
+          x: points[i][0] + far * cos + (cos > 0.3 ? 0 : cos < -0.3 ? -width : -width / 2),
+          y: points[i][1] + far * sin - height / 2,
+          width,
+          height,
+        };
+        const outside =
+          Math.max(0, frame.x - box.x) +
+          Math.max(0, box.x + width - frame.x - frame.width) +
+          Math.max(0, frame.y - box.y) +
+          Math.max(0, box.y + height - frame.y - frame.height);
+        const cost = taken.reduce((sum, other) => sum + overlap(box, other), 0) * 10 + outside * 100 + far * 0.5 + (k % 8) * 0.01;
+        if (cost < least) {
+          least = cost;
+          best = box;
+        }
+      }
+    });
+    const box = best ?? { x: points[i][0], y: points[i][1], width, height };
+    taken.push(box);
+    return box;
+  });
+}
+
+type Drawing = { coord(point: number[]): number[] };
+
+function make_labels(look: Look, places: [number, number][], texts: string[]): Part {
+  return {
+    type: 'custom',
+    data: places.length > 0 ? [places[0]] : [],
+    silent: true,
+    z: 4,
+    renderItem: (item: { coordSys: Box }, api: Drawing) => {
+      const points = places.map((place) => api.coord(place) as [number, number]);
+      const size = 11;
+      const boxes = place_labels(points, texts, size, item.coordSys);
+      const children: Part[] = [];
+      texts.forEach((text, i) => {
+        const box = boxes[i];
+        const [x, y] = points[i];
+        const left = box.x + box.width / 2 < x;
+        const near: [number, number] = [Math.min(box.x + box.width, Math.max(box.x, x)), Math.min(box.y + box.height, Math.max(box.y, y))];
+        if (Math.abs(near[0] - x) + Math.abs(near[1] - y) > 14) {
+          children.push({
+            type: 'line',
+            shape: { x1: x, y1: y, x2: near[0], y2: near[1] },
+            style: { stroke: look.muted, lineWidth: 0.7 },
+          });
+        }
+        children.push({
+          type: 'text',
+          style: {
+            x: left ? box.x + box.width - 1 : box.x + 1,
+            y: box.y + box.height / 2,
+            text,
+            fill: look.text,
+            stroke: look.background,
+            lineWidth: 2,
+            font: size + 'px ' + look.font,
+            textAlign: left ? 'right' : 'left',
+            textVerticalAlign: 'middle',
+          },
+        });
+      });
+      return { type: 'group', children };
+    },
+  };
+}
+
+function draw_cost(look: Look, scope: Scope, problem: StudyProblem, target: number): EChartsOption {
+  const unit = get_unit(problem.quantity.unit);
+  const order = get_order(scope, problem);
+  const times = order.map((o) => problem.results[o].running_times[target]);
+  const costs = times.map((time) => (time ? time.expected : null));
+  const values = order.map((o) => convert(problem.results[o].median, unit));
+  const x = make_scale(
+    costs,
+    true,
+    costs.some((cost) => cost === null),
+  );
+  const y = make_scale(
+    values,
+    true,
+    values.some((value) => value === null),
+  );
+  // Those in a strip side by side.
+  const places = order.map((_, i): [number, number] => {
+    const share = [0.3, 0.5, 0.7][i % 3];
+    return [place_on(x, costs[i], share), place_on(y, values[i], share)];
+  });
+  const points = order.map((o, i) => {
+    const style = get_style(look, scope, o);
+    const time = times[i];
+    return {
+      value: places[i],
+      ...make_symbol(look, style),
+      symbolSize: 10,
+      note:
+        scope.names[o] +
+        '; median ' +
+        describe_value(problem.results[o].median, unit) +
+        '; ' +
+        (time && time.expected !== null
+          ? format_number(time.expected) +
+            ' cases expected (' +
+            format_number(time.interval[0], 3) +
+            ' to ' +
+            format_number(time.interval[1], 3) +
+            '), reached by ' +
+            time.reached +
+            ' of ' +
+            problem.results[o].cells.length
+          : 'target not reached'),
+    };
+  });
+  const labelled = order.map((_, i) => i).slice(0, kMostLabels);
+  return make_ranked_chart(
+    look,
+    make_scaled_axis(look, 'x', 'expected running time to the target (simulated cases)', x, 'never'),
+    make_scaled_axis(look, 'y', name_axis('median ' + problem.quantity.name, unit.unit), y, 'none'),
+    [
+      make_grid_lines(look, x, y),
+      { type: 'scatter', name: 'optimizer', data: points, z: 3, clip: false },
+      make_labels(
+        look,
+        labelled.map((i) => places[i]),
+        labelled.map((i) => scope.names[order[i]]),
+      ),
+    ],
+    [],
+    [],
+  );
+}
+
+// "to 0.31 mm (1 % of the way left)"
+function describe_target(problem: StudyProblem, target: number): string {
+  const { unit } = get_curve_name(problem);
+  const way = problem.start !== null && problem.best_known !== null ? problem.start - problem.best_known : 0;
+  const share = way > 0 && problem.best_known !== null ? (target - problem.best_known) / way : NaN;
+  return describe_value(target, unit) + (isFinite(share) ? ' (' + format_tenth(100 * share) + ' % of the way left)' : '');
+}
+
+function format_tenth(value: number): string {
+  return String(Number(value.toPrecision(2)));
+}
+
+function count_reached(problem: StudyProblem, target: number): number {
+  return problem.results.filter((one) => (one.running_times[target]?.reached ?? 0) > 0).length;
+}
+
+export function make_cost_quality(scope: Scope): Figure | null {
+  const count = scope.problems.reduce((most, problem) => Math.max(most, problem.results[0]?.running_times.length ?? 0), 0);
+  if (count === 0) {
+    return null;
+  }
+  const one = scope.problems.length === 1 ? scope.problems[0] : null;
+  const target: Choice = { id: 'target', label: 'Target', options: [], initial: '0' };
+  for (let t = 0; t < count; ++t) {
+    const example = scope.problems[0].results[0]?.running_times[t]?.target ?? 0;
+    target.options.push({ value: String(t), label: one ? describe_target(one, example) : 'target ' + (t + 1) });
+    // The tightest that at least half of the optimizers reach at all.
+    if (2 * count_reached(scope.problems[0], t) >= scope.names.length) {
+      target.initial = String(t);
+    }
+  }
+  const get_target = (picked: Picked) => Number(get_picked(target, picked));
+  return {
+    kind: 'figure',
+    id: 'cost-quality' + scope.suffix,
+    title: end_title(scope, 'Cost against quality'),
+    caption:
+      'A point an optimizer: how many simulated cases it would take on average to come to the chosen target, starting anew until it is reached, against the median value at the end of the budget; lower left is better. ' +
+      'Who reached the target in no run stands in the strip at the right. Running times are as coarse as the checkpoints; targets lie between the start and the best known value and depend on who takes part. ' +
+      'Neither axis shows how sure a difference is: see the pairs. ' +
+      (scope.names.length > kMostLabels ? 'The best ' + kMostLabels + ' are named. ' : '') +
+      describe_size(scope),
+    height: 400,
+    choices: make_problem_choices(scope).concat([target]),
+    draw: (look, picked) => draw_cost(look, scope, get_problem(scope, picked), get_target(picked)),
+    table: (picked) => {
+      const problem = get_problem(scope, picked);
+      const unit = get_unit(problem.quantity.unit);
+      return {
+        columns: [
+          { label: 'optimizer' },
+          { label: 'median', unit: unit.unit, numeric: true },
+          { label: 'expected running time', unit: 'cases', numeric: true, digits: 6 },
+          { label: 'lower', unit: 'cases', numeric: true, digits: 6 },
+          { label: 'upper', unit: 'cases', numeric: true, digits: 6 },
+          { label: 'runs that reached it', numeric: true, digits: 9 },
+          { label: 'runs', numeric: true, digits: 9 },
+        ],
+        rows: get_order(scope, problem).map((o) => {
+          const result = problem.results[o];
+          const time = result.running_times[get_target(picked)];
+          return [
+            scope.names[o],
+            convert(result.median, unit),
+            time ? time.expected : null,
+            time ? time.interval[0] : null,
+            time ? time.interval[1] : null,
+            time ? time.reached : null,
+            result.cells.length,
+          ];
+        }),
+      };
+    },
+  };
+}

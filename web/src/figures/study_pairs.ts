@@ -1,0 +1,242 @@
+// Every two optimizers: are they told apart, and by how much does one beat the other?
+import type { EChartsOption } from '../charts/echarts';
+import type { Look } from '../charts/look';
+import { make_axis, make_chart, type Part } from '../charts/parts';
+import type { StudyPair, StudyProblem } from '../data';
+import type { DataTable, Figure } from '../model';
+import { describe_size, end_title, get_order, get_problem, make_problem_choices, type Scope } from './study_parts';
+import { estimate_width } from '../charts/scales';
+
+// "0.25", "0.044", "4e-5", "<1e-6": five characters at most.
+export function format_p(p: number): string {
+  if (p < 1e-6) {
+    return '<1e-6';
+  }
+  return p >= 0.995 ? '1' : p >= 0.1 ? p.toFixed(2) : p >= 0.01 ? p.toFixed(3) : p.toExponential(0);
+}
+
+interface Rgb {
+  red: number;
+  green: number;
+  blue: number;
+}
+
+function parse_color(hex: string): Rgb {
+  const part = (from: number) => parseInt(hex.slice(from, from + 2), 16);
+  return { red: part(1), green: part(3), blue: part(5) };
+}
+
+function parse_rgb(color: string): Rgb {
+  const [red, green, blue] = color.slice(4, -1).split(',').map(Number);
+  return { red, green, blue };
+}
+
+function mix(from: string, to: string, share: number): string {
+  const [a, b] = [parse_color(from), parse_color(to)];
+  const one = (x: number, y: number) => Math.round(x + (y - x) * Math.min(1, Math.max(0, share)));
+  return 'rgb(' + one(a.red, b.red) + ',' + one(a.green, b.green) + ',' + one(a.blue, b.blue) + ')';
+}
+
+// Black or white, whichever stands out more (relative luminance of WCAG 2, with a gamma of 2.2).
+function get_readable(fill: string): string {
+  const light = (part: number) => Math.pow(part / 255, 2.2);
+  const parts = fill.charAt(0) === '#' ? parse_color(fill) : parse_rgb(fill);
+  const luminance = 0.2126 * light(parts.red) + 0.7152 * light(parts.green) + 0.0722 * light(parts.blue);
+  return luminance > 0.18 ? '#14181d' : '#ffffff';
+}
+
+// Blue where the row is better, orange where the column is, nothing in between.
+function get_a12_color(look: Look, a12: number): string {
+  return a12 >= 0.5 ? mix(look.background, look.series[0], (a12 - 0.5) * 1.7) : mix(look.background, look.series[1], (0.5 - a12) * 1.7);
+}
+
+export function find_pair(pairs: StudyPair[], a: number, b: number): StudyPair | undefined {
+  return pairs.filter((pair) => (pair.a === a && pair.b === b) || (pair.a === b && pair.b === a))[0];
+}
+
+type Drawing = { value(dimension: number): number; coord(point: number[]): number[]; size(extent: number[]): number[] };
+interface Square {
+  fill: string;
+  text: string;
+  marked: boolean;
+}
+
+function draw_pairs(look: Look, scope: Scope, problem: StudyProblem): EChartsOption {
+  const order = get_order(scope, problem);
+  const names = order.map((o) => scope.names[o]);
+  const place: number[] = [];
+  order.forEach((o, i) => (place[o] = i));
+  const squares: Square[] = [];
+  const data: Part[] = [];
+  problem.pairs.forEach((pair) => {
+    const first_is_a = place[pair.a] < place[pair.b];
+    const [better, worse] = first_is_a ? [pair.a, pair.b] : [pair.b, pair.a];
+    const a12 = first_is_a ? pair.a12 : 1 - pair.a12;
+    const note =
+      scope.names[better] +
+      ' against ' +
+      scope.names[worse] +
+      '; A12 = ' +
+      a12.toFixed(3) +
+      ', p = ' +
+      format_p(pair.p_holm) +
+      ' after Holm (' +
+      format_p(pair.p) +
+      ' before); ' +
+      (first_is_a ? pair.wins : pair.losses) +
+      ' wins, ' +
+      pair.ties +
+      ' ties, ' +
+      (first_is_a ? pair.losses : pair.wins) +
+      ' losses; ' +
+      (pair.significant ? 'told apart' : 'not told apart');
+    data.push({ value: [place[worse], place[better]], note });
+    squares.push({ fill: get_a12_color(look, a12), text: a12.toFixed(2), marked: pair.significant });
+    data.push({ value: [place[better], place[worse]], note });
+    squares.push({
+      fill: pair.significant ? mix(look.background, look.text, 0.22) : look.background,
+      text: format_p(pair.p_holm),
+      marked: pair.significant,
+    });
+  });
+  const series: Part = {
+    type: 'custom',
+    name: 'pair',
+    data,
+    encode: { x: 0, y: 1 },
+    renderItem: (item: { dataIndex: number }, api: Drawing) => {
+      const square = squares[item.dataIndex];
+      const [x, y] = api.coord([api.value(0), api.value(1)]);
+      const [width, height] = api.size([1, 1]).map(Math.abs);
+      // As much text as fits; of small squares the colours and the marks have to do.
+      const size = width < 28 ? 0 : Math.min(11, width / 3.1, height / 1.6);
+      const children: Part[] = [
+        {
+          type: 'rect',
+          shape: { x: x - width / 2, y: y - height / 2, width, height },
+          style: { fill: square.fill, stroke: look.grid, lineWidth: 0.6 },
+        },
+      ];
+      if (size >= 6.5) {
+        children.push({
+          type: 'text',
+          style: {
+            x,
+            y: y - (square.marked ? height * 0.08 : 0),
+            text: square.text,
+            fill: get_readable(square.fill),
+            font: (square.marked ? 'bold ' : '') + size.toFixed(1) + 'px ' + look.font,
+            textAlign: 'center',
+            textVerticalAlign: 'middle',
+          },
+        });
+      }
+      if (square.marked) {
+        // A bar under the number; of small squares it is all that can be read.
+        const long = Math.min(width * 0.5, 16);
+        const below = size >= 6.5 ? y + height * 0.3 : y;
+        children.push({
+          type: 'rect',
+          shape: { x: x - long / 2, y: below - 0.9, width: long, height: 1.8 },
+          style: { fill: get_readable(square.fill) },
+        });
+      }
+      return { type: 'group', children };
+    },
+  };
+  const width = Math.min(140, Math.max(30, Math.ceil(names.reduce((most, name) => Math.max(most, estimate_width(name, 11)), 0))));
+  const many = names.length > 20;
+  const make_side = (direction: 'x' | 'y'): Part => ({
+    ...make_axis(look, direction, '', { categories: names, inverse: direction === 'y' }),
+    name: undefined,
+    axisTick: { show: false },
+    axisLine: { show: false },
+    axisLabel: {
+      color: look.text,
+      fontFamily: look.font,
+      fontSize: many ? 9 : 11,
+      interval: 0,
+      rotate: direction === 'x' ? 60 : 0,
+      width: direction === 'x' ? Math.min(width, 110) : width,
+      overflow: 'truncate',
+    },
+  });
+  return make_chart(look, make_side('x'), make_side('y'), [series], {
+    grid: { left: width + 14, right: 92, top: 14, bottom: Math.min(width, 110) * 0.87 + 18 },
+    // Only the key: the squares are coloured above, the upper triangle alone by this scale.
+    visualMap: {
+      type: 'continuous',
+      seriesIndex: [],
+      min: 0,
+      max: 1,
+      calculable: false,
+      hoverLink: false,
+      orient: 'vertical',
+      right: 8,
+      top: 'middle',
+      itemHeight: 110,
+      itemWidth: 12,
+      text: ['A12 = 1\nrow better', 'column better\nA12 = 0'],
+      textStyle: { color: look.muted, fontFamily: look.font, fontSize: 10 },
+      inRange: { color: [0, 0.25, 0.5, 0.75, 1].map((a12) => get_a12_color(look, a12)) },
+    },
+  });
+}
+
+export function tabulate_pairs(scope: Scope, problems: StudyProblem[]): DataTable {
+  const many = problems.length > 1;
+  const rows = problems.reduce(
+    (all, problem) =>
+      all.concat(
+        problem.pairs.map((pair) =>
+          (many ? [problem.label as string | number] : []).concat([
+            scope.names[pair.a],
+            scope.names[pair.b],
+            pair.p,
+            pair.p_holm,
+            pair.significant ? 'yes' : 'no',
+            pair.a12,
+            pair.wins,
+            pair.ties,
+            pair.losses,
+          ]),
+        ),
+      ),
+    [] as (string | number)[][],
+  );
+  const columns = [
+    { label: 'a, with the better median' },
+    { label: 'b' },
+    { label: 'p', numeric: true },
+    { label: 'p after Holm', numeric: true },
+    { label: 'told apart' },
+    { label: 'A12 of a', numeric: true, digits: 3 },
+    { label: 'wins of a', numeric: true, digits: 9 },
+    { label: 'ties', numeric: true, digits: 9 },
+    { label: 'losses', numeric: true, digits: 9 },
+  ];
+  return { columns: many ? [{ label: 'problem' } as (typeof columns)[0]].concat(columns) : columns, rows };
+}
+
+// Of those problems of the scope that have tests; nothing if none has.
+export function make_pairs(all: Scope): Figure | null {
+  const scope: Scope = { ...all, problems: all.problems.filter((problem) => problem.pairs.length > 0) };
+  if (scope.problems.length === 0) {
+    return null;
+  }
+  return {
+    kind: 'figure',
+    id: 'pairs' + scope.suffix,
+    title: end_title(scope, 'Every two optimizers'),
+    caption:
+      "Above the diagonal A12, the probability that a run of the row beats one of the column (0.5: neither; 0.56, 0.64, 0.71: small, medium, large); below it the p-value of Wilcoxon's signed-rank test over replicates, after Holm's correction for all pairs of the problem. " +
+      'Bold and underlined is what is significant at 0.05. Rows and columns are ordered best first. ' +
+      'A pair that is not told apart is not thereby equal: more replicates may tell. ' +
+      describe_size(scope),
+    height: Math.max(380, 140 + 20 * scope.names.length),
+    width: scope.names.length > 8 ? 'full' : 'half',
+    choices: make_problem_choices(scope),
+    draw: (look, picked) => draw_pairs(look, scope, get_problem(scope, picked)),
+    table: (picked) => tabulate_pairs(scope, [get_problem(scope, picked)]),
+  };
+}

@@ -1,0 +1,186 @@
+// What the figures of a comparison share: names, units, colours, and the legend at the side.
+import type { EChartsOption } from '../charts/echarts';
+import { get_series_style, type Look, type SeriesStyle } from '../charts/look';
+import { shorten, shorten_all } from '../charts/names';
+import { make_chart, type Part } from '../charts/parts';
+import { estimate_width } from '../charts/scales';
+import type { Quantity, StudyData, StudyProblem } from '../data';
+import type { Choice, Picked } from '../model';
+import { format_number, kMillimetres } from '../numbers';
+
+// So many optimizers are drawn at first: beyond, curves hide each other.
+export const kMostAtFirst = 8;
+
+export interface Unit {
+  factor: number;
+  unit: string; // "" of what has none
+}
+
+export function get_unit(unit: string): Unit {
+  return unit === 'm' ? { factor: kMillimetres, unit: 'mm' } : { factor: 1, unit: unit === '1' ? '' : shorten(unit, 12) };
+}
+
+export function convert(value: number | null | undefined, unit: Unit): number | null {
+  return value === null || value === undefined || !isFinite(value) ? null : value * unit.factor;
+}
+
+export function convert_all(values: (number | null)[], unit: Unit): (number | null)[] {
+  return values.map((value) => convert(value, unit));
+}
+
+export function name_axis(name: string, unit: string): string {
+  return unit === '' ? shorten(name) : shorten(name) + ' (' + unit + ')';
+}
+
+// What curves, targets and running times are of; of several objectives values are something else.
+export function get_curve_name(problem: StudyProblem): { name: string; unit: Unit } {
+  return problem.has_front
+    ? { name: 'weighted sum of the objectives', unit: { factor: 1, unit: '' } }
+    : { name: problem.quantity.name, unit: get_unit(problem.quantity.unit) };
+}
+
+export function describe_value(value: number | null, unit: Unit, quantity?: Quantity): string {
+  const text = value === null ? 'no value' : format_number(value * unit.factor) + (unit.unit === '' ? '' : ' ' + unit.unit);
+  return quantity ? shorten(quantity.name) + ' ' + text : text;
+}
+
+// What a figure or table is about: one problem, or several to choose from.
+export interface Scope {
+  data: StudyData;
+  problems: StudyProblem[];
+  suffix: string; // of the ids
+  names: string[]; // of the optimizers, as drawn
+  styles: number[]; // of each, for get_series_style
+}
+
+export function make_scope(data: StudyData, problems: StudyProblem[], suffix: string): Scope {
+  const names = shorten_all(data.optimizers.map((one) => one.label));
+  const styles = names.map((_, i) => i);
+  const ranks = data.overall ? data.overall.mean_ranks : (data.problems[0]?.results ?? []).map((one) => one.mean_rank ?? Infinity);
+  if (names.length > kMostAtFirst && ranks.length === names.length) {
+    // The best ones get the colours that are easiest to tell apart.
+    sort_by(styles, (i) => ranks[i]).forEach((optimizer, place) => (styles[optimizer] = place));
+  }
+  return { data, problems, suffix, names, styles };
+}
+
+// Sorted anew, equal ones in their order.
+export function sort_by<T>(items: T[], key: (item: T) => number): T[] {
+  const keyed = items.map((item, i) => ({ item, i, key: key(item) }));
+  keyed.sort((a, b) => (a.key < b.key ? -1 : a.key > b.key ? 1 : a.i - b.i));
+  return keyed.map((one) => one.item);
+}
+
+// Best first. What is missing in the data's order is appended.
+export function get_order(scope: Scope, problem: StudyProblem): number[] {
+  const all = scope.names.map((_, i) => i).filter((i) => problem.results[i] !== undefined);
+  const ordered = problem.order.filter((i) => all.indexOf(i) >= 0);
+  return ordered.concat(all.filter((i) => ordered.indexOf(i) < 0));
+}
+
+export function get_style(look: Look, scope: Scope, optimizer: number): SeriesStyle {
+  return get_series_style(look, scope.styles[optimizer]);
+}
+
+// ECharts fills its empty symbols white, on dark as well: here they have the page's background.
+export function make_symbol(look: Look, style: SeriesStyle): { symbol: string; itemStyle: Part } {
+  if (style.symbol.indexOf('empty') !== 0) {
+    return { symbol: style.symbol, itemStyle: { color: style.color } };
+  }
+  return {
+    symbol: style.symbol.slice('empty'.length).toLowerCase(),
+    itemStyle: { color: look.background, borderColor: style.color, borderWidth: 1.6 },
+  };
+}
+
+const kProblemChoice = 'problem';
+
+export function make_problem_choices(scope: Scope): Choice[] {
+  if (scope.problems.length < 2) {
+    return [];
+  }
+  const labels = shorten_all(scope.problems.map((problem) => problem.label));
+  return [{ id: kProblemChoice, label: 'Problem', options: labels.map((label, i) => ({ value: String(i), label })), initial: '0' }];
+}
+
+export function get_problem(scope: Scope, picked: Picked): StudyProblem {
+  return scope.problems[Number(picked[kProblemChoice] ?? '0')] ?? scope.problems[0];
+}
+
+export function get_picked(choice: Choice, picked: Picked): string {
+  const value = picked[choice.id];
+  return choice.options.filter((option) => option.value === value).length > 0 ? value : choice.initial;
+}
+
+// "15 replicates", and what is missing of them.
+export function describe_size(scope: Scope): string {
+  const n = scope.data.replicates;
+  const missing = scope.problems.reduce((sum, problem) => sum + problem.missing, 0);
+  const size =
+    n === 1 ? 'One replicate an optimizer: its value is an anecdote, and nothing can be concluded.' : n + ' replicates an optimizer.';
+  return missing === 0
+    ? size
+    : size +
+        ' Unfinished: ' +
+        missing +
+        (missing === 1 ? ' run has' : ' runs have') +
+        ' not ended; the numbers are of those that have, and optimizers may stand on different replicates.';
+}
+
+export function end_title(scope: Scope, title: string): string {
+  return scope.problems.length === 1 && scope.data.problems.length > 1 ? title + ': ' + shorten(scope.problems[0].label) : title;
+}
+
+// A chart with its legend at the right, best first; `drawn` are switched on at first.
+export function make_ranked_chart(
+  look: Look,
+  x: Part,
+  y: Part,
+  series: Part[],
+  legend: string[],
+  drawn: string[],
+  more: Part = {},
+): EChartsOption {
+  const longest = legend.reduce((most, name) => Math.max(most, estimate_width(name, 11)), 0);
+  const width = Math.min(150, Math.max(40, Math.ceil(longest)));
+  const selected: Record<string, boolean> = {};
+  legend.forEach((name) => (selected[name] = drawn.indexOf(name) >= 0));
+  const has_legend = legend.length > 1;
+  return make_chart(look, x, y, series, {
+    grid: { left: 68, right: has_legend ? width + 66 : 24, top: 20, bottom: 48 },
+    legend: has_legend
+      ? {
+          type: 'scroll',
+          orient: 'vertical',
+          right: 6,
+          top: 14,
+          bottom: 14,
+          itemWidth: 26,
+          itemHeight: 9,
+          itemGap: 7,
+          data: legend,
+          selected,
+          textStyle: { color: look.text, fontFamily: look.font, fontSize: 11, width, overflow: 'truncate' },
+          inactiveColor: look.muted,
+          inactiveBorderColor: look.grid,
+          pageTextStyle: { color: look.muted },
+          pageIconColor: look.accent,
+          pageIconInactiveColor: look.grid,
+        }
+      : { show: false },
+    ...more,
+  });
+}
+
+// Stretches of consecutive rows that are there.
+export function split_rows<T>(rows: (T | null)[]): T[][] {
+  const pieces: T[][] = [[]];
+  rows.forEach((row) => {
+    if (row === null) {
+      pieces.push([]);
+    } else {
+      pieces[pieces.length - 1].push(row);
+    }
+  });
+  return pieces.filter((piece) => piece.length > 0);
+}

@@ -1,0 +1,272 @@
+// How far optimizers get with how much: curves over the budget, and shares of targets and problems.
+import type { EChartsOption } from '../charts/echarts';
+import type { Look } from '../charts/look';
+import { make_band, make_line, type Part, type Point } from '../charts/parts';
+import { make_grid_lines, make_scale, make_scaled_axis, type Scale } from '../charts/scales';
+import type { StudyProblem } from '../data';
+import type { Choice, DataTable, Figure, Picked, Value } from '../model';
+import { format_number } from '../numbers';
+import {
+  convert_all,
+  describe_size,
+  describe_value,
+  end_title,
+  get_curve_name,
+  get_order,
+  get_picked,
+  get_problem,
+  get_style,
+  kMostAtFirst,
+  make_problem_choices,
+  make_ranked_chart,
+  make_symbol,
+  name_axis,
+  type Scope,
+  sort_by,
+  split_rows,
+} from './study_parts';
+
+const kCasesAxis = 'simulated training cases';
+const kFirstOnes = (count: number) =>
+  count > kMostAtFirst ? ' Of ' + count + ' optimizers the best ' + kMostAtFirst + ' are drawn at first; the legend switches them.' : '';
+
+function draw_convergence(look: Look, scope: Scope, problem: StudyProblem): EChartsOption {
+  const { name, unit } = get_curve_name(problem);
+  const order = get_order(scope, problem);
+  const curves = order.map((o) => {
+    const curve = problem.results[o].curve;
+    return { q1: convert_all(curve.q1, unit), median: convert_all(curve.median, unit), q3: convert_all(curve.q3, unit) };
+  });
+  const drawn = curves.slice(0, kMostAtFirst);
+  const everything = (list: typeof curves) => list.reduce((all, one) => all.concat(one.q1, one.median, one.q3), [] as (number | null)[]);
+  // Room for all that can be switched on.
+  const y = make_scale(everything(curves.length > 2 * kMostAtFirst ? drawn : curves), true);
+  const x = make_scale(problem.checkpoints, true);
+  // Lines before bands: the legend draws the first series of a name.
+  const bands: Part[] = [];
+  const series: Part[] = [make_grid_lines(look, x, y)];
+  order.forEach((o, place) => {
+    const { q1, median, q3 } = curves[place];
+    const style = get_style(look, scope, o);
+    const rows = problem.checkpoints.map((cases, i): [number, number, number] | null => {
+      const low = q1[i] ?? null;
+      // A quartile without value is beyond any axis.
+      return low === null ? null : [cases, low, q3[i] ?? y.high * 10];
+    });
+    split_rows(rows).forEach((piece) => bands.push(make_band(scope.names[o], piece, style.color)));
+    const points = problem.checkpoints.map((cases, i): Point => {
+      const value = median[i] ?? null;
+      const note =
+        scope.names[o] +
+        '; ' +
+        cases +
+        ' cases: median ' +
+        describe_value(value, { factor: 1, unit: unit.unit }) +
+        ', quartiles ' +
+        format_number(q1[i]) +
+        ' to ' +
+        format_number(q3[i]);
+      return { value: [cases, value], note };
+    });
+    series.push({
+      ...make_line(look, 0, scope.names[o], points, { style, symbols: true, width: 2 }),
+      ...make_symbol(look, style),
+      symbolSize: 5,
+      z: 3,
+    });
+  });
+  const names = order.map((o) => scope.names[o]);
+  return make_ranked_chart(
+    look,
+    make_scaled_axis(look, 'x', kCasesAxis, x),
+    make_scaled_axis(look, 'y', name_axis(name, unit.unit), y),
+    series.concat(bands),
+    names,
+    names.slice(0, kMostAtFirst),
+  );
+}
+
+export function make_convergence(scope: Scope): Figure {
+  const table = (picked: Picked): DataTable => {
+    const problem = get_problem(scope, picked);
+    const { unit } = get_curve_name(problem);
+    const rows: Value[][] = [];
+    get_order(scope, problem).forEach((o) => {
+      const { q1, median, q3 } = problem.results[o].curve;
+      const [low, middle, high] = [convert_all(q1, unit), convert_all(median, unit), convert_all(q3, unit)];
+      problem.checkpoints.forEach((cases, i) => rows.push([scope.names[o], cases, middle[i] ?? null, low[i] ?? null, high[i] ?? null]));
+    });
+    return {
+      columns: [
+        { label: 'optimizer' },
+        { label: 'cases', numeric: true, digits: 9 },
+        { label: 'median', unit: unit.unit, numeric: true },
+        { label: 'lower quartile', unit: unit.unit, numeric: true },
+        { label: 'upper quartile', unit: unit.unit, numeric: true },
+      ],
+      rows,
+    };
+  };
+  return {
+    kind: 'figure',
+    id: 'convergence' + scope.suffix,
+    title: end_title(scope, 'Convergence'),
+    caption:
+      'What the best design known so far is worth on the test set, against the simulated training cases spent: the median over replicates, with the quartiles as a band. ' +
+      'Designs are chosen in training and simulated again on the test set, so a curve may rise; where it is missing, half of the runs have no value yet. ' +
+      'The order at one budget says nothing about another one. ' +
+      describe_size(scope) +
+      kFirstOnes(scope.names.length),
+    height: 400,
+    choices: make_problem_choices(scope),
+    draw: (look, picked) => draw_convergence(look, scope, get_problem(scope, picked)),
+    table,
+  };
+}
+
+interface Steps {
+  abscissae: number[];
+  x_name: string;
+  y_name: string;
+  shares: number[][]; // a row an optimizer
+  order: number[];
+}
+
+// Shares from 0 to 1 that only grow.
+function draw_steps(look: Look, scope: Scope, steps: Steps): EChartsOption {
+  const x = make_scale(steps.abscissae, true);
+  const y: Scale = { log: false, low: 0, high: 1, end: 1, ticks: [0, 0.2, 0.4, 0.6, 0.8, 1] };
+  const series: Part[] = [make_grid_lines(look, x, y)];
+  steps.order.forEach((o) => {
+    const points = steps.abscissae.map((at, i): Point => {
+      const share = steps.shares[o]?.[i] ?? null;
+      return { value: [at, share], note: scope.names[o] + '; ' + format_number(at, 3) + ': ' + format_number(share, 3) };
+    });
+    const style = get_style(look, scope, o);
+    const line = {
+      ...make_line(look, 0, scope.names[o], points, { style, step: 'end', width: 2, symbols: true }),
+      ...make_symbol(look, style),
+    };
+    // A mark here and there tells the steps apart; the others are there for the pointer.
+    const every = Math.ceil(points.length / 12);
+    series.push({ ...line, symbolSize: (_: unknown, at: { dataIndex: number }) => (at.dataIndex % every === o % every ? 6 : 2) });
+  });
+  const names = steps.order.map((o) => scope.names[o]);
+  return make_ranked_chart(
+    look,
+    make_scaled_axis(look, 'x', steps.x_name, x),
+    make_scaled_axis(look, 'y', steps.y_name, y),
+    series,
+    names,
+    names.slice(0, kMostAtFirst),
+  );
+}
+
+function tabulate_steps(scope: Scope, steps: Steps): DataTable {
+  const rows: Value[][] = [];
+  steps.order.forEach((o) => steps.abscissae.forEach((at, i) => rows.push([scope.names[o], at, steps.shares[o]?.[i] ?? null])));
+  return {
+    columns: [{ label: 'optimizer' }, { label: steps.x_name, numeric: true, digits: 6 }, { label: steps.y_name, numeric: true }],
+    rows,
+  };
+}
+
+export function make_runtime_ecdf(scope: Scope): Figure {
+  const get_steps = (picked: Picked): Steps => {
+    const problem = get_problem(scope, picked);
+    return {
+      abscissae: problem.checkpoints,
+      x_name: kCasesAxis,
+      y_name: 'share of (run, target) pairs reached',
+      shares: problem.results.map((one) => one.ecdf),
+      order: get_order(scope, problem),
+    };
+  };
+  return {
+    kind: 'figure',
+    id: 'runtime-ecdf' + scope.suffix,
+    title: end_title(scope, 'Targets reached over the budget'),
+    caption:
+      'The share of all pairs of a run and a target that are reached, against the simulated training cases spent: higher and further left is better. ' +
+      'Targets lie between the start and the best value that any optimizer of this study found, evenly on a logarithmic scale of what is left of the way; they depend on who takes part. ' +
+      'A target counts from the budget on from which all later designs are there too, as coarsely as the checkpoints. ' +
+      describe_size(scope) +
+      kFirstOnes(scope.names.length),
+    height: 400,
+    choices: make_problem_choices(scope),
+    draw: (look, picked) => draw_steps(look, scope, get_steps(picked)),
+    table: (picked) => tabulate_steps(scope, get_steps(picked)),
+  };
+}
+
+function make_profile(
+  scope: Scope,
+  id: string,
+  title: string,
+  caption: string,
+  x_name: string,
+  abscissae: number[],
+  profiles: { tolerance: number; shares: number[][] }[],
+): Figure {
+  const tolerance: Choice = {
+    id: 'tolerance',
+    label: 'Tolerance',
+    options: profiles.map((one, i) => ({ value: String(i), label: format_number(one.tolerance, 1) })),
+    initial: String(Math.min(1, profiles.length - 1)),
+  };
+  const ranks = scope.data.overall ? scope.data.overall.mean_ranks : [];
+  const order = sort_by(
+    scope.names.map((_, i) => i),
+    (i) => ranks[i] ?? Infinity,
+  );
+  const get_steps = (picked: Picked): Steps => ({
+    abscissae,
+    x_name,
+    y_name: 'share of (problem, replicate) pairs solved',
+    shares: profiles[Number(get_picked(tolerance, picked))]?.shares ?? [],
+    order,
+  });
+  return {
+    kind: 'figure',
+    id,
+    title,
+    caption: caption + ' ' + describe_size(scope) + kFirstOnes(scope.names.length),
+    height: 400,
+    choices: [tolerance],
+    draw: (look, picked) => draw_steps(look, scope, get_steps(picked)),
+    table: (picked) => tabulate_steps(scope, get_steps(picked)),
+  };
+}
+
+const kSolved =
+  'A (problem, replicate) pair is solved once no more than the tolerance is left of the way from the start to the best value that any optimizer found there (Moré and Wild 2009). ';
+
+export function make_profiles(scope: Scope): Figure[] {
+  const overall = scope.data.overall;
+  if (!overall) {
+    return [];
+  }
+  return [
+    make_profile(
+      scope,
+      'data-profile',
+      'Data profile',
+      kSolved +
+        'Shown is the share solved against the effort, in simplex gradients: as many evaluations as the problem has variables, and one. It reads absolutely: so much of these problems is solved with such a budget.',
+      'simplex gradients',
+      overall.kappas,
+      overall.data_profiles,
+    ),
+    make_profile(
+      scope,
+      'performance-profile',
+      'Performance profile',
+      kSolved +
+        'Shown is the share solved within a multiple of what the quickest optimizer took there. At 1 it is how often an optimizer was the quickest, ties included; at the right how often it got there at all. ' +
+        'Multiples are relative to who takes part: two optimizers that are not the quickest may change places when it leaves.',
+      'cost, as a multiple of the smallest',
+      overall.alphas,
+      overall.performance_profiles,
+    ),
+  ];
+}

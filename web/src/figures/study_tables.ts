@@ -1,0 +1,236 @@
+// The tables of a comparison.
+import type { StudyProblem } from '../data';
+import type { Cell, Column, DataTable, TableItem, Value } from '../model';
+import { convert, describe_size, end_title, get_curve_name, get_order, get_unit, type Scope, sort_by, type Unit } from './study_parts';
+import { tabulate_pairs } from './study_pairs';
+
+type Row = (Value | Cell)[];
+
+// Rows of all problems under one head: of several, with the problem, and with the unit where units
+// differ.
+function tabulate(
+  scope: Scope,
+  get_problem_unit: (problem: StudyProblem) => Unit,
+  make_columns: (unit: string) => Column[],
+  make_rows: (problem: StudyProblem, unit: Unit) => Row[],
+): DataTable {
+  const units = scope.problems.map((problem) => get_problem_unit(problem).unit);
+  const one_unit = units.every((unit) => unit === units[0]);
+  const many = scope.problems.length > 1;
+  const head: Column[] = (many ? [{ label: 'problem' }] : []).concat(one_unit ? [] : [{ label: 'unit' }]);
+  return {
+    columns: head.concat(make_columns(one_unit ? (units[0] ?? '') : '')),
+    rows: scope.problems.reduce((all, problem, i) => {
+      const before: Row = (many ? [problem.label] : []).concat(one_unit ? [] : [units[i]]);
+      return all.concat(make_rows(problem, get_problem_unit(problem)).map((row) => before.concat(row)));
+    }, [] as Row[]),
+  };
+}
+
+const get_value_unit = (problem: StudyProblem) => get_unit(problem.quantity.unit);
+
+export function make_ranking_table(scope: Scope): TableItem {
+  const columns = (unit: string): Column[] => [
+    { label: 'optimizer' },
+    { label: 'median', unit, numeric: true },
+    { label: 'lower quartile', unit, numeric: true },
+    { label: 'upper quartile', unit, numeric: true },
+    { label: 'median, 95 % from', unit, numeric: true },
+    { label: 'to', unit, numeric: true },
+    { label: 'mean rank', numeric: true, digits: 3 },
+    { label: 'anytime area', numeric: true, digits: 3 },
+    { label: 'runs', numeric: true, digits: 9 },
+    { label: 'no value', numeric: true, digits: 9 },
+    { label: 'infeasible', numeric: true, digits: 9 },
+    { label: 'failed', numeric: true, digits: 9 },
+    { label: 'cases, median', numeric: true, digits: 9 },
+    { label: 'checked on' },
+    { label: 'best design there', unit, numeric: true },
+    { label: 'failures there', numeric: true, digits: 9 },
+  ];
+  const rows = (problem: StudyProblem, unit: Unit): Row[] =>
+    get_order(scope, problem).map((o) => {
+      const one = problem.results[o];
+      const check = one.final_check;
+      return [
+        scope.names[o],
+        convert(one.median, unit),
+        convert(one.q1, unit),
+        convert(one.q3, unit),
+        convert(one.median_interval[0], unit),
+        convert(one.median_interval[1], unit),
+        one.mean_rank,
+        one.anytime_area,
+        one.cells.length,
+        one.infinite,
+        one.infeasible,
+        one.failed,
+        one.cases,
+        check ? check.engine : null,
+        check ? { value: convert(check.value, unit), note: 'replicate ' + check.replicate } : null,
+        check ? check.failures : null,
+      ];
+    });
+  const tests = scope.problems
+    .map((problem) =>
+      problem.friedman
+        ? (scope.problems.length > 1 ? problem.label.slice(0, 40) + ': ' : '') +
+          'F = ' +
+          problem.friedman.statistic.toFixed(1) +
+          ', p = ' +
+          problem.friedman.p.toPrecision(2)
+        : '',
+    )
+    .filter((text) => text !== '');
+  return {
+    kind: 'table',
+    id: 'ranking' + scope.suffix,
+    title: end_title(scope, 'Ranking'),
+    caption:
+      'Values on the test set, best median first. A run without value counts as the worst; a dash is a median or quartile that does not exist for that reason. ' +
+      'Intervals are bootstrapped. The best design of each optimizer, by the validation set, was simulated once more on the other engine where one is named. ' +
+      describe_size(scope) +
+      (tests.length > 0 && tests.length <= 6
+        ? " Do the optimizers differ at all? Friedman's test in Iman and Davenport's form: " + tests.join('; ') + '.'
+        : ''),
+    table: tabulate(scope, get_value_unit, columns, rows),
+  };
+}
+
+export function make_pairs_table(scope: Scope): TableItem {
+  return {
+    kind: 'table',
+    id: 'pairs-table' + scope.suffix,
+    title: end_title(scope, 'Tests of every two optimizers'),
+    caption:
+      "Wilcoxon's signed-rank test over the replicates, Holm's correction over all pairs of a problem, and Vargha and Delaney's A12, the probability that a run of a is better than one of b. Not told apart does not mean equal. " +
+      describe_size(scope),
+    table: tabulate_pairs(scope, scope.problems),
+  };
+}
+
+export function make_cells_table(scope: Scope): TableItem {
+  const columns = (unit: string): Column[] => [
+    { label: 'optimizer' },
+    { label: 'replicate', numeric: true, digits: 9 },
+    { label: 'value', unit, numeric: true },
+    { label: 'cases', numeric: true, digits: 9 },
+    { label: 'evaluations', numeric: true, digits: 9 },
+    { label: 'time', unit: 's', numeric: true },
+    { label: 'failed test cases', numeric: true, digits: 9 },
+    { label: "optimizer's failure" },
+    { label: 'folder' },
+  ];
+  const rows = (problem: StudyProblem, unit: Unit): Row[] =>
+    get_order(scope, problem).reduce(
+      (all, o) =>
+        all.concat(
+          problem.results[o].cells.map((cell): Row => {
+            const value = convert(cell.value, unit);
+            return [
+              scope.names[o],
+              cell.replicate,
+              { value, command: cell.command, note: value === null ? 'no value' : undefined },
+              cell.cases,
+              cell.evaluations,
+              cell.seconds,
+              cell.failures,
+              cell.failure,
+              cell.folder,
+            ];
+          }),
+        ),
+      [] as Row[],
+    );
+  return {
+    kind: 'table',
+    id: 'cells' + scope.suffix,
+    title: end_title(scope, 'Every run'),
+    caption:
+      "All runs that have ended, with the command that makes each anew, bit for bit. The value is the winner's on the test set; a dash is none. Times are no part of the comparison. " +
+      describe_size(scope),
+    table: tabulate(scope, get_value_unit, columns, rows),
+  };
+}
+
+export function make_running_times_table(scope: Scope): TableItem {
+  const columns = (unit: string): Column[] => [
+    { label: 'optimizer' },
+    { label: 'target', unit, numeric: true },
+    { label: 'runs that reached it', numeric: true, digits: 9 },
+    { label: 'runs', numeric: true, digits: 9 },
+    { label: 'expected running time', unit: 'cases', numeric: true, digits: 6 },
+    { label: '95 % from', unit: 'cases', numeric: true, digits: 6 },
+    { label: 'to', unit: 'cases', numeric: true, digits: 6 },
+  ];
+  const rows = (problem: StudyProblem, unit: Unit): Row[] =>
+    get_order(scope, problem).reduce(
+      (all, o) =>
+        all.concat(
+          problem.results[o].running_times.map((time): Row => [
+            scope.names[o],
+            convert(time.target, unit),
+            time.reached,
+            problem.results[o].cells.length,
+            time.expected,
+            time.interval[0],
+            time.interval[1],
+          ]),
+        ),
+      [] as Row[],
+    );
+  return {
+    kind: 'table',
+    id: 'running-times' + scope.suffix,
+    title: end_title(scope, 'Expected running times'),
+    caption:
+      'How many simulated cases it would take on average to reach a target, starting anew with other random numbers until it is reached: all cases spent, divided by the number of runs that got there. ' +
+      'A dash is a target that no run reached. ' +
+      describe_size(scope),
+    table: tabulate(scope, (problem) => get_curve_name(problem).unit, columns, rows),
+  };
+}
+
+// Optimizers over all problems.
+export function make_overall_table(scope: Scope): TableItem | null {
+  const overall = scope.data.overall;
+  if (!overall) {
+    return null;
+  }
+  const problems = scope.data.problems;
+  const columns: Column[] = [
+    { label: 'optimizer' },
+    { label: 'mean rank', numeric: true, digits: 3 },
+    { label: 'from', numeric: true, digits: 3 },
+    { label: 'to', numeric: true, digits: 3 },
+  ].concat(
+    problems.map((problem) => ({
+      label: 'median, ' + problem.label,
+      unit: get_value_unit(problem).unit,
+      numeric: true,
+      digits: 4,
+    })) as never[],
+  );
+  const order = sort_by(
+    scope.names.map((_, i) => i),
+    (i) => overall.mean_ranks[i] ?? Infinity,
+  );
+  return {
+    kind: 'table',
+    id: 'overall',
+    title: 'Ranking over problems',
+    caption:
+      'Mean ranks of the medians, each problem counting once, and the medians on the test set; a dash is a median without value. ' +
+      (overall.rank_intervals ? 'Intervals are of the mean ranks. ' : '') +
+      'Ranks depend on who takes part. ' +
+      describe_size(scope),
+    table: {
+      columns,
+      rows: order.map((o) => {
+        const interval = overall.rank_intervals ? overall.rank_intervals[o] : null;
+        const row: Row = [scope.names[o], overall.mean_ranks[o] ?? null, interval ? interval[0] : null, interval ? interval[1] : null];
+        return row.concat(problems.map((problem) => convert(problem.results[o]?.median, get_value_unit(problem))));
+      }),
+    },
+  };
+}

@@ -1,0 +1,79 @@
+// The robot's bodies as geometries: all shapes of a body in one, with their colours at the corners,
+// so that a body takes one call to draw.
+import { BoxGeometry, BufferAttribute, BufferGeometry, Color, CylinderGeometry, Matrix4, SphereGeometry } from 'three';
+import type { Mesh, Robot, Shape } from '../data';
+import { unpack, unpack_indices } from '../numbers';
+import { make_frame, type Frame } from './chain';
+
+export function to_matrix(frame: Frame, matrix: Matrix4): Matrix4 {
+  const f = frame;
+  return matrix.set(f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7], f[8], f[9], f[10], f[11], 0, 0, 0, 1);
+}
+
+function make_mesh_geometry(mesh: Mesh, scale: [number, number, number]): BufferGeometry {
+  const geometry = new BufferGeometry();
+  geometry.setAttribute('position', new BufferAttribute(unpack(mesh.positions), 3));
+  geometry.setIndex(new BufferAttribute(unpack_indices(mesh.indices), 1));
+  geometry.scale(scale[0], scale[1], scale[2]);
+  return geometry;
+}
+
+function make_shape_geometry(shape: Shape, meshes: Mesh[]): BufferGeometry | null {
+  const [a, b, c] = shape.size;
+  switch (shape.kind) {
+    case 'box':
+      return new BoxGeometry(a, b, c);
+    case 'cylinder':
+      return new CylinderGeometry(a, a, b, 28).rotateX(Math.PI / 2); // along y there, along z here
+    case 'sphere':
+      return new SphereGeometry(a, 24, 14);
+    case 'mesh':
+      return shape.mesh === null ? null : make_mesh_geometry(meshes[shape.mesh], shape.size);
+  }
+}
+
+function join(parts: { geometry: BufferGeometry; rgba: number[] }[]): BufferGeometry {
+  const count = parts.reduce((sum, part) => sum + part.geometry.getAttribute('position').count, 0);
+  const positions = new Float32Array(3 * count);
+  const normals = new Float32Array(3 * count);
+  const colours = new Float32Array(3 * count);
+  let first = 0;
+  for (const { geometry, rgba } of parts) {
+    const position = geometry.getAttribute('position');
+    const colour = new Color().setRGB(rgba[0], rgba[1], rgba[2], 'srgb');
+    positions.set(position.array, 3 * first);
+    normals.set(geometry.getAttribute('normal').array, 3 * first);
+    for (let i = first; i < first + position.count; ++i) {
+      colours.set([colour.r, colour.g, colour.b], 3 * i);
+    }
+    first += position.count;
+    geometry.dispose();
+  }
+  const joined = new BufferGeometry();
+  joined.setAttribute('position', new BufferAttribute(positions, 3));
+  joined.setAttribute('normal', new BufferAttribute(normals, 3));
+  joined.setAttribute('color', new BufferAttribute(colours, 3));
+  return joined;
+}
+
+// One a body, in its frame.
+export function make_bodies(robot: Robot): BufferGeometry[] {
+  const matrix = new Matrix4();
+  return robot.bodies.map((body) => {
+    const parts: { geometry: BufferGeometry; rgba: number[] }[] = [];
+    for (const shape of body.shapes) {
+      const indexed = make_shape_geometry(shape, robot.meshes);
+      if (indexed === null) {
+        continue;
+      }
+      const geometry = indexed.toNonIndexed();
+      indexed.dispose();
+      if (shape.kind === 'mesh') {
+        geometry.computeVertexNormals(); // flat, as no corner is shared
+      }
+      geometry.applyMatrix4(to_matrix(make_frame(shape.pose), matrix));
+      parts.push({ geometry, rgba: shape.rgba });
+    }
+    return join(parts);
+  });
+}

@@ -1,0 +1,28 @@
+// A labelled list to choose from whose entries change with other choices.
+import { make } from '../app/dom';
+
+export interface Option {
+  value: string;
+  label: string;
+}
+
+export class Picker {
+  readonly element: HTMLElement;
+  private readonly select = make('select');
+
+  constructor(label: string, on_change: (value: string) => void) {
+    this.element = make('label', { class: 'choice' }, make('span', {}, label), this.select);
+    this.select.addEventListener('change', () => on_change(this.select.value));
+  }
+
+  get value(): string {
+    return this.select.value;
+  }
+
+  // A list with nothing to choose from is not shown.
+  set(options: Option[], value: string): void {
+    this.select.replaceChildren(...options.map((option) => make('option', { value: option.value }, option.label)));
+    this.select.value = value;
+    this.element.hidden = options.length < 2;
+  }
+}

@@ -1,0 +1,68 @@
+// A test case made ready to be shown: its packed numbers unpacked, the tips' paths followed.
+// Nothing of the DOM.
+import type { Motion, ReplayCase, ReplaySet, Robot } from '../data';
+import { unpack } from '../numbers';
+import { calc_tip, make_chain, type Chain } from './chain';
+import { clamp, interpolate_row } from './timeline';
+
+export interface Track {
+  motion: Motion;
+  name: string; // of the design
+  count: number; // rows
+  q: Float32Array;
+  errors_m: Float32Array; // one a moment: the start's first
+  tip_m: Float32Array; // 3 a moment
+}
+
+export interface Scenario {
+  replay: ReplayCase;
+  chain: Chain;
+  period_s: number;
+  moments: number; // the last one
+  target_m: Float32Array; // 3 a row
+  tracks: Track[];
+}
+
+function make_track(motion: Motion, name: string, replay: ReplayCase, chain: Chain): Track {
+  const width = chain.robot.joints.length;
+  const q = unpack(motion.q);
+  const errors = unpack(motion.error_m);
+  const count = Math.min(motion.steps, Math.floor(q.length / width), errors.length);
+  const tip_m = new Float32Array(3 * (count + 1));
+  const errors_m = new Float32Array(count + 1);
+  tip_m.set(calc_tip(chain, replay.start_q));
+  const start = replay.points_m[0];
+  errors_m[0] = Math.hypot(tip_m[0] - start[0], tip_m[1] - start[1], tip_m[2] - start[2]);
+  for (let k = 0; k < count; ++k) {
+    tip_m.set(calc_tip(chain, q, width * k), 3 * (k + 1));
+    errors_m[k + 1] = errors[k];
+  }
+  return { motion, name, count, q, errors_m, tip_m };
+}
+
+export function make_scenario(set: ReplaySet, replay: ReplayCase, robot: Robot): Scenario {
+  const chain = make_chain(robot);
+  const names = new Map(set.designs.map((design) => [design.id, design.name]));
+  return {
+    replay,
+    chain,
+    period_s: set.task.control_period_s,
+    moments: replay.steps,
+    target_m: unpack(replay.target_m),
+    tracks: replay.motions.map((motion) => make_track(motion, names.get(motion.design) ?? motion.design, replay, chain)),
+  };
+}
+
+export function find_q(scenario: Scenario, track: Track, moment: number): number[] {
+  return interpolate_row(track.q, scenario.chain.robot.joints.length, track.count, scenario.replay.start_q, moment);
+}
+
+export function find_target(scenario: Scenario, moment: number): [number, number, number] {
+  const [x, y, z] = interpolate_row(scenario.target_m, 3, scenario.moments, scenario.replay.points_m[0], moment);
+  return [x, y, z];
+}
+
+// Nothing beyond where the motion ended.
+export function find_error(track: Track, moment: number): number | null {
+  return moment > track.count ? null : track.errors_m[clamp(moment, 0, track.count)];
+}

@@ -1,0 +1,52 @@
+// What draws the arm: in three dimensions where the browser can, else from the side.
+import type { Look } from '../charts/look';
+import type { ColourScale } from './colours';
+import type { Scenario, Track } from './scenario';
+
+export type TraceChoice = 'past' | 'move' | 'whole';
+export type ViewChoice = 'perspective' | 'side' | 'front';
+
+// What stays while the time goes on.
+export interface Setting {
+  scenario: Scenario;
+  track: Track | null;
+  ghost: Track | null;
+  scale: ColourScale;
+  look: Look;
+}
+
+// What a moment looks like.
+export interface Snapshot {
+  moment: number; // with a fraction
+  q: number[];
+  ghost_q: number[] | null;
+  target_m: [number, number, number];
+  segment: number;
+  trace: TraceChoice;
+}
+
+export interface Stage {
+  readonly element: HTMLElement;
+  set_setting(setting: Setting): void;
+  show(snapshot: Snapshot): void;
+  set_view(view: ViewChoice): void;
+  resize(width: number, height: number, pixel_ratio: number): void;
+  dispose(): void;
+}
+
+export const kGhost = '#1f9e77'; // on light and dark ground; neither errors nor arms have it
+
+// Of the moments of a trace, which to draw faintly and which fully: [first, last] each.
+export function find_trace_parts(setting: Setting, count: number, snapshot: Snapshot): { past: [number, number]; now: [number, number] } {
+  const last = Math.min(count, Math.floor(snapshot.moment));
+  const segment = setting.scenario.replay.segments[snapshot.segment];
+  const first = Math.min(last, segment === undefined ? 0 : segment.first_step);
+  switch (snapshot.trace) {
+    case 'whole':
+      return { past: [0, 0], now: [0, count] };
+    case 'move':
+      return { past: [0, 0], now: [first, last] };
+    case 'past':
+      return { past: [0, first], now: [first, last] };
+  }
+}
