@@ -90,7 +90,7 @@ TEST_F(StudyPage, ShowsTheNumbersOfTheTables) {
     EXPECT_EQ(problem["label"], expected.label);
     EXPECT_EQ(problem["missing"], 0);
     EXPECT_EQ(problem["order"].get<std::vector<std::size_t>>(), expected.order);
-    EXPECT_EQ(problem["friedman"]["p"], expected.friedman->f_p_value);
+    EXPECT_EQ(problem["friedman"], make_friedman(expected.friedman));
     EXPECT_EQ(problem["pairs"].size(), expected.pairs.size());
     EXPECT_EQ(problem["pairs"][0]["p_holm"], expected.pairs[0].p_holm);
     for (std::size_t o = 0; o < expected.optimizers.size(); ++o) {
@@ -327,6 +327,16 @@ label = "</script><img src=x onerror=alert(1)>'; rm -rf $HOME \" & \\"
       EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(cell["folder"]) / "cell.json"));
     }
   }
+}
+
+TEST(Friedman, OfBlocksThatAgreeHasTheOtherStatisticsP) {
+  const std::vector<std::vector<double>> some = {{1, 2, 3}, {1, 3, 2}, {1, 2, 3}};
+  const FriedmanTest test = calc_friedman_test(some);
+  EXPECT_EQ(make_friedman(test), (json{{"statistic", test.f}, {"p", test.f_p_value}}));
+  const std::vector<std::vector<double>> all = {{1, 2, 3}, {1, 2, 3}, {1, 2, 3}};
+  EXPECT_EQ(make_friedman(calc_friedman_test(all)),
+            (json{{"statistic", nullptr}, {"p", calc_friedman_test(all).p_value}}));
+  EXPECT_TRUE(make_friedman(std::nullopt).is_null());
 }
 
 TEST(RoundShown, KeepsNineDigits) {

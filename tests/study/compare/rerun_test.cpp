@@ -16,7 +16,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 StudyPlan make_plan_with_labels(const TemporaryFolder& folder) {
-  std::ofstream(folder / "plan.toml") << R"(
+  std::ofstream(folder / "plan.toml") << R"toml(
 replicates = 12
 budget = 40
 baselines = false
@@ -38,7 +38,7 @@ label = "b/c"
 [[optimizer]]
 name = "random"
 label = "my 'own' (50%)"
-)";
+)toml";
   StudyRequest request;
   request.file = (folder / "plan.toml").string();
   return make_study_plan(request);
