@@ -31,10 +31,11 @@ std::optional<std::string> make_page_data(const std::filesystem::path& folder,
   if (is_reproduction_folder(folder)) {
     return make_reproduction_page(folder, options, stop, observer);
   }
-  throw Error(ErrorKind::usage,
-              fmt::format("{}: is the folder of neither a run, a comparison nor a reproduction; name "
-                          "one that optimize, compare or reproduce --out has made",
-                          folder.string()));
+  throw Error(
+      ErrorKind::usage,
+      fmt::format("{}: is the folder of neither a run, a comparison nor a reproduction; name "
+                  "one that optimize, compare or reproduce --out has made",
+                  folder.string()));
 }
 
 bool is_page_file(const std::filesystem::path& file) {
