@@ -10,16 +10,14 @@ export function format_number(value: number | null | undefined, digits = 4): str
   if (value === null || value === undefined || !isFinite(value)) {
     return '–';
   }
-  if (value === 0) {
-    return '0';
+  if (Math.floor(value) === value && Math.abs(value) < 1e9) {
+    return String(value);
   }
   const magnitude = Math.floor(Math.log10(Math.abs(value)));
   if (magnitude < -4 || magnitude > 8) {
     return value.toExponential(digits - 1);
   }
-  const text = value.toFixed(Math.min(20, Math.max(0, digits - 1 - magnitude)));
-  // 1.000 and 0.9999... have the same length before and after rounding up.
-  return text;
+  return value.toFixed(Math.min(20, Math.max(0, digits - 1 - magnitude)));
 }
 
 export function scale(values: (number | null)[], factor: number): (number | null)[] {

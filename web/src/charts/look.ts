@@ -12,7 +12,8 @@ export interface Look {
   font: string;
 }
 
-const kFont = 'system-ui, "DejaVu Sans", "Liberation Sans", Arial, sans-serif';
+// Without quotes, which CSS does not need here: ECharts writes the names into attributes of its SVG as they are.
+const kFont = 'system-ui, DejaVu Sans, Liberation Sans, Arial, sans-serif';
 
 export const kLight: Look = {
   theme: 'light',

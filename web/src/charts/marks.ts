@@ -1,44 +1,55 @@
 // What stands in a figure beside its curves: limits, stretches of time, panels side by side.
-import { format_number } from '../numbers';
 import type { EChartsOption } from './echarts';
 import { get_series_style, type Look, type SeriesStyle } from './look';
 import { make_axis, make_chart, type AxisOptions, type Part } from './parts';
+import { format_tick, make_scale } from './scales';
 
-// Numbers at an axis: "0.001", "1e-5", "20000"; no zeros at the end.
-export function format_tick(value: number): string {
-  if (value === 0) {
-    return '0';
-  }
-  const size = Math.abs(value);
-  if (size >= 1e6 || size < 1e-3) {
-    return value.toExponential(2).replace(/\.?0+e/, 'e').replace('e+', 'e');
-  }
-  return String(parseFloat(value.toPrecision(6)));
+export interface NumberAxisOptions extends AxisOptions {
+  values?: (number | null)[]; // what the axis is to show: a logarithmic one gets its ends and ticks from it
 }
 
-// make_axis() with short numbers.
-export function make_number_axis(look: Look, direction: 'x' | 'y', name: string, options: AxisOptions = {}, more: Part = {}): Part {
+// make_axis() with short numbers, and enough of them where it is logarithmic.
+export function make_number_axis(look: Look, direction: 'x' | 'y', name: string, options: NumberAxisOptions = {}, more: Part = {}): Part {
   const axis = make_axis(look, direction, name, options);
+  const label = {
+    ...(axis.axisLabel as Part),
+    formatter: options.categories ? undefined : format_tick,
+    // Where the data end is no round number.
+    showMinLabel: options.min === 'dataMin' ? false : undefined,
+    showMaxLabel: options.max === 'dataMax' ? false : undefined,
+  };
+  if (!options.log || options.values === undefined) {
+    return { ...axis, axisLabel: label, ...more };
+  }
+  const scale = make_scale(options.values, true);
   return {
     ...axis,
-    axisLabel: { ...(axis.axisLabel as Part), formatter: options.categories ? undefined : format_tick },
+    min: scale.low,
+    max: scale.high,
+    axisTick: { ...(axis.axisTick as Part), customValues: scale.ticks },
+    axisLabel: { ...label, customValues: scale.ticks },
     ...more,
   };
 }
 
-// make_chart() with readable numbers where the pointer is.
+// make_chart() whose legend shows lines as they are drawn.
 export function make_plot(look: Look, x: Part | Part[], y: Part | Part[], series: Part[], more: Part = {}): EChartsOption {
-  return make_chart(look, x, y, series, {
-    tooltip: { trigger: 'item', valueFormatter: format_value, confine: true },
-    ...more,
-  });
+  const shown = series.map((one) => (one.type === 'line' && one.showSymbol === false ? { ...one, symbol: 'none' } : one));
+  const option = make_chart(look, x, y, shown, more);
+  const legend = option.legend as Part | undefined;
+  if (legend === undefined) {
+    return option;
+  }
+  const has_symbols = (name: string) => shown.some((one) => one.name === name && one.silent !== true && one.symbol !== 'none');
+  const entries = (legend.data as string[]).map((name) => (has_symbols(name) ? { name } : { name, itemStyle: { opacity: 0 } }));
+  // Without a screen the width of texts is guessed: some more space keeps entries apart.
+  return { ...option, legend: { itemGap: 20, itemWidth: 28, ...legend, data: entries } };
 }
 
-function format_value(value: unknown): string {
-  if (typeof value === 'number') {
-    return format_number(value);
-  }
-  return Array.isArray(value) ? value.map(format_value).join(', ') : String(value ?? '–');
+// Of curves without symbols: all of them where the pointer is, and no bands.
+export function make_curve_plot(look: Look, x: Part | Part[], y: Part | Part[], series: Part[], more: Part = {}): EChartsOption {
+  const shown = series.map((one) => (one.silent === true ? { ...one, tooltip: { show: false } } : one));
+  return make_plot(look, x, y, shown, { tooltip: { trigger: 'axis', confine: true }, ...more });
 }
 
 const kDashes: SeriesStyle['dash'][] = ['solid', 'dashed', 'dotted', [8, 3, 2, 3], [12, 4]];
@@ -49,7 +60,7 @@ export function get_line_style(look: Look, index: number): SeriesStyle {
 }
 
 // A vertical line with a word beside it, in the range of the axis that the curves make.
-export function make_vertical(look: Look, value: number, label: string, color = look.muted, axis = 0): Part {
+export function make_vertical(look: Look, value: number, label: string, color = look.muted, axis = 0, at_foot = false): Part {
   return {
     type: 'line',
     data: [],
@@ -63,7 +74,7 @@ export function make_vertical(look: Look, value: number, label: string, color = 
       lineStyle: { color, type: 'dashed', width: 1.2 },
       label: {
         formatter: () => label,
-        position: 'insideEndTop',
+        position: at_foot ? 'insideStartTop' : 'insideEndTop',
         color: look.text,
         fontFamily: look.font,
         fontSize: 11,

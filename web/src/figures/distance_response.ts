@@ -9,6 +9,7 @@ import { format_number, kMillimetres } from '../numbers';
 import { are_positive, count_of, find_range, flatten, times } from './quantities';
 
 const kCentimetres = 100;
+const kStacked = 8; // more series than that would leave no room for the curves
 const kWide = 20; // between largest and smallest, from where on a linear axis hides the small ones
 
 export function make_scale_choice(initial: 'log' | 'linear'): Choice {
@@ -28,7 +29,7 @@ function name_series(response: DistanceResponse): string[] {
   return shorten_all(response.series.map((one) => one.name)).map((name, i) => {
     const { overall_mean_m, published_mean_m } = response.series[i];
     const ours = overall_mean_m === null ? 'no mean' : `${format_number(overall_mean_m * kMillimetres, 3)} mm`;
-    const published = published_mean_m === null ? '' : ` (published ${format_number(published_mean_m * kMillimetres, 2)})`;
+    const published = published_mean_m === null ? '' : ` (published ${Number((published_mean_m * kMillimetres).toPrecision(3))})`;
     return `${name}: ${ours}${published}`;
   });
 }
@@ -69,6 +70,7 @@ export function make_response_figure(response: DistanceResponse, id = response.i
     draw: (look, picked) => {
       const log = positive && (picked.scale ? picked.scale === 'log' : wide);
       const series: Part[] = [];
+      const values = flatten(response.series.map((one) => flatten(make_bars(one, log).map((bar) => [bar[1], bar[2]]))));
       response.series.forEach((one, s) => {
         const style = get_series_style(look, s);
         const point = (i: number): Point => ({
@@ -91,9 +93,7 @@ export function make_response_figure(response: DistanceResponse, id = response.i
         }
         series.push(make_error_bars(names[s], make_bars(one, log), style.color));
       });
-      const lines = names.length > 1 ? names.length : 0;
-      const wraps = names.some((name) => name.length > 28);
-      const top = lines === 0 ? 20 : 12 + 18 * Math.ceil(lines / (wraps ? 1 : 2));
+      const stacked = names.length <= kStacked;
       return make_plot(
         look,
         make_number_axis(
@@ -103,11 +103,11 @@ export function make_response_figure(response: DistanceResponse, id = response.i
           { categories: response.distances_m.map((one) => format_number(one * kCentimetres, 3)) },
           { nameGap: 38, axisLabel: { color: look.muted, fontFamily: look.font, fontSize: 10, rotate: 60, hideOverlap: true } },
         ),
-        make_number_axis(look, 'y', 'average positional error (mm)', { log, min: log ? undefined : 0 }),
+        make_number_axis(look, 'y', 'average positional error (mm)', { log, min: log ? undefined : 0, values }),
         series,
         {
-          grid: { left: 68, right: 24, top: top + 8, bottom: 62 },
-          legend: lines === 0 ? undefined : make_legend_column(look.text, look.font, look.grid, names, wraps),
+          grid: { left: 68, right: 24, top: stacked ? 18 + 18 * names.length : 44, bottom: 62 },
+          ...(stacked ? { legend: make_legend_column(look.text, look.font, look.grid, names) } : {}),
         },
       );
     },
@@ -136,12 +136,12 @@ export function make_response_figure(response: DistanceResponse, id = response.i
 }
 
 // Entries in lines of their own: with their means they are too long for one.
-export function make_legend_column(text: string, font: string, inactive: string, names: string[], single: boolean): Part {
+export function make_legend_column(text: string, font: string, inactive: string, names: string[]): Part {
   return {
     top: 4,
     left: 64,
     right: 16,
-    orient: single ? 'vertical' : 'horizontal',
+    orient: 'vertical',
     itemGap: 6,
     itemWidth: 24,
     itemHeight: 10,

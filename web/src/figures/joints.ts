@@ -1,7 +1,7 @@
 // Joint angles, errors and torques in time, with the limits of the torques.
 import { decimate } from '../charts/decimate';
 import { get_series_style, type Look } from '../charts/look';
-import { make_number_axis, make_plot, make_stretches } from '../charts/marks';
+import { make_number_axis, make_curve_plot, make_stretches } from '../charts/marks';
 import { shorten_all } from '../charts/names';
 import { make_line, type Part, type Point } from '../charts/parts';
 import type { ReplayCase, ReplaySet, Robot } from '../data';
@@ -172,15 +172,15 @@ function draw_torques(look: Look, set: ReplaySet, view: View, count: number) {
       }
     });
   }
-  return make_plot(
+  return make_curve_plot(
     look,
     make_number_axis(look, 'x', 'time (s)', { min: 0, max: 'dataMax' }),
     make_number_axis(
       look,
       'y',
       single ? `${single.effort_unit === 'N' ? 'force' : 'torque'} (${single.effort_unit})` : 'torque (% of its limit)',
-      single ? {} : { min: -100, max: 100 },
-      { nameGap: 54 },
+      {},
+      { nameGap: 54, boundaryGap: ['4%', '4%'] },
     ),
     series,
     { grid: { left: 78, right: 24, top: 44, bottom: 48 } },
@@ -223,7 +223,7 @@ export function make_joint_figures(set: ReplaySet, robot: Robot | undefined): Fi
             : [make_line(look, joint.index, joint.name, make_points(set, get_angles(moved, joint, count)), { width: 1.2 }), target];
         }),
       );
-      return make_plot(look, x_axis(look), make_number_axis(look, 'y', `position (${get_unit(view.joints)})`), series);
+      return make_curve_plot(look, x_axis(look), make_number_axis(look, 'y', `position (${get_unit(view.joints)})`), series);
     },
     table: (picked) => {
       const view = get_view(set, joints, picked, kAll);
@@ -265,7 +265,7 @@ export function make_joint_figures(set: ReplaySet, robot: Robot | undefined): Fi
           : view.joints.map((joint) =>
               make_line(look, joint.index, joint.name, make_points(set, get_errors(view.one, moved, joint, count)), { width: 1.2 }),
             );
-      return make_plot(look, x_axis(look), make_number_axis(look, 'y', `error (${get_unit(view.joints)})`), series);
+      return make_curve_plot(look, x_axis(look), make_number_axis(look, 'y', `error (${get_unit(view.joints)})`), series);
     },
     table: (picked) => {
       const view = get_view(set, joints, picked, kAll);

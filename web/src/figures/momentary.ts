@@ -2,7 +2,7 @@
 // of its own, or a whole case.
 import { decimate } from '../charts/decimate';
 import type { Look } from '../charts/look';
-import { get_line_style, make_number_axis, make_panel_title, make_panels, make_plot, make_stretches } from '../charts/marks';
+import { get_line_style, make_number_axis, make_panel_title, make_panels, make_curve_plot, make_stretches } from '../charts/marks';
 import { make_line, type Part, type Point } from '../charts/parts';
 import type { ReplayCase, ReplaySet } from '../data';
 import type { Choice, DataTable, Figure, Picked, Value } from '../model';
@@ -35,7 +35,7 @@ function get_move(trace: ErrorTrace, index: number): Float32Array {
 }
 
 function name_class(one: ReplayCase, index: number): string {
-  return `class ${index + 1}: ${format_number(one.segments[index].distance_m, 4)} m`;
+  return `class ${index + 1}: ${one.segments[index].distance_m.toFixed(3)} m`;
 }
 
 // Panels of moves, one a distance class: that of the first trace's case.
@@ -54,7 +54,7 @@ export function draw_moves(look: Look, traces: ErrorTrace[], classes: number[], 
       series.push(make_line(look, trace.style, trace.name, points, { axis: panel, width: 1.4, style: get_line_style(look, trace.style) }));
     });
   });
-  return make_plot(
+  return make_curve_plot(
     look,
     grids.map((_, i) =>
       make_number_axis(look, 'x', i + columns >= grids.length ? 'time from the start of the move (s)' : '', { index: i, min: 0, max: 'dataMax' }),
@@ -82,7 +82,7 @@ function draw_case(look: Look, traces: ErrorTrace[], log: boolean) {
     const points = decimate(trace.error_m).map((i) => to_point(get_time(trace.set, i), trace.error_m[i], log));
     series.push(make_line(look, trace.style, trace.name, points, { width: 1.2, style: get_line_style(look, trace.style) }));
   });
-  return make_plot(
+  return make_curve_plot(
     look,
     make_number_axis(look, 'x', 'time (s)', { min: 0, max: 'dataMax' }),
     make_number_axis(look, 'y', 'positional error (mm)', { log }),

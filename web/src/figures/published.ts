@@ -58,8 +58,8 @@ export function make_published_figure(data: ReproductionData): Figure | null {
       ];
       return make_plot(
         look,
-        make_number_axis(look, 'x', 'published average error (mm)', { log, min: log ? undefined : 0 }),
-        make_number_axis(look, 'y', 'average error here (mm)', { log, min: log ? undefined : 0 }),
+        make_number_axis(look, 'x', 'published average error (mm)', { log, min: log ? undefined : 0, values: ends }),
+        make_number_axis(look, 'y', 'average error here (mm)', { log, min: log ? undefined : 0, values: ends }),
         series,
       );
     },

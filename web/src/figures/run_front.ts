@@ -93,7 +93,10 @@ export function make_front_figure(front: RunFront, variables: VariableHistory[])
         });
       }
       const axis = (which: 0 | 1) =>
-        make_number_axis(look, which === 0 ? 'x' : 'y', name_axis(shown[axes[which]].name, shown[axes[which]].unit), { log: logs[which] });
+        make_number_axis(look, which === 0 ? 'x' : 'y', name_axis(shown[axes[which]].name, shown[axes[which]].unit), {
+          log: logs[which],
+          values: front.points.map((_, i) => value_of(i, axes[which])),
+        });
       return make_plot(look, axis(0), { ...axis(1), nameGap: 58 }, series, { grid: { left: 80, right: 24, top: 44, bottom: 48 } });
     },
     table: () => {

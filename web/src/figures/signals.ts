@@ -1,7 +1,7 @@
 // The reference signals (Fig. 5.5-5.8 of the thesis) and how short moves are slowed down (Fig. 5.10).
 import { decimate } from '../charts/decimate';
 import type { Look } from '../charts/look';
-import { get_line_style, make_number_axis, make_panel_title, make_panels, make_plot, make_vertical } from '../charts/marks';
+import { get_line_style, make_number_axis, make_panel_title, make_panels, make_curve_plot, make_vertical } from '../charts/marks';
 import { shorten_all } from '../charts/names';
 import { make_line, type Part, type Point } from '../charts/parts';
 import type { SignalCurve, Signals } from '../data';
@@ -95,9 +95,9 @@ export function make_signal_figure(signals: Signals, curves: SignalCurve[], part
       if (options.marks) {
         parts.forEach((_, i) => get_marks(signals, curves[0]).forEach((mark) => series.push(make_vertical(look, mark.time_s, mark.name, look.muted, i))));
       }
-      return make_plot(
+      return make_curve_plot(
         look,
-        parts.map((_, i) => make_number_axis(look, 'x', 'time (s)', { index: i, min: 'dataMin', max: 'dataMax' })),
+        parts.map((_, i) => make_number_axis(look, 'x', 'time (s)', { index: i, min: 0, max: 'dataMax' })),
         parts.map((part, i) =>
           make_number_axis(look, 'y', parts.length > 1 ? '' : `${kParts[part].label} (${kParts[part].unit})`, { index: i }),
         ),
@@ -157,13 +157,13 @@ export function make_reduction_figure(signals: Signals, id = 'speed-reduction', 
         ? `below the distance limit of ${format_number(reduction.limit_m, 3)} m (dashed) it falls in proportion to the distance, so that short moves are not the worst ones.`
         : `there is no distance limit, and all moves have the same.`),
     draw: (look) =>
-      make_plot(
+      make_curve_plot(
         look,
-        make_number_axis(look, 'x', 'distance (m)'),
+        make_number_axis(look, 'x', 'distance (m)', { max: 'dataMax' }),
         make_number_axis(look, 'y', 'average speed (m/s)', { min: 0 }),
         [
           make_line(look, 0, 'speed', make_points(reduction.distance_m, reduction.speed_m_per_s), { width: 2.2 }),
-          ...(reduction.limit_m > 0 ? [make_vertical(look, reduction.limit_m, 'distance limit')] : []),
+          ...(reduction.limit_m > 0 ? [make_vertical(look, reduction.limit_m, 'distance limit', look.muted, 0, true)] : []),
         ],
       ),
     table: () => ({

@@ -11,7 +11,8 @@ import { are_positive, count_of, flatten, is_number, name_axis, times } from './
 export function make_sweep_figure(sweep: Sweep, id = 'speed-sweep', thesis = ''): Figure {
   const names = shorten_all(sweep.series.map((one) => one.name));
   const some_fail = sweep.series.some((one) => one.failures.some((count) => count > 0));
-  const log = are_positive(flatten(sweep.series.map((one) => one.mean_m)));
+  const values = flatten(sweep.series.map((one) => one.mean_m)).map((value) => times(value, kMillimetres));
+  const log = are_positive(values);
   return {
     kind: 'figure',
     id,
@@ -67,7 +68,7 @@ export function make_sweep_figure(sweep: Sweep, id = 'speed-sweep', thesis = '')
       return make_plot(
         look,
         make_number_axis(look, 'x', name_axis(sweep.quantity.name, sweep.quantity.unit)),
-        make_number_axis(look, 'y', 'average positional error (mm)', { log }),
+        make_number_axis(look, 'y', 'average positional error (mm)', { log, values }),
         series,
       );
     },

@@ -98,8 +98,7 @@ export function make_errors_figure(test: TestErrors): Figure | null {
         look,
         make_number_axis(look, 'x', name_axis(shown.name, shown.unit), {
           log,
-          min: 'dataMin',
-          max: has_limit ? Math.max(limit as number, edges[edges.length - 1]) : 'dataMax',
+          values: has_limit ? [...edges, limit] : edges,
         }),
         make_number_axis(look, 'y', 'cases', { min: 0 }),
         series,

@@ -1,6 +1,6 @@
 // How a run got to its winner: the objective and the design variables against generations.
 import { get_series_style } from '../charts/look';
-import { make_number_axis, make_plot } from '../charts/marks';
+import { make_number_axis, make_curve_plot } from '../charts/marks';
 import { make_line, type Part, type Point } from '../charts/parts';
 import type { RunData } from '../data';
 import type { DataTable, Figure, Value } from '../model';
@@ -26,9 +26,9 @@ export function make_fitness_figure(data: RunData, id = 'fitness'): Figure {
   return {
     kind: 'figure',
     id,
-    title: `${quantity.name} during training`,
+    title: `Training: ${quantity.name}`,
     caption:
-      `Best and average ${quantity.name} of ${of_it}, against ${unit === 'generation' ? 'the generation' : 'the number of evaluations'}, ` +
+      `Best and average of the ${quantity.name} in ${of_it}, against ${unit === 'generation' ? 'the generation' : 'the number of evaluations'}, ` +
       `on the training cases (schedule ${training.schedule}); smaller is better. ` +
       (incumbents.index.length > 0
         ? `Symbols: the best designs known on the way, on the ${count_of(incumbents.test_cases, 'case')} of ${incumbents.test_set}, ` +
@@ -56,7 +56,8 @@ export function make_fitness_figure(data: RunData, id = 'fitness'): Figure {
       const by_cases = picked.abscissa === 'cases';
       const x = by_cases ? training.cases : training.index;
       const x_incumbents = by_cases ? incumbents.cases : incumbents.index;
-      const log = !data.logarithmic && are_positive(flatten([training.best, training.mean, incumbents.test]));
+      const values = flatten([training.best, training.mean, incumbents.test]).map((value) => times(value, shown.factor));
+      const log = !data.logarithmic && are_positive(values);
       const line = (values: (number | null)[]): Point[] => values.map((value, i) => [x[i], times(value, shown.factor)]);
       const tests: Point[] = incumbents.test.map((value, i) => ({
         value: [x_incumbents[i], times(value, shown.factor)],
@@ -67,7 +68,7 @@ export function make_fitness_figure(data: RunData, id = 'fitness'): Figure {
       const style = get_series_style(look, 1);
       const series: Part[] = [
         make_line(look, 5, kMean, line(training.mean), {
-          width: 1,
+          width: 1.4,
           style: { ...get_series_style(look, 6), dash: 'dotted' },
         }),
         make_line(look, 0, kBest, line(training.best), { width: 1.4 }),
@@ -79,10 +80,10 @@ export function make_fitness_figure(data: RunData, id = 'fitness'): Figure {
           symbolSize: tests.length < 60 ? 7 : 4,
         });
       }
-      return make_plot(
+      return make_curve_plot(
         look,
-        make_number_axis(look, 'x', by_cases ? 'simulated training cases' : unit),
-        make_number_axis(look, 'y', name_axis(shown.name, shown.unit), { log }),
+        make_number_axis(look, 'x', by_cases ? 'simulated training cases' : unit, { max: 'dataMax' }),
+        make_number_axis(look, 'y', name_axis(shown.name, shown.unit), { log, values }),
         series,
       );
     },

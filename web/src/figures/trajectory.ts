@@ -44,6 +44,10 @@ function find_frame(one: ReplayCase): Frame {
   };
 }
 
+function label_of(look: Look): Part {
+  return make_number_axis(look, 'x', '').axisLabel as Part;
+}
+
 function draw_view(look: Look, one: ReplayCase, view: number): Part[] {
   const { axes } = kViews[view];
   const points = one.points_m.map((point) => [point[axes[0]], point[axes[1]]]);
@@ -122,7 +126,7 @@ export function make_case_figure(set: ReplaySet, id = 'test-case', thesis = ''):
           which === 0 ? 'x' : 'y',
           kViews[view].names[which],
           { index: view, min: centre - frame.half, max: centre + frame.half },
-          { nameGap: which === 0 ? 26 : 36, splitNumber: 4 },
+          { nameGap: which === 0 ? 26 : 36, splitNumber: 4, axisLabel: { ...label_of(look), showMinLabel: false, showMaxLabel: false } },
         );
       };
       return make_plot(

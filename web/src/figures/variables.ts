@@ -1,6 +1,6 @@
 // The design variables of each generation's best: where the optimizer searches, and when it settles.
 import { get_series_style, type Look } from '../charts/look';
-import { make_number_axis, make_panel_title, make_panels, make_plot } from '../charts/marks';
+import { make_number_axis, make_panel_title, make_panels, make_curve_plot } from '../charts/marks';
 import { shorten } from '../charts/names';
 import { make_band, make_line, type Part } from '../charts/parts';
 import type { RunData, VariableHistory } from '../data';
@@ -137,12 +137,16 @@ export function make_variables_figure(data: RunData): Figure | null {
       const group = get_group(picked);
       const count = group.members.length;
       const grids = make_panels(count, Math.min(kColumns, count), height);
-      return make_plot(
+      return make_curve_plot(
         look,
         group.members.map((_, i) =>
-          make_number_axis(look, 'x', i + kColumns >= count ? unit : '', { index: i, max: 'dataMax', min: 'dataMin' }),
+          make_number_axis(look, 'x', i + kColumns >= count ? unit : '', { index: i, max: 'dataMax' }),
         ),
-        group.members.map((variable, i) => make_number_axis(look, 'y', '', { index: i, log: get_log_sign(variable) !== 0 })),
+        group.members.map((variable, i) => make_number_axis(look, 'y', '', {
+            index: i,
+            log: get_log_sign(variable) !== 0,
+            values: [variable.lower, variable.upper].map(Math.abs),
+          })),
         flatten(group.members.map((variable, i) => draw_panel(look, data, variable, i))),
         { grid: grids, title: group.members.map((variable, i) => make_panel_title(look, grids[i], name_variable(variable))) },
       );

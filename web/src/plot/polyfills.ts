@@ -1,22 +1,26 @@
-// What ECharts and the figures expect of their surroundings, and Duktape 2.7 lacks: ES5 with some
-// of what came later, without a browser's timers.
+// What the figures expect of their surroundings and Duktape 2.7 lacks: parts of the language newer than
+// ES5, by core-js, and what only browsers have, as far as ECharts asks for it.
+import 'core-js/es/array/fill';
+import 'core-js/es/array/find';
+import 'core-js/es/array/find-index';
+import 'core-js/es/array/flat';
+import 'core-js/es/array/flat-map';
+import 'core-js/es/array/from';
+import 'core-js/es/array/includes';
+import 'core-js/es/map';
+import 'core-js/es/math';
+import 'core-js/es/object/entries';
+import 'core-js/es/object/from-entries';
+import 'core-js/es/object/values';
+import 'core-js/es/set';
+import 'core-js/es/string/pad-end';
+import 'core-js/es/string/pad-start';
+import 'core-js/es/typed-array/methods';
+
 const world = globalThis as unknown as Record<string, unknown>;
 world.global = world;
 world.self = world;
+// Nothing happens later here: a figure is drawn in one go.
 world.setTimeout = () => 0;
 world.clearTimeout = () => undefined;
 world.console = { log() {}, warn() {}, error() {} };
-
-function add(owner: object, name: string, value: unknown): void {
-  if (!(name in owner)) {
-    Object.defineProperty(owner, name, { value, writable: true, configurable: true });
-  }
-}
-
-[Float64Array, Float32Array, Int32Array, Uint32Array, Int16Array, Uint16Array, Uint8Array].forEach((type) => {
-  add(type.prototype, 'sort', function (this: Float64Array, compare?: (a: number, b: number) => number) {
-    const sorted = Array.prototype.slice.call(this).sort(compare ?? ((a: number, b: number) => a - b));
-    this.set(sorted);
-    return this;
-  });
-});
