@@ -1,6 +1,15 @@
 // The robot's bodies as geometries: all shapes of a body in one, with their colours at the corners,
 // so that a body takes one call to draw.
-import { BoxGeometry, BufferAttribute, BufferGeometry, Color, CylinderGeometry, Matrix4, SphereGeometry } from 'three';
+import {
+  BoxGeometry,
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  CylinderGeometry,
+  Float32BufferAttribute,
+  Matrix4,
+  SphereGeometry,
+} from 'three';
 import type { Mesh, Robot, Shape } from '../data';
 import { unpack, unpack_indices } from '../numbers';
 import { make_frame, type Frame } from './chain';
@@ -15,7 +24,10 @@ function make_mesh_geometry(mesh: Mesh, scale: [number, number, number]): Buffer
   geometry.setAttribute('position', new BufferAttribute(unpack(mesh.positions), 3));
   geometry.setIndex(new BufferAttribute(unpack_indices(mesh.indices), 1));
   geometry.scale(scale[0], scale[1], scale[2]);
-  return geometry;
+  const flat = geometry.toNonIndexed(); // no corner is shared, so that each triangle has its own normal
+  flat.computeVertexNormals();
+  geometry.dispose();
+  return flat;
 }
 
 function make_shape_geometry(shape: Shape, meshes: Mesh[]): BufferGeometry | null {
@@ -26,33 +38,38 @@ function make_shape_geometry(shape: Shape, meshes: Mesh[]): BufferGeometry | nul
     case 'cylinder':
       return new CylinderGeometry(a, a, b, 28).rotateX(Math.PI / 2); // along y there, along z here
     case 'sphere':
-      return new SphereGeometry(a, 24, 14);
+      return new SphereGeometry(a, 20, 12);
     case 'mesh':
       return shape.mesh === null ? null : make_mesh_geometry(meshes[shape.mesh], shape.size);
   }
 }
 
 function join(parts: { geometry: BufferGeometry; rgba: number[] }[]): BufferGeometry {
-  const count = parts.reduce((sum, part) => sum + part.geometry.getAttribute('position').count, 0);
-  const positions = new Float32Array(3 * count);
-  const normals = new Float32Array(3 * count);
-  const colours = new Float32Array(3 * count);
-  let first = 0;
+  const positions: number[] = [];
+  const normals: number[] = [];
+  const colours: number[] = [];
+  const indices: number[] = [];
   for (const { geometry, rgba } of parts) {
+    const first = positions.length / 3;
     const position = geometry.getAttribute('position');
+    const normal = geometry.getAttribute('normal');
     const colour = new Color().setRGB(rgba[0], rgba[1], rgba[2], 'srgb');
-    positions.set(position.array, 3 * first);
-    normals.set(geometry.getAttribute('normal').array, 3 * first);
-    for (let i = first; i < first + position.count; ++i) {
-      colours.set([colour.r, colour.g, colour.b], 3 * i);
+    for (let i = 0; i < position.count; ++i) {
+      positions.push(position.getX(i), position.getY(i), position.getZ(i));
+      normals.push(normal.getX(i), normal.getY(i), normal.getZ(i));
+      colours.push(colour.r, colour.g, colour.b);
     }
-    first += position.count;
+    const count = geometry.index?.count ?? position.count;
+    for (let i = 0; i < count; ++i) {
+      indices.push(first + (geometry.index?.getX(i) ?? i));
+    }
     geometry.dispose();
   }
   const joined = new BufferGeometry();
-  joined.setAttribute('position', new BufferAttribute(positions, 3));
-  joined.setAttribute('normal', new BufferAttribute(normals, 3));
-  joined.setAttribute('color', new BufferAttribute(colours, 3));
+  joined.setAttribute('position', new Float32BufferAttribute(positions, 3));
+  joined.setAttribute('normal', new Float32BufferAttribute(normals, 3));
+  joined.setAttribute('color', new Float32BufferAttribute(colours, 3));
+  joined.setIndex(indices);
   return joined;
 }
 
@@ -62,17 +79,11 @@ export function make_bodies(robot: Robot): BufferGeometry[] {
   return robot.bodies.map((body) => {
     const parts: { geometry: BufferGeometry; rgba: number[] }[] = [];
     for (const shape of body.shapes) {
-      const indexed = make_shape_geometry(shape, robot.meshes);
-      if (indexed === null) {
-        continue;
+      const geometry = make_shape_geometry(shape, robot.meshes);
+      if (geometry !== null) {
+        geometry.applyMatrix4(to_matrix(make_frame(shape.pose), matrix));
+        parts.push({ geometry, rgba: shape.rgba });
       }
-      const geometry = indexed.toNonIndexed();
-      indexed.dispose();
-      if (shape.kind === 'mesh') {
-        geometry.computeVertexNormals(); // flat, as no corner is shared
-      }
-      geometry.applyMatrix4(to_matrix(make_frame(shape.pose), matrix));
-      parts.push({ geometry, rgba: shape.rgba });
     }
     return join(parts);
   });

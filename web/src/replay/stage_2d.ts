@@ -56,8 +56,8 @@ export class Stage2d implements Stage {
     if (snapshot.ghost_q !== null) {
       this.draw_arm(context, snapshot.ghost_q, kGhost, 5);
     }
-    this.draw_arm(context, snapshot.q, look.text, 3);
-    this.draw_dot(context, snapshot.target_m, look.accent, 6);
+    this.draw_arm(context, snapshot.q, look.muted, 4);
+    this.draw_dot(context, snapshot.target_m, look.text, 6);
   }
 
   set_view(view: ViewChoice): void {

@@ -1,12 +1,24 @@
 // The path of a tip, coloured by its error. Its numbers go to the graphics card once a test case;
-// as the time goes on only the range to draw changes.
-import { Color, Group, InstancedInterleavedBuffer, InterleavedBufferAttribute, Sphere, Vector3 } from 'three';
+// as the time goes on only the range to draw changes. Earlier moves are thin and pale, as wide lines
+// take long where the processor draws them.
+import {
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  Group,
+  InstancedInterleavedBuffer,
+  InterleavedBufferAttribute,
+  Line,
+  LineBasicMaterial,
+  Sphere,
+  Vector3,
+} from 'three';
 import { Line2 } from 'three/addons/lines/Line2.js';
 import { LineGeometry } from 'three/addons/lines/LineGeometry.js';
 import { LineMaterial } from 'three/addons/lines/LineMaterial.js';
 import type { Rgb } from './colours';
 
-const kFaint = 0.62; // so far towards the background
+const kFaint = 0.4; // so far towards the background
 
 // Each piece has both its ends: the i-th goes from moment i to i + 1.
 function make_pieces(values: ArrayLike<number>, moments: number): InstancedInterleavedBuffer {
@@ -28,15 +40,13 @@ export class Trace {
   readonly group = new Group();
   private readonly positions: InstancedInterleavedBuffer;
   private readonly colours: InstancedInterleavedBuffer;
-  private readonly faint_colours: InstancedInterleavedBuffer;
-  private readonly past: Line2;
+  private readonly past: Line<BufferGeometry, LineBasicMaterial>;
   private readonly now: Line2;
-  private readonly first = new Map<Line2, number>();
+  private first = -1;
 
   // `tip_m` has 3 numbers a moment, `colour` gives each moment's.
   constructor(tip_m: Float32Array, colour: (moment: number) => Rgb, width: number, background: string) {
     const moments = tip_m.length / 3;
-    this.positions = make_pieces(tip_m, moments);
     const colours = new Float32Array(3 * moments);
     const faint = new Float32Array(3 * moments);
     const linear = new Color();
@@ -45,44 +55,42 @@ export class Trace {
       linear.setRGB(...colour(i), 'srgb').toArray(colours, 3 * i);
       linear.lerp(ground, kFaint).toArray(faint, 3 * i);
     }
+    this.positions = make_pieces(tip_m, moments);
     this.colours = make_pieces(colours, moments);
-    // Not by opacity: where pieces overlap the line would be darker.
-    this.faint_colours = make_pieces(faint, moments);
-    this.past = this.make_line(width, true);
-    this.now = this.make_line(width, false);
+
+    const geometry = new BufferGeometry();
+    geometry.setAttribute('position', new BufferAttribute(tip_m, 3));
+    geometry.setAttribute('color', new BufferAttribute(faint, 3));
+    this.past = new Line(geometry, new LineBasicMaterial({ vertexColors: true }));
+    this.past.frustumCulled = false; // an arm that runs away has no extent worth asking for
+
+    // The move under way is seen through the arm and its load, which else hide the tip.
+    const material = new LineMaterial({ linewidth: width, vertexColors: true, transparent: true, depthTest: false });
+    this.now = new Line2(new LineGeometry(), material);
+    this.now.renderOrder = 1;
+    // A range that begins later seems to go beyond the numbers' end, so its extent is not for three to find.
+    this.now.frustumCulled = false;
+    this.now.geometry.boundingSphere = new Sphere(new Vector3(0, 0, 1), 5);
+    this.group.add(this.past, this.now);
   }
 
   show(parts: { past: [number, number]; now: [number, number] }): void {
-    this.set_part(this.past, parts.past);
-    this.set_part(this.now, parts.now);
+    this.past.visible = parts.past[1] > parts.past[0];
+    this.past.geometry.setDrawRange(parts.past[0], parts.past[1] - parts.past[0] + 1);
+    const [first, last] = parts.now;
+    this.now.visible = last > first;
+    this.now.geometry.instanceCount = last - first;
+    if (this.now.visible && this.first !== first) {
+      this.first = first;
+      set_range(this.now, '', this.positions, first);
+      set_range(this.now, 'Color', this.colours, first);
+    }
   }
 
   dispose(): void {
     for (const line of [this.past, this.now]) {
       line.geometry.dispose();
       line.material.dispose();
-    }
-  }
-
-  // The move under way is seen through the arm and its load, which else hide the tip.
-  private make_line(width: number, is_past: boolean): Line2 {
-    const material = new LineMaterial({ linewidth: width, vertexColors: true, transparent: !is_past, depthTest: is_past });
-    const line = new Line2(new LineGeometry(), material);
-    line.renderOrder = is_past ? 0 : 1;
-    // A range that begins later seems to go beyond the numbers' end, so its extent is not for three to find.
-    line.frustumCulled = false;
-    line.geometry.boundingSphere = new Sphere(new Vector3(0, 0, 1), 5);
-    this.group.add(line);
-    return line;
-  }
-
-  private set_part(line: Line2, [first, last]: [number, number]): void {
-    line.visible = last > first;
-    line.geometry.instanceCount = last - first;
-    if (line.visible && this.first.get(line) !== first) {
-      this.first.set(line, first);
-      set_range(line, '', this.positions, first);
-      set_range(line, 'Color', line === this.past ? this.faint_colours : this.colours, first);
     }
   }
 }
