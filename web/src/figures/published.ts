@@ -62,7 +62,7 @@ export function make_published_figure(data: ReproductionData): Figure | null {
             fontFamily: look.font,
             fontSize: 11,
           },
-          labelLayout: { hideOverlap: true, moveOverlap: 'shiftY' },
+          labelLayout: { hideOverlap: true },
         },
       ];
       return make_plot(
