@@ -25,6 +25,7 @@ constexpr const char* kFooter = R"(Examples:
   armwright list optimizers ga                     # one optimizer and its options
   armwright optimize q1-complex --seed 1           # tune the arm as the thesis did; resumes if interrupted
   armwright compare --preset smoke                 # which optimizer is better, and how sure is that?
+  armwright rerun results/q1 q1-complex/ga/r03     # one run of a comparison anew: is it the same to the last bit?
   armwright evaluate table-a10 --problem q2-e6     # a published design on 500 test cases
   armwright verify table-a10                       # does it hold under other engines, time steps and masses?
   armwright reproduce                              # the thesis's published results beside ours
@@ -186,6 +187,7 @@ int run_app(int argc, char** argv) {
     add_list(app, session);
     add_optimize(app, session);
     add_compare(app, session);
+    add_rerun(app, session);
     add_evaluate(app, session);
     add_sweep(app, session);
     add_verify(app, session);

@@ -197,7 +197,7 @@ void announce(const ReproduceOptions& options, const ReproductionPlan& plan,
   expected_s += static_cast<double>(cases) / (kCasesPerJobAndSecond * jobs);
   std::size_t runs = 0;
   for (const RunPlan& run : plan.runs) {
-    if (folder->find(run.problem.name) == nullptr) {
+    if (!std::filesystem::exists(folder->get_run_folder(run.problem.name) / "result.json")) {
       expected_s += static_cast<double>(run.budget) / (kRunCasesPerJobAndSecond * jobs);
       ++runs;
     }
@@ -214,8 +214,8 @@ void announce(const ReproduceOptions& options, const ReproductionPlan& plan,
                             slow ? fmt::format("about {} ", format_duration(expected_s)) : "",
                             format_count(jobs, "thread")));
   if (folder != nullptr) {
-    write_message(fmt::format("folder {} ({} of {} are there already)", folder->path().string(),
-                              there, format_count(plan.parts.size(), "result")));
+    write_message(fmt::format("folder {} ({} of {} results there already)", folder->path().string(),
+                              there, plan.parts.size()));
   }
 }
 

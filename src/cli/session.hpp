@@ -38,6 +38,7 @@ struct Session {
 void add_list(CLI::App& app, Session& session);
 void add_optimize(CLI::App& app, Session& session);
 void add_compare(CLI::App& app, Session& session);
+void add_rerun(CLI::App& app, Session& session);
 void add_evaluate(CLI::App& app, Session& session);
 void add_sweep(CLI::App& app, Session& session);
 void add_verify(CLI::App& app, Session& session);

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "base/config.hpp"
@@ -14,6 +16,8 @@
 #include "problems/analytic.hpp"
 #include "problems/config_files.hpp"
 #include "problems/design_file.hpp"
+#include "problems/recorded_problem.hpp"
+#include "problems/replicate.hpp"
 #include "problems/tracking_description.hpp"
 
 namespace armwright {
@@ -356,12 +360,12 @@ void load_analytic(const ConfigTable& table, LoadedProblem& loaded) {
   loaded.problem = make_analytic(name, dimension);
 }
 
-}  // namespace
+// The configuration with these overrides.
+using ReadTable = std::function<ConfigTable(std::span<const std::string> overrides)>;
 
-LoadedProblem load_problem(std::string_view name_or_path, std::span<const std::string> overrides,
-                           std::span<const EngineRow> engines) {
-  const auto path = resolve_config("problems", name_or_path);
-  const ConfigTable table = ConfigTable::load(path, overrides);
+LoadedProblem load(const std::filesystem::path& path, const ReadTable& read_table,
+                   std::span<const std::string> overrides, std::span<const EngineRow> engines) {
+  const ConfigTable table = read_table(overrides);
   LoadedProblem loaded;
   loaded.name = path.stem().string();
   if (sanitize(loaded.name) != loaded.name) {
@@ -395,9 +399,84 @@ LoadedProblem load_problem(std::string_view name_or_path, std::span<const std::s
   if (simd) {  // what "auto" has come to decides the last bits of every result
     std::vector<std::string> settled(overrides.begin(), overrides.end());
     settled.push_back(fmt::format("physics.simd={}", to_string(*simd)));
-    loaded.resolved_json = ConfigTable::load(path, settled).to_json();
+    loaded.resolved_json = read_table(settled).to_json();
   } else {
     loaded.resolved_json = table.to_json();
+  }
+  return loaded;
+}
+
+// JSON as TOML: a line for each key at the top, everything below it inline.
+std::string write_toml(const nlohmann::json& value) {
+  // A JSON string is a TOML string, but for one character that TOML wants escaped.
+  const auto write_scalar = [](const nlohmann::json& scalar) {
+    std::string text = scalar.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    for (std::size_t at = text.find('\x7f'); at != std::string::npos; at = text.find('\x7f', at)) {
+      text.replace(at, 1, "\\u007f");
+    }
+    return text;
+  };
+  std::vector<std::string> parts;
+  if (value.is_array()) {
+    for (const nlohmann::json& element : value) {
+      parts.push_back(write_toml(element));
+    }
+    return "[" + join(parts, ", ") + "]";
+  }
+  if (value.is_object()) {
+    for (const auto& [key, element] : value.items()) {
+      parts.push_back(write_scalar(key) + " = " + write_toml(element));
+    }
+    return "{" + join(parts, ", ") + "}";
+  }
+  return write_scalar(value);
+}
+
+}  // namespace
+
+LoadedProblem load_problem(std::string_view name_or_path, std::span<const std::string> overrides,
+                           std::span<const EngineRow> engines) {
+  const auto path = resolve_config("problems", name_or_path);
+  return load(
+      path, [&](std::span<const std::string> all) { return ConfigTable::load(path, all); },
+      overrides, engines);
+}
+
+LoadedProblem load_recorded_problem(const std::string& resolved_json, const std::string& name,
+                                    const std::filesystem::path& beside) {
+  nlohmann::json resolved;
+  std::string toml;
+  std::vector<double> start;
+  try {
+    resolved = nlohmann::json::parse(resolved_json);
+    if (resolved.contains("replicate")) {
+      start = resolved.at("replicate").at("start").get<std::vector<double>>();
+      resolved.erase("replicate");
+    }
+    for (const auto& [key, value] : resolved.items()) {
+      toml += write_toml(key) + " = " + write_toml(value) + "\n";
+    }
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("the recorded configuration of {} is not what armwright wrote ({})",
+                            sanitize(name), error.what()));
+  }
+  const auto path = beside / (name + ".toml");
+  LoadedProblem loaded = load(
+      path,
+      [&](std::span<const std::string> all) {
+        return ConfigTable::parse(toml, path.string(), all);
+      },
+      {}, engine_table());
+  if (!start.empty()) {
+    if (start.size() != loaded.problem->description().variables.size()) {
+      throw Error(ErrorKind::bad_data,
+                  fmt::format("the recorded configuration of {} has {} start values for {} "
+                              "variables",
+                              sanitize(name), start.size(),
+                              loaded.problem->description().variables.size()));
+    }
+    loaded = make_replicate(loaded, loaded.sets.training, start);
   }
   return loaded;
 }

@@ -304,6 +304,31 @@ TEST_F(Cli, ReproducesOneTable) {
                                  HasSubstr("task.load_kg=20"), Not(HasSubstr("table-a5"))));
 }
 
+TEST_F(Cli, KeepsAReproductionAndGoesOnWithIt) {
+  const std::vector<std::string> command = {"reproduce", "--cases", "2", "--table", "A.8"};
+  const std::string printed = run(command).out;
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "results"));
+  auto kept = command;
+  kept.emplace_back("--out");
+  EXPECT_EQ(run(kept).out, printed);
+  EXPECT_TRUE(
+      std::filesystem::exists(folder_.path() / "results" / "reproduction" / "reproduction.json"));
+  const Outcome again = run(kept);
+  EXPECT_EQ(again.out, printed);
+  EXPECT_THAT(again.err, HasSubstr("results/reproduction (1 of 1 results there already)"));
+  kept.emplace_back("--new");
+  EXPECT_THAT(run(kept).err, HasSubstr("results/reproduction-002 "));
+  const Outcome stopped = run({"reproduce", "--cases", "500", "--table", "A.10", "--out", "slow",
+                               "--time-limit", "1", "--quiet"});
+  EXPECT_EQ(stopped.exit_code, 75);
+  EXPECT_THAT(stopped.err, HasSubstr("nothing is lost. To go on:"));
+  expect_refused({"reproduce", "--cases", "3", "--out"}, 2, {"other settings", "--new"});
+  std::filesystem::create_directory(folder_.path() / "run");
+  write("run/manifest.json", "{}");
+  expect_refused({"reproduce", "--cases", "2", "--out", "run"}, 2,
+                 {"'manifest.json' but no reproduction.json"});
+}
+
 TEST_F(Cli, SweepsTheSpeed) {
   const Outcome outcome =
       run({"sweep", "q4-speed", "--values", "0.5,1.5", "--cases", "2", "--json", "--quiet"});

@@ -4,7 +4,7 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { find_figure, list_tabs, open_browser, open_page, open_tab } from './browser.mjs';
 import { check_every_tab } from './every_tab.mjs';
-import { kFolder } from './make_pages.mjs';
+import { kFolder, run_program } from './make_pages.mjs';
 
 const kFigures = [
   ...['fitness', 'variables', 'distance-response', 'momentary-error', 'signals-distance', 'signals-speed', 'signals-acceleration'],
@@ -159,6 +159,9 @@ test('a figure says its numbers: under the pointer, as a table, as CSV, as SVG',
     text,
   );
   assert.ok(parsed, 'the SVG is not well-formed');
+  // The same code draws without a browser.
+  const plotted = run_program('plot', join(kFolder, 'run.html'), '--figure', 'distance-response', '--out', '-');
+  assert.equal(plotted.trim(), text.trim());
   expect_no_faults();
   await page.close();
 });

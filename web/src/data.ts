@@ -315,10 +315,10 @@ export interface StudyCell {
   value: number | null; // null: infinite
   cases: number;
   evaluations: number;
-  seconds: number | null; // CPU or wall time where it was recorded
+  seconds: number | null; // CPU or wall time where it was recorded: so far no run does
   failure: string; // of the optimizer
   failures: number; // test cases that failed
-  x: number[]; // the winner; empty if there is none
+  x: number[]; // the winner, 9 significant digits; empty if there is none
   folder: string;
   command: string; // armwright rerun STUDY CELL
 }
@@ -334,13 +334,19 @@ export interface StudyOptimizerResult {
   q3: number | null;
   max: number | null;
   median_interval: [number | null, number | null];
-  mean_rank: number | null;
+  mean_rank: number | null; // null while cells of the problem are missing
   anytime_area: number | null;
   cases: number | null; // median
   running_times: { target: number; reached: number; expected: number | null; interval: [number | null, number | null] }[];
   curve: { q1: (number | null)[]; median: (number | null)[]; q3: (number | null)[] }; // at the checkpoints
   ecdf: number[]; // likewise
   final_check: { engine: string; value: number | null; failures: number; cases: number; replicate: number } | null;
+}
+
+// Iman and Davenport's F; null if it is infinite, as all rank alike: p is chi-squared's then.
+export interface Friedman {
+  statistic: number | null;
+  p: number;
 }
 
 export interface StudyPair {
@@ -366,7 +372,7 @@ export interface StudyProblem {
   targets: number[];
   variables: { name: string; unit: string; lower: number; upper: number; start: number; logarithmic: boolean }[];
   results: StudyOptimizerResult[]; // one an optimizer
-  friedman: { statistic: number; p: number } | null;
+  friedman: Friedman | null;
   pairs: StudyPair[];
   order: number[]; // best first
   missing: number; // cells that have not ended
@@ -376,16 +382,18 @@ export interface StudyProblem {
 export interface StudyFront {
   objectives: Quantity[];
   reference_point: number[];
-  // One an optimizer: the points of all replicates, and the surface that half of the replicates attain.
+  // One an optimizer: the points that none of their own replicate dominates (at most 200 of each), and
+  // what shares of the replicates attain (of two objectives; 0.25, 0.5 and 0.75). 9 significant digits.
   optimizers: { points: { values: number[]; replicate: number }[]; attainment: { share: number; points: number[][] }[] }[];
 }
 
 export interface StudyOverall {
   mean_ranks: number[]; // one an optimizer
-  rank_intervals: [number, number][] | null;
-  friedman: { statistic: number; p: number } | null;
+  rank_intervals: [number, number][] | null; // 95 %, problems resampled; null of fewer than 6 problems
+  friedman: Friedman | null;
   pairs: StudyPair[];
-  // Sets of optimizers, by index, none of which is told apart from another of the set.
+  // The largest sets of optimizers, by index, none of which is told apart from another of the set; one
+  // may be in several, and a set need not be neighbours by rank. Empty of one problem, where nothing is tested.
   cliques: number[][];
   kappas: number[];
   data_profiles: { tolerance: number; shares: number[][] }[];

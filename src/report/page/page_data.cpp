@@ -8,7 +8,10 @@
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "report/page/page_file.hpp"
+#include "report/page/reproduction_page.hpp"
+#include "report/page/run_page.hpp"
 #include "report/page/study_page.hpp"
+#include "report/reproduction/reproduction_record.hpp"
 #include "study/compare/study_folder.hpp"
 
 namespace armwright {
@@ -25,6 +28,12 @@ std::optional<std::string> make_page_data(const std::filesystem::path& folder,
                                           RunObserver& observer) {
   if (is_study_folder(folder)) {
     return make_study_page(folder, options, stop, observer);
+  }
+  if (is_reproduction_folder(folder)) {
+    return make_reproduction_page(folder, options, stop, observer);
+  }
+  if (std::filesystem::exists(folder / "manifest.json")) {
+    return make_run_page(folder, options, stop, observer);
   }
   throw Error(ErrorKind::usage,
               fmt::format("{}: is the folder of neither a run, a comparison nor a reproduction; name "

@@ -1,6 +1,9 @@
 #include "report/page/page_simulator.hpp"
 
 #include <algorithm>
+#include <utility>
+
+#include "study/case_runner.hpp"
 
 namespace armwright {
 
@@ -54,6 +57,19 @@ std::vector<TrackingResult> PageSimulator::evaluate(const TrackingProblem& probl
                       results.begin() + static_cast<std::ptrdiff_t>(begin));
   });
   return results;
+}
+
+Evaluation PageSimulator::evaluate(const Problem& problem, std::span<const double> x,
+                                   const CaseBlock& block) {
+  Evaluation evaluation;
+  CaseRunner runner(problem, pool_, stop_);
+  runner.run(std::span(&x, 1), block, false,
+             [&](std::size_t, Evaluation done) { evaluation = std::move(done); });
+  if (stop_.requested()) {
+    throw PageStopped{};
+  }
+  report(block.numbers.size());
+  return evaluation;
 }
 
 }  // namespace armwright

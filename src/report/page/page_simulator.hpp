@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "problems/tracking_problem.hpp"
@@ -29,6 +30,8 @@ class PageSimulator {
   std::vector<TrackingResult> evaluate(const TrackingProblem& problem, const ArmDesign& design,
                                        const TestSet& set, std::uint64_t first,
                                        std::uint64_t count);
+  // A candidate of any problem on all cases of a block.
+  Evaluation evaluate(const Problem& problem, std::span<const double> x, const CaseBlock& block);
   // job(0) to job(jobs - 1), in any order, each a simulated case.
   void run(std::size_t jobs, const std::function<void(std::size_t)>& job);
 

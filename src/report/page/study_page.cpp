@@ -93,9 +93,21 @@ std::optional<std::string> make_study_page(const std::filesystem::path& folder,
                              "and problems that lack cells have no ranks and no tests.",
                              result.missing.size(), total));
   }
+  const bool has_arm = std::ranges::any_of(plan.problems, [](const StudyProblem& problem) {
+    return problem.loaded.tracking != nullptr;
+  });
+  if (has_arm && !options.simulate) {
+    notes.emplace_back("Nothing was simulated for this page, so there is no replay.");
+  } else if (has_arm) {
+    PageSimulator simulator(options.jobs, stop, observer);
+    try {
+      page["replays"] =
+          make_study_replays(plan, result, folder, options.cases, simulator, page["robots"], notes);
+    } catch (const PageStopped&) {
+      return std::nullopt;
+    }
+  }
   page["notes"] = notes;
-  (void)options;
-  (void)observer;
   return dump_page(page);
 }
 

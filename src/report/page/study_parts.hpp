@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "report/page/page_simulator.hpp"
 #include "study/compare/study_result.hpp"
 
 namespace armwright {
@@ -34,6 +35,15 @@ nlohmann::json make_study_overall(const StudyPlan& plan, const StudyResult& resu
 
 // The plan in words.
 nlohmann::json make_study_facts(const StudyPlan& plan);
+
+// ReplaySet of the first problems with an arm: the best designs of the best optimizers and the
+// problem's own start, on few cases of the test set and those of `cases` ("test/2:17"). Robots go
+// to `robots`, and to `notes` what was left out, for 3 MB at most. Error{usage} for a case that is
+// none.
+nlohmann::json make_study_replays(const StudyPlan& plan, const StudyResult& result,
+                                  const std::filesystem::path& folder,
+                                  std::span<const std::string> cases, PageSimulator& simulator,
+                                  nlohmann::json& robots, std::vector<std::string>& notes);
 
 // What every optimizer's numbers on a problem are of: its cells, by replicate.
 std::vector<const CellOutcome*> list_cells_of(std::span<const CellOutcome> cells,

@@ -21,11 +21,11 @@ json rounded(std::span<const double> values) {
   return list;
 }
 
-// `armwright rerun` names a cell by its labels; where these hold a slash, by its folder.
+// `armwright rerun` names a cell by its labels; where these could be read otherwise, by its folder.
 std::string name_cell(const StudyPlan& plan, const Cell& cell) {
   const std::string& problem = plan.problems[cell.problem].label;
   const std::string& optimizer = plan.optimizers[cell.optimizer].label;
-  if ((problem + optimizer).find('/') == std::string::npos) {
+  if ((problem + optimizer).find_first_of("/%") == std::string::npos) {
     return fmt::format("{}/{}/r{:02}", problem, optimizer, cell.replicate);
   }
   return make_cell_path(plan, cell).lexically_relative("cells").string();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "base/error.hpp"
 #include "report/page/point_statistics.hpp"
@@ -10,12 +11,17 @@
 namespace armwright {
 namespace {
 
-// Passes progress on, and of the messages what is not said of every run that is complete.
+// Passes on what a run tells, with its name.
 class RunMessages final : public RunObserver {
  public:
   RunMessages(std::string name, RunObserver& observer)
       : name_(std::move(name)), observer_(observer) {}
-  void on_progress(const Progress& progress) override { observer_.on_progress(progress); }
+  // Runs have objectives of different units, and there is one bar for all.
+  void on_progress(const Progress& progress) override {
+    Progress shown = progress;
+    shown.best_objective = std::numeric_limits<double>::quiet_NaN();
+    observer_.on_progress(shown);
+  }
   void on_message(const std::string& message) override {
     observer_.on_message(fmt::format("{}: {}", name_, message));
   }

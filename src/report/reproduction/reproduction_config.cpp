@@ -10,6 +10,19 @@ std::vector<std::string> get_strings_or_empty(const ConfigTable& table, std::str
   return table.has(key) ? table.get_strings(key) : std::vector<std::string>{};
 }
 
+UnpublishedConfig read_unpublished(const ConfigTable& table) {
+  UnpublishedConfig design{.label = table.get_string("label"),
+                           .design = table.get_string("design"),
+                           .problem = table.get_string("problem"),
+                           .total_torque_n_m = {},
+                           .where = table.get_string("where", "")};
+  if (table.has("total_torque_n_m")) {
+    design.total_torque_n_m =
+        table.get_number("total_torque_n_m", Range{.lower = 0, .lower_open = true});
+  }
+  return design;
+}
+
 ResponseFigureConfig read_figure(const ConfigTable& table) {
   ResponseFigureConfig figure{.id = table.get_string("id"),
                               .title = table.get_string("title"),
@@ -29,10 +42,16 @@ ReproductionConfig load_reproduction_config(const std::string& name_or_path) {
   const ConfigTable table = ConfigTable::load(resolve_config("reproductions", name_or_path));
   ReproductionConfig config;
   config.title = table.get_string("title");
+  config.remark = table.get_string("remark", "");
   config.optimizer = table.get_string("optimizer");
   config.seed = static_cast<std::uint64_t>(table.get_integer("seed", 0, kLargestSeed));
   config.engine = table.get_string("engine");
-  config.runs = get_strings_or_empty(table, "runs");
+  for (const ConfigTable& run : table.get_tables_or_empty("runs")) {
+    config.runs.push_back({run.get_string("label"), run.get_string("problem")});
+  }
+  for (const ConfigTable& design : table.get_tables_or_empty("unpublished")) {
+    config.unpublished.push_back(read_unpublished(design));
+  }
   config.sweep = table.get_string("sweep");
   for (const ConfigTable& again : table.get_tables_or_empty("reevaluation")) {
     config.reevaluations.push_back({again.get_string("label"), again.get_string("run"),

@@ -3,15 +3,30 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace armwright {
 
+struct AnewConfig {
+  std::string label;  // "E1"
+  std::string problem;
+};
+
+// A shipped design of which its source prints no error.
+struct UnpublishedConfig {
+  std::string label;
+  std::string design;
+  std::string problem;
+  std::optional<double> total_torque_n_m;
+  std::string where;
+};
+
 // The winner of a run under other conditions than those it was optimized for.
 struct ReevaluationConfig {
-  std::string label;  // "q2-e4, IK bug off"
-  std::string run;
+  std::string label;  // "E4, IK bug off"
+  std::string run;    // its problem
   std::vector<std::string> overrides;
   std::string where;
 };
@@ -47,10 +62,12 @@ struct MomentaryConfig {
 
 struct ReproductionConfig {
   std::string title;
+  std::string remark;  // whole sentences on what was optimized anew
   std::string optimizer;
   std::uint64_t seed = 1;
-  std::string engine;             // that the runs are trained and judged with
-  std::vector<std::string> runs;  // problems
+  std::string engine;  // that the runs are trained and judged with
+  std::vector<AnewConfig> runs;
+  std::vector<UnpublishedConfig> unpublished;
   std::vector<ReevaluationConfig> reevaluations;
   std::string sweep;  // a problem with a sweep of its own
   std::vector<ResponseFigureConfig> figures;
@@ -59,6 +76,6 @@ struct ReproductionConfig {
 };
 
 // A shipped one by name, or a file. Error{usage} names file, line, field and what is allowed.
-ReproductionConfig load_reproduction_config(const std::string& name_or_path = "thesis");
+ReproductionConfig load_reproduction_config(const std::string& name_or_path);
 
 }  // namespace armwright

@@ -15,12 +15,6 @@
 namespace armwright {
 namespace {
 
-// "table-a10" -> {"table-a", 10}: so that A.5 comes before A.10.
-std::pair<std::string, long long> get_natural_key(const std::string& name) {
-  const std::size_t digits = name.find_last_not_of("0123456789") + 1;
-  return {name.substr(0, digits), parse_integer(name.substr(digits)).value_or(-1)};
-}
-
 std::vector<std::string> choose_designs(const std::vector<std::string>& tables) {
   std::vector<std::string> designs;
   for (const std::string& name : list_configs("designs")) {
@@ -63,8 +57,9 @@ class Planner {
       add_published(load_design(name));
     }
     if (plan_.request.whole) {
-      const ReproductionConfig config = load_reproduction_config();
+      const ReproductionConfig config = load_reproduction_config(plan_.request.config);
       if (plan_.request.tables.empty()) {
+        add_unpublished(config);
         add_runs(config);
       }
       add_sweep(config.sweep, designs);
@@ -109,23 +104,37 @@ class Planner {
     }
   }
 
+  void add_unpublished(const ReproductionConfig& config) {
+    for (const UnpublishedConfig& unpublished : config.unpublished) {
+      ReproductionPart part;
+      part.kind = ReproductionPart::Kind::unpublished;
+      part.label = unpublished.label;
+      part.design = unpublished.design;
+      part.problem = unpublished.problem;
+      part.published_torque_n_m = unpublished.total_torque_n_m;
+      part.where = unpublished.where;
+      add(std::move(part), load_design(unpublished.design).design);
+    }
+  }
+
   void add_runs(const ReproductionConfig& config) {
-    for (const std::string& name : config.runs) {
+    for (const auto& [label, name] : config.runs) {
       plan_.runs.push_back(make_run(config, name));
       const PublishedWinner& published = plan_.runs.back().problem.published;
       ReproductionPart part;
       part.kind = ReproductionPart::Kind::anew;
-      part.label = name;
-      part.run = name;
+      part.label = label;
+      part.run = plan_.runs.back().problem.name;
       part.problem = name;
       part.published_error_m = published.error_m;
       part.published_torque_n_m = published.total_torque_n_m;
       part.where = published.where;
       add(part, {});
       for (const ReevaluationConfig& again : config.reevaluations) {
-        if (again.run == name) {
+        if (again.run == part.run) {
           part.label = again.label;
           part.overrides = again.overrides;
+          part.published_torque_n_m.reset();  // the same design: said once
           part.where = again.where;
           add(part, {});
         }
@@ -174,6 +183,11 @@ class Planner {
 };
 
 }  // namespace
+
+std::pair<std::string, long long> get_natural_key(const std::string& name) {
+  const std::size_t digits = name.find_last_not_of("0123456789") + 1;
+  return {name.substr(0, digits), parse_integer(name.substr(digits)).value_or(-1)};
+}
 
 std::string get_table_name(const std::string& design) {
   constexpr std::string_view kPrefix = "table-a";

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "problems/design_file.hpp"
@@ -15,9 +16,9 @@
 namespace armwright {
 
 struct ReproductionPart {
-  enum class Kind { published, anew, sweep };
+  enum class Kind { published, unpublished, anew, sweep };
   Kind kind = Kind::published;
-  std::string label;   // one part each: "A.10 (E6)", "q2-e1", "q4-speed 0.5"
+  std::string label;   // one part each: "A.10 (E6)", "E1", "q4-speed 0.5"
   std::string design;  // a shipped one; empty if it is the winner of `run`
   std::string run;     // what is optimized anew: the name of its problem and of its folder
   std::string problem;
@@ -36,6 +37,7 @@ struct PlannedPart {
 };
 
 struct ReproductionRequest {
+  std::string config = "thesis";       // a shipped reproduction or a file: what a whole one has
   std::vector<std::string> tables;     // only these designs, as "A.10" or "table-a10"; empty: all
   std::optional<std::uint64_t> cases;  // of each test set; nothing: as many as the problem says
   std::vector<std::string> overrides;  // of every problem, as KEY=VALUE: engines
@@ -53,6 +55,8 @@ struct ReproductionPlan {
 // but these designs.
 ReproductionPlan plan_reproduction(const ReproductionRequest& request);
 
+// "table-a10" -> {"table-a", 10}: so that A.5 comes before A.10.
+std::pair<std::string, long long> get_natural_key(const std::string& name);
 // What people call the table of a shipped design: "table-a10" is A.10.
 std::string get_table_name(const std::string& design);
 

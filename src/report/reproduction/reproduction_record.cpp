@@ -26,7 +26,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // In the order of ReproductionPart::Kind.
 const std::vector<std::string>& kind_names() {
-  static const std::vector<std::string> names = {"published", "anew", "sweep"};
+  static const std::vector<std::string> names = {"published", "unpublished", "anew", "sweep"};
   return names;
 }
 
@@ -102,10 +102,13 @@ json record_to_json(const ReproductionRecord& record) {
   for (const auto& [label, result] : record.results) {
     parts[label] = part_to_json(result);
   }
-  return {
-      {"format", kFormat},         {"cases", record.cases ? json(*record.cases) : json(nullptr)},
-      {"set", record.overrides},   {"build", record.build},
-      {"planned", record.planned}, {"parts", parts}};
+  return {{"format", kFormat},
+          {"config", record.config},
+          {"cases", record.cases ? json(*record.cases) : json(nullptr)},
+          {"set", record.overrides},
+          {"build", record.build},
+          {"planned", record.planned},
+          {"parts", parts}};
 }
 
 ReproductionRecord record_from_json(const json& j) {
@@ -113,6 +116,7 @@ ReproductionRecord record_from_json(const json& j) {
     throw std::runtime_error("its format is not the one this version reads");
   }
   ReproductionRecord record;
+  record.config = j.at("config");
   if (!j.at("cases").is_null()) {
     record.cases = j.at("cases");
   }
@@ -222,6 +226,7 @@ ReproductionFolder::ReproductionFolder(const std::filesystem::path& path,
       }
     }
   } else {
+    record_.config = plan.request.config;
     record_.cases = plan.request.cases;
     record_.overrides = plan.request.overrides;
     record_.build = describe_build();
@@ -246,6 +251,13 @@ void ReproductionFolder::check(const ReproductionPlan& plan) const {
                 fmt::format("{} holds a reproduction with other settings: recorded {}, now {}. Go "
                             "on with the recorded ones, or use --new or --out for another folder",
                             path_.string(), sanitize(recorded), now));
+  }
+  if (record_.config != plan.request.config) {
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("{} holds a reproduction of '{}', not of '{}'; use --new or --out for "
+                    "another folder",
+                    path_.string(), sanitize(record_.config), sanitize(plan.request.config)));
   }
   for (const PlannedPart& part : plan.parts) {
     const PartResult* result = find(part.part.label);

@@ -33,6 +33,7 @@ struct PartResult {
 };
 
 struct ReproductionRecord {
+  std::string config;
   std::optional<std::uint64_t> cases;
   std::vector<std::string> overrides;
   std::map<std::string, std::string> build;   // of the program that began it

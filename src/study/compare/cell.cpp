@@ -27,8 +27,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Designs on the whole test set, each but once.
 class TestBench {
  public:
-  TestBench(const LoadedProblem& problem, StopSignal& stop)
-      : problem_(problem), pool_(1), stop_(stop), runner_(*problem.problem, pool_, stop) {
+  TestBench(const LoadedProblem& problem, unsigned jobs, StopSignal& stop)
+      : problem_(problem), pool_(jobs), stop_(stop), runner_(*problem.problem, pool_, stop) {
     block_.role = CaseRole::test;
     block_.set = problem.sets.test;
     block_.numbers.resize(static_cast<std::size_t>(problem.sets.test_cases));
@@ -103,9 +103,9 @@ void set_winner(const ProblemDescription& problem, const RunResult& result, doub
 
 // What the designs along the way are worth on the test set. False if stopped.
 bool test_progress(const StudyPlan& plan, const RunPlan& run, const RunResult& result,
-                   const std::filesystem::path& folder, StopSignal& stop, CellOutcome& outcome) {
+                   const CellRequest& where, StopSignal& stop, CellOutcome& outcome) {
   const ProblemDescription& problem = run.problem.problem->description();
-  const auto journal = read_journal(folder / "journal");
+  const auto journal = read_journal(where.folder / "journal");
   const auto incumbents = find_incumbents(problem, journal.training, run.schedule.fresh);
   const auto checkpoints = calc_checkpoints(plan.budget, run.schedule.cases, plan.checkpoints);
   const auto find_incumbent = [&](std::int64_t budget) {
@@ -122,7 +122,7 @@ bool test_progress(const StudyPlan& plan, const RunPlan& run, const RunResult& r
   for (std::size_t i = 0; has_front && i < result.judged.size(); ++i) {
     designs.push_back(result.judged[i].candidate.x);
   }
-  TestBench bench(run.problem, stop);
+  TestBench bench(run.problem, where.jobs, stop);
   if (!bench.add(designs)) {
     return false;
   }
@@ -229,9 +229,19 @@ CellOutcome parse_cell(const std::string& text, const std::filesystem::path& fil
 std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
                                     const std::filesystem::path& study, StopSignal& stop,
                                     RunObserver& observer) {
+  const CellRequest where{
+      .folder = study / make_cell_path(plan, cell), .jobs = 1, .command_line = {}};
+  return run_cell(plan, cell, where, stop, observer);
+}
+
+std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
+                                    const CellRequest& where, StopSignal& stop,
+                                    RunObserver& observer) {
   RunRequest request;
   request.plan = make_run_plan(plan, cell);
-  request.folder = study / make_cell_path(plan, cell);
+  request.folder = where.folder;
+  request.jobs = where.jobs;
+  request.command_line = where.command_line;
   request.derived = DerivedFiles::winner;
   const auto result = execute_run(request, stop, observer);
   if (!result) {
@@ -251,7 +261,7 @@ std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
   outcome.failed_evaluations = result->counts.failed;
   set_winner(request.plan.problem.problem->description(), *result, plan.constraint_tolerance,
              outcome);
-  if (!test_progress(plan, request.plan, *result, request.folder, stop, outcome)) {
+  if (!test_progress(plan, request.plan, *result, where, stop, outcome)) {
     return std::nullopt;
   }
   write_file_atomically(request.folder / "cell.json", to_json(outcome));

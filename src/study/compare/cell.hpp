@@ -59,6 +59,16 @@ CellOutcome parse_cell(const std::string& json, const std::filesystem::path& fil
 std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
                                     const std::filesystem::path& study, StopSignal& stop,
                                     RunObserver& observer);
+
+// The same in any folder and on several threads, which changes nothing of what it finds.
+struct CellRequest {
+  std::filesystem::path folder;
+  unsigned jobs = 1;
+  std::vector<std::string> command_line;  // for the manifest
+};
+std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
+                                    const CellRequest& where, StopSignal& stop,
+                                    RunObserver& observer);
 // What is recorded of a cell; nothing if it has not ended. Error{bad_data} if it is another one's.
 std::optional<CellOutcome> load_cell(const StudyPlan& plan, const Cell& cell,
                                      const std::filesystem::path& study);

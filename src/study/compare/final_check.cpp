@@ -20,19 +20,6 @@ using nlohmann::json;
 
 constexpr std::size_t kCheckLimit_bytes = std::size_t{1} << 20;
 
-// The replicate whose winner is best on the validation set; nothing if none has one.
-const CellOutcome* find_best(std::span<const CellOutcome> cells, const std::string& problem,
-                             const std::string& optimizer) {
-  const CellOutcome* best = nullptr;
-  for (const CellOutcome& cell : cells) {
-    if (cell.problem == problem && cell.optimizer == optimizer && !cell.x.empty() &&
-        (best == nullptr || cell.validation_value < best->validation_value)) {
-      best = &cell;
-    }
-  }
-  return best;
-}
-
 std::optional<FinalCheck> load_check(const std::filesystem::path& file, const StudyPlan& plan,
                                      const CellOutcome& cell) {
   if (!std::filesystem::exists(file)) {
@@ -88,7 +75,7 @@ void visit_checks(const StudyPlan& plan, const std::filesystem::path& study, Stu
     const StudyProblem& problem = plan.problems[p];
     for (std::size_t o = 0; o < plan.optimizers.size() && problem.loaded.tracking; ++o) {
       const std::string& optimizer = plan.optimizers[o].label;
-      const CellOutcome* best = find_best(result.cells, problem.label, optimizer);
+      const CellOutcome* best = find_best_cell(result.cells, problem.label, optimizer);
       if (best == nullptr) {
         continue;
       }
@@ -104,6 +91,18 @@ void visit_checks(const StudyPlan& plan, const std::filesystem::path& study, Stu
 }
 
 }  // namespace
+
+const CellOutcome* find_best_cell(std::span<const CellOutcome> cells, const std::string& problem,
+                                  const std::string& optimizer) {
+  const CellOutcome* best = nullptr;
+  for (const CellOutcome& cell : cells) {
+    if (cell.problem == problem && cell.optimizer == optimizer && !cell.x.empty() &&
+        (best == nullptr || cell.validation_value < best->validation_value)) {
+      best = &cell;
+    }
+  }
+  return best;
+}
 
 void load_final_checks(const StudyPlan& plan, const std::filesystem::path& study,
                        StudyResult& result) {

@@ -6,6 +6,10 @@
 
 namespace armwright {
 
+// The replicate whose winner is best on the validation set; null if none has one.
+const CellOutcome* find_best_cell(std::span<const CellOutcome> cells, const std::string& problem,
+                                  const std::string& optimizer);
+
 // Adds those that are recorded, and simulates nothing.
 void load_final_checks(const StudyPlan& plan, const std::filesystem::path& study,
                        StudyResult& result);

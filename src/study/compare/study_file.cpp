@@ -10,6 +10,7 @@
 #include "base/hash.hpp"
 #include "base/text.hpp"
 #include "problems/config_files.hpp"
+#include "sim/simd_level.hpp"
 #include "study/compare/case_sets.hpp"
 #include "study/compare/study_plan.hpp"
 
@@ -155,6 +156,25 @@ void refuse_repeated(std::string_view what, std::span<const std::string> labels)
   }
 }
 
+// A plan made where "auto" came to another SIMD level is the same plan on that level, if this
+// machine has it. False if none of its levels gives what is recorded.
+bool load_on_recorded_simd(const NamedProblem& named, StudyProblem& problem) {
+  for (const std::string& level : supported_simd_names()) {
+    std::vector<std::string> settings = problem.settings;
+    settings.push_back("physics.simd=" + level);
+    try {
+      LoadedProblem loaded = load_problem(named.name, settings);
+      if (calc_configuration_hash(loaded) == named.configuration_sha256) {
+        problem.loaded = std::move(loaded);
+        return true;
+      }
+    } catch (const Error&) {
+      return false;  // of a function, or its engine has no SIMD
+    }
+  }
+  return false;
+}
+
 void load_problems(const RawPlan& raw, StudyPlan& plan) {
   std::vector<std::string> labels;
   for (const NamedProblem& named : raw.problems) {
@@ -167,7 +187,11 @@ void load_problems(const RawPlan& raw, StudyPlan& plan) {
     problem.label = named.label.empty() ? problem.loaded.name : named.label;
     problem.schedule =
         choose_study_schedule(problem.loaded, named.schedule ? named.schedule : raw.schedule);
-    const std::string hash = calc_configuration_hash(problem.loaded);
+    std::string hash = calc_configuration_hash(problem.loaded);
+    if (!named.configuration_sha256.empty() && named.configuration_sha256 != hash &&
+        load_on_recorded_simd(named, problem)) {
+      hash = named.configuration_sha256;
+    }
     if (!named.configuration_sha256.empty() && named.configuration_sha256 != hash) {
       throw Error(ErrorKind::usage,
                   fmt::format("problem '{}' is not the one that the plan was made with: its "

@@ -148,6 +148,29 @@ options = ["population=8"]
   EXPECT_EQ(to_toml(make_study_plan(request)), to_toml(plan));
 }
 
+// Made on another machine, where "auto" came to the lowest level.
+TEST(StudyPlan, IsReadBackOnTheSimdLevelThatItWasMadeWith) {
+  StudyRequest request;
+  request.problems = {"q1-complex"};
+  request.optimizers = {"cmaes"};
+  request.settings = {"physics.engine=articulated", "physics.simd=scalar"};
+  request.replicates = 2;
+  request.budget = 40;
+  const StudyPlan made = make_study_plan(request);
+  std::string toml = to_toml(made);
+  toml.erase(0, toml.find('\n') + 1);  // the hash of what follows
+  const std::string setting = ", \"physics.simd=scalar\"";
+  ASSERT_NE(toml.find(setting), std::string::npos);
+  toml.erase(toml.find(setting), setting.size());
+  const TemporaryFolder folder;
+  const StudyPlan read = load(folder, toml);
+  EXPECT_EQ(calc_configuration_hash(read.problems[0].loaded),
+            calc_configuration_hash(made.problems[0].loaded));
+  toml.replace(toml.find("configuration_sha256 = \"") + 24, 4, "0000");
+  EXPECT_THAT(usage_error_of([&] { load(folder, toml); }),
+              HasSubstr("is not the one that the plan was made with"));
+}
+
 TEST(StudyPlan, CheckpointsAreWholeEvaluationsUpToTheBudget) {
   EXPECT_THAT(calc_checkpoints(2000, 5, 4), ElementsAre(5, 35, 270, 2000));
   EXPECT_THAT(calc_checkpoints(12, 5, 20), ElementsAre(5, 10));

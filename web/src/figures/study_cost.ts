@@ -19,6 +19,7 @@ import {
   get_unit,
   make_problem_choices,
   make_ranked_chart,
+  make_symbol,
   name_axis,
   type Scope,
 } from './study_parts';
@@ -136,15 +137,17 @@ function draw_cost(look: Look, scope: Scope, problem: StudyProblem, target: numb
     values.some((value) => value === null),
   );
   // Those in a strip side by side.
-  const places = order.map((_, i): [number, number] => [place_on(x, costs[i], 0.5), place_on(y, values[i], 0.5)]);
+  const places = order.map((_, i): [number, number] => {
+    const share = [0.3, 0.5, 0.7][i % 3];
+    return [place_on(x, costs[i], share), place_on(y, values[i], share)];
+  });
   const points = order.map((o, i) => {
     const style = get_style(look, scope, o);
     const time = times[i];
     return {
       value: places[i],
-      symbol: style.symbol,
+      ...make_symbol(look, style),
       symbolSize: 10,
-      itemStyle: { color: style.color },
       note:
         scope.names[o] +
         '; median ' +

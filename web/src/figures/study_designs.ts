@@ -18,6 +18,7 @@ import {
   get_unit,
   kMostAtFirst,
   make_problem_choices,
+  make_symbol,
   type Scope,
 } from './study_parts';
 
@@ -110,12 +111,12 @@ function make_axes(look: Look, variables: Variable[]): Part {
             y: bottom + 22,
             rotation: Math.PI / 5,
             style: {
-              text: shorten(variable.name, 22) + (variable.logarithmic ? ' (log)' : ''),
+              text: shorten(variable.name, 22) + (variable.logarithmic ? '' : ' (linear)'),
               fill: look.text,
               font: '10px ' + look.font,
               textAlign: 'right',
               textVerticalAlign: 'middle',
-              width: 104,
+              width: 100,
               overflow: 'truncate',
             },
           },
@@ -143,12 +144,12 @@ function draw_parallel(look: Look, scope: Scope, problem: StudyProblem, which: s
         note: note + '; ' + shorten(problem.variables[i].name) + ' = ' + format_number(value),
         command: line.cell.command,
       })),
-      symbol: style.symbol,
+      symbol: make_symbol(look, style).symbol,
       symbolSize: grey ? 2 : 5,
       showSymbol: true,
       showAllSymbol: true,
       color: style.color,
-      itemStyle: { color, opacity: grey ? 0.3 : 0.9 },
+      itemStyle: grey ? { color, opacity: 0.3 } : { ...make_symbol(look, style).itemStyle, opacity: 0.9 },
       lineStyle: {
         color,
         type: style.dash,
@@ -165,7 +166,7 @@ function draw_parallel(look: Look, scope: Scope, problem: StudyProblem, which: s
   const x: Part = { type: 'value', show: false, min: -0.4, max: Math.max(1, problem.variables.length) - 0.6 };
   const y: Part = { ...make_axis(look, 'y', '', {}), show: false, min: 0, max: 1 };
   return make_chart(look, x, y, series, {
-    grid: { left: 50, right: 16, top: names.length > 1 ? 62 : 30, bottom: 96 },
+    grid: { left: 66, right: 16, top: names.length > 1 ? 62 : 30, bottom: 108 },
     legend: {
       show: names.length > 1,
       type: 'scroll',
@@ -211,7 +212,7 @@ export function make_parallel(all: Scope): Figure | null {
     title: end_title(scope, "The winners' designs"),
     caption:
       'Each line is the winning design of a run, each axis a variable between its bounds; the triangle marks the nominal start. ' +
-      'Axes named (log) are logarithmic in the magnitude; the sign is that of the numbers at their ends. ' +
+      'Axes are logarithmic in the magnitude unless their name says linear; the sign is that of the numbers at their ends. ' +
       'Where lines of good runs meet, the variable is determined by the problem; where they spread, it hardly matters or there are several solutions. ' +
       'Lines that end at a bound suggest that the bound is in the way. Neighbouring axes say nothing about interactions of others. ' +
       "What counts as an optimizer's best was chosen on the test set, after the fact. " +

@@ -16,6 +16,7 @@ import {
   get_unit,
   make_problem_choices,
   make_ranked_chart,
+  make_symbol,
   name_axis,
   type Scope,
 } from './study_parts';
@@ -44,6 +45,17 @@ function draw_front(look: Look, scope: Scope, problem: StudyProblem, front: Stud
   order.forEach((o) => {
     const style = get_style(look, scope, o);
     const name = scope.names[o];
+    // Of two objectives only; the sides of the attained area reach as far as the axes.
+    front.optimizers[o].attainment.forEach((surface) => {
+      const corners = surface.points.map(at);
+      if (corners.length === 0 || front.objectives.length !== 2) {
+        return;
+      }
+      const [start, end] = [corners[0], corners[corners.length - 1]];
+      const path: Point[] = [[start[0], y.high] as Point].concat(corners, [[Math.max(x.high, end[0]), end[1]]]);
+      const line = make_line(look, 0, name, path, { style, step: 'end', width: surface.share === 0.5 ? 2.2 : 0.8 });
+      series.push(first < second ? line : { ...line, step: 'start' });
+    });
     series.push({
       type: 'scatter',
       name,
@@ -59,22 +71,11 @@ function draw_front(look: Look, scope: Scope, problem: StudyProblem, front: Stud
             .join(', '),
         command: problem.results[o].cells.filter((cell) => cell.replicate === point.replicate)[0]?.command,
       })),
-      symbol: style.symbol,
+      ...make_symbol(look, style),
       symbolSize: 5,
       color: style.color,
-      itemStyle: { color: style.color, opacity: 0.55 },
+      z: 3,
       clip: true,
-    });
-    // Of two objectives only; the sides of the attained area reach as far as the axes.
-    front.optimizers[o].attainment.forEach((surface) => {
-      const corners = surface.points.map(at);
-      if (corners.length === 0 || front.objectives.length !== 2) {
-        return;
-      }
-      const [start, end] = [corners[0], corners[corners.length - 1]];
-      const path: Point[] = [[start[0], y.high] as Point].concat(corners, [[Math.max(x.high, end[0]), end[1]]]);
-      const line = make_line(look, 0, name, path, { style, step: 'end', width: 2 });
-      series.push(first < second ? line : { ...line, step: 'start' });
     });
   });
   if (reference) {
@@ -129,7 +130,7 @@ export function make_front(all: Scope): Figure | null {
     caption:
       'Points are the fronts of all replicates; lower left is better. ' +
       (objectives === 2
-        ? 'The stepped line bounds what half of the replicates of an optimizer attain: a typical front, where the points mix lucky and unlucky runs. '
+        ? 'The thick stepped line bounds what half of the replicates of an optimizer attain: a typical front, where the points mix lucky and unlucky runs; thin ones are of other shares of the replicates. '
         : 'Of more than two objectives the plane shows a projection: a point that looks dominated may not be. ') +
       'The cross is the reference point of the hypervolume, a tenth beyond the front of all runs together; points far beyond it are left out of the plane. ' +
       (scope.names.length > kDrawnAtFirst ? 'The best ' + kDrawnAtFirst + ' optimizers are drawn at first. ' : '') +

@@ -33,9 +33,11 @@ function make_unfinished(data: StudyData): TextItem | null {
     paragraphs: [
       progress +
         (missing > 0
-          ? missing + (missing === 1 ? ' run has not ended and counts' : ' runs have not ended and count') + ' as without value. '
+          ? missing +
+            (missing === 1 ? ' run has' : ' runs have') +
+            ' not ended: all numbers are of those that have, and problems that lack runs have no ranks and no tests. '
           : '') +
-        'Ranks, tests and the verdict are preliminary, and change as runs end.',
+        'What is shown is preliminary and changes as runs end.',
     ],
   };
 }

@@ -7,9 +7,12 @@ import type { DataTable, Figure } from '../model';
 import { describe_size, end_title, get_order, get_problem, make_problem_choices, type Scope } from './study_parts';
 import { estimate_width } from '../charts/scales';
 
-// "0.004", "<1e-6"
+// "0.25", "0.044", "4e-5", "<1e-6": five characters at most.
 export function format_p(p: number): string {
-  return p < 1e-6 ? '<1e-6' : p >= 0.995 ? '1' : p < 1e-3 ? p.toExponential(0) : p >= 0.1 ? p.toFixed(2) : String(Number(p.toPrecision(2)));
+  if (p < 1e-6) {
+    return '<1e-6';
+  }
+  return p >= 0.995 ? '1' : p >= 0.1 ? p.toFixed(2) : p >= 0.01 ? p.toFixed(3) : p.toExponential(0);
 }
 
 interface Rgb {
@@ -23,10 +26,23 @@ function parse_color(hex: string): Rgb {
   return { red: part(1), green: part(3), blue: part(5) };
 }
 
+function parse_rgb(color: string): Rgb {
+  const [red, green, blue] = color.slice(4, -1).split(',').map(Number);
+  return { red, green, blue };
+}
+
 function mix(from: string, to: string, share: number): string {
   const [a, b] = [parse_color(from), parse_color(to)];
   const one = (x: number, y: number) => Math.round(x + (y - x) * Math.min(1, Math.max(0, share)));
   return 'rgb(' + one(a.red, b.red) + ',' + one(a.green, b.green) + ',' + one(a.blue, b.blue) + ')';
+}
+
+// Black or white, whichever stands out more (relative luminance of WCAG 2, with a gamma of 2.2).
+function get_readable(fill: string): string {
+  const light = (part: number) => Math.pow(part / 255, 2.2);
+  const parts = fill.charAt(0) === '#' ? parse_color(fill) : parse_rgb(fill);
+  const luminance = 0.2126 * light(parts.red) + 0.7152 * light(parts.green) + 0.0722 * light(parts.blue);
+  return luminance > 0.18 ? '#14181d' : '#ffffff';
 }
 
 // Blue where the row is better, orange where the column is, nothing in between.
@@ -92,7 +108,8 @@ function draw_pairs(look: Look, scope: Scope, problem: StudyProblem): EChartsOpt
       const square = squares[item.dataIndex];
       const [x, y] = api.coord([api.value(0), api.value(1)]);
       const [width, height] = api.size([1, 1]).map(Math.abs);
-      const size = Math.min(11, width / 3.1, height / 1.6);
+      // As much text as fits; of small squares the colours and the marks have to do.
+      const size = width < 28 ? 0 : Math.min(11, width / 3.1, height / 1.6);
       const children: Part[] = [
         {
           type: 'rect',
@@ -107,7 +124,7 @@ function draw_pairs(look: Look, scope: Scope, problem: StudyProblem): EChartsOpt
             x,
             y: y - (square.marked ? height * 0.08 : 0),
             text: square.text,
-            fill: look.text,
+            fill: get_readable(square.fill),
             font: (square.marked ? 'bold ' : '') + size.toFixed(1) + 'px ' + look.font,
             textAlign: 'center',
             textVerticalAlign: 'middle',
@@ -121,7 +138,7 @@ function draw_pairs(look: Look, scope: Scope, problem: StudyProblem): EChartsOpt
         children.push({
           type: 'rect',
           shape: { x: x - long / 2, y: below - 0.9, width: long, height: 1.8 },
-          style: { fill: look.text },
+          style: { fill: get_readable(square.fill) },
         });
       }
       return { type: 'group', children };
@@ -133,6 +150,7 @@ function draw_pairs(look: Look, scope: Scope, problem: StudyProblem): EChartsOpt
     ...make_axis(look, direction, '', { categories: names, inverse: direction === 'y' }),
     name: undefined,
     axisTick: { show: false },
+    axisLine: { show: false },
     axisLabel: {
       color: look.text,
       fontFamily: look.font,
@@ -200,7 +218,12 @@ export function tabulate_pairs(scope: Scope, problems: StudyProblem[]): DataTabl
   return { columns: many ? [{ label: 'problem' } as (typeof columns)[0]].concat(columns) : columns, rows };
 }
 
-export function make_pairs(scope: Scope): Figure {
+// Of those problems of the scope that have tests; nothing if none has.
+export function make_pairs(all: Scope): Figure | null {
+  const scope: Scope = { ...all, problems: all.problems.filter((problem) => problem.pairs.length > 0) };
+  if (scope.problems.length === 0) {
+    return null;
+  }
   return {
     kind: 'figure',
     id: 'pairs' + scope.suffix,

@@ -82,6 +82,17 @@ export function get_style(look: Look, scope: Scope, optimizer: number): SeriesSt
   return get_series_style(look, scope.styles[optimizer]);
 }
 
+// ECharts fills its empty symbols white, on dark as well: here they have the page's background.
+export function make_symbol(look: Look, style: SeriesStyle): { symbol: string; itemStyle: Part } {
+  if (style.symbol.indexOf('empty') !== 0) {
+    return { symbol: style.symbol, itemStyle: { color: style.color } };
+  }
+  return {
+    symbol: style.symbol.slice('empty'.length).toLowerCase(),
+    itemStyle: { color: look.background, borderColor: style.color, borderWidth: 1.6 },
+  };
+}
+
 const kProblemChoice = 'problem';
 
 export function make_problem_choices(scope: Scope): Choice[] {
@@ -113,9 +124,7 @@ export function describe_size(scope: Scope): string {
         ' Unfinished: ' +
         missing +
         (missing === 1 ? ' run has' : ' runs have') +
-        ' not ended and count' +
-        (missing === 1 ? 's' : '') +
-        ' as without value.';
+        ' not ended; the numbers are of those that have, and optimizers may stand on different replicates.';
 }
 
 export function end_title(scope: Scope, title: string): string {

@@ -19,6 +19,7 @@ import {
   kMostAtFirst,
   make_problem_choices,
   make_ranked_chart,
+  make_symbol,
   name_axis,
   type Scope,
   sort_by,
@@ -67,7 +68,12 @@ function draw_convergence(look: Look, scope: Scope, problem: StudyProblem): ECha
         format_number(q3[i]);
       return { value: [cases, value], note };
     });
-    series.push({ ...make_line(look, 0, scope.names[o], points, { style, symbols: true, width: 2 }), symbolSize: 5, z: 3 });
+    series.push({
+      ...make_line(look, 0, scope.names[o], points, { style, symbols: true, width: 2 }),
+      ...make_symbol(look, style),
+      symbolSize: 5,
+      z: 3,
+    });
   });
   const names = order.map((o) => scope.names[o]);
   return make_ranked_chart(
@@ -136,7 +142,11 @@ function draw_steps(look: Look, scope: Scope, steps: Steps): EChartsOption {
       const share = steps.shares[o]?.[i] ?? null;
       return { value: [at, share], note: scope.names[o] + '; ' + format_number(at, 3) + ': ' + format_number(share, 3) };
     });
-    const line = make_line(look, 0, scope.names[o], points, { style: get_style(look, scope, o), step: 'end', width: 2, symbols: true });
+    const style = get_style(look, scope, o);
+    const line = {
+      ...make_line(look, 0, scope.names[o], points, { style, step: 'end', width: 2, symbols: true }),
+      ...make_symbol(look, style),
+    };
     // A mark here and there tells the steps apart; the others are there for the pointer.
     const every = Math.ceil(points.length / 12);
     series.push({ ...line, symbolSize: (_: unknown, at: { dataIndex: number }) => (at.dataIndex % every === o % every ? 6 : 2) });

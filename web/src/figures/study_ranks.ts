@@ -93,14 +93,14 @@ function draw_ranks(look: Look, scope: Scope, ranks: Ranks): EChartsOption {
   const on_left = Math.ceil(count / 2);
   const bars = make_bars(ranks);
   const levels = count_levels(ranks);
-  const label = (x: number, y: number, text: string, align: string, color: string, bold = false): Part => ({
+  const label = (x: number, y: number, text: string, align: string, color: string): Part => ({
     type: 'text',
     style: {
       x,
       y,
       text,
       fill: color,
-      font: (bold ? 'bold ' : '') + '11px ' + look.font,
+      font: '11px ' + look.font,
       textAlign: align,
       textVerticalAlign: 'middle',
       width: kMargin - 16,
@@ -149,9 +149,7 @@ function draw_ranks(look: Look, scope: Scope, ranks: Ranks): EChartsOption {
             style: { stroke: look.muted, lineWidth: 1, fill: 'none' },
           },
           { type: 'circle', shape: { cx: x, cy: box.y, r: 2.6 }, style: { fill: look.accent } },
-          left
-            ? label(end - 4, y, name + '  ' + rank, 'right', look.text, i === 0)
-            : label(end + 4, y, rank + '  ' + name, 'left', look.text),
+          left ? label(end - 4, y, name + '  ' + rank, 'right', look.text) : label(end + 4, y, rank + '  ' + name, 'left', look.text),
         ],
       };
     },
@@ -271,8 +269,12 @@ export function make_overall_ranks(scope: Scope): Figure | null {
   return make_figure(scope, 'ranks', 'Mean ranks over problems', caption, () => ranks, [ranks]);
 }
 
-// Over the replicates of a problem.
-export function make_problem_ranks(scope: Scope, id: string): Figure {
+// Over the replicates of a problem, of those that have ranks; nothing if none has.
+export function make_problem_ranks(all: Scope, id: string): Figure | null {
+  const scope: Scope = { ...all, problems: all.problems.filter((problem) => problem.results.some((one) => one.mean_rank !== null)) };
+  if (scope.problems.length === 0) {
+    return null;
+  }
   const get = (problem: StudyProblem): Ranks => {
     const ranks = scope.names.map((_, i) => problem.results[i]?.mean_rank ?? NaN);
     return { ranks, intervals: null, cliques: find_cliques(problem, ranks) };

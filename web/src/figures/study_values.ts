@@ -185,6 +185,7 @@ export function make_values(scope: Scope): Figure {
       'A run whose winner fails on a test case or violates a constraint has no value; it counts as the worst and stands beyond the axis. ' +
       'Overlapping boxes do not mean equal optimizers: runs are paired by replicate, and the tests use the pairs. ' +
       describe_size(scope),
+    width: scope.names.length > 16 ? 'full' : 'half',
     height: Math.max(320, 70 + 24 * scope.names.length),
     choices: make_problem_choices(scope),
     draw: (look, picked) => draw_values(look, scope, get_problem(scope, picked)),

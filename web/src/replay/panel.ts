@@ -107,14 +107,15 @@ export class Panel {
     const ticks = make('div', { class: 'replay-ticks' });
     list_decades(scale).forEach((decade) => ticks.append(make('span', {}, format_number(decade * kMillimetres, 1))));
     const target = make('span', { class: 'replay-swatch' });
-    target.style.background = look.series[2];
+    target.style.background = look.text;
     return make(
       'div',
       { class: 'replay-legend' },
       make('div', {}, 'Error along the path of the tip (mm)'),
       bar,
       ticks,
-      make('div', {}, target, 'target; the squares of the ground are 0.5 m wide'),
+      make('div', {}, target, 'target'),
+      make('div', {}, 'squares of the ground: 0.5 m'),
     );
   }
 }

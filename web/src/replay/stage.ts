@@ -34,7 +34,7 @@ export interface Stage {
   dispose(): void;
 }
 
-export const kGhost = '#8a6fd1'; // on light and dark ground; no other thing has it
+export const kGhost = '#1f9e77'; // on light and dark ground; neither errors nor arms have it
 
 // Of the moments of a trace, which to draw faintly and which fully: [first, last] each.
 export function find_trace_parts(setting: Setting, count: number, snapshot: Snapshot): { past: [number, number]; now: [number, number] } {

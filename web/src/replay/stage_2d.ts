@@ -15,7 +15,7 @@ export class Stage2d implements Stage {
   private place: (point: Point) => [number, number] = () => [0, 0];
 
   constructor(private readonly on_change: () => void) {
-    const message = 'This browser shows no 3D graphics (WebGL): the arm is drawn in lines, from the side or from the front.';
+    const message = 'This browser shows no 3D graphics (WebGL): the arm is drawn in lines, from the side or the front.';
     this.element = make('div', { class: 'replay-stage' }, this.canvas, make('p', { class: 'replay-message' }, message));
   }
 
@@ -42,7 +42,8 @@ export class Stage2d implements Stage {
     scenario.replay.points_m.forEach((point, i) => {
       this.draw_dot(context, point, i === snapshot.segment + 1 ? look.bad : look.muted, i === snapshot.segment + 1 ? 5 : 3);
     });
-    for (const [one, colour] of [[ghost, () => kGhost], [track, (k: number) => to_css(find_colour(scale, track?.errors_m[k] ?? 0))]] as const) {
+    const main_colour = (k: number): string => to_css(find_colour(scale, track?.errors_m[k] ?? 0));
+    for (const [one, colour] of [[ghost, () => kGhost], [track, main_colour]] as const) {
       if (one === null) {
         continue;
       }
@@ -56,7 +57,7 @@ export class Stage2d implements Stage {
       this.draw_arm(context, snapshot.ghost_q, kGhost, 5);
     }
     this.draw_arm(context, snapshot.q, look.text, 3);
-    this.draw_dot(context, snapshot.target_m, look.series[2], 6);
+    this.draw_dot(context, snapshot.target_m, look.accent, 6);
   }
 
   set_view(view: ViewChoice): void {

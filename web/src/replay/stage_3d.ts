@@ -31,6 +31,8 @@ const kDirections: Record<ViewChoice, [number, number, number]> = {
   front: [1, 0, 0.02],
 };
 
+const kFilling = 0.8; // the ball around the arm and its points is never full
+
 class Arm {
   readonly group = new Group();
   private readonly bodies: Object3D[];
@@ -154,7 +156,7 @@ export class Stage3d implements Stage {
     const narrow = Math.min(half, Math.atan(Math.tan(half) * this.camera.aspect));
     const direction = new Vector3(...kDirections[view]).normalize();
     this.controls.target.copy(center);
-    this.camera.position.copy(center).addScaledVector(direction, radius / Math.sin(narrow));
+    this.camera.position.copy(center).addScaledVector(direction, (kFilling * radius) / Math.sin(narrow));
     this.controls.update();
     this.on_change();
   }
@@ -210,12 +212,12 @@ export class Stage3d implements Stage {
     }
   }
 
-  private set_traces({ track, ghost, scale }: Setting): void {
+  private set_traces({ track, ghost, scale, look }: Setting): void {
     this.clear_traces();
     const { r, g, b } = new Color(kGhost).getRGB({ r: 0, g: 0, b: 0 }, 'srgb');
     this.traces = {
-      main: track === null ? null : new Trace(track.tip_m, (moment) => find_colour(scale, track.errors_m[moment]), 3.5),
-      ghost: ghost === null ? null : new Trace(ghost.tip_m, () => [r, g, b], 2),
+      main: track === null ? null : new Trace(track.tip_m, (moment) => find_colour(scale, track.errors_m[moment]), 3.5, look.background),
+      ghost: ghost === null ? null : new Trace(ghost.tip_m, () => [r, g, b], 2, look.background),
     };
     for (const trace of [this.traces.main, this.traces.ghost]) {
       if (trace !== null) {

@@ -8,7 +8,7 @@ import type { Scenario, Track } from './scenario';
 import { kGhost } from './stage';
 import { clamp } from './timeline';
 
-const kLeft = 54;
+const kLeft = 62;
 const kRight = 12;
 const kTop = 6;
 const kBottom = 20;

@@ -118,6 +118,10 @@ export class Points {
   }
 }
 
+// Seen through the arm, which is where it is most of the time.
 export function make_target(look: Look): Mesh {
-  return new Mesh(new SphereGeometry(0.03, 16, 10), new MeshBasicMaterial({ color: look.series[2] }));
+  const material = new MeshBasicMaterial({ color: look.text, depthTest: false, transparent: true });
+  const target = new Mesh(new SphereGeometry(0.02, 16, 10), material);
+  target.renderOrder = 2;
+  return target;
 }

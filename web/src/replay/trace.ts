@@ -1,12 +1,12 @@
 // The path of a tip, coloured by its error. Its numbers go to the graphics card once a test case;
 // as the time goes on only the range to draw changes.
-import { Color, Group, InstancedInterleavedBuffer, InterleavedBufferAttribute } from 'three';
+import { Color, Group, InstancedInterleavedBuffer, InterleavedBufferAttribute, Sphere, Vector3 } from 'three';
 import { Line2 } from 'three/addons/lines/Line2.js';
 import { LineGeometry } from 'three/addons/lines/LineGeometry.js';
 import { LineMaterial } from 'three/addons/lines/LineMaterial.js';
 import type { Rgb } from './colours';
 
-const kFaint = 0.35;
+const kFaint = 0.62; // so far towards the background
 
 // Each piece has both its ends: the i-th goes from moment i to i + 1.
 function make_pieces(values: ArrayLike<number>, moments: number): InstancedInterleavedBuffer {
@@ -28,22 +28,28 @@ export class Trace {
   readonly group = new Group();
   private readonly positions: InstancedInterleavedBuffer;
   private readonly colours: InstancedInterleavedBuffer;
+  private readonly faint_colours: InstancedInterleavedBuffer;
   private readonly past: Line2;
   private readonly now: Line2;
   private readonly first = new Map<Line2, number>();
 
   // `tip_m` has 3 numbers a moment, `colour` gives each moment's.
-  constructor(tip_m: Float32Array, colour: (moment: number) => Rgb, width: number) {
+  constructor(tip_m: Float32Array, colour: (moment: number) => Rgb, width: number, background: string) {
     const moments = tip_m.length / 3;
     this.positions = make_pieces(tip_m, moments);
     const colours = new Float32Array(3 * moments);
+    const faint = new Float32Array(3 * moments);
     const linear = new Color();
+    const ground = new Color(background);
     for (let i = 0; i < moments; ++i) {
       linear.setRGB(...colour(i), 'srgb').toArray(colours, 3 * i);
+      linear.lerp(ground, kFaint).toArray(faint, 3 * i);
     }
     this.colours = make_pieces(colours, moments);
-    this.past = this.make_line(width, kFaint);
-    this.now = this.make_line(width, 1);
+    // Not by opacity: where pieces overlap the line would be darker.
+    this.faint_colours = make_pieces(faint, moments);
+    this.past = this.make_line(width, true);
+    this.now = this.make_line(width, false);
   }
 
   show(parts: { past: [number, number]; now: [number, number] }): void {
@@ -58,10 +64,14 @@ export class Trace {
     }
   }
 
-  private make_line(width: number, opacity: number): Line2 {
-    const material = new LineMaterial({ linewidth: width, vertexColors: true, transparent: opacity < 1, opacity });
+  // The move under way is seen through the arm and its load, which else hide the tip.
+  private make_line(width: number, is_past: boolean): Line2 {
+    const material = new LineMaterial({ linewidth: width, vertexColors: true, transparent: !is_past, depthTest: is_past });
     const line = new Line2(new LineGeometry(), material);
-    line.frustumCulled = false; // its extent is not known to the geometry
+    line.renderOrder = is_past ? 0 : 1;
+    // A range that begins later seems to go beyond the numbers' end, so its extent is not for three to find.
+    line.frustumCulled = false;
+    line.geometry.boundingSphere = new Sphere(new Vector3(0, 0, 1), 5);
     this.group.add(line);
     return line;
   }
@@ -72,7 +82,7 @@ export class Trace {
     if (line.visible && this.first.get(line) !== first) {
       this.first.set(line, first);
       set_range(line, '', this.positions, first);
-      set_range(line, 'Color', this.colours, first);
+      set_range(line, 'Color', line === this.past ? this.faint_colours : this.colours, first);
     }
   }
 }

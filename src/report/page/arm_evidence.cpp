@@ -1,0 +1,239 @@
+#include "report/page/arm_evidence.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/text.hpp"
+#include "problems/tracking_description.hpp"
+#include "report/page/distance_response.hpp"
+#include "report/page/page_json.hpp"
+#include "report/page/signals.hpp"
+#include "report/page/sweep_data.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+
+// Cases enough to tell the speeds apart, and few enough to wait for.
+constexpr int kMostSweepCases = 100;
+
+json make_failures(const RecordedRun& run, const std::string& word,
+                   const std::vector<double>& errors, const std::vector<TrackingResult>& results,
+                   double failure_error) {
+  json failures = json::array();
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    if (errors[i] <= failure_error) {
+      continue;
+    }
+    std::string reason = "the tip lost its target";
+    if (std::isnan(errors[i])) {
+      reason = results.empty() ? "no number" : results[i].reason;
+    }
+    const std::vector<std::string> words = {"--test-set", run.problem ? run.problem->sets.test : "",
+                                            "--cases", fmt::format("{}", i + 1)};
+    failures.push_back({{"case", i},
+                        {"error", finite_or_null(errors[i])},
+                        {"reason", reason},
+                        {"command", word.empty() ? "" : run.make_evaluate_command(word, words)}});
+  }
+  return failures;
+}
+
+json make_parameters(const RecordedRun& run, const std::vector<ShownDesign>& designs) {
+  const TrackingConfig& config = run.tracking()->config();
+  const ProblemDescription& description = run.problem->problem->description();
+  const ControllerRow& controller = find_controller(config.start.controller);
+  // Where a variable counts as being at its bound.
+  constexpr double kShare = 1e-6;
+  json list = json::array();
+  const auto add = [&](const DesignParameter& parameter, const std::string& name,
+                       const std::string& unit) {
+    const auto is_it = [&](const DesignParameter& other) {
+      return other.joint == parameter.joint && other.kind == parameter.kind &&
+             (parameter.kind != DesignParameter::Kind::gain || other.gain == parameter.gain);
+    };
+    const auto found = std::ranges::find_if(config.parameters, is_it);
+    const bool is_variable = found != config.parameters.end();
+    json values = json::array();
+    std::string at_bound;
+    for (const ShownDesign& design : designs) {
+      ArmDesign copy = design.named.design;
+      const bool is_same_controller = copy.controller == config.start.controller ||
+                                      parameter.kind != DesignParameter::Kind::gain;
+      const double value = is_same_controller ? get_parameter(copy, parameter)
+                                              : std::numeric_limits<double>::quiet_NaN();
+      values.push_back(finite_or_null(value));
+      if (design.named.id == "winner" && is_variable) {
+        const DecisionVariable& variable =
+            description.variables[static_cast<std::size_t>(found - config.parameters.begin())];
+        const auto is_at = [&](double bound) {
+          return std::abs(value - bound) <= kShare * std::abs(bound);
+        };
+        at_bound = is_at(variable.lower) ? "lower" : is_at(variable.upper) ? "upper" : "";
+      }
+    }
+    list.push_back({{"name", name},
+                    {"unit", unit},
+                    {"is_variable", is_variable},
+                    {"at_bound", at_bound},
+                    {"values", std::move(values)}});
+  };
+  for (std::size_t joint = 0; joint < config.robot.joint_count(); ++joint) {
+    const std::string& name = config.robot.joints[joint].name;
+    for (std::size_t gain = 0; gain < controller.gains.size(); ++gain) {
+      add({joint, DesignParameter::Kind::gain, gain}, name + "." + controller.gains[gain].name,
+          controller.gains[gain].unit);
+    }
+    add({joint, DesignParameter::Kind::effort_min, 0}, name + ".effort_min", "N m");
+    add({joint, DesignParameter::Kind::effort_max, 0}, name + ".effort_max", "N m");
+  }
+  return list;
+}
+
+json make_result_rows(const std::vector<ShownDesign>& designs) {
+  json rows = json::array();
+  for (const ShownDesign& design : designs) {
+    if (design.results.empty()) {
+      continue;
+    }
+    const ErrorSummary summary = summarize_cases(design.results);
+    rows.push_back({{"design", design.named.id},
+                    {"mean_m", finite_or_null(summary.mean)},
+                    {"median_m", finite_or_null(summary.median)},
+                    {"p95_m", finite_or_null(summary.percentile_95)},
+                    {"worst_m", finite_or_null(summary.worst)},
+                    {"failures", summary.failures},
+                    {"cases", summary.cases},
+                    {"total_torque_n_m", calc_total_torque_n_m(design.named.design)},
+                    {"published_mean_m", finite_or_null(design.published_mean_m)},
+                    {"published_torque_n_m", finite_or_null(design.published_torque_n_m)},
+                    {"where", design.where}});
+  }
+  return rows;
+}
+
+json make_response(const RecordedRun& run, const std::vector<ShownDesign>& designs) {
+  const CaseSets& sets = run.problem->sets;
+  json series = json::array();
+  for (const ShownDesign& design : designs) {
+    if (design.results.empty()) {
+      continue;
+    }
+    const std::string command =
+        design.word.empty()
+            ? ""
+            : run.make_evaluate_command(design.word, {"--test-set", sets.test, "--cases",
+                                                      fmt::format("{}", sets.test_cases)});
+    series.push_back(make_response_series(*run.tracking(), design.named.name, design.results,
+                                          design.published_mean_m, command));
+  }
+  std::string remark = fmt::format(
+      "Means over the cases of {} with a number, and the standard error of the mean.", sets.test);
+  if (!run.tracking()->config().task.count_first_point) {
+    remark += " The first point does not count in a case's error.";
+  }
+  return make_distance_response(
+      *run.tracking(),
+      {"distance-response", "Error against the distance of the move", "", std::move(remark)},
+      std::move(series));
+}
+
+std::vector<NamedDesign> choose_swept(const std::vector<ShownDesign>& designs) {
+  std::vector<NamedDesign> swept;
+  for (const ShownDesign& design : designs) {
+    if (design.named.id != "base") {
+      swept.push_back(design.named);
+    }
+  }
+  return swept;
+}
+
+SweepRequest make_sweep_request(const RecordedRun& run, const std::vector<ShownDesign>& designs) {
+  constexpr double kFirst_m_per_s = 0.5;
+  constexpr double kStep_m_per_s = 0.25;
+  constexpr int kSpeeds = 11;
+  SweepRequest request;
+  std::vector<std::string> values;
+  for (int i = 0; i < kSpeeds; ++i) {
+    request.speeds_m_per_s.push_back(kFirst_m_per_s + kStep_m_per_s * i);
+    values.push_back(format_exact(request.speeds_m_per_s.back()));
+  }
+  const CaseSets& sets = run.problem->sets;
+  request.set = sets.test;
+  request.cases = static_cast<std::uint64_t>(std::min(sets.test_cases, kMostSweepCases));
+  if (!run.problem_words.empty() && !designs.front().word.empty()) {
+    std::vector<std::string> words = {"armwright", "sweep"};
+    words.insert(words.end(), run.problem_words.begin() + 1, run.problem_words.end());
+    words.insert(words.end(), {"--design", designs.front().word, "--parameter",
+                               "task.speed_m_per_s", "--values", join(values, ","), "--test-set",
+                               sets.test, "--cases", fmt::format("{}", request.cases)});
+    request.command = quote_command(words);
+  }
+  return request;
+}
+
+}  // namespace
+
+json make_test_errors(const RecordedRun& run, const std::vector<ShownDesign>& designs) {
+  if (!run.result || !run.result->winner) {
+    return nullptr;
+  }
+  const RunResult& result = *run.result;
+  const double failure_error = get_failure_error(result);
+  json list = json::array();
+  const auto add = [&](const std::string& name, const std::string& word,
+                       const std::vector<double>& errors,
+                       const std::vector<TrackingResult>& results) {
+    list.push_back({{"name", name},
+                    {"errors", finite_or_null(errors)},
+                    {"failures", make_failures(run, word, errors, results, failure_error)}});
+  };
+  const std::vector<TrackingResult> none;
+  // Of the winner what was recorded, which is what the run's result stands for.
+  const bool has_designs = !designs.empty();
+  add("winner", has_designs ? designs.front().word : "", result.test.case_errors,
+      has_designs ? designs.front().results : none);
+  for (std::size_t i = 1; i < designs.size(); ++i) {
+    if (!designs[i].results.empty()) {
+      add(designs[i].named.name, designs[i].word, get_case_errors(designs[i].results),
+          designs[i].results);
+    }
+  }
+  const TrackingProblem* tracking = run.tracking();
+  return {
+      {"set", result.test_set},
+      {"quantity", make_quantity(result.tracking ? Quantity{"error", "m"} : get_target(result))},
+      {"engine", tracking != nullptr ? tracking->config().engines.judging_name : ""},
+      {"failure_error", finite_or_null(failure_error)},
+      {"designs", std::move(list)}};
+}
+
+std::uint64_t count_sweep_cases(const RecordedRun& run, const std::vector<ShownDesign>& designs) {
+  const SweepRequest request = make_sweep_request(run, designs);
+  return request.speeds_m_per_s.size() * request.cases * choose_swept(designs).size();
+}
+
+json make_arm_evidence(const RecordedRun& run, const std::vector<ShownDesign>& designs,
+                       PageSimulator* simulator) {
+  json list = json::array();
+  for (const ShownDesign& design : designs) {
+    list.push_back(make_design_info(design.named));
+  }
+  json sweep = nullptr;
+  if (simulator != nullptr && !choose_swept(designs).empty()) {
+    sweep = make_speed_sweep(*simulator, *run.tracking(), make_sweep_request(run, designs),
+                             choose_swept(designs));
+  }
+  return {{"designs", std::move(list)},
+          {"parameters", make_parameters(run, designs)},
+          {"results", make_result_rows(designs)},
+          {"response", make_response(run, designs)},
+          {"signals", make_signals(run.tracking()->config().task, true)},
+          {"sweep", std::move(sweep)}};
+}
+
+}  // namespace armwright

@@ -1,0 +1,148 @@
+#include "report/page/run_facts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/text.hpp"
+#include "report/page/page_json.hpp"
+#include "study/run.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+
+std::string format_value(double value, const std::string& unit) {
+  if (unit == "m") {
+    return fmt::format("{:.4g} mm", 1000 * value);
+  }
+  return unit.empty() || unit == "1" ? fmt::format("{:.6g}", value)
+                                     : fmt::format("{:.6g} {}", value, unit);
+}
+
+class Facts {
+ public:
+  void add(const std::string& label, const std::string& value) {
+    if (!value.empty()) {
+      list_.push_back(make_fact(label, value));
+    }
+  }
+  void add(const std::string& label, const std::optional<double>& value, const std::string& unit) {
+    add(label, value ? format_value(*value, unit) : "");
+  }
+  json take() { return std::move(list_); }
+
+ private:
+  json list_ = json::array();
+};
+
+std::string describe_options(const json& options) {
+  std::vector<std::string> all;
+  for (const auto& [name, value] : options.items()) {
+    all.push_back(
+        fmt::format("{}={}", name, value.is_string() ? value.get<std::string>() : value.dump()));
+  }
+  return join(all, ", ");
+}
+
+void add_setting(const RecordedRun& run, Facts& facts) {
+  const json& settings = run.configuration.at("run");
+  facts.add("Problem", run.problem_name);
+  if (run.problem) {
+    facts.add("Title", run.problem->title);
+    facts.add("Variables", fmt::format("{}", run.describe().variables.size()));
+  }
+  for (const Quantity& objective : run.describe().objectives) {
+    facts.add("Objective", objective.unit.empty() || objective.unit == "1"
+                               ? objective.name
+                               : fmt::format("{} [{}]", objective.name, objective.unit));
+  }
+  for (const Limit& limit : run.describe().limits) {
+    facts.add("Limit", fmt::format("{} at most {}", limit.quantity.name,
+                                   format_value(limit.value, limit.quantity.unit)));
+  }
+  facts.add("Optimizer", settings.at("optimizer").get<std::string>());
+  facts.add("Options", describe_options(settings.at("options")));
+  facts.add("Seed", fmt::format("{}", settings.at("seed").get<std::uint64_t>()));
+  facts.add("Schedule", to_text(run.schedule));
+  if (const TrackingProblem* tracking = run.tracking()) {
+    const EnginePair& engines = tracking->config().engines;
+    facts.add("Engine", engines.training_name == engines.judging_name
+                            ? engines.judging_name
+                            : fmt::format("{} in training, {} in judging", engines.training_name,
+                                          engines.judging_name));
+  }
+}
+
+void add_counts(const RecordedRun& run, Facts& facts) {
+  const auto& training = run.journal.training;
+  facts.add("Budget", fmt::format("{} of {} cases", count_charged_cases(run), run.budget));
+  facts.add("Evaluations", fmt::format("{}", training.size()));
+  facts.add("Clipped to the bounds",
+            fmt::format("{}", std::ranges::count_if(training, &EvaluationRecord::clipped)));
+  facts.add("Evaluations without a number",
+            fmt::format("{}", std::ranges::count_if(training, [](const EvaluationRecord& record) {
+                          return record.evaluation.objectives.empty();
+                        })));
+}
+
+void add_result(const RunResult& result, Facts& facts) {
+  facts.add("End", result.end_reason);
+  facts.add("Failure of the optimizer", result.failure);
+  facts.add("Designs judged on the validation set", fmt::format("{}", result.judged.size()));
+  if (!result.winner) {
+    return;
+  }
+  const ErrorSummary& summary = result.test_summary;
+  if (result.tracking) {
+    facts.add("Test set", fmt::format("{}, {} cases", result.test_set, summary.cases));
+    facts.add("Mean error", summary.mean, "m");
+    facts.add("Published mean error", result.published.error_m, "m");
+    facts.add("Median error", summary.median, "m");
+    facts.add("95th percentile", summary.percentile_95, "m");
+    facts.add("Worst error", summary.worst, "m");
+    facts.add("Failures", fmt::format("{}", summary.failures));
+    const auto torque = std::ranges::find(result.metric_names, "total_torque");
+    const auto at = static_cast<std::size_t>(torque - result.metric_names.begin());
+    if (at < result.test.metrics.size()) {
+      facts.add("Total torque", result.test.metrics[at], "N m");
+    }
+    facts.add("Published total torque", result.published.total_torque_n_m, "N m");
+  }
+  if (!result.test.objectives.empty()) {
+    const Quantity target = get_target(result);
+    facts.add(fmt::format("Result: {}", target.name), calc_target(result, result.test),
+              target.unit);
+  }
+  if (!result.constraints.empty()) {
+    facts.add("Feasible", is_proven_feasible(result.test) ? "yes" : "no");
+  }
+}
+
+}  // namespace
+
+std::int64_t count_charged_cases(const RecordedRun& run) {
+  std::int64_t cases = 0;
+  for (const EvaluationRecord& record : run.journal.training) {
+    cases += static_cast<std::int64_t>(record.calc_charge());
+  }
+  return cases;
+}
+
+json make_run_facts(const RecordedRun& run) {
+  Facts facts;
+  add_setting(run, facts);
+  add_counts(run, facts);
+  if (run.result) {
+    add_result(*run.result, facts);
+  }
+  for (const auto& [key, label] : {std::pair{"version", "Version"}, std::pair{"git", "Commit"},
+                                   std::pair{"compiler", "Compiler"}, std::pair{"cpu", "CPU"}}) {
+    const auto found = run.build.find(key);
+    facts.add(label, found == run.build.end() ? "" : found->second);
+  }
+  return facts.take();
+}
+
+}  // namespace armwright

@@ -1,0 +1,201 @@
+#include "report/page/run_history.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "report/page/page_json.hpp"
+#include "study/statistics/spread.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kMostGenerations = 1000;
+constexpr std::size_t kMostBlocks = 400;
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+// Of a feasible evaluation the scalar objective, otherwise nothing.
+std::optional<double> get_value(const ProblemDescription& problem, const EvaluationRecord& record) {
+  return is_feasible(record.evaluation)
+             ? std::optional(calc_scalar(problem, record.evaluation.objectives))
+             : std::nullopt;
+}
+
+// The first of the best; null if none is feasible.
+const EvaluationRecord* find_best(const ProblemDescription& problem,
+                                  std::span<const EvaluationRecord> records) {
+  const EvaluationRecord* best = nullptr;
+  double least = 0;
+  for (const EvaluationRecord& record : records) {
+    const auto value = get_value(problem, record);
+    if (value && (best == nullptr || *value < least)) {
+      best = &record;
+      least = *value;
+    }
+  }
+  return best;
+}
+
+struct PartSummary {
+  double best = kNone, mean = kNone, worst = kNone;
+  std::uint64_t failed = 0;
+};
+
+PartSummary summarize_part(const ProblemDescription& problem, const HistoryPart& part) {
+  PartSummary summary;
+  double sum = 0;
+  double count = 0;
+  for (const EvaluationRecord& record : part.records) {
+    summary.failed += record.evaluation.objectives.empty() ? 1 : 0;
+    if (const auto value = get_value(problem, record)) {
+      summary.best = std::fmin(summary.best, *value);  // of a number and none, the number
+      summary.worst = std::fmax(summary.worst, *value);
+      sum += *value;
+      ++count;
+    }
+  }
+  summary.mean = count > 0 ? sum / count : kNone;
+  return summary;
+}
+
+}  // namespace
+
+History divide_history(std::span<const EvaluationRecord> training) {
+  History history;
+  history.by_generation = !training.empty() && training.back().generation > 0;
+  const std::size_t block = (training.size() + kMostBlocks - 1) / kMostBlocks;
+  std::int64_t cases = 0;
+  std::size_t first = 0;
+  std::vector<HistoryPart> parts;
+  for (std::size_t i = 0; i < training.size(); ++i) {
+    cases += static_cast<std::int64_t>(training[i].calc_charge());
+    const bool is_last = i + 1 == training.size();
+    const bool ends = history.by_generation
+                          ? is_last || training[i + 1].generation != training[i].generation
+                          : is_last || i + 1 - first == block;
+    if (ends) {
+      parts.push_back({history.by_generation ? training[i].generation : training[i].index + 1,
+                       cases, training.subspan(first, i + 1 - first)});
+      first = i + 1;
+    }
+  }
+  const std::size_t stride = (parts.size() + kMostGenerations - 1) / kMostGenerations;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (i % stride == 0 || i + 1 == parts.size()) {
+      history.parts.push_back(parts[i]);
+    }
+  }
+  history.left_out = parts.size() - history.parts.size();
+  return history;
+}
+
+std::vector<Incumbent> thin_out(const std::vector<Incumbent>& incumbents, std::size_t most) {
+  if (incumbents.size() <= most) {
+    return incumbents;
+  }
+  std::vector<Incumbent> some;
+  for (std::size_t i = 0; i < most; ++i) {
+    some.push_back(incumbents[i * (incumbents.size() - 1) / (most - 1)]);
+  }
+  return some;
+}
+
+json make_training(const RecordedRun& run, const History& history, json incumbents) {
+  const ProblemDescription description = run.describe();
+  json training = {{"unit", history.by_generation ? "generation" : "evaluations"},
+                   {"schedule", to_text(run.schedule)},
+                   {"budget", run.budget},
+                   {"incumbents", std::move(incumbents)}};
+  for (const char* key : {"index", "cases", "best", "mean", "worst", "failed"}) {
+    training[key] = json::array();
+  }
+  for (const HistoryPart& part : history.parts) {
+    const PartSummary summary = summarize_part(description, part);
+    training["index"].push_back(part.index);
+    training["cases"].push_back(part.cases);
+    training["best"].push_back(finite_or_null(summary.best));
+    training["mean"].push_back(finite_or_null(summary.mean));
+    training["worst"].push_back(finite_or_null(summary.worst));
+    training["failed"].push_back(summary.failed);
+  }
+  return training;
+}
+
+json make_variables(const RecordedRun& run, const History& history) {
+  const ProblemDescription description = run.describe();
+  const std::vector<double> winner = run.result ? run.find_best() : std::vector<double>{};
+  std::vector<const EvaluationRecord*> bests;
+  for (const HistoryPart& part : history.parts) {
+    bests.push_back(find_best(description, part.records));
+  }
+  json list = json::array();
+  std::vector<double> values;
+  for (std::size_t i = 0; i < description.variables.size(); ++i) {
+    const DecisionVariable& variable = description.variables[i];
+    json one = {{"name", variable.name},
+                {"unit", variable.unit},
+                {"lower", variable.lower},
+                {"upper", variable.upper},
+                {"start", variable.start},
+                {"logarithmic", variable.scale == Scale::logarithmic},
+                {"winner", winner.empty() ? json(nullptr) : finite_or_null(winner[i])},
+                {"best", json::array()},
+                {"q1", json::array()},
+                {"median", json::array()},
+                {"q3", json::array()}};
+    for (std::size_t k = 0; k < history.parts.size(); ++k) {
+      values.clear();
+      for (const EvaluationRecord& record : history.parts[k].records) {
+        values.push_back(record.x[i]);
+      }
+      const Spread spread = calc_spread(values);
+      one["best"].push_back(bests[k] == nullptr ? json(nullptr) : finite_or_null(bests[k]->x[i]));
+      one["q1"].push_back(finite_or_null(spread.lower_quartile));
+      one["median"].push_back(finite_or_null(spread.median));
+      one["q3"].push_back(finite_or_null(spread.upper_quartile));
+    }
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
+json make_front(const RecordedRun& run) {
+  if (!run.result || run.result->objectives.size() < 2) {
+    return nullptr;
+  }
+  const RunResult& result = *run.result;
+  // As good in everything, fewer failures or a better objective included.
+  const auto covers = [](const Evaluation& a, const Evaluation& b) {
+    return a.failed_cases <= b.failed_cases && a.objectives != b.objectives &&
+           std::ranges::equal(a.objectives, b.objectives, std::less_equal{});
+  };
+  json points = json::array();
+  json winner = nullptr;
+  for (std::size_t i = 0; i < result.judged.size(); ++i) {
+    const Evaluation& evaluation = result.judged[i].validation;
+    if (evaluation.objectives.empty()) {
+      continue;
+    }
+    const bool covered = std::ranges::any_of(result.judged, [&](const JudgedCandidate& other) {
+      return !other.validation.objectives.empty() && covers(other.validation, evaluation);
+    });
+    if (result.winner == i) {
+      winner = points.size();
+    }
+    points.push_back({{"values", evaluation.objectives},
+                      {"on_front", !covered},
+                      {"x", result.judged[i].candidate.x}});
+  }
+  json objectives = json::array();
+  for (const Quantity& objective : result.objectives) {
+    objectives.push_back(make_quantity(objective));
+  }
+  return {{"objectives", std::move(objectives)},
+          {"points", std::move(points)},
+          {"winner", std::move(winner)}};
+}
+
+}  // namespace armwright

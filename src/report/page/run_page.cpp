@@ -1,0 +1,204 @@
+#include "report/page/run_page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/text.hpp"
+#include "report/page/arm_evidence.hpp"
+#include "report/page/distance_response.hpp"
+#include "report/page/page_json.hpp"
+#include "report/page/robot_scene.hpp"
+#include "report/page/run_facts.hpp"
+#include "report/page/run_history.hpp"
+#include "study/run.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kMostIncumbents = 24;
+constexpr int kMostIncumbentCases = 100;
+
+int count_incumbent_cases(const RecordedRun& run) {
+  return std::min(run.problem->sets.test_cases, kMostIncumbentCases);
+}
+
+// Incumbents; `simulator` null: without their values on the test set.
+json make_incumbents(const RecordedRun& run, const std::vector<Incumbent>& shown,
+                     bool by_generation, PageSimulator* simulator) {
+  json incumbents = {
+      {"index", json::array()},
+      {"cases", json::array()},
+      {"training", json::array()},
+      {"test", json::array()},
+      {"test_set", run.problem ? run.problem->sets.test : ""},
+      {"test_cases", run.problem ? count_incumbent_cases(run) : 0},
+      {"engine", run.tracking() != nullptr ? run.tracking()->config().engines.judging_name : ""}};
+  CaseBlock block{.role = CaseRole::test, .set = incumbents["test_set"], .numbers = {}};
+  block.numbers.resize(incumbents["test_cases"].get<std::size_t>());
+  std::iota(block.numbers.begin(), block.numbers.end(), std::uint64_t{0});
+  for (const Incumbent& incumbent : shown) {
+    const auto record =
+        std::ranges::find(run.journal.training, incumbent.evaluation, &EvaluationRecord::index);
+    incumbents["index"].push_back(by_generation ? record->generation : incumbent.evaluation + 1);
+    incumbents["cases"].push_back(incumbent.cases);
+    incumbents["training"].push_back(finite_or_null(incumbent.objective));
+    json& test = incumbents["test"].emplace_back(nullptr);
+    if (simulator != nullptr) {
+      const Evaluation evaluation = simulator->evaluate(*run.problem->problem, incumbent.x, block);
+      if (!evaluation.objectives.empty()) {
+        test = finite_or_null(calc_scalar(run.describe(), evaluation.objectives));
+      }
+    }
+  }
+  return incumbents;
+}
+
+void add_notes(const RecordedRun& run, const History& history, const PageOptions& options,
+               std::vector<std::string>& notes) {
+  if (!run.result) {
+    notes.push_back("The run has not come to its end: there is no winner yet, and no test of one.");
+  } else if (!run.result->winner) {
+    notes.push_back("No design that the run found has a number, so there is no winner.");
+  }
+  if (run.result && !run.result->failure.empty()) {
+    notes.push_back(
+        fmt::format("The optimizer failed before its end: {}.", sanitize(run.result->failure)));
+  }
+  if (run.journal.torn_bytes > 0) {
+    notes.push_back("The journal ends in the middle of a record, which was left out.");
+  }
+  if (history.left_out > 0) {
+    notes.push_back(fmt::format("Of {} generations every n-th and the last are shown, {} in all.",
+                                history.left_out + history.parts.size(), history.parts.size()));
+  }
+  if (!run.describe().constraints.empty()) {
+    notes.push_back("Best, mean and worst in training are of the designs that keep all limits.");
+  }
+  if (!run.problem) {
+    notes.push_back(
+        "Without the problem the bounds of its variables are not known, so their "
+        "history is left out.");
+  } else if (!options.simulate) {
+    notes.push_back(
+        "Nothing was simulated for this page: replays, tests of incumbents and of "
+        "other designs, the distance response and the sweep are left out.");
+  }
+}
+
+// That what is simulated here is what the run recorded.
+void compare_with_record(const RecordedRun& run, const std::vector<ShownDesign>& designs,
+                         std::vector<std::string>& notes) {
+  const auto now = get_case_errors(designs.front().results);
+  const auto& recorded = run.result->test.case_errors;
+  for (std::size_t i = 0; i < std::min(now.size(), recorded.size()); ++i) {
+    const bool same = now[i] == recorded[i] || (std::isnan(now[i]) && std::isnan(recorded[i]));
+    if (!same) {
+      notes.push_back(
+          fmt::format("What is simulated for this page differs from what the run "
+                      "recorded, first on test case {}: {} m then, {} m now.",
+                      i, format_exact(recorded[i]), format_exact(now[i])));
+      return;
+    }
+  }
+}
+
+// All that an arm adds: everything that takes long is in here.
+void add_arm(const RecordedRun& run, const PageOptions& options, PageSimulator* simulator,
+             json& page, std::vector<std::string>& notes) {
+  auto designs = list_designs(run, notes);
+  const TrackingProblem& problem = *run.tracking();
+  // A run under way has no winner to test; it shows how its best moves.
+  const bool has_winner = run.result && run.result->winner;
+  if (simulator != nullptr) {
+    const auto requests = choose_replays(run, designs, options.cases);
+    std::vector<NamedDesign> named;
+    for (const ShownDesign& design : designs) {
+      named.push_back(design.named);
+    }
+    simulator->expect(requests.size() * named.size());
+    if (has_winner) {
+      simulator->expect(designs.size() * static_cast<std::uint64_t>(run.problem->sets.test_cases) +
+                        count_sweep_cases(run, designs));
+      simulate_designs(run, *simulator, designs);
+      compare_with_record(run, designs, notes);
+    }
+    page["robots"].push_back(make_robot(problem.config().robot, problem.config().task.load_kg,
+                                        run.find_urdf_folder(), notes));
+    page["replays"].push_back(
+        make_replay_set(*simulator, problem, {"run", "Motions"}, 0, named, requests));
+  }
+  page["test"] = make_test_errors(run, designs);
+  page["arm"] = make_arm_evidence(run, designs, has_winner ? simulator : nullptr);
+}
+
+json make_page(const RecordedRun& run, const PageOptions& options, PageSimulator& simulator) {
+  const std::string optimizer = run.configuration.at("run").at("optimizer").get<std::string>();
+  const ProblemDescription description = run.describe();
+  const History history = divide_history(run.journal.training);
+  PageSimulator* used = options.simulate && run.problem ? &simulator : nullptr;
+  const auto incumbents = thin_out(
+      find_incumbents(description, run.journal.training, run.schedule.fresh), kMostIncumbents);
+  if (used != nullptr) {
+    used->expect(incumbents.size() * static_cast<std::uint64_t>(count_incumbent_cases(run)));
+  }
+  std::vector<std::string> notes = run.notes;
+  add_notes(run, history, options, notes);
+  std::vector<std::string> command = run.command_line;
+  if (!command.empty()) {  // wherever the program lay
+    command.front() = std::filesystem::path(command.front()).filename().string();
+  }
+  const Quantity quantity = get_scalar_quantity(description.objectives);
+  json progress = nullptr;
+  if (!run.result) {
+    progress = {{"done", count_charged_cases(run)}, {"total", run.budget}, {"unit", "cases"}};
+  }
+  json page = {{"format", 1},
+               {"kind", "run"},
+               {"title", fmt::format("{} on {}", optimizer, run.problem_name)},
+               {"subtitle", run.problem ? run.problem->title : ""},
+               {"program", make_program()},
+               {"folder", run.folder.string()},
+               {"command", quote_command(command)},
+               {"finished", run.result.has_value()},
+               {"progress", std::move(progress)},
+               {"facts", make_run_facts(run)},
+               {"robots", json::array()},
+               {"replays", json::array()},
+               {"problem", run.problem_name},
+               {"optimizer", optimizer},
+               {"quantity", make_quantity(quantity)},
+               {"logarithmic", quantity.name.starts_with("ln(")},
+               {"variables", make_variables(run, history)},
+               {"front", make_front(run)},
+               {"arm", nullptr}};
+  if (run.tracking() != nullptr) {
+    add_arm(run, options, used, page, notes);
+  } else {
+    page["test"] = make_test_errors(run, {});
+  }
+  page["training"] =
+      make_training(run, history, make_incumbents(run, incumbents, history.by_generation, used));
+  page["notes"] = notes;
+  return page;
+}
+
+}  // namespace
+
+std::optional<std::string> make_run_page(const std::filesystem::path& folder,
+                                         const PageOptions& options, StopSignal& stop,
+                                         RunObserver& observer) {
+  const RecordedRun run = read_recorded_run(folder);
+  PageSimulator simulator(options.jobs, stop, observer);
+  try {
+    return dump_page(make_page(run, options, simulator));
+  } catch (const PageStopped&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace armwright

@@ -1,0 +1,204 @@
+// The replays of a study's page.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "problems/config_files.hpp"
+#include "report/page/motions.hpp"
+#include "report/page/page_json.hpp"
+#include "report/page/robot_scene.hpp"
+#include "report/page/study_parts.hpp"
+#include "study/compare/final_check.hpp"
+#include "study/run.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kMostProblems = 4;
+constexpr std::size_t kMostDesigns = 6;
+constexpr std::size_t kMostBytes = std::size_t{3} << 20;  // of all replays
+
+struct BestDesign {
+  const CellOutcome* cell = nullptr;
+  NamedDesign named;
+};
+
+// Of the best optimizers one each, best optimizer first.
+std::vector<BestDesign> find_best_designs(const StudyPlan& plan, const StudyResult& result,
+                                          std::size_t problem) {
+  const TrackingProblem& tracking = *plan.problems[problem].loaded.tracking;
+  std::vector<BestDesign> designs;
+  for (const std::size_t o : result.problems[problem].order) {
+    const std::string& label = plan.optimizers[o].label;
+    const CellOutcome* cell = find_best_cell(result.cells, plan.problems[problem].label, label);
+    if (cell != nullptr && designs.size() < kMostDesigns) {
+      designs.push_back(
+          {cell,
+           {fmt::format("optimizer-{}", o), fmt::format("{}, replicate {}", label, cell->replicate),
+            tracking.make_design(cell->x)}});
+    }
+  }
+  return designs;
+}
+
+// The winner's worst case on the test set, one without a number before any with one; nothing if
+// the run's result is not there any more.
+std::optional<std::uint64_t> find_worst_case(const std::filesystem::path& run) {
+  if (!std::filesystem::exists(run / "result.json")) {
+    return std::nullopt;
+  }
+  const std::vector<double> errors = load_result(run).test.case_errors;
+  if (errors.empty()) {
+    return std::nullopt;
+  }
+  const auto worst = std::ranges::max_element(errors, {}, [](double error) {
+    return std::isnan(error) ? std::numeric_limits<double>::infinity() : error;
+  });
+  return static_cast<std::uint64_t>(worst - errors.begin());
+}
+
+// "test/2:17"
+ReplayRequest parse_case(const TrackingProblem& problem, const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  const auto number =
+      colon == std::string::npos ? std::nullopt : parse_integer(text.substr(colon + 1));
+  if (!number || *number < 0) {
+    throw Error(ErrorKind::usage,
+                fmt::format("'{}' is not a case to replay; a case is SET:NUMBER, as in 'test/2:17'",
+                            sanitize(text)));
+  }
+  const std::string set = text.substr(0, colon);
+  return {problem.get_set(set), static_cast<std::uint64_t>(*number),
+          fmt::format("{}, case {}", sanitize(set), *number)};
+}
+
+std::vector<ReplayRequest> choose_cases(const StudyPlan& plan, const StudyProblem& problem,
+                                        std::span<const BestDesign> designs,
+                                        const std::filesystem::path& folder,
+                                        std::span<const std::string> asked_for) {
+  const CaseSets& sets = problem.loaded.sets;
+  const TestSet set = problem.loaded.tracking->get_set(sets.test);
+  std::vector<ReplayRequest> cases = {{set, 0, fmt::format("{}, case 0", sets.test)}};
+  if (!designs.empty()) {
+    const CellOutcome& cell = *designs.front().cell;
+    const auto optimizer =
+        std::ranges::find(plan.optimizers, cell.optimizer, &StudyOptimizer::label);
+    const Cell where{static_cast<std::size_t>(&problem - plan.problems.data()),
+                     static_cast<std::size_t>(optimizer - plan.optimizers.begin()), cell.replicate};
+    const auto worst = find_worst_case(folder / make_cell_path(plan, where));
+    if (worst && *worst > 0) {
+      cases.push_back({set, *worst,
+                       fmt::format("{}, case {}: the worst of {} for {}", sets.test, *worst,
+                                   sets.test_cases, designs.front().named.name)});
+    }
+  }
+  for (const std::string& text : asked_for) {
+    ReplayRequest request = parse_case(*problem.loaded.tracking, text);
+    const bool is_new = std::ranges::none_of(cases, [&](const ReplayRequest& one) {
+      return one.set.name() == request.set.name() && one.number == request.number;
+    });
+    if (is_new) {
+      cases.push_back(std::move(request));
+    }
+  }
+  return cases;
+}
+
+std::filesystem::path find_urdf_folder(const StudyProblem& problem) {
+  const json resolved = json::parse(problem.loaded.resolved_json);
+  const auto urdf = resolved.at("robot").at("urdf").get<std::string>();
+  const auto beside = std::filesystem::path(problem.name).parent_path();
+  if (std::filesystem::exists(beside / urdf)) {
+    return (beside / urdf).parent_path();
+  }
+  try {
+    return resolve_config("robots", urdf).parent_path();
+  } catch (const Error&) {
+    return beside;  // then its meshes are not found either, and plain shapes stand for them
+  }
+}
+
+std::size_t add_robot(const StudyProblem& problem, json& robots, std::vector<std::string>& notes) {
+  const TrackingConfig& config = problem.loaded.tracking->config();
+  std::vector<std::string> its_notes;
+  json robot = make_robot(config.robot, config.task.load_kg, find_urdf_folder(problem), its_notes);
+  const auto known = std::ranges::find(robots, robot);
+  if (known != robots.end()) {
+    return static_cast<std::size_t>(known - robots.begin());
+  }
+  robots.push_back(std::move(robot));
+  notes.insert(notes.end(), its_notes.begin(), its_notes.end());
+  return robots.size() - 1;
+}
+
+// Takes out motions until the replay is small enough: the last cases but the first and those asked
+// for, then the designs before the start, the last of which are the worst. The leader and the
+// start stay.
+void shrink(json& replay, std::size_t most_bytes, std::size_t least_cases) {
+  while (dump_page(replay).size() > most_bytes) {
+    json& cases = replay["cases"];
+    json& designs = replay["designs"];
+    if (cases.size() > least_cases) {
+      cases.erase(1);
+      continue;
+    }
+    if (designs.size() <= 2) {
+      return;
+    }
+    const std::size_t worst = designs.size() - 2;
+    designs.erase(worst);
+    for (json& one : cases) {
+      one["motions"].erase(worst);
+    }
+  }
+}
+
+}  // namespace
+
+json make_study_replays(const StudyPlan& plan, const StudyResult& result,
+                        const std::filesystem::path& folder, std::span<const std::string> cases,
+                        PageSimulator& simulator, json& robots, std::vector<std::string>& notes) {
+  std::vector<std::size_t> shown;
+  for (std::size_t p = 0; p < plan.problems.size() && shown.size() < kMostProblems; ++p) {
+    if (plan.problems[p].loaded.tracking) {
+      shown.push_back(p);
+    }
+  }
+  json replays = json::array();
+  std::vector<std::string> smaller;
+  for (const std::size_t p : shown) {
+    const StudyProblem& problem = plan.problems[p];
+    const TrackingProblem& tracking = *problem.loaded.tracking;
+    const auto best = find_best_designs(plan, result, p);
+    const auto requests = choose_cases(plan, problem, best, folder, cases);
+    std::vector<NamedDesign> designs;
+    for (const BestDesign& one : best) {
+      designs.push_back(one.named);
+    }
+    designs.push_back({"start", "where the problem starts", tracking.config().start});
+    const std::size_t robot = add_robot(problem, robots, notes);
+    simulator.expect(designs.size() * requests.size());
+    json replay = make_replay_set(simulator, tracking,
+                                  {fmt::format("problem-{}", p), sanitize(problem.label)}, robot,
+                                  designs, requests);
+    shrink(replay, kMostBytes / shown.size(), 1 + cases.size());
+    if (replay["designs"].size() < designs.size() || replay["cases"].size() < requests.size()) {
+      smaller.push_back(sanitize(problem.label));
+    }
+    replays.push_back(std::move(replay));
+  }
+  if (!smaller.empty()) {
+    notes.push_back(
+        fmt::format("Replays of {} have fewer designs or cases than there are, to keep "
+                    "the page small.",
+                    join(smaller, ", ")));
+  }
+  return replays;
+}
+
+}  // namespace armwright

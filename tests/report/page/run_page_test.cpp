@@ -1,0 +1,273 @@
+// Pages of tiny runs of every kind, and what their JSON promises.
+#include "report/page/run_page.hpp"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+
+#include "base/error.hpp"
+#include "problems/config_files.hpp"
+#include "report/page/unpack.hpp"
+#include "study/run_support.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+using testing::Contains;
+using testing::HasSubstr;
+
+// The fields of an interface in web/src/data.ts, those that it extends left out.
+std::set<std::string> read_interface(const std::string& name) {
+  std::ifstream file(std::string(ARMWRIGHT_CONFIGS) + "/../web/src/data.ts");
+  const std::regex field("^  (\\w+)\\??: .*");
+  std::set<std::string> fields;
+  bool inside = false;
+  for (std::string line; std::getline(file, line);) {
+    std::smatch match;
+    if (line.starts_with("export interface " + name + " ")) {
+      inside = true;
+    } else if (line.starts_with("}")) {
+      inside = false;
+    } else if (inside && std::regex_match(line, match, field)) {
+      fields.insert(match[1]);
+    }
+  }
+  return fields;
+}
+
+void expect_interface(const json& object, const std::vector<std::string>& interfaces) {
+  std::set<std::string> expected;
+  for (const std::string& name : interfaces) {
+    expected.merge(read_interface(name));
+  }
+  std::set<std::string> keys;
+  for (const auto& [key, value] : object.items()) {
+    keys.insert(key);
+  }
+  EXPECT_EQ(keys, expected) << interfaces.front();
+}
+
+class RunPage : public RunTest {
+ protected:
+  RunPlan make_plan(const std::string& problem, const std::string& optimizer, std::int64_t budget,
+                    std::vector<std::string> overrides = {}) {
+    RunPlan plan;
+    const bool arm = problem != "rastrigin";
+    if (arm) {
+      overrides.insert(overrides.end(), {"physics.engine=articulated", "sets.validation_cases=3",
+                                         "sets.test_cases=6"});
+    }
+    plan.problem = load_problem(problem, overrides);
+    plan.optimizer = load_optimizer(optimizer);
+    const std::vector<std::string> options =
+        optimizer == "ga" ? std::vector<std::string>{"population=8"} : std::vector<std::string>{};
+    plan.options = Options::parse(optimizer, plan.optimizer.options, options);
+    plan.budget = budget;
+    plan.schedule = choose_schedule(plan.problem, plan.optimizer);
+    words_ = {"/somewhere/armwright", "optimize", problem, "--set", "physics.engine=articulated"};
+    return plan;
+  }
+  void make_run(const RunPlan& plan, const std::string& folder) {
+    StopSignal stop;
+    ASSERT_TRUE(execute_run({plan, temporary_ / folder, 2, words_}, stop, observer_));
+  }
+  std::string make_text(const std::string& folder, const PageOptions& options = {}) {
+    StopSignal stop;
+    return make_run_page(temporary_ / folder, options, stop, observer_).value();
+  }
+  json make_page(const std::string& folder, const PageOptions& options = {}) {
+    return json::parse(make_text(folder, options));
+  }
+  static std::vector<std::string> notes_of(const json& page) {
+    return page["notes"].get<std::vector<std::string>>();
+  }
+  std::vector<std::string> words_;
+};
+
+TEST_F(RunPage, HasWhatTheContractSaysForAnArm) {
+  make_run(make_plan("q1-complex", "ga", 24), "a");
+  PageOptions options;
+  options.cases = {"test/2:17"};
+  const json page = make_page("a", options);
+  expect_interface(page, {"RunData", "PageBase"});
+  expect_interface(page["training"], {"Training"});
+  expect_interface(page["training"]["incumbents"], {"Incumbents"});
+  expect_interface(page["variables"][0], {"VariableHistory"});
+  expect_interface(page["test"], {"TestErrors"});
+  expect_interface(page["arm"], {"ArmEvidence"});
+  expect_interface(page["arm"]["response"], {"DistanceResponse"});
+  expect_interface(page["arm"]["response"]["series"][0], {"ResponseSeries"});
+  expect_interface(page["arm"]["signals"], {"Signals"});
+  expect_interface(page["arm"]["signals"]["curves"][0], {"SignalCurve"});
+  expect_interface(page["arm"]["sweep"], {"Sweep"});
+  expect_interface(page["arm"]["designs"][0], {"DesignInfo"});
+  const json& replay = page["replays"][0];
+  expect_interface(replay, {"ReplaySet"});
+  expect_interface(replay["task"], {"TaskInfo"});
+  expect_interface(replay["cases"][0], {"ReplayCase"});
+  expect_interface(replay["cases"][0]["segments"][0], {"Segment"});
+  expect_interface(replay["cases"][0]["motions"][0], {"Motion"});
+  expect_interface(page["robots"][0], {"Robot"});
+
+  EXPECT_EQ(page["training"]["index"], json({1, 2, 3}));
+  EXPECT_EQ(page["training"]["cases"], json({8, 16, 24}));
+  EXPECT_EQ(page["variables"].size(), 20u);
+  EXPECT_EQ(page["arm"]["parameters"].size(), 20u);
+  EXPECT_EQ(page["training"]["incumbents"]["test"].size(), 3u);
+  EXPECT_EQ(replay["cases"][0]["id"], "train/1:1");
+  EXPECT_EQ(replay["cases"][1]["id"], "test/2:0");
+  EXPECT_EQ(replay["cases"].back()["id"], "test/2:17");
+  std::set<std::string> ids;
+  for (const json& one : replay["cases"]) {
+    EXPECT_TRUE(ids.insert(one["id"]).second) << one["id"];
+    EXPECT_EQ(one["motions"].size(), 3u);
+  }
+  EXPECT_EQ(page["command"], "armwright optimize q1-complex --set physics.engine=articulated");
+  // What was simulated anew is what the run recorded.
+  EXPECT_EQ(page["notes"], json::array());
+  EXPECT_EQ(page["arm"]["results"][0]["cases"], 6);
+  EXPECT_EQ(page["test"]["designs"].size(), 3u);
+}
+
+TEST_F(RunPage, IsTheSameForAnyNumberOfThreads) {
+  make_run(make_plan("q1-complex", "ga", 16), "a");
+  PageOptions two;
+  two.jobs = 2;
+  EXPECT_EQ(make_text("a"), make_text("a", two));
+}
+
+TEST_F(RunPage, CommandsLeadToTheRunsProblem) {
+  make_run(make_plan("q1-complex", "ga", 16, {"task.load_kg=3"}), "a");
+  const json page = make_page("a");
+  const std::string command = page["arm"]["response"]["series"][0]["command"];
+  EXPECT_THAT(command, HasSubstr("/a/winner.toml --problem q1-complex "));
+  EXPECT_THAT(command, HasSubstr("--set task.load_kg=3"));
+  EXPECT_THAT(command, HasSubstr("physics.engine"));
+  EXPECT_THAT(command, HasSubstr("--test-set test/2 --cases 6"));
+  // Published numbers are of the arm without a load.
+  for (const json& row : page["arm"]["results"]) {
+    EXPECT_TRUE(row["published_mean_m"].is_null());
+  }
+}
+
+TEST_F(RunPage, OfAFunctionHasNoArm) {
+  make_run(make_plan("rastrigin", "cmaes", 900), "a");
+  const json page = make_page("a");
+  expect_interface(page, {"RunData", "PageBase"});
+  EXPECT_TRUE(page["arm"].is_null());
+  EXPECT_TRUE(page["robots"].empty());
+  EXPECT_TRUE(page["test"]["failure_error"].is_null());
+  EXPECT_EQ(page["training"]["index"].back(), page["training"]["cases"].back());
+  EXPECT_LE(page["training"]["index"].size(), 400u);
+  EXPECT_LE(page["training"]["incumbents"]["index"].size(), 24u);
+  // A function is the same on the test set.
+  EXPECT_EQ(page["training"]["incumbents"]["test"], page["training"]["incumbents"]["training"]);
+}
+
+TEST_F(RunPage, OfSeveralObjectivesHasAFront) {
+  make_run(make_plan("q2-pareto", "ga", 40), "a");
+  const json page = make_page("a");
+  expect_interface(page["front"], {"RunFront"});
+  EXPECT_EQ(page["front"]["objectives"].size(), 2u);
+  EXPECT_TRUE(page["front"]["winner"].is_number());
+  EXPECT_FALSE(page["front"]["points"].empty());
+}
+
+TEST_F(RunPage, OfConstraintsCountsOnlyDesignsThatKeepThem) {
+  make_run(make_plan("q2-torque", "ga", 24), "a");
+  const json page = make_page("a");
+  EXPECT_THAT(notes_of(page), Contains(HasSubstr("keep all limits")));
+  const JournalContent journal = read("a");
+  for (std::size_t g = 0; g < 3; ++g) {
+    bool feasible = false;
+    for (const EvaluationRecord& record : journal.training) {
+      feasible |= record.generation == g + 1 && is_feasible(record.evaluation);
+    }
+    EXPECT_EQ(page["training"]["best"][g].is_number(), feasible) << g;
+  }
+}
+
+TEST_F(RunPage, OfARunUnderWayReadsOnly) {
+  make_run(make_plan("q1-complex", "ga", 24), "a");
+  const auto folder = temporary_ / "a";
+  for (const char* name : {"result.json", "winner.toml", "lock"}) {
+    std::filesystem::remove(folder / name);
+  }
+  // As a writer leaves it in the middle of a record.
+  const auto size = std::filesystem::file_size(folder / "journal");
+  std::filesystem::resize_file(folder / "journal", size - 3);
+  const json page = make_page("a");
+  EXPECT_EQ(std::filesystem::file_size(folder / "journal"), size - 3);
+  EXPECT_FALSE(std::filesystem::exists(folder / "lock"));
+  EXPECT_EQ(page["finished"], false);
+  EXPECT_EQ(page["progress"], json({{"done", 24}, {"total", 24}, {"unit", "cases"}}));
+  EXPECT_TRUE(page["test"].is_null());
+  EXPECT_TRUE(page["arm"]["sweep"].is_null());
+  EXPECT_EQ(page["problem"], "q1-complex");
+  EXPECT_EQ(page["replays"][0]["designs"][0]["name"], "best so far");
+}
+
+TEST_F(RunPage, OfAChangedRobotSimulatesNothing) {
+  const auto own = temporary_ / "own";
+  std::filesystem::create_directories(own);
+  std::filesystem::copy(resolve_config("robots", "irb4600_40_255"), own / "arm.urdf");
+  std::ofstream(own / "mine.toml")
+      << "kind = \"tracking\"\n[robot]\nurdf = \"arm.urdf\"\n[variables]\nstart = \"table-a1\"\n";
+  const std::string problem = (own / "mine.toml").string();
+  make_run(make_plan(problem, "ga", 16), "a");
+  EXPECT_EQ(make_page("a")["replays"].size(), 1u);
+  std::ofstream(own / "arm.urdf", std::ios::app) << "<!-- changed -->\n";
+  const json page = make_page("a");
+  EXPECT_THAT(notes_of(page), Contains(HasSubstr("arm.urdf")));
+  EXPECT_TRUE(page["replays"].empty());
+  EXPECT_TRUE(page["arm"].is_null());
+  EXPECT_EQ(page["test"]["designs"].size(), 1u);  // what was recorded
+  std::filesystem::remove(own / "arm.urdf");
+  EXPECT_TRUE(make_page("a")["replays"].empty());
+}
+
+TEST_F(RunPage, TakesHostileNamesAsTheyAre) {
+  const auto own = temporary_ / "own";
+  std::filesystem::create_directories(own);
+  const std::string name = "a'b </script>";
+  const std::string problem = (own / "x.toml").string();
+  std::ofstream(problem) << "title = \"</script><b>\\u007f\"\nkind = \"tracking\"\n[robot]\nurdf = "
+                            "\"irb4600_40_255\"\n[variables]\nstart = \"table-a1\"\n";
+  make_run(make_plan(problem, "ga", 16), name);
+  const json page = make_page(name);
+  EXPECT_EQ(page["subtitle"], "</script><b>\x7f");
+  const std::string command = page["arm"]["response"]["series"][0]["command"];
+  EXPECT_THAT(command, HasSubstr("a'\\''b </script>/winner.toml'"));
+}
+
+TEST_F(RunPage, WithoutSimulatingSaysSo) {
+  make_run(make_plan("q1-complex", "ga", 16), "a");
+  PageOptions options;
+  options.simulate = false;
+  const json page = make_page("a", options);
+  EXPECT_THAT(notes_of(page), Contains(HasSubstr("Nothing was simulated")));
+  EXPECT_TRUE(page["replays"].empty());
+  EXPECT_TRUE(page["arm"]["response"]["series"].empty());
+  EXPECT_EQ(page["arm"]["parameters"].size(), 20u);
+  EXPECT_EQ(page["test"]["designs"][0]["errors"].size(), 6u);
+}
+
+TEST_F(RunPage, RefusesWhatIsNone) {
+  StopSignal stop;
+  EXPECT_THROW(make_run_page(temporary_ / "none", {}, stop, observer_), Error);
+  make_run(make_plan("q1-complex", "ga", 8), "a");
+  for (const char* text : {"17", "test/2", "test/2:-1", "test/2:x", "/:1", ":1"}) {
+    PageOptions options;
+    options.cases = {text};
+    EXPECT_THROW(make_page("a", options), Error) << text;
+  }
+  stop.request(StopReason::interrupted);
+  EXPECT_FALSE(make_run_page(temporary_ / "a", {}, stop, observer_));
+}
+
+}  // namespace
+}  // namespace armwright
