@@ -16,6 +16,7 @@ import {
   VisualMapComponent,
 } from 'echarts/components';
 import * as echarts from 'echarts/core';
+import { LabelLayout } from 'echarts/features';
 import { SVGRenderer } from 'echarts/renderers';
 
 echarts.use([
@@ -38,6 +39,7 @@ echarts.use([
   TooltipComponent,
   VisualMapComponent,
   SVGRenderer,
+  LabelLayout,
 ]);
 
 export { echarts };

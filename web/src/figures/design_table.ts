@@ -16,7 +16,9 @@ export function make_design_table(arm: ArmEvidence): TableItem | null {
     title: 'The design in numbers',
     caption:
       'Every number of the winner beside the same of the other designs. Those that are no variable were not optimized. ' +
-      (some_at_bound ? 'Where a number of the winner is at a bound, the optimizer wanted to go further: the bound may be too tight. ' : '') +
+      (some_at_bound
+        ? 'Where a number of the winner is at a bound, the optimizer wanted to go further: the bound may be too tight. '
+        : '') +
       'The total torque is the sum over the joints of the larger magnitude of the two limits.',
     table: {
       columns: [
@@ -53,7 +55,9 @@ export function make_results_table(data: RunData, arm: ArmEvidence): TableItem |
     title: 'Result',
     caption:
       `Positional errors of each design${where}: mean, median, the error that 95 % of the cases stay below, and the worst case. ` +
-      (has_published ? 'Published: what the source printed of the same design; the last column says where.' : 'Nothing is published of these.'),
+      (has_published
+        ? 'Published: what the source printed of the same design; the last column says where.'
+        : 'Nothing is published of these.'),
     table: {
       columns: [
         { label: 'design' },

@@ -46,9 +46,7 @@ function describe(response: DistanceResponse): string {
     `bars: standard error of the mean. ` +
     (left_out > 0 ? `Hollow: ${left_out === 1 ? 'a move that does' : 'moves that do'} not count in a case's error. ` : '') +
     `The legend gives the mean over all moves that count${has_published ? ', and beside it what the thesis printed' : ''}. ` +
-    (failures.length > 0
-      ? `Failed cases: ${failures.map((one) => `${shorten_all([one.name])[0]} ${one.failures}`).join(', ')}. `
-      : '') +
+    (failures.length > 0 ? `Failed cases: ${failures.map((one) => `${shorten_all([one.name])[0]} ${one.failures}`).join(', ')}. ` : '') +
     response.remark
   ).trim();
 }
@@ -79,7 +77,10 @@ export function make_response_figure(response: DistanceResponse, id = response.i
           note: note_of(response, one, i),
         });
         const on: Point[] = response.distances_m.map((_, i) => (response.counted[i] ? point(i) : [i, null]));
-        const off: Point[] = response.distances_m.map((_, i) => i).filter((i) => !response.counted[i]).map(point);
+        const off: Point[] = response.distances_m
+          .map((_, i) => i)
+          .filter((i) => !response.counted[i])
+          .map(point);
         series.push(make_line(look, s, names[s], on, { symbols: true }));
         if (off.length > 0) {
           series.push({
@@ -127,9 +128,7 @@ export function make_response_figure(response: DistanceResponse, id = response.i
         (i + 1) as Value,
         distance * kCentimetres,
         response.counted[i] ? 'yes' : 'no',
-        ...flatten(
-          response.series.map((one) => [times(one.mean_m[i], kMillimetres), times(one.standard_error_m[i], kMillimetres)]),
-        ),
+        ...flatten(response.series.map((one) => [times(one.mean_m[i], kMillimetres), times(one.standard_error_m[i], kMillimetres)])),
       ]),
     }),
   };

@@ -6,9 +6,19 @@ import { shorten_all } from '../charts/names';
 import { make_line, type Part, type Point } from '../charts/parts';
 import type { ReplayCase, ReplaySet, Robot } from '../data';
 import type { Choice, Column, DataTable, Figure, Picked, TableItem, Value } from '../model';
-import { format_number, kDegrees, kMillimetres } from '../numbers';
+import { format_number, kDegrees, kMillimetres, unpack } from '../numbers';
 import { flatten } from './quantities';
-import { get_case, get_column, get_motions, get_time, kAll, make_case_choice, make_design_choice, type Moved } from './replay_access';
+import {
+  get_case,
+  get_column,
+  get_motions,
+  get_time,
+  kAll,
+  make_case_choice,
+  make_design_choice,
+  take_column,
+  type Moved,
+} from './replay_access';
 
 interface JointView {
   index: number;
@@ -22,7 +32,10 @@ const kAtLimit = 1 - 1e-4; // of it; torques are packed in 16 bits
 const kStretches = 300; // of the time, the shortest gap between two that is seen
 
 function get_joints(robot: Robot): JointView[] {
-  const names = shorten_all(robot.joints.map((joint) => joint.name), 24);
+  const names = shorten_all(
+    robot.joints.map((joint) => joint.name),
+    24,
+  );
   return robot.joints.map((joint, index) => {
     const slides = joint.kind === 'prismatic';
     return {
@@ -155,7 +168,18 @@ function draw_torques(look: Look, set: ReplaySet, view: View, count: number) {
           const end = get_time(set, view.one.steps - 1);
           limits.forEach((limit) => {
             const style = { color: look.bad, dash: 'dashed' as const, symbol: 'none' };
-            series.push(make_line(look, 0, 'limits', [[0, limit], [end, limit]], { width: 1.2, style }));
+            series.push(
+              make_line(
+                look,
+                0,
+                'limits',
+                [
+                  [0, limit],
+                  [end, limit],
+                ],
+                { width: 1.2, style },
+              ),
+            );
           });
           const stretches = find_saturated(set, effort, limits);
           if (stretches.length > 0) {
@@ -237,10 +261,7 @@ export function make_joint_figures(set: ReplaySet, robot: Robot | undefined): Fi
           ]),
         ),
         flatten(
-          view.joints.map((joint) => [
-            moved ? get_angles(moved, joint, count) : new Float32Array(0),
-            get_targets(view.one, joint, count),
-          ]),
+          view.joints.map((joint) => [moved ? get_angles(moved, joint, count) : new Float32Array(0), get_targets(view.one, joint, count)]),
         ),
       );
     },
@@ -295,7 +316,9 @@ export function make_joint_figures(set: ReplaySet, robot: Robot | undefined): Fi
       return tabulate(
         set,
         view.joints.map((joint) => ({ label: joint.name, unit: joint.effort_unit, numeric: true })),
-        moved ? view.joints.map((joint) => get_column(moved.motion.effort, count, joint.index)) : view.joints.map(() => new Float32Array(0)),
+        moved
+          ? view.joints.map((joint) => get_column(moved.motion.effort, count, joint.index))
+          : view.joints.map(() => new Float32Array(0)),
       );
     },
   };
@@ -303,20 +326,17 @@ export function make_joint_figures(set: ReplaySet, robot: Robot | undefined): Fi
 }
 
 // How often each joint of each design is at its limits.
-export function make_saturation_table(set: ReplaySet, robot: Robot | undefined): TableItem | null {
-  if (robot === undefined || robot.joints.length === 0 || set.cases.length === 0) {
-    return null;
-  }
-  const joints = get_joints(robot);
+function tabulate_saturation(set: ReplaySet, joints: JointView[]): Value[][] {
   const rows: Value[][] = [];
   set.cases.forEach((one) => {
     get_motions(set, one, {}).forEach((moved) => {
+      const all = unpack(moved.motion.effort);
       joints.forEach((joint) => {
         const limits = moved.design.effort_limits[joint.index];
         if (limits === undefined) {
           return;
         }
-        const effort = get_column(moved.motion.effort, joints.length, joint.index);
+        const effort = take_column(all, joints.length, joint.index);
         let low = 0;
         let high = 0;
         for (let i = 0; i < effort.length; ++i) {
@@ -327,25 +347,39 @@ export function make_saturation_table(set: ReplaySet, robot: Robot | undefined):
       });
     });
   });
+  return rows;
+}
+
+export function make_saturation_table(set: ReplaySet, robot: Robot | undefined): TableItem | null {
+  if (robot === undefined || robot.joints.length === 0 || set.cases.length === 0) {
+    return null;
+  }
+  const joints = get_joints(robot);
   const column = (label: string, unit: string) => ({ label, unit, numeric: true });
   const unit = joints.every((joint) => joint.effort_unit === 'N m') ? 'N m' : 'N m, N';
+  let made: DataTable | null = null;
   return {
     kind: 'table',
     id: 'saturation',
     title: 'Torques and their limits',
-    caption: 'The largest torques of each joint in the recorded cases beside its limits, and in which share of the control periods it is at one of them.',
-    table: {
-      columns: [
-        { label: 'case' },
-        { label: 'design' },
-        { label: 'joint' },
-        column('smallest', unit),
-        column('lower limit', unit),
-        column('largest', unit),
-        column('upper limit', unit),
-        column('at a limit', '% of the time'),
-      ],
-      rows,
+    caption:
+      'The largest torques of each joint in the recorded cases beside its limits, and in which share of the control periods it is at one of them.',
+    // Only when it is asked for: every motion has to be unpacked.
+    get table(): DataTable {
+      made = made ?? {
+        columns: [
+          { label: 'case' },
+          { label: 'design' },
+          { label: 'joint' },
+          column('smallest', unit),
+          column('lower limit', unit),
+          column('largest', unit),
+          column('upper limit', unit),
+          column('at a limit', '% of the time'),
+        ],
+        rows: tabulate_saturation(set, joints),
+      };
+      return made;
     },
   };
 }

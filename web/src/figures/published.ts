@@ -31,13 +31,22 @@ export function make_published_figure(data: ReproductionData): Figure | null {
         value: [mm(row.published_error_m), mm(row.mean_m)],
         name: shorten(row.label, 24),
         command: row.command || undefined,
-        note: `${row.label}: published ${format_number(mm(row.published_error_m))} mm (${row.where}), here ${format_number(mm(row.mean_m))} mm over ${row.cases} cases.`,
+        note: `${shorten(row.label)}: published ${format_number(mm(row.published_error_m))} mm (${shorten(row.where)}), here ${format_number(mm(row.mean_m))} mm over ${row.cases} cases.`,
       }));
       const series: Part[] = [
-        make_line(look, 0, 'agreement', [[ends[0], ends[0]], [ends[1], ends[1]]], {
-          width: 1.2,
-          style: { color: look.muted, dash: 'dashed', symbol: 'none' },
-        }),
+        make_line(
+          look,
+          0,
+          'agreement',
+          [
+            [ends[0], ends[0]],
+            [ends[1], ends[1]],
+          ],
+          {
+            width: 1.2,
+            style: { color: look.muted, dash: 'dashed', symbol: 'none' },
+          },
+        ),
         {
           type: 'scatter',
           name: 'published designs',
@@ -53,7 +62,7 @@ export function make_published_figure(data: ReproductionData): Figure | null {
             fontFamily: look.font,
             fontSize: 11,
           },
-          labelLayout: { hideOverlap: true, moveOverlap: 'shiftY' },
+          labelLayout: { hideOverlap: true },
         },
       ];
       return make_plot(
@@ -64,11 +73,7 @@ export function make_published_figure(data: ReproductionData): Figure | null {
       );
     },
     table: () => ({
-      columns: [
-        { label: 'result' },
-        { label: 'published', unit: 'mm', numeric: true },
-        { label: 'here', unit: 'mm', numeric: true },
-      ],
+      columns: [{ label: 'result' }, { label: 'published', unit: 'mm', numeric: true }, { label: 'here', unit: 'mm', numeric: true }],
       rows: rows.map((row): (Value | Cell)[] => [
         { value: row.label, command: row.command || undefined },
         mm(row.published_error_m),

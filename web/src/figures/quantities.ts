@@ -1,4 +1,5 @@
 // Units as people read them: errors in millimetres, angles in degrees.
+import { shorten } from '../charts/names';
 import { kDegrees, kMillimetres } from '../numbers';
 import type { Quantity } from '../data';
 
@@ -9,13 +10,14 @@ export interface Shown {
 }
 
 export function get_shown(quantity: Quantity): Shown {
+  const name = shorten(quantity.name);
   switch (quantity.unit) {
     case 'm':
-      return { name: quantity.name, unit: 'mm', factor: kMillimetres };
+      return { name, unit: 'mm', factor: kMillimetres };
     case 'rad':
-      return { name: quantity.name, unit: '°', factor: kDegrees };
+      return { name, unit: '°', factor: kDegrees };
     default:
-      return { name: quantity.name, unit: quantity.unit, factor: 1 };
+      return { name, unit: shorten(quantity.unit, 20), factor: 1 };
   }
 }
 

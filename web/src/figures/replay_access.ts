@@ -53,7 +53,10 @@ export function get_motions(set: ReplaySet, one: ReplayCase, picked: Picked): Mo
 
 // Every `count`-th number from `offset` on: a column of what is packed by rows.
 export function get_column(packed: Packed, count: number, offset: number): Float32Array {
-  const all = unpack(packed);
+  return take_column(unpack(packed), count, offset);
+}
+
+export function take_column(all: Float32Array, count: number, offset: number): Float32Array {
   const column = new Float32Array(Math.floor(all.length / count));
   for (let i = 0; i < column.length; ++i) {
     column[i] = all[i * count + offset];

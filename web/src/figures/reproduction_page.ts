@@ -1,4 +1,5 @@
 // The page of the thesis repeated: its figures, each beside what it printed.
+import { shorten_all } from '../charts/names';
 import type { DistanceResponse, ReproductionData, SignalCurve } from '../data';
 import type { Cell, Column, Figure, Item, Tab, TableItem, Value } from '../model';
 import { kMillimetres, unpack } from '../numbers';
@@ -93,7 +94,8 @@ function make_runs(data: ReproductionData): TableItem | null {
     kind: 'table',
     id: 'runs',
     title: 'Optimized anew',
-    caption: 'Experiments of which the source gives no design: they were optimized again as it describes, and the winners are shown in its place.',
+    caption:
+      'Experiments of which the source gives no design: they were optimized again as it describes, and the winners are shown in its place.',
     table: {
       columns: [
         { label: 'run' },
@@ -164,12 +166,13 @@ function make_torques(data: ReproductionData): TableItem | null {
 
 function make_momentary_figures(data: ReproductionData): Figure[] {
   const traces: ErrorTrace[] = [];
+  const names = shorten_all(data.momentary.map((entry) => entry.name));
   data.momentary.forEach((entry, style) => {
     const set = data.replays.filter((one) => one.id === entry.replay)[0];
     const one = set ? set.cases.filter((each) => each.id === entry.case)[0] : undefined;
     const motion = one ? one.motions.filter((each) => each.design === entry.design)[0] : undefined;
     if (set && one && motion) {
-      traces.push({ name: entry.name, style, set, one, error_m: unpack(motion.error_m) });
+      traces.push({ name: names[style], style, set, one, error_m: unpack(motion.error_m) });
     }
   });
   if (traces.length === 0) {
@@ -218,7 +221,8 @@ function make_signal_items(data: ReproductionData): Item[] {
           id: 'fig-5.8',
           title: 'The Complex reference signal',
           thesis: 'Fig. 5.8',
-          remark: 'At t_d the target begins to slow down, after 2/5 of the move; at t_m it has arrived, and the error is measured from there.',
+          remark:
+            'At t_d the target begins to slow down, after 2/5 of the move; at t_m it has arrived, and the error is measured from there.',
           marks: true,
         })
       : null,

@@ -26,13 +26,13 @@ export function make_front_figure(front: RunFront, variables: VariableHistory[])
   const on_front = front.points.map((_, i) => i).filter((i) => front.points[i].on_front);
   const name_point = (i: number) =>
     `${shown.map((one, k) => `${one.name} ${format_number(value_of(i, k))} ${one.unit}`.trim()).join(', ')}. ` +
-    front.points[i].x.map((value, k) => `${variables[k] ? variables[k].name : `x${k + 1}`} = ${format_number(value)}`).join(', ');
+    front.points[i].x.map((value, k) => `${variables[k] ? shorten(variables[k].name) : `x${k + 1}`} = ${format_number(value)}`).join(', ');
   return {
     kind: 'figure',
     id: 'front',
     title: 'Front of the objectives',
     caption:
-      `Designs that the run evaluated, by ${front.objectives.map((one) => one.name).join(' and ')}; both better towards the lower left. ` +
+      `Designs that the run evaluated, by ${shown.map((one) => one.name).join(' and ')}; both better towards the lower left. ` +
       `Bold: the ${on_front.length} designs on the front, of which none is better than another in everything` +
       (count === 2 ? '; the line under them bounds what they attain. ' : '. ') +
       (front.winner !== null ? 'Diamond: the winner by the weighted sum. ' : '') +

@@ -19,9 +19,7 @@ function is_there<T>(item: T | null): item is T {
 
 // A tab without anything in it is left out.
 export function keep_filled(tabs: { id: string; title: string; items: (Item | null)[] }[]): Tab[] {
-  return tabs
-    .map((tab) => ({ id: tab.id, title: tab.title, items: tab.items.filter(is_there) }))
-    .filter((tab) => tab.items.length > 0);
+  return tabs.map((tab) => ({ id: tab.id, title: tab.title, items: tab.items.filter(is_there) })).filter((tab) => tab.items.length > 0);
 }
 
 // The same figure for the overview, under a name of its own.

@@ -82,8 +82,9 @@ export function make_signal_figure(signals: Signals, curves: SignalCurve[], part
     thesis: options.thesis,
     height,
     caption:
-      `${parts.map((part) => kParts[part].label).join(' and ')} of the target on its straight line, in a move over `.replace(/^./, (letter) =>
-        letter.toUpperCase(),
+      `${parts.map((part) => kParts[part].label).join(' and ')} of the target on its straight line, in a move over `.replace(
+        /^./,
+        (letter) => letter.toUpperCase(),
       ) +
       `${format_number(signals.distance_m, 3)} m at an average speed of ${format_number(signals.speed_m_per_s, 3)} m/s, ` +
       `and while it rests for ${format_number(signals.rest_s, 2)} s. ` +
@@ -93,7 +94,9 @@ export function make_signal_figure(signals: Signals, curves: SignalCurve[], part
       const grids = make_panels(parts.length, parts.length, height);
       const series = flatten(parts.map((part, i) => draw_curves(look, signals, curves, names, part, i)));
       if (options.marks) {
-        parts.forEach((_, i) => get_marks(signals, curves[0]).forEach((mark) => series.push(make_vertical(look, mark.time_s, mark.name, look.muted, i))));
+        parts.forEach((_, i) =>
+          get_marks(signals, curves[0]).forEach((mark) => series.push(make_vertical(look, mark.time_s, mark.name, look.muted, i))),
+        );
       }
       return make_curve_plot(
         look,
@@ -104,7 +107,10 @@ export function make_signal_figure(signals: Signals, curves: SignalCurve[], part
         series,
         {
           grid: grids,
-          title: parts.length > 1 ? parts.map((part, i) => make_panel_title(look, grids[i], `${kParts[part].label} (${kParts[part].unit})`)) : undefined,
+          title:
+            parts.length > 1
+              ? parts.map((part, i) => make_panel_title(look, grids[i], `${kParts[part].label} (${kParts[part].unit})`))
+              : undefined,
         },
       );
     },
@@ -140,7 +146,10 @@ export function make_signal_figures(signals: Signals): Figure[] {
   return [
     one('distance', 'The tip should be there at that time.'),
     one('speed', 'The same distance in the same time takes a higher peak the smoother the signal.'),
-    one('acceleration', 'Jumps excite the arm: the fewer and the smaller, the smoother the motion. A jump of the speed has no acceleration.'),
+    one(
+      'acceleration',
+      'Jumps excite the arm: the fewer and the smaller, the smoother the motion. A jump of the speed has no acceleration.',
+    ),
   ];
 }
 

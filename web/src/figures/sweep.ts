@@ -1,7 +1,7 @@
 // The error against a parameter of the task (Fig. 6.16 of the thesis: the nominal average speed).
 import { get_series_style } from '../charts/look';
 import { make_number_axis, make_plot, make_vertical } from '../charts/marks';
-import { shorten_all } from '../charts/names';
+import { shorten, shorten_all } from '../charts/names';
 import { make_error_bars, make_line, type Part, type Point } from '../charts/parts';
 import type { Sweep } from '../data';
 import type { Cell, Column, Figure } from '../model';
@@ -9,6 +9,7 @@ import { format_number, kMillimetres } from '../numbers';
 import { are_positive, count_of, flatten, is_number, name_axis, times } from './quantities';
 
 export function make_sweep_figure(sweep: Sweep, id = 'speed-sweep', thesis = ''): Figure {
+  const shown_name = shorten(sweep.quantity.name);
   const names = shorten_all(sweep.series.map((one) => one.name));
   const some_fail = sweep.series.some((one) => one.failures.some((count) => count > 0));
   const values = flatten(sweep.series.map((one) => one.mean_m)).map((value) => times(value, kMillimetres));
@@ -16,7 +17,7 @@ export function make_sweep_figure(sweep: Sweep, id = 'speed-sweep', thesis = '')
   return {
     kind: 'figure',
     id,
-    title: `Error against ${sweep.quantity.name}`,
+    title: `Error against ${shown_name}`,
     caption:
       `Average positional error over ${count_of(sweep.cases, 'test case')}, simulated by ${sweep.engine}, with ${sweep.parameter} set to each value; ` +
       `bars: standard error of the mean. ` +
@@ -30,15 +31,13 @@ export function make_sweep_figure(sweep: Sweep, id = 'speed-sweep', thesis = '')
       const series: Part[] = [];
       sweep.series.forEach((one, s) => {
         const style = get_series_style(look, s);
-        const points = sweep.values.map(
-          (x, i): Point => ({
-            value: [x, times(one.mean_m[i], kMillimetres)],
-            command: sweep.command || undefined,
-            note:
-              `${sweep.parameter} = ${format_number(x)}: mean ${format_number(times(one.mean_m[i], kMillimetres))} mm, ` +
-              `median ${format_number(times(one.median_m[i], kMillimetres))} mm, ${count_of(one.failures[i] ?? 0, 'failure')}.`,
-          }),
-        );
+        const points = sweep.values.map((x, i): Point => ({
+          value: [x, times(one.mean_m[i], kMillimetres)],
+          command: sweep.command || undefined,
+          note:
+            `${sweep.parameter} = ${format_number(x)}: mean ${format_number(times(one.mean_m[i], kMillimetres))} mm, ` +
+            `median ${format_number(times(one.median_m[i], kMillimetres))} mm, ${count_of(one.failures[i] ?? 0, 'failure')}.`,
+        }));
         series.push(make_line(look, s, names[s], points, { symbols: true }));
         const failed = points.filter((_, i) => one.failures[i] > 0);
         if (failed.length > 0) {
@@ -67,7 +66,7 @@ export function make_sweep_figure(sweep: Sweep, id = 'speed-sweep', thesis = '')
       }
       return make_plot(
         look,
-        make_number_axis(look, 'x', name_axis(sweep.quantity.name, sweep.quantity.unit)),
+        make_number_axis(look, 'x', name_axis(shown_name, shorten(sweep.quantity.unit, 20))),
         make_number_axis(look, 'y', 'average positional error (mm)', { log, values }),
         series,
       );

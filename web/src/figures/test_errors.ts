@@ -57,7 +57,9 @@ export function make_errors_figure(test: TestErrors): Figure | null {
   }
   const names = shorten_all(test.designs.map((design) => design.name));
   const missing = test.designs.map((design) => design.errors.filter((error) => !is_number(error)).length);
-  const labels = names.map((name, i) => (test.designs[i].failures.length > 0 ? `${name}, ${test.designs[i].failures.length} failed` : name));
+  const labels = names.map((name, i) =>
+    test.designs[i].failures.length > 0 ? `${name}, ${test.designs[i].failures.length} failed` : name,
+  );
   const { edges, counts } = histogram;
   const limit = test.failure_error === null ? null : test.failure_error * shown.factor;
   // A limit far beyond all errors would squeeze them.
@@ -65,7 +67,7 @@ export function make_errors_figure(test: TestErrors): Figure | null {
   return {
     kind: 'figure',
     id: 'test-errors',
-    title: `${test.quantity.name.replace(/^./, (letter) => letter.toUpperCase())} of the test cases`,
+    title: `${shown.name.replace(/^./, (letter) => letter.toUpperCase())} of the test cases`,
     caption:
       `In how many of the ${count_of(test.designs[0].errors.length, 'case')} of ${test.set}, simulated by ${test.engine}, the error is that large; the bins are of equal width` +
       `${log ? ' on the logarithmic axis' : ''}. ` +
@@ -123,21 +125,32 @@ export function make_failures_table(test: TestErrors): TableItem | null {
   const rows: (Value | Cell)[][] = [];
   test.designs.forEach((design) => {
     design.failures.forEach((failure) => {
-      const made: Cell = { value: `${test.set}, case ${failure.case}`, command: failure.command || undefined, note: failure.reason || undefined };
+      const made: Cell = {
+        value: `${test.set}, case ${failure.case}`,
+        command: failure.command || undefined,
+        note: failure.reason || undefined,
+      };
       rows.push([design.name, made, is_number(failure.error) ? failure.error * shown.factor : null, failure.reason, failure.command]);
     });
   });
   if (rows.length === 0) {
     return null;
   }
-  const limit = test.failure_error === null ? '' : ` with an error above ${format_number(test.failure_error * shown.factor, 3)} ${shown.unit} or`;
+  const limit =
+    test.failure_error === null ? '' : ` with an error above ${format_number(test.failure_error * shown.factor, 3)} ${shown.unit} or`;
   return {
     kind: 'table',
     id: 'failures',
     title: 'Failed test cases',
     caption: `Cases${limit} without any number, each with the command that simulates it again.`,
     table: {
-      columns: [{ label: 'design' }, { label: 'case' }, { label: 'error', unit: shown.unit, numeric: true }, { label: 'reason' }, { label: 'command' }],
+      columns: [
+        { label: 'design' },
+        { label: 'case' },
+        { label: 'error', unit: shown.unit, numeric: true },
+        { label: 'reason' },
+        { label: 'command' },
+      ],
       rows,
     },
   };

@@ -18,26 +18,24 @@ export function name_progress(data: RunData): string {
 
 // The best of a generation or block is that of its cases only; what it is worth is seen on others.
 export function make_fitness_figure(data: RunData, id = 'fitness'): Figure {
-  const { training, quantity } = data;
+  const { training } = data;
   const { incumbents } = training;
-  const shown = get_shown(quantity);
+  const shown = get_shown(data.quantity);
   const unit = name_progress(data);
   const of_it = training.unit === 'generation' ? 'the generation' : 'the block of evaluations';
   return {
     kind: 'figure',
     id,
-    title: `Training: ${quantity.name}`,
+    title: `Training: ${shown.name}`,
     caption:
-      `Best and average of the ${quantity.name} in ${of_it}, against ${unit === 'generation' ? 'the generation' : 'the number of evaluations'}, ` +
+      `Best and average of the ${shown.name} in ${of_it}, against ${unit === 'generation' ? 'the generation' : 'the number of evaluations'}, ` +
       `on the training cases (schedule ${training.schedule}); smaller is better. ` +
       (incumbents.index.length > 0
         ? `Symbols: the best designs known on the way, on the ${count_of(incumbents.test_cases, 'case')} of ${incumbents.test_set}, ` +
           `simulated by ${incumbents.engine}; these count. `
         : '') +
       (data.arm ? `The fitness of the thesis is the negative of the error, and so grows where this falls. ` : '') +
-      (training.schedule.indexOf('fresh') === 0
-        ? 'Each generation meets new cases: the curves jump with how hard these are. '
-        : '') +
+      (training.schedule.indexOf('fresh') === 0 ? 'Each generation meets new cases: the curves jump with how hard these are. ' : '') +
       `Where the average is far above the best, many of the designs fail.`,
     width: 'full',
     height: 380,

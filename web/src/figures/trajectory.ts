@@ -129,22 +129,16 @@ export function make_case_figure(set: ReplaySet, id = 'test-case', thesis = ''):
           { nameGap: which === 0 ? 26 : 36, splitNumber: 4, axisLabel: { ...label_of(look), showMinLabel: false, showMaxLabel: false } },
         );
       };
-      return make_plot(
-        look,
-        [axis(0, 0), axis(1, 0)],
-        [axis(0, 1), axis(1, 1)],
-        [...draw_view(look, one, 0), ...draw_view(look, one, 1)],
-        {
-          grid: kLefts.map((left) => ({ left, top: kTop, width: kSide, height: kSide })),
-          title: kViews.map((view, i) => ({
-            text: view.name,
-            left: kLefts[i],
-            top: kTop,
-            padding: [-15, 0, 0, 2],
-            textStyle: { color: look.text, fontFamily: look.font, fontSize: 12, fontWeight: 'normal' },
-          })),
-        },
-      );
+      return make_plot(look, [axis(0, 0), axis(1, 0)], [axis(0, 1), axis(1, 1)], [...draw_view(look, one, 0), ...draw_view(look, one, 1)], {
+        grid: kLefts.map((left) => ({ left, top: kTop, width: kSide, height: kSide })),
+        title: kViews.map((view, i) => ({
+          text: view.name,
+          left: kLefts[i],
+          top: kTop,
+          padding: [-15, 0, 0, 2],
+          textStyle: { color: look.text, fontFamily: look.font, fontSize: 12, fontWeight: 'normal' },
+        })),
+      });
     },
     table: (picked) => {
       const one = get_case(shown, picked);

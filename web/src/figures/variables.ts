@@ -139,14 +139,14 @@ export function make_variables_figure(data: RunData): Figure | null {
       const grids = make_panels(count, Math.min(kColumns, count), height);
       return make_curve_plot(
         look,
-        group.members.map((_, i) =>
-          make_number_axis(look, 'x', i + kColumns >= count ? unit : '', { index: i, max: 'dataMax' }),
-        ),
-        group.members.map((variable, i) => make_number_axis(look, 'y', '', {
+        group.members.map((_, i) => make_number_axis(look, 'x', i + kColumns >= count ? unit : '', { index: i, max: 'dataMax' })),
+        group.members.map((variable, i) =>
+          make_number_axis(look, 'y', '', {
             index: i,
             log: get_log_sign(variable) !== 0,
             values: [variable.lower, variable.upper].map(Math.abs),
-          })),
+          }),
+        ),
         flatten(group.members.map((variable, i) => draw_panel(look, data, variable, i))),
         { grid: grids, title: group.members.map((variable, i) => make_panel_title(look, grids[i], name_variable(variable))) },
       );
@@ -167,9 +167,7 @@ export function make_variables_figure(data: RunData): Figure | null {
         ],
         rows: data.training.index.map((index, i) => [
           index as Value,
-          ...flatten(
-            members.map((one) => [one.best[i], one.q1[i], one.median[i], one.q3[i]].map((value): Value => value ?? null)),
-          ),
+          ...flatten(members.map((one) => [one.best[i], one.q1[i], one.median[i], one.q3[i]].map((value): Value => value ?? null))),
         ]),
       };
     },

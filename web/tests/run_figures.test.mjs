@@ -1,0 +1,266 @@
+// The figures of a run and of the repeated thesis, on made-up data.
+import assert from 'node:assert/strict';
+import test from 'node:test';
+import { load } from './load.mjs';
+
+const {
+  draw_svg,
+  find_saturated,
+  get_initial_picks,
+  group_variables,
+  kDark,
+  kLight,
+  make_histogram,
+  make_page,
+  make_replay_set,
+  make_reproduction_data,
+  make_run_data,
+} = await load(`
+  export { draw_svg, get_initial_picks } from './src/charts/svg';
+  export { kDark, kLight } from './src/charts/look';
+  export { make_page } from './src/figures/page';
+  export { find_saturated } from './src/figures/joints';
+  export { make_histogram } from './src/figures/test_errors';
+  export { group_variables } from './src/figures/variables';
+  export { make_replay_set, make_reproduction_data, make_run_data } from './tests/fixtures/pages';
+`);
+
+const get_items = (data) => make_page(data).tabs.flatMap((tab) => tab.items);
+const get_figures = (data) => get_items(data).filter((item) => item.kind === 'figure');
+const find = (data, id) => {
+  const item = get_items(data).find((one) => one.id === id);
+  assert.ok(item, `there is no ${id}`);
+  return item;
+};
+const get_value = (cell) => (cell !== null && typeof cell === 'object' ? cell.value : cell);
+
+// Every choice of every figure, one at a time.
+function* all_picks(figure) {
+  const initial = get_initial_picks(figure);
+  yield initial;
+  for (const choice of figure.choices ?? []) {
+    assert.ok(
+      choice.options.some((option) => option.value === choice.initial),
+      `${figure.id}: ${choice.id}`,
+    );
+    for (const option of choice.options.filter((one) => one.value !== choice.initial)) {
+      yield { ...initial, [choice.id]: option.value };
+    }
+  }
+}
+
+function check_svg(svg, name) {
+  assert.match(svg, /^<svg/, name);
+  assert.doesNotMatch(svg, /NaN|undefined|Infinity/, name);
+  // Quotes within an attribute, and characters that XML does not have, break a file of its own.
+  assert.doesNotMatch(svg.replace(/[\w:-]+="[^"<]*"/g, ''), /="/, `${name} is not well-formed`);
+  // eslint-disable-next-line no-control-regex
+  assert.doesNotMatch(svg, /[\u0000-\u0008\u000b\u000c\u000e-\u001f]/, name);
+}
+
+function check_table(table, name) {
+  assert.ok(table.columns.length > 0, name);
+  for (const row of table.rows) {
+    assert.equal(row.length, table.columns.length, name);
+    row.map(get_value).forEach((value, i) => {
+      assert.ok(value === null || typeof value === 'string' || Number.isFinite(value), `${name}: ${value}`);
+      if (table.columns[i].numeric) {
+        assert.notEqual(typeof value, 'string', `${name}, column ${table.columns[i].label}: ${value}`);
+      }
+    });
+  }
+}
+
+const kPages = { run: make_run_data, reproduction: make_reproduction_data };
+
+for (const [kind, make_data] of Object.entries(kPages)) {
+  test(`${kind}: every figure draws in both looks and with all choices, and has its numbers`, () => {
+    for (const figure of get_figures(make_data())) {
+      for (const picked of all_picks(figure)) {
+        const name = `${figure.id} ${JSON.stringify(picked)}`;
+        check_svg(draw_svg(figure, kLight, picked, 640, 400), name);
+        const table = figure.table(picked);
+        check_table(table, name);
+        assert.ok(table.rows.length > 0, name);
+      }
+      check_svg(draw_svg(figure, kDark, get_initial_picks(figure), 640, 400), figure.id);
+      assert.match(figure.caption, /^[^a-z].*\.$/s, `${figure.id}: whole sentences`);
+    }
+  });
+
+  test(`${kind}: identifiers are unique and all tables whole`, () => {
+    const items = get_items(make_data());
+    const ids = items.map((item) => item.id);
+    assert.equal(new Set(ids).size, ids.length, ids.join(' '));
+    items.filter((item) => item.kind === 'table').forEach((item) => check_table(item.table, item.id));
+  });
+
+  test(`${kind}: hostile names are drawn as text only`, () => {
+    const hostile = `</script><img src=x onerror="alert(1)">'"&\u202e\u0000 ${'long '.repeat(800)}`;
+    const rename = (value, key) => {
+      if (Array.isArray(value)) {
+        return value.map((one) => rename(one, ''));
+      }
+      if (value !== null && typeof value === 'object') {
+        return Object.fromEntries(Object.entries(value).map(([name, one]) => [name, rename(one, name)]));
+      }
+      return ['name', 'label', 'title', 'unit', 'remark', 'reason', 'test_set', 'engine', 'schedule', 'where', 'optimizer'].includes(key) &&
+        typeof value === 'string' &&
+        !(key === 'unit' && value === 'generation')
+        ? hostile + value
+        : value;
+    };
+    const data = rename(make_data(), '');
+    for (const figure of get_figures(data)) {
+      const svg = draw_svg(figure, kLight, get_initial_picks(figure), 640, 400);
+      assert.doesNotMatch(svg, /<img|<\/script/i, figure.id);
+      assert.ok(!svg.includes('long '.repeat(20)), `${figure.id}: names are cut`);
+      check_svg(svg, figure.id);
+      check_table(figure.table(get_initial_picks(figure)), figure.id);
+    }
+  });
+}
+
+test('a run has all its figures and tables under their names', () => {
+  const ids = get_items(make_run_data()).map((item) => item.id);
+  const wanted =
+    'facts results-table fitness variables front distance-response speed-sweep test-errors failures test-case signals-distance ' +
+    'signals-speed signals-acceleration speed-reduction momentary-error joint-angles joint-errors joint-torques saturation design-table replay';
+  wanted.split(' ').forEach((id) => assert.ok(ids.includes(id), id));
+});
+
+test('the repeated thesis has a counterpart of every figure', () => {
+  const items = get_items(make_reproduction_data());
+  const numbers = [
+    ...['5.5', '5.6', '5.7', '5.8', '5.9', '5.10', '5.11', '5.12'],
+    ...['6.4', '6.5', '6.6', '6.7', '6.8', '6.9', '6.10', '6.11', '6.12', '6.13', '6.15', '6.16'],
+  ];
+  numbers.forEach((number) => {
+    const item = items.find((one) => one.id === `fig-${number}`);
+    assert.equal(item?.thesis, `Fig. ${number}`);
+  });
+  assert.equal(items.find((item) => item.id === 'table-6.4').thesis, 'Table 6.4');
+});
+
+test('what is missing is left out', () => {
+  const data = make_run_data();
+  const check = (one) => {
+    for (const figure of get_figures(one)) {
+      check_svg(draw_svg(figure, kLight, get_initial_picks(figure), 640, 400), figure.id);
+      check_table(figure.table(get_initial_picks(figure)), figure.id);
+    }
+    return get_items(one).map((item) => item.id);
+  };
+  assert.ok(!check({ ...data, test: null }).includes('test-errors'));
+  assert.ok(!check({ ...data, front: null }).includes('front'));
+  assert.ok(!check({ ...data, arm: { ...data.arm, sweep: null } }).includes('speed-sweep'));
+  assert.ok(!check({ ...data, replays: [] }).includes('replay'));
+  const { training } = data;
+  const empty = { index: [], cases: [], best: [], mean: [], worst: [], failed: [] };
+  const no_incumbents = { ...training.incumbents, index: [], cases: [], training: [], test: [] };
+  const ids = check({
+    ...data,
+    facts: [],
+    arm: null,
+    test: null,
+    front: null,
+    replays: [],
+    variables: [],
+    training: { ...training, ...empty, incumbents: no_incumbents },
+  });
+  assert.deepEqual(ids, []);
+  assert.ok(check({ ...data, training: { ...training, incumbents: no_incumbents } }).includes('fitness'));
+  // A generation of which nothing had a number.
+  const nothing = training.best.map(() => null);
+  check({ ...data, training: { ...training, best: nothing, mean: nothing, worst: nothing } });
+  const failed = { ...data.test, designs: [{ ...data.test.designs[0], errors: [null, null] }] };
+  assert.ok(!check({ ...data, test: failed }).includes('test-errors'));
+});
+
+test('a repetition without parts leaves them out', () => {
+  const data = make_reproduction_data();
+  const bare = { ...data, facts: [], rows: [], runs: [], responses: [], replays: [], momentary: [], sweep: { ...data.sweep, series: [] } };
+  const ids = get_items(bare).map((item) => item.id);
+  assert.deepEqual(ids, ['fig-5.5', 'fig-5.6', 'fig-5.7', 'fig-5.8', 'fig-5.10']);
+});
+
+test('a run on a function has only what a function has', () => {
+  const data = make_run_data();
+  const variables = Array.from({ length: 20 }, (_, i) => ({
+    ...data.variables[0],
+    name: `x${i + 1}`,
+    unit: '',
+    lower: -5,
+    upper: 5,
+    start: 1,
+    logarithmic: false,
+  }));
+  const groups = group_variables(variables);
+  assert.deepEqual(
+    groups.map((group) => group.members.length),
+    [6, 6, 6, 2],
+  );
+  const page = {
+    ...data,
+    arm: null,
+    replays: [],
+    front: null,
+    variables,
+    quantity: { name: 'log10 of the gap', unit: '' },
+    logarithmic: true,
+  };
+  for (const figure of get_figures(page)) {
+    check_svg(draw_svg(figure, kLight, get_initial_picks(figure), 640, 400), figure.id);
+  }
+});
+
+test('points name what made them', () => {
+  const figure = find(make_run_data(), 'distance-response');
+  const option = figure.draw(kLight, get_initial_picks(figure));
+  const point = option.series.find((one) => one.type === 'line').data[3];
+  assert.equal(point.command, 'armwright evaluate table-a5');
+  assert.match(point.note, /Move 4, .* over 500 cases\./);
+});
+
+test('published means stand beside ours', () => {
+  const figure = find(make_reproduction_data(), 'fig-6.4');
+  const svg = draw_svg(figure, kLight, get_initial_picks(figure), 640, 400);
+  assert.match(svg, /Ramp: 5\.80 mm \(published 12\.6\)/);
+});
+
+test('the cursor is shared only where the clock is the case’s', () => {
+  const figure = find(make_run_data(), 'momentary-error');
+  assert.equal(figure.time.case({ ...get_initial_picks(figure) }), '');
+  assert.equal(figure.time.case({ ...get_initial_picks(figure), classes: 'all', case: 'train/1:1' }), 'train/1:1');
+});
+
+test('a histogram counts every number once, the largest too', () => {
+  const values = [1, 2, 2.5, 10, 100, 1000, null];
+  for (const log of [true, false]) {
+    const histogram = make_histogram([values, [5]], log);
+    const sum = (counts) => counts.reduce((a, b) => a + b, 0);
+    assert.deepEqual(histogram.counts.map(sum), [6, 1]);
+    assert.equal(histogram.edges.length, histogram.counts[0].length + 1);
+  }
+  assert.equal(make_histogram([[null]], true), null);
+  assert.equal(
+    make_histogram([[3, 3]], true).counts[0].reduce((a, b) => a + b, 0),
+    2,
+  );
+});
+
+test('stretches at a limit begin and end where the torque does', () => {
+  const set = make_replay_set('set'); // a control period of 10 ms
+  const effort = new Float32Array(1000);
+  effort.fill(700, 100, 150);
+  effort.fill(-900, 500, 501);
+  const found = find_saturated(set, effort, [-900, 700]);
+  assert.deepEqual(
+    found.map((one) => one.map((time) => Math.round(time * 1000))),
+    [
+      [1000, 1500],
+      [5000, 5010],
+    ],
+  );
+  assert.deepEqual(find_saturated(set, effort, [-1000, 800]), []);
+});
