@@ -56,7 +56,8 @@ export interface Scope {
 export function make_scope(data: StudyData, problems: StudyProblem[], suffix: string): Scope {
   const names = shorten_all(data.optimizers.map((one) => one.label));
   const styles = names.map((_, i) => i);
-  const ranks = data.overall ? data.overall.mean_ranks : (data.problems[0]?.results ?? []).map((one) => one.mean_rank ?? Infinity);
+  const order = data.problems[0]?.order ?? [];
+  const ranks = data.overall ? data.overall.mean_ranks : names.map((_, i) => (order.indexOf(i) < 0 ? names.length : order.indexOf(i)));
   if (names.length > kMostAtFirst && ranks.length === names.length) {
     // The best ones get the colours that are easiest to tell apart.
     sort_by(styles, (i) => ranks[i]).forEach((optimizer, place) => (styles[optimizer] = place));

@@ -76,7 +76,7 @@ export function make_ranking_table(scope: Scope): TableItem {
       problem.friedman
         ? (scope.problems.length > 1 ? problem.label.slice(0, 40) + ': ' : '') +
           'F = ' +
-          problem.friedman.statistic.toFixed(1) +
+          (problem.friedman.statistic === null ? 'infinite' : problem.friedman.statistic.toFixed(1)) +
           ', p = ' +
           problem.friedman.p.toPrecision(2)
         : '',

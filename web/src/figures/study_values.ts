@@ -183,6 +183,9 @@ export function make_values(scope: Scope): Figure {
     caption:
       "Each point is a run: its winner's value on the test set, which no optimizer has seen. Boxes are quartiles with the median, whiskers reach to the best and the worst run; the best median is on top. " +
       'A run whose winner fails on a test case or violates a constraint has no value; it counts as the worst and stands beyond the axis. ' +
+      (scope.problems.some((problem) => problem.has_front)
+        ? "Of several objectives the value is the share of the hypervolume that a run's front misses; it depends on who takes part. "
+        : '') +
       'Overlapping boxes do not mean equal optimizers: runs are paired by replicate, and the tests use the pairs. ' +
       describe_size(scope),
     width: scope.names.length > 16 ? 'full' : 'half',
