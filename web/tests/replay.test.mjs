@@ -67,13 +67,13 @@ test('times that are sums of periods are whole moments', () => {
 
 test('steps from point to point stop at each of them once', () => {
   const forward = [];
-  for (let moment = 0; moment < 100; ) {
+  for (let moment = 0; moment < 100;) {
     moment = replay.find_next_point(segments, moment, 100);
     forward.push(moment);
   }
   assert.deepEqual(forward, [30, 80, 100]);
   const back = [];
-  for (let moment = 95; moment > 0; ) {
+  for (let moment = 95; moment > 0;) {
     moment = replay.find_previous_point(segments, moment);
     back.push(moment);
   }
@@ -126,20 +126,49 @@ test('a motion that broke off has no error afterwards and says why', () => {
   const { robot, postures } = robots[0];
   const start_q = postures[0].q;
   const motion = {
-    design: 'base', status: 'diverged', reason: 'the tip is 2 m off', steps: 2, mean_error_m: null, point_error_m: [],
-    q: pack([...postures[1].q, ...postures[2].q]), effort: pack([]), error_m: pack([0.25, 0.5]),
+    design: 'base',
+    status: 'diverged',
+    reason: 'the tip is 2 m off',
+    steps: 2,
+    mean_error_m: null,
+    point_error_m: [],
+    q: pack([...postures[1].q, ...postures[2].q]),
+    effort: pack([]),
+    error_m: pack([0.25, 0.5]),
   };
   const tip = postures[0].tip;
   const one_case = {
-    id: 'test:1', label: 'test, case 1', set: 'test', number: 1, points_m: [[tip[0], tip[1], tip[2] + 0.125], [1, 0, 1]],
-    segments: [{ first_step: 0, steps: 4, window_start: 2, distance_m: 1, duration_s: 0.02 }], steps: 4,
-    target_m: pack([1, 0, 1, 1, 0, 2, 1, 0, 3, 1, 0, 4]), target_q: pack([]), start_q, motions: [motion],
+    id: 'test:1',
+    label: 'test, case 1',
+    set: 'test',
+    number: 1,
+    points_m: [
+      [tip[0], tip[1], tip[2] + 0.125],
+      [1, 0, 1],
+    ],
+    segments: [{ first_step: 0, steps: 4, window_start: 2, distance_m: 1, duration_s: 0.02 }],
+    steps: 4,
+    target_m: pack([1, 0, 1, 1, 0, 2, 1, 0, 3, 1, 0, 4]),
+    target_q: pack([]),
+    start_q,
+    motions: [motion],
   };
-  const set = { id: 's', title: 's', robot: 0, task: { control_period_s: 0.01 }, designs: [{ id: 'base', name: 'base controllers' }], cases: [one_case] };
+  const set = {
+    id: 's',
+    title: 's',
+    robot: 0,
+    task: { control_period_s: 0.01 },
+    designs: [{ id: 'base', name: 'base controllers' }],
+    cases: [one_case],
+  };
   const scenario = replay.make_scenario(set, one_case, robot);
   const [track] = scenario.tracks;
   assert.equal(track.name, 'base controllers');
-  assert_near([0, 1, 2].map((moment) => replay.find_error(track, moment)), [0.125, 0.25, 0.5], 1e-7);
+  assert_near(
+    [0, 1, 2].map((moment) => replay.find_error(track, moment)),
+    [0.125, 0.25, 0.5],
+    1e-7,
+  );
   assert.equal(replay.find_error(track, 3), null);
   assert_near(Array.from(track.tip_m.subarray(6, 9)), postures[2].tip, 1e-5);
   assert_near(replay.find_q(scenario, track, 4), postures[2].q, 1e-6);

@@ -25,11 +25,10 @@ export function make_button(label: string, on_click: () => void, attributes: Rec
 }
 
 export function make_select(
-  label: string,
   options: { value: string; label: string }[],
   initial: string,
   on_change: (value: string) => void,
-): HTMLLabelElement {
+): HTMLSelectElement {
   const select = make('select');
   for (const option of options) {
     const element = make('option', { value: option.value }, option.label);
@@ -37,5 +36,5 @@ export function make_select(
     select.append(element);
   }
   select.addEventListener('change', () => on_change(select.value));
-  return make('label', { class: 'choice' }, make('span', {}, label), select);
+  return select;
 }

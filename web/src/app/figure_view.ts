@@ -40,7 +40,10 @@ function describe_point(hovered: Hovered | Hovered[], columns: Column[]): HTMLEl
       .slice(0, Math.max(2, columns.length))
       .map((value) => (typeof value === 'number' ? format_number(value) : value));
     const { note, command } = get_provenance(one.data);
-    box.append(make('strong', {}, one.seriesName ?? one.name ?? ''), make('div', {}, note ?? numbers.join(', ')));
+    if (!note) {
+      box.append(make('strong', {}, one.seriesName ?? one.name ?? ''));
+    }
+    box.append(make('div', {}, note ?? numbers.join(', ')));
     if (command) {
       box.append(make('div', { class: 'tip-hint' }, 'Choose the point for the command that reproduces it.'));
     }
@@ -105,6 +108,23 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
     }
   }
 
+  // Another case in the replay is another case here, where the figure has that choice.
+  function follow_clock(): void {
+    const time = figure.time;
+    if (time !== undefined && clock.replay === time.replay && clock.case_id !== time.case(picked)) {
+      for (const choice of figure.choices ?? []) {
+        const option = choice.options.find((one) => time.case({ ...picked, [choice.id]: one.value }) === clock.case_id);
+        if (option !== undefined) {
+          picked[choice.id] = option.value;
+          selects[choice.id].value = option.value;
+          draw(true);
+          break;
+        }
+      }
+    }
+    move_cursor();
+  }
+
   function show_details(note: string | undefined, command: string | undefined): void {
     details.replaceChildren();
     if (note || command) {
@@ -132,14 +152,18 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
   }
 
   const choices = make('div', { class: 'choices' });
+  const selects: Record<string, HTMLSelectElement> = {};
   for (const choice of figure.choices ?? []) {
-    choices.append(
-      make_select(choice.label, choice.options, choice.initial, (value) => {
-        picked[choice.id] = value;
-        show_details(undefined, undefined);
-        draw(false);
-      }),
-    );
+    const select = make_select(choice.options, choice.initial, (value) => {
+      picked[choice.id] = value;
+      show_details(undefined, undefined);
+      draw(false);
+      if (figure.time !== undefined && figure.time.case(picked) !== clock.case_id) {
+        clock.set(figure.time.replay, figure.time.case(picked), 0);
+      }
+    });
+    selects[choice.id] = select;
+    choices.append(make('label', { class: 'choice' }, make('span', {}, choice.label), select));
   }
   const buttons = make(
     'div',
@@ -180,7 +204,7 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
     move_cursor();
   });
   observer.observe(plot);
-  const stop_listening = clock.listen(move_cursor);
+  const stop_listening = clock.listen(follow_clock);
 
   return {
     element,

@@ -5,7 +5,10 @@ const kInvisible = /[\u0000-\u001f\u007f-\u009f\u200b-\u200f\u2028-\u202e\u2060-
 
 // At most `length` characters, the last an ellipsis where something was cut off.
 export function shorten(name: string, length = 40): string {
-  const clean = name.slice(0, 4 * length).replace(kInvisible, ' ').trim();
+  const clean = name
+    .slice(0, 4 * length)
+    .replace(kInvisible, ' ')
+    .trim();
   if (clean.length <= length) {
     return clean;
   }

@@ -40,10 +40,10 @@ export function make_run_tabs(data: RunData): Tab[] {
       id: 'overview',
       title: 'Overview',
       items: [
-        data.facts.length > 0 ? { kind: 'facts', id: 'facts', title: 'About', facts: data.facts } : null,
         arm === null ? null : make_results_table(data, arm),
         fitness === null ? null : make_half(fitness, 'overview-fitness'),
         response === null ? null : make_half(response, 'overview-response'),
+        data.facts.length > 0 ? { kind: 'facts', id: 'facts', title: 'About', facts: data.facts } : null,
       ],
     },
     {
@@ -65,15 +65,13 @@ export function make_run_tabs(data: RunData): Tab[] {
       ],
     },
     {
-      id: 'time',
-      title: 'In time',
-      items: set ? [make_momentary_figure(set), ...make_joint_figures(set, robot), make_saturation_table(set, robot)] : [],
+      id: 'motion',
+      title: 'Motion',
+      items: [
+        data.replays.length > 0 ? { kind: 'replay', id: 'replay', title: 'Replay', sets: data.replays } : null,
+        ...(set ? [...make_joint_figures(set, robot), make_momentary_figure(set), make_saturation_table(set, robot)] : []),
+      ],
     },
     { id: 'design', title: 'Design', items: [arm === null ? null : make_design_table(arm)] },
-    {
-      id: 'replay',
-      title: 'Replay',
-      items: data.replays.length > 0 ? [{ kind: 'replay', id: 'replay', title: 'Replay', sets: data.replays }] : [],
-    },
   ]);
 }

@@ -15,8 +15,7 @@ export function multiply(a: Frame, b: Frame): Frame {
     const y = a[4 * row + 1];
     const z = a[4 * row + 2];
     for (let column = 0; column < 4; ++column) {
-      product[4 * row + column] =
-        x * b[column] + y * b[4 + column] + z * b[8 + column] + (column === 3 ? a[4 * row + 3] : 0);
+      product[4 * row + column] = x * b[column] + y * b[4 + column] + z * b[8 + column] + (column === 3 ? a[4 * row + 3] : 0);
     }
   }
   return product;
@@ -26,9 +25,18 @@ export function make_frame(pose: Pose): Frame {
   const [x, y, z, w] = pose.quaternion;
   const [px, py, pz] = pose.position;
   return [
-    1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), px,
-    2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w), py,
-    2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y), pz,
+    1 - 2 * (y * y + z * z),
+    2 * (x * y - z * w),
+    2 * (x * z + y * w),
+    px,
+    2 * (x * y + z * w),
+    1 - 2 * (x * x + z * z),
+    2 * (y * z - x * w),
+    py,
+    2 * (x * z - y * w),
+    2 * (y * z + x * w),
+    1 - 2 * (x * x + y * y),
+    pz,
   ];
 }
 

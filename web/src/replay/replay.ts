@@ -91,7 +91,15 @@ class Replay implements ReplayView {
     this.stage = make_stage(() => this.schedule());
     this.strip = new Strip((moment) => this.seek(moment));
     this.state = {
-      set: '', case: '', design: '', ghost: '', time_s: 0, step: 0, playing: false, frames: 0, last_frame_ms: 0,
+      set: '',
+      case: '',
+      design: '',
+      ghost: '',
+      time_s: 0,
+      step: 0,
+      playing: false,
+      frames: 0,
+      last_frame_ms: 0,
       graphics: this.stage instanceof Stage3d ? 'webgl' : 'lines',
     };
     this.build();
@@ -136,7 +144,10 @@ class Replay implements ReplayView {
   }
 
   private build(): void {
-    this.speed_picker.set(kSpeeds.map((value) => ({ value, label: `${value} ×` })), '1');
+    this.speed_picker.set(
+      kSpeeds.map((value) => ({ value, label: `${value} ×` })),
+      '1',
+    );
     const traces: { value: TraceChoice; label: string }[] = [
       { value: 'past', label: 'so far, earlier moves faint' },
       { value: 'move', label: 'of this move' },
@@ -154,7 +165,9 @@ class Replay implements ReplayView {
         make(
           'span',
           { class: 'replay-views', role: 'group', 'aria-label': 'View' },
-          view('Perspective', 'perspective'), view('Side', 'side'), view('Front', 'front'),
+          view('Perspective', 'perspective'),
+          view('Side', 'side'),
+          view('Front', 'front'),
         ),
       ),
       make('div', { class: 'replay-main' }, this.stage.element, this.panel.element),
@@ -215,8 +228,14 @@ class Replay implements ReplayView {
     this.scrub.max = String(this.scenario.moments);
     this.set_playing(false);
     this.set_time(0);
-    this.set_picker.set(this.sets.filter((one) => one.cases.length > 0).map((one) => ({ value: one.id, label: one.title })), set.id);
-    this.case_picker.set(set.cases.map((one) => ({ value: one.id, label: one.label })), replay.id);
+    this.set_picker.set(
+      this.sets.filter((one) => one.cases.length > 0).map((one) => ({ value: one.id, label: one.title })),
+      set.id,
+    );
+    this.case_picker.set(
+      set.cases.map((one) => ({ value: one.id, label: one.label })),
+      replay.id,
+    );
     this.apply();
   }
 
@@ -233,7 +252,10 @@ class Replay implements ReplayView {
     this.design_picker.set(names, state.design);
     const others = names.filter((one) => one.value !== state.design);
     this.ghost_picker.set([{ value: '', label: 'none' }, ...others], state.ghost);
-    this.scale = make_colour_scale(scenario.tracks.map((track) => track.errors_m), look.theme);
+    this.scale = make_colour_scale(
+      scenario.tracks.map((track) => track.errors_m),
+      look.theme,
+    );
     this.stage.set_setting({ scenario, track: this.track, ghost: this.ghost, scale: this.scale, look });
     this.panel.set({ scenario, track: this.track, ghost: this.ghost }, this.scale, look);
     this.draw_strip();
@@ -383,8 +405,6 @@ class Replay implements ReplayView {
   }
 }
 
-export function make_replay(
-  host: HTMLElement, robots: Robot[], sets: ReplaySet[], look: Look, events: ReplayEvents,
-): ReplayView {
+export function make_replay(host: HTMLElement, robots: Robot[], sets: ReplaySet[], look: Look, events: ReplayEvents): ReplayView {
   return new Replay(host, robots, sets, look, events);
 }

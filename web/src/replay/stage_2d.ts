@@ -37,13 +37,24 @@ export class Stage2d implements Stage {
     context.fillStyle = look.background;
     context.fillRect(0, 0, this.size.width, this.size.height);
     context.lineCap = context.lineJoin = 'round';
-    this.draw_line(context, [[-9, -9, 0], [9, 9, 0]], look.muted, 1);
+    this.draw_line(
+      context,
+      [
+        [-9, -9, 0],
+        [9, 9, 0],
+      ],
+      look.muted,
+      1,
+    );
     this.draw_line(context, scenario.replay.points_m, look.grid, 1);
     scenario.replay.points_m.forEach((point, i) => {
       this.draw_dot(context, point, i === snapshot.segment + 1 ? look.bad : look.muted, i === snapshot.segment + 1 ? 5 : 3);
     });
     const main_colour = (k: number): string => to_css(find_colour(scale, track?.errors_m[k] ?? 0));
-    for (const [one, colour] of [[ghost, () => kGhost], [track, main_colour]] as const) {
+    for (const [one, colour] of [
+      [ghost, () => kGhost],
+      [track, main_colour],
+    ] as const) {
       if (one === null) {
         continue;
       }

@@ -49,7 +49,10 @@ class Arm {
   readonly group = new Group();
   private readonly bodies: Object3D[];
 
-  constructor(geometries: BufferGeometry[], private readonly material: MeshLambertMaterial) {
+  constructor(
+    geometries: BufferGeometry[],
+    private readonly material: MeshLambertMaterial,
+  ) {
     this.bodies = geometries.map((geometry) => {
       const body = new Mesh(geometry, material);
       body.matrixAutoUpdate = false;
@@ -152,7 +155,10 @@ export class Stage3d implements Stage {
     }
     this.still.target.position.set(...snapshot.target_m);
     this.still.points.show(snapshot.segment + 1);
-    for (const [track, trace] of [[setting.track, this.traces.main], [setting.ghost, this.traces.ghost]] as const) {
+    for (const [track, trace] of [
+      [setting.track, this.traces.main],
+      [setting.ghost, this.traces.ghost],
+    ] as const) {
       if (track !== null) {
         trace?.show(find_trace_parts(setting, track.count, snapshot));
       }

@@ -122,12 +122,16 @@ export class Strip {
 
   // Where many moments share a pixel, the largest and the least of them are drawn.
   private draw_errors(
-    context: CanvasRenderingContext2D, track: Track, scale: ColourScale, colour: (error_m: number) => string, width: number,
+    context: CanvasRenderingContext2D,
+    track: Track,
+    scale: ColourScale,
+    colour: (error_m: number) => string,
+    width: number,
   ): void {
     context.lineWidth = width;
     context.lineJoin = 'round';
     let from: [number, number] | null = null;
-    for (let k = 0; k <= track.count; ) {
+    for (let k = 0; k <= track.count;) {
       const column = Math.floor(this.find_x(k));
       let least = Infinity;
       let most = -Infinity;

@@ -87,7 +87,10 @@ export class Points {
   private readonly dots: InstancedMesh;
   private shown = -1;
 
-  constructor(private readonly points_m: [number, number, number][], private readonly look: Look) {
+  constructor(
+    private readonly points_m: [number, number, number][],
+    private readonly look: Look,
+  ) {
     const geometry = new BufferGeometry().setAttribute('position', new Float32BufferAttribute(points_m.flat(), 3));
     this.group.add(new Line(geometry, new LineBasicMaterial({ color: look.muted, transparent: true, opacity: 0.6 })));
     this.dots = new InstancedMesh(new SphereGeometry(0.013, 10, 6), new MeshBasicMaterial(), points_m.length);

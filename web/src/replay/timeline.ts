@@ -53,9 +53,7 @@ export function is_measured(segment: Segment, moment: number): boolean {
 }
 
 // Joint positions at a time, between the rows along a straight line; beyond the motion's end its last.
-export function interpolate_row(
-  rows: ArrayLike<number>, width: number, count: number, start: ArrayLike<number>, moment: number,
-): number[] {
+export function interpolate_row(rows: ArrayLike<number>, width: number, count: number, start: ArrayLike<number>, moment: number): number[] {
   const place = clamp(moment, 0, count);
   const whole = Math.floor(place);
   const share = place - whole;
