@@ -155,7 +155,7 @@ TEST_F(RunPage, CommandsLeadToTheRunsProblem) {
 }
 
 TEST_F(RunPage, OfAFunctionHasNoArm) {
-  make_run(make_plan("rastrigin", "cmaes", 900), "a");
+  make_run(make_plan("rastrigin", "random", 900), "a");
   const json page = make_page("a");
   expect_interface(page, {"RunData", "PageBase"});
   EXPECT_TRUE(page["arm"].is_null());
@@ -182,12 +182,14 @@ TEST_F(RunPage, OfConstraintsCountsOnlyDesignsThatKeepThem) {
   const json page = make_page("a");
   EXPECT_THAT(notes_of(page), Contains(HasSubstr("keep all limits")));
   const JournalContent journal = read("a");
-  for (std::size_t g = 0; g < 3; ++g) {
+  const json& training = page["training"];
+  ASSERT_FALSE(training["index"].empty());
+  for (std::size_t g = 0; g < training["index"].size(); ++g) {
     bool feasible = false;
     for (const EvaluationRecord& record : journal.training) {
-      feasible |= record.generation == g + 1 && is_feasible(record.evaluation);
+      feasible |= record.generation == training["index"][g] && is_feasible(record.evaluation);
     }
-    EXPECT_EQ(page["training"]["best"][g].is_number(), feasible) << g;
+    EXPECT_EQ(training["best"][g].is_number(), feasible) << g;
   }
 }
 

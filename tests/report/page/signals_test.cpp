@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(All, Signals,
                          testing::Values(SignalShape::step, SignalShape::ramp,
                                          SignalShape::trapezoid, SignalShape::triangular,
                                          SignalShape::complex),
-                         [](const auto& info) { return signal_names()[info.index]; });
+                         [](const auto& one) { return signal_names()[one.index]; });
 
 TEST(SpeedReduction, IsProportionalBelowTheLimitAndWholeAbove) {
   TrackingTask task;
