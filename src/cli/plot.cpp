@@ -33,13 +33,16 @@ struct PlotOptions {
   std::vector<std::string> choices;
   std::string out;
   std::string theme = "light";
-  std::string size = "640x400";
+  std::string size;
   bool list = false;
 };
 
 Plotter::Format parse_format(const PlotOptions& options) {
   Plotter::Format format;
   format.dark = options.theme == "dark";
+  if (options.size.empty()) {
+    return format;
+  }
   const std::vector<std::string> parts = split(options.size, 'x');
   if (parts.size() != 2) {
     throw Error(ErrorKind::usage,
@@ -206,7 +209,7 @@ void add_plot(CLI::App& app, Session& session) {
   command->add_option("--theme", options->theme, "light or dark (default: light)")
       ->check(CLI::IsMember({"light", "dark"}))
       ->type_name("NAME");
-  command->add_option("--size", options->size, "Of a figure, in pixels (default: 640x400)")
+  command->add_option("--size", options->size, "Of a figure, in pixels (default: its own, 640x400 for most)")
       ->type_name("WIDTHxHEIGHT");
   command->add_flag("--list", options->list, "Show which figures there are, and draw none")
       ->group("Output");

@@ -5,6 +5,7 @@ import { list_tabs, open_tab } from './browser.mjs';
 
 async function check_tab(page, tab) {
   await open_tab(page, tab);
+  await page.waitForFunction(() => Array.from(document.querySelectorAll('.plot')).every((plot) => plot.querySelector('svg') !== null));
   const cards = await page.$$eval('.card', (all) =>
     all.map((card) => ({
       id: card.dataset.figure,

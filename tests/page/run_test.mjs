@@ -141,7 +141,7 @@ test('a figure says its numbers: under the pointer, as a table, as CSV, as SVG',
   await card.getByRole('button', { name: 'Table' }).click();
   assert.ok((await page.locator('dialog tbody tr').count()) >= 25);
   await page.keyboard.press('Escape');
-  assert.equal(await page.locator('dialog').count(), 0);
+  await page.waitForSelector('dialog', { state: 'detached' });
 
   const [csv] = await Promise.all([page.waitForEvent('download'), card.getByRole('button', { name: 'CSV' }).click()]);
   assert.equal(csv.suggestedFilename(), 'distance-response.csv');
@@ -161,7 +161,9 @@ test('a figure says its numbers: under the pointer, as a table, as CSV, as SVG',
   assert.ok(parsed, 'the SVG is not well-formed');
   // The same code draws without a browser.
   const plotted = run_program('plot', join(kFolder, 'run.html'), '--figure', 'distance-response', '--out', '-');
-  assert.equal(plotted.trim(), text.trim());
+  // But for the names of classes, which count the charts of a page.
+  const normalize = (svg) => svg.trim().replace(/zr\d+-/g, 'zr-');
+  assert.equal(normalize(plotted), normalize(text));
   expect_no_faults();
   await page.close();
 });
@@ -189,7 +191,7 @@ test('a table sorts by a column, up and down, by key too', async () => {
   const { page, expect_no_faults } = await open_run();
   await open_tab(page, 'design');
   const card = await find_figure(page, 'design-table');
-  const column = 2;
+  const column = 4; // the winner's
   const read = async () =>
     (await card.locator(`tbody tr td:nth-child(${column + 1})`).evaluateAll((cells) => cells.map((cell) => Number(cell.title)))).filter(
       (value) => !Number.isNaN(value),

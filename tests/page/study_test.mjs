@@ -1,5 +1,5 @@
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
+import { readFileSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { find_figure, list_tabs, open_browser, open_page, open_tab } from './browser.mjs';
@@ -54,6 +54,7 @@ test('a cell shows the command that reproduces it, and it does', async () => {
   const command = await card.locator('.command code').innerText();
   assert.match(command, /^\S*armwright rerun /);
   const cell = command.match(/cells?\/(\S+)|rerun \S+ (\S+)/)?.[2];
+  rmSync(join(kFolder, 'rerun'), { recursive: true, force: true });
   const said = run_program('rerun', join(kFolder, 'study'), cell.replace(/^'|'$/g, ''), '--out', join(kFolder, 'rerun'), '--quiet');
   assert.match(said, /identical/);
   expect_no_faults();

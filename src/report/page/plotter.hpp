@@ -40,8 +40,8 @@ class Plotter {
   using Picks = std::map<std::string, std::string>;  // of choices, those that are not the initial
   struct Format {
     bool dark = false;
-    int width = 640;
-    int height = 400;
+    int width = 0;  // pixels; 0: the figure's own, 640 x 400 for most
+    int height = 0;
   };
   // Error{usage} for an id that is not there, a choice or value that it does not have.
   std::string draw(const std::string& id, const Format& format, const Picks& picks) const;

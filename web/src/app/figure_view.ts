@@ -1,7 +1,7 @@
 // A figure in the page: its choices, the chart, what a point says of itself, the downloads.
 import { echarts, type EChartsOption, type EChartsType } from '../charts/echarts';
 import { kLight, type Look } from '../charts/look';
-import { draw_svg, get_initial_picks, kDefaultHeight } from '../charts/svg';
+import { draw_svg, get_initial_picks, get_paper_size, kDefaultHeight } from '../charts/svg';
 import { to_csv } from '../csv';
 import type { Column, Figure, Picked } from '../model';
 import { format_number } from '../numbers';
@@ -19,9 +19,6 @@ interface Hovered {
   data?: unknown;
   marker?: unknown;
 }
-
-const kPaperWidth = 640;
-const kPaperHeight = 400;
 
 function get_provenance(data: unknown): { note?: string; command?: string } {
   if (data !== null && typeof data === 'object' && !Array.isArray(data)) {
@@ -175,8 +172,7 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
     make_button(
       'SVG',
       () => {
-        const height = figure.height ? Math.round((figure.height * kPaperHeight) / kDefaultHeight) : kPaperHeight;
-        const width = figure.width === 'full' ? kPaperWidth * 1.5 : kPaperWidth;
+        const { width, height } = get_paper_size(figure);
         download(figure.id + '.svg', 'image/svg+xml', draw_svg(figure, kLight, picked, width, height));
       },
       { title: 'Download this figure' },

@@ -13,6 +13,12 @@ export function get_initial_picks(figure: Figure): Picked {
   return picked;
 }
 
+// Of a figure in a paper: 640 x 400 pixels, those that are larger in the page in proportion.
+export function get_paper_size(figure: Figure): { width: number; height: number } {
+  const width = figure.width === 'full' ? 960 : 640;
+  return { width, height: Math.round(((figure.height ?? kDefaultHeight) * 400) / kDefaultHeight) };
+}
+
 export function draw_svg(figure: Figure, look: Look, picked: Picked, width: number, height: number): string {
   const chart = echarts.init(null, null, { renderer: 'svg', ssr: true, width, height });
   try {

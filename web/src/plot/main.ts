@@ -1,7 +1,7 @@
 // The figures without a browser: functions that the program calls (src/report/page/plotter.cpp).
 // All arguments and results are strings.
 import './polyfills';
-import { draw_svg, get_initial_picks } from '../charts/svg';
+import { draw_svg, get_initial_picks, get_paper_size } from '../charts/svg';
 import { kDark, kLight } from '../charts/look';
 import { to_csv } from '../csv';
 import type { PageData } from '../data';
@@ -54,12 +54,15 @@ const api = {
       })),
     );
   },
+  // A width or height of 0 is the figure's own.
   draw(id: string, theme: string, width: string, height: string, picks: string): string {
     const figure = find(id);
     if (figure.kind !== 'figure') {
       throw new Error(id + ' is a table');
     }
-    return draw_svg(figure, theme === 'dark' ? kDark : kLight, get_picks(figure, picks), Number(width), Number(height));
+    const paper = get_paper_size(figure);
+    const look = theme === 'dark' ? kDark : kLight;
+    return draw_svg(figure, look, get_picks(figure, picks), Number(width) || paper.width, Number(height) || paper.height);
   },
   table(id: string, picks: string): string {
     const item = find(id);
