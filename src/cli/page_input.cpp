@@ -17,9 +17,10 @@ void PageInput::add_to(CLI::App& command) {
                   "that report has written")
       ->required();
   command
-      .add_option("--case", cases,
-                  "Replay this test case as well, as in test/2:17; repeatable (the usual ones: the "
-                  "first of training; of the test set the first, median, worst and those that fail)")
+      .add_option(
+          "--case", cases,
+          "Replay this test case as well, as in test/2:17; repeatable (the usual ones: the "
+          "first of training; of the test set the first, median, worst and those that fail)")
       ->type_name("SET:NUMBER")
       ->allow_extra_args(false);
   jobs.add_to(command);

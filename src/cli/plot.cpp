@@ -59,9 +59,10 @@ Plotter::Picks parse_picks(const std::vector<std::string>& choices) {
   for (const std::string& choice : choices) {
     const std::size_t equals = choice.find('=');
     if (equals == std::string::npos || equals == 0) {
-      throw Error(ErrorKind::usage, fmt::format("--choose is '{}'; it must be NAME=VALUE, as --list "
-                                                "shows them",
-                                                sanitize(choice)));
+      throw Error(ErrorKind::usage,
+                  fmt::format("--choose is '{}'; it must be NAME=VALUE, as --list "
+                              "shows them",
+                              sanitize(choice)));
     }
     picks[choice.substr(0, equals)] = choice.substr(equals + 1);
   }
@@ -151,13 +152,13 @@ int run_plot(const PlotOptions& options, Session& session) {
   const Plotter::Format format = parse_format(options);
   const Plotter::Picks picks = parse_picks(options.choices);
   if (options.out == "-" && options.figures.size() != 1) {
-    throw Error(ErrorKind::usage, "--out - writes one figure to standard output: name it with "
-                                  "--figure (--list shows them)");
+    throw Error(ErrorKind::usage,
+                "--out - writes one figure to standard output: name it with "
+                "--figure (--list shows them)");
   }
   const std::optional<std::string> data = options.input.make_data(session);
   if (!data) {
-    write_message(
-        fmt::format("{}; nothing was written", describe_stop(session.stop.reason())));
+    write_message(fmt::format("{}; nothing was written", describe_stop(session.stop.reason())));
     return get_stop_code(session.stop.reason());
   }
   const Plotter plotter(*data);
@@ -197,8 +198,7 @@ void add_plot(CLI::App& app, Session& session) {
   CLI::App* command = add_command(app, session, "plot",
                                   "Write the figures of a run or a comparison as SVG", kExamples);
   options->input.add_to(*command);
-  command
-      ->add_option("--figure", options->figures, "Only this figure or table; repeatable")
+  command->add_option("--figure", options->figures, "Only this figure or table; repeatable")
       ->type_name("NAME")
       ->allow_extra_args(false);
   command
@@ -209,7 +209,9 @@ void add_plot(CLI::App& app, Session& session) {
   command->add_option("--theme", options->theme, "light or dark (default: light)")
       ->check(CLI::IsMember({"light", "dark"}))
       ->type_name("NAME");
-  command->add_option("--size", options->size, "Of a figure, in pixels (default: its own, 640x400 for most)")
+  command
+      ->add_option("--size", options->size,
+                   "Of a figure, in pixels (default: its own, 640x400 for most)")
       ->type_name("WIDTHxHEIGHT");
   command->add_flag("--list", options->list, "Show which figures there are, and draw none")
       ->group("Output");

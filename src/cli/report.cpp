@@ -47,8 +47,8 @@ int run_report(const ReportOptions& options, Session& session) {
     get_page_assets();  // says so before anything is computed, if there are none
     if (file.empty()) {
       if (std::filesystem::is_regular_file(options.input.source)) {
-        throw Error(ErrorKind::usage, fmt::format("{}: name the new page with --out",
-                                                  options.input.source));
+        throw Error(ErrorKind::usage,
+                    fmt::format("{}: name the new page with --out", options.input.source));
       }
       file = std::filesystem::path(options.input.source) / "report.html";
     }
@@ -56,8 +56,7 @@ int run_report(const ReportOptions& options, Session& session) {
   }
   const std::optional<std::string> data = options.input.make_data(session);
   if (!data) {
-    write_message(
-        fmt::format("{}; nothing was written", describe_stop(session.stop.reason())));
+    write_message(fmt::format("{}; nothing was written", describe_stop(session.stop.reason())));
     return get_stop_code(session.stop.reason());
   }
   if (options.json) {

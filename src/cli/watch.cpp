@@ -62,15 +62,13 @@ int run_watch(const WatchOptions& options, Session& session) {
 
 void add_watch(CLI::App& app, Session& session) {
   auto options = std::make_shared<WatchOptions>();
-  CLI::App* command =
-      add_command(app, session, "watch",
-                  "Serve the page of a run or a comparison to this machine while it runs", kExamples);
+  CLI::App* command = add_command(
+      app, session, "watch",
+      "Serve the page of a run or a comparison to this machine while it runs", kExamples);
   command
-      ->add_option("FOLDER", options->folder,
-                   "The folder of a run, a comparison or a reproduction")
+      ->add_option("FOLDER", options->folder, "The folder of a run, a comparison or a reproduction")
       ->required();
-  command
-      ->add_option("--port", options->port, "Of 127.0.0.1 (default: 0, any that is free)")
+  command->add_option("--port", options->port, "Of 127.0.0.1 (default: 0, any that is free)")
       ->type_name("N");
   command->callback([options, &session] {
     session.action = [options, &session] { return run_watch(*options, session); };

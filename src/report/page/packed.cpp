@@ -25,8 +25,12 @@ std::string pack(std::span<const Number> values) {
 
 }  // namespace
 
-nlohmann::json pack_f32(std::span<const float> values) { return {{"f32", pack(values)}}; }
+nlohmann::json pack_f32(std::span<const float> values) {
+  return {{"f32", pack(values)}};
+}
 
-nlohmann::json pack_u32(std::span<const std::uint32_t> values) { return {{"u32", pack(values)}}; }
+nlohmann::json pack_u32(std::span<const std::uint32_t> values) {
+  return {{"u32", pack(values)}};
+}
 
 }  // namespace armwright

@@ -65,8 +65,8 @@ std::string make_page_html(std::string_view title, std::string_view data,
       "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<title>{}</title>\n<style>",
-      live ? fmt::format(" data-live=\"{}\"", escape_html(live_tag)) : "", kPageMark,
-      policy, escape_html(title));
+      live ? fmt::format(" data-live=\"{}\"", escape_html(live_tag)) : "", kPageMark, policy,
+      escape_html(title));
   html += assets.style;
   html +=
       "</style>\n</head>\n<body>\n<noscript>This page draws its figures with a script, which the "

@@ -55,7 +55,8 @@ struct PageServer::Server {
 
   bool is_ours(const httplib::Request& request) const {
     const std::string host = request.get_header_value("Host");
-    return host == fmt::format("{}:{}", kAddress, port) || host == fmt::format("localhost:{}", port);
+    return host == fmt::format("{}:{}", kAddress, port) ||
+           host == fmt::format("localhost:{}", port);
   }
 
   void answer_page(httplib::Response& response) {
@@ -89,14 +90,15 @@ PageServer::PageServer(int port, std::string title, std::function<std::string()>
                             {"X-Content-Type-Options", "nosniff"},
                             {"Referrer-Policy", "no-referrer"},
                             {"Cross-Origin-Resource-Policy", "same-origin"}});
-  http.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
-    if (server_->is_ours(request)) {
-      return httplib::Server::HandlerResponse::Unhandled;
-    }
-    response.status = 403;
-    response.set_content("this page is served to this machine only\n", "text/plain");
-    return httplib::Server::HandlerResponse::Handled;
-  });
+  http.set_pre_routing_handler(
+      [this](const httplib::Request& request, httplib::Response& response) {
+        if (server_->is_ours(request)) {
+          return httplib::Server::HandlerResponse::Unhandled;
+        }
+        response.status = 403;
+        response.set_content("this page is served to this machine only\n", "text/plain");
+        return httplib::Server::HandlerResponse::Handled;
+      });
   http.set_exception_handler(
       [](const httplib::Request&, httplib::Response& response, std::exception_ptr exception) {
         response.status = 500;
@@ -120,14 +122,17 @@ PageServer::PageServer(int port, std::string title, std::function<std::string()>
     server_->port = http.bind_to_port(kAddress, port) ? port : -1;
   }
   if (server_->port <= 0) {
-    throw Error(ErrorKind::io,
-                fmt::format("{}:{} cannot be served: another program may be using this port; choose "
-                            "another one with --port, or 0 for any that is free",
-                            kAddress, port));
+    throw Error(
+        ErrorKind::io,
+        fmt::format("{}:{} cannot be served: another program may be using this port; choose "
+                    "another one with --port, or 0 for any that is free",
+                    kAddress, port));
   }
 }
 
-int PageServer::port() const { return server_->port; }
+int PageServer::port() const {
+  return server_->port;
+}
 
 void PageServer::serve(StopSignal& stop) {
   std::jthread watcher([this, &stop](const std::stop_token& ended) {
@@ -143,9 +148,13 @@ void PageServer::serve(StopSignal& stop) {
 
 struct PageServer::Server {};
 
-PageServer::PageServer(int, std::string, std::function<std::string()>) { get_page_assets(); }
+PageServer::PageServer(int, std::string, std::function<std::string()>) {
+  get_page_assets();
+}
 
-int PageServer::port() const { return 0; }
+int PageServer::port() const {
+  return 0;
+}
 
 void PageServer::serve(StopSignal&) {}
 

@@ -108,11 +108,17 @@ std::string Plotter::make_csv(const std::string& id, const Picks& picks) const {
 
 struct Plotter::Engine {};
 
-Plotter::Plotter(std::string_view) { get_page_assets(); }
+Plotter::Plotter(std::string_view) {
+  get_page_assets();
+}
 
-std::string Plotter::draw(const std::string&, const Format&, const Picks&) const { return {}; }
+std::string Plotter::draw(const std::string&, const Format&, const Picks&) const {
+  return {};
+}
 
-std::string Plotter::make_csv(const std::string&, const Picks&) const { return {}; }
+std::string Plotter::make_csv(const std::string&, const Picks&) const {
+  return {};
+}
 
 #endif
 
@@ -136,10 +142,10 @@ std::string Plotter::check(const std::string& id, const Picks& picks) const {
       for (const PlotChoice& one : entry->choices) {
         names.push_back(one.id);
       }
-      throw Error(ErrorKind::usage,
-                  names.empty()
-                      ? fmt::format("figure '{}' has no choices, so none is '{}'", id, sanitize(name))
-                      : describe_unknown("choice of figure " + id, name, names));
+      throw Error(ErrorKind::usage, names.empty()
+                                        ? fmt::format("figure '{}' has no choices, so none is '{}'",
+                                                      id, sanitize(name))
+                                        : describe_unknown("choice of figure " + id, name, names));
     }
     if (std::ranges::find(choice->values, value) == choice->values.end()) {
       throw Error(ErrorKind::usage, describe_unknown(fmt::format("{} of figure {}", name, id),

@@ -41,9 +41,10 @@ TEST(PageFile, TitleIsText) {
 TEST(PageFile, PolicyNamesTheScriptThatIsThereByItsHash) {
   const std::string html = make_page_html("t", "{}");
   std::smatch found;
-  ASSERT_TRUE(std::regex_search(html, found,
-                                std::regex("default-src 'none'; script-src '(sha256-[^']*)'; "
-                                           "style-src '(sha256-[^']*)'; [^\"]*connect-src 'none'")));
+  ASSERT_TRUE(
+      std::regex_search(html, found,
+                        std::regex("default-src 'none'; script-src '(sha256-[^']*)'; "
+                                   "style-src '(sha256-[^']*)'; [^\"]*connect-src 'none'")));
   const PageAssets assets = get_page_assets();
   EXPECT_EQ(found[1], "sha256-" + to_base64(calc_sha256(assets.script)));
   EXPECT_EQ(found[2], "sha256-" + to_base64(calc_sha256(assets.style)));
