@@ -15,10 +15,8 @@ const kFlags = [
   '--disable-component-update',
   '--disable-quic',
   '--disable-sync',
-  '--enable-unsafe-swiftshader',
   '--no-first-run',
   '--no-sandbox',
-  '--use-angle=swiftshader',
 ];
 
 export async function open_browser() {

@@ -48,7 +48,13 @@ def describe(program, problem):
     return json.loads(subprocess.run(words, check=True, capture_output=True, text=True).stdout)
 
 
-def draw_cell(rng, problem, optimizer, strength, replicate, checkpoints, dimension, objectives, budget):
+# Within the bounds, near the start, the sign kept: designs that can be simulated.
+def draw_design(rng, variables):
+    return [one['start'] * math.exp(rng.uniform(-0.3, 0.3)) if one['start'] else rng.uniform(one['lower'], one['upper'])
+            for one in variables]
+
+
+def draw_cell(rng, problem, optimizer, strength, replicate, checkpoints, variables, objectives, budget):
     level = math.exp(rng.gauss(strength, 0.4))
     failed = rng.random() < 0.01
     curve = []
@@ -64,7 +70,7 @@ def draw_cell(rng, problem, optimizer, strength, replicate, checkpoints, dimensi
         'format': 1, 'problem': problem['label'], 'label': optimizer['label'], 'optimizer': optimizer['name'],
         'replicate': replicate, 'configuration_sha256': problem['configuration_sha256'], 'end_reason': 'budget',
         'failure': '', 'evaluations': budget, 'cases': budget, 'clipped': 0, 'failed_evaluations': 0,
-        'x': [rng.uniform(-1e5, 1e5) for _ in range(dimension)], 'validation_value': value, 'value': value,
+        'x': draw_design(rng, variables), 'validation_value': value, 'value': value,
         'violation': 0.0,
         'test': {'cases': 500, 'without_number': 1 if failed else 0, 'failures': 1 if failed else 0, 'mean': level,
                  'median': level, 'percentile_95': 2 * level, 'worst': None if failed else 3 * level},
@@ -102,7 +108,7 @@ def main():
                                      f'r{replicate:02}')
                 os.makedirs(where)
                 cell = draw_cell(rng, problem, optimizer, strength, replicate, checkpoints,
-                                 len(shape['variables']), len(shape['objectives']), plan['budget'])
+                                 shape['variables'], len(shape['objectives']), plan['budget'])
                 with open(os.path.join(where, 'cell.json'), 'w') as out:
                     json.dump(cell, out)
 

@@ -31,6 +31,9 @@ const kDirections: Record<ViewChoice, [number, number, number]> = {
   front: [1, 0, 0.02],
 };
 
+const kMovingShare = 0.7; // of the pixels in each direction, while a processor draws a picture that moves
+const kSharpAfter_ms = 250;
+
 const kFilling = 0.8; // the ball around the arm and its points is never full
 
 // Whether the processor has to draw: then edges stay unsmoothed, which costs it a third of its time.
@@ -96,7 +99,10 @@ export class Stage3d implements Stage {
   private readonly label = make('span', { class: 'replay-point' });
   private readonly canvas = make('canvas', { tabindex: '0', role: 'img' });
   private readonly restored = () => this.on_change();
+  private readonly by_processor: boolean;
   private size = { width: 1, height: 1 };
+  private pixel_ratio = 1;
+  private sharpening = 0; // the timer's number
   private setting: Setting | null = null;
   private extent = new Sphere(new Vector3(0, 0, 1), 1.5);
   private view: ViewChoice = 'perspective';
@@ -108,7 +114,8 @@ export class Stage3d implements Stage {
 
   // Throws if there is no WebGL.
   constructor(private readonly on_change: () => void) {
-    const options = { antialias: !is_drawn_by_processor(), alpha: false, preserveDrawingBuffer: true };
+    this.by_processor = is_drawn_by_processor();
+    const options = { antialias: !this.by_processor, alpha: false, preserveDrawingBuffer: true };
     const context = this.canvas.getContext('webgl2', options) as WebGL2RenderingContext | null;
     if (context === null) {
       throw new Error('no WebGL 2');
@@ -163,8 +170,27 @@ export class Stage3d implements Stage {
         trace?.show(find_trace_parts(setting, track.count, snapshot));
       }
     }
-    this.renderer.render(this.scene, this.camera);
+    this.render();
     this.place_label(replay.points_m[snapshot.segment + 1], snapshot.segment + 1);
+  }
+
+  // What moves need not be sharp where every pixel costs the processor time; what rests is.
+  private render(): void {
+    if (this.by_processor) {
+      clearTimeout(this.sharpening);
+      this.sharpening = window.setTimeout(() => {
+        this.set_pixel_ratio(this.pixel_ratio);
+        this.renderer.render(this.scene, this.camera);
+      }, kSharpAfter_ms);
+      this.set_pixel_ratio(kMovingShare * this.pixel_ratio);
+    }
+    this.renderer.render(this.scene, this.camera);
+  }
+
+  private set_pixel_ratio(ratio: number): void {
+    if (this.renderer.getPixelRatio() !== ratio) {
+      this.renderer.setPixelRatio(ratio);
+    }
   }
 
   set_view(view: ViewChoice): void {
@@ -182,6 +208,7 @@ export class Stage3d implements Stage {
   resize(width: number, height: number, pixel_ratio: number): void {
     const first = this.size.width === 1;
     this.size = { width, height };
+    this.pixel_ratio = pixel_ratio;
     this.renderer.setPixelRatio(pixel_ratio);
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
@@ -192,6 +219,7 @@ export class Stage3d implements Stage {
   }
 
   dispose(): void {
+    clearTimeout(this.sharpening);
     this.controls.dispose();
     this.canvas.removeEventListener('webglcontextrestored', this.restored);
     this.clear_still();
