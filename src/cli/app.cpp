@@ -29,6 +29,7 @@ constexpr const char* kFooter = R"(Examples:
   armwright evaluate table-a10 --problem q2-e6     # a published design on 500 test cases
   armwright verify table-a10                       # does it hold under other engines, time steps and masses?
   armwright reproduce                              # the thesis's published results beside ours
+  armwright report results/q1                      # a page to look at: figures, and the arm's motion in 3D
   armwright export results/q1 --format csv         # its evaluations for other programs: csv, ioh, coco, json
 
 'armwright COMMAND --help' explains a command, with examples.
