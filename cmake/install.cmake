@@ -6,6 +6,11 @@ set(ARMWRIGHT_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/armwright)
 set(ARMWRIGHT_PACKAGE_ROOMS ${ARMWRIGHT_ROOMS})
 list(FILTER ARMWRIGHT_PACKAGE_ROOMS INCLUDE REGEX ".")
 list(REMOVE_ITEM ARMWRIGHT_PACKAGE_ROOMS cli)
+# What their libraries need of pkg-config.
+set(ARMWRIGHT_PACKAGE_MODULES ode urdfdom tomlplusplus tinyxml2)
+if(ARMWRIGHT_WITH_PAGE)
+  list(APPEND ARMWRIGHT_PACKAGE_MODULES duktape cpp-httplib)
+endif()
 
 install(TARGETS armwright RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY configs/ DESTINATION ${CMAKE_INSTALL_DATADIR}/armwright/configs)

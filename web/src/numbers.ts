@@ -13,7 +13,8 @@ export function format_number(value: number | null | undefined, digits = 4): str
   if (Math.floor(value) === value && Math.abs(value) < 1e9) {
     return String(value);
   }
-  const magnitude = Math.floor(Math.log10(Math.abs(value)));
+  // Of the rounded number: 0.99999 has one digit before the point.
+  const magnitude = Math.floor(Math.log10(Math.abs(Number(value.toPrecision(digits)))));
   if (magnitude < -4 || magnitude > 8) {
     return value.toExponential(digits - 1);
   }

@@ -24,6 +24,7 @@ export function make_published_figure(data: ReproductionData): Figure | null {
     caption:
       'The average positional error of each published design as simulated here, against what the thesis printed; on the line they agree. ' +
       'Above the line the design is worse here than there.',
+    width: 'full',
     height: 420,
     draw: (look) => {
       const style = get_series_style(look, 0);

@@ -32,6 +32,12 @@ const millimetres = (label: string): Column => ({ label, unit: 'mm', numeric: tr
 const torque = (label: string): Column => ({ label, unit: 'N m', numeric: true, digits: 6 });
 const number = (label: string): Column => ({ label, numeric: true });
 
+// One alone has the page's whole width.
+function make_response(response: DistanceResponse, count: number): Figure {
+  const figure = make_response_figure(response);
+  return count === 1 ? { ...figure, width: 'full', height: 420 } : figure;
+}
+
 function get_ratio(ours: number | null, published: number | null): number | null {
   return is_number(ours) && is_number(published) && published !== 0 ? ours / published : null;
 }
@@ -248,14 +254,14 @@ export function make_reproduction_tabs(data: ReproductionData): Tab[] {
         make_published_figure(data),
         make_results(data),
         make_runs(data),
-        ...usable.filter((one) => !is_placed(one)).map((one) => make_response_figure(one)),
+        ...usable.filter((one) => !is_placed(one)).map((one, _, all) => make_response(one, all.length)),
       ],
     },
     ...kTabs.map((tab) => ({
       id: tab.id,
       title: tab.title,
       items: [
-        ...usable.filter((one) => tab.responses.indexOf(one.id) >= 0).map((one) => make_response_figure(one)),
+        ...usable.filter((one) => tab.responses.indexOf(one.id) >= 0).map((one, _, all) => make_response(one, all.length)),
         ...(more[tab.id] ?? []),
       ],
     })),
