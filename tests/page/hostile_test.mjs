@@ -1,7 +1,7 @@
 // Names that would be code, markup, or would turn the page around, wherever the page shows one: as
 // text they are inert.
 import assert from 'node:assert/strict';
-import { mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { cpSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { open_browser, open_page, list_tabs, open_tab } from './browser.mjs';
@@ -40,7 +40,8 @@ async function expect_inert(file) {
 test('problems, optimizers and folders with hostile names', async () => {
   const folder = join(kFolder, `hostile <b>'"&`);
   rmSync(folder, { recursive: true, force: true });
-  mkdirSync(folder, { recursive: true });
+  // A file extends another beside it.
+  cpSync(new URL('../../configs/problems', import.meta.url), folder, { recursive: true });
   const quote = (text) => JSON.stringify(text);
   const problem = join(folder, 'problem.toml');
   writeFileSync(
