@@ -26,6 +26,9 @@ constexpr std::size_t kPageLimit_bytes = std::size_t{1} << 30;
 std::optional<std::string> make_page_data(const std::filesystem::path& folder,
                                           const PageOptions& options, StopSignal& stop,
                                           RunObserver& observer) {
+  if (!std::filesystem::exists(folder)) {
+    throw Error(ErrorKind::usage, fmt::format("{}: there is no such folder", folder.string()));
+  }
   if (is_study_folder(folder)) {
     return make_study_page(folder, options, stop, observer);
   }
