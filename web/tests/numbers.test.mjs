@@ -45,8 +45,5 @@ test('tables are CSV that no spreadsheet runs', () => {
       [{ value: '@SUM(1)', command: 'armwright' }, { value: 2 }],
     ],
   };
-  assert.equal(
-    to_csv(table),
-    'name,error (mm)\r\nplain,1.5\r\n"a ""b"", c\nd",\r\n\'=cmd|calc!A1,-0.25\r\n\'@SUM(1),2\r\n',
-  );
+  assert.equal(to_csv(table), 'name,error (mm)\r\nplain,1.5\r\n"a ""b"", c\nd",\r\n\'=cmd|calc!A1,-0.25\r\n\'@SUM(1),2\r\n');
 });
