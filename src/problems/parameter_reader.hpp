@@ -1,0 +1,16 @@
+// Which numbers of the design a [variables] table declares as decision variables.
+#pragma once
+
+#include <vector>
+
+#include "base/config.hpp"
+#include "problems/tracking_problem.hpp"
+
+namespace armwright {
+
+// "p", "i", "d", "effort_min", "effort_max", for every joint or for those with a
+// [[variables.joint]] of their own.
+std::vector<DesignParameter> read_parameters(const ConfigTable& table,
+                                             const TrackingConfig& config);
+
+}  // namespace armwright

@@ -1,0 +1,83 @@
+#include "problems/recorded_problem.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "problems/problem_tables.hpp"
+#include "problems/replicate.hpp"
+
+namespace armwright {
+namespace {
+
+// JSON as TOML: a line for each key at the top, everything below it inline.
+std::string write_toml(const nlohmann::json& value) {
+  // A JSON string is a TOML string, but for one character that TOML wants escaped.
+  const auto write_scalar = [](const nlohmann::json& scalar) {
+    std::string text = scalar.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    for (std::size_t at = text.find('\x7f'); at != std::string::npos; at = text.find('\x7f', at)) {
+      text.replace(at, 1, "\\u007f");
+    }
+    return text;
+  };
+  std::vector<std::string> parts;
+  if (value.is_array()) {
+    for (const nlohmann::json& element : value) {
+      parts.push_back(write_toml(element));
+    }
+    return "[" + join(parts, ", ") + "]";
+  }
+  if (value.is_object()) {
+    for (const auto& [key, element] : value.items()) {
+      parts.push_back(write_scalar(key) + " = " + write_toml(element));
+    }
+    return "{" + join(parts, ", ") + "}";
+  }
+  return write_scalar(value);
+}
+
+}  // namespace
+
+LoadedProblem load_recorded_problem(const std::string& resolved_json, const std::string& name,
+                                    const std::filesystem::path& beside) {
+  nlohmann::json resolved;
+  std::string toml;
+  std::vector<double> start;
+  try {
+    resolved = nlohmann::json::parse(resolved_json);
+    if (resolved.contains("replicate")) {
+      start = resolved.at("replicate").at("start").get<std::vector<double>>();
+      resolved.erase("replicate");
+    }
+    for (const auto& [key, value] : resolved.items()) {
+      toml += write_toml(key) + " = " + write_toml(value) + "\n";
+    }
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("the recorded configuration of {} is not what armwright wrote ({})",
+                            sanitize(name), error.what()));
+  }
+  const auto path = beside / (name + ".toml");
+  LoadedProblem loaded = load_problem_tables(
+      path,
+      [&](std::span<const std::string> all) {
+        return ConfigTable::parse(toml, path.string(), all);
+      },
+      {}, engine_table());
+  if (!start.empty()) {
+    if (start.size() != loaded.problem->description().variables.size()) {
+      throw Error(ErrorKind::bad_data,
+                  fmt::format("the recorded configuration of {} has {} start values for {} "
+                              "variables",
+                              sanitize(name), start.size(),
+                              loaded.problem->description().variables.size()));
+    }
+    loaded = make_replicate(loaded, loaded.sets.training, start);
+  }
+  return loaded;
+}
+
+}  // namespace armwright

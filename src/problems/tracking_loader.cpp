@@ -1,0 +1,159 @@
+#include "problems/tracking_loader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/file.hpp"
+#include "base/hash.hpp"
+#include "problems/config_files.hpp"
+#include "problems/design_file.hpp"
+#include "problems/objective_reader.hpp"
+#include "problems/parameter_reader.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr std::size_t kInputLimit_bytes = std::size_t{8} << 20;
+constexpr double kMostPeriods = 1e7;  // of a test case: 320 MB of target angles; published: 3925
+
+TrackingTask read_task(const ConfigTable& table, const ConfigTable& physics) {
+  TrackingTask task;
+  task.signal = find_signal(table.get_choice("signal", signal_names(), "complex"));
+  task.speed_m_per_s =
+      table.get_number_or("speed_m_per_s", task.speed_m_per_s, {.lower = 0.01, .upper = 100});
+  task.distance_limit_m =
+      table.get_number_or("distance_limit_m", task.distance_limit_m, {.lower = 0, .upper = 100});
+  task.trapezoid_acceleration_m_per_s2 =
+      table.get_number_or("trapezoid_acceleration_m_per_s2", task.trapezoid_acceleration_m_per_s2,
+                          {.lower = 0, .upper = 1e6, .lower_open = true});
+  task.rest_s = table.get_number_or("rest_s", task.rest_s, {.lower = 0, .upper = 60});
+  task.control_period_s =
+      table.get_number_or("control_period_s", task.control_period_s, {.lower = 1e-5, .upper = 0.1});
+  task.count_first_point = table.get_bool_or("count_first_point", task.count_first_point);
+  task.ik_bug = table.get_bool_or("ik_bug", task.ik_bug);
+  task.load_kg = table.get_number_or("load_kg", task.load_kg, {.lower = 0, .upper = 1000});
+
+  PhysicsSettings& p = task.physics;
+  p.gravity_m_per_s2 =
+      physics.get_number_or("gravity_m_per_s2", p.gravity_m_per_s2, {.lower = 0, .upper = 1000});
+  p.substeps = static_cast<int>(physics.get_integer_or("substeps", p.substeps, 1, 1000));
+  p.erp = physics.get_number_or("erp", p.erp, {.lower = 0, .upper = 1});
+  p.cfm = physics.get_number_or("cfm", p.cfm, {.lower = 0, .upper = 1});
+  return task;
+}
+
+WorkspaceSphere read_workspace(const ConfigTable& table) {
+  WorkspaceSphere sphere;
+  if (table.has("centre_m")) {
+    const auto centre = table.get_numbers("centre_m", {.lower = -1000, .upper = 1000});
+    if (centre.size() != 3) {
+      table.refuse("centre_m", "it must be three numbers: x, y and z in metres");
+    }
+    sphere.centre_m = {centre[0], centre[1], centre[2]};
+  }
+  sphere.radius_m = table.get_number_or("radius_m", sphere.radius_m, {.lower = 1e-3, .upper = 100});
+  sphere.shortest_move_m = table.get_number_or("shortest_move_m", sphere.shortest_move_m,
+                                               {.lower = 1e-6, .upper = 2 * sphere.radius_m});
+  sphere.points = static_cast<int>(table.get_integer_or("points", sphere.points, 3, 1000));
+  try {
+    TestSet::make_generated("test/1", sphere);
+  } catch (const Error& error) {
+    table.refuse(table.has("shortest_move_m") ? "shortest_move_m" : "radius_m", error.what());
+  }
+  return sphere;
+}
+
+// Numbers that are each allowed, but together make a case that no memory holds.
+void check_length(const ConfigTable& table, const TrackingTask& task,
+                  const WorkspaceSphere& sphere) {
+  double periods = 0;
+  for (int k = 1; k <= sphere.points; ++k) {
+    const double duration_s =
+        std::max(sphere.calc_move_m(k), task.distance_limit_m) / task.speed_m_per_s;
+    periods += (duration_s + task.rest_s) / task.control_period_s;
+  }
+  if (periods > kMostPeriods) {
+    table.refuse(table.has("control_period_s") ? "control_period_s" : "speed_m_per_s",
+                 fmt::format("a test case would take {:.3g} control periods, possible are {:.3g}; "
+                             "raise control_period_s or speed_m_per_s, or lower distance_limit_m, "
+                             "rest_s or workspace.points",
+                             periods, kMostPeriods));
+  }
+}
+
+std::shared_ptr<const TrackingProblem> make_tracking(TrackingConfig config,
+                                                     const ConfigTable& variables,
+                                                     const std::filesystem::path& urdf) {
+  try {
+    return std::make_shared<TrackingProblem>(std::move(config));
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::usage) {
+      throw Error(error.kind(), fmt::format("{}: {}", urdf.string(), error.what()));
+    }
+    variables.refuse("start", error.what());
+  }
+}
+
+void add_input(LoadedProblem& loaded, const std::filesystem::path& file) {
+  loaded.input_hashes[file.filename().string()] =
+      calc_sha256_hex(read_file(file, kInputLimit_bytes));
+}
+
+}  // namespace
+
+std::filesystem::path resolve_named(const ConfigTable& table, std::string_view key,
+                                    std::string_view kind) {
+  const std::string name = table.get_string(key);
+  try {
+    return resolve_config(kind, name, table.file().parent_path());
+  } catch (const Error& error) {
+    table.refuse(key, error.what());
+  }
+}
+
+std::optional<SimdLevel> load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
+                                       LoadedProblem& loaded) {
+  TrackingConfig config;
+  config.name = loaded.name;
+  config.summary = loaded.title;
+  const ConfigTable robot = table.get_table("robot");
+  const auto urdf = resolve_named(robot, "urdf", "robots");
+  config.mass_scale = robot.get_number_or("mass_scale", 1, {.lower = 0.01, .upper = 100});
+  config.robot = scale_masses(load_urdf(urdf), config.mass_scale);
+  add_input(loaded, urdf);
+
+  const ConfigTable physics = table.get_table_or_empty("physics");
+  ChosenEngines chosen = choose_engines(physics, engines);
+  config.engines = std::move(chosen.engines);
+  const ConfigTable task = table.get_table_or_empty("task");
+  config.task = read_task(task, physics);
+  config.workspace = read_workspace(table.get_table_or_empty("workspace"));
+  check_length(task, config.task, config.workspace);
+  config.objective = read_objective(table.get_table_or_empty("objective"));
+  config.cutoff_error_m = table.get_table_or_empty("training")
+                              .get_number_or("cutoff_error_m", config.cutoff_error_m,
+                                             {.lower = kFailureError_m, .upper = 1e6});
+
+  const ConfigTable variables = table.get_table("variables");
+  const auto start = resolve_named(variables, "start", "designs");
+  config.start = load_design(start.string()).design;
+  add_input(loaded, start);
+  config.bounds_factor = variables.get_number_or("bounds_factor", config.bounds_factor,
+                                                 {.lower = 1, .upper = 1e9, .lower_open = true});
+  if (config.start.joints.size() != config.robot.joint_count()) {
+    variables.refuse("start",
+                     fmt::format("the design has {} joints and the robot {}; name a design "
+                                 "made for this robot",
+                                 config.start.joints.size(), config.robot.joint_count()));
+  }
+  config.parameters = read_parameters(variables, config);
+  check_limits(table.get_table_or_empty("objective"), config);
+  loaded.tracking = make_tracking(std::move(config), variables, urdf);
+  loaded.problem = loaded.tracking;
+  return chosen.simd;
+}
+
+}  // namespace armwright
