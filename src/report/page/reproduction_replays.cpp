@@ -3,12 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "problems/config_files.hpp"
-#include "report/page/motions.hpp"
+#include "report/page/replay_list.hpp"
 #include "report/page/robot_scene.hpp"
 #include "study/design_evaluation.hpp"
 
@@ -31,48 +29,16 @@ NamedDesign make_named_design(const std::string& name) {
           file.design};
 }
 
-// A case without a number is worse than all others.
-std::size_t find_worst(const std::vector<double>& errors) {
-  const auto none = std::ranges::find_if(errors, [](double error) { return std::isnan(error); });
-  const auto worst = none != errors.end() ? none : std::ranges::max_element(errors);
-  return static_cast<std::size_t>(worst - errors.begin());
-}
-
-// "test/2:17"
-ReplayRequest parse_case(const TrackingProblem& problem, const std::string& id) {
-  const std::size_t colon = id.rfind(':');
-  const auto number =
-      colon == std::string::npos ? std::nullopt : parse_integer(id.substr(colon + 1));
-  if (!number || *number < 0) {
-    throw Error(ErrorKind::usage,
-                fmt::format("case '{}': it must be the name of a set and a number, as in test/2:17",
-                            sanitize(id)));
-  }
-  const std::string set = id.substr(0, colon);
-  return {problem.get_set(set), static_cast<std::uint64_t>(*number),
-          fmt::format("{}, case {}", set, *number)};
-}
-
 std::vector<ReplayRequest> choose_cases(const TrackingProblem& problem, const ReplayConfig& replay,
                                         const PartResult& result, const PageOptions& options) {
-  std::vector<ReplayRequest> cases = {parse_case(problem, replay.training_case)};
-  cases.back().label += ", that of generation 1";
-  const auto add = [&](ReplayRequest request) {
-    const auto same = [&](const ReplayRequest& other) {
-      return other.set.name() == request.set.name() && other.number == request.number;
-    };
-    if (std::ranges::none_of(cases, same)) {
-      cases.push_back(std::move(request));
-    }
-  };
-  const std::size_t worst = find_worst(result.case_errors);
-  add({problem.get_set(result.test_set), worst,
-       fmt::format("{}, case {}: the worst of {} for {}", result.test_set, worst,
-                   result.case_errors.size(), result.part.label)});
+  ReplayList replays(problem);
+  replays.add(replay.training_case, "that of generation 1");
+  replays.add(result.test_set, find_worst_case(result.case_errors),
+              fmt::format("the worst of {} for {}", result.case_errors.size(), result.part.label));
   for (const std::string& id : options.cases) {
-    add(parse_case(problem, id));
+    replays.add(id, kAskedFor);
   }
-  return cases;
+  return replays.take();
 }
 
 // One for each load.

@@ -2,13 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "problems/config_files.hpp"
 #include "report/page/motions.hpp"
 #include "report/page/page_json.hpp"
+#include "report/page/replay_list.hpp"
 #include "report/page/robot_scene.hpp"
 #include "report/page/study_parts.hpp"
 #include "study/compare/final_check.hpp"
@@ -46,67 +46,34 @@ std::vector<BestDesign> find_best_designs(const StudyPlan& plan, const StudyResu
   return designs;
 }
 
-// The winner's worst case on the test set, one without a number before any with one; nothing if
-// the run's result is not there any more.
-std::optional<std::uint64_t> find_worst_case(const std::filesystem::path& run) {
-  if (!std::filesystem::exists(run / "result.json")) {
-    return std::nullopt;
-  }
-  const std::vector<double> errors = load_result(run).test.case_errors;
-  if (errors.empty()) {
-    return std::nullopt;
-  }
-  const auto worst = std::ranges::max_element(errors, {}, [](double error) {
-    return std::isnan(error) ? std::numeric_limits<double>::infinity() : error;
-  });
-  return static_cast<std::uint64_t>(worst - errors.begin());
-}
-
-// "test/2:17"
-ReplayRequest parse_case(const TrackingProblem& problem, const std::string& text) {
-  const std::size_t colon = text.rfind(':');
-  const auto number =
-      colon == std::string::npos ? std::nullopt : parse_integer(text.substr(colon + 1));
-  if (!number || *number < 0) {
-    throw Error(ErrorKind::usage,
-                fmt::format("'{}' is not a case to replay; a case is SET:NUMBER, as in 'test/2:17'",
-                            sanitize(text)));
-  }
-  const std::string set = text.substr(0, colon);
-  return {problem.get_set(set), static_cast<std::uint64_t>(*number),
-          fmt::format("{}, case {}", sanitize(set), *number)};
-}
-
 std::vector<ReplayRequest> choose_cases(const StudyPlan& plan, const StudyProblem& problem,
                                         std::span<const BestDesign> designs,
                                         const std::filesystem::path& folder,
                                         std::span<const std::string> asked_for) {
   const CaseSets& sets = problem.loaded.sets;
-  const TestSet set = problem.loaded.tracking->get_set(sets.test);
-  std::vector<ReplayRequest> cases = {{set, 0, fmt::format("{}, case 0", sets.test)}};
+  ReplayList replays(*problem.loaded.tracking);
+  replays.add(sets.test, 0, "the first of the test set");
   if (!designs.empty()) {
     const CellOutcome& cell = *designs.front().cell;
     const auto optimizer =
         std::ranges::find(plan.optimizers, cell.optimizer, &StudyOptimizer::label);
     const Cell where{static_cast<std::size_t>(&problem - plan.problems.data()),
                      static_cast<std::size_t>(optimizer - plan.optimizers.begin()), cell.replicate};
-    const auto worst = find_worst_case(folder / make_cell_path(plan, where));
-    if (worst && *worst > 0) {
-      cases.push_back({set, *worst,
-                       fmt::format("{}, case {}: the worst of {} for {}", sets.test, *worst,
-                                   sets.test_cases, designs.front().named.name)});
+    const auto run = folder / make_cell_path(plan, where);
+    // The run's result may have been removed: its cell.json says all that the study needs.
+    const auto errors = std::filesystem::exists(run / "result.json")
+                            ? load_result(run).test.case_errors
+                            : std::vector<double>{};
+    if (!errors.empty()) {
+      replays.add(
+          sets.test, find_worst_case(errors),
+          fmt::format("the worst of {} for {}", sets.test_cases, designs.front().named.name));
     }
   }
   for (const std::string& text : asked_for) {
-    ReplayRequest request = parse_case(*problem.loaded.tracking, text);
-    const bool is_new = std::ranges::none_of(cases, [&](const ReplayRequest& one) {
-      return one.set.name() == request.set.name() && one.number == request.number;
-    });
-    if (is_new) {
-      cases.push_back(std::move(request));
-    }
+    replays.add(text, kAskedFor);
   }
-  return cases;
+  return replays.take();
 }
 
 std::filesystem::path find_urdf_folder(const StudyProblem& problem) {

@@ -142,7 +142,7 @@ TEST_F(StudyPage, HasReplaysOfTheBestDesigns) {
   EXPECT_THAT(ids, Contains("test/2:3"));
   EXPECT_THAT(ids, Contains("test/9:17"));
   EXPECT_THAT(usage_error_of([&] { make("study", {.cases = {"test/2"}}); }),
-              HasSubstr("a case is SET:NUMBER"));
+              HasSubstr("it must be SET:NUMBER"));
 }
 
 TEST_F(StudyPage, SimulatesNothingIfSoAsked) {

@@ -75,12 +75,17 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
       return;
     }
     const drawn = figure.draw(current_look, picked);
+    // Computing a table can take long, and pointers move often: once a drawing.
+    let columns: ReturnType<typeof figure.table>['columns'] | null = null;
     chart.setOption(
       {
         ...(keep ? keep_selection(chart, drawn) : drawn),
         tooltip: {
           ...((drawn as { tooltip?: object }).tooltip ?? {}),
-          formatter: (hovered: Hovered | Hovered[]) => describe_point(hovered, figure.table(picked).columns),
+          formatter: (hovered: Hovered | Hovered[]) => {
+            columns ??= figure.table(picked).columns;
+            return describe_point(hovered, columns);
+          },
           backgroundColor: current_look.background,
           borderColor: current_look.muted,
           textStyle: { color: current_look.text },
