@@ -220,8 +220,16 @@ std::vector<std::string> describe_limits(const StudyPlan& plan, const StudyResul
         "The baselines (random search and a local search) were left out on request: whether any "
         "of these optimizers is better than those was not asked.");
   }
-  if (std::ranges::any_of(plan.problems,
-                          [](const StudyProblem& problem) { return problem.schedule.fresh; })) {
+  const auto has = [&](Schedule::Kind kind) {
+    return std::ranges::any_of(
+        plan.problems, [&](const StudyProblem& problem) { return problem.schedule.kind == kind; });
+  };
+  if (has(Schedule::Kind::coevolution)) {
+    sentences.push_back(
+        "Training cases were bred against every optimizer's own designs; budgets buy unequal "
+        "numbers of generations.");
+  }
+  if (has(Schedule::Kind::fresh)) {
     sentences.push_back(
         "Training cases were new in every generation, the same for all optimizers "
         "only generation by generation; budgets buy unequal numbers of "
