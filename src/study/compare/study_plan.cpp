@@ -81,18 +81,29 @@ Selection choose_selection(const StudyPlan& plan, const StudyProblem& problem) {
   return selection;
 }
 
-RunPlan make_run_plan(const StudyPlan& plan, const Cell& cell) {
+const LoadedProblem& get_problem(const StudyPlan& plan, const Cell& cell) {
   const StudyProblem& problem = plan.problems[cell.problem];
+  const auto& own = plan.optimizers[cell.optimizer].loaded;
+  const auto found = own.find(problem.label);
+  return found == own.end() ? problem.loaded : found->second;
+}
+
+Schedule get_schedule(const StudyPlan& plan, const Cell& cell) {
+  return plan.optimizers[cell.optimizer].schedule.value_or(plan.problems[cell.problem].schedule);
+}
+
+RunPlan make_run_plan(const StudyPlan& plan, const Cell& cell) {
   const StudyOptimizer& optimizer = plan.optimizers[cell.optimizer];
   RunPlan run;
   run.problem =
-      make_replicate(problem.loaded, make_training_set_name(plan, cell), draw_start(plan, cell));
+      make_replicate(get_problem(plan, cell), make_training_set_name(plan, cell),
+                               draw_start(plan, cell));
   run.optimizer = optimizer.row;
   run.options = optimizer.parsed;
   run.seed = make_seed(make_stream(plan, cell) + "/" + optimizer.label);
   run.budget = plan.budget;
-  run.schedule = problem.schedule;
-  run.selection = choose_selection(plan, problem);
+  run.schedule = get_schedule(plan, cell);
+  run.selection = choose_selection(plan, plan.problems[cell.problem]);
   return run;
 }
 
@@ -113,6 +124,10 @@ std::vector<std::int64_t> calc_checkpoints(std::int64_t budget, int cases, int c
   return {chosen.begin(), chosen.end()};
 }
 
+std::vector<std::int64_t> list_checkpoints(const StudyPlan& plan, std::size_t problem) {
+  return calc_checkpoints(plan.budget, plan.problems[problem].schedule.cases, plan.checkpoints);
+}
+
 StudyCost calc_cost(const StudyPlan& plan) {
   StudyCost cost;
   const auto runs = static_cast<std::int64_t>(plan.optimizers.size()) * plan.replicates;
@@ -125,9 +140,12 @@ StudyCost calc_cost(const StudyPlan& plan) {
         calc_checkpoints(plan.budget, problem.schedule.cases, plan.checkpoints).size());
     cost.cells += runs;
     cost.training += runs * plan.budget;
-    cost.validation += runs * judged * sets.validation_cases;
+    // With targets also the winners that there would have been at the checkpoints.
+    const bool has_targets = !plan.targets.empty();
+    cost.validation += runs * judged * (has_targets ? tested : 1) * sets.validation_cases;
     // The winner, the start, the incumbents at the checkpoints, a front.
-    cost.test += runs * (2 + tested + (fronts ? judged : 0)) * sets.test_cases;
+    cost.test += runs * (2 + tested * (has_targets ? 2 : 1) + (fronts ? judged : 0)) *
+                 sets.test_cases;
     if (!plan.final_engine.empty() && problem.loaded.tracking) {
       cost.test += static_cast<std::int64_t>(plan.optimizers.size()) * sets.test_cases;
     }

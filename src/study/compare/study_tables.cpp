@@ -10,6 +10,7 @@
 #include "base/text.hpp"
 #include "study/compare/case_sets.hpp"
 #include "study/compare/study_folder.hpp"
+#include "study/compare/target_tables.hpp"
 #include "study/compare/verdict.hpp"
 #include "study/json_values.hpp"
 #include "study/statistics/pareto.hpp"
@@ -111,10 +112,21 @@ std::string make_pair_rows(const StudyPlan& plan, const std::string& problem,
 
 constexpr const char* kOverall = "(over problems)";
 
+constexpr const char* kPairsHead =
+    "problem,a,b,pairs_that_differ,ties,rank_sum_a_worse,rank_sum_b_worse,exact,p,p_holm,"
+    "a12_a_better,wins_a,ties_a,losses_a,significant\n";
+
+// Of the shares of failing test cases.
+std::string make_failure_pairs(const StudyPlan& plan, const StudyResult& result) {
+  std::string csv = kPairsHead;
+  for (const ProblemResult& problem : result.problems) {
+    csv += make_pair_rows(plan, problem.label, problem.failure_pairs);
+  }
+  return csv;
+}
+
 std::string make_pairs(const StudyPlan& plan, const StudyResult& result) {
-  std::string csv =
-      "problem,a,b,pairs_that_differ,ties,rank_sum_a_worse,rank_sum_b_worse,exact,p,p_holm,"
-      "a12_a_better,wins_a,ties_a,losses_a,significant\n";
+  std::string csv = kPairsHead;
   for (const ProblemResult& problem : result.problems) {
     csv += make_pair_rows(plan, problem.label, problem.pairs);
   }
@@ -289,7 +301,8 @@ json pair_to_json(const StudyPlan& plan, const PairResult& pair) {
           {"significant", pair.is_significant()}};
 }
 
-json optimizer_to_json(const OptimizerResult& one) {
+json optimizer_to_json(const StudyPlan& plan, const ProblemResult& problem,
+                       const OptimizerResult& one) {
   json times = json::array();
   for (const RunningTime& time : one.running_times) {
     times.push_back(
@@ -312,6 +325,8 @@ json optimizer_to_json(const OptimizerResult& one) {
             {"mean_rank", one.mean_rank},
             {"anytime_area", one.anytime_area},
             {"running_times", times},
+            {"targets", target_times_to_json(plan, problem, one)},
+            {"failed_cases", failures_to_json(one)},
             {"final", nullptr}};
   if (const auto& check = one.final_check) {
     j["final"] = {{"engine", check->engine},
@@ -329,11 +344,16 @@ std::string to_json(const StudyPlan& plan, const StudyResult& result) {
   for (const ProblemResult& problem : result.problems) {
     json optimizers = json::object();
     for (std::size_t o = 0; o < problem.optimizers.size(); ++o) {
-      optimizers[plan.optimizers[o].label] = optimizer_to_json(problem.optimizers[o]);
+      optimizers[plan.optimizers[o].label] =
+          optimizer_to_json(plan, problem, problem.optimizers[o]);
     }
     json pairs = json::array();
     for (const PairResult& pair : problem.pairs) {
       pairs.push_back(pair_to_json(plan, pair));
+    }
+    json failure_pairs = json::array();
+    for (const PairResult& pair : problem.failure_pairs) {
+      failure_pairs.push_back(pair_to_json(plan, pair));
     }
     json order = json::array();
     for (const std::size_t o : problem.order) {
@@ -354,7 +374,8 @@ std::string to_json(const StudyPlan& plan, const StudyResult& result) {
                         {"order", order},
                         {"optimizers", optimizers},
                         {"friedman", friedman},
-                        {"pairs", pairs}});
+                        {"pairs", pairs},
+                        {"failure_pairs", failure_pairs}});
   }
   json pairs = json::array();
   for (const PairResult& pair : result.overall.pairs) {
@@ -397,6 +418,16 @@ void write_study_tables(const StudyPlan& plan, const StudyResult& result,
                                                   result.overall.performance_profiles));
   write("ranking.csv", make_ranking(plan, result));
   write("sets.csv", make_sets(plan));
+  if (std::ranges::any_of(result.problems, [](const ProblemResult& problem) {
+        return !problem.failure_pairs.empty();
+      })) {
+    write("failures.csv", make_failures_table(plan, result));
+    write("failure_pairs.csv", make_failure_pairs(plan, result));
+  }
+  if (!plan.targets.empty()) {
+    write("targets.csv", make_targets_table(plan, result));
+    write("choices.csv", make_choices_table(result));
+  }
   if (has_fronts(result)) {
     write("fronts.csv", make_fronts(result));
     write("attainment.csv", make_attainment(plan, result));
