@@ -121,7 +121,7 @@ void add_running_times(const StudyPlan& plan, const ProblemResult& problem,
     }
     if (time.reached > 0) {
       time.expected = calc_expected_running_time(trials);
-      time.interval = calc_resampled_running_time_interval(
+      time.interval = calc_expected_running_time_interval(
           trials, kIntervalLevel, kResamples, fmt::format("{}/running time {}", stream, share));
     }
     result.running_times.push_back(time);

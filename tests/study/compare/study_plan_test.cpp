@@ -47,8 +47,8 @@ TEST(StudyPlan, BaselinesTakePartUnlessAskedNotTo) {
 
 TEST(StudyPlan, NoOptimizerCanBeGivenMoreThanOthers) {
   const TemporaryFolder folder;
-  for (const std::string privilege : {"budget = 200", "replicates = 9", "schedule = 'fixed:2'",
-                                      "seed = 4", "start_spread = 0.5"}) {
+  for (const std::string privilege :
+       {"budget = 200", "replicates = 9", "seed = 4", "start_spread = 0.5"}) {
     const std::string toml = std::string(kHead) +
                              "optimizers = ['ga']\n[[optimizer]]\nname = 'cmaes'\n" + privilege +
                              "\n";
