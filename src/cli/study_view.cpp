@@ -68,10 +68,9 @@ std::string describe_problem(const StudyPlan& plan, const ProblemResult& problem
   if (has_cost) {
     columns.push_back({"cases to 1 %"});
   }
-  const bool some_fail =
-      std::ranges::any_of(problem.optimizers, [](const OptimizerResult& one) {
-        return std::ranges::any_of(one.failure_shares, [](double share) { return share > 0; });
-      });
+  const bool some_fail = std::ranges::any_of(problem.optimizers, [](const OptimizerResult& one) {
+    return std::ranges::any_of(one.failure_shares, [](double share) { return share > 0; });
+  });
   if (some_fail) {
     columns.push_back({"cases failed"});
   }
@@ -128,17 +127,15 @@ std::string describe_targets(const StudyPlan& plan, const StudyProblem& problem,
                              const ProblemResult& result, const Style& style) {
   std::string text;
   for (std::size_t t = 0; t < result.fixed_targets.size(); ++t) {
-    std::vector<Column> columns = {
-        {"optimizer", false}, {"runs"}, {"expected cases"}, {"95 %"}};
+    std::vector<Column> columns = {{"optimizer", false}, {"runs"}, {"expected cases"}, {"95 %"}};
     if (!plan.reference.empty()) {
       columns.push_back({"times " + plan.reference});
       columns.push_back({"95 %"});
     }
     Table table(columns);
     std::vector<std::size_t> order = result.order;
-    std::ranges::stable_sort(order, {}, [&](std::size_t o) {
-      return result.optimizers[o].target_times[t].expected;
-    });
+    std::ranges::stable_sort(
+        order, {}, [&](std::size_t o) { return result.optimizers[o].target_times[t].expected; });
     for (const std::size_t o : order) {
       const TargetTime& time = result.optimizers[o].target_times[t];
       const auto format_interval = [](const Interval& interval, auto format) {
@@ -246,13 +243,14 @@ std::string describe_study(const StudyPlan& plan, const StudyResult& result,
       text += "  " + line + "\n";
     }
   }
-  return text + fmt::format(
-                    "\nA12: how often a run of the table's first is better than one of this "
-                    "optimizer's. p: of the\ndifference in pairs (Wilcoxon, after Holm); * below "
-                    "{}. Cases to 1 %: expected, with restarts,\nuntil 1 % of the way from the "
-                    "start to the best known is left. Cases failed: mean share of test cases with an "
-                    "error above\n100 mm.\nTables: {}\n",
-                    kSignificance, sanitize((folder / "tables").string()));
+  return text +
+         fmt::format(
+             "\nA12: how often a run of the table's first is better than one of this "
+             "optimizer's. p: of the\ndifference in pairs (Wilcoxon, after Holm); * below "
+             "{}. Cases to 1 %: expected, with restarts,\nuntil 1 % of the way from the "
+             "start to the best known is left. Cases failed: mean share of test cases with an "
+             "error above\n100 mm.\nTables: {}\n",
+             kSignificance, sanitize((folder / "tables").string()));
 }
 
 }  // namespace armwright

@@ -58,8 +58,9 @@ CurvePoint make_point(const RunPlan& run, std::int64_t budget, const Evaluation*
 }
 
 // What the designs along the way are worth on the test set. False if stopped.
-bool test_progress(const StudyPlan& plan, const Cell& cell, const RunPlan& run, const RunResult& result,
-                   const CellRequest& where, StopSignal& stop, CellOutcome& outcome) {
+bool test_progress(const StudyPlan& plan, const Cell& cell, const RunPlan& run,
+                   const RunResult& result, const CellRequest& where, StopSignal& stop,
+                   CellOutcome& outcome) {
   const ProblemDescription& problem = run.problem.problem->description();
   const auto journal = read_journal(where.folder / "journal");
   const auto incumbents = find_incumbents(problem, journal.training, run.schedule.fresh);

@@ -76,8 +76,9 @@ struct CellRequest {
 std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
                                     const CellRequest& where, StopSignal& stop,
                                     RunObserver& observer);
-// What is recorded of a cell; nothing if it has not ended, or was recorded before the plan asked for
-// what it lacks, which run_cell() adds from its journal. Error{bad_data} if it is another one's.
+// What is recorded of a cell; nothing if it has not ended, or was recorded before the plan asked
+// for what it lacks, which run_cell() adds from its journal. Error{bad_data} if it is another
+// one's.
 std::optional<CellOutcome> load_cell(const StudyPlan& plan, const Cell& cell,
                                      const std::filesystem::path& study);
 

@@ -83,8 +83,7 @@ const Evaluation* DesignBench::find(std::span<const double> x) const {
 }
 
 std::uint64_t count_failures(const LoadedProblem& problem, const Evaluation& evaluation) {
-  const double limit =
-      problem.tracking ? kFailureError_m : std::numeric_limits<double>::infinity();
+  const double limit = problem.tracking ? kFailureError_m : std::numeric_limits<double>::infinity();
   return summarize(evaluation.case_errors, limit).failures;
 }
 

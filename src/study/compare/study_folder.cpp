@@ -251,7 +251,8 @@ void StudyFolder::extend(const StudyPlan& plan, const std::string& text) {
   if (replicates <= plan.replicates) {
     now["replicates"] = replicates;
   }
-  // What is asked of the cells may change: what they lack for the answer is made from their journals.
+  // What is asked of the cells may change: what they lack for the answer is made from their
+  // journals.
   constexpr const char* kQuestions[] = {"value", "reference", "target"};
   if (std::ranges::any_of(kQuestions, [&](const char* key) {
         return recorded.value(key, json()) != now.value(key, json());

@@ -14,7 +14,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kTrainingTables[] = {"racing", "schedule", "perturbation"};
+// How training goes, and what kind of controller the designs have. All else is what is asked of a
+// design.
+constexpr const char* kMethodTables[] = {"racing", "schedule", "perturbation", "control"};
 
 std::string get_table(std::string_view setting) {
   return std::string(setting.substr(0, setting.find_first_of(".=")));
@@ -31,10 +33,10 @@ bool is_judged_perturbed(const LoadedProblem& problem) {
   return perturbation != resolved.end() && perturbation->value("apply_to", "all") != "training";
 }
 
-// The configuration without what a method may change.
-json leave_training_out(const LoadedProblem& problem) {
+// The configuration without what may be a method's own.
+json leave_method_out(const LoadedProblem& problem) {
   json resolved = json::parse(problem.resolved_json);
-  for (const char* table : kTrainingTables) {
+  for (const char* table : kMethodTables) {
     resolved.erase(table);
   }
   return resolved;
@@ -50,10 +52,9 @@ LoadedProblem load_method(const StudyProblem& problem, const StudyOptimizer& opt
   }
   LoadedProblem loaded = load_problem(problem.name, settings);
   const bool perturbed = is_judged_perturbed(loaded) || is_judged_perturbed(problem.loaded);
-  const bool is_about_plants =
-      std::ranges::any_of(optimizer.settings, [](const std::string& setting) {
-        return get_table(setting) == "perturbation";
-      });
+  const bool is_about_plants = std::ranges::any_of(
+      optimizer.settings,
+      [](const std::string& setting) { return get_table(setting) == "perturbation"; });
   if (perturbed && is_about_plants) {
     throw Error(ErrorKind::usage,
                 fmt::format("optimizer {} on {}: its perturbation would not be of training alone, "
@@ -61,9 +62,9 @@ LoadedProblem load_method(const StudyProblem& problem, const StudyOptimizer& opt
                             "add perturbation.apply_to=training",
                             optimizer.label, problem.label));
   }
-  if (leave_training_out(loaded) != leave_training_out(problem.loaded)) {
+  if (leave_method_out(loaded) != leave_method_out(problem.loaded)) {
     throw Error(ErrorKind::usage,
-                fmt::format("optimizer {} on {}: its settings change more than training",
+                fmt::format("optimizer {} on {}: its settings change what is asked of a design",
                             optimizer.label, problem.label));
   }
   return loaded;
@@ -78,12 +79,14 @@ std::vector<std::string> read_method_settings(const ConfigTable& optimizer) {
   const std::vector<std::string> settings = optimizer.get_strings("set");
   for (const std::string& setting : settings) {
     const std::string key = get_key(setting);
-    if (std::ranges::find(kTrainingTables, get_table(setting)) == std::end(kTrainingTables)) {
+    if (std::ranges::find(kMethodTables, get_table(setting)) == std::end(kMethodTables)) {
       optimizer.refuse(
-          "set", fmt::format("{} is the same for every optimizer of a comparison. Of an optimizer's "
-                             "own may be how its budget is spent in training: schedule = \"...\", "
-                             "and in `set` racing.*, schedule.* and perturbation.*",
-                             sanitize(key)));
+          "set",
+          fmt::format("{} is the same for every optimizer of a comparison. Of an optimizer's "
+                      "own may be how its budget is spent in training and what controls its "
+                      "designs: schedule = \"KIND:K\", and in `set` racing.*, schedule.*, "
+                      "perturbation.* and control.*",
+                      sanitize(key)));
     }
     if (key == "schedule.kind" || key == "schedule.cases" || key == "schedule.fixed_cases") {
       optimizer.refuse("set", fmt::format("for {} write schedule = \"KIND:K\"", key));
@@ -105,9 +108,8 @@ void load_methods(StudyPlan& plan) {
 void read_targets(const ConfigTable& table, StudyPlan& plan) {
   constexpr std::int64_t kMostFailures = 1'000'000;
   const std::vector<std::string> values = {"objective", "failures"};
-  plan.value = table.get_choice("value", values, "objective") == "failures"
-                   ? StudyValue::failures
-                   : StudyValue::objective;
+  plan.value = table.get_choice("value", values, "objective") == "failures" ? StudyValue::failures
+                                                                            : StudyValue::objective;
   plan.reference = table.get_string("reference", "");
   for (const ConfigTable& one : table.get_tables_or_empty("target")) {
     StudyTarget target;
@@ -138,8 +140,8 @@ void check_targets(StudyPlan& plan) {
   std::vector<std::string> labels;
   for (StudyTarget& target : plan.targets) {
     if (target.label.empty() || sanitize(target.label) != target.label) {
-      throw Error(ErrorKind::usage, fmt::format("target label '{}' is not printable text",
-                                                sanitize(target.label)));
+      throw Error(ErrorKind::usage,
+                  fmt::format("target label '{}' is not printable text", sanitize(target.label)));
     }
     if (std::ranges::find(labels, target.label) != labels.end()) {
       throw Error(ErrorKind::usage,
@@ -185,9 +187,9 @@ void check_targets(StudyPlan& plan) {
     optimizers.push_back(optimizer.label);
   }
   if (std::ranges::find(optimizers, plan.reference) == optimizers.end()) {
-    throw Error(ErrorKind::usage, fmt::format("reference: {}",
-                                              describe_unknown("optimizer of the study",
-                                                               plan.reference, optimizers)));
+    throw Error(ErrorKind::usage,
+                fmt::format("reference: {}", describe_unknown("optimizer of the study",
+                                                              plan.reference, optimizers)));
   }
   if (plan.targets.empty()) {
     throw Error(ErrorKind::usage,

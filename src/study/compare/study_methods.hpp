@@ -14,7 +14,8 @@ void read_targets(const ConfigTable& table, StudyPlan& plan);
 // Completes and checks them, once problems and optimizers are loaded. Error{usage}.
 void check_targets(StudyPlan& plan);
 
-// `set` of an [[optimizer]]. Error{usage} for a key that would change more than training.
+// `set` of an [[optimizer]]. Error{usage} for a key that would change what is asked of a
+// design.
 std::vector<std::string> read_method_settings(const ConfigTable& optimizer);
 // Loads every problem anew for the optimizers with settings of their own. Error{usage} if one would
 // be judged in another way than the others.

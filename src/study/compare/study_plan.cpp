@@ -22,19 +22,42 @@ std::string make_stream(const StudyPlan& plan, const Cell& cell) {
                      cell.replicate);
 }
 
-// A draw from the box of the given share about the problem's own start, as far as that lies within
+// A draw from the box of the given share about a problem's own start, as far as that lies within
 // the bounds.
-std::vector<double> draw_start(const StudyPlan& plan, const Cell& cell) {
-  const SearchSpace space(plan.problems[cell.problem].loaded.problem->description().variables);
+std::vector<double> draw_near_start(std::span<const DecisionVariable> variables,
+                                    double start_spread, const std::string& stream) {
+  const SearchSpace space({variables.begin(), variables.end()});
   std::vector<double> lower = space.lower();
   std::vector<double> upper = space.upper();
   for (std::size_t i = 0; i < space.dimension(); ++i) {
-    const double reach = plan.start_spread * (upper[i] - lower[i]) / 2;
+    const double reach = start_spread * (upper[i] - lower[i]) / 2;
     lower[i] = std::max(lower[i], space.start()[i] - reach);
     upper[i] = std::min(upper[i], space.start()[i] + reach);
   }
-  RandomStream random(make_stream(plan, cell) + "/start");
+  RandomStream random(stream);
   return space.to_point(space.draw_between(lower, upper, random));
+}
+
+// The same for every optimizer of a replicate. A method whose designs have other variables shares
+// those that go by the same name; each of the others has a stream of its own.
+std::vector<double> draw_start(const StudyPlan& plan, const Cell& cell) {
+  const auto& variables = plan.problems[cell.problem].loaded.problem->description().variables;
+  const auto& own = get_problem(plan, cell).problem->description().variables;
+  const std::string stream = make_stream(plan, cell) + "/start";
+  const std::vector<double> start = draw_near_start(variables, plan.start_spread, stream);
+  if (std::ranges::equal(variables, own, {}, &DecisionVariable::name, &DecisionVariable::name)) {
+    return start;
+  }
+  std::vector<double> own_start;
+  for (const DecisionVariable& variable : own) {
+    const auto shared = std::ranges::find(variables, variable.name, &DecisionVariable::name);
+    const double value =
+        shared != variables.end()
+            ? start[static_cast<std::size_t>(shared - variables.begin())]
+            : draw_near_start({&variable, 1}, plan.start_spread, stream + "/" + variable.name)[0];
+    own_start.push_back(std::clamp(value, variable.lower, variable.upper));
+  }
+  return own_start;
 }
 
 // 63 bits of the cell's name, so that it can be typed as --seed.
@@ -95,8 +118,7 @@ Schedule get_schedule(const StudyPlan& plan, const Cell& cell) {
 RunPlan make_run_plan(const StudyPlan& plan, const Cell& cell) {
   const StudyOptimizer& optimizer = plan.optimizers[cell.optimizer];
   RunPlan run;
-  run.problem =
-      make_replicate(get_problem(plan, cell), make_training_set_name(plan, cell),
+  run.problem = make_replicate(get_problem(plan, cell), make_training_set_name(plan, cell),
                                draw_start(plan, cell));
   run.optimizer = optimizer.row;
   run.options = optimizer.parsed;
@@ -144,8 +166,8 @@ StudyCost calc_cost(const StudyPlan& plan) {
     const bool has_targets = !plan.targets.empty();
     cost.validation += runs * judged * (has_targets ? tested : 1) * sets.validation_cases;
     // The winner, the start, the incumbents at the checkpoints, a front.
-    cost.test += runs * (2 + tested * (has_targets ? 2 : 1) + (fronts ? judged : 0)) *
-                 sets.test_cases;
+    cost.test +=
+        runs * (2 + tested * (has_targets ? 2 : 1) + (fronts ? judged : 0)) * sets.test_cases;
     if (!plan.final_engine.empty() && problem.loaded.tracking) {
       cost.test += static_cast<std::int64_t>(plan.optimizers.size()) * sets.test_cases;
     }

@@ -8,9 +8,9 @@
 //
 // There is one budget, in simulated training cases, for all optimizers: a plan in which one of them
 // would get more cannot be written. How the budget is spent (schedule, racing, perturbed plants in
-// training) is the problem's, unless an optimizer's entry says otherwise and so makes a method of
-// it: "ga on one fresh case a generation" beside "ga on five fixed ones". What a design is worth is
-// the same for all.
+// training), and what kind of controller designs have, is the problem's, unless an optimizer's
+// entry says otherwise and so makes a method of it: "ga on one fresh case a generation" beside "ga
+// on five fixed ones". What is asked of a design is the same for all.
 #pragma once
 
 #include <cstdint>
@@ -41,8 +41,8 @@ struct StudyOptimizer {
   bool baseline = false;             // not asked for: every comparison has it unless told otherwise
   OptimizerRow row;
   Options parsed;
-  // A method's own way to spend the budget: a schedule instead of the problem's, and KEY=VALUE over
-  // the problem's settings that change nothing but training.
+  // A method's own: a schedule instead of the problem's, and KEY=VALUE over the problem's settings,
+  // which change nothing of what is asked of a design (study_methods.hpp).
   std::optional<Schedule> schedule;
   std::vector<std::string> settings;
   std::map<std::string, LoadedProblem> loaded;  // with these settings, by the problem's label
@@ -50,9 +50,9 @@ struct StudyOptimizer {
 
 // A fixed target: what a design must be worth on the test set, at least one of the two.
 struct StudyTarget {
-  std::string label;                  // unique in the plan
-  std::vector<std::string> problems;  // labels
-  std::optional<double> value;        // the objective at most
+  std::string label;                     // unique in the plan
+  std::vector<std::string> problems;     // labels
+  std::optional<double> value;           // the objective at most
   std::optional<std::int64_t> failures;  // this many failing test cases at most
 };
 

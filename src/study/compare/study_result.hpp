@@ -115,11 +115,11 @@ struct ProblemResult {
   std::vector<std::int64_t> checkpoints;
   std::vector<double> targets;
   std::vector<OptimizerResult> optimizers;
-  std::optional<FriedmanTest> friedman;  // blocks are replicates; nothing of fewer than 2
-  std::vector<PairResult> pairs;         // every two, Holm's correction over all of the problem
+  std::optional<FriedmanTest> friedman;    // blocks are replicates; nothing of fewer than 2
+  std::vector<PairResult> pairs;           // every two, Holm's correction over all of the problem
   std::vector<std::size_t> fixed_targets;  // of the plan, those that are asked of this problem
   std::vector<PairResult> failure_pairs;   // as `pairs`, of failure shares; of arms alone
-  std::vector<std::size_t> order;        // by median, then mean rank, then the plan's order
+  std::vector<std::size_t> order;          // by median, then mean rank, then the plan's order
 };
 
 struct Profile {

@@ -37,11 +37,11 @@ TargetTime make_time(const std::string& stream, std::vector<Trial> trials) {
 
 Trial make_target_trial(const StudyPlan& plan, const StudyTarget& target, const CellOutcome& cell) {
   // One that gave up early has spent no more than that.
-  Trial trial{.cost = static_cast<double>(
-                  cell.cases > 0 ? static_cast<std::int64_t>(cell.cases) : plan.budget),
+  Trial trial{.cost = static_cast<double>(cell.cases > 0 ? static_cast<std::int64_t>(cell.cases)
+                                                         : plan.budget),
               .reached = false};
-  for (auto point = cell.choices.rbegin();
-       point != cell.choices.rend() && meets(target, *point); ++point) {
+  for (auto point = cell.choices.rbegin(); point != cell.choices.rend() && meets(target, *point);
+       ++point) {
     trial = {.cost = static_cast<double>(point->budget), .reached = true};
   }
   return trial;
@@ -84,9 +84,9 @@ void add_targets(const StudyPlan& plan, std::span<const std::vector<const CellOu
 }
 
 double calc_failure_share(const CellOutcome& cell) {
-  return cell.errors.cases == 0 ? kInfinity
-                                : static_cast<double>(cell.errors.failures) /
-                                      static_cast<double>(cell.errors.cases);
+  return cell.errors.cases == 0
+             ? kInfinity
+             : static_cast<double>(cell.errors.failures) / static_cast<double>(cell.errors.cases);
 }
 
 CellOutcome count_failures_only(CellOutcome cell, const CaseSets& sets) {

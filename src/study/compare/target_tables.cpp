@@ -22,8 +22,9 @@ json interval_to_json(const Interval& interval) {
 }
 
 double calc_share(const TargetTime& time) {
-  return time.trials.empty() ? 0 : static_cast<double>(time.reached) /
-                                        static_cast<double>(time.trials.size());
+  return time.trials.empty()
+             ? 0
+             : static_cast<double>(time.reached) / static_cast<double>(time.trials.size());
 }
 
 }  // namespace
@@ -79,13 +80,12 @@ std::string make_failures_table(const StudyPlan& plan, const StudyResult& result
       if (one.failure_shares.empty()) {
         continue;
       }
-      csv += fmt::format("{},{},{},{},{},{},{},{},{}\n", quote_csv(problem.label),
-                         quote_csv(plan.optimizers[o].label), one.failure_shares.size(),
-                         plan.problems[p].loaded.sets.test_cases,
-                         std::ranges::count(one.failure_shares, 0.0),
-                         number(one.mean_failure_share), number(one.failure_spread.median),
-                         number(one.failure_spread.lower_quartile),
-                         number(one.failure_spread.upper_quartile));
+      csv += fmt::format(
+          "{},{},{},{},{},{},{},{},{}\n", quote_csv(problem.label),
+          quote_csv(plan.optimizers[o].label), one.failure_shares.size(),
+          plan.problems[p].loaded.sets.test_cases, std::ranges::count(one.failure_shares, 0.0),
+          number(one.mean_failure_share), number(one.failure_spread.median),
+          number(one.failure_spread.lower_quartile), number(one.failure_spread.upper_quartile));
     }
   }
   return csv;

@@ -152,10 +152,9 @@ std::vector<std::string> describe_problem(const StudyPlan& plan, const ProblemRe
 
 // By the share of test cases in which they fail, beside what the study compares.
 std::vector<std::string> describe_failures(const StudyPlan& plan, const ProblemResult& problem) {
-  const bool some_fail =
-      std::ranges::any_of(problem.optimizers, [](const OptimizerResult& one) {
-        return std::ranges::any_of(one.failure_shares, [](double share) { return share > 0; });
-      });
+  const bool some_fail = std::ranges::any_of(problem.optimizers, [](const OptimizerResult& one) {
+    return std::ranges::any_of(one.failure_shares, [](double share) { return share > 0; });
+  });
   if (plan.value == StudyValue::failures || !some_fail || problem.failure_pairs.empty() ||
       !can_be_significant(plan.replicates, problem.failure_pairs.size())) {
     return {};
@@ -256,7 +255,8 @@ std::vector<std::string> describe_limits(const StudyPlan& plan, const StudyResul
   });
   if (methods > 0) {
     sentences.push_back(
-        "Methods spend the same budget in ways of their own (schedules, racing, perturbed plants in "
+        "Methods spend the same budget in ways of their own (schedules, racing, perturbed plants "
+        "in "
         "training); what their designs are worth is measured alike.");
   }
   if (std::ranges::any_of(plan.problems,

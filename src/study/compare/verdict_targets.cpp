@@ -27,10 +27,10 @@ std::string describe_time(const StudyPlan& plan, const std::string& label, const
                   format_cases(time.expected), format_cases(time.interval.lower),
                   format_cases(time.interval.upper), time.reached, time.trials.size());
   if (time.ratio && time.ratio->ratio && label != plan.reference) {
-    text += fmt::format(", {} times what {} needs (95 %: {} to {})",
-                        format_ratio(*time.ratio->ratio), plan.reference,
-                        format_ratio(time.ratio->interval.lower),
-                        format_ratio(time.ratio->interval.upper));
+    text +=
+        fmt::format(", {} times what {} needs (95 %: {} to {})", format_ratio(*time.ratio->ratio),
+                    plan.reference, format_ratio(time.ratio->interval.lower),
+                    format_ratio(time.ratio->interval.upper));
   }
   return text;
 }
@@ -55,8 +55,7 @@ std::vector<std::string> describe_one(const StudyPlan& plan, const StudyProblem&
   };
   const std::string where =
       fmt::format("To the target {} on {}",
-                  describe_target(problem, plan.targets[result.fixed_targets[t]]),
-                  result.label);
+                  describe_target(problem, plan.targets[result.fixed_targets[t]]), result.label);
   std::size_t best = 0;
   for (std::size_t o = 1; o < result.optimizers.size(); ++o) {
     best = get_time(o).expected < get_time(best).expected ? o : best;
@@ -64,8 +63,8 @@ std::vector<std::string> describe_one(const StudyPlan& plan, const StudyProblem&
   if (!std::isfinite(get_time(best).expected)) {
     return {where + " no run of any optimizer came."};
   }
-  std::vector<std::string> sentences = {
-      fmt::format("{} {}.", where, describe_time(plan, plan.optimizers[best].label, get_time(best)))};
+  std::vector<std::string> sentences = {fmt::format(
+      "{} {}.", where, describe_time(plan, plan.optimizers[best].label, get_time(best)))};
   const auto reference = std::ranges::find(plan.optimizers, plan.reference, &StudyOptimizer::label);
   if (!plan.reference.empty() && reference != plan.optimizers.end()) {
     const auto r = static_cast<std::size_t>(reference - plan.optimizers.begin());
@@ -77,9 +76,8 @@ std::vector<std::string> describe_one(const StudyPlan& plan, const StudyProblem&
       return time.ratio && time.ratio->interval.upper <= kFewSimulations;
     });
     if (!few.empty()) {
-      sentences.push_back(
-          fmt::format("A tenth of {}'s or less: {}; with the whole interval: {}.", plan.reference,
-                      few, surely.empty() ? "none" : surely));
+      sentences.push_back(fmt::format("A tenth of {}'s or less: {}; with the whole interval: {}.",
+                                      plan.reference, few, surely.empty() ? "none" : surely));
     }
   }
   const std::string never =
@@ -95,8 +93,7 @@ std::vector<std::string> describe_one(const StudyPlan& plan, const StudyProblem&
 std::string describe_target(const StudyProblem& problem, const StudyTarget& target) {
   std::vector<std::string> conditions;
   if (target.value) {
-    const Quantity quantity =
-        get_scalar_quantity(problem.loaded.problem->description().objectives);
+    const Quantity quantity = get_scalar_quantity(problem.loaded.problem->description().objectives);
     conditions.push_back(fmt::format("{} at most {:.4g}{}", quantity.name, *target.value,
                                      quantity.unit == "1" ? "" : " " + quantity.unit));
   }
@@ -107,8 +104,7 @@ std::string describe_target(const StudyProblem& problem, const StudyTarget& targ
   return fmt::format("'{}' ({})", target.label, join(conditions, ", "));
 }
 
-std::vector<std::string> describe_target_verdict(const StudyPlan& plan,
-                                                 const StudyProblem& problem,
+std::vector<std::string> describe_target_verdict(const StudyPlan& plan, const StudyProblem& problem,
                                                  const ProblemResult& result) {
   std::vector<std::string> sentences;
   for (std::size_t t = 0; t < result.fixed_targets.size(); ++t) {

@@ -10,8 +10,7 @@ namespace armwright {
 
 // "'published' (objective at most 0.0428, at most 0 of 500 test cases failing)"
 std::string describe_target(const StudyProblem& problem, const StudyTarget& target);
-std::vector<std::string> describe_target_verdict(const StudyPlan& plan,
-                                                 const StudyProblem& problem,
+std::vector<std::string> describe_target_verdict(const StudyPlan& plan, const StudyProblem& problem,
                                                  const ProblemResult& result);
 
 }  // namespace armwright

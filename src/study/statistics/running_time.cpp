@@ -147,8 +147,7 @@ RunningTimeRatio calc_running_time_ratio(std::span<const Trial> trials,
     throw std::invalid_argument("running time: a ratio needs pairs of trials");
   }
   RunningTimeRatio result;
-  result.ratio =
-      divide(calc_expected_running_time(trials), calc_expected_running_time(reference));
+  result.ratio = divide(calc_expected_running_time(trials), calc_expected_running_time(reference));
   RandomStream random(stream);
   std::vector<double> least, most;
   for (int resample = 0; resample < resamples; ++resample) {

@@ -52,8 +52,8 @@ Interval calc_expected_running_time_interval(std::span<const Trial> trials, doub
 Interval calc_resampled_running_time_interval(std::span<const Trial> trials, double level,
                                               int resamples, std::string_view stream);
 
-// ERT(trials) / ERT(reference), where the trials with the same number are a pair (one replicate) and
-// are drawn together.
+// ERT(trials) / ERT(reference), where the trials with the same number are a pair (one replicate)
+// and are drawn together.
 struct RunningTimeRatio {
   std::optional<double> ratio;  // nothing if neither ever reached the target
   // A resample in which neither did says nothing: it counts as 0 for the lower end and as infinite

@@ -99,8 +99,8 @@ failures = 0
   EXPECT_EQ(result.problems[0].quantity.name, "share of failed test cases");
   EXPECT_THAT(describe_verdict(plan, result),
               Contains(HasSubstr("Methods spend the same budget in ways of their own")));
-  const auto manifest = read_tree(temporary_ / "study" / make_cell_path(plan, {0, 1, 1}))
-                            .at("manifest.json");
+  const auto manifest =
+      read_tree(temporary_ / "study" / make_cell_path(plan, {0, 1, 1})).at("manifest.json");
   EXPECT_THAT(manifest, HasSubstr("\"kind\": \"fresh\""));
 }
 

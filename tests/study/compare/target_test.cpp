@@ -130,8 +130,7 @@ TEST(FailureShares, AreComparedAsValuesAre) {
     }
   }
   const ProblemResult result = analyze_problem(plan, 0, cells);
-  EXPECT_THAT(result.optimizers[0].failure_shares,
-              ElementsAre(0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7));
+  EXPECT_THAT(result.optimizers[0].failure_shares, ElementsAre(0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7));
   EXPECT_DOUBLE_EQ(result.optimizers[0].mean_failure_share, 0.4);
   ASSERT_EQ(result.failure_pairs.size(), 1u);
   EXPECT_EQ(result.failure_pairs[0].test.p_value, 2.0 / 128);  // all seven in one direction
@@ -222,14 +221,15 @@ value = -1.0
   }
   const auto verdict = describe_verdict(plan, result);
   EXPECT_THAT(verdict, Contains(HasSubstr("To the target 'near' (")));
-  EXPECT_THAT(verdict, Contains(HasSubstr("To the target 'nowhere' (value at most -1) on rosenbrock "
-                                          "no run of any optimizer came.")));
+  EXPECT_THAT(verdict,
+              Contains(HasSubstr("To the target 'nowhere' (value at most -1) on rosenbrock "
+                                 "no run of any optimizer came.")));
 }
 
 TEST_F(StudyTest, AResolvedPlanWithTargetsAndMethodsReadsBackAsItself) {
   const TemporaryFolder folder;
-  const StudyPlan plan = load(folder, std::string("value = \"failures\"\nreference = \"one\"\n") +
-                                          kArm + R"(
+  const StudyPlan plan =
+      load(folder, std::string("value = \"failures\"\nreference = \"one\"\n") + kArm + R"(
 [[optimizer]]
 name = "ga"
 label = "one"
