@@ -42,7 +42,7 @@ void add_training_case(const RecordedRun& run, Replays& replays) {
   const auto second = std::ranges::find_if(training, [&](const EvaluationRecord& record) {
     return record.generation > training.front().generation;
   });
-  const bool has_second = run.schedule.fresh && second != training.end();
+  const bool has_second = run.schedule.changes_cases() && second != training.end();
   const CaseBlock& cases = (has_second ? *second : training.front()).cases;
   replays.add(cases.set, cases.numbers.front(),
               has_second ? "what the second generation was trained on" : "the first of training");

@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <numeric>
+#include <span>
 
 #include "base/error.hpp"
+#include "study/case_breeder.hpp"
 
 namespace armwright {
 namespace {
@@ -16,17 +19,23 @@ using Visitor = std::function<void(UsedSet& set, const std::vector<TestCase>& ca
 void visit_sets(const StudyPlan& plan, const Visitor& visit) {
   for (std::size_t p = 0; p < plan.problems.size(); ++p) {
     const StudyProblem& problem = plan.problems[p];
-    const auto meet = [&](const char* role, const std::string& name, int count) {
-      UsedSet set{problem.label, role, name, count, ""};
+    const auto meet_numbers = [&](const char* role, const std::string& name,
+                                  std::span<const std::uint64_t> numbers) {
+      UsedSet set{problem.label, role, name, static_cast<int>(numbers.size()), ""};
       std::vector<TestCase> cases;
       if (problem.loaded.tracking) {
         const TestSet source = problem.loaded.tracking->get_set(name);
-        for (int i = 0; i < count; ++i) {
-          cases.push_back(source.make_case(static_cast<std::uint64_t>(i)));
+        for (const std::uint64_t number : numbers) {
+          cases.push_back(source.make_case(number));
         }
         set.sha256 = calc_content_hash(cases);
       }
       visit(set, cases);
+    };
+    const auto meet = [&](const char* role, const std::string& name, int count) {
+      std::vector<std::uint64_t> numbers(static_cast<std::size_t>(count));
+      std::iota(numbers.begin(), numbers.end(), std::uint64_t{0});
+      meet_numbers(role, name, numbers);
     };
     const CaseSets& sets = problem.loaded.sets;
     meet("test", sets.test, sets.test_cases);
@@ -34,9 +43,17 @@ void visit_sets(const StudyPlan& plan, const Visitor& visit) {
     for (int replicate = 1; replicate <= plan.replicates; ++replicate) {
       // Of fresh cases no more than the budget pays for.
       constexpr std::int64_t kMostHashed = 10'000;
-      const auto cases = problem.schedule.fresh ? std::min(plan.budget, kMostHashed)
-                                                : std::int64_t{problem.schedule.cases};
-      meet("training", make_training_set_name(plan, {p, 0, replicate}), static_cast<int>(cases));
+      const std::string name =
+          get_training_set(make_training_set_name(plan, {p, 0, replicate}), problem.schedule);
+      if (problem.schedule.kind == Schedule::Kind::coevolution) {
+        // What they will be bred into is nobody's to know; they come from a space of their own.
+        meet_numbers("training", name, CaseBreeder(name, problem.schedule.cases).genomes());
+        continue;
+      }
+      const auto cases = problem.schedule.kind == Schedule::Kind::fresh
+                             ? std::min(plan.budget, kMostHashed)
+                             : std::int64_t{problem.schedule.cases};
+      meet("training", name, static_cast<int>(cases));
     }
   }
 }

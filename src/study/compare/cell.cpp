@@ -106,7 +106,7 @@ bool test_progress(const StudyPlan& plan, const RunPlan& run, const RunResult& r
                    const CellRequest& where, StopSignal& stop, CellOutcome& outcome) {
   const ProblemDescription& problem = run.problem.problem->description();
   const auto journal = read_journal(where.folder / "journal");
-  const auto incumbents = find_incumbents(problem, journal.training, run.schedule.fresh);
+  const auto incumbents = find_incumbents(problem, journal.training, run.schedule.changes_cases());
   const auto checkpoints = calc_checkpoints(plan.budget, run.schedule.cases, plan.checkpoints);
   const auto find_incumbent = [&](std::int64_t budget) {
     const auto after = std::ranges::upper_bound(incumbents, budget, {}, &Incumbent::cases);

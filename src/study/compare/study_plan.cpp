@@ -92,6 +92,7 @@ RunPlan make_run_plan(const StudyPlan& plan, const Cell& cell) {
   run.seed = make_seed(make_stream(plan, cell) + "/" + optimizer.label);
   run.budget = plan.budget;
   run.schedule = problem.schedule;
+  run.racing = problem.loaded.racing;
   run.selection = choose_selection(plan, problem);
   return run;
 }

@@ -220,8 +220,9 @@ std::vector<std::string> describe_limits(const StudyPlan& plan, const StudyResul
         "The baselines (random search and a local search) were left out on request: whether any "
         "of these optimizers is better than those was not asked.");
   }
-  if (std::ranges::any_of(plan.problems,
-                          [](const StudyProblem& problem) { return problem.schedule.fresh; })) {
+  if (std::ranges::any_of(plan.problems, [](const StudyProblem& problem) {
+        return problem.schedule.changes_cases();
+      })) {
     sentences.push_back(
         "Training cases were new in every generation, the same for all optimizers "
         "only generation by generation; budgets buy unequal numbers of "
