@@ -33,7 +33,7 @@ class Replays {
   std::vector<ReplayRequest> requests_;
 };
 
-// With fresh training cases that of the second generation, the first being of random designs.
+// With training cases that change that of the second generation, the first being of random designs.
 void add_training_case(const RecordedRun& run, Replays& replays) {
   const auto& training = run.journal.training;
   if (training.empty()) {
