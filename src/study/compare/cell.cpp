@@ -63,7 +63,7 @@ bool test_progress(const StudyPlan& plan, const Cell& cell, const RunPlan& run,
                    CellOutcome& outcome) {
   const ProblemDescription& problem = run.problem.problem->description();
   const auto journal = read_journal(where.folder / "journal");
-  const auto incumbents = find_incumbents(problem, journal.training, run.schedule.fresh);
+  const auto incumbents = find_incumbents(problem, journal.training, run.schedule.changes_cases());
   const auto checkpoints = list_checkpoints(plan, cell.problem);
   const auto find_incumbent = [&](std::int64_t budget) {
     const auto after = std::ranges::upper_bound(incumbents, budget, {}, &Incumbent::cases);

@@ -142,8 +142,9 @@ Schedule choose_study_schedule(const LoadedProblem& problem, const std::optional
   if (asked) {
     return *asked;
   }
-  return problem.schedule.fresh ? Schedule{.fresh = false, .cases = problem.fixed_cases}
-                                : problem.schedule;
+  return problem.schedule.changes_cases()
+             ? Schedule{.kind = Schedule::Kind::fixed, .cases = problem.fixed_cases}
+             : problem.schedule;
 }
 
 void refuse_repeated(std::string_view what, std::span<const std::string> labels) {
@@ -286,15 +287,15 @@ void check_cells(const StudyPlan& plan) {
       without_generations.push_back(optimizer.label);
     }
   }
-  const bool fresh = std::ranges::any_of(
-      plan.problems, [](const StudyProblem& problem) { return problem.schedule.fresh; });
-  if (fresh && !without_generations.empty()) {
+  const auto changing = std::ranges::find_if(
+      plan.problems, [](const StudyProblem& problem) { return problem.schedule.changes_cases(); });
+  if (changing != plan.problems.end() && !without_generations.empty()) {
     throw Error(
         ErrorKind::usage,
-        fmt::format("schedule fresh gives every generation new training cases, so only optimizers "
+        fmt::format("schedule {} gives every generation new training cases, so only optimizers "
                     "with generations can be compared on it, and these have none: {}. Use "
                     "schedule fixed:K for all, give these a schedule of their own{}",
-                    join(without_generations, ", "),
+                    to_string(changing->schedule.kind), join(without_generations, ", "),
                     plan.baselines ? ", or take the baselines out (--no-baselines)" : ""));
   }
   for (const Cell& cell : list_cells(plan)) {

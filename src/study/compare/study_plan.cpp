@@ -125,6 +125,7 @@ RunPlan make_run_plan(const StudyPlan& plan, const Cell& cell) {
   run.seed = make_seed(make_stream(plan, cell) + "/" + optimizer.label);
   run.budget = plan.budget;
   run.schedule = get_schedule(plan, cell);
+  run.racing = run.problem.racing;
   run.selection = choose_selection(plan, plan.problems[cell.problem]);
   return run;
 }

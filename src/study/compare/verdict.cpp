@@ -255,12 +255,13 @@ std::vector<std::string> describe_limits(const StudyPlan& plan, const StudyResul
   });
   if (methods > 0) {
     sentences.push_back(
-        "Methods spend the same budget in ways of their own (schedules, racing, perturbed plants "
-        "in "
-        "training); what their designs are worth is measured alike.");
+        "Methods spend the same budget in ways of their own, or have controllers of their own; "
+        "what "
+        "their designs are worth is measured alike.");
   }
-  if (std::ranges::any_of(plan.problems,
-                          [](const StudyProblem& problem) { return problem.schedule.fresh; })) {
+  if (std::ranges::any_of(plan.problems, [](const StudyProblem& problem) {
+        return problem.schedule.changes_cases();
+      })) {
     sentences.push_back(
         "Training cases were new in every generation, the same for all optimizers "
         "only generation by generation; budgets buy unequal numbers of "

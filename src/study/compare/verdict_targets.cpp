@@ -35,6 +35,14 @@ std::string describe_time(const StudyPlan& plan, const std::string& label, const
   return text;
 }
 
+double count_spent(const TargetTime& time) {
+  double spent = 0;
+  for (const Trial& trial : time.trials) {
+    spent += trial.cost;
+  }
+  return spent;
+}
+
 // Labels of the optimizers whose time is so.
 template <typename Condition>
 std::string list_where(const StudyPlan& plan, const ProblemResult& result, std::size_t target,
@@ -68,7 +76,11 @@ std::vector<std::string> describe_one(const StudyPlan& plan, const StudyProblem&
   const auto reference = std::ranges::find(plan.optimizers, plan.reference, &StudyOptimizer::label);
   if (!plan.reference.empty() && reference != plan.optimizers.end()) {
     const auto r = static_cast<std::size_t>(reference - plan.optimizers.begin());
-    sentences.push_back(describe_time(plan, plan.reference, get_time(r)) + ".");
+    sentences.push_back(get_time(r).reached == 0
+                            ? fmt::format("{} did not come there in {:.0f} simulations ({} runs).",
+                                          plan.reference, count_spent(get_time(r)),
+                                          get_time(r).trials.size())
+                            : describe_time(plan, plan.reference, get_time(r)) + ".");
     const std::string few = list_where(plan, result, t, [](const TargetTime& time) {
       return time.ratio && time.ratio->ratio && *time.ratio->ratio <= kFewSimulations;
     });
@@ -94,8 +106,9 @@ std::string describe_target(const StudyProblem& problem, const StudyTarget& targ
   std::vector<std::string> conditions;
   if (target.value) {
     const Quantity quantity = get_scalar_quantity(problem.loaded.problem->description().objectives);
-    conditions.push_back(fmt::format("{} at most {:.4g}{}", quantity.name, *target.value,
-                                     quantity.unit == "1" ? "" : " " + quantity.unit));
+    conditions.push_back(
+        fmt::format("{} at most {:.4g}{}", quantity.name, *target.value,
+                    quantity.unit == "1" || quantity.unit.empty() ? "" : " " + quantity.unit));
   }
   if (target.failures) {
     conditions.push_back(fmt::format("at most {} of {} test cases failing", *target.failures,

@@ -119,12 +119,12 @@ double calc_expected_of(std::span<const Trial> trials, std::span<const std::size
   return calc_expected_running_time(drawn);
 }
 
-// Nothing if both are infinite.
+// Nothing if that is infinite / infinite or 0 / 0.
 std::optional<double> divide(double a, double b) {
-  if (std::isinf(a) && std::isinf(b)) {
+  if ((std::isinf(a) && std::isinf(b)) || (a == 0 && b == 0)) {
     return std::nullopt;
   }
-  return b > 0 ? a / b : a > 0 ? kInfinity : 1;
+  return a / b;
 }
 
 }  // namespace
@@ -146,8 +146,12 @@ RunningTimeRatio calc_running_time_ratio(std::span<const Trial> trials,
   if (trials.size() != reference.size()) {
     throw std::invalid_argument("running time: a ratio needs pairs of trials");
   }
-  RunningTimeRatio result;
-  result.ratio = divide(calc_expected_running_time(trials), calc_expected_running_time(reference));
+  RunningTimeRatio result{.ratio = {}, .interval = {.lower = 0, .upper = kInfinity}};
+  const double of_reference = calc_expected_running_time(reference);
+  if (std::isinf(of_reference)) {
+    return result;
+  }
+  result.ratio = divide(calc_expected_running_time(trials), of_reference);
   RandomStream random(stream);
   std::vector<double> least, most;
   for (int resample = 0; resample < resamples; ++resample) {

@@ -55,9 +55,10 @@ Interval calc_resampled_running_time_interval(std::span<const Trial> trials, dou
 // ERT(trials) / ERT(reference), where the trials with the same number are a pair (one replicate)
 // and are drawn together.
 struct RunningTimeRatio {
-  std::optional<double> ratio;  // nothing if neither ever reached the target
-  // A resample in which neither did says nothing: it counts as 0 for the lower end and as infinite
-  // for the upper one.
+  // Nothing if the reference never reached the target: by how much it was slower nobody knows.
+  std::optional<double> ratio;
+  // From 0 to infinity then. A resample in which neither reached it says nothing: it counts as 0
+  // for the lower end and as infinite for the upper one.
   Interval interval;
 };
 // Throws std::invalid_argument, besides, unless there are as many trials as of the reference.

@@ -82,13 +82,13 @@ TEST(StudyPlan, MistakesAreNamed) {
 
 TEST(StudyPlan, FreshCasesAreForOptimizersWithGenerationsOnly) {
   StudyRequest request = make_small_request();
-  request.schedule = Schedule{.fresh = true, .cases = 1};
+  request.schedule = Schedule{.kind = Schedule::Kind::fresh, .cases = 1};
   EXPECT_THAT(
       usage_error_of([&] { make_study_plan(request); }),
       HasSubstr("only optimizers with generations can be compared on it, and these have none: "
                 "random, nlopt:neldermead"));
   request.baselines = false;
-  EXPECT_TRUE(make_study_plan(request).problems.front().schedule.fresh);
+  EXPECT_TRUE(make_study_plan(request).problems.front().schedule.changes_cases());
 }
 
 TEST(StudyPlan, AReplicateGivesEveryOptimizerTheSameStartAndCases) {
