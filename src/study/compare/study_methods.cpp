@@ -26,11 +26,16 @@ std::string get_key(std::string_view setting) {
   return std::string(setting.substr(0, setting.find('=')));
 }
 
-// A perturbation that is there in validation and tests as well is part of what a design is worth.
-bool is_judged_perturbed(const LoadedProblem& problem) {
+// The perturbation that designs meet in validation and tests; null if there is none.
+json get_judged_perturbation(const LoadedProblem& problem) {
   const json resolved = json::parse(problem.resolved_json);
-  const auto perturbation = resolved.find("perturbation");
-  return perturbation != resolved.end() && perturbation->value("apply_to", "all") != "training";
+  const auto found = resolved.find("perturbation");
+  if (found == resolved.end() || found->value("apply_to", "everywhere") == "training") {
+    return nullptr;
+  }
+  json perturbation = *found;
+  perturbation.erase("apply_to");
+  return perturbation;
 }
 
 // The configuration without what may be a method's own.
@@ -51,15 +56,11 @@ LoadedProblem load_method(const StudyProblem& problem, const StudyOptimizer& opt
     settings.push_back("physics.simd=" + resolved["physics"]["simd"].get<std::string>());
   }
   LoadedProblem loaded = load_problem(problem.name, settings);
-  const bool perturbed = is_judged_perturbed(loaded) || is_judged_perturbed(problem.loaded);
-  const bool is_about_plants = std::ranges::any_of(
-      optimizer.settings,
-      [](const std::string& setting) { return get_table(setting) == "perturbation"; });
-  if (perturbed && is_about_plants) {
+  if (get_judged_perturbation(loaded) != get_judged_perturbation(problem.loaded)) {
     throw Error(ErrorKind::usage,
-                fmt::format("optimizer {} on {}: its perturbation would not be of training alone, "
-                            "and its designs be judged on other plants than those of the others; "
-                            "add perturbation.apply_to=training",
+                fmt::format("optimizer {} on {}: its designs would be judged on other plants than "
+                            "those of the others; a perturbation of its own must have "
+                            "perturbation.apply_to=training",
                             optimizer.label, problem.label));
   }
   if (leave_method_out(loaded) != leave_method_out(problem.loaded)) {

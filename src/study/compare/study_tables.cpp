@@ -9,6 +9,7 @@
 #include "base/file.hpp"
 #include "base/text.hpp"
 #include "study/compare/case_sets.hpp"
+#include "study/compare/final_check.hpp"
 #include "study/compare/study_folder.hpp"
 #include "study/compare/target_tables.hpp"
 #include "study/compare/verdict.hpp"
@@ -51,9 +52,9 @@ std::string make_cells(const StudyResult& result) {
 }
 
 // The winners' objectives and metrics on the test set, a row each.
-std::string make_metrics(const StudyPlan& plan, const StudyResult& result) {
+std::string make_metrics(const StudyPlan& plan, std::span<const CellOutcome> cells) {
   std::string csv = "problem,optimizer,replicate,kind,name,unit,value\n";
-  for (const CellOutcome& cell : result.cells) {
+  for (const CellOutcome& cell : cells) {
     const auto problem = std::ranges::find(plan.problems, cell.problem, &StudyProblem::label);
     const ProblemDescription& description = problem->loaded.problem->description();
     const auto add = [&](const char* kind, std::span<const Quantity> names,
@@ -68,6 +69,20 @@ std::string make_metrics(const StudyPlan& plan, const StudyResult& result) {
     add("metric", description.metrics, cell.metrics);
   }
   return csv;
+}
+
+// The same of every optimizer's best run, by the validation set.
+std::string make_best(const StudyPlan& plan, const StudyResult& result) {
+  std::vector<CellOutcome> best;
+  for (const StudyProblem& problem : plan.problems) {
+    for (const StudyOptimizer& optimizer : plan.optimizers) {
+      const CellOutcome* cell = find_best_cell(result.cells, problem.label, optimizer.label);
+      if (cell != nullptr) {
+        best.push_back(*cell);
+      }
+    }
+  }
+  return make_metrics(plan, best);
 }
 
 std::string make_summary(const StudyPlan& plan, const StudyResult& result) {
@@ -405,7 +420,8 @@ void write_study_tables(const StudyPlan& plan, const StudyResult& result,
     write_file_atomically(tables / file, text);
   };
   write("cells.csv", make_cells(result));
-  write("metrics.csv", make_metrics(plan, result));
+  write("metrics.csv", make_metrics(plan, result.cells));
+  write("best.csv", make_best(plan, result));
   write("summary.csv", make_summary(plan, result));
   write("pairs.csv", make_pairs(plan, result));
   write("friedman.csv", make_friedman(result));

@@ -3,6 +3,7 @@
 //
 //   cells.csv              every run: values and errors on the test set, counts
 //   metrics.csv            of every winner, on the test set: objectives, torque, energy, ...
+//   best.csv               the same of every optimizer's best run by the validation set
 //   summary.csv            problem x optimizer: medians, quartiles, intervals, failures, ranks
 //   pairs.csv              every two optimizers: Wilcoxon, Holm, A12, wins
 //   friedman.csv           do optimizers differ at all
