@@ -53,7 +53,8 @@ enum {
   ARMWRIGHT_DIVERGED = 1,    /* a simulation diverged */
   ARMWRIGHT_UNREACHABLE = 2, /* a target lies out of reach */
   ARMWRIGHT_TIMED_OUT = 3,
-  ARMWRIGHT_FAILED = 4
+  ARMWRIGHT_FAILED = 4,
+  ARMWRIGHT_ABANDONED = 5 /* lost a race: the objective is of some cases only, or a bound */
 };
 
 /* The problem: minimise the objectives over a box. Arrays of decision variables have `dimension`

@@ -58,6 +58,14 @@ Schedule parse_schedule(std::string_view text) {
   return *schedule;
 }
 
+Racing parse_racing(std::string_view text) {
+  const auto racing = read_racing(text);
+  if (!racing) {
+    refuse("--racing", text, kRacingForms);
+  }
+  return *racing;
+}
+
 CLI::App* add_command(CLI::App& parent, Session& session, const std::string& name,
                       const std::string& description, const std::string& examples) {
   CLI::App* command = parent.add_subcommand(name, description);

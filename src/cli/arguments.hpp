@@ -23,8 +23,9 @@ std::int64_t parse_count(std::string_view flag, std::string_view text, std::int6
                          std::int64_t upper);
 // "90", "90s", "10m", "1.5h"
 double parse_duration_s(std::string_view flag, std::string_view text);
-// "fresh:K" or "fixed:K"
+// "fresh:K", "fixed:K" or "coevolution:K"
 Schedule parse_schedule(std::string_view text);
+Racing parse_racing(std::string_view text);
 
 // A new subcommand with what all have: --color, and examples below its help.
 CLI::App* add_command(CLI::App& parent, Session& session, const std::string& name,

@@ -221,7 +221,7 @@ void add_compare(CLI::App& app, Session& session) {
       ->type_name("CASES");
   command
       ->add_option("--schedule", options->schedule,
-                   "Which training cases: fixed:K, or fresh:K where all optimizers have\n"
+                   "Which training cases: fixed:K; fresh:K or coevolution:K where all have\n"
                    "generations (default: fixed, K as the problem has it)")
       ->type_name("KIND:K");
   command

@@ -32,7 +32,8 @@ shown and not made again.
 
 Terms: the budget counts simulated test cases of training (one design on one case is 1). The schedule says on
 which cases a design is trained: fresh:K takes the next K of the training set for every generation, fixed:K always
-the first K. At the end the best designs are judged on the validation set, and the winner on the test set, neither
+the first K, coevolution:K breeds K that are hard for the designs. Racing spends fewer cases on designs that do badly
+(docs/racing.md). At the end the best designs are judged on the validation set, and the winner on the test set, neither
 charged to the budget. The seed feeds the optimizer's random choices; the same seed gives the same result on any
 number of threads.)";
 
@@ -43,6 +44,7 @@ struct OptimizeOptions {
   std::string seed = "1";
   std::string budget;
   std::string schedule;
+  std::string racing;
   OverrideOptions overrides;
   std::string validation_cases;
   JobsOption jobs;
@@ -77,6 +79,7 @@ RunPlan make_plan(const OptimizeOptions& options) {
                     : parse_count("--budget", options.budget, 0, 1'000'000'000'000);
   plan.schedule = options.schedule.empty() ? choose_schedule(plan.problem, plan.optimizer)
                                            : parse_schedule(options.schedule);
+  plan.racing = options.racing.empty() ? plan.problem.racing : parse_racing(options.racing);
   check_plan(plan);
   return plan;
 }
@@ -112,15 +115,16 @@ void announce(const RunRequest& request) {
   const RunPlan& plan = request.plan;
   const bool known = std::filesystem::exists(request.folder / "manifest.json");
   write_message(fmt::format("{}: {}", plan.problem.name, plan.problem.title));
-  write_message(fmt::format("optimizer {}, seed {}, budget {}, schedule {}, {}",
-                            plan.optimizer.name, plan.seed,
-                            format_count(static_cast<unsigned long long>(plan.budget), "case"),
-                            to_text(plan.schedule), format_count(request.jobs, "thread")));
-  if (plan.problem.schedule.fresh && !plan.schedule.fresh) {
+  write_message(fmt::format(
+      "optimizer {}, seed {}, budget {}, schedule {}{}, {}", plan.optimizer.name, plan.seed,
+      format_count(static_cast<unsigned long long>(plan.budget), "case"), to_text(plan.schedule),
+      plan.racing.kind == Racing::Kind::none ? "" : ", racing " + to_text(plan.racing),
+      format_count(request.jobs, "thread")));
+  if (plan.problem.schedule.changes_cases() && !plan.schedule.changes_cases()) {
     write_message(
-        fmt::format("the problem's own schedule is fresh:{}, a new case for every "
+        fmt::format("the problem's own schedule is {}, other cases for every "
                     "generation; this run trains on the same cases throughout",
-                    plan.problem.schedule.cases));
+                    to_text(plan.problem.schedule)));
   }
   write_message(fmt::format("folder {} ({})", request.folder.string(), known ? "found" : "new"));
 }
@@ -239,9 +243,14 @@ void add_optimize(CLI::App& app, Session& session) {
       ->type_name("CASES");
   command
       ->add_option("--schedule", options->schedule,
-                   "Which training cases: fresh:K or fixed:K (default: the problem's;\n"
-                   "fixed where an optimizer has no generations)")
+                   "Which training cases: fresh:K, fixed:K or coevolution:K (default: the\n"
+                   "problem's; fixed where an optimizer has no generations)")
       ->type_name("KIND:K");
+  command
+      ->add_option("--racing", options->racing,
+                   "Who need not have all cases: none, halving:FIRST_CASES:ETA or\n"
+                   "abandonment:MARGIN:CHUNK_CASES (default: the problem's)")
+      ->type_name("KIND");
   options->overrides.add_to(*command, true);
   command
       ->add_option("--validation-cases", options->validation_cases,

@@ -213,6 +213,9 @@ std::string describe_result(const RunResult& result, const std::filesystem::path
   if (counts.generations > 0) {
     text += fmt::format(", {}", format_count(counts.generations, "generation"));
   }
+  if (counts.abandoned > 0) {
+    text += fmt::format(", {} of them dropped in races", counts.abandoned);
+  }
   text += fmt::format("; {} failed, {} clipped to the bounds; ended by: {}\n\n", counts.failed,
                       counts.clipped, sanitize(result.end_reason));
   if (!result.failure.empty()) {

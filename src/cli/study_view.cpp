@@ -9,6 +9,7 @@
 #include "cli/format.hpp"
 #include "cli/table.hpp"
 #include "study/compare/verdict.hpp"
+#include "study/compare/verdict_targets.hpp"
 
 namespace armwright {
 namespace {
@@ -67,6 +68,12 @@ std::string describe_problem(const StudyPlan& plan, const ProblemResult& problem
   if (has_cost) {
     columns.push_back({"cases to 1 %"});
   }
+  const bool some_fail = std::ranges::any_of(problem.optimizers, [](const OptimizerResult& one) {
+    return std::ranges::any_of(one.failure_shares, [](double share) { return share > 0; });
+  });
+  if (some_fail) {
+    columns.push_back({"cases failed"});
+  }
   if (has_final) {
     columns.push_back({"best on " + plan.final_engine});
   }
@@ -87,6 +94,11 @@ std::string describe_problem(const StudyPlan& plan, const ProblemResult& problem
       const double expected = one.running_times[1].expected;
       row.push_back(std::isfinite(expected) ? fmt::format("{:.0f}", expected) : "-");
     }
+    if (some_fail) {
+      row.push_back(std::isfinite(one.mean_failure_share)
+                        ? fmt::format("{:.2g} %", 100 * one.mean_failure_share)
+                        : "-");
+    }
     if (has_final) {
       row.push_back(describe_check(one.final_check, problem.quantity));
     }
@@ -101,6 +113,50 @@ std::string describe_problem(const StudyPlan& plan, const ProblemResult& problem
                         format_p(problem.friedman->f_p_value));
   }
   return text + "\n";
+}
+
+std::string format_cases(double cases) {
+  return std::isfinite(cases) ? fmt::format("{:.0f}", cases) : "inf";
+}
+
+std::string format_ratio(double ratio) {
+  return std::isfinite(ratio) ? fmt::format("{:.2g}", ratio) : "inf";
+}
+
+std::string describe_targets(const StudyPlan& plan, const StudyProblem& problem,
+                             const ProblemResult& result, const Style& style) {
+  std::string text;
+  for (std::size_t t = 0; t < result.fixed_targets.size(); ++t) {
+    std::vector<Column> columns = {{"optimizer", false}, {"runs"}, {"expected cases"}, {"95 %"}};
+    if (!plan.reference.empty()) {
+      columns.push_back({"times " + plan.reference});
+      columns.push_back({"95 %"});
+    }
+    Table table(columns);
+    std::vector<std::size_t> order = result.order;
+    std::ranges::stable_sort(
+        order, {}, [&](std::size_t o) { return result.optimizers[o].target_times[t].expected; });
+    for (const std::size_t o : order) {
+      const TargetTime& time = result.optimizers[o].target_times[t];
+      const auto format_interval = [](const Interval& interval, auto format) {
+        return format(interval.lower) + " to " + format(interval.upper);
+      };
+      std::vector<std::string> row = {
+          plan.optimizers[o].label, fmt::format("{}/{}", time.reached, time.trials.size()),
+          format_cases(time.expected), format_interval(time.interval, format_cases)};
+      if (!plan.reference.empty()) {
+        const auto& ratio = time.ratio;
+        row.push_back(ratio && ratio->ratio ? format_ratio(*ratio->ratio) : "-");
+        row.push_back(ratio ? format_interval(ratio->interval, format_ratio) : "-");
+      }
+      table.add_row(std::move(row));
+    }
+    text += style.bold(result.label) +
+            fmt::format("  to the target {}\n",
+                        describe_target(problem, plan.targets[result.fixed_targets[t]])) +
+            table.format(style, 2) + "\n";
+  }
+  return text;
 }
 
 std::string describe_ranking(const StudyPlan& plan, const StudyResult& result, const Style& style) {
@@ -125,6 +181,24 @@ std::string describe_plan(const StudyPlan& plan) {
                                           settings)});
   }
   table.add_row({"optimizers", list_labels(plan, false)});
+  for (const StudyOptimizer& optimizer : plan.optimizers) {
+    std::vector<std::string> own = optimizer.settings;
+    if (optimizer.schedule) {
+      own.insert(own.begin(), "schedule " + to_text(*optimizer.schedule));
+    }
+    if (!own.empty()) {
+      table.add_row({"method", fmt::format("{}: {}", optimizer.label, join(own, ", "))});
+    }
+  }
+  for (const StudyTarget& target : plan.targets) {
+    for (const std::string& label : target.problems) {
+      const auto problem = std::ranges::find(plan.problems, label, &StudyProblem::label);
+      table.add_row({"target", fmt::format("{} on {}", describe_target(*problem, target), label)});
+    }
+  }
+  if (!plan.reference.empty()) {
+    table.add_row({"reference", plan.reference});
+  }
   const std::string baselines = list_labels(plan, true);
   if (!baselines.empty()) {
     table.add_row({"baselines", baselines});
@@ -156,8 +230,9 @@ std::string describe_cost(const StudyPlan& plan, double expected_s, unsigned job
 std::string describe_study(const StudyPlan& plan, const StudyResult& result,
                            const std::filesystem::path& folder, const Style& style) {
   std::string text;
-  for (const ProblemResult& problem : result.problems) {
-    text += describe_problem(plan, problem, style);
+  for (std::size_t p = 0; p < result.problems.size(); ++p) {
+    text += describe_problem(plan, result.problems[p], style);
+    text += describe_targets(plan, plan.problems[p], result.problems[p], style);
   }
   if (plan.problems.size() > 1) {
     text += describe_ranking(plan, result, style);
@@ -168,12 +243,14 @@ std::string describe_study(const StudyPlan& plan, const StudyResult& result,
       text += "  " + line + "\n";
     }
   }
-  return text + fmt::format(
-                    "\nA12: how often a run of the table's first is better than one of this "
-                    "optimizer's. p: of the\ndifference in pairs (Wilcoxon, after Holm); * below "
-                    "{}. Cases to 1 %: expected, with restarts,\nuntil 1 % of the way from the "
-                    "start to the best known is left.\nTables: {}\n",
-                    kSignificance, sanitize((folder / "tables").string()));
+  return text +
+         fmt::format(
+             "\nA12: how often a run of the table's first is better than one of this "
+             "optimizer's. p: of the\ndifference in pairs (Wilcoxon, after Holm); * below "
+             "{}. Cases to 1 %: expected, with restarts,\nuntil 1 % of the way from the "
+             "start to the best known is left. Cases failed: mean share of test cases with an "
+             "error above\n100 mm.\nTables: {}\n",
+             kSignificance, sanitize((folder / "tables").string()));
 }
 
 }  // namespace armwright

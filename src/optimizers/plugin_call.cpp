@@ -188,7 +188,8 @@ void call_plugin(const struct armwright_plugin& plugin, const Options& options,
                 static_cast<int>(EvaluationStatus::diverged) == ARMWRIGHT_DIVERGED &&
                 static_cast<int>(EvaluationStatus::unreachable) == ARMWRIGHT_UNREACHABLE &&
                 static_cast<int>(EvaluationStatus::timed_out) == ARMWRIGHT_TIMED_OUT &&
-                static_cast<int>(EvaluationStatus::failed) == ARMWRIGHT_FAILED);
+                static_cast<int>(EvaluationStatus::failed) == ARMWRIGHT_FAILED &&
+                static_cast<int>(EvaluationStatus::abandoned) == ARMWRIGHT_ABANDONED);
   const ProblemView problem(evaluator.problem());
   Call call(options, evaluator);
   const struct armwright_evaluator raw_evaluator = call.make_evaluator();

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -86,7 +87,8 @@ enum class EvaluationStatus : std::uint8_t {
   unreachable,  // at least one case has a target that the arm cannot reach
   timed_out,
   failed,     // anything else; the reason says what
-  abandoned,  // at least one case was given up, as its job allowed: the numbers are bounds
+  abandoned,  // at least one case was given up, as its job allowed, or never begun, as the
+              // candidate had lost a race: the numbers are bounds, or of some cases only
 };
 const char* to_string(EvaluationStatus status);
 
@@ -154,6 +156,15 @@ class Problem {
   virtual std::vector<CaseOutcome> simulate(std::span<const CaseJob> jobs) const = 0;
   virtual Evaluation aggregate(std::span<const double> x,
                                std::span<const CaseOutcome> outcomes) const = 0;
+
+  // What calc_scalar() of the objectives on all `cases` of a block is at least, given the outcomes
+  // of the first of them (or of none). Nothing if the objectives are not known to grow with the
+  // errors of further cases; whether there is a bound does not depend on the outcomes.
+  virtual std::optional<double> calc_lower_bound(std::span<const double> /*x*/,
+                                                 std::span<const CaseOutcome> /*outcomes*/,
+                                                 std::size_t /*cases*/) const {
+    return std::nullopt;
+  }
 
   // What an optimizer is told of an evaluation that yielded no objectives: finite and worse than
   // any design that works.

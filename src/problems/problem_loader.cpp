@@ -36,9 +36,7 @@ CaseSets read_sets(const ConfigTable& table, CaseSets sets) {
 }
 
 void read_schedule(const ConfigTable& table, LoadedProblem& loaded) {
-  static const std::vector<std::string> kinds = {"fixed", "fresh"};
-  loaded.schedule.fresh = table.get_choice("kind", kinds, "fixed") == "fresh";
-  loaded.schedule.cases = static_cast<int>(table.get_integer_or("cases", 1, 1, kMostCases));
+  loaded.schedule = read_schedule_table(table);
   loaded.fixed_cases =
       static_cast<int>(table.get_integer_or("fixed_cases", loaded.fixed_cases, 1, kMostCases));
 }
@@ -110,6 +108,7 @@ LoadedProblem load_problem_tables(const std::filesystem::path& path, const ReadT
   static const std::vector<std::string> kinds = {"tracking", "analytic"};
   const bool analytic = table.get_choice("kind", kinds) == "analytic";
   read_schedule(table.get_table_or_empty("schedule"), loaded);
+  loaded.racing = read_racing_table(table.get_table_or_empty("racing"));
   CaseSets usual;
   if (analytic) {  // a function has no cases to tell apart
     usual.validation_cases = 1;

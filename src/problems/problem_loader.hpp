@@ -14,16 +14,10 @@
 #include <vector>
 
 #include "problems/problem.hpp"
+#include "problems/schedule.hpp"
 #include "problems/tracking_problem.hpp"
 
 namespace armwright {
-
-// Which training cases a candidate is evaluated on: the first K of the set, always; or the next K
-// for every generation.
-struct Schedule {
-  bool fresh = false;
-  int cases = 1;  // K
-};
 
 struct CaseSets {
   std::string training = "train/1";
@@ -55,7 +49,8 @@ struct LoadedProblem {
   std::shared_ptr<const TrackingProblem>
       tracking;  // the same object; null for an analytic function
   Schedule schedule;
-  int fixed_cases = 5;  // K for optimizers without generations where the schedule is fresh
+  int fixed_cases = 5;  // K for optimizers without generations where the schedule needs them
+  Racing racing;
   CaseSets sets;
   std::string optimizer;    // what `optimize` uses unless told otherwise
   std::int64_t budget = 0;  // in cases, likewise

@@ -26,6 +26,11 @@ class StartedElsewhere final : public Problem {
                        std::span<const CaseOutcome> outcomes) const override {
     return problem_->aggregate(x, outcomes);
   }
+  std::optional<double> calc_lower_bound(std::span<const double> x,
+                                         std::span<const CaseOutcome> outcomes,
+                                         std::size_t cases) const override {
+    return problem_->calc_lower_bound(x, outcomes, cases);
+  }
   std::vector<double> penalty_objectives() const override { return problem_->penalty_objectives(); }
 
  private:

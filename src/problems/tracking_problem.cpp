@@ -340,6 +340,23 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
   return evaluation;
 }
 
+std::optional<double> TrackingProblem::calc_lower_bound(std::span<const double> x,
+                                                        std::span<const CaseOutcome> outcomes,
+                                                        std::size_t cases) const {
+  if (description_.objectives.size() > 1 || !description_.constraints.empty()) {
+    return std::nullopt;
+  }
+  // Errors and what efforts cost are never negative: no objective is smaller with a further case
+  // than with one that is perfect and costs nothing.
+  CaseOutcome perfect;
+  perfect.metrics.assign(kFirstJointMetric + 2 * config_.robot.joint_count(), 0.0);
+  std::vector<CaseOutcome> all(cases, perfect);
+  std::ranges::copy(outcomes, all.begin());
+  const Evaluation evaluation = aggregate(x, all);
+  return evaluation.objectives.empty() ? -std::numeric_limits<double>::infinity()
+                                       : evaluation.objectives.front();
+}
+
 std::vector<double> TrackingProblem::calc_residuals(const ArmDesign& design,
                                                     std::span<const CaseOutcome> outcomes,
                                                     double cases) const {

@@ -86,6 +86,9 @@ class TrackingProblem final : public Problem {
   std::vector<CaseOutcome> simulate(std::span<const CaseJob> jobs) const override;
   Evaluation aggregate(std::span<const double> x,
                        std::span<const CaseOutcome> outcomes) const override;
+  std::optional<double> calc_lower_bound(std::span<const double> x,
+                                         std::span<const CaseOutcome> outcomes,
+                                         std::size_t cases) const override;
   std::vector<double> penalty_objectives() const override;
 
   // Makes a finite set (a file of test cases) available under its name. Before the first evaluation

@@ -11,6 +11,7 @@
 #include "base/hash.hpp"
 #include "base/random.hpp"
 #include "base/text.hpp"
+#include "sim/bred_case.hpp"
 #include "sim/test_case_file.hpp"
 
 namespace armwright {
@@ -78,6 +79,28 @@ void append_little_endian(std::string& bytes, std::uint64_t word) {
   }
 }
 
+// `get_stream(k)` gives the numbers that point k is drawn from.
+template <class GetStream>
+TestCase make_case(const WorkspaceSphere& sphere, const GetStream& get_stream) {
+  TestCase made;
+  auto& points_m = made.points_m;
+  points_m.reserve(static_cast<std::size_t>(sphere.points) + 1);
+  points_m.push_back(sphere.centre_m);
+  const Eigen::Vector3d first_m = sphere.radius_m * draw_direction(get_stream(1));
+  points_m.push_back(sphere.centre_m + first_m);
+  points_m.push_back(sphere.centre_m - first_m);
+  for (int k = 3; k <= sphere.points; ++k) {
+    const double move_m = sphere.calc_move_m(k);
+    RandomStream& random = get_stream(k);
+    Eigen::Vector3d next_m;
+    do {
+      next_m = points_m.back() + move_m * draw_direction(random);
+    } while (!lies_inside(next_m, sphere));
+    points_m.push_back(next_m);
+  }
+  return made;
+}
+
 }  // namespace
 
 double WorkspaceSphere::calc_move_m(int k) const {
@@ -94,23 +117,16 @@ double WorkspaceSphere::calc_move_m(int k) const {
 TestCase make_test_case(std::string_view set_name, std::uint64_t number,
                         const WorkspaceSphere& sphere) {
   check_sphere(sphere);
-  RandomStream random(set_name, number);
-  TestCase made;
-  auto& points_m = made.points_m;
-  points_m.reserve(static_cast<std::size_t>(sphere.points) + 1);
-  points_m.push_back(sphere.centre_m);
-  const Eigen::Vector3d first_m = sphere.radius_m * draw_direction(random);
-  points_m.push_back(sphere.centre_m + first_m);
-  points_m.push_back(sphere.centre_m - first_m);
-  for (int k = 3; k <= sphere.points; ++k) {
-    const double move_m = sphere.calc_move_m(k);
-    Eigen::Vector3d next_m;
-    do {
-      next_m = points_m.back() + move_m * draw_direction(random);
-    } while (!lies_inside(next_m, sphere));
-    points_m.push_back(next_m);
+  if (!set_name.starts_with(kBredPrefix)) {
+    RandomStream random(set_name, number);
+    return make_case(sphere, [&](int) -> RandomStream& { return random; });
   }
-  return made;
+  std::optional<RandomStream> own;  // every point's: how often one is redrawn is its own affair
+  return make_case(sphere, [&](int k) -> RandomStream& {
+    own.emplace(fmt::format("{}/{}", set_name, k),
+                get_key(number, find_key_place(k, sphere.points)));
+    return *own;
+  });
 }
 
 TestSet::TestSet(std::string name, const WorkspaceSphere& sphere)

@@ -28,7 +28,7 @@ std::vector<Candidate> spread(const std::vector<Candidate>& candidates, std::siz
 CandidatePool::CandidatePool(const RunPlan& plan)
     : problem_(plan.problem.problem->description()),
       selection_(plan.selection),
-      fresh_(plan.schedule.fresh) {}
+      fresh_(plan.schedule.changes_cases()) {}
 
 void CandidatePool::recommend(std::vector<double> x, std::uint64_t generation) {
   candidates_.push_back({std::move(x), 0, generation, true, 0});
@@ -43,6 +43,10 @@ void CandidatePool::end_generation() {
 
 double CandidatePool::best_objective() const {
   return incumbent_ ? incumbent_->training_objective : last_best_;
+}
+
+double CandidatePool::incumbent_objective() const {
+  return incumbent_ ? incumbent_->training_objective : std::numeric_limits<double>::infinity();
 }
 
 void CandidatePool::consider(const EvaluationRecord& record) {

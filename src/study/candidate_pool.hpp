@@ -33,6 +33,8 @@ class CandidatePool {
   // With fixed cases the incumbent's; with fresh ones the present generation's best, or the last
   // one's before there is any; NaN if there is none.
   double best_objective() const;
+  // Of the present training cases; infinity if there is none.
+  double incumbent_objective() const;
   // The designs to judge on the validation set, oldest first, no two the same: the last and the
   // best candidates; with constraints, instead of the last, some of the whole run; with several
   // objectives the front, thinned out.

@@ -36,10 +36,22 @@ class PairOrder {
 
 void CaseRunner::run(std::span<const std::span<const double>> candidates, const CaseBlock& block,
                      bool residuals, const OnDone& on_done, bool jacobian) {
+  run_cases(candidates, block, {residuals, jacobian},
+            [&](std::size_t candidate, std::span<CaseOutcome> outcomes) {
+              Evaluation evaluation = problem_.aggregate(candidates[candidate], outcomes);
+              if (!residuals) {
+                evaluation.residuals.clear();  // of a problem that makes them unasked
+              }
+              on_done(candidate, std::move(evaluation));
+            });
+}
+
+void CaseRunner::run_cases(std::span<const std::span<const double>> candidates,
+                           const CaseBlock& block, Extras extras, const OnOutcomes& on_outcomes) {
   const std::size_t cases = block.numbers.size();
   const std::size_t pairs = candidates.size() * cases;
   // Derivatives take far longer than the simulation that lanes make fast.
-  const BatchSize size = jacobian ? BatchSize{} : problem_.batch_size(block.role);
+  const BatchSize size = extras.jacobian ? BatchSize{} : problem_.batch_size(block.role);
   const std::size_t chunk = calc_chunk(size, pairs, pool_.size());
   const PairOrder order(candidates.size(), cases, size.granularity);
   std::vector<CaseOutcome> outcomes(pairs);  // candidate by candidate
@@ -47,14 +59,6 @@ void CaseRunner::run(std::span<const std::span<const double>> candidates, const 
   for (std::atomic<std::size_t>& cases_left : missing) {
     cases_left = cases;
   }
-  const auto finish = [&](std::size_t candidate) {
-    const auto its_outcomes = std::span(outcomes).subspan(candidate * cases, cases);
-    Evaluation evaluation = problem_.aggregate(candidates[candidate], its_outcomes);
-    if (!residuals) {
-      evaluation.residuals.clear();  // of a problem that makes them unasked
-    }
-    on_done(candidate, std::move(evaluation));
-  };
   const auto simulate_chunk = [&](std::size_t number) {
     if (stop_.requested()) {
       return;
@@ -68,15 +72,15 @@ void CaseRunner::run(std::span<const std::span<const double>> candidates, const 
       jobs.push_back({.x = candidates[pair.candidate],
                       .block = &block,
                       .number = block.numbers[pair.case_index],
-                      .residuals = residuals,
-                      .jacobian = jacobian});
+                      .residuals = extras.residuals,
+                      .jacobian = extras.jacobian});
     }
     std::vector<CaseOutcome> simulated = problem_.simulate(jobs);
     for (std::size_t i = first; i < end; ++i) {
       const Pair pair = order[i];
       outcomes[pair.candidate * cases + pair.case_index] = std::move(simulated[i - first]);
       if (--missing[pair.candidate] == 0) {
-        finish(pair.candidate);
+        on_outcomes(pair.candidate, std::span(outcomes).subspan(pair.candidate * cases, cases));
       }
     }
   };

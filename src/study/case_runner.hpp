@@ -23,6 +23,16 @@ class CaseRunner {
   // case is done.
   using OnDone = std::function<void(std::size_t candidate, Evaluation evaluation)>;
 
+  // What outcomes shall carry, where the problem has it.
+  struct Extras {
+    bool residuals = false;
+    bool jacobian = false;
+  };
+  // As OnDone, with the outcomes of all cases, in the block's order, to take.
+  using OnOutcomes = std::function<void(std::size_t candidate, std::span<CaseOutcome> outcomes)>;
+  void run_cases(std::span<const std::span<const double>> candidates, const CaseBlock& block,
+                 Extras extras, const OnOutcomes& on_outcomes);
+
   // Every candidate on every case of the block. A stop counts between chunks; candidates that it
   // leaves unfinished `on_done` never hears of. Evaluations carry residuals only if asked for.
   // `jacobian`: with their derivatives, of problems that have them. Rethrows what `on_done` throws.

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
+#include <iterator>
 #include <mutex>
 #include <numeric>
 #include <span>
@@ -31,9 +33,13 @@ RunEvaluator::RunEvaluator(const RunPlan& plan, CaseRunner& runner, StopSignal& 
     recorded_[index] = std::move(record);
   }
   block_.role = CaseRole::training;
-  block_.set = plan.problem.sets.training;
+  block_.set = get_training_set(plan.problem.sets.training, plan.schedule);
   block_.numbers.resize(static_cast<std::size_t>(plan.schedule.cases));
   std::iota(block_.numbers.begin(), block_.numbers.end(), std::uint64_t{0});
+  if (plan.schedule.kind == Schedule::Kind::coevolution) {
+    breeder_.emplace(block_.set, plan.schedule.cases);
+    block_.numbers = breeder_->genomes();
+  }
 }
 
 const ProblemDescription& RunEvaluator::problem() const {
@@ -55,9 +61,15 @@ void RunEvaluator::begin_generation() {
 }
 
 void RunEvaluator::start_generation() {
-  if (plan_.schedule.fresh) {
+  if (plan_.schedule.kind == Schedule::Kind::fresh) {
     const std::uint64_t first = counts_.generations * block_.numbers.size();
     std::iota(block_.numbers.begin(), block_.numbers.end(), first);
+  }
+  if (breeder_) {
+    breeder_->breed();
+    block_.numbers = breeder_->genomes();
+  }
+  if (plan_.schedule.changes_cases()) {
     candidates_.end_generation();
   }
   ++counts_.generations;
@@ -96,10 +108,23 @@ EvaluationRecord RunEvaluator::make_request(std::span<const double> x) const {
   return request;
 }
 
-void RunEvaluator::check_replay(const EvaluationRecord& request,
-                                const EvaluationRecord& recorded) const {
+void RunEvaluator::check_replay(const EvaluationRecord& request, const EvaluationRecord& recorded,
+                                double threshold) const {
+  const Evaluation& evaluation = recorded.evaluation;
+  const auto& had = recorded.cases.numbers;
+  const auto& all = request.cases.numbers;
+  const bool is_first =
+      !had.empty() && had.size() <= all.size() && std::equal(had.begin(), had.end(), all.begin());
+  const bool may_be_part =
+      (races(Racing::Kind::halving, request.with_jacobian) &&
+       (evaluation.status == EvaluationStatus::abandoned || evaluation.objectives.empty())) ||
+      (races(Racing::Kind::abandonment, request.with_jacobian) &&
+       evaluation.status == EvaluationStatus::abandoned && !evaluation.objectives.empty() &&
+       had.size() % static_cast<std::size_t>(plan_.racing.chunk_cases) == 0 &&
+       evaluation.objectives.front() > threshold);
   std::string difference;
-  if (recorded.cases.numbers != request.cases.numbers || recorded.cases.set != request.cases.set) {
+  if (recorded.cases.set != request.cases.set || !is_first ||
+      (had.size() < all.size() && !may_be_part)) {
     difference = "its training cases differ";
   } else if (!same_bits(recorded.x, request.x)) {
     difference = "the decision vector differs";
@@ -165,70 +190,76 @@ std::vector<Score> RunEvaluator::evaluate_with_jacobian(
   return evaluate(points, true);
 }
 
+bool RunEvaluator::races(Racing::Kind kind, bool with_jacobian) const {
+  // Residuals and derivatives are of all cases or of no use. A batch is a field of competitors only
+  // where it is a generation or a sample: the points of a difference quotient are none.
+  const Capabilities& can = plan_.optimizer.capabilities;
+  const bool competes = can.generations || can.sampling;
+  return plan_.racing.kind == kind && !wants_residuals_ && !with_jacobian &&
+         (kind != Racing::Kind::halving || competes);
+}
+
 std::vector<Score> RunEvaluator::evaluate(std::span<const std::vector<double>> points,
                                           bool with_jacobian) {
+  if (!races(Racing::Kind::abandonment, with_jacobian)) {
+    return evaluate_batch(points, with_jacobian);
+  }
+  // What candidates cost is known afterwards: at a time as many as the budget allows whatever
+  // happens, at least one, which ends it if it does not.
+  std::vector<Score> scores;
+  while (!points.empty() && !stopped()) {
+    const auto affordable = static_cast<std::size_t>(std::max<std::int64_t>(1, remaining()));
+    const auto some = points.first(std::min(points.size(), affordable));
+    std::ranges::move(evaluate_batch(some, false), std::back_inserter(scores));
+    points = points.subspan(some.size());
+  }
+  return scores;
+}
+
+std::vector<Score> RunEvaluator::evaluate_batch(std::span<const std::vector<double>> points,
+                                                bool with_jacobian) {
   if (stopped()) {
     return {};
   }
+  const bool halves = races(Racing::Kind::halving, with_jacobian);
   const std::int64_t charge = with_jacobian ? calc_jacobian_charge(problem().variables.size()) : 1;
-  const auto allowed = static_cast<std::size_t>(std::max<std::int64_t>(0, remaining() / charge));
+  const auto allowed =
+      halves
+          ? count_affordable(plan_.racing, points.size(), block_.numbers.size(), calc_cases_left())
+          : static_cast<std::size_t>(std::max<std::int64_t>(0, remaining() / charge));
   if (points.size() > allowed) {
     points = points.first(allowed);
     budget_spent_ = true;
   }
-  std::vector<EvaluationRecord> records;
-  records.reserve(points.size());
-  std::vector<char> answered(points.size());
-  std::vector<std::size_t> missing;
-  std::vector<std::span<const double>> candidates;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    EvaluationRecord& record = records.emplace_back(make_request(points[i]));
-    record.index = counts_.evaluations + i;
-    record.with_jacobian = with_jacobian;
-    if (record.index < recorded_.size() && recorded_[record.index]) {
-      check_replay(record, *recorded_[record.index]);
-      record.evaluation = std::move(recorded_[record.index]->evaluation);
-      recorded_[record.index].reset();
-      answered[i] = true;
-    } else {
-      missing.push_back(i);
-      candidates.emplace_back(record.x);
-    }
+  Batch batch;
+  batch.with_jacobian = with_jacobian;
+  batch.threshold = calc_threshold(plan_.racing, candidates_.incumbent_objective());
+  for (const std::vector<double>& point : points) {
+    batch.records.push_back(make_request(point));
+    batch.records.back().index = counts_.evaluations + batch.records.size() - 1;
+    batch.records.back().with_jacobian = with_jacobian;
   }
+  const std::vector<std::size_t> missing = answer_from_journal(batch);
   if (journal_ended_ && !missing.empty()) {
-    refuse_replay(records[missing.front()].index, "the recorded run had ended before it");
+    refuse_replay(batch.records[missing.front()].index, "the recorded run had ended before it");
   }
-
-  // No flush of the journal: its promise of 10 ms is enough, since a resumed run makes again what
-  // a kill has cost, and for quick functions a write a batch would take longer than all the rest.
-  std::mutex mutex;
-  const std::uint64_t replayed = points.size() - missing.size();
-  std::uint64_t finished = replayed;
-  const std::uint64_t cases_each = block_.numbers.size() * static_cast<std::uint64_t>(charge);
-  runner_.run(
-      candidates, block_, wants_residuals_ || with_jacobian,
-      [&](std::size_t candidate, Evaluation evaluation) {
-        const std::size_t i = missing[candidate];
-        records[i].evaluation = std::move(evaluation);
-        journal_.append(records[i]);
-        answered[i] = true;
-        const std::lock_guard lock(mutex);
-        if (++finished < points.size()) {  // the last one's is the report on all, below
-          report(finished * cases_each, replayed * cases_each);
-        }
-      },
-      with_jacobian);
+  if (!halves) {
+    simulate(batch, missing);
+  } else if (missing.empty()) {
+    check_race(batch.records);
+  } else {
+    halve(batch);
+  }
 
   // A stop can leave holes; the optimizer learns the results before the first, and a resumed run
   // evaluates only the holes.
   const auto complete =
-      static_cast<std::size_t>(std::ranges::find(answered, false) - answered.begin());
+      static_cast<std::size_t>(std::ranges::find(batch.answered, false) - batch.answered.begin());
   stopped_ = complete < points.size();
-  counts_.replayed += replayed;
-  replayed_cases_ += replayed * cases_each;
+  replayed_cases_ += batch.replayed_cases;
   std::vector<Score> scores(complete);
   for (std::size_t i = 0; i < complete; ++i) {
-    take(std::move(records[i]), scores[i]);
+    take(std::move(batch.records[i]), scores[i]);
   }
   if (remaining() <= 0) {
     budget_spent_ = true;
@@ -237,12 +268,144 @@ std::vector<Score> RunEvaluator::evaluate(std::span<const std::vector<double>> p
   return scores;
 }
 
+// What is missing, by place in the batch.
+std::vector<std::size_t> RunEvaluator::answer_from_journal(Batch& batch) {
+  std::vector<std::size_t> missing;
+  batch.answered.resize(batch.records.size());
+  for (std::size_t i = 0; i < batch.records.size(); ++i) {
+    EvaluationRecord& record = batch.records[i];
+    if (record.index >= recorded_.size() || !recorded_[record.index]) {
+      missing.push_back(i);
+      continue;
+    }
+    EvaluationRecord& recorded = *recorded_[record.index];
+    check_replay(record, recorded, batch.threshold);
+    record.cases.numbers = std::move(recorded.cases.numbers);
+    record.evaluation = std::move(recorded.evaluation);
+    recorded_[record.index].reset();
+    batch.answered[i] = true;
+    batch.replayed_cases += record.calc_charge();
+    ++counts_.replayed;
+  }
+  return missing;
+}
+
+void RunEvaluator::simulate(Batch& batch, const std::vector<std::size_t>& missing) {
+  std::vector<std::span<const double>> candidates;
+  for (const std::size_t i : missing) {
+    candidates.emplace_back(batch.records[i].x);
+  }
+  // No flush of the journal: its promise of 10 ms is enough, since a resumed run makes again what
+  // a kill has cost, and for quick functions a write a batch would take longer than all the rest.
+  std::mutex mutex;
+  std::size_t finished = batch.records.size() - missing.size();
+  std::uint64_t cases = batch.replayed_cases;
+  const auto progress = [&](std::uint64_t more_cases, std::size_t more_finished) {
+    const std::lock_guard lock(mutex);
+    cases += more_cases;
+    finished += more_finished;
+    if (finished < batch.records.size()) {  // the last one's is the report on all, afterwards
+      report(cases, batch.replayed_cases);
+    }
+  };
+  const auto finish = [&](std::size_t candidate, Evaluation evaluation) {
+    const std::size_t i = missing[candidate];
+    batch.records[i].evaluation = std::move(evaluation);
+    journal_.append(batch.records[i]);
+    batch.answered[i] = true;
+  };
+  if (races(Racing::Kind::abandonment, batch.with_jacobian)) {
+    Racer(plan_.racing, *plan_.problem.problem, runner_)
+        .abandon(
+            candidates, block_, batch.threshold,
+            [&](std::size_t more_cases) { progress(more_cases, 0); },
+            [&](std::size_t candidate, RacedCandidate result) {
+              batch.records[missing[candidate]].cases.numbers.resize(result.cases);
+              finish(candidate, std::move(result.evaluation));
+              progress(0, 1);
+            });
+    return;
+  }
+  runner_.run(
+      candidates, block_, wants_residuals_ || batch.with_jacobian,
+      [&](std::size_t candidate, Evaluation evaluation) {
+        finish(candidate, std::move(evaluation));
+        progress(batch.records[missing[candidate]].calc_charge(), 1);
+      },
+      batch.with_jacobian);
+}
+
+// The whole race, as its outcome is one: where a kill has left only some of its records, they must
+// be what comes out now.
+void RunEvaluator::halve(Batch& batch) {
+  std::vector<std::span<const double>> candidates;
+  for (const EvaluationRecord& record : batch.records) {
+    candidates.emplace_back(record.x);
+  }
+  counts_.replayed -= static_cast<std::uint64_t>(std::ranges::count(batch.answered, true));
+  batch.replayed_cases = 0;
+  std::mutex mutex;
+  std::uint64_t cases = 0;
+  const double penalty = plan_.problem.problem->penalty_objectives().front();
+  auto results = Racer(plan_.racing, *plan_.problem.problem, runner_)
+                     .halve(candidates, block_, penalty, [&](std::size_t more_cases) {
+                       const std::lock_guard lock(mutex);
+                       cases += more_cases;
+                       report(cases, 0);
+                     });
+  if (!results) {
+    std::ranges::fill(batch.answered, false);
+    return;
+  }
+  for (std::size_t i = 0; i < batch.records.size(); ++i) {
+    EvaluationRecord& record = batch.records[i];
+    RacedCandidate& result = (*results)[i];
+    if (batch.answered[i] &&
+        !(record.cases.numbers.size() == result.cases &&
+          record.evaluation.status == result.evaluation.status &&
+          same_bits(record.evaluation.objectives, result.evaluation.objectives) &&
+          same_bits(record.evaluation.case_errors, result.evaluation.case_errors))) {
+      refuse_replay(record.index, "the race that it was in ends otherwise");
+    }
+    record.cases.numbers.assign(block_.numbers.begin(),
+                                block_.numbers.begin() + static_cast<std::ptrdiff_t>(result.cases));
+    record.evaluation = std::move(result.evaluation);
+    if (!batch.answered[i]) {
+      journal_.append(record);
+    }
+    batch.answered[i] = true;
+  }
+}
+
+// Of a race that is recorded as a whole.
+void RunEvaluator::check_race(const std::vector<EvaluationRecord>& records) const {
+  if (records.empty()) {
+    return;
+  }
+  std::vector<std::size_t> had;
+  for (const EvaluationRecord& record : records) {
+    had.push_back(record.cases.numbers.size());
+  }
+  std::ranges::sort(had, std::greater{});
+  for (const Rung& rung : plan_rungs(plan_.racing, records.size(), block_.numbers.size())) {
+    if (had[rung.candidates - 1] < rung.cases ||
+        (rung.candidates < had.size() && had[rung.candidates] >= rung.cases)) {
+      refuse_replay(records.front().index, "the race that it was in went otherwise");
+    }
+  }
+}
+
 void RunEvaluator::take(EvaluationRecord record, Score& score) {
   Evaluation& evaluation = record.evaluation;
   ++counts_.evaluations;
   counts_.cases += record.calc_charge();
   counts_.clipped += record.clipped ? 1 : 0;
-  counts_.failed += evaluation.status == EvaluationStatus::ok ? 0 : 1;
+  const bool is_abandoned = evaluation.status == EvaluationStatus::abandoned;
+  counts_.abandoned += is_abandoned ? 1 : 0;
+  counts_.failed += evaluation.status == EvaluationStatus::ok || is_abandoned ? 0 : 1;
+  if (breeder_ && !is_abandoned && !evaluation.objectives.empty()) {
+    breeder_->learn(record, calc_scalar(problem(), evaluation.objectives));
+  }
   if (is_feasible(evaluation)) {
     ++counts_.feasible;
     candidates_.consider(record);
@@ -267,7 +430,8 @@ void RunEvaluator::take(EvaluationRecord record, Score& score) {
 }
 
 void RunEvaluator::report(std::uint64_t more_cases, std::uint64_t more_replayed) {
-  const std::uint64_t cases_each = block_.numbers.size();
+  const bool is_raced = plan_.racing.kind != Racing::Kind::none;
+  const std::uint64_t cases_each = is_raced ? 1 : block_.numbers.size();
   Progress progress;
   progress.done = counts_.cases + more_cases;
   progress.total = static_cast<std::uint64_t>(plan_.budget) / cases_each * cases_each;

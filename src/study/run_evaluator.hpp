@@ -1,7 +1,8 @@
 // The run's Evaluator: counts the budget exactly (a batch is cut where it ends, whole candidates
-// only), clips points to the bounds and counts that, supplies the training cases, answers from the
-// journal what a former process has evaluated already, journals the rest as it finishes, and
-// remembers the points worth judging.
+// only), clips points to the bounds and counts that, supplies the training cases, holds the races
+// (study/racing.hpp) and breeds cases (study/case_breeder.hpp), answers from the journal what a
+// former process has evaluated already, journals the rest as it finishes, and remembers the points
+// worth judging.
 #pragma once
 
 #include <cstdint>
@@ -12,19 +13,22 @@
 
 #include "optimizers/evaluator.hpp"
 #include "study/candidate_pool.hpp"
+#include "study/case_breeder.hpp"
 #include "study/case_runner.hpp"
 #include "study/journal.hpp"
+#include "study/racing.hpp"
 #include "study/run_plan.hpp"
 
 namespace armwright {
 
 struct RunCounts {
   std::uint64_t evaluations = 0;
-  std::uint64_t cases = 0;     // charged to the budget
-  std::uint64_t replayed = 0;  // evaluations answered from the journal
-  std::uint64_t clipped = 0;   // points asked for outside the bounds
-  std::uint64_t failed = 0;    // evaluations whose status is not ok
-  std::uint64_t feasible = 0;  // evaluations with objectives and every constraint met
+  std::uint64_t cases = 0;      // charged to the budget
+  std::uint64_t replayed = 0;   // evaluations answered from the journal
+  std::uint64_t clipped = 0;    // points asked for outside the bounds
+  std::uint64_t failed = 0;     // evaluations whose status is neither ok nor abandoned
+  std::uint64_t abandoned = 0;  // those that lost a race
+  std::uint64_t feasible = 0;   // evaluations with objectives and every constraint met
   std::uint64_t generations = 0;
 };
 
@@ -80,9 +84,28 @@ class RunEvaluator final : public Evaluator {
   std::vector<Candidate> select_candidates() const { return candidates_.select(); }
 
  private:
+  // Candidates that are asked for together, and what is known of them.
+  struct Batch {
+    std::vector<EvaluationRecord> records;
+    std::vector<char> answered;  // from the journal or by simulation
+    bool with_jacobian = false;
+    std::uint64_t replayed_cases = 0;
+    double threshold = 0;  // of abandonment
+  };
   std::vector<Score> evaluate(std::span<const std::vector<double>> points, bool with_jacobian);
+  std::vector<Score> evaluate_batch(std::span<const std::vector<double>> points,
+                                    bool with_jacobian);
+  bool races(Racing::Kind kind, bool with_jacobian) const;
+  std::vector<std::size_t> answer_from_journal(Batch& batch);
+  void simulate(Batch& batch, const std::vector<std::size_t>& missing);
+  void halve(Batch& batch);
+  std::uint64_t calc_cases_left() const {
+    return static_cast<std::uint64_t>(plan_.budget) - counts_.cases;
+  }
   EvaluationRecord make_request(std::span<const double> x) const;
-  void check_replay(const EvaluationRecord& request, const EvaluationRecord& recorded) const;
+  void check_replay(const EvaluationRecord& request, const EvaluationRecord& recorded,
+                    double threshold) const;
+  void check_race(const std::vector<EvaluationRecord>& records) const;
   void start_generation();
   [[noreturn]] void refuse_replay(std::uint64_t evaluation, const std::string& difference) const;
   void take(EvaluationRecord record, Score& score);
@@ -103,6 +126,7 @@ class RunEvaluator final : public Evaluator {
   std::string first_failure_;
   std::optional<double> least_violation_;
   CaseBlock block_;
+  std::optional<CaseBreeder> breeder_;  // of a schedule that breeds
   CandidatePool candidates_;
 };
 

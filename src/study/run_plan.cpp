@@ -21,24 +21,10 @@ json to_json_value(const OptionValue& value) {
 }  // namespace
 
 Schedule choose_schedule(const LoadedProblem& problem, const OptimizerRow& optimizer) {
-  if (problem.schedule.fresh && !optimizer.capabilities.generations) {
-    return {.fresh = false, .cases = problem.fixed_cases};
+  if (problem.schedule.changes_cases() && !optimizer.capabilities.generations) {
+    return {.kind = Schedule::Kind::fixed, .cases = problem.fixed_cases};
   }
   return problem.schedule;
-}
-
-std::optional<Schedule> read_schedule(std::string_view text) {
-  constexpr std::int64_t kMostCases = 1'000'000;
-  const auto parts = split(text, ':');
-  const auto cases = parts.size() == 2 ? parse_integer(parts[1]) : std::nullopt;
-  if (!cases || *cases < 1 || *cases > kMostCases || (parts[0] != "fresh" && parts[0] != "fixed")) {
-    return std::nullopt;
-  }
-  return Schedule{parts[0] == "fresh", static_cast<int>(*cases)};
-}
-
-std::string to_text(const Schedule& schedule) {
-  return fmt::format("{}:{}", schedule.fresh ? "fresh" : "fixed", schedule.cases);
 }
 
 void check_plan(const RunPlan& plan) {
@@ -48,13 +34,35 @@ void check_plan(const RunPlan& plan) {
     throw Error(ErrorKind::usage, fmt::format("optimizer '{}' cannot work on {}: {}", row.name,
                                               plan.problem.name, unsuitable));
   }
-  if (plan.schedule.fresh && !row.capabilities.generations) {
-    throw Error(
-        ErrorKind::usage,
-        fmt::format("optimizer '{}' has no generations, so new training cases for every "
-                    "generation (schedule fresh) mean nothing to it; use --schedule fixed:K, "
-                    "which evaluates every candidate on the same K cases",
-                    row.name));
+  if (plan.schedule.changes_cases() && !row.capabilities.generations) {
+    throw Error(ErrorKind::usage,
+                fmt::format("optimizer '{}' has no generations, so new training cases for every "
+                            "generation (schedule {}) mean nothing to it; use --schedule fixed:K, "
+                            "which evaluates every candidate on the same K cases",
+                            row.name, to_string(plan.schedule.kind)));
+  }
+  if (plan.schedule.kind == Schedule::Kind::coevolution && plan.schedule.cases < kFewestBredCases) {
+    throw Error(ErrorKind::usage,
+                fmt::format("schedule coevolution breeds {} training cases; it must be at least "
+                            "{}, parents and places for children",
+                            plan.schedule.cases, kFewestBredCases));
+  }
+  const ProblemDescription& problem = plan.problem.problem->description();
+  if (plan.racing.kind != Racing::Kind::none &&
+      (problem.objectives.size() > 1 || !problem.constraints.empty())) {
+    throw Error(ErrorKind::usage,
+                fmt::format("racing {} ranks candidates by one number, but {} has {}; use racing "
+                            "none there, or one objective without limits",
+                            to_string(plan.racing.kind), plan.problem.name,
+                            problem.constraints.empty() ? "several objectives" : "constraints"));
+  }
+  if (plan.racing.kind == Racing::Kind::abandonment &&
+      !plan.problem.problem->calc_lower_bound(std::vector<double>(problem.variables.size()), {},
+                                              1)) {
+    throw Error(ErrorKind::usage,
+                fmt::format("racing abandonment needs to know what the objective is at least, and "
+                            "{} cannot tell; use racing halving or none",
+                            plan.problem.name));
   }
   if (plan.budget < 0) {
     throw Error(ErrorKind::usage, fmt::format("--budget is {}; it must be >= 0", plan.budget));
@@ -69,15 +77,17 @@ std::string to_json(const RunPlan& plan) {
       options[name] = to_json_value(value);
     }
   }
-  const json run = {
+  json run = {
       {"optimizer", plan.optimizer.name},
       {"options", options},
       {"seed", plan.seed},
       {"budget", plan.budget},
-      {"schedule",
-       {{"kind", plan.schedule.fresh ? "fresh" : "fixed"}, {"cases", plan.schedule.cases}}},
+      {"schedule", {{"kind", to_string(plan.schedule.kind)}, {"cases", plan.schedule.cases}}},
       {"selection", {{"last", plan.selection.last}, {"best", plan.selection.best}}},
   };
+  if (plan.racing.kind != Racing::Kind::none) {  // plans from before there was racing say nothing
+    run["racing"] = to_text(plan.racing);
+  }
   std::map<std::string, std::string> inputs = plan.problem.input_hashes;
   inputs.insert(plan.optimizer.input_hashes.begin(), plan.optimizer.input_hashes.end());
   const json whole = {

@@ -16,17 +16,10 @@ namespace armwright {
 // Which of a run's designs are judged on the validation set; the best of them there is the winner
 // and meets the test set.
 struct Selection {
-  int last = 40;  // the last N different incumbents (fresh schedule: bests of generations and
-                  // recommendations)
+  int last = 40;  // the last N different incumbents (cases that change: bests of generations
+                  // and recommendations)
   int best = 5;   // and the N with the best training objective
 };
-
-// "fresh:K" or "fixed:K"; nothing if the text is neither.
-std::optional<Schedule> read_schedule(std::string_view text);
-std::string to_text(const Schedule& schedule);
-inline constexpr std::string_view kScheduleForms =
-    "fresh:K (the next K training cases for every generation) or fixed:K (always the first K), K "
-    "from 1 to 1000000";
 
 struct RunPlan {
   LoadedProblem problem;
@@ -35,11 +28,12 @@ struct RunPlan {
   std::uint64_t seed = 1;
   std::int64_t budget = 0;  // simulated training cases
   Schedule schedule;
+  Racing racing;
   Selection selection;
 };
 
-// The problem's own schedule; where that is fresh and the optimizer has no generations, the first
-// `fixed_cases` cases for every candidate.
+// The problem's own schedule; where that changes its cases and the optimizer has no generations,
+// the first `fixed_cases` cases for every candidate.
 Schedule choose_schedule(const LoadedProblem& problem, const OptimizerRow& optimizer);
 
 // Checks what no single part can: optimizer against schedule and problem. Throws Error{usage}.

@@ -162,6 +162,9 @@ std::string to_json(const RunResult& result) {
         {"design", result.published.design},
         {"where", result.published.where}}},
   };
+  if (result.counts.abandoned > 0) {  // results from before there was racing say nothing
+    j["counts"]["abandoned"] = result.counts.abandoned;
+  }
   if (result.winner) {
     j["winner"] = {{"candidate", *result.winner},
                    {"test", evaluation_to_json(result.test)},
@@ -189,6 +192,7 @@ RunResult parse_result(const std::string& text, const std::filesystem::path& fil
     result.counts.cases = counts.at("cases");
     result.counts.clipped = counts.at("clipped");
     result.counts.failed = counts.at("failed");
+    result.counts.abandoned = counts.value("abandoned", std::uint64_t{0});
     result.counts.feasible = counts.at("feasible");
     result.counts.generations = counts.at("generations");
     result.variable_names = j.at("variables").get<std::vector<std::string>>();

@@ -149,7 +149,7 @@ TEST_P(ShippedExperiment, HasTheSettingsOfTheThesis) {
   EXPECT_EQ(loaded.sets.test, "test/2");
   EXPECT_EQ(loaded.sets.validation_cases, 100);
   EXPECT_EQ(loaded.sets.test_cases, 500);
-  EXPECT_TRUE(loaded.schedule.fresh);
+  EXPECT_TRUE(loaded.schedule.changes_cases());
   EXPECT_EQ(loaded.schedule.cases, 1);
   EXPECT_EQ(loaded.optimizer, "ga");
   EXPECT_EQ(loaded.budget, kPopulation * expected.generations);
@@ -222,7 +222,7 @@ TEST(ShippedProblems, TheParetoProblemIsE6WithoutWeights) {
   const LoadedProblem front = load_problem("q2-pareto");
   const ProblemDescription& description = front.problem->description();
   ASSERT_THAT(description.objectives, SizeIs(2));
-  EXPECT_FALSE(front.schedule.fresh);
+  EXPECT_FALSE(front.schedule.changes_cases());
   const LoadedProblem e6 = load_problem("q2-e6");
   const TrackingTask& task = front.tracking->config().task;
   EXPECT_EQ(task.ik_bug, false);
@@ -244,7 +244,7 @@ TEST(ShippedProblems, TheLimitedOnesAreE6TakenApart) {
   for (const std::string name : {"q2-torque", "q2-error"}) {
     SCOPED_TRACE(name);
     const LoadedProblem loaded = load_problem(name);
-    EXPECT_FALSE(loaded.schedule.fresh);
+    EXPECT_FALSE(loaded.schedule.changes_cases());
     EXPECT_EQ(loaded.schedule.cases, 5);
     EXPECT_EQ(loaded.budget, 35000);
     EXPECT_EQ(loaded.sets.training, e6.sets.training);
@@ -280,7 +280,7 @@ TEST(ShippedProblems, AnalyticFunctionsHaveOneCase) {
     EXPECT_EQ(loaded.tracking, nullptr);
     EXPECT_EQ(loaded.problem->description().name, name);
     EXPECT_THAT(loaded.problem->description().variables, SizeIs(name == "constrained" ? 4 : 10));
-    EXPECT_FALSE(loaded.schedule.fresh);
+    EXPECT_FALSE(loaded.schedule.changes_cases());
     EXPECT_EQ(loaded.schedule.cases, 1);
     EXPECT_EQ(loaded.sets.validation_cases, 1);
     EXPECT_EQ(loaded.sets.test_cases, 1);

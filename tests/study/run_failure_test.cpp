@@ -91,7 +91,7 @@ TEST_F(RunTest, AnAttemptThatFailsSoonerTakesNothingAway) {
       const std::string folder = fmt::format("{}-{}", fresh, sooner);
       const auto make_plan = [&](int evaluations, const std::string& message) {
         RunPlan plan = make_failing_plan(evaluations, message);
-        plan.schedule = {.fresh = fresh, .cases = 2};
+        plan.schedule = {.kind = fresh ? Schedule::Kind::fresh : Schedule::Kind::fixed, .cases = 2};
         plan.budget = 36;
         return plan;
       };
@@ -168,7 +168,7 @@ TEST_F(RunTest, SeveralObjectivesLeaveAFront) {
   plan.optimizer = load_optimizer("ga");
   plan.options =
       Options::parse("ga", plan.optimizer.options, std::vector<std::string>{"population=8"});
-  plan.schedule = {.fresh = false, .cases = 1};
+  plan.schedule = {.kind = Schedule::Kind::fixed, .cases = 1};
   plan.budget = 40;
   const auto result = run(plan, "a");
   ASSERT_TRUE(result && result->winner);

@@ -43,7 +43,7 @@ inline RunPlan make_small_plan(const std::string& optimizer = "ga", std::int64_t
   plan.budget = budget;
   plan.schedule = plan.problem.schedule;
   if (!plan.optimizer.capabilities.generations) {
-    plan.schedule = {.fresh = false, .cases = 2};
+    plan.schedule = {.kind = Schedule::Kind::fixed, .cases = 2};
   }
   return plan;
 }

@@ -161,15 +161,15 @@ TEST_F(RunTest, ConvergenceCountsFeasibleEvaluationsOnly) {
 
 TEST_F(RunTest, AFreshScheduleNeedsGenerations) {
   RunPlan plan = make_small_plan("random");
-  plan.schedule.fresh = true;
+  plan.schedule.kind = Schedule::Kind::fresh;
   EXPECT_THAT(usage_error_of([&] { run(plan, "a"); }),
               AllOf(HasSubstr("'random' has no generations"), HasSubstr("--schedule fixed:K")));
 }
 
 TEST_F(RunTest, AnOptimizerWithoutGenerationsGetsFixedCases) {
   const LoadedProblem problem = load_problem("q1-complex");
-  EXPECT_TRUE(choose_schedule(problem, find_optimizer("ga")).fresh);
-  EXPECT_FALSE(choose_schedule(problem, find_optimizer("random")).fresh);
+  EXPECT_TRUE(choose_schedule(problem, find_optimizer("ga")).changes_cases());
+  EXPECT_FALSE(choose_schedule(problem, find_optimizer("random")).changes_cases());
   EXPECT_EQ(choose_schedule(problem, find_optimizer("random")).cases, 5);
 }
 

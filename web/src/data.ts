@@ -221,7 +221,7 @@ export interface RunData extends PageBase {
 // Generations, or of an optimizer without them blocks of consecutive evaluations.
 export interface Training {
   unit: 'generation' | 'evaluations';
-  schedule: string; // "fresh:1"
+  schedule: string; // "fresh:1", "fixed:5", "coevolution:10"
   budget: number; // cases
   index: number[]; // generation, or number of the block's last evaluation
   cases: number[]; // of the budget, at its end

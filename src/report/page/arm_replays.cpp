@@ -12,7 +12,7 @@
 namespace armwright {
 namespace {
 
-// With fresh training cases that of the second generation, the first being of random designs.
+// With training cases that change that of the second generation, the first being of random designs.
 void add_training_case(const RecordedRun& run, ReplayList& replays) {
   const auto& training = run.journal.training;
   if (training.empty()) {
@@ -21,7 +21,7 @@ void add_training_case(const RecordedRun& run, ReplayList& replays) {
   const auto second = std::ranges::find_if(training, [&](const EvaluationRecord& record) {
     return record.generation > training.front().generation;
   });
-  const bool has_second = run.schedule.fresh && second != training.end();
+  const bool has_second = run.schedule.changes_cases() && second != training.end();
   const CaseBlock& cases = (has_second ? *second : training.front()).cases;
   replays.add(cases.set, cases.numbers.front(),
               has_second ? "what the second generation was trained on" : "the first of training");

@@ -127,7 +127,8 @@ void read_manifest(RecordedRun& run) {
     run.command_line = manifest.at("command_line").get<std::vector<std::string>>();
     const json& settings = run.configuration.at("run");
     run.budget = settings.at("budget").get<std::int64_t>();
-    run.schedule.fresh = settings.at("schedule").at("kind") == "fresh";
+    const auto kind = settings.at("schedule").at("kind").get<std::string>();
+    run.schedule.kind = find_schedule_kind(kind).value_or(Schedule::Kind::fixed);
     run.schedule.cases = settings.at("schedule").at("cases").get<int>();
     settings.at("optimizer").get<std::string>();
     settings.at("options").get<std::map<std::string, json>>();
@@ -259,7 +260,7 @@ std::vector<double> RecordedRun::find_best() const {
   if (result) {
     return result->winner ? result->judged[*result->winner].candidate.x : std::vector<double>{};
   }
-  const auto incumbents = find_incumbents(describe(), journal.training, schedule.fresh);
+  const auto incumbents = find_incumbents(describe(), journal.training, schedule.changes_cases());
   return incumbents.empty() ? std::vector<double>{} : incumbents.back().x;
 }
 

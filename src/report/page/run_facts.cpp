@@ -66,6 +66,7 @@ void add_setting(const RecordedRun& run, Facts& facts) {
   facts.add("Options", describe_options(settings.at("options")));
   facts.add("Seed", fmt::format("{}", settings.at("seed").get<std::uint64_t>()));
   facts.add("Schedule", to_text(run.schedule));
+  facts.add("Racing", settings.value("racing", ""));
   if (const TrackingProblem* tracking = run.tracking()) {
     const EnginePair& engines = tracking->config().engines;
     facts.add("Engine", engines.training_name == engines.judging_name
@@ -81,6 +82,10 @@ void add_counts(const RecordedRun& run, Facts& facts) {
   facts.add("Evaluations", fmt::format("{}", training.size()));
   facts.add("Clipped to the bounds",
             fmt::format("{}", std::ranges::count_if(training, &EvaluationRecord::clipped)));
+  const auto lost = std::ranges::count_if(training, [](const EvaluationRecord& record) {
+    return record.evaluation.status == EvaluationStatus::abandoned;
+  });
+  facts.add("Dropped in races", lost > 0 ? fmt::format("{}", lost) : "");
   facts.add("Evaluations without a number",
             fmt::format("{}", std::ranges::count_if(training, [](const EvaluationRecord& record) {
                           return record.evaluation.objectives.empty();

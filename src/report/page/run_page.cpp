@@ -141,8 +141,9 @@ json make_page(const RecordedRun& run, const PageOptions& options, PageSimulator
   const ProblemDescription description = run.describe();
   const History history = divide_history(run.journal.training);
   PageSimulator* used = options.simulate && run.problem ? &simulator : nullptr;
-  const auto incumbents = thin_out(
-      find_incumbents(description, run.journal.training, run.schedule.fresh), kMostIncumbents);
+  const auto incumbents =
+      thin_out(find_incumbents(description, run.journal.training, run.schedule.changes_cases()),
+               kMostIncumbents);
   if (used != nullptr) {
     used->expect(incumbents.size() * static_cast<std::uint64_t>(count_incumbent_cases(run)));
   }

@@ -31,7 +31,6 @@ struct BestDesign {
 // Of the best optimizers one each, best optimizer first.
 std::vector<BestDesign> find_best_designs(const StudyPlan& plan, const StudyResult& result,
                                           std::size_t problem) {
-  const TrackingProblem& tracking = *plan.problems[problem].loaded.tracking;
   std::vector<BestDesign> designs;
   for (const std::size_t o : result.problems[problem].order) {
     const std::string& label = plan.optimizers[o].label;
@@ -40,7 +39,7 @@ std::vector<BestDesign> find_best_designs(const StudyPlan& plan, const StudyResu
       designs.push_back(
           {cell,
            {fmt::format("optimizer-{}", o), fmt::format("{}, replicate {}", label, cell->replicate),
-            tracking.make_design(cell->x)}});
+            get_problem(plan, {problem, o, 1}).tracking->make_design(cell->x)}});
     }
   }
   return designs;

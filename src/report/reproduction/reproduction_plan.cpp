@@ -152,6 +152,7 @@ class Planner {
     run.options = Options::parse(run.optimizer.name, run.optimizer.options, {});
     run.budget = run.problem.budget;
     run.schedule = choose_schedule(run.problem, run.optimizer);
+    run.racing = run.problem.racing;
     check_plan(run);
     return run;
   }

@@ -5,38 +5,79 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <numeric>
+#include <span>
 
 #include "base/error.hpp"
+#include "study/case_breeder.hpp"
 
 namespace armwright {
 namespace {
 
 using Visitor = std::function<void(UsedSet& set, const std::vector<TestCase>& cases)>;
 
+// Those of a problem's cells: of every kind the one with the most cases.
+std::vector<Schedule> list_schedules(const StudyPlan& plan, std::size_t problem) {
+  std::map<Schedule::Kind, Schedule> largest;
+  for (std::size_t o = 0; o < plan.optimizers.size(); ++o) {
+    const Schedule schedule = get_schedule(plan, {problem, o, 1});
+    Schedule& one = largest.try_emplace(schedule.kind, schedule).first->second;
+    one.cases = std::max(one.cases, schedule.cases);
+  }
+  std::vector<Schedule> schedules;
+  for (const auto& [kind, schedule] : largest) {
+    schedules.push_back(schedule);
+  }
+  return schedules;
+}
+
 void visit_sets(const StudyPlan& plan, const Visitor& visit) {
   for (std::size_t p = 0; p < plan.problems.size(); ++p) {
     const StudyProblem& problem = plan.problems[p];
-    const auto meet = [&](const char* role, const std::string& name, int count) {
-      UsedSet set{problem.label, role, name, count, ""};
+    const auto meet_numbers = [&](const char* role, const std::string& name,
+                                  std::span<const std::uint64_t> numbers) {
+      UsedSet set{problem.label, role, name, static_cast<int>(numbers.size()), ""};
       std::vector<TestCase> cases;
       if (problem.loaded.tracking) {
         const TestSet source = problem.loaded.tracking->get_set(name);
-        for (int i = 0; i < count; ++i) {
-          cases.push_back(source.make_case(static_cast<std::uint64_t>(i)));
+        for (const std::uint64_t number : numbers) {
+          cases.push_back(source.make_case(number));
         }
         set.sha256 = calc_content_hash(cases);
       }
       visit(set, cases);
     };
+    const auto meet = [&](const char* role, const std::string& name, int count) {
+      std::vector<std::uint64_t> numbers(static_cast<std::size_t>(count));
+      std::iota(numbers.begin(), numbers.end(), std::uint64_t{0});
+      meet_numbers(role, name, numbers);
+    };
     const CaseSets& sets = problem.loaded.sets;
     meet("test", sets.test, sets.test_cases);
     meet("validation", sets.validation, sets.validation_cases);
     for (int replicate = 1; replicate <= plan.replicates; ++replicate) {
-      // Of fresh cases no more than the budget pays for.
-      constexpr std::int64_t kMostHashed = 10'000;
-      const auto cases = problem.schedule.fresh ? std::min(plan.budget, kMostHashed)
-                                                : std::int64_t{problem.schedule.cases};
-      meet("training", make_training_set_name(plan, {p, 0, replicate}), static_cast<int>(cases));
+      const std::string name = make_training_set_name(plan, {p, 0, replicate});
+      const auto schedules = list_schedules(plan, p);
+      std::int64_t cases = 0;  // of the set itself: methods share its beginning
+      for (const Schedule& schedule : schedules) {
+        // Of fresh cases no more than the budget pays for.
+        constexpr std::int64_t kMostHashed = 10'000;
+        if (schedule.kind == Schedule::Kind::fresh) {
+          cases = std::max(cases, std::min(plan.budget, kMostHashed));
+        } else if (schedule.kind == Schedule::Kind::fixed) {
+          cases = std::max(cases, std::int64_t{schedule.cases});
+        }
+      }
+      if (cases > 0) {
+        meet("training", name, static_cast<int>(cases));
+      }
+      for (const Schedule& schedule : schedules) {
+        if (schedule.kind == Schedule::Kind::coevolution) {
+          // What they will be bred into is nobody's to know; they come from a space of their own.
+          const std::string bred = get_training_set(name, schedule);
+          meet_numbers("training", bred, CaseBreeder(bred, schedule.cases).genomes());
+        }
+      }
     }
   }
 }

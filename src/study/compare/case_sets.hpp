@@ -12,7 +12,8 @@ struct UsedSet {
   std::string problem;  // label
   std::string role;     // "training", "validation", "test"
   std::string name;
-  int cases = 0;  // the first of the set; of a fresh schedule as many as the budget could reach
+  int cases = 0;  // the first of the set; of a fresh schedule as many as the budget could reach, of
+                  // bred ones those that breeding begins with
   std::string sha256;  // of their points; empty for a function, which has none
 };
 

@@ -5,13 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
-#include "base/bits.hpp"
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
-#include "study/case_runner.hpp"
+#include "study/compare/choices.hpp"
 #include "study/compare/incumbents.hpp"
 #include "study/json_values.hpp"
 
@@ -23,58 +21,6 @@ using nlohmann::json;
 constexpr std::size_t kCellLimit_bytes = std::size_t{64} << 20;
 constexpr int kFormat = 1;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-// Designs on the whole test set, each but once.
-class TestBench {
- public:
-  TestBench(const LoadedProblem& problem, unsigned jobs, StopSignal& stop)
-      : problem_(problem), pool_(jobs), stop_(stop), runner_(*problem.problem, pool_, stop) {
-    block_.role = CaseRole::test;
-    block_.set = problem.sets.test;
-    block_.numbers.resize(static_cast<std::size_t>(problem.sets.test_cases));
-    std::iota(block_.numbers.begin(), block_.numbers.end(), std::uint64_t{0});
-  }
-
-  // False if stopped.
-  bool add(const std::vector<std::vector<double>>& designs) {
-    std::vector<std::span<const double>> candidates;
-    for (const auto& x : designs) {
-      if (find(x) == nullptr &&
-          std::ranges::none_of(candidates, [&](const auto& y) { return same_bits(x, y); })) {
-        candidates.emplace_back(x);
-      }
-    }
-    const std::size_t first = designs_.size();
-    for (const auto& x : candidates) {
-      designs_.emplace_back(x.begin(), x.end());
-    }
-    evaluations_.resize(designs_.size());
-    runner_.run(candidates, block_, false, [&](std::size_t candidate, Evaluation evaluation) {
-      evaluations_[first + candidate] = std::move(evaluation);
-    });
-    return !stop_.requested();
-  }
-
-  const Evaluation& get(std::span<const double> x) const { return *find(x); }
-
- private:
-  const Evaluation* find(std::span<const double> x) const {
-    for (std::size_t i = 0; i < designs_.size(); ++i) {
-      if (same_bits(designs_[i], x)) {
-        return &evaluations_[i];
-      }
-    }
-    return nullptr;
-  }
-
-  const LoadedProblem& problem_;
-  ThreadPool pool_;
-  StopSignal& stop_;
-  CaseRunner runner_;
-  CaseBlock block_;
-  std::vector<std::vector<double>> designs_;
-  std::vector<Evaluation> evaluations_;
-};
 
 std::vector<double> get_start(const ProblemDescription& problem) {
   std::vector<double> start;
@@ -101,13 +47,24 @@ void set_winner(const ProblemDescription& problem, const RunResult& result, doub
   outcome.metrics = result.test.metrics;
 }
 
+// A design on the test set, or that there is none.
+CurvePoint make_point(const RunPlan& run, std::int64_t budget, const Evaluation* evaluation,
+                      double tolerance) {
+  if (evaluation == nullptr) {
+    return {budget, kInfinity, static_cast<std::uint64_t>(run.problem.sets.test_cases)};
+  }
+  return {budget, calc_test_value(run.problem.problem->description(), *evaluation, tolerance),
+          count_failures(run.problem, *evaluation)};
+}
+
 // What the designs along the way are worth on the test set. False if stopped.
-bool test_progress(const StudyPlan& plan, const RunPlan& run, const RunResult& result,
-                   const CellRequest& where, StopSignal& stop, CellOutcome& outcome) {
+bool test_progress(const StudyPlan& plan, const Cell& cell, const RunPlan& run,
+                   const RunResult& result, const CellRequest& where, StopSignal& stop,
+                   CellOutcome& outcome) {
   const ProblemDescription& problem = run.problem.problem->description();
   const auto journal = read_journal(where.folder / "journal");
-  const auto incumbents = find_incumbents(problem, journal.training, run.schedule.fresh);
-  const auto checkpoints = calc_checkpoints(plan.budget, run.schedule.cases, plan.checkpoints);
+  const auto incumbents = find_incumbents(problem, journal.training, run.schedule.changes_cases());
+  const auto checkpoints = list_checkpoints(plan, cell.problem);
   const auto find_incumbent = [&](std::int64_t budget) {
     const auto after = std::ranges::upper_bound(incumbents, budget, {}, &Incumbent::cases);
     return after == incumbents.begin() ? nullptr : &*std::prev(after);
@@ -122,18 +79,35 @@ bool test_progress(const StudyPlan& plan, const RunPlan& run, const RunResult& r
   for (std::size_t i = 0; has_front && i < result.judged.size(); ++i) {
     designs.push_back(result.judged[i].candidate.x);
   }
-  TestBench bench(run.problem, where.jobs, stop);
+  std::vector<Choice> choices;
+  if (!plan.targets.empty()) {
+    auto made = make_choices(run, journal.training, result, checkpoints, where.jobs, stop);
+    if (!made) {
+      return false;
+    }
+    choices = std::move(*made);
+  }
+  for (const Choice& choice : choices) {
+    if (choice.x) {
+      designs.push_back(*choice.x);
+    }
+  }
+  DesignBench bench(run.problem, CaseRole::test, where.jobs, stop);
   if (!bench.add(designs)) {
     return false;
   }
-  outcome.start_value =
-      calc_test_value(problem, bench.get(designs.front()), plan.constraint_tolerance);
+  const double tolerance = plan.constraint_tolerance;
+  const Evaluation& start = bench.get(designs.front());
+  outcome.start_value = calc_test_value(problem, start, tolerance);
+  outcome.start_failures = count_failures(run.problem, start);
   for (const std::int64_t budget : checkpoints) {
     const Incumbent* incumbent = find_incumbent(budget);
-    outcome.curve.push_back({budget, incumbent == nullptr
-                                         ? kInfinity
-                                         : calc_test_value(problem, bench.get(incumbent->x),
-                                                           plan.constraint_tolerance)});
+    outcome.curve.push_back(make_point(
+        run, budget, incumbent == nullptr ? nullptr : &bench.get(incumbent->x), tolerance));
+  }
+  for (const Choice& choice : choices) {
+    outcome.choices.push_back(
+        make_point(run, choice.budget, choice.x ? &bench.get(*choice.x) : nullptr, tolerance));
   }
   for (std::size_t i = 0; has_front && i < result.judged.size(); ++i) {
     const Evaluation& evaluation = bench.get(result.judged[i].candidate.x);
@@ -142,6 +116,38 @@ bool test_progress(const StudyPlan& plan, const RunPlan& run, const RunResult& r
     }
   }
   return true;
+}
+
+json count_to_json(const std::optional<std::uint64_t>& number) {
+  return number ? json(*number) : json();
+}
+
+std::optional<std::uint64_t> count_from_json(const json& j) {
+  return j.is_null() ? std::nullopt : std::optional(j.get<std::uint64_t>());
+}
+
+json points_to_json(std::span<const CurvePoint> points) {
+  json list = json::array();
+  for (const CurvePoint& point : points) {
+    list.push_back({point.budget, value_to_json(point.value), count_to_json(point.failures)});
+  }
+  return list;
+}
+
+std::vector<CurvePoint> points_from_json(const json& list) {
+  std::vector<CurvePoint> points;
+  for (const json& point : list) {
+    points.push_back({point.at(0), value_from_json(point.at(1)),
+                      point.size() > 2 ? count_from_json(point.at(2)) : std::nullopt});
+  }
+  return points;
+}
+
+// Whether the cell holds what is asked of it.
+bool answers(const StudyPlan& plan, const CellOutcome& outcome) {
+  const bool has_failures = outcome.start_failures.has_value();
+  return (plan.targets.empty() || !outcome.choices.empty()) &&
+         (plan.value != StudyValue::failures || has_failures);
 }
 
 }  // namespace
@@ -156,10 +162,6 @@ double calc_test_value(const ProblemDescription& problem, const Evaluation& eval
 }
 
 std::string to_json(const CellOutcome& outcome) {
-  json curve = json::array();
-  for (const CurvePoint& point : outcome.curve) {
-    curve.push_back({point.budget, value_to_json(point.value)});
-  }
   const json j = {
       {"format", kFormat},
       {"problem", outcome.problem},
@@ -181,7 +183,9 @@ std::string to_json(const CellOutcome& outcome) {
       {"objectives", outcome.objectives},
       {"metrics", outcome.metrics},
       {"start_value", value_to_json(outcome.start_value)},
-      {"curve", curve},
+      {"start_failures", count_to_json(outcome.start_failures)},
+      {"curve", points_to_json(outcome.curve)},
+      {"choices", points_to_json(outcome.choices)},
       {"front", outcome.front},
   };
   return j.dump(1) + "\n";
@@ -213,9 +217,9 @@ CellOutcome parse_cell(const std::string& text, const std::filesystem::path& fil
     outcome.objectives = j.at("objectives").get<std::vector<double>>();
     outcome.metrics = j.at("metrics").get<std::vector<double>>();
     outcome.start_value = value_from_json(j.at("start_value"));
-    for (const json& point : j.at("curve")) {
-      outcome.curve.push_back({point.at(0), value_from_json(point.at(1))});
-    }
+    outcome.start_failures = count_from_json(j.value("start_failures", json()));
+    outcome.curve = points_from_json(j.at("curve"));
+    outcome.choices = points_from_json(j.value("choices", json::array()));
     outcome.front = j.at("front").get<std::vector<std::vector<double>>>();
     return outcome;
   } catch (const std::exception& error) {
@@ -252,7 +256,7 @@ std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
   outcome.optimizer = plan.optimizers[cell.optimizer].label;
   outcome.optimizer_name = plan.optimizers[cell.optimizer].row.name;
   outcome.replicate = cell.replicate;
-  outcome.configuration_sha256 = calc_configuration_hash(plan.problems[cell.problem].loaded);
+  outcome.configuration_sha256 = calc_configuration_hash(get_problem(plan, cell));
   outcome.end_reason = result->end_reason;
   outcome.failure = result->failure;
   outcome.evaluations = result->counts.evaluations;
@@ -261,7 +265,7 @@ std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
   outcome.failed_evaluations = result->counts.failed;
   set_winner(request.plan.problem.problem->description(), *result, plan.constraint_tolerance,
              outcome);
-  if (!test_progress(plan, request.plan, *result, where, stop, outcome)) {
+  if (!test_progress(plan, cell, request.plan, *result, where, stop, outcome)) {
     return std::nullopt;
   }
   write_file_atomically(request.folder / "cell.json", to_json(outcome));
@@ -279,14 +283,14 @@ std::optional<CellOutcome> load_cell(const StudyPlan& plan, const Cell& cell,
   if (outcome.problem != problem.label ||
       outcome.optimizer != plan.optimizers[cell.optimizer].label ||
       outcome.replicate != cell.replicate ||
-      outcome.configuration_sha256 != calc_configuration_hash(problem.loaded)) {
+      outcome.configuration_sha256 != calc_configuration_hash(get_problem(plan, cell))) {
     throw Error(ErrorKind::bad_data,
                 fmt::format("{}: is of another cell ({} on {}, replicate {}, or of another "
                             "configuration); remove it, and the same command makes the right one",
                             file.string(), sanitize(outcome.optimizer), sanitize(outcome.problem),
                             outcome.replicate));
   }
-  return outcome;
+  return answers(plan, outcome) ? std::optional(std::move(outcome)) : std::nullopt;
 }
 
 }  // namespace armwright

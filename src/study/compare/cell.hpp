@@ -22,6 +22,9 @@ double calc_test_value(const ProblemDescription& problem, const Evaluation& eval
 struct CurvePoint {
   std::int64_t budget = 0;
   double value = 0;  // of the incumbent at that budget; infinite before there is one
+  // Test cases in which it fails, all before there is one; nothing in cells of versions before
+  // these were recorded.
+  std::optional<std::uint64_t> failures;
 };
 
 struct CellOutcome {
@@ -46,7 +49,11 @@ struct CellOutcome {
   std::vector<double> metrics;
   // The place that all optimizers started from.
   double start_value = 0;
+  std::optional<std::uint64_t> start_failures;  // as in CurvePoint
   std::vector<CurvePoint> curve;
+  // Of a plan with targets: the winner that the run would have had if it had ended at that budget,
+  // by the validation set (choices.hpp).
+  std::vector<CurvePoint> choices;
   // Several objectives: those of all judged designs on the test set that have a value there.
   std::vector<std::vector<double>> front;
 };
@@ -69,7 +76,9 @@ struct CellRequest {
 std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
                                     const CellRequest& where, StopSignal& stop,
                                     RunObserver& observer);
-// What is recorded of a cell; nothing if it has not ended. Error{bad_data} if it is another one's.
+// What is recorded of a cell; nothing if it has not ended, or was recorded before the plan asked
+// for what it lacks, which run_cell() adds from its journal. Error{bad_data} if it is another
+// one's.
 std::optional<CellOutcome> load_cell(const StudyPlan& plan, const Cell& cell,
                                      const std::filesystem::path& study);
 

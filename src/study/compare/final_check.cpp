@@ -52,8 +52,9 @@ void save_check(const std::filesystem::path& file, const FinalCheck& check,
   write_file_atomically(file, j.dump(1) + "\n");
 }
 
-// The problem as it is, but judged on the final engine.
-LoadedProblem load_on_engine(const StudyProblem& problem, const std::string& engine) {
+// The problem as the optimizer has it, but judged on the final engine.
+LoadedProblem load_on_engine(const StudyProblem& problem, const StudyOptimizer& optimizer,
+                             const std::string& engine) {
   constexpr std::string_view kReplaced[] = {"physics.engine", "physics.judging_engine",
                                             "physics.precision", "physics.simd"};
   std::vector<std::string> settings;
@@ -62,13 +63,23 @@ LoadedProblem load_on_engine(const StudyProblem& problem, const std::string& eng
       settings.push_back(setting);
     }
   }
+  settings.insert(settings.end(), optimizer.settings.begin(), optimizer.settings.end());
   settings.push_back("physics.engine=" + engine);
   settings.push_back("physics.judging_engine=" + engine);
   return load_problem(problem.name, settings);
 }
 
-// Adds what is recorded; of the rest `on_missing` is told the problem, the best design's cell, the
-// file and where the check belongs.
+// What the file holds is the objective; a study may compare something else.
+FinalCheck as_compared(const StudyPlan& plan, FinalCheck check) {
+  if (plan.value == StudyValue::failures && check.errors.cases > 0) {
+    check.value =
+        static_cast<double>(check.errors.failures) / static_cast<double>(check.errors.cases);
+  }
+  return check;
+}
+
+// Adds what is recorded; of the rest `on_missing` is told the cell, its outcome, the file and
+// where the check belongs.
 void visit_checks(const StudyPlan& plan, const std::filesystem::path& study, StudyResult& result,
                   const auto& on_missing) {
   for (std::size_t p = 0; p < plan.problems.size() && !plan.final_engine.empty(); ++p) {
@@ -83,8 +94,10 @@ void visit_checks(const StudyPlan& plan, const std::filesystem::path& study, Stu
           study / "final" / escape_name(problem.label) / (escape_name(optimizer) + ".json");
       auto& check = result.problems[p].optimizers[o].final_check;
       check = load_check(file, plan, *best);
-      if (!check) {
-        on_missing(p, *best, file, check);
+      if (check) {
+        check = as_compared(plan, *check);
+      } else {
+        on_missing(Cell{p, o, best->replicate}, *best, file, check);
       }
     }
   }
@@ -106,53 +119,51 @@ const CellOutcome* find_best_cell(std::span<const CellOutcome> cells, const std:
 
 void load_final_checks(const StudyPlan& plan, const std::filesystem::path& study,
                        StudyResult& result) {
-  visit_checks(plan, study, result, [](std::size_t, const CellOutcome&, const auto&, auto&) {});
+  visit_checks(plan, study, result, [](const Cell&, const CellOutcome&, const auto&, auto&) {});
 }
 
 bool add_final_checks(const StudyPlan& plan, const std::filesystem::path& study, unsigned jobs,
                       StopSignal& stop, RunObserver& observer, StudyResult& result) {
   struct Missing {
-    std::size_t problem;
+    Cell cell;
     const CellOutcome* best;
     std::filesystem::path file;
     std::optional<FinalCheck>* check;
   };
   std::vector<Missing> missing;
   visit_checks(plan, study, result,
-               [&](std::size_t problem, const CellOutcome& best, const auto& file, auto& check) {
-                 missing.push_back({problem, &best, file, &check});
+               [&](const Cell& cell, const CellOutcome& best, const auto& file, auto& check) {
+                 missing.push_back({cell, &best, file, &check});
                });
   Progress progress;
   progress.phase = Progress::Phase::test;
   for (const Missing& one : missing) {
-    progress.total += static_cast<std::uint64_t>(plan.problems[one.problem].loaded.sets.test_cases);
+    progress.total +=
+        static_cast<std::uint64_t>(plan.problems[one.cell.problem].loaded.sets.test_cases);
   }
   ThreadPool pool(jobs);
-  std::optional<LoadedProblem> judged;  // of the problem at hand
-  std::size_t judged_problem = plan.problems.size();
   for (const Missing& one : missing) {
-    if (judged_problem != one.problem) {
-      judged = load_on_engine(plan.problems[one.problem], plan.final_engine);
-      judged_problem = one.problem;
-    }
     observer.on_progress(progress);
-    CaseBlock block{CaseRole::test, judged->sets.test,
-                    std::vector<std::uint64_t>(static_cast<std::size_t>(judged->sets.test_cases))};
+    const LoadedProblem judged = load_on_engine(
+        plan.problems[one.cell.problem], plan.optimizers[one.cell.optimizer], plan.final_engine);
+    CaseBlock block{CaseRole::test, judged.sets.test,
+                    std::vector<std::uint64_t>(static_cast<std::size_t>(judged.sets.test_cases))};
     std::iota(block.numbers.begin(), block.numbers.end(), std::uint64_t{0});
     Evaluation evaluation;
     const std::span<const double> x = one.best->x;
-    CaseRunner(*judged->problem, pool, stop)
+    CaseRunner(*judged.problem, pool, stop)
         .run({&x, 1}, block, false,
              [&](std::size_t, Evaluation done) { evaluation = std::move(done); });
     if (stop.requested()) {
       return false;
     }
     progress.done += block.numbers.size();
-    *one.check = FinalCheck{
+    const FinalCheck check{
         one.best->replicate, plan.final_engine,
-        calc_test_value(judged->problem->description(), evaluation, plan.constraint_tolerance),
+        calc_test_value(judged.problem->description(), evaluation, plan.constraint_tolerance),
         summarize(evaluation.case_errors, kFailureError_m)};
-    save_check(one.file, **one.check, *one.best);
+    save_check(one.file, check, *one.best);
+    *one.check = as_compared(plan, check);
   }
   return true;
 }

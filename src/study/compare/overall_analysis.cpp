@@ -76,9 +76,8 @@ CellOutcome make_missing(const StudyPlan& plan, const Cell& cell) {
   outcome.replicate = cell.replicate;
   outcome.end_reason = "not ended";
   outcome.value = outcome.validation_value = outcome.start_value = kInfinity;
-  for (const std::int64_t budget : calc_checkpoints(
-           plan.budget, plan.problems[cell.problem].schedule.cases, plan.checkpoints)) {
-    outcome.curve.push_back({budget, kInfinity});
+  for (const std::int64_t budget : list_checkpoints(plan, cell.problem)) {
+    outcome.curve.push_back({budget, kInfinity, std::nullopt});
   }
   return outcome;
 }
@@ -164,6 +163,9 @@ StudyResult analyze_study(const StudyPlan& plan, const std::filesystem::path& st
             continue;
           }
           outcome = make_missing(plan, cell);
+        }
+        if (plan.value == StudyValue::failures) {
+          outcome = count_failures_only(std::move(*outcome), plan.problems[p].loaded.sets);
         }
         result.cells.push_back(std::move(*outcome));
       }

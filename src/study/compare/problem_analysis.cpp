@@ -205,9 +205,13 @@ ProblemResult analyze_problem(const StudyPlan& plan, std::size_t number,
   ProblemResult result;
   result.label = problem.label;
   result.has_front = description.objectives.size() > 1;
-  result.quantity = result.has_front ? Quantity{"missed hypervolume", "1"}
-                                     : get_scalar_quantity(description.objectives);
-  result.checkpoints = calc_checkpoints(plan.budget, problem.schedule.cases, plan.checkpoints);
+  if (plan.value == StudyValue::failures) {
+    result.quantity = {"share of failed test cases", "1"};
+  } else {
+    result.quantity = result.has_front ? Quantity{"missed hypervolume", "1"}
+                                       : get_scalar_quantity(description.objectives);
+  }
+  result.checkpoints = list_checkpoints(plan, number);
   set_best_and_start(cells, result);
   result.targets = make_targets(result.best_known, result.start);
   std::vector<double> ideal;
@@ -215,6 +219,7 @@ ProblemResult analyze_problem(const StudyPlan& plan, std::size_t number,
     result.reference_point = calc_reference_point(cells, description.objectives.size(), ideal);
   }
   std::vector<std::vector<double>> values;
+  std::vector<std::vector<const CellOutcome*>> all_runs;
   for (std::size_t i = 0; i < plan.optimizers.size(); ++i) {
     const std::string& label = plan.optimizers[i].label;
     const std::string stream = fmt::format("analysis/{}/{}", problem.label, label);
@@ -246,10 +251,16 @@ ProblemResult analyze_problem(const StudyPlan& plan, std::size_t number,
     add_running_times(plan, result, runs, stream, one);
     add_curve(result, runs, one);
     values.push_back(one.values);
+    all_runs.push_back(std::move(runs));
     result.optimizers.push_back(std::move(one));
   }
-  if (cells.size() == values.size() * static_cast<std::size_t>(plan.replicates)) {
+  const bool complete = cells.size() == values.size() * static_cast<std::size_t>(plan.replicates);
+  if (complete) {
     compare_optimizers(values, result);
+  }
+  add_targets(plan, all_runs, complete, result);
+  if (problem.loaded.tracking) {
+    add_failures(all_runs, complete, result);
   }
   result.order.resize(values.size());
   std::iota(result.order.begin(), result.order.end(), std::size_t{0});

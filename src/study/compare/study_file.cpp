@@ -12,6 +12,7 @@
 #include "problems/config_files.hpp"
 #include "sim/simd_level.hpp"
 #include "study/compare/case_sets.hpp"
+#include "study/compare/study_methods.hpp"
 #include "study/compare/study_plan.hpp"
 
 namespace armwright {
@@ -27,6 +28,8 @@ struct NamedOptimizer {
   std::string label;
   std::vector<std::string> options;
   bool baseline = false;  // a resolved plan says so
+  std::optional<Schedule> schedule;
+  std::vector<std::string> settings;
 };
 
 struct NamedProblem {
@@ -63,7 +66,7 @@ std::optional<Schedule> read_schedule_key(const ConfigTable& table) {
 
 // Keys that would give one optimizer more than another.
 void refuse_privileges(const ConfigTable& table) {
-  for (const char* key : {"budget", "replicates", "schedule", "seed", "start_spread", "sets"}) {
+  for (const char* key : {"budget", "replicates", "seed", "start_spread", "sets"}) {
     if (table.has(key)) {
       table.refuse(key,
                    "it is the same for every optimizer of a comparison: it belongs to the top "
@@ -96,6 +99,7 @@ RawPlan read_file_plan(const ConfigTable& table, StudyPlan& plan) {
       static_cast<int>(selection.get_integer_or("last", plan.selection.last, 1, kMostSelected));
   plan.selection.best =
       static_cast<int>(selection.get_integer_or("best", plan.selection.best, 0, kMostSelected));
+  read_targets(table, plan);
   raw.schedule = read_schedule_key(table);
   raw.settings = get_strings_or_none(table, "set");
   for (const std::string& name : get_strings_or_none(table, "problems")) {
@@ -110,13 +114,14 @@ RawPlan read_file_plan(const ConfigTable& table, StudyPlan& plan) {
     }
   }
   for (const std::string& name : get_strings_or_none(table, "optimizers")) {
-    raw.optimizers.push_back({name, "", {}, false});
+    raw.optimizers.push_back({name, "", {}, false, {}, {}});
   }
   for (const ConfigTable& optimizer : table.get_tables_or_empty("optimizer")) {
     refuse_privileges(optimizer);
     raw.optimizers.push_back({optimizer.get_string("name"), optimizer.get_string("label", ""),
                               get_strings_or_none(optimizer, "options"),
-                              optimizer.get_bool_or("baseline", false)});
+                              optimizer.get_bool_or("baseline", false),
+                              read_schedule_key(optimizer), read_method_settings(optimizer)});
     get_strings_or_none(optimizer, "inputs");  // of a resolved plan: they follow from the rest
   }
   table.refuse_unknown();
@@ -137,8 +142,9 @@ Schedule choose_study_schedule(const LoadedProblem& problem, const std::optional
   if (asked) {
     return *asked;
   }
-  return problem.schedule.fresh ? Schedule{.fresh = false, .cases = problem.fixed_cases}
-                                : problem.schedule;
+  return problem.schedule.changes_cases()
+             ? Schedule{.kind = Schedule::Kind::fixed, .cases = problem.fixed_cases}
+             : problem.schedule;
 }
 
 void refuse_repeated(std::string_view what, std::span<const std::string> labels) {
@@ -218,6 +224,8 @@ StudyOptimizer load_study_optimizer(const NamedOptimizer& named) {
   optimizer.baseline = named.baseline;
   optimizer.row = load_optimizer(named.name);
   optimizer.parsed = Options::parse(optimizer.row.name, optimizer.row.options, named.options);
+  optimizer.schedule = named.schedule;
+  optimizer.settings = named.settings;
   return optimizer;
 }
 
@@ -236,7 +244,7 @@ void load_optimizers(const RawPlan& raw, StudyPlan& plan) {
   }
   const auto add = [&](std::string_view name) {
     try {
-      plan.optimizers.push_back(load_study_optimizer({std::string(name), "", {}, true}));
+      plan.optimizers.push_back(load_study_optimizer({std::string(name), "", {}, true, {}, {}}));
     } catch (const Error& error) {
       throw Error(error.kind(),
                   fmt::format("{} (it stands in every comparison as a baseline; name another local "
@@ -258,34 +266,41 @@ void load_optimizers(const RawPlan& raw, StudyPlan& plan) {
   refuse_repeated("optimizer", labels);
 }
 
-void check_cells(const StudyPlan& plan) {
-  for (const StudyProblem& problem : plan.problems) {
-    if (plan.budget < problem.schedule.cases) {
-      throw Error(ErrorKind::usage,
-                  fmt::format("a budget of {} cases does not pay for one evaluation on {}, which "
-                              "takes {}",
-                              plan.budget, problem.label, problem.schedule.cases));
-    }
+void check_budget(const StudyPlan& plan, const Cell& cell) {
+  const int cases = get_schedule(plan, cell).cases;
+  if (plan.budget < cases) {
+    throw Error(ErrorKind::usage,
+                fmt::format("a budget of {} cases does not pay for one evaluation on {}{}, which "
+                            "takes {}",
+                            plan.budget, plan.problems[cell.problem].label,
+                            plan.optimizers[cell.optimizer].schedule
+                                ? " by " + plan.optimizers[cell.optimizer].label
+                                : "",
+                            cases));
   }
+}
+
+void check_cells(const StudyPlan& plan) {
   std::vector<std::string> without_generations;
   for (const StudyOptimizer& optimizer : plan.optimizers) {
-    if (!optimizer.row.capabilities.generations) {
+    if (!optimizer.row.capabilities.generations && !optimizer.schedule) {
       without_generations.push_back(optimizer.label);
     }
   }
-  const bool fresh = std::ranges::any_of(
-      plan.problems, [](const StudyProblem& problem) { return problem.schedule.fresh; });
-  if (fresh && !without_generations.empty()) {
+  const auto changing = std::ranges::find_if(
+      plan.problems, [](const StudyProblem& problem) { return problem.schedule.changes_cases(); });
+  if (changing != plan.problems.end() && !without_generations.empty()) {
     throw Error(
         ErrorKind::usage,
-        fmt::format("schedule fresh gives every generation new training cases, so only optimizers "
+        fmt::format("schedule {} gives every generation new training cases, so only optimizers "
                     "with generations can be compared on it, and these have none: {}. Use "
-                    "schedule fixed:K for all{}",
-                    join(without_generations, ", "),
+                    "schedule fixed:K for all, give these a schedule of their own{}",
+                    to_string(changing->schedule.kind), join(without_generations, ", "),
                     plan.baselines ? ", or take the baselines out (--no-baselines)" : ""));
   }
   for (const Cell& cell : list_cells(plan)) {
     if (cell.replicate == 1) {
+      check_budget(plan, cell);
       const RunPlan run = make_run_plan(plan, cell);
       check_plan(run);
       run.optimizer.make(run.options)->check_problem(run.problem.problem->description());
@@ -320,7 +335,7 @@ void keep_baselines(const std::filesystem::path& recorded, StudyPlan& plan) {
         std::ranges::find(plan.optimizers, label, &StudyOptimizer::label) ==
             plan.optimizers.end()) {
       plan.optimizers.push_back(load_study_optimizer(
-          {table.get_string("name"), label, table.get_strings("options"), true}));
+          {table.get_string("name"), label, table.get_strings("options"), true, {}, {}}));
     }
   }
 }
@@ -349,7 +364,7 @@ StudyPlan make_study_plan(const StudyRequest& request) {
   if (!request.optimizers.empty()) {
     raw.optimizers.clear();
     for (const std::string& name : request.optimizers) {
-      raw.optimizers.push_back({name, "", {}, false});
+      raw.optimizers.push_back({name, "", {}, false, {}, {}});
     }
   }
   raw.last_settings = request.settings;
@@ -367,6 +382,8 @@ StudyPlan make_study_plan(const StudyRequest& request) {
                 "training cases every optimizer may simulate on a problem");
   }
   load_optimizers(raw, plan);
+  load_methods(plan);
+  check_targets(plan);
   if (plan.name.empty()) {
     plan.name = make_study_name(plan);
   }

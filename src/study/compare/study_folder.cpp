@@ -49,15 +49,49 @@ std::string format_number(double value) {
   return digits.find_first_of(".e") == std::string::npos ? digits + ".0" : digits;
 }
 
+// What is asked of the cells, besides; plans that ask nothing say nothing of it.
+std::string make_questions(const StudyPlan& plan) {
+  std::string text;
+  if (plan.value == StudyValue::failures) {
+    text += "value = \"failures\"\n";
+  }
+  if (!plan.reference.empty()) {
+    text += fmt::format("reference = {}\n", quote(plan.reference));
+  }
+  return text;
+}
+
+std::string make_targets(const StudyPlan& plan) {
+  std::string text;
+  for (const StudyTarget& target : plan.targets) {
+    text += fmt::format("\n[[target]]\nlabel = {}\nproblems = {}\n", quote(target.label),
+                        quote_list(target.problems));
+    text += target.value ? fmt::format("value = {}\n", format_number(*target.value)) : "";
+    text += target.failures ? fmt::format("failures = {}\n", *target.failures) : "";
+  }
+  return text;
+}
+
+std::string make_method(const StudyOptimizer& optimizer) {
+  std::string text;
+  if (optimizer.schedule) {
+    text += fmt::format("schedule = {}\n", quote(to_text(*optimizer.schedule)));
+  }
+  if (!optimizer.settings.empty()) {
+    text += fmt::format("set = {}\n", quote_list(optimizer.settings));
+  }
+  return text;
+}
+
 std::string make_body(const StudyPlan& plan) {
   std::string text = fmt::format(
       "name = {}\ntitle = {}\nseed = {}\nreplicates = {}\nbudget = {}\nstart_spread = {}\n"
       "constraint_tolerance = {}\ncheckpoints = {}\nfinal_engine = {}\nbaselines = "
-      "{}\n\n[selection]\nlast = {}\nbest = {}\n",
+      "{}\n{}\n[selection]\nlast = {}\nbest = {}\n",
       quote(plan.name), quote(plan.title), plan.seed, plan.replicates, plan.budget,
       format_number(plan.start_spread), format_number(plan.constraint_tolerance), plan.checkpoints,
-      quote(plan.final_engine), plan.baselines ? "true" : "false", plan.selection.last,
-      plan.selection.best);
+      quote(plan.final_engine), plan.baselines ? "true" : "false", make_questions(plan),
+      plan.selection.last, plan.selection.best);
   for (const StudyProblem& problem : plan.problems) {
     const CaseSets& sets = problem.loaded.sets;
     text += fmt::format(
@@ -73,11 +107,11 @@ std::string make_body(const StudyPlan& plan) {
       inputs.push_back(file + " " + hash);
     }
     text += fmt::format(
-        "\n[[optimizer]]\nname = {}\nlabel = {}\nbaseline = {}\noptions = {}\ninputs = {}\n",
+        "\n[[optimizer]]\nname = {}\nlabel = {}\nbaseline = {}\noptions = {}\ninputs = {}\n{}",
         quote(optimizer.name), quote(optimizer.label), optimizer.baseline ? "true" : "false",
-        quote_list(list_options(optimizer)), quote_list(inputs));
+        quote_list(list_options(optimizer)), quote_list(inputs), make_method(optimizer));
   }
-  return text;
+  return text + make_targets(plan);
 }
 
 json index_by_label(const json& list, const char* ignored_key) {
@@ -217,7 +251,16 @@ void StudyFolder::extend(const StudyPlan& plan, const std::string& text) {
   if (replicates <= plan.replicates) {
     now["replicates"] = replicates;
   }
-  for (const char* key : {"plan_sha256", "name", "title", "baselines"}) {
+  // What is asked of the cells may change: what they lack for the answer is made from their
+  // journals.
+  constexpr const char* kQuestions[] = {"value", "reference", "target"};
+  if (std::ranges::any_of(kQuestions, [&](const char* key) {
+        return recorded.value(key, json()) != now.value(key, json());
+      })) {
+    additions_.push_back("other targets, reference or value");
+  }
+  for (const char* key :
+       {"plan_sha256", "name", "title", "baselines", "value", "reference", "target"}) {
     recorded.erase(key);
     now.erase(key);
   }

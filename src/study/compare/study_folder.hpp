@@ -3,7 +3,8 @@
 // and what is derived from these: result.json, verdict.txt, tables/.
 //
 // A plan may grow: more replicates, problems, optimizers. What is there must stay comparable, and
-// stay: nothing recorded may be changed or left out. The plan before an extension is kept as
+// stay: nothing recorded may be changed or left out, but for what is asked of the cells afterwards
+// (targets, reference, value). The plan before an extension is kept as
 // study-001.toml, study-002.toml, ...
 #pragma once
 

@@ -22,19 +22,42 @@ std::string make_stream(const StudyPlan& plan, const Cell& cell) {
                      cell.replicate);
 }
 
-// A draw from the box of the given share about the problem's own start, as far as that lies within
+// A draw from the box of the given share about a problem's own start, as far as that lies within
 // the bounds.
-std::vector<double> draw_start(const StudyPlan& plan, const Cell& cell) {
-  const SearchSpace space(plan.problems[cell.problem].loaded.problem->description().variables);
+std::vector<double> draw_near_start(std::span<const DecisionVariable> variables,
+                                    double start_spread, const std::string& stream) {
+  const SearchSpace space({variables.begin(), variables.end()});
   std::vector<double> lower = space.lower();
   std::vector<double> upper = space.upper();
   for (std::size_t i = 0; i < space.dimension(); ++i) {
-    const double reach = plan.start_spread * (upper[i] - lower[i]) / 2;
+    const double reach = start_spread * (upper[i] - lower[i]) / 2;
     lower[i] = std::max(lower[i], space.start()[i] - reach);
     upper[i] = std::min(upper[i], space.start()[i] + reach);
   }
-  RandomStream random(make_stream(plan, cell) + "/start");
+  RandomStream random(stream);
   return space.to_point(space.draw_between(lower, upper, random));
+}
+
+// The same for every optimizer of a replicate. A method whose designs have other variables shares
+// those that go by the same name; each of the others has a stream of its own.
+std::vector<double> draw_start(const StudyPlan& plan, const Cell& cell) {
+  const auto& variables = plan.problems[cell.problem].loaded.problem->description().variables;
+  const auto& own = get_problem(plan, cell).problem->description().variables;
+  const std::string stream = make_stream(plan, cell) + "/start";
+  const std::vector<double> start = draw_near_start(variables, plan.start_spread, stream);
+  if (std::ranges::equal(variables, own, {}, &DecisionVariable::name, &DecisionVariable::name)) {
+    return start;
+  }
+  std::vector<double> own_start;
+  for (const DecisionVariable& variable : own) {
+    const auto shared = std::ranges::find(variables, variable.name, &DecisionVariable::name);
+    const double value =
+        shared != variables.end()
+            ? start[static_cast<std::size_t>(shared - variables.begin())]
+            : draw_near_start({&variable, 1}, plan.start_spread, stream + "/" + variable.name)[0];
+    own_start.push_back(std::clamp(value, variable.lower, variable.upper));
+  }
+  return own_start;
 }
 
 // 63 bits of the cell's name, so that it can be typed as --seed.
@@ -81,18 +104,29 @@ Selection choose_selection(const StudyPlan& plan, const StudyProblem& problem) {
   return selection;
 }
 
-RunPlan make_run_plan(const StudyPlan& plan, const Cell& cell) {
+const LoadedProblem& get_problem(const StudyPlan& plan, const Cell& cell) {
   const StudyProblem& problem = plan.problems[cell.problem];
+  const auto& own = plan.optimizers[cell.optimizer].loaded;
+  const auto found = own.find(problem.label);
+  return found == own.end() ? problem.loaded : found->second;
+}
+
+Schedule get_schedule(const StudyPlan& plan, const Cell& cell) {
+  return plan.optimizers[cell.optimizer].schedule.value_or(plan.problems[cell.problem].schedule);
+}
+
+RunPlan make_run_plan(const StudyPlan& plan, const Cell& cell) {
   const StudyOptimizer& optimizer = plan.optimizers[cell.optimizer];
   RunPlan run;
-  run.problem =
-      make_replicate(problem.loaded, make_training_set_name(plan, cell), draw_start(plan, cell));
+  run.problem = make_replicate(get_problem(plan, cell), make_training_set_name(plan, cell),
+                               draw_start(plan, cell));
   run.optimizer = optimizer.row;
   run.options = optimizer.parsed;
   run.seed = make_seed(make_stream(plan, cell) + "/" + optimizer.label);
   run.budget = plan.budget;
-  run.schedule = problem.schedule;
-  run.selection = choose_selection(plan, problem);
+  run.schedule = get_schedule(plan, cell);
+  run.racing = run.problem.racing;
+  run.selection = choose_selection(plan, plan.problems[cell.problem]);
   return run;
 }
 
@@ -113,6 +147,10 @@ std::vector<std::int64_t> calc_checkpoints(std::int64_t budget, int cases, int c
   return {chosen.begin(), chosen.end()};
 }
 
+std::vector<std::int64_t> list_checkpoints(const StudyPlan& plan, std::size_t problem) {
+  return calc_checkpoints(plan.budget, plan.problems[problem].schedule.cases, plan.checkpoints);
+}
+
 StudyCost calc_cost(const StudyPlan& plan) {
   StudyCost cost;
   const auto runs = static_cast<std::int64_t>(plan.optimizers.size()) * plan.replicates;
@@ -125,9 +163,12 @@ StudyCost calc_cost(const StudyPlan& plan) {
         calc_checkpoints(plan.budget, problem.schedule.cases, plan.checkpoints).size());
     cost.cells += runs;
     cost.training += runs * plan.budget;
-    cost.validation += runs * judged * sets.validation_cases;
+    // With targets also the winners that there would have been at the checkpoints.
+    const bool has_targets = !plan.targets.empty();
+    cost.validation += runs * judged * (has_targets ? tested : 1) * sets.validation_cases;
     // The winner, the start, the incumbents at the checkpoints, a front.
-    cost.test += runs * (2 + tested + (fronts ? judged : 0)) * sets.test_cases;
+    cost.test +=
+        runs * (2 + tested * (has_targets ? 2 : 1) + (fronts ? judged : 0)) * sets.test_cases;
     if (!plan.final_engine.empty() && problem.loaded.tracking) {
       cost.test += static_cast<std::int64_t>(plan.optimizers.size()) * sets.test_cases;
     }

@@ -6,12 +6,16 @@
 // the training cases, all noise. The optimizer's own random numbers come from a stream named after
 // the cell. Nothing derives from the plan as a whole, so that it can be extended.
 //
-// There is one budget, in simulated training cases, and one schedule, for all optimizers: a plan in
-// which one of them would get more cannot be written.
+// There is one budget, in simulated training cases, for all optimizers: a plan in which one of them
+// would get more cannot be written. How the budget is spent (schedule, racing, perturbed plants in
+// training), and what kind of controller designs have, is the problem's, unless an optimizer's
+// entry says otherwise and so makes a method of it: "ga on one fresh case a generation" beside "ga
+// on five fixed ones". What is asked of a design is the same for all.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -37,7 +41,24 @@ struct StudyOptimizer {
   bool baseline = false;             // not asked for: every comparison has it unless told otherwise
   OptimizerRow row;
   Options parsed;
+  // A method's own: a schedule instead of the problem's, and KEY=VALUE over the problem's settings,
+  // which change nothing of what is asked of a design (study_methods.hpp).
+  std::optional<Schedule> schedule;
+  std::vector<std::string> settings;
+  std::map<std::string, LoadedProblem> loaded;  // with these settings, by the problem's label
 };
+
+// A fixed target: what a design must be worth on the test set, at least one of the two.
+struct StudyTarget {
+  std::string label;                     // unique in the plan
+  std::vector<std::string> problems;     // labels
+  std::optional<double> value;           // the objective at most
+  std::optional<std::int64_t> failures;  // this many failing test cases at most
+};
+
+// What the value of a run is: the winner's objective on the test set, or the share of test cases
+// in which it fails.
+enum class StudyValue : std::uint8_t { objective, failures };
 
 struct StudyPlan {
   std::string name;  // of its folder
@@ -54,6 +75,9 @@ struct StudyPlan {
   int checkpoints = 20;      // budgets, logarithmically spaced, at which incumbents are tested
   std::string final_engine;  // the best design of every optimizer and problem once more; or empty
   bool baselines = true;     // random search and a local search are in the pool by themselves
+  StudyValue value = StudyValue::objective;
+  std::vector<StudyTarget> targets;
+  std::string reference;  // optimizer (label) that expected running times are divided by; or none
   std::vector<StudyProblem> problems;
   std::vector<StudyOptimizer> optimizers;
 };
@@ -99,6 +123,10 @@ struct Cell {
 // Replicate by replicate, so that an interrupted study has something of everything.
 std::vector<Cell> list_cells(const StudyPlan& plan);
 
+// The problem as the cell's optimizer trains on it.
+const LoadedProblem& get_problem(const StudyPlan& plan, const Cell& cell);
+Schedule get_schedule(const StudyPlan& plan, const Cell& cell);
+
 // The replicate's training cases, the same for every optimizer.
 std::string make_training_set_name(const StudyPlan& plan, const Cell& cell);
 // Of one objective without constraints the plan's; otherwise at least as many as `optimize` judges,
@@ -112,6 +140,9 @@ std::filesystem::path make_cell_path(const StudyPlan& plan, const Cell& cell);
 // Budgets at which incumbents are tested: from one evaluation to the whole, logarithmically spaced,
 // whole evaluations, without repetitions.
 std::vector<std::int64_t> calc_checkpoints(std::int64_t budget, int cases, int count);
+
+// Those of a problem: the same for all optimizers, in evaluations by the problem's own schedule.
+std::vector<std::int64_t> list_checkpoints(const StudyPlan& plan, std::size_t problem);
 
 // How many test cases the whole plan simulates at most.
 struct StudyCost {

@@ -2,11 +2,16 @@
 // cells and nothing else. The same cells give the same bytes.
 //
 // Each optimizer has one value a replicate: of one objective the winner's on the test set
-// (calc_test_value()), of several the share of the hypervolume that its front misses. Pairs are
+// (calc_test_value()), or the share of test cases in which it fails if the plan asks for that; of
+// several the share of the hypervolume that its front misses. Pairs are
 // replicates: the same training cases and the same start. Running times come from curves on the
 // test set: the budget from which on every incumbent, re-simulated there, is at the target or
 // below; they are as coarse as the checkpoints. Of several objectives curves, running times and
 // profiles are of their weighted sum.
+//
+// Fixed targets are another thing: there a run counts as somebody uses it who stops it early and
+// takes the design that is best on the validation set by then (choices.hpp). It has reached the
+// target at the first checkpoint from which on all designs so chosen meet it on the test set.
 #pragma once
 
 #include <cstdint>
@@ -19,6 +24,7 @@
 #include "study/statistics/effect_size.hpp"
 #include "study/statistics/friedman.hpp"
 #include "study/statistics/ranking.hpp"
+#include "study/statistics/running_time.hpp"
 #include "study/statistics/spread.hpp"
 #include "study/statistics/wilcoxon.hpp"
 
@@ -42,6 +48,16 @@ struct RunningTime {
   Interval interval;
 };
 
+// To a fixed target.
+struct TargetTime {
+  std::vector<Trial> trials;  // one a replicate
+  int reached = 0;
+  double expected = 0;  // simulated cases, with restarts; infinite if never reached
+  Interval interval;    // over replicates; infinite where too few of them reached it
+  // Of the plan's reference, if it has one: the expected running time divided by the reference's.
+  std::optional<RunningTimeRatio> ratio;
+};
+
 // The best design of an optimizer on a problem, by the validation set, on another engine.
 struct FinalCheck {
   int replicate = 0;
@@ -60,6 +76,12 @@ struct OptimizerResult {
   double mean_rank = 0;
   double anytime_area = 0;  // of the runtime ECDF over all targets
   std::vector<RunningTime> running_times;
+  std::vector<TargetTime> target_times;  // of ProblemResult::fixed_targets
+  // Of arms: in which share of the test cases the winner fails, one a replicate; infinite for a run
+  // without one.
+  std::vector<double> failure_shares;
+  Spread failure_spread;
+  double mean_failure_share = 0;
   std::vector<double> ecdf;   // at ProblemResult::checkpoints
   std::vector<Spread> curve;  // likewise
   double cases = 0;           // of the budget that were used, median
@@ -93,9 +115,11 @@ struct ProblemResult {
   std::vector<std::int64_t> checkpoints;
   std::vector<double> targets;
   std::vector<OptimizerResult> optimizers;
-  std::optional<FriedmanTest> friedman;  // blocks are replicates; nothing of fewer than 2
-  std::vector<PairResult> pairs;         // every two, Holm's correction over all of the problem
-  std::vector<std::size_t> order;        // by median, then mean rank, then the plan's order
+  std::optional<FriedmanTest> friedman;    // blocks are replicates; nothing of fewer than 2
+  std::vector<PairResult> pairs;           // every two, Holm's correction over all of the problem
+  std::vector<std::size_t> fixed_targets;  // of the plan, those that are asked of this problem
+  std::vector<PairResult> failure_pairs;   // as `pairs`, of failure shares; of arms alone
+  std::vector<std::size_t> order;          // by median, then mean rank, then the plan's order
 };
 
 struct Profile {
@@ -132,6 +156,15 @@ enum class MissingCells { count_as_infinite, left_out };
 // From the study's folder, which is only read. Error{bad_data} for a cell that cannot be read.
 StudyResult analyze_study(const StudyPlan& plan, const std::filesystem::path& study,
                           MissingCells missing = MissingCells::count_as_infinite);
+
+// The share of test cases in which the winner fails; infinite if there is none.
+double calc_failure_share(const CellOutcome& cell);
+// The cell as a study whose value is failures sees it: shares of failing test cases instead of
+// objectives, on the way as well.
+CellOutcome count_failures_only(CellOutcome cell, const CaseSets& sets);
+
+// The try that a run is to reach a target: what it cost, and whether it did.
+Trial make_target_trial(const StudyPlan& plan, const StudyTarget& target, const CellOutcome& cell);
 
 // The parts of it. Of a problem without all its cells, an optimizer's numbers are of those that are
 // there, infinite if none is, and nothing is compared.

@@ -9,7 +9,9 @@
 #include "base/file.hpp"
 #include "base/text.hpp"
 #include "study/compare/case_sets.hpp"
+#include "study/compare/final_check.hpp"
 #include "study/compare/study_folder.hpp"
+#include "study/compare/target_tables.hpp"
 #include "study/compare/verdict.hpp"
 #include "study/json_values.hpp"
 #include "study/statistics/pareto.hpp"
@@ -50,9 +52,9 @@ std::string make_cells(const StudyResult& result) {
 }
 
 // The winners' objectives and metrics on the test set, a row each.
-std::string make_metrics(const StudyPlan& plan, const StudyResult& result) {
+std::string make_metrics(const StudyPlan& plan, std::span<const CellOutcome> cells) {
   std::string csv = "problem,optimizer,replicate,kind,name,unit,value\n";
-  for (const CellOutcome& cell : result.cells) {
+  for (const CellOutcome& cell : cells) {
     const auto problem = std::ranges::find(plan.problems, cell.problem, &StudyProblem::label);
     const ProblemDescription& description = problem->loaded.problem->description();
     const auto add = [&](const char* kind, std::span<const Quantity> names,
@@ -67,6 +69,20 @@ std::string make_metrics(const StudyPlan& plan, const StudyResult& result) {
     add("metric", description.metrics, cell.metrics);
   }
   return csv;
+}
+
+// The same of every optimizer's best run, by the validation set.
+std::string make_best(const StudyPlan& plan, const StudyResult& result) {
+  std::vector<CellOutcome> best;
+  for (const StudyProblem& problem : plan.problems) {
+    for (const StudyOptimizer& optimizer : plan.optimizers) {
+      const CellOutcome* cell = find_best_cell(result.cells, problem.label, optimizer.label);
+      if (cell != nullptr) {
+        best.push_back(*cell);
+      }
+    }
+  }
+  return make_metrics(plan, best);
 }
 
 std::string make_summary(const StudyPlan& plan, const StudyResult& result) {
@@ -111,10 +127,21 @@ std::string make_pair_rows(const StudyPlan& plan, const std::string& problem,
 
 constexpr const char* kOverall = "(over problems)";
 
+constexpr const char* kPairsHead =
+    "problem,a,b,pairs_that_differ,ties,rank_sum_a_worse,rank_sum_b_worse,exact,p,p_holm,"
+    "a12_a_better,wins_a,ties_a,losses_a,significant\n";
+
+// Of the shares of failing test cases.
+std::string make_failure_pairs(const StudyPlan& plan, const StudyResult& result) {
+  std::string csv = kPairsHead;
+  for (const ProblemResult& problem : result.problems) {
+    csv += make_pair_rows(plan, problem.label, problem.failure_pairs);
+  }
+  return csv;
+}
+
 std::string make_pairs(const StudyPlan& plan, const StudyResult& result) {
-  std::string csv =
-      "problem,a,b,pairs_that_differ,ties,rank_sum_a_worse,rank_sum_b_worse,exact,p,p_holm,"
-      "a12_a_better,wins_a,ties_a,losses_a,significant\n";
+  std::string csv = kPairsHead;
   for (const ProblemResult& problem : result.problems) {
     csv += make_pair_rows(plan, problem.label, problem.pairs);
   }
@@ -289,7 +316,8 @@ json pair_to_json(const StudyPlan& plan, const PairResult& pair) {
           {"significant", pair.is_significant()}};
 }
 
-json optimizer_to_json(const OptimizerResult& one) {
+json optimizer_to_json(const StudyPlan& plan, const ProblemResult& problem,
+                       const OptimizerResult& one) {
   json times = json::array();
   for (const RunningTime& time : one.running_times) {
     times.push_back(
@@ -312,6 +340,8 @@ json optimizer_to_json(const OptimizerResult& one) {
             {"mean_rank", one.mean_rank},
             {"anytime_area", one.anytime_area},
             {"running_times", times},
+            {"targets", target_times_to_json(plan, problem, one)},
+            {"failed_cases", failures_to_json(one)},
             {"final", nullptr}};
   if (const auto& check = one.final_check) {
     j["final"] = {{"engine", check->engine},
@@ -329,11 +359,16 @@ std::string to_json(const StudyPlan& plan, const StudyResult& result) {
   for (const ProblemResult& problem : result.problems) {
     json optimizers = json::object();
     for (std::size_t o = 0; o < problem.optimizers.size(); ++o) {
-      optimizers[plan.optimizers[o].label] = optimizer_to_json(problem.optimizers[o]);
+      optimizers[plan.optimizers[o].label] =
+          optimizer_to_json(plan, problem, problem.optimizers[o]);
     }
     json pairs = json::array();
     for (const PairResult& pair : problem.pairs) {
       pairs.push_back(pair_to_json(plan, pair));
+    }
+    json failure_pairs = json::array();
+    for (const PairResult& pair : problem.failure_pairs) {
+      failure_pairs.push_back(pair_to_json(plan, pair));
     }
     json order = json::array();
     for (const std::size_t o : problem.order) {
@@ -354,7 +389,8 @@ std::string to_json(const StudyPlan& plan, const StudyResult& result) {
                         {"order", order},
                         {"optimizers", optimizers},
                         {"friedman", friedman},
-                        {"pairs", pairs}});
+                        {"pairs", pairs},
+                        {"failure_pairs", failure_pairs}});
   }
   json pairs = json::array();
   for (const PairResult& pair : result.overall.pairs) {
@@ -384,7 +420,8 @@ void write_study_tables(const StudyPlan& plan, const StudyResult& result,
     write_file_atomically(tables / file, text);
   };
   write("cells.csv", make_cells(result));
-  write("metrics.csv", make_metrics(plan, result));
+  write("metrics.csv", make_metrics(plan, result.cells));
+  write("best.csv", make_best(plan, result));
   write("summary.csv", make_summary(plan, result));
   write("pairs.csv", make_pairs(plan, result));
   write("friedman.csv", make_friedman(result));
@@ -397,6 +434,16 @@ void write_study_tables(const StudyPlan& plan, const StudyResult& result,
                                                   result.overall.performance_profiles));
   write("ranking.csv", make_ranking(plan, result));
   write("sets.csv", make_sets(plan));
+  if (std::ranges::any_of(result.problems, [](const ProblemResult& problem) {
+        return !problem.failure_pairs.empty();
+      })) {
+    write("failures.csv", make_failures_table(plan, result));
+    write("failure_pairs.csv", make_failure_pairs(plan, result));
+  }
+  if (!plan.targets.empty()) {
+    write("targets.csv", make_targets_table(plan, result));
+    write("choices.csv", make_choices_table(result));
+  }
   if (has_fronts(result)) {
     write("fronts.csv", make_fronts(result));
     write("attainment.csv", make_attainment(plan, result));

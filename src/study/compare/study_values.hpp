@@ -16,4 +16,11 @@ std::vector<TracePoint> make_trace(const CellOutcome& cell);
 // Every two of the optimizers; values[o][i] and values[p][i] are a pair.
 std::vector<PairResult> compare_pairs(std::span<const std::vector<double>> values);
 
+// Fills in TargetTime and failure shares of all optimizers, whose cells are `runs[o]`. Pairs are
+// compared if `complete`.
+void add_targets(const StudyPlan& plan, std::span<const std::vector<const CellOutcome*>> runs,
+                 bool complete, ProblemResult& result);
+void add_failures(std::span<const std::vector<const CellOutcome*>> runs, bool complete,
+                  ProblemResult& result);
+
 }  // namespace armwright

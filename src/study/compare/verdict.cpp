@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "base/text.hpp"
+#include "study/compare/verdict_targets.hpp"
 
 namespace armwright {
 namespace {
@@ -147,6 +150,33 @@ std::vector<std::string> describe_problem(const StudyPlan& plan, const ProblemRe
   return sentences;
 }
 
+// By the share of test cases in which they fail, beside what the study compares.
+std::vector<std::string> describe_failures(const StudyPlan& plan, const ProblemResult& problem) {
+  const bool some_fail = std::ranges::any_of(problem.optimizers, [](const OptimizerResult& one) {
+    return std::ranges::any_of(one.failure_shares, [](double share) { return share > 0; });
+  });
+  if (plan.value == StudyValue::failures || !some_fail || problem.failure_pairs.empty() ||
+      !can_be_significant(plan.replicates, problem.failure_pairs.size())) {
+    return {};
+  }
+  const std::string where = fmt::format("On {}, by failed test cases,", problem.label);
+  if (std::ranges::none_of(problem.failure_pairs, &PairResult::is_significant)) {
+    return {where + " no two optimizers can be told apart."};
+  }
+  std::vector<std::size_t> order(problem.optimizers.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t o) {
+    const OptimizerResult& one = problem.optimizers[o];
+    return std::pair(one.failure_spread.median, one.mean_failure_share);
+  });
+  const Standing standing = find_standing(problem.failure_pairs, order);
+  if (standing.beaten.empty()) {
+    return {fmt::format("{} {} fails least, but beats none of the others.", where,
+                        plan.optimizers[order.front()].label)};
+  }
+  return {fmt::format("{} {}.", where, describe_beaten(plan, order.front(), standing.beaten))};
+}
+
 std::vector<std::string> describe_overall(const StudyPlan& plan, const StudyResult& result) {
   if (plan.problems.size() < 2 || plan.optimizers.size() < 2 || !result.missing.empty()) {
     return {};
@@ -220,8 +250,25 @@ std::vector<std::string> describe_limits(const StudyPlan& plan, const StudyResul
         "The baselines (random search and a local search) were left out on request: whether any "
         "of these optimizers is better than those was not asked.");
   }
-  if (std::ranges::any_of(plan.problems,
-                          [](const StudyProblem& problem) { return problem.schedule.fresh; })) {
+  const auto methods = std::ranges::count_if(plan.optimizers, [](const StudyOptimizer& one) {
+    return one.schedule.has_value() || !one.settings.empty();
+  });
+  if (methods > 0) {
+    sentences.push_back(
+        "Methods spend the same budget in ways of their own, or have controllers of their own; "
+        "what "
+        "their designs are worth is measured alike.");
+  }
+  const auto has = [&](Schedule::Kind kind) {
+    return std::ranges::any_of(
+        plan.problems, [&](const StudyProblem& problem) { return problem.schedule.kind == kind; });
+  };
+  if (has(Schedule::Kind::coevolution)) {
+    sentences.push_back(
+        "Training cases were bred against every optimizer's own designs; budgets buy unequal "
+        "numbers of generations.");
+  }
+  if (has(Schedule::Kind::fresh)) {
     sentences.push_back(
         "Training cases were new in every generation, the same for all optimizers "
         "only generation by generation; budgets buy unequal numbers of "
@@ -243,6 +290,9 @@ std::vector<std::string> describe_verdict(const StudyPlan& plan, const StudyResu
   };
   for (const ProblemResult& problem : result.problems) {
     add(describe_problem(plan, problem, result.missing));
+    add(describe_failures(plan, problem));
+    add(describe_target_verdict(
+        plan, *std::ranges::find(plan.problems, problem.label, &StudyProblem::label), problem));
   }
   add(describe_overall(plan, result));
   add(describe_limits(plan, result));

@@ -101,6 +101,71 @@ Interval calc_expected_running_time_interval(std::span<const Trial> trials, doub
   return calc_percentile_interval(means, level);
 }
 
+namespace {
+
+std::vector<std::size_t> draw_numbers(std::size_t count, RandomStream& random) {
+  std::vector<std::size_t> numbers(count);
+  for (std::size_t& number : numbers) {
+    number = random.below(count);
+  }
+  return numbers;
+}
+
+double calc_expected_of(std::span<const Trial> trials, std::span<const std::size_t> numbers) {
+  std::vector<Trial> drawn;
+  for (const std::size_t number : numbers) {
+    drawn.push_back(trials[number]);
+  }
+  return calc_expected_running_time(drawn);
+}
+
+// Nothing if that is infinite / infinite or 0 / 0.
+std::optional<double> divide(double a, double b) {
+  if ((std::isinf(a) && std::isinf(b)) || (a == 0 && b == 0)) {
+    return std::nullopt;
+  }
+  return a / b;
+}
+
+}  // namespace
+
+Interval calc_resampled_running_time_interval(std::span<const Trial> trials, double level,
+                                              int resamples, std::string_view stream) {
+  count_successes(trials);
+  RandomStream random(stream);
+  std::vector<double> resampled;
+  for (int resample = 0; resample < resamples; ++resample) {
+    resampled.push_back(calc_expected_of(trials, draw_numbers(trials.size(), random)));
+  }
+  return calc_percentile_interval(resampled, level);
+}
+
+RunningTimeRatio calc_running_time_ratio(std::span<const Trial> trials,
+                                         std::span<const Trial> reference, double level,
+                                         int resamples, std::string_view stream) {
+  if (trials.size() != reference.size()) {
+    throw std::invalid_argument("running time: a ratio needs pairs of trials");
+  }
+  RunningTimeRatio result{.ratio = {}, .interval = {.lower = 0, .upper = kInfinity}};
+  const double of_reference = calc_expected_running_time(reference);
+  if (std::isinf(of_reference)) {
+    return result;
+  }
+  result.ratio = divide(calc_expected_running_time(trials), of_reference);
+  RandomStream random(stream);
+  std::vector<double> least, most;
+  for (int resample = 0; resample < resamples; ++resample) {
+    const auto numbers = draw_numbers(trials.size(), random);
+    const auto ratio =
+        divide(calc_expected_of(trials, numbers), calc_expected_of(reference, numbers));
+    least.push_back(ratio.value_or(0));
+    most.push_back(ratio.value_or(kInfinity));
+  }
+  result.interval = {.lower = calc_percentile_interval(least, level).lower,
+                     .upper = calc_percentile_interval(most, level).upper};
+  return result;
+}
+
 std::vector<double> calc_runtime_ecdf(std::span<const double> running_times,
                                       std::span<const double> costs) {
   check_running_times(running_times);

@@ -4,6 +4,7 @@
 // the caller counts; a target that was not reached has the running time +infinity.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -44,6 +45,26 @@ std::vector<double> simulate_running_times(std::span<const Trial> trials, int co
 // are trials that reached the target. Both ends infinite if there is none.
 Interval calc_expected_running_time_interval(std::span<const Trial> trials, double level,
                                              int resamples, std::string_view stream);
+
+// Percentile bootstrap of ERT over trials: as many as there are, drawn with replacement. A resample
+// in which no trial reached the target has an infinite ERT, so that the upper end, or both, may be
+// infinite.
+Interval calc_resampled_running_time_interval(std::span<const Trial> trials, double level,
+                                              int resamples, std::string_view stream);
+
+// ERT(trials) / ERT(reference), where the trials with the same number are a pair (one replicate)
+// and are drawn together.
+struct RunningTimeRatio {
+  // Nothing if the reference never reached the target: by how much it was slower nobody knows.
+  std::optional<double> ratio;
+  // From 0 to infinity then. A resample in which neither reached it says nothing: it counts as 0
+  // for the lower end and as infinite for the upper one.
+  Interval interval;
+};
+// Throws std::invalid_argument, besides, unless there are as many trials as of the reference.
+RunningTimeRatio calc_running_time_ratio(std::span<const Trial> trials,
+                                         std::span<const Trial> reference, double level,
+                                         int resamples, std::string_view stream);
 
 // The share of running times, one a (trial, target) pair, that are no larger than each of `costs`.
 // Throws std::invalid_argument for no running times and for negative ones.

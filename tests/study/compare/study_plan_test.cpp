@@ -47,8 +47,8 @@ TEST(StudyPlan, BaselinesTakePartUnlessAskedNotTo) {
 
 TEST(StudyPlan, NoOptimizerCanBeGivenMoreThanOthers) {
   const TemporaryFolder folder;
-  for (const std::string privilege : {"budget = 200", "replicates = 9", "schedule = 'fixed:2'",
-                                      "seed = 4", "start_spread = 0.5"}) {
+  for (const std::string privilege :
+       {"budget = 200", "replicates = 9", "seed = 4", "start_spread = 0.5"}) {
     const std::string toml = std::string(kHead) +
                              "optimizers = ['ga']\n[[optimizer]]\nname = 'cmaes'\n" + privilege +
                              "\n";
@@ -82,13 +82,50 @@ TEST(StudyPlan, MistakesAreNamed) {
 
 TEST(StudyPlan, FreshCasesAreForOptimizersWithGenerationsOnly) {
   StudyRequest request = make_small_request();
-  request.schedule = Schedule{.fresh = true, .cases = 1};
+  request.schedule = Schedule{.kind = Schedule::Kind::fresh, .cases = 1};
   EXPECT_THAT(
       usage_error_of([&] { make_study_plan(request); }),
       HasSubstr("only optimizers with generations can be compared on it, and these have none: "
                 "random, nlopt:neldermead"));
   request.baselines = false;
-  EXPECT_TRUE(make_study_plan(request).problems.front().schedule.fresh);
+  EXPECT_TRUE(make_study_plan(request).problems.front().schedule.changes_cases());
+}
+
+TEST(StudyPlan, CoevolvedCasesAreInSetsOfTheirOwn) {
+  StudyRequest request = make_small_request();
+  request.problems = {"q1-complex"};
+  request.settings = {"physics.engine=articulated", "sets.test_cases=3", "sets.validation_cases=3"};
+  request.optimizers = {"ga"};
+  request.baselines = false;
+  request.schedule = Schedule{.kind = Schedule::Kind::coevolution, .cases = 4};
+  const StudyPlan plan = make_study_plan(request);
+  std::set<std::string> hashes;
+  int training = 0;
+  for (const UsedSet& set : list_used_sets(plan)) {
+    hashes.insert(set.sha256);
+    if (set.role == "training") {
+      ++training;
+      EXPECT_THAT(set.name, testing::StartsWith("coevolved/study-"));
+      EXPECT_EQ(set.cases, 4);
+    }
+  }
+  EXPECT_EQ(training, plan.replicates);
+  EXPECT_EQ(hashes.size(), list_used_sets(plan).size());
+}
+
+TEST(StudyPlan, RacingIsTheSameForEveryOptimizer) {
+  StudyRequest request = make_small_request();
+  request.settings = {"racing.kind=halving", "racing.first_cases=2"};
+  const StudyPlan plan = make_study_plan(request);
+  for (const Cell& cell : list_cells(plan)) {
+    EXPECT_EQ(to_text(make_run_plan(plan, cell).racing), "halving:2:2");
+  }
+  const TemporaryFolder folder;
+  const std::string privilege =
+      "problems = ['sphere']\nbudget = 100\n[[optimizer]]\nname = "
+      "'ga'\nracing = 'halving'\n";
+  EXPECT_THAT(usage_error_of([&] { load(folder, privilege); }),
+              HasSubstr("it is the same for every optimizer of a comparison"));
 }
 
 TEST(StudyPlan, AReplicateGivesEveryOptimizerTheSameStartAndCases) {

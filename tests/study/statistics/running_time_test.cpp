@@ -93,6 +93,54 @@ TEST(ExpectedRunningTime, RefusesWhatIsNoTrial) {
       refuses("at least one"));
 }
 
+// Two trials, hence four resamples, alike likely: both the success (10), one of each (10 + 30),
+// twice, and both the failure (infinite).
+TEST(ResampledRunningTime, IsThatOfTheTrialsDrawnAnew) {
+  const std::vector<Trial> trials = {{10, true}, {30, false}};
+  EXPECT_EQ(calc_expected_running_time(trials), 40);
+  const Interval wide = calc_resampled_running_time_interval(trials, 0.95, 2000, "s");
+  EXPECT_EQ(wide.lower, 10);
+  EXPECT_EQ(wide.upper, kInf);
+  const Interval narrow = calc_resampled_running_time_interval(trials, 0.4, 2000, "s");
+  EXPECT_EQ(narrow.lower, 40);
+  EXPECT_EQ(narrow.upper, 40);
+  const std::vector<Trial> failures(3, {100, false});
+  EXPECT_EQ(calc_resampled_running_time_interval(failures, 0.95, 10, "s").lower, kInf);
+  EXPECT_THAT([] { calc_resampled_running_time_interval({}, 0.95, 10, "s"); },
+              refuses("no trials"));
+}
+
+TEST(RunningTimeRatio, DrawsPairsTogether) {
+  const std::vector<Trial> trials = {{10, true}, {30, true}};
+  const std::vector<Trial> reference = {{100, true}, {300, true}};
+  const RunningTimeRatio same = calc_running_time_ratio(trials, reference, 0.95, 2000, "s");
+  EXPECT_DOUBLE_EQ(*same.ratio, 0.1);  // in every resample, as each pair has it
+  EXPECT_DOUBLE_EQ(same.interval.lower, 0.1);
+  EXPECT_DOUBLE_EQ(same.interval.upper, 0.1);
+}
+
+// The reference's second trial fails. Resamples: the first pair twice: 10 / 100; one of each:
+// 20 / 400, twice; the second twice: 30 / infinite.
+TEST(RunningTimeRatio, OfAReferenceThatFailsSometimes) {
+  const std::vector<Trial> trials = {{10, true}, {30, true}};
+  const std::vector<Trial> reference = {{100, true}, {300, false}};
+  const RunningTimeRatio ratio = calc_running_time_ratio(trials, reference, 0.95, 2000, "s");
+  EXPECT_DOUBLE_EQ(*ratio.ratio, 20.0 / 400);
+  EXPECT_EQ(ratio.interval.lower, 0);
+  EXPECT_DOUBLE_EQ(ratio.interval.upper, 0.1);
+}
+
+TEST(RunningTimeRatio, OfTwoThatNeverSucceedIsUnknown) {
+  const std::vector<Trial> failures(2, {100, false});
+  const RunningTimeRatio ratio = calc_running_time_ratio(failures, failures, 0.95, 10, "s");
+  EXPECT_FALSE(ratio.ratio);
+  EXPECT_EQ(ratio.interval.lower, 0);
+  EXPECT_EQ(ratio.interval.upper, kInf);
+  const std::vector<Trial> one = {{1, true}};
+  EXPECT_THAT([&] { calc_running_time_ratio(one, failures, 0.95, 10, "s"); },
+              refuses("a ratio needs pairs of trials"));
+}
+
 TEST(RuntimeEcdf, CountsWhatIsReachedWithinACost) {
   const std::vector times = {5.0, kInf, 1.0, 5.0};
   EXPECT_THAT(calc_runtime_ecdf(times, std::vector{0.5, 1.0, 4.9, 5.0, kInf}),

@@ -35,7 +35,7 @@ export function make_fitness_figure(data: RunData, id = 'fitness'): Figure {
           `simulated by ${incumbents.engine}; these count. `
         : '') +
       (data.arm ? `The fitness of the thesis is the negative of the error, and so grows where this falls. ` : '') +
-      (training.schedule.indexOf('fresh') === 0 ? 'Each generation meets new cases: the curves jump with how hard these are. ' : '') +
+      (training.schedule.indexOf('fixed') !== 0 ? 'Each generation meets new cases: the curves jump with how hard these are. ' : '') +
       `Where the average is far above the best, many of the designs fail.`,
     width: 'full',
     height: 380,

@@ -1,0 +1,58 @@
+// What somebody who stops a run early has of it: at each of some budgets the design that would have
+// been the run's winner, had it ended there, chosen on the validation set among what had been found
+// by then. No incumbent, which is good in training, and not the best so far on the test set, which
+// would be a selection there.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "study/case_runner.hpp"
+#include "study/journal.hpp"
+#include "study/run_plan.hpp"
+#include "study/run_result.hpp"
+
+namespace armwright {
+
+// Designs on the whole validation or test set of a problem, each but once.
+class DesignBench {
+ public:
+  // All of these outlive it.
+  DesignBench(const LoadedProblem& problem, CaseRole role, unsigned jobs, StopSignal& stop);
+
+  // False if stopped.
+  bool add(std::span<const std::vector<double>> designs);
+  const Evaluation& get(std::span<const double> x) const { return *find(x); }
+
+ private:
+  const Evaluation* find(std::span<const double> x) const;
+
+  ThreadPool pool_;
+  StopSignal& stop_;
+  CaseRunner runner_;
+  CaseBlock block_;
+  std::vector<std::vector<double>> designs_;
+  std::vector<Evaluation> evaluations_;
+};
+
+// How many cases of an evaluation fail: an error above kFailureError_m, or none at all; of a
+// function those without number.
+std::uint64_t count_failures(const LoadedProblem& problem, const Evaluation& evaluation);
+
+struct Choice {
+  std::int64_t budget = 0;
+  std::optional<std::vector<double>> x;  // nothing before there is a candidate
+};
+
+// `training` is the run's journal, in order; `budgets` increase. At the end of the run it is the
+// run's own winner. Before, what an optimizer recommends without evaluating it, which no journal
+// holds, is not among the candidates. Nothing if stopped.
+std::optional<std::vector<Choice>> make_choices(const RunPlan& run,
+                                                std::span<const EvaluationRecord> training,
+                                                const RunResult& result,
+                                                std::span<const std::int64_t> budgets,
+                                                unsigned jobs, StopSignal& stop);
+
+}  // namespace armwright

@@ -1,0 +1,108 @@
+// Methods: the same optimizer spending the same budget in another way.
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "base/expect_error.hpp"
+#include "study/compare/study_support.hpp"
+#include "study/compare/verdict.hpp"
+
+namespace armwright {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+constexpr const char* kHead = R"(problems = ["q1-complex"]
+schedule = "fixed:5"
+replicates = 2
+budget = 100
+checkpoints = 4
+baselines = false
+set = ["physics.engine=articulated", "workspace.points=4", "sets.test_cases=6",
+       "sets.validation_cases=3"]
+)";
+
+StudyPlan load(const TemporaryFolder& folder, const std::string& toml) {
+  const auto file = folder / "mine.toml";
+  std::ofstream(file) << toml;
+  StudyRequest request;
+  request.file = file.string();
+  return make_study_plan(request);
+}
+
+TEST(StudyMethods, SpendTheSameBudgetOnTheSameCasesFromTheSameStart) {
+  const TemporaryFolder folder;
+  const StudyPlan plan = load(folder, std::string(kHead) + R"(
+[[optimizer]]
+name = "ga"
+label = "five fixed"
+[[optimizer]]
+name = "ga"
+label = "one fresh"
+schedule = "fresh:1"
+)");
+  const RunPlan fixed = make_run_plan(plan, {0, 0, 1});
+  const RunPlan fresh = make_run_plan(plan, {0, 1, 1});
+  EXPECT_EQ(to_text(fixed.schedule), "fixed:5");
+  EXPECT_EQ(to_text(fresh.schedule), "fresh:1");
+  EXPECT_EQ(fixed.budget, fresh.budget);
+  EXPECT_EQ(fixed.problem.sets.training, fresh.problem.sets.training);
+  EXPECT_EQ(fixed.problem.sets.test, fresh.problem.sets.test);
+  EXPECT_EQ(fixed.problem.problem->description().variables.front().start,
+            fresh.problem.problem->description().variables.front().start);
+  EXPECT_NE(fixed.seed, fresh.seed);
+}
+
+TEST(StudyMethods, ChangeNothingButTraining) {
+  const TemporaryFolder folder;
+  const auto expect = [&](const std::string& method, const std::string& message) {
+    EXPECT_THAT(usage_error_of([&] {
+                  load(folder, std::string(kHead) + "[[optimizer]]\nname = 'ga'\n" + method);
+                }),
+                HasSubstr(message));
+  };
+  expect("set = ['sets.test_cases=1']\n",
+         "sets.test_cases is the same for every optimizer of a comparison");
+  expect("set = ['task.speed_m_per_s=1']\n",
+         "task.speed_m_per_s is the same for every optimizer of a comparison");
+  expect("set = ['objective.kind=error']\n", "objective.kind is the same for every optimizer");
+  expect("set = ['schedule.kind=fresh']\n", "for schedule.kind write schedule = \"KIND:K\"");
+  expect("schedule = 'often:1'\n", "schedule is 'often:1'; it must be fresh:K");
+  expect("schedule = 'fixed:101'\n", "a budget of 100 cases does not pay for one evaluation");
+  expect("schedule = 'fresh:1'\n[[optimizer]]\nname = 'nlopt:cobyla'\nschedule = 'fresh:1'\n",
+         "optimizer 'nlopt:cobyla' has no generations");
+}
+
+TEST_F(StudyTest, MethodsAreComparedLikeOptimizers) {
+  const TemporaryFolder folder;
+  const StudyPlan plan = load(folder, std::string("value = \"failures\"\n") + kHead + R"(
+optimizers = ["nlopt:cobyla"]
+[[optimizer]]
+name = "ga"
+label = "ga, one fresh case"
+options = ["population=6"]
+schedule = "fresh:1"
+[[target]]
+label = "holds"
+failures = 0
+)");
+  const StudyResult result = study(plan, "study");
+  EXPECT_TRUE(result.missing.empty());
+  for (const CellOutcome& cell : result.cells) {
+    EXPECT_LE(cell.cases, 100u);
+    EXPECT_EQ(cell.errors.cases, 6u);
+    EXPECT_EQ(cell.curve.back().budget, 100);
+    EXPECT_EQ(cell.value, static_cast<double>(cell.errors.failures) / 6);
+    EXPECT_EQ(cell.choices.back().failures, cell.errors.failures);
+  }
+  EXPECT_EQ(result.problems[0].quantity.name, "share of failed test cases");
+  EXPECT_THAT(describe_verdict(plan, result),
+              Contains(HasSubstr("Methods spend the same budget in ways of their own")));
+  const auto manifest =
+      read_tree(temporary_ / "study" / make_cell_path(plan, {0, 1, 1})).at("manifest.json");
+  EXPECT_THAT(manifest, HasSubstr("\"kind\": \"fresh\""));
+}
+
+}  // namespace
+}  // namespace armwright
