@@ -22,6 +22,19 @@ double& get_parameter(ArmDesign& design, const DesignParameter& parameter) {
   return joint.gains[parameter.gain];
 }
 
+bool has_duration_metric(const TrackingConfig& config) {
+  return config.objective.duration_weight > 0;
+}
+
+double calc_case_duration_s(const TrackingTask& task, const WorkspaceSphere& sphere) {
+  double duration_s = 0;
+  for (int k = 1; k <= sphere.points; ++k) {
+    duration_s +=
+        std::max(sphere.calc_move_m(k), task.distance_limit_m) / task.speed_m_per_s + task.rest_s;
+  }
+  return duration_s;
+}
+
 namespace {
 
 DecisionVariable make_variable(const TrackingConfig& config, const DesignParameter& parameter) {
@@ -78,29 +91,20 @@ ProblemDescription make_tracking_description(const TrackingConfig& config) {
     description.variables.push_back(make_variable(config, parameter));
   }
   const TrackingObjective& objective = config.objective;
+  description.objectives = describe_objectives(objective);
   switch (objective.kind) {
     case TrackingObjective::Kind::error:
-      description.objectives = {objective.logarithm ? Quantity{"ln(error / 1 m)", "1"}
-                                                    : Quantity{"error", "m"}};
-      break;
     case TrackingObjective::Kind::error_and_torque:
-      description.objectives = {
-          {objective.logarithm ? "ln(error and torque)" : "error and torque", "1"}};
       break;
     case TrackingObjective::Kind::error_vs_torque:
-      description.objectives = {{"error", "m"}, {"total torque", "N m"}};
       description.objective_weights = {1 / objective.error_scale_m,
                                        objective.torque_weight / objective.torque_scale_n_m};
       break;
     case TrackingObjective::Kind::torque_with_error_limit:
-      description.objectives = {objective.logarithm ? Quantity{"ln(total torque / 1 N m)", "1"}
-                                                    : Quantity{"total torque", "N m"}};
-      description.limits = {{{"error", "m"}, objective.error_limit_m}};
+      description.limits = {{{describe_error(objective), "m"}, objective.error_limit_m}};
       description.violation_scale = objective.logarithm ? 1 : objective.torque_scale_n_m;
       break;
     case TrackingObjective::Kind::error_with_torque_limit:
-      description.objectives = {objective.logarithm ? Quantity{"ln(error / 1 m)", "1"}
-                                                    : Quantity{"error", "m"}};
       description.limits = {{{"total torque", "N m"}, objective.total_torque_limit_n_m}};
       description.violation_scale = objective.logarithm ? 1 : objective.error_scale_m;
       break;
@@ -108,12 +112,19 @@ ProblemDescription make_tracking_description(const TrackingConfig& config) {
   for (const Limit& limit : description.limits) {
     description.constraints.push_back({limit.quantity.name + " / limit - 1", "1"});
   }
-  description.has_residuals = description.limits.empty();
+  description.has_residuals = objective.has_residuals();
+  if (!description.has_residuals && description.limits.empty()) {
+    description.residuals_advice =
+        "only objective.statistic = \"mean\" is such a sum; choose it or another optimizer";
+  }
   description.metrics = {{"error", "m"},
                          {"total_torque", "N m"},
                          {"failures", "1"},
                          {"energy", "J"},
                          {"saturated_share", "1"}};
+  if (has_duration_metric(config)) {
+    description.metrics.push_back({"duration", "s"});
+  }
   for (const Joint& joint : config.robot.joints) {
     description.metrics.push_back({joint.name + ".peak_effort", "N m"});
     description.metrics.push_back({joint.name + ".rms_effort", "N m"});

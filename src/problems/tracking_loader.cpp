@@ -12,6 +12,7 @@
 #include "problems/design_file.hpp"
 #include "problems/objective_reader.hpp"
 #include "problems/parameter_reader.hpp"
+#include "problems/tracking_description.hpp"
 
 namespace armwright {
 namespace {
@@ -69,12 +70,7 @@ WorkspaceSphere read_workspace(const ConfigTable& table) {
 // Numbers that are each allowed, but together make a case that no memory holds.
 void check_length(const ConfigTable& table, const TrackingTask& task,
                   const WorkspaceSphere& sphere) {
-  double periods = 0;
-  for (int k = 1; k <= sphere.points; ++k) {
-    const double duration_s =
-        std::max(sphere.calc_move_m(k), task.distance_limit_m) / task.speed_m_per_s;
-    periods += (duration_s + task.rest_s) / task.control_period_s;
-  }
+  const double periods = calc_case_duration_s(task, sphere) / task.control_period_s;
   if (periods > kMostPeriods) {
     table.refuse(table.has("control_period_s") ? "control_period_s" : "speed_m_per_s",
                  fmt::format("a test case would take {:.3g} control periods, possible are {:.3g}; "

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numbers>
+#include <numeric>
 #include <optional>
 #include <unordered_map>
 
@@ -18,50 +20,12 @@ namespace {
 constexpr std::size_t kTargetCache_bytes = std::size_t{512} << 20;
 
 // What simulate() puts into a case's metrics before the peaks and root-mean-squares of the joints'
-// efforts.
-enum CaseMetric : std::size_t { kEnergy, kSaturation, kFirstJointMetric };
-
-// Of an error (m) and a total torque (N m).
-std::vector<double> calc_objectives(const TrackingObjective& objective, double error_m,
-                                    double torque_n_m) {
-  // No arm comes near it: keeps the logarithm finite whatever happens.
-  constexpr double kLeast = 1e-300;
-  const auto apply_scale = [&](double value) {
-    return objective.logarithm ? std::log(std::max(value, kLeast)) : value;
-  };
-  switch (objective.kind) {
-    case TrackingObjective::Kind::error:
-    case TrackingObjective::Kind::error_with_torque_limit:
-      return {apply_scale(error_m)};
-    case TrackingObjective::Kind::torque_with_error_limit:
-      return {apply_scale(torque_n_m)};
-    case TrackingObjective::Kind::error_and_torque:
-      return {apply_scale(error_m / objective.error_scale_m +
-                          objective.torque_weight * torque_n_m / objective.torque_scale_n_m)};
-    case TrackingObjective::Kind::error_vs_torque:
-      break;
-  }
-  return {error_m, torque_n_m};
-}
-
-std::vector<double> calc_constraints(const TrackingObjective& objective, double error_m,
-                                     double torque_n_m) {
-  switch (objective.kind) {
-    case TrackingObjective::Kind::torque_with_error_limit:
-      return {error_m / objective.error_limit_m - 1};
-    case TrackingObjective::Kind::error_with_torque_limit:
-      return {torque_n_m / objective.total_torque_limit_n_m - 1};
-    case TrackingObjective::Kind::error:
-    case TrackingObjective::Kind::error_and_torque:
-    case TrackingObjective::Kind::error_vs_torque:
-      break;
-  }
-  return {};
-}
+// efforts. The duration is that of the whole case, wherever its simulation ended.
+enum CaseMetric : std::size_t { kEnergy, kSaturation, kDuration, kFirstJointMetric };
 
 // The residuals of an outcome are the errors (m) of the points that count; aggregate() scales them.
-CaseOutcome make_outcome(TrackingResult result, CaseRole role, bool residuals,
-                         bool count_first_point) {
+CaseOutcome make_outcome(TrackingResult result, const TrackingTask& task, CaseRole role,
+                         const TargetTable& targets, bool residuals) {
   CaseOutcome outcome;
   outcome.reason = std::move(result.reason);
   switch (result.status) {
@@ -85,7 +49,7 @@ CaseOutcome make_outcome(TrackingResult result, CaseRole role, bool residuals,
   }
   outcome.error = outcome.has_error ? result.mean_error_m : 0;
   if (residuals && outcome.has_error) {
-    outcome.residuals.assign(result.point_error_m.begin() + (count_first_point ? 0 : 1),
+    outcome.residuals.assign(result.point_error_m.begin() + (task.count_first_point ? 0 : 1),
                              result.point_error_m.end());
   }
   const double joints = static_cast<double>(result.saturated_share.size());
@@ -94,7 +58,7 @@ CaseOutcome make_outcome(TrackingResult result, CaseRole role, bool residuals,
     saturation += share / joints;
   }
   outcome.metrics.reserve(kFirstJointMetric + 2 * result.peak_effort_n_m.size());
-  outcome.metrics.assign({result.energy_j, saturation});
+  outcome.metrics.assign({result.energy_j, saturation, targets.steps * task.control_period_s});
   for (std::size_t i = 0; i < result.peak_effort_n_m.size(); ++i) {
     outcome.metrics.push_back(result.peak_effort_n_m[i]);
     outcome.metrics.push_back(result.rms_effort_n_m[i]);
@@ -125,8 +89,12 @@ TrackingProblem::TrackingProblem(TrackingConfig config)
   check_design(config_.start);
   description_ = make_tracking_description(config_);
   const bool has_derivatives = config_.engines.training->has_derivatives();
-  description_.has_jacobian = description_.has_residuals && has_derivatives;
-  if (!has_derivatives) {
+  description_.has_jacobian =
+      description_.has_residuals && has_derivatives && config_.objective.energy_weight == 0;
+  if (config_.objective.energy_weight > 0) {
+    description_.jacobian_advice =
+        "the energy in the objective has no derivatives; set objective.energy_weight to 0";
+  } else if (!has_derivatives) {
     description_.jacobian_advice =
         fmt::format("engine '{}' computes no derivatives; choose --engine articulated, which does",
                     config_.engines.training_name);
@@ -230,8 +198,8 @@ std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs
   std::vector<CaseOutcome> outcomes;
   outcomes.reserve(jobs.size());
   for (std::size_t i = 0; i < jobs.size(); ++i) {
-    outcomes.push_back(make_outcome(std::move(results[i]), jobs[i].block->role, jobs[i].residuals,
-                                    config_.task.count_first_point));
+    outcomes.push_back(make_outcome(std::move(results[i]), config_.task, jobs[i].block->role,
+                                    *tracking[i].targets, jobs[i].residuals));
     const PhysicsEngine& engine = config_.engines.get(jobs[i].block->role);
     if (jobs[i].jacobian && engine.has_derivatives() && !outcomes[i].residuals.empty()) {
       outcomes[i].jacobian = engine.calc_derivatives(setup_, tracking[i], directions_);
@@ -285,9 +253,9 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
   Evaluation evaluation;
   const std::size_t joints = config_.robot.joint_count();
   std::vector<double> sums(kFirstJointMetric + 2 * joints);
-  double error = 0;
   double failures = 0;
-  double numbers = 0;
+  double lost = 0;  // failures, and what diverged on its last points only
+  std::vector<double> errors_m;
   for (const CaseOutcome& outcome : outcomes) {
     // That the numbers are bounds matters more than why others are missing.
     const bool is_first_abandoned = outcome.status == EvaluationStatus::abandoned &&
@@ -301,12 +269,15 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
       evaluation.case_errors.push_back(std::numeric_limits<double>::quiet_NaN());
       ++evaluation.failed_cases;
       ++failures;
+      ++lost;
       continue;
     }
     evaluation.case_errors.push_back(outcome.error);
-    error += outcome.error;
-    failures += outcome.error > kFailureError_m ? 1 : 0;
-    ++numbers;
+    errors_m.push_back(outcome.error);
+    const bool failed = outcome.error > kFailureError_m;
+    failures += failed ? 1 : 0;
+    lost += failed || outcome.status == EvaluationStatus::diverged ? 1 : 0;
+    sums[kDuration] += outcome.metrics[kDuration];
     sums[kEnergy] += outcome.metrics[kEnergy];
     sums[kSaturation] += outcome.metrics[kSaturation];
     for (std::size_t i = kFirstJointMetric; i < sums.size(); i += 2) {
@@ -314,25 +285,36 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
       sums[i + 1] += outcome.metrics[i + 1];
     }
   }
-  if (numbers == 0) {
+  if (errors_m.empty()) {
     return evaluation;
   }
-  error /= numbers;
+  const auto numbers = static_cast<double>(errors_m.size());
+  const TrackingObjective& objective = config_.objective;
   const ArmDesign design = make_design(x);
-  const double torque = calc_total_torque_n_m(design);
-  evaluation.objectives = calc_objectives(config_.objective, error, torque);
-  evaluation.constraint_values = calc_constraints(config_.objective, error, torque);
+  const double mean_error = std::accumulate(errors_m.begin(), errors_m.end(), 0.0) / numbers;
+  ObjectiveTerms terms;
+  terms.error_m =
+      calc_error_statistic(objective, errors_m, lost / static_cast<double>(outcomes.size()));
+  terms.torque_n_m = calc_total_torque_n_m(design);
+  terms.energy_j = sums[kEnergy] / numbers;
+  terms.duration_s = sums[kDuration] / numbers;
+  evaluation.objectives = calc_objectives(objective, terms);
+  evaluation.constraint_values = calc_constraints(objective, terms);
   // Asked for and not abandoned: a case with an error has a residual for each point that counts.
   const bool has_residuals =
       description_.has_residuals && std::ranges::all_of(outcomes, [](const CaseOutcome& outcome) {
         return !outcome.has_error || !outcome.residuals.empty();
       });
   if (has_residuals) {
-    evaluation.residuals = calc_residuals(design, outcomes, numbers);
-    evaluation.jacobian = calc_jacobian(design, outcomes, evaluation.residuals);
+    evaluation.residuals = calc_residuals(objective, design, terms, outcomes, numbers);
+    evaluation.jacobian =
+        calc_jacobian(objective, design, directions_, outcomes, evaluation.residuals);
   }
-  evaluation.metrics = {error, torque, failures, sums[kEnergy] / numbers,
+  evaluation.metrics = {mean_error, terms.torque_n_m, failures, terms.energy_j,
                         sums[kSaturation] / numbers};
+  if (has_duration_metric(config_)) {
+    evaluation.metrics.push_back(terms.duration_s);
+  }
   for (std::size_t i = kFirstJointMetric; i < sums.size(); i += 2) {
     evaluation.metrics.push_back(sums[i]);
     evaluation.metrics.push_back(sums[i + 1] / numbers);
@@ -340,76 +322,28 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
   return evaluation;
 }
 
-std::vector<double> TrackingProblem::calc_residuals(const ArmDesign& design,
-                                                    std::span<const CaseOutcome> outcomes,
-                                                    double cases) const {
-  const TrackingObjective& objective = config_.objective;
-  const bool with_torque = objective.kind != TrackingObjective::Kind::error;
-  std::vector<double> residuals;
-  for (const CaseOutcome& outcome : outcomes) {
-    const double share = cases * static_cast<double>(outcome.residuals.size()) *
-                         (with_torque ? objective.error_scale_m : 1);
-    for (const double error_m : outcome.residuals) {
-      residuals.push_back(std::sqrt(error_m / share));
-    }
-  }
-  if (with_torque) {
-    for (const JointDrive& joint : design.joints) {
-      residuals.push_back(std::sqrt(objective.torque_weight * calc_largest_torque_n_m(joint) /
-                                    objective.torque_scale_n_m));
-    }
-  }
-  return residuals;
-}
-
-std::vector<double> TrackingProblem::calc_jacobian(const ArmDesign& design,
-                                                   std::span<const CaseOutcome> outcomes,
-                                                   std::span<const double> residuals) const {
-  std::vector<double> jacobian;
-  const std::size_t n = directions_.size();
-  // A residual r = sqrt(c v) of a value v: dr = r / (2 v) dv.
-  const auto calc_share = [](double residual, double value) {
-    return value > 0 ? residual / (2 * value) : 0;
-  };
-  std::size_t row = 0;
-  for (const CaseOutcome& outcome : outcomes) {
-    if (!outcome.has_error) {
-      continue;
-    }
-    if (outcome.jacobian.empty()) {
-      return {};  // not asked for
-    }
-    for (std::size_t k = 0; k < outcome.residuals.size(); ++k, ++row) {
-      const double share = calc_share(residuals[row], outcome.residuals[k]);
-      for (std::size_t i = 0; i < n; ++i) {
-        jacobian.push_back(share * outcome.jacobian[k * n + i]);
-      }
-    }
-  }
-  for (std::size_t joint = 0; row < residuals.size(); ++joint, ++row) {  // with torque
-    const EffortLimits& limits = design.joints[joint].limits;
-    const double share = calc_share(residuals[row], calc_largest_torque_n_m(design.joints[joint]));
-    for (const ArmDesign& direction : directions_) {
-      const EffortLimits& change = direction.joints[joint].limits;
-      jacobian.push_back(share *
-                         (-limits.min_n_m < limits.max_n_m ? change.max_n_m : -change.min_n_m));
-    }
-  }
-  return jacobian;
-}
-
 std::vector<double> TrackingProblem::penalty_objectives() const {
   // Ten times the error of a design that is cut off at once on every case, and as much torque as
-  // the box allows; where torque alone is minimised, ten times that.
+  // the box allows; where torque alone is minimised, ten times that. As much energy as this torque
+  // has after a turn of every joint on every move.
+  const TrackingObjective& objective = config_.objective;
   ArmDesign strongest = config_.start;
   for (const DesignParameter& parameter : config_.parameters) {
     if (parameter.kind != DesignParameter::Kind::gain) {
       get_parameter(strongest, parameter) *= config_.bounds_factor;
     }
   }
-  const bool is_torque = config_.objective.kind == TrackingObjective::Kind::torque_with_error_limit;
-  return calc_objectives(config_.objective, 10 * config_.cutoff_error_m,
-                         (is_torque ? 10 : 1) * calc_total_torque_n_m(strongest));
+  const double torque_n_m = calc_total_torque_n_m(strongest);
+  const bool is_torque = objective.kind == TrackingObjective::Kind::torque_with_error_limit;
+  ObjectiveTerms terms;
+  terms.error_m = 10 * config_.cutoff_error_m;
+  if (objective.statistic == TrackingObjective::Statistic::mean_with_failures) {
+    terms.error_m += 10 * objective.failure_penalty_m;
+  }
+  terms.torque_n_m = (is_torque ? 10 : 1) * torque_n_m;
+  terms.energy_j = torque_n_m * 2 * std::numbers::pi * config_.workspace.points;
+  terms.duration_s = calc_case_duration_s(config_.task, config_.workspace);
+  return calc_objectives(objective, terms);
 }
 
 }  // namespace armwright
