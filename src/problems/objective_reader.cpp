@@ -86,7 +86,7 @@ void check_limits(const ConfigTable& table, const TrackingConfig& config) {
   ArmDesign weakest = config.start;
   bool changes_torque = false;
   for (const DesignParameter& parameter : config.parameters) {
-    if (parameter.kind != DesignParameter::Kind::gain) {
+    if (is_effort(parameter)) {
       get_parameter(weakest, parameter) /= config.bounds_factor;
       changes_torque = true;
     }

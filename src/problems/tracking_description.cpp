@@ -16,14 +16,58 @@ double& get_parameter(ArmDesign& design, const DesignParameter& parameter) {
       return joint.limits.min_n_m;
     case DesignParameter::Kind::effort_max:
       return joint.limits.max_n_m;
+    case DesignParameter::Kind::length_scale:
+      return joint.length_scale;
+    case DesignParameter::Kind::section_scale:
+      return joint.section_scale;
+    case DesignParameter::Kind::speed:
+      return design.speed_m_per_s.value();
     case DesignParameter::Kind::gain:
       break;
   }
   return joint.gains[parameter.gain];
 }
 
+bool is_effort(const DesignParameter& parameter) {
+  return parameter.kind == DesignParameter::Kind::effort_min ||
+         parameter.kind == DesignParameter::Kind::effort_max;
+}
+
+double get_bounds_factor(const TrackingConfig& config, const DesignParameter& parameter) {
+  switch (parameter.kind) {
+    case DesignParameter::Kind::length_scale:
+      return config.length_bounds_factor;
+    case DesignParameter::Kind::section_scale:
+      return config.section_bounds_factor;
+    case DesignParameter::Kind::speed:
+      return config.speed_bounds_factor;
+    case DesignParameter::Kind::gain:
+    case DesignParameter::Kind::effort_min:
+    case DesignParameter::Kind::effort_max:
+      break;
+  }
+  return config.bounds_factor;
+}
+
+bool changes_links(const TrackingConfig& config) {
+  return std::ranges::any_of(config.parameters, [](const DesignParameter& parameter) {
+    return parameter.kind == DesignParameter::Kind::length_scale ||
+           parameter.kind == DesignParameter::Kind::section_scale;
+  });
+}
+
+bool changes_speed(const TrackingConfig& config) {
+  return std::ranges::any_of(config.parameters, [](const DesignParameter& parameter) {
+    return parameter.kind == DesignParameter::Kind::speed;
+  });
+}
+
+bool has_mass_metric(const TrackingConfig& config) {
+  return config.torque_per_mass_n_m_per_kg > 0 || changes_links(config);
+}
+
 bool has_duration_metric(const TrackingConfig& config) {
-  return config.objective.duration_weight > 0;
+  return config.objective.duration_weight > 0 || changes_speed(config);
 }
 
 double calc_case_duration_s(const TrackingTask& task, const WorkspaceSphere& sphere) {
@@ -55,6 +99,18 @@ DecisionVariable make_variable(const TrackingConfig& config, const DesignParamet
       variable.name = joint + ".effort_max";
       variable.unit = "N m";
       break;
+    case DesignParameter::Kind::length_scale:
+      variable.name = joint + ".length_scale";
+      variable.unit = "1";
+      break;
+    case DesignParameter::Kind::section_scale:
+      variable.name = joint + ".section_scale";
+      variable.unit = "1";
+      break;
+    case DesignParameter::Kind::speed:
+      variable.name = "task.speed";
+      variable.unit = "m/s";
+      break;
   }
   ArmDesign start = config.start;
   variable.start = get_parameter(start, parameter);
@@ -66,8 +122,8 @@ DecisionVariable make_variable(const TrackingConfig& config, const DesignParamet
   }
   variable.scale = Scale::logarithmic;
   // The list form returns values; the two-argument form would return references to the temporaries.
-  const auto [lower, upper] =
-      std::minmax({variable.start / config.bounds_factor, variable.start * config.bounds_factor});
+  const double factor = get_bounds_factor(config, parameter);
+  const auto [lower, upper] = std::minmax({variable.start / factor, variable.start * factor});
   variable.lower = lower;
   variable.upper = upper;
   if (!std::isnormal(lower) || !std::isnormal(upper)) {
@@ -124,6 +180,9 @@ ProblemDescription make_tracking_description(const TrackingConfig& config) {
                          {"saturated_share", "1"}};
   if (has_duration_metric(config)) {
     description.metrics.push_back({"duration", "s"});
+  }
+  if (has_mass_metric(config)) {
+    description.metrics.push_back({"moving_mass", "kg"});
   }
   for (const Joint& joint : config.robot.joints) {
     description.metrics.push_back({joint.name + ".peak_effort", "N m"});

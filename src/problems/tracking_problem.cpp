@@ -13,6 +13,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "problems/tracking_description.hpp"
+#include "sim/designed_arm.hpp"
 
 namespace armwright {
 namespace {
@@ -25,7 +26,8 @@ enum CaseMetric : std::size_t { kEnergy, kSaturation, kDuration, kFirstJointMetr
 
 // The residuals of an outcome are the errors (m) of the points that count; aggregate() scales them.
 CaseOutcome make_outcome(TrackingResult result, const TrackingTask& task, CaseRole role,
-                         const TargetTable& targets, bool residuals) {
+                         const TrackingJob& job, bool residuals) {
+  const TargetTable& targets = *job.targets;
   CaseOutcome outcome;
   outcome.reason = std::move(result.reason);
   switch (result.status) {
@@ -44,8 +46,18 @@ CaseOutcome make_outcome(TrackingResult result, const TrackingTask& task, CaseRo
       break;
     case SimulationStatus::unreachable:
       outcome.status = EvaluationStatus::unreachable;
-      outcome.has_error = false;
-      return outcome;
+      if (role != CaseRole::training || job.setup == nullptr) {
+        outcome.has_error = false;
+        return outcome;
+      }
+      // The design's own doing: were the case left out, an arm that reaches the easy ones only
+      // would be the best.
+      result.mean_error_m = job.cutoff_m;
+      result.point_error_m.assign(targets.segments.size(), job.cutoff_m);
+      result.peak_effort_n_m.assign(targets.joints, 0);
+      result.rms_effort_n_m.assign(targets.joints, 0);
+      result.saturated_share.assign(targets.joints, 0);
+      break;
   }
   outcome.error = outcome.has_error ? result.mean_error_m : 0;
   if (residuals && outcome.has_error) {
@@ -72,6 +84,11 @@ std::vector<ArmDesign> make_directions(const TrackingConfig& config) {
   for (JointDrive& joint : zero.joints) {
     joint.gains.assign(joint.gains.size(), 0.0);
     joint.limits = {};
+    joint.length_scale = 0;
+    joint.section_scale = 0;
+  }
+  if (zero.speed_m_per_s) {
+    zero.speed_m_per_s = 0;
   }
   std::vector<ArmDesign> directions(config.parameters.size(), zero);
   for (std::size_t i = 0; i < directions.size(); ++i) {
@@ -84,22 +101,50 @@ std::vector<ArmDesign> make_directions(const TrackingConfig& config) {
 
 TrackingProblem::TrackingProblem(TrackingConfig config)
     : config_(std::move(config)),
-      setup_(config_.robot, config_.task),
+      setup_(std::make_shared<TrackingSetup>(config_.robot, config_.task)),
       targets_(kTargetCache_bytes) {
   check_design(config_.start);
   description_ = make_tracking_description(config_);
-  const bool has_derivatives = config_.engines.training->has_derivatives();
-  description_.has_jacobian =
-      description_.has_residuals && has_derivatives && config_.objective.energy_weight == 0;
+  check_bounds();
+  set_jacobian();
+  directions_ = make_directions(config_);
+}
+
+void TrackingProblem::check_bounds() const {
+  if (!changes_links(config_)) {
+    return;
+  }
+  // Each variable at either end, the others at the start: links are stretched independently of each
+  // other, so that what one of them does not allow shows there.
+  for (const DesignParameter& parameter : config_.parameters) {
+    const double factor = get_bounds_factor(config_, parameter);
+    for (const double scale : {1 / factor, factor}) {
+      ArmDesign design = config_.start;
+      get_parameter(design, parameter) *= scale;
+      get_setup(design);
+    }
+  }
+}
+
+void TrackingProblem::set_jacobian() {
+  std::string& advice = description_.jacobian_advice;
   if (config_.objective.energy_weight > 0) {
-    description_.jacobian_advice =
-        "the energy in the objective has no derivatives; set objective.energy_weight to 0";
-  } else if (!has_derivatives) {
-    description_.jacobian_advice =
+    advice = "the energy in the objective has no derivatives; set objective.energy_weight to 0";
+  } else if (changes_links(config_) || changes_speed(config_)) {
+    advice =
+        "there are none to variables that change the arm or the task; leave length_scale, "
+        "section_scale and speed out of [variables]";
+  } else if (config_.torque_per_mass_n_m_per_kg > 0 &&
+             std::ranges::any_of(config_.parameters, is_effort)) {
+    advice =
+        "there are none to the masses of motors; leave [motors] out, or effort_min and effort_max "
+        "out of [variables]";
+  } else if (!config_.engines.training->has_derivatives()) {
+    advice =
         fmt::format("engine '{}' computes no derivatives; choose --engine articulated, which does",
                     config_.engines.training_name);
   }
-  directions_ = make_directions(config_);
+  description_.has_jacobian = description_.has_residuals && advice.empty();
 }
 
 void TrackingProblem::check_design(const ArmDesign& design) const {
@@ -130,9 +175,32 @@ TestSet TrackingProblem::get_set(const std::string& name) const {
   return TestSet::make_generated(name, config_.workspace);
 }
 
-std::shared_ptr<const TargetTable> TrackingProblem::get_targets(const TestSet& set,
+RobotModel TrackingProblem::make_robot(const ArmDesign& design) const {
+  return armwright::make_robot(config_.robot, design, config_.torque_per_mass_n_m_per_kg);
+}
+
+TrackingTask TrackingProblem::make_task(const ArmDesign& design) const {
+  return armwright::make_task(config_.task, design);
+}
+
+std::shared_ptr<const TrackingSetup> TrackingProblem::get_setup(const ArmDesign& design) const {
+  if (!is_stretched(design) && config_.torque_per_mass_n_m_per_kg == 0 && !design.speed_m_per_s) {
+    return setup_;
+  }
+  return std::make_shared<TrackingSetup>(make_robot(design), make_task(design));
+}
+
+bool TrackingProblem::has_own_targets(const ArmDesign& design) const {
+  return is_stretched(design) || design.speed_m_per_s;
+}
+
+std::shared_ptr<const TargetTable> TrackingProblem::get_targets(const ArmDesign& design,
+                                                                const TrackingSetup& setup,
+                                                                const TestSet& set,
                                                                 std::uint64_t number) const {
-  auto table = targets_.get(setup_, set, number);
+  auto table = has_own_targets(design)
+                   ? std::make_shared<const TargetTable>(setup.make_targets(set.make_case(number)))
+                   : targets_.get(*setup_, set, number);
   if (table->segments.size() < 2 && !config_.task.count_first_point) {
     throw Error(ErrorKind::bad_data,
                 fmt::format("test set {}: case {} has 2 points, but the first after the start does "
@@ -153,6 +221,9 @@ ArmDesign TrackingProblem::make_design(std::span<const double> x) const {
 std::vector<double> TrackingProblem::make_vector(const ArmDesign& design) const {
   check_design(design);
   ArmDesign copy = design;
+  if (changes_speed(config_)) {
+    copy.speed_m_per_s = design.speed_m_per_s.value_or(config_.task.speed_m_per_s);
+  }
   std::vector<double> x;
   for (const DesignParameter& parameter : config_.parameters) {
     x.push_back(get_parameter(copy, parameter));
@@ -165,30 +236,42 @@ BatchSize TrackingProblem::batch_size(CaseRole role) const {
 }
 
 std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs) const {
-  std::unordered_map<const double*, ArmDesign> designs;  // by where the decision vector lies
+  // By where the decision vector lies. Nothing is taken from the maps before the simulation ends.
+  struct Candidate {
+    ArmDesign design;
+    std::shared_ptr<const TrackingSetup> setup;
+    bool own_targets = false;
+  };
+  std::unordered_map<const double*, Candidate> candidates;
   std::vector<TrackingJob> tracking;
   tracking.reserve(jobs.size());
   // An engine with SIMD needs some 60 us for a job: sets and tables are looked up once for all
-  // neighbours that share a block. Nothing is taken from the map before the simulation ends.
+  // neighbours that share a block.
   std::optional<TestSet> set;
   std::vector<std::unordered_map<std::uint64_t, std::shared_ptr<const TargetTable>>> tables;
+  std::vector<std::shared_ptr<const TargetTable>> own_tables;  // of one job each
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     const CaseJob& job = jobs[i];
-    const auto [design, is_new] = designs.try_emplace(job.x.data());
+    const auto [found, is_new] = candidates.try_emplace(job.x.data());
+    Candidate& candidate = found->second;
     if (is_new) {
-      design->second = make_design(job.x);
+      candidate.design = make_design(job.x);
+      candidate.setup = get_setup(candidate.design);
+      candidate.own_targets = has_own_targets(candidate.design);
     }
     if (i == 0 || job.block != jobs[i - 1].block) {
       set = get_set(job.block->set);
       tables.emplace_back();
     }
-    std::shared_ptr<const TargetTable>& table = tables.back()[job.number];
+    std::shared_ptr<const TargetTable>& table =
+        candidate.own_targets ? own_tables.emplace_back() : tables.back()[job.number];
     if (table == nullptr) {
-      table = get_targets(*set, job.number);
+      table = get_targets(candidate.design, *candidate.setup, *set, job.number);
     }
     TrackingJob& one = tracking.emplace_back();
-    one.design = &design->second;
+    one.design = &candidate.design;
     one.targets = table.get();
+    one.setup = candidate.setup == setup_ ? nullptr : candidate.setup.get();
     one.abandon_above_m = job.abandon_above;
     if (job.block->role == CaseRole::training) {
       one.cutoff_m = config_.cutoff_error_m;
@@ -199,10 +282,10 @@ std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs
   outcomes.reserve(jobs.size());
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     outcomes.push_back(make_outcome(std::move(results[i]), config_.task, jobs[i].block->role,
-                                    *tracking[i].targets, jobs[i].residuals));
+                                    tracking[i], jobs[i].residuals));
     const PhysicsEngine& engine = config_.engines.get(jobs[i].block->role);
     if (jobs[i].jacobian && engine.has_derivatives() && !outcomes[i].residuals.empty()) {
-      outcomes[i].jacobian = engine.calc_derivatives(setup_, tracking[i], directions_);
+      outcomes[i].jacobian = engine.calc_derivatives(*setup_, tracking[i], directions_);
       const std::size_t counted = outcomes[i].residuals.size() * directions_.size();
       outcomes[i].jacobian.erase(outcomes[i].jacobian.begin(),
                                  outcomes[i].jacobian.end() - static_cast<std::ptrdiff_t>(counted));
@@ -221,7 +304,7 @@ std::vector<TrackingResult> TrackingProblem::simulate(std::span<const CaseJob> j
     while (end < jobs.size() && &config_.engines.get(jobs[end].block->role) == &engine) {
       ++end;
     }
-    auto some = engine.simulate(setup_, tracking.subspan(first, end - first));
+    auto some = engine.simulate(*setup_, tracking.subspan(first, end - first));
     std::ranges::move(some, std::back_inserter(results));
     first = end;
   }
@@ -237,15 +320,17 @@ std::vector<TrackingResult> TrackingProblem::track(const ArmDesign& design, cons
                                                    std::uint64_t first, std::size_t count,
                                                    RecordingOptions recording) const {
   check_design(design);
+  const auto setup = get_setup(design);
   std::vector<std::shared_ptr<const TargetTable>> tables;
   std::vector<TrackingJob> jobs(count);
   for (std::size_t i = 0; i < count; ++i) {
-    tables.push_back(get_targets(set, first + i));
+    tables.push_back(get_targets(design, *setup, set, first + i));
     jobs[i].design = &design;
+    jobs[i].setup = setup == setup_ ? nullptr : setup.get();
     jobs[i].targets = tables.back().get();
     jobs[i].recording = recording;
   }
-  return config_.engines.judging->simulate(setup_, jobs);
+  return config_.engines.judging->simulate(*setup_, jobs);
 }
 
 Evaluation TrackingProblem::aggregate(std::span<const double> x,
@@ -315,6 +400,9 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
   if (has_duration_metric(config_)) {
     evaluation.metrics.push_back(terms.duration_s);
   }
+  if (has_mass_metric(config_)) {
+    evaluation.metrics.push_back(calc_moving_mass_kg(make_robot(design)) + config_.task.load_kg);
+  }
   for (std::size_t i = kFirstJointMetric; i < sums.size(); i += 2) {
     evaluation.metrics.push_back(sums[i]);
     evaluation.metrics.push_back(sums[i + 1] / numbers);
@@ -329,9 +417,13 @@ std::vector<double> TrackingProblem::penalty_objectives() const {
   const TrackingObjective& objective = config_.objective;
   ArmDesign strongest = config_.start;
   for (const DesignParameter& parameter : config_.parameters) {
-    if (parameter.kind != DesignParameter::Kind::gain) {
+    if (is_effort(parameter)) {
       get_parameter(strongest, parameter) *= config_.bounds_factor;
     }
+  }
+  TrackingTask slowest = make_task(config_.start);
+  if (changes_speed(config_)) {
+    slowest.speed_m_per_s /= config_.speed_bounds_factor;
   }
   const double torque_n_m = calc_total_torque_n_m(strongest);
   const bool is_torque = objective.kind == TrackingObjective::Kind::torque_with_error_limit;
@@ -342,7 +434,7 @@ std::vector<double> TrackingProblem::penalty_objectives() const {
   }
   terms.torque_n_m = (is_torque ? 10 : 1) * torque_n_m;
   terms.energy_j = torque_n_m * 2 * std::numbers::pi * config_.workspace.points;
-  terms.duration_s = calc_case_duration_s(config_.task, config_.workspace);
+  terms.duration_s = calc_case_duration_s(slowest, config_.workspace);
   return calc_objectives(objective, terms);
 }
 

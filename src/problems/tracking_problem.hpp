@@ -1,7 +1,11 @@
 // The thesis's problem: tune the controllers and effort limits of an arm so that its tip follows a
 // moving target; what it is judged by is in tracking_objective.hpp. Decision variables: any of the
 // controllers' gains and effort limits of any joints, in natural units, bounded by a factor around
-// the start values, sign kept; what is not a variable keeps its start value.
+// the start values, sign kept; and of how long and wide links are, and of the task's speed. What is
+// not a variable keeps its start value. Where a design or its motors change the arm or the task
+// (sim/designed_arm.hpp), it is simulated with a setup of its own, and its targets are its own
+// where they differ. A training case of which such an arm cannot reach a target counts as if it had
+// been cut off at once.
 #pragma once
 
 #include <limits>
@@ -21,8 +25,8 @@ namespace armwright {
 
 // One number of the design that is optimized.
 struct DesignParameter {
-  enum class Kind { gain, effort_min, effort_max };
-  std::size_t joint = 0;
+  enum class Kind { gain, effort_min, effort_max, length_scale, section_scale, speed };
+  std::size_t joint = 0;  // not of the speed
   Kind kind = Kind::gain;
   std::size_t gain = 0;  // which one, for a gain
 };
@@ -40,6 +44,10 @@ struct TrackingConfig {
   ArmDesign start;
   std::vector<DesignParameter> parameters;
   double bounds_factor = 100;
+  double length_bounds_factor = 1.5;
+  double section_bounds_factor = 2;
+  double speed_bounds_factor = 2;
+  double torque_per_mass_n_m_per_kg = 0;  // of the motors; 0: they weigh nothing
 };
 
 class TrackingProblem final : public Problem {
@@ -75,19 +83,30 @@ class TrackingProblem final : public Problem {
                                     std::uint64_t first, std::size_t count,
                                     RecordingOptions recording) const;
   void check_design(const ArmDesign& design) const;
+  // The arm of a design without its load, its task, and both ready to be simulated; the problem's
+  // own where the design changes nothing.
+  RobotModel make_robot(const ArmDesign& design) const;
+  TrackingTask make_task(const ArmDesign& design) const;
+  std::shared_ptr<const TrackingSetup> get_setup(const ArmDesign& design) const;
 
   const TrackingConfig& config() const { return config_; }
-  const TrackingSetup& setup() const { return setup_; }
+  const TrackingSetup& setup() const { return *setup_; }  // of the nominal arm and task
   const TargetCache& targets() const { return targets_; }
 
  private:
   // One result a job of `tracking`, each from the engine of its case's role.
   std::vector<TrackingResult> simulate(std::span<const CaseJob> jobs,
                                        std::span<const TrackingJob> tracking) const;
-  std::shared_ptr<const TargetTable> get_targets(const TestSet& set, std::uint64_t number) const;
+  // `setup` is get_setup() of the design.
+  std::shared_ptr<const TargetTable> get_targets(const ArmDesign& design,
+                                                 const TrackingSetup& setup, const TestSet& set,
+                                                 std::uint64_t number) const;
+  bool has_own_targets(const ArmDesign& design) const;
+  void check_bounds() const;  // that every design within them is an arm
+  void set_jacobian();
 
   TrackingConfig config_;
-  TrackingSetup setup_;
+  std::shared_ptr<const TrackingSetup> setup_;
   ProblemDescription description_;
   std::vector<ArmDesign> directions_;  // how the design changes with each variable
   std::map<std::string, TestSet> sets_;
