@@ -209,7 +209,8 @@ std::string explain_unsuitable(const OptimizerRow& row, const ProblemDescription
   }
   if (required.residuals && !problem.has_residuals) {
     return "it works on residuals, of whose squares the objective is the sum, and this problem "
-           "offers none";
+           "offers none" +
+           (problem.residuals_advice.empty() ? "" : "; " + problem.residuals_advice);
   }
   return "";
 }

@@ -9,6 +9,9 @@
 namespace armwright {
 namespace {
 
+// Of a link, as much as any arm would want.
+constexpr Range kScale{.lower = 0.01, .upper = 100};
+
 std::string quote(std::string_view text) {
   std::string quoted = "\"";
   for (const char c : text) {
@@ -49,6 +52,9 @@ DesignFile load_design(std::string_view name_or_path) {
   file.title = table.get_string("title", "");
   file.source = table.get_string("source", "");
   file.design.controller = table.get_choice("controller", controller_names(), "pid");
+  if (table.has("speed_m_per_s")) {
+    file.design.speed_m_per_s = table.get_number("speed_m_per_s", {.lower = 0.01, .upper = 100});
+  }
   const ControllerRow& controller = find_controller(file.design.controller);
   for (const ConfigTable& joint : table.get_tables("joint")) {
     file.joint_names.push_back(joint.get_string("name", ""));
@@ -59,12 +65,16 @@ DesignFile load_design(std::string_view name_or_path) {
     }
     joint.has("effort_min_n_m");
     joint.has("effort_max_n_m");
+    joint.has("length_scale");
+    joint.has("section_scale");
     JointDrive drive;
     for (const GainSpec& gain : controller.gains) {
       drive.gains.push_back(joint.get_number(gain.key, {.lower = 0}));
     }
     drive.limits.min_n_m = joint.get_number("effort_min_n_m", {.upper = 0});
     drive.limits.max_n_m = joint.get_number("effort_max_n_m", {.lower = 0});
+    drive.length_scale = joint.get_number_or("length_scale", 1, kScale);
+    drive.section_scale = joint.get_number_or("section_scale", 1, kScale);
     file.design.joints.push_back(std::move(drive));
   }
   if (file.design.joints.empty()) {
@@ -82,6 +92,9 @@ std::string to_toml(const DesignFile& file) {
   std::string text =
       fmt::format("name = {}\ntitle = {}\nsource = {}\ncontroller = {}\n", quote(file.name),
                   quote(file.title), quote(file.source), quote(file.design.controller));
+  if (file.design.speed_m_per_s) {
+    text += fmt::format("speed_m_per_s = {}\n", format_exact(*file.design.speed_m_per_s));
+  }
   for (std::size_t i = 0; i < file.design.joints.size(); ++i) {
     const JointDrive& joint = file.design.joints[i];
     text += fmt::format("\n[[joint]]\nname = {}\n", quote(file.joint_names.at(i)));
@@ -90,6 +103,12 @@ std::string to_toml(const DesignFile& file) {
     }
     text += fmt::format("effort_min_n_m = {}\neffort_max_n_m = {}\n",
                         format_exact(joint.limits.min_n_m), format_exact(joint.limits.max_n_m));
+    if (joint.length_scale != 1) {
+      text += fmt::format("length_scale = {}\n", format_exact(joint.length_scale));
+    }
+    if (joint.section_scale != 1) {
+      text += fmt::format("section_scale = {}\n", format_exact(joint.section_scale));
+    }
   }
   return text;
 }

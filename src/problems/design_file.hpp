@@ -1,5 +1,7 @@
-// Designs as TOML files: the controllers' gains and the effort limits of every joint, and, for
-// published ones, what was reported of them under which conditions.
+// Designs as TOML files: the controllers' gains and the effort limits of every joint, where the
+// design changes them the links (length_scale, section_scale; without them 1) and the speed
+// (speed_m_per_s; without it the task's), and, for published ones, what was reported of them under
+// which conditions.
 #pragma once
 
 #include <filesystem>

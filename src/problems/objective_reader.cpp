@@ -8,6 +8,40 @@
 #include "problems/tracking_description.hpp"
 
 namespace armwright {
+namespace {
+
+constexpr Range kPositive{.lower = 0, .upper = 1e12, .lower_open = true};
+constexpr Range kWeight{.lower = 0, .upper = 1e6};
+
+void read_statistic(const ConfigTable& table, TrackingObjective& objective) {
+  using Statistic = TrackingObjective::Statistic;
+  static const std::vector<std::string> names = {"mean", "worst", "cvar", "mean_with_failures"};
+  const std::string name = table.get_choice("statistic", names, "mean");
+  objective.statistic = static_cast<Statistic>(std::ranges::find(names, name) - names.begin());
+  objective.cvar_share = table.get_number_or("cvar_share", objective.cvar_share,
+                                             {.lower = 0, .upper = 1, .lower_open = true});
+  objective.failure_penalty_m =
+      table.get_number_or("failure_penalty_m", objective.failure_penalty_m, kPositive);
+}
+
+// A part of the objective's sum: its weight and, where that is not 0, its scale.
+void read_part(const ConfigTable& table, std::string_view weight_key, std::string_view scale_key,
+               const TrackingObjective& objective, double& weight, double& scale) {
+  weight = table.get_number_or(weight_key, 0, kWeight);
+  if (weight == 0) {
+    table.has(scale_key);  // stays allowed where a weight is switched off
+    return;
+  }
+  if (objective.kind != TrackingObjective::Kind::error &&
+      objective.kind != TrackingObjective::Kind::error_and_torque) {
+    table.refuse(weight_key,
+                 "only the kinds error and error_and_torque are sums; choose one of them or leave "
+                 "it out");
+  }
+  scale = table.get_number(scale_key, kPositive);
+}
+
+}  // namespace
 
 TrackingObjective read_objective(const ConfigTable& table) {
   using Kind = TrackingObjective::Kind;
@@ -27,18 +61,23 @@ TrackingObjective read_objective(const ConfigTable& table) {
   if (objective.logarithm && objective.kind == Kind::error_vs_torque) {
     table.refuse("logarithm", "two objectives are compared as they are; leave it out");
   }
-  const Range positive{.lower = 0, .upper = 1e12, .lower_open = true};
-  objective.torque_weight = table.get_number_or("torque_weight", 1, {.lower = 0, .upper = 1e6});
-  objective.error_scale_m = table.get_number_or("error_scale_m", objective.error_scale_m, positive);
+  objective.torque_weight = table.get_number_or("torque_weight", 1, kWeight);
+  objective.error_scale_m =
+      table.get_number_or("error_scale_m", objective.error_scale_m, kPositive);
   objective.torque_scale_n_m =
-      table.get_number_or("torque_scale_n_m", objective.torque_scale_n_m, positive);
+      table.get_number_or("torque_scale_n_m", objective.torque_scale_n_m, kPositive);
   // Read where they count only: elsewhere a limit is refused, as it would hold nobody back.
   if (objective.kind == Kind::torque_with_error_limit) {
-    objective.error_limit_m = table.get_number("error_limit_m", positive);
+    objective.error_limit_m = table.get_number("error_limit_m", kPositive);
   }
   if (objective.kind == Kind::error_with_torque_limit) {
-    objective.total_torque_limit_n_m = table.get_number("total_torque_limit_n_m", positive);
+    objective.total_torque_limit_n_m = table.get_number("total_torque_limit_n_m", kPositive);
   }
+  read_statistic(table, objective);
+  read_part(table, "energy_weight", "energy_scale_j", objective, objective.energy_weight,
+            objective.energy_scale_j);
+  read_part(table, "duration_weight", "duration_scale_s", objective, objective.duration_weight,
+            objective.duration_scale_s);
   return objective;
 }
 
@@ -47,7 +86,7 @@ void check_limits(const ConfigTable& table, const TrackingConfig& config) {
   ArmDesign weakest = config.start;
   bool changes_torque = false;
   for (const DesignParameter& parameter : config.parameters) {
-    if (parameter.kind != DesignParameter::Kind::gain) {
+    if (is_effort(parameter)) {
       get_parameter(weakest, parameter) /= config.bounds_factor;
       changes_torque = true;
     }

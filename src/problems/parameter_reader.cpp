@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
 
 #include "base/text.hpp"
@@ -16,7 +17,10 @@ std::vector<DesignParameter> read_parameters(const ConfigTable& table,
   for (const GainSpec& gain : controller.gains) {
     valid.push_back(gain.name);
   }
+  const std::size_t gains = valid.size();
   valid.insert(valid.end(), {"effort_min", "effort_max"});
+  const std::vector<std::string> drives = valid;
+  valid.insert(valid.end(), {"length_scale", "section_scale"});
   const auto read_names = [&](const ConfigTable& where) {
     const auto names = where.get_strings("optimize");
     for (auto name = names.begin(); name != names.end(); ++name) {
@@ -31,7 +35,7 @@ std::vector<DesignParameter> read_parameters(const ConfigTable& table,
   };
   const std::size_t joints = config.robot.joint_count();
   std::vector<std::vector<std::string>> chosen(joints,
-                                               table.has("optimize") ? read_names(table) : valid);
+                                               table.has("optimize") ? read_names(table) : drives);
   std::vector<std::string> joint_names;
   for (const Joint& joint : config.robot.joints) {
     joint_names.push_back(joint.name);
@@ -54,12 +58,22 @@ std::vector<DesignParameter> read_parameters(const ConfigTable& table,
       }
       DesignParameter parameter;
       parameter.joint = joint;
-      parameter.kind = i < controller.gains.size()    ? DesignParameter::Kind::gain
-                       : i == controller.gains.size() ? DesignParameter::Kind::effort_min
-                                                      : DesignParameter::Kind::effort_max;
+      constexpr std::array kOthers = {
+          DesignParameter::Kind::effort_min, DesignParameter::Kind::effort_max,
+          DesignParameter::Kind::length_scale, DesignParameter::Kind::section_scale};
+      parameter.kind = i < gains ? DesignParameter::Kind::gain : kOthers[i - gains];
       parameter.gain = i;
       parameters.push_back(parameter);
     }
+  }
+  if (table.has("task")) {
+    const auto names = table.get_strings("task");
+    if (names != std::vector<std::string>{"speed"}) {
+      table.refuse("task", "the task has one variable; write [\"speed\"] or leave it out");
+    }
+    DesignParameter speed;
+    speed.kind = DesignParameter::Kind::speed;
+    parameters.push_back(speed);
   }
   if (parameters.empty()) {
     table.refuse("optimize", "at least one design parameter of one joint must be optimized");

@@ -63,8 +63,9 @@ struct ProblemDescription {
   // many as objectives; empty: the first objective alone.
   std::vector<double> objective_weights;
   // Evaluations carry residuals: calc_scalar() of the objectives is the sum of their squares, or
-  // the logarithm of that sum.
+  // the logarithm of that sum. Otherwise what to do about it, if anything can be done.
   bool has_residuals = false;
+  std::string residuals_advice;
   // The residuals' exact derivatives can be asked for (CaseJob::jacobian); otherwise what to do
   // about it, if anything can be done.
   bool has_jacobian = false;

@@ -16,10 +16,67 @@ double& get_parameter(ArmDesign& design, const DesignParameter& parameter) {
       return joint.limits.min_n_m;
     case DesignParameter::Kind::effort_max:
       return joint.limits.max_n_m;
+    case DesignParameter::Kind::length_scale:
+      return joint.length_scale;
+    case DesignParameter::Kind::section_scale:
+      return joint.section_scale;
+    case DesignParameter::Kind::speed:
+      return design.speed_m_per_s.value();
     case DesignParameter::Kind::gain:
       break;
   }
   return joint.gains[parameter.gain];
+}
+
+bool is_effort(const DesignParameter& parameter) {
+  return parameter.kind == DesignParameter::Kind::effort_min ||
+         parameter.kind == DesignParameter::Kind::effort_max;
+}
+
+double get_bounds_factor(const TrackingConfig& config, const DesignParameter& parameter) {
+  switch (parameter.kind) {
+    case DesignParameter::Kind::length_scale:
+      return config.length_bounds_factor;
+    case DesignParameter::Kind::section_scale:
+      return config.section_bounds_factor;
+    case DesignParameter::Kind::speed:
+      return config.speed_bounds_factor;
+    case DesignParameter::Kind::gain:
+    case DesignParameter::Kind::effort_min:
+    case DesignParameter::Kind::effort_max:
+      break;
+  }
+  return config.bounds_factor;
+}
+
+bool changes_links(const TrackingConfig& config) {
+  return std::ranges::any_of(config.parameters, [](const DesignParameter& parameter) {
+    return parameter.kind == DesignParameter::Kind::length_scale ||
+           parameter.kind == DesignParameter::Kind::section_scale;
+  });
+}
+
+bool changes_speed(const TrackingConfig& config) {
+  return std::ranges::any_of(config.parameters, [](const DesignParameter& parameter) {
+    return parameter.kind == DesignParameter::Kind::speed;
+  });
+}
+
+bool has_mass_metric(const TrackingConfig& config) {
+  return config.torque_per_mass_n_m_per_kg > 0 || changes_links(config);
+}
+
+bool has_duration_metric(const TrackingConfig& config) {
+  return config.objective.duration_weight > 0 || changes_speed(config);
+}
+
+double calc_case_duration_s(const TrackingTask& task, const WorkspaceSphere& sphere) {
+  double duration_s = 0;
+  for (int k = 1; k <= sphere.points; ++k) {
+    duration_s +=
+        std::max(sphere.calc_move_m(k), task.distance_limit_m) / task.speed_m_per_s + task.rest_s;
+  }
+  return duration_s;
 }
 
 namespace {
@@ -42,6 +99,18 @@ DecisionVariable make_variable(const TrackingConfig& config, const DesignParamet
       variable.name = joint + ".effort_max";
       variable.unit = "N m";
       break;
+    case DesignParameter::Kind::length_scale:
+      variable.name = joint + ".length_scale";
+      variable.unit = "1";
+      break;
+    case DesignParameter::Kind::section_scale:
+      variable.name = joint + ".section_scale";
+      variable.unit = "1";
+      break;
+    case DesignParameter::Kind::speed:
+      variable.name = "task.speed";
+      variable.unit = "m/s";
+      break;
   }
   ArmDesign start = config.start;
   variable.start = get_parameter(start, parameter);
@@ -53,8 +122,8 @@ DecisionVariable make_variable(const TrackingConfig& config, const DesignParamet
   }
   variable.scale = Scale::logarithmic;
   // The list form returns values; the two-argument form would return references to the temporaries.
-  const auto [lower, upper] =
-      std::minmax({variable.start / config.bounds_factor, variable.start * config.bounds_factor});
+  const double factor = get_bounds_factor(config, parameter);
+  const auto [lower, upper] = std::minmax({variable.start / factor, variable.start * factor});
   variable.lower = lower;
   variable.upper = upper;
   if (!std::isnormal(lower) || !std::isnormal(upper)) {
@@ -78,29 +147,20 @@ ProblemDescription make_tracking_description(const TrackingConfig& config) {
     description.variables.push_back(make_variable(config, parameter));
   }
   const TrackingObjective& objective = config.objective;
+  description.objectives = describe_objectives(objective);
   switch (objective.kind) {
     case TrackingObjective::Kind::error:
-      description.objectives = {objective.logarithm ? Quantity{"ln(error / 1 m)", "1"}
-                                                    : Quantity{"error", "m"}};
-      break;
     case TrackingObjective::Kind::error_and_torque:
-      description.objectives = {
-          {objective.logarithm ? "ln(error and torque)" : "error and torque", "1"}};
       break;
     case TrackingObjective::Kind::error_vs_torque:
-      description.objectives = {{"error", "m"}, {"total torque", "N m"}};
       description.objective_weights = {1 / objective.error_scale_m,
                                        objective.torque_weight / objective.torque_scale_n_m};
       break;
     case TrackingObjective::Kind::torque_with_error_limit:
-      description.objectives = {objective.logarithm ? Quantity{"ln(total torque / 1 N m)", "1"}
-                                                    : Quantity{"total torque", "N m"}};
-      description.limits = {{{"error", "m"}, objective.error_limit_m}};
+      description.limits = {{{describe_error(objective), "m"}, objective.error_limit_m}};
       description.violation_scale = objective.logarithm ? 1 : objective.torque_scale_n_m;
       break;
     case TrackingObjective::Kind::error_with_torque_limit:
-      description.objectives = {objective.logarithm ? Quantity{"ln(error / 1 m)", "1"}
-                                                    : Quantity{"error", "m"}};
       description.limits = {{{"total torque", "N m"}, objective.total_torque_limit_n_m}};
       description.violation_scale = objective.logarithm ? 1 : objective.error_scale_m;
       break;
@@ -108,12 +168,22 @@ ProblemDescription make_tracking_description(const TrackingConfig& config) {
   for (const Limit& limit : description.limits) {
     description.constraints.push_back({limit.quantity.name + " / limit - 1", "1"});
   }
-  description.has_residuals = description.limits.empty();
+  description.has_residuals = objective.has_residuals();
+  if (!description.has_residuals && description.limits.empty()) {
+    description.residuals_advice =
+        "only objective.statistic = \"mean\" is such a sum; choose it or another optimizer";
+  }
   description.metrics = {{"error", "m"},
                          {"total_torque", "N m"},
                          {"failures", "1"},
                          {"energy", "J"},
                          {"saturated_share", "1"}};
+  if (has_duration_metric(config)) {
+    description.metrics.push_back({"duration", "s"});
+  }
+  if (has_mass_metric(config)) {
+    description.metrics.push_back({"moving_mass", "kg"});
+  }
   for (const Joint& joint : config.robot.joints) {
     description.metrics.push_back({joint.name + ".peak_effort", "N m"});
     description.metrics.push_back({joint.name + ".rms_effort", "N m"});

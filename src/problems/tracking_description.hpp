@@ -6,8 +6,24 @@
 
 namespace armwright {
 
-// The number of a design that a parameter stands for.
+// The number of a design that a parameter stands for; of a design with a speed of its own, if it is
+// that.
 double& get_parameter(ArmDesign& design, const DesignParameter& parameter);
+
+// How long a generated case takes (s), up to the rounding of each move to whole control periods.
+double calc_case_duration_s(const TrackingTask& task, const WorkspaceSphere& sphere);
+
+bool is_effort(const DesignParameter& parameter);  // one of the two limits
+// The parameter's span: from the start value divided by it to the start value times it.
+double get_bounds_factor(const TrackingConfig& config, const DesignParameter& parameter);
+
+// What of the arm or the task depends on the variables.
+bool changes_links(const TrackingConfig& config);
+bool changes_speed(const TrackingConfig& config);
+// Whether an evaluation carries these metrics: where they say something, so that the records of all
+// other problems stay as they were.
+bool has_duration_metric(const TrackingConfig& config);
+bool has_mass_metric(const TrackingConfig& config);
 
 // Error{usage} if a variable has no bounds: it starts at 0, or too near to the ends of the numbers.
 ProblemDescription make_tracking_description(const TrackingConfig& config);

@@ -12,6 +12,8 @@
 #include "problems/design_file.hpp"
 #include "problems/objective_reader.hpp"
 #include "problems/parameter_reader.hpp"
+#include "problems/tracking_description.hpp"
+#include "sim/designed_arm.hpp"
 
 namespace armwright {
 namespace {
@@ -69,18 +71,28 @@ WorkspaceSphere read_workspace(const ConfigTable& table) {
 // Numbers that are each allowed, but together make a case that no memory holds.
 void check_length(const ConfigTable& table, const TrackingTask& task,
                   const WorkspaceSphere& sphere) {
-  double periods = 0;
-  for (int k = 1; k <= sphere.points; ++k) {
-    const double duration_s =
-        std::max(sphere.calc_move_m(k), task.distance_limit_m) / task.speed_m_per_s;
-    periods += (duration_s + task.rest_s) / task.control_period_s;
-  }
+  const double periods = calc_case_duration_s(task, sphere) / task.control_period_s;
   if (periods > kMostPeriods) {
     table.refuse(table.has("control_period_s") ? "control_period_s" : "speed_m_per_s",
                  fmt::format("a test case would take {:.3g} control periods, possible are {:.3g}; "
                              "raise control_period_s or speed_m_per_s, or lower distance_limit_m, "
                              "rest_s or workspace.points",
                              periods, kMostPeriods));
+  }
+}
+
+// The speed is a variable: its start, and that a case fits at the slowest.
+void set_start_speed(const ConfigTable& variables, TrackingConfig& config) {
+  TrackingTask slowest = make_task(config.task, config.start);
+  config.start.speed_m_per_s = slowest.speed_m_per_s;
+  slowest.speed_m_per_s /= config.speed_bounds_factor;
+  const double periods = calc_case_duration_s(slowest, config.workspace) / slowest.control_period_s;
+  if (periods > kMostPeriods) {
+    variables.refuse(
+        variables.has("speed_bounds_factor") ? "speed_bounds_factor" : "task",
+        fmt::format("a test case at the slowest speed would take {:.3g} control periods, possible "
+                    "are {:.3g}; lower speed_bounds_factor",
+                    periods, kMostPeriods));
   }
 }
 
@@ -150,6 +162,18 @@ std::optional<SimdLevel> load_tracking(const ConfigTable& table, std::span<const
                                  config.start.joints.size(), config.robot.joint_count()));
   }
   config.parameters = read_parameters(variables, config);
+  const Range factor{.lower = 1, .upper = 100, .lower_open = true};
+  config.length_bounds_factor =
+      variables.get_number_or("length_bounds_factor", config.length_bounds_factor, factor);
+  config.section_bounds_factor =
+      variables.get_number_or("section_bounds_factor", config.section_bounds_factor, factor);
+  config.speed_bounds_factor =
+      variables.get_number_or("speed_bounds_factor", config.speed_bounds_factor, factor);
+  if (changes_speed(config)) {
+    set_start_speed(variables, config);
+  }
+  config.torque_per_mass_n_m_per_kg = table.get_table_or_empty("motors").get_number_or(
+      "torque_per_mass_n_m_per_kg", 0, {.lower = 0, .upper = 1e9, .lower_open = true});
   check_limits(table.get_table_or_empty("objective"), config);
   loaded.tracking = make_tracking(std::move(config), variables, urdf);
   loaded.problem = loaded.tracking;

@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numbers>
+#include <numeric>
 #include <optional>
 #include <unordered_map>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "problems/tracking_description.hpp"
+#include "sim/designed_arm.hpp"
 
 namespace armwright {
 namespace {
@@ -18,50 +21,13 @@ namespace {
 constexpr std::size_t kTargetCache_bytes = std::size_t{512} << 20;
 
 // What simulate() puts into a case's metrics before the peaks and root-mean-squares of the joints'
-// efforts.
-enum CaseMetric : std::size_t { kEnergy, kSaturation, kFirstJointMetric };
-
-// Of an error (m) and a total torque (N m).
-std::vector<double> calc_objectives(const TrackingObjective& objective, double error_m,
-                                    double torque_n_m) {
-  // No arm comes near it: keeps the logarithm finite whatever happens.
-  constexpr double kLeast = 1e-300;
-  const auto apply_scale = [&](double value) {
-    return objective.logarithm ? std::log(std::max(value, kLeast)) : value;
-  };
-  switch (objective.kind) {
-    case TrackingObjective::Kind::error:
-    case TrackingObjective::Kind::error_with_torque_limit:
-      return {apply_scale(error_m)};
-    case TrackingObjective::Kind::torque_with_error_limit:
-      return {apply_scale(torque_n_m)};
-    case TrackingObjective::Kind::error_and_torque:
-      return {apply_scale(error_m / objective.error_scale_m +
-                          objective.torque_weight * torque_n_m / objective.torque_scale_n_m)};
-    case TrackingObjective::Kind::error_vs_torque:
-      break;
-  }
-  return {error_m, torque_n_m};
-}
-
-std::vector<double> calc_constraints(const TrackingObjective& objective, double error_m,
-                                     double torque_n_m) {
-  switch (objective.kind) {
-    case TrackingObjective::Kind::torque_with_error_limit:
-      return {error_m / objective.error_limit_m - 1};
-    case TrackingObjective::Kind::error_with_torque_limit:
-      return {torque_n_m / objective.total_torque_limit_n_m - 1};
-    case TrackingObjective::Kind::error:
-    case TrackingObjective::Kind::error_and_torque:
-    case TrackingObjective::Kind::error_vs_torque:
-      break;
-  }
-  return {};
-}
+// efforts. The duration is that of the whole case, wherever its simulation ended.
+enum CaseMetric : std::size_t { kEnergy, kSaturation, kDuration, kFirstJointMetric };
 
 // The residuals of an outcome are the errors (m) of the points that count; aggregate() scales them.
-CaseOutcome make_outcome(TrackingResult result, CaseRole role, bool residuals,
-                         bool count_first_point) {
+CaseOutcome make_outcome(TrackingResult result, const TrackingTask& task, CaseRole role,
+                         const TrackingJob& job, bool residuals) {
+  const TargetTable& targets = *job.targets;
   CaseOutcome outcome;
   outcome.reason = std::move(result.reason);
   switch (result.status) {
@@ -80,12 +46,22 @@ CaseOutcome make_outcome(TrackingResult result, CaseRole role, bool residuals,
       break;
     case SimulationStatus::unreachable:
       outcome.status = EvaluationStatus::unreachable;
-      outcome.has_error = false;
-      return outcome;
+      if (role != CaseRole::training || job.setup == nullptr) {
+        outcome.has_error = false;
+        return outcome;
+      }
+      // The design's own doing: were the case left out, an arm that reaches the easy ones only
+      // would be the best.
+      result.mean_error_m = job.cutoff_m;
+      result.point_error_m.assign(targets.segments.size(), job.cutoff_m);
+      result.peak_effort_n_m.assign(targets.joints, 0);
+      result.rms_effort_n_m.assign(targets.joints, 0);
+      result.saturated_share.assign(targets.joints, 0);
+      break;
   }
   outcome.error = outcome.has_error ? result.mean_error_m : 0;
   if (residuals && outcome.has_error) {
-    outcome.residuals.assign(result.point_error_m.begin() + (count_first_point ? 0 : 1),
+    outcome.residuals.assign(result.point_error_m.begin() + (task.count_first_point ? 0 : 1),
                              result.point_error_m.end());
   }
   const double joints = static_cast<double>(result.saturated_share.size());
@@ -94,7 +70,7 @@ CaseOutcome make_outcome(TrackingResult result, CaseRole role, bool residuals,
     saturation += share / joints;
   }
   outcome.metrics.reserve(kFirstJointMetric + 2 * result.peak_effort_n_m.size());
-  outcome.metrics.assign({result.energy_j, saturation});
+  outcome.metrics.assign({result.energy_j, saturation, targets.steps * task.control_period_s});
   for (std::size_t i = 0; i < result.peak_effort_n_m.size(); ++i) {
     outcome.metrics.push_back(result.peak_effort_n_m[i]);
     outcome.metrics.push_back(result.rms_effort_n_m[i]);
@@ -108,6 +84,11 @@ std::vector<ArmDesign> make_directions(const TrackingConfig& config) {
   for (JointDrive& joint : zero.joints) {
     joint.gains.assign(joint.gains.size(), 0.0);
     joint.limits = {};
+    joint.length_scale = 0;
+    joint.section_scale = 0;
+  }
+  if (zero.speed_m_per_s) {
+    zero.speed_m_per_s = 0;
   }
   std::vector<ArmDesign> directions(config.parameters.size(), zero);
   for (std::size_t i = 0; i < directions.size(); ++i) {
@@ -120,18 +101,50 @@ std::vector<ArmDesign> make_directions(const TrackingConfig& config) {
 
 TrackingProblem::TrackingProblem(TrackingConfig config)
     : config_(std::move(config)),
-      setup_(config_.robot, config_.task),
+      setup_(std::make_shared<TrackingSetup>(config_.robot, config_.task)),
       targets_(kTargetCache_bytes) {
   check_design(config_.start);
   description_ = make_tracking_description(config_);
-  const bool has_derivatives = config_.engines.training->has_derivatives();
-  description_.has_jacobian = description_.has_residuals && has_derivatives;
-  if (!has_derivatives) {
-    description_.jacobian_advice =
+  check_bounds();
+  set_jacobian();
+  directions_ = make_directions(config_);
+}
+
+void TrackingProblem::check_bounds() const {
+  if (!changes_links(config_)) {
+    return;
+  }
+  // Each variable at either end, the others at the start: links are stretched independently of each
+  // other, so that what one of them does not allow shows there.
+  for (const DesignParameter& parameter : config_.parameters) {
+    const double factor = get_bounds_factor(config_, parameter);
+    for (const double scale : {1 / factor, factor}) {
+      ArmDesign design = config_.start;
+      get_parameter(design, parameter) *= scale;
+      get_setup(design);
+    }
+  }
+}
+
+void TrackingProblem::set_jacobian() {
+  std::string& advice = description_.jacobian_advice;
+  if (config_.objective.energy_weight > 0) {
+    advice = "the energy in the objective has no derivatives; set objective.energy_weight to 0";
+  } else if (changes_links(config_) || changes_speed(config_)) {
+    advice =
+        "there are none to variables that change the arm or the task; leave length_scale, "
+        "section_scale and speed out of [variables]";
+  } else if (config_.torque_per_mass_n_m_per_kg > 0 &&
+             std::ranges::any_of(config_.parameters, is_effort)) {
+    advice =
+        "there are none to the masses of motors; leave [motors] out, or effort_min and effort_max "
+        "out of [variables]";
+  } else if (!config_.engines.training->has_derivatives()) {
+    advice =
         fmt::format("engine '{}' computes no derivatives; choose --engine articulated, which does",
                     config_.engines.training_name);
   }
-  directions_ = make_directions(config_);
+  description_.has_jacobian = description_.has_residuals && advice.empty();
 }
 
 void TrackingProblem::check_design(const ArmDesign& design) const {
@@ -162,9 +175,32 @@ TestSet TrackingProblem::get_set(const std::string& name) const {
   return TestSet::make_generated(name, config_.workspace);
 }
 
-std::shared_ptr<const TargetTable> TrackingProblem::get_targets(const TestSet& set,
+RobotModel TrackingProblem::make_robot(const ArmDesign& design) const {
+  return armwright::make_robot(config_.robot, design, config_.torque_per_mass_n_m_per_kg);
+}
+
+TrackingTask TrackingProblem::make_task(const ArmDesign& design) const {
+  return armwright::make_task(config_.task, design);
+}
+
+std::shared_ptr<const TrackingSetup> TrackingProblem::get_setup(const ArmDesign& design) const {
+  if (!is_stretched(design) && config_.torque_per_mass_n_m_per_kg == 0 && !design.speed_m_per_s) {
+    return setup_;
+  }
+  return std::make_shared<TrackingSetup>(make_robot(design), make_task(design));
+}
+
+bool TrackingProblem::has_own_targets(const ArmDesign& design) const {
+  return is_stretched(design) || design.speed_m_per_s;
+}
+
+std::shared_ptr<const TargetTable> TrackingProblem::get_targets(const ArmDesign& design,
+                                                                const TrackingSetup& setup,
+                                                                const TestSet& set,
                                                                 std::uint64_t number) const {
-  auto table = targets_.get(setup_, set, number);
+  auto table = has_own_targets(design)
+                   ? std::make_shared<const TargetTable>(setup.make_targets(set.make_case(number)))
+                   : targets_.get(*setup_, set, number);
   if (table->segments.size() < 2 && !config_.task.count_first_point) {
     throw Error(ErrorKind::bad_data,
                 fmt::format("test set {}: case {} has 2 points, but the first after the start does "
@@ -185,6 +221,9 @@ ArmDesign TrackingProblem::make_design(std::span<const double> x) const {
 std::vector<double> TrackingProblem::make_vector(const ArmDesign& design) const {
   check_design(design);
   ArmDesign copy = design;
+  if (changes_speed(config_)) {
+    copy.speed_m_per_s = design.speed_m_per_s.value_or(config_.task.speed_m_per_s);
+  }
   std::vector<double> x;
   for (const DesignParameter& parameter : config_.parameters) {
     x.push_back(get_parameter(copy, parameter));
@@ -197,30 +236,42 @@ BatchSize TrackingProblem::batch_size(CaseRole role) const {
 }
 
 std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs) const {
-  std::unordered_map<const double*, ArmDesign> designs;  // by where the decision vector lies
+  // By where the decision vector lies. Nothing is taken from the maps before the simulation ends.
+  struct Candidate {
+    ArmDesign design;
+    std::shared_ptr<const TrackingSetup> setup;
+    bool own_targets = false;
+  };
+  std::unordered_map<const double*, Candidate> candidates;
   std::vector<TrackingJob> tracking;
   tracking.reserve(jobs.size());
   // An engine with SIMD needs some 60 us for a job: sets and tables are looked up once for all
-  // neighbours that share a block. Nothing is taken from the map before the simulation ends.
+  // neighbours that share a block.
   std::optional<TestSet> set;
   std::vector<std::unordered_map<std::uint64_t, std::shared_ptr<const TargetTable>>> tables;
+  std::vector<std::shared_ptr<const TargetTable>> own_tables;  // of one job each
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     const CaseJob& job = jobs[i];
-    const auto [design, is_new] = designs.try_emplace(job.x.data());
+    const auto [found, is_new] = candidates.try_emplace(job.x.data());
+    Candidate& candidate = found->second;
     if (is_new) {
-      design->second = make_design(job.x);
+      candidate.design = make_design(job.x);
+      candidate.setup = get_setup(candidate.design);
+      candidate.own_targets = has_own_targets(candidate.design);
     }
     if (i == 0 || job.block != jobs[i - 1].block) {
       set = get_set(job.block->set);
       tables.emplace_back();
     }
-    std::shared_ptr<const TargetTable>& table = tables.back()[job.number];
+    std::shared_ptr<const TargetTable>& table =
+        candidate.own_targets ? own_tables.emplace_back() : tables.back()[job.number];
     if (table == nullptr) {
-      table = get_targets(*set, job.number);
+      table = get_targets(candidate.design, *candidate.setup, *set, job.number);
     }
     TrackingJob& one = tracking.emplace_back();
-    one.design = &design->second;
+    one.design = &candidate.design;
     one.targets = table.get();
+    one.setup = candidate.setup == setup_ ? nullptr : candidate.setup.get();
     one.abandon_above_m = job.abandon_above;
     if (job.block->role == CaseRole::training) {
       one.cutoff_m = config_.cutoff_error_m;
@@ -230,11 +281,11 @@ std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs
   std::vector<CaseOutcome> outcomes;
   outcomes.reserve(jobs.size());
   for (std::size_t i = 0; i < jobs.size(); ++i) {
-    outcomes.push_back(make_outcome(std::move(results[i]), jobs[i].block->role, jobs[i].residuals,
-                                    config_.task.count_first_point));
+    outcomes.push_back(make_outcome(std::move(results[i]), config_.task, jobs[i].block->role,
+                                    tracking[i], jobs[i].residuals));
     const PhysicsEngine& engine = config_.engines.get(jobs[i].block->role);
     if (jobs[i].jacobian && engine.has_derivatives() && !outcomes[i].residuals.empty()) {
-      outcomes[i].jacobian = engine.calc_derivatives(setup_, tracking[i], directions_);
+      outcomes[i].jacobian = engine.calc_derivatives(*setup_, tracking[i], directions_);
       const std::size_t counted = outcomes[i].residuals.size() * directions_.size();
       outcomes[i].jacobian.erase(outcomes[i].jacobian.begin(),
                                  outcomes[i].jacobian.end() - static_cast<std::ptrdiff_t>(counted));
@@ -253,7 +304,7 @@ std::vector<TrackingResult> TrackingProblem::simulate(std::span<const CaseJob> j
     while (end < jobs.size() && &config_.engines.get(jobs[end].block->role) == &engine) {
       ++end;
     }
-    auto some = engine.simulate(setup_, tracking.subspan(first, end - first));
+    auto some = engine.simulate(*setup_, tracking.subspan(first, end - first));
     std::ranges::move(some, std::back_inserter(results));
     first = end;
   }
@@ -269,15 +320,17 @@ std::vector<TrackingResult> TrackingProblem::track(const ArmDesign& design, cons
                                                    std::uint64_t first, std::size_t count,
                                                    RecordingOptions recording) const {
   check_design(design);
+  const auto setup = get_setup(design);
   std::vector<std::shared_ptr<const TargetTable>> tables;
   std::vector<TrackingJob> jobs(count);
   for (std::size_t i = 0; i < count; ++i) {
-    tables.push_back(get_targets(set, first + i));
+    tables.push_back(get_targets(design, *setup, set, first + i));
     jobs[i].design = &design;
+    jobs[i].setup = setup == setup_ ? nullptr : setup.get();
     jobs[i].targets = tables.back().get();
     jobs[i].recording = recording;
   }
-  return config_.engines.judging->simulate(setup_, jobs);
+  return config_.engines.judging->simulate(*setup_, jobs);
 }
 
 Evaluation TrackingProblem::aggregate(std::span<const double> x,
@@ -285,9 +338,9 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
   Evaluation evaluation;
   const std::size_t joints = config_.robot.joint_count();
   std::vector<double> sums(kFirstJointMetric + 2 * joints);
-  double error = 0;
   double failures = 0;
-  double numbers = 0;
+  double lost = 0;  // failures, and what diverged on its last points only
+  std::vector<double> errors_m;
   for (const CaseOutcome& outcome : outcomes) {
     // That the numbers are bounds matters more than why others are missing.
     const bool is_first_abandoned = outcome.status == EvaluationStatus::abandoned &&
@@ -301,12 +354,15 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
       evaluation.case_errors.push_back(std::numeric_limits<double>::quiet_NaN());
       ++evaluation.failed_cases;
       ++failures;
+      ++lost;
       continue;
     }
     evaluation.case_errors.push_back(outcome.error);
-    error += outcome.error;
-    failures += outcome.error > kFailureError_m ? 1 : 0;
-    ++numbers;
+    errors_m.push_back(outcome.error);
+    const bool failed = outcome.error > kFailureError_m;
+    failures += failed ? 1 : 0;
+    lost += failed || outcome.status == EvaluationStatus::diverged ? 1 : 0;
+    sums[kDuration] += outcome.metrics[kDuration];
     sums[kEnergy] += outcome.metrics[kEnergy];
     sums[kSaturation] += outcome.metrics[kSaturation];
     for (std::size_t i = kFirstJointMetric; i < sums.size(); i += 2) {
@@ -314,25 +370,39 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
       sums[i + 1] += outcome.metrics[i + 1];
     }
   }
-  if (numbers == 0) {
+  if (errors_m.empty()) {
     return evaluation;
   }
-  error /= numbers;
+  const auto numbers = static_cast<double>(errors_m.size());
+  const TrackingObjective& objective = config_.objective;
   const ArmDesign design = make_design(x);
-  const double torque = calc_total_torque_n_m(design);
-  evaluation.objectives = calc_objectives(config_.objective, error, torque);
-  evaluation.constraint_values = calc_constraints(config_.objective, error, torque);
+  const double mean_error = std::accumulate(errors_m.begin(), errors_m.end(), 0.0) / numbers;
+  ObjectiveTerms terms;
+  terms.error_m =
+      calc_error_statistic(objective, errors_m, lost / static_cast<double>(outcomes.size()));
+  terms.torque_n_m = calc_total_torque_n_m(design);
+  terms.energy_j = sums[kEnergy] / numbers;
+  terms.duration_s = sums[kDuration] / numbers;
+  evaluation.objectives = calc_objectives(objective, terms);
+  evaluation.constraint_values = calc_constraints(objective, terms);
   // Asked for and not abandoned: a case with an error has a residual for each point that counts.
   const bool has_residuals =
       description_.has_residuals && std::ranges::all_of(outcomes, [](const CaseOutcome& outcome) {
         return !outcome.has_error || !outcome.residuals.empty();
       });
   if (has_residuals) {
-    evaluation.residuals = calc_residuals(design, outcomes, numbers);
-    evaluation.jacobian = calc_jacobian(design, outcomes, evaluation.residuals);
+    evaluation.residuals = calc_residuals(objective, design, terms, outcomes, numbers);
+    evaluation.jacobian =
+        calc_jacobian(objective, design, directions_, outcomes, evaluation.residuals);
   }
-  evaluation.metrics = {error, torque, failures, sums[kEnergy] / numbers,
+  evaluation.metrics = {mean_error, terms.torque_n_m, failures, terms.energy_j,
                         sums[kSaturation] / numbers};
+  if (has_duration_metric(config_)) {
+    evaluation.metrics.push_back(terms.duration_s);
+  }
+  if (has_mass_metric(config_)) {
+    evaluation.metrics.push_back(calc_moving_mass_kg(make_robot(design)) + config_.task.load_kg);
+  }
   for (std::size_t i = kFirstJointMetric; i < sums.size(); i += 2) {
     evaluation.metrics.push_back(sums[i]);
     evaluation.metrics.push_back(sums[i + 1] / numbers);
@@ -357,76 +427,32 @@ std::optional<double> TrackingProblem::calc_lower_bound(std::span<const double> 
                                        : evaluation.objectives.front();
 }
 
-std::vector<double> TrackingProblem::calc_residuals(const ArmDesign& design,
-                                                    std::span<const CaseOutcome> outcomes,
-                                                    double cases) const {
-  const TrackingObjective& objective = config_.objective;
-  const bool with_torque = objective.kind != TrackingObjective::Kind::error;
-  std::vector<double> residuals;
-  for (const CaseOutcome& outcome : outcomes) {
-    const double share = cases * static_cast<double>(outcome.residuals.size()) *
-                         (with_torque ? objective.error_scale_m : 1);
-    for (const double error_m : outcome.residuals) {
-      residuals.push_back(std::sqrt(error_m / share));
-    }
-  }
-  if (with_torque) {
-    for (const JointDrive& joint : design.joints) {
-      residuals.push_back(std::sqrt(objective.torque_weight * calc_largest_torque_n_m(joint) /
-                                    objective.torque_scale_n_m));
-    }
-  }
-  return residuals;
-}
-
-std::vector<double> TrackingProblem::calc_jacobian(const ArmDesign& design,
-                                                   std::span<const CaseOutcome> outcomes,
-                                                   std::span<const double> residuals) const {
-  std::vector<double> jacobian;
-  const std::size_t n = directions_.size();
-  // A residual r = sqrt(c v) of a value v: dr = r / (2 v) dv.
-  const auto calc_share = [](double residual, double value) {
-    return value > 0 ? residual / (2 * value) : 0;
-  };
-  std::size_t row = 0;
-  for (const CaseOutcome& outcome : outcomes) {
-    if (!outcome.has_error) {
-      continue;
-    }
-    if (outcome.jacobian.empty()) {
-      return {};  // not asked for
-    }
-    for (std::size_t k = 0; k < outcome.residuals.size(); ++k, ++row) {
-      const double share = calc_share(residuals[row], outcome.residuals[k]);
-      for (std::size_t i = 0; i < n; ++i) {
-        jacobian.push_back(share * outcome.jacobian[k * n + i]);
-      }
-    }
-  }
-  for (std::size_t joint = 0; row < residuals.size(); ++joint, ++row) {  // with torque
-    const EffortLimits& limits = design.joints[joint].limits;
-    const double share = calc_share(residuals[row], calc_largest_torque_n_m(design.joints[joint]));
-    for (const ArmDesign& direction : directions_) {
-      const EffortLimits& change = direction.joints[joint].limits;
-      jacobian.push_back(share *
-                         (-limits.min_n_m < limits.max_n_m ? change.max_n_m : -change.min_n_m));
-    }
-  }
-  return jacobian;
-}
-
 std::vector<double> TrackingProblem::penalty_objectives() const {
   // Ten times the error of a design that is cut off at once on every case, and as much torque as
-  // the box allows; where torque alone is minimised, ten times that.
+  // the box allows; where torque alone is minimised, ten times that. As much energy as this torque
+  // has after a turn of every joint on every move.
+  const TrackingObjective& objective = config_.objective;
   ArmDesign strongest = config_.start;
   for (const DesignParameter& parameter : config_.parameters) {
-    if (parameter.kind != DesignParameter::Kind::gain) {
+    if (is_effort(parameter)) {
       get_parameter(strongest, parameter) *= config_.bounds_factor;
     }
   }
-  const bool is_torque = config_.objective.kind == TrackingObjective::Kind::torque_with_error_limit;
-  return calc_objectives(config_.objective, 10 * config_.cutoff_error_m,
-                         (is_torque ? 10 : 1) * calc_total_torque_n_m(strongest));
+  TrackingTask slowest = make_task(config_.start);
+  if (changes_speed(config_)) {
+    slowest.speed_m_per_s /= config_.speed_bounds_factor;
+  }
+  const double torque_n_m = calc_total_torque_n_m(strongest);
+  const bool is_torque = objective.kind == TrackingObjective::Kind::torque_with_error_limit;
+  ObjectiveTerms terms;
+  terms.error_m = 10 * config_.cutoff_error_m;
+  if (objective.statistic == TrackingObjective::Statistic::mean_with_failures) {
+    terms.error_m += 10 * objective.failure_penalty_m;
+  }
+  terms.torque_n_m = (is_torque ? 10 : 1) * torque_n_m;
+  terms.energy_j = torque_n_m * 2 * std::numbers::pi * config_.workspace.points;
+  terms.duration_s = calc_case_duration_s(slowest, config_.workspace);
+  return calc_objectives(objective, terms);
 }
 
 }  // namespace armwright

@@ -1,21 +1,11 @@
 // The thesis's problem: tune the controllers and effort limits of an arm so that its tip follows a
-// moving target. Objectives:
-//   error              e, the mean over the cases of the case's positional error (m)
-//   error_and_torque   e / e_0 + w tau / tau_0, tau the sum over the joints of max(-min, max)
-//                      of their effort limits (thesis section 6.3)
-//   error_vs_torque    e (m) and tau (N m) as two objectives; as one number, error_and_torque
-//   torque_with_error_limit  tau (N m) where e <= e_max
-//   error_with_torque_limit  e (m) where tau <= tau_max
-// All but error_vs_torque also as their natural logarithm: the same minimiser, but steps of equal
-// ratio count alike, which wrapped local methods like.
-// A limit is one constraint, g = e / e_max - 1 or tau / tau_max - 1, in the logarithm's problem
-// too. e counts a training case that was cut off or diverged as the objectives do: 1 m for each
-// point from there on. Where no case has a number there is no g either. Residuals, of the kinds
-// without a limit: sqrt(e_kl / (K_l L)) of each point k that counts, K_l of them, in each of L
-// cases l, divided by sqrt(e_0) where the objective has torque, then sqrt(w tau_j / tau_0) of each
-// joint j: the sum of their squares is the objective before the logarithm. Decision variables: any
-// of the controllers' gains and effort limits of any joints, in natural units, bounded by a factor
-// around the start values, sign kept; what is not a variable keeps its start value.
+// moving target; what it is judged by is in tracking_objective.hpp. Decision variables: any of the
+// controllers' gains and effort limits of any joints, in natural units, bounded by a factor around
+// the start values, sign kept; and of how long and wide links are, and of the task's speed. What is
+// not a variable keeps its start value. Where a design or its motors change the arm or the task
+// (sim/designed_arm.hpp), it is simulated with a setup of its own, and its targets are its own
+// where they differ. A training case of which such an arm cannot reach a target counts as if it had
+// been cut off at once.
 #pragma once
 
 #include <limits>
@@ -28,34 +18,15 @@
 #include "problems/engine_choice.hpp"
 #include "problems/problem.hpp"
 #include "problems/target_cache.hpp"
+#include "problems/tracking_objective.hpp"
 #include "sim/tracking.hpp"
 
 namespace armwright {
 
-// A case whose error exceeds this counts as failed in every summary (the arm lost its target).
-inline constexpr double kFailureError_m = 0.1;
-
-struct TrackingObjective {
-  enum class Kind {
-    error,
-    error_and_torque,
-    error_vs_torque,
-    torque_with_error_limit,
-    error_with_torque_limit
-  };
-  Kind kind = Kind::error;
-  bool logarithm = false;             // not of error_vs_torque
-  double torque_weight = 0;           // w
-  double error_scale_m = 0.0058;      // e_0: the thesis's Q1 winner
-  double torque_scale_n_m = 963686;   // tau_0: the same
-  double error_limit_m = 0;           // e_max, of torque_with_error_limit
-  double total_torque_limit_n_m = 0;  // tau_max, of error_with_torque_limit
-};
-
 // One number of the design that is optimized.
 struct DesignParameter {
-  enum class Kind { gain, effort_min, effort_max };
-  std::size_t joint = 0;
+  enum class Kind { gain, effort_min, effort_max, length_scale, section_scale, speed };
+  std::size_t joint = 0;  // not of the speed
   Kind kind = Kind::gain;
   std::size_t gain = 0;  // which one, for a gain
 };
@@ -73,6 +44,10 @@ struct TrackingConfig {
   ArmDesign start;
   std::vector<DesignParameter> parameters;
   double bounds_factor = 100;
+  double length_bounds_factor = 1.5;
+  double section_bounds_factor = 2;
+  double speed_bounds_factor = 2;
+  double torque_per_mass_n_m_per_kg = 0;  // of the motors; 0: they weigh nothing
 };
 
 class TrackingProblem final : public Problem {
@@ -111,25 +86,30 @@ class TrackingProblem final : public Problem {
                                     std::uint64_t first, std::size_t count,
                                     RecordingOptions recording) const;
   void check_design(const ArmDesign& design) const;
+  // The arm of a design without its load, its task, and both ready to be simulated; the problem's
+  // own where the design changes nothing.
+  RobotModel make_robot(const ArmDesign& design) const;
+  TrackingTask make_task(const ArmDesign& design) const;
+  std::shared_ptr<const TrackingSetup> get_setup(const ArmDesign& design) const;
 
   const TrackingConfig& config() const { return config_; }
-  const TrackingSetup& setup() const { return setup_; }
+  const TrackingSetup& setup() const { return *setup_; }  // of the nominal arm and task
   const TargetCache& targets() const { return targets_; }
 
  private:
   // One result a job of `tracking`, each from the engine of its case's role.
   std::vector<TrackingResult> simulate(std::span<const CaseJob> jobs,
                                        std::span<const TrackingJob> tracking) const;
-  // `cases` is how many of the outcomes have an error.
-  std::vector<double> calc_residuals(const ArmDesign& design, std::span<const CaseOutcome> outcomes,
-                                     double cases) const;
-  // Of calc_residuals()'s `residuals`.
-  std::vector<double> calc_jacobian(const ArmDesign& design, std::span<const CaseOutcome> outcomes,
-                                    std::span<const double> residuals) const;
-  std::shared_ptr<const TargetTable> get_targets(const TestSet& set, std::uint64_t number) const;
+  // `setup` is get_setup() of the design.
+  std::shared_ptr<const TargetTable> get_targets(const ArmDesign& design,
+                                                 const TrackingSetup& setup, const TestSet& set,
+                                                 std::uint64_t number) const;
+  bool has_own_targets(const ArmDesign& design) const;
+  void check_bounds() const;  // that every design within them is an arm
+  void set_jacobian();
 
   TrackingConfig config_;
-  TrackingSetup setup_;
+  std::shared_ptr<const TrackingSetup> setup_;
   ProblemDescription description_;
   std::vector<ArmDesign> directions_;  // how the design changes with each variable
   std::map<std::string, TestSet> sets_;

@@ -53,14 +53,18 @@ struct TrackingTask {
   PhysicsSettings physics;
 };
 
-// What is designed: one controller and effort limits a joint.
+// What is designed: one controller and effort limits a joint; and, where they are not the robot's
+// and the task's own, the links and the speed (sim/designed_arm.hpp).
 struct JointDrive {
   std::vector<double> gains;  // in the order of the controller's GainSpecs
   EffortLimits limits;
+  double length_scale = 1;  // of the link that the joint moves
+  double section_scale = 1;
 };
 struct ArmDesign {
   std::string controller = "pid";
   std::vector<JointDrive> joints;
+  std::optional<double> speed_m_per_s;  // nothing: the task's
 };
 // The larger of a joint's two limits, max(-min, max), and its sum over the joints: the thesis's
 // total torque magnitude (N m).
@@ -154,7 +158,8 @@ struct TrackingJob {
   // certain to exceed this: the errors of the points that counted so far, divided by the number of
   // all that count, do already. After the last point there is nothing left to abandon.
   double abandon_above_m = std::numeric_limits<double>::infinity();
-  // Where the design changes the arm itself: its own setup, of the same task and number of joints.
+  // Where the design changes the arm itself: its own setup, of the same task (but for its speed)
+  // and number of joints.
   const TrackingSetup* setup = nullptr;
 
   // The setup to simulate it with: its own, or that of the batch.

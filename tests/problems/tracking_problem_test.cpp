@@ -207,7 +207,7 @@ TEST(TrackingVariables, VariableWithoutUsableBoundsIsRefused) {
 CaseOutcome make_outcome(double error, double energy, double saturation, double scale) {
   CaseOutcome outcome;
   outcome.error = error;
-  outcome.metrics = {energy, saturation};
+  outcome.metrics = {energy, saturation, 40};  // a case of 40 s
   for (int joint = 1; joint <= 4; ++joint) {
     outcome.metrics.push_back(10 * joint * scale);
     outcome.metrics.push_back(joint * scale);
