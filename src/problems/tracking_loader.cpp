@@ -12,6 +12,7 @@
 #include "problems/design_file.hpp"
 #include "problems/objective_reader.hpp"
 #include "problems/parameter_reader.hpp"
+#include "problems/perturbation_reader.hpp"
 
 namespace armwright {
 namespace {
@@ -114,7 +115,7 @@ std::filesystem::path resolve_named(const ConfigTable& table, std::string_view k
   }
 }
 
-std::optional<SimdLevel> load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
+std::vector<std::string> load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
                                        LoadedProblem& loaded) {
   TrackingConfig config;
   config.name = loaded.name;
@@ -150,10 +151,20 @@ std::optional<SimdLevel> load_tracking(const ConfigTable& table, std::span<const
                                  config.start.joints.size(), config.robot.joint_count()));
   }
   config.parameters = read_parameters(variables, config);
+  ReadPerturbation perturbation =
+      read_perturbation(table.get_table_or_empty("perturbation"), config.robot.joint_count());
+  config.perturbation = std::move(perturbation.perturbation);
+  if (perturbation.preset) {
+    add_input(loaded, *perturbation.preset);
+  }
   check_limits(table.get_table_or_empty("objective"), config);
   loaded.tracking = make_tracking(std::move(config), variables, urdf);
   loaded.problem = loaded.tracking;
-  return chosen.simd;
+  std::vector<std::string> settled = std::move(perturbation.settled);
+  if (chosen.simd) {  // what "auto" has come to decides the last bits of every result
+    settled.push_back(fmt::format("physics.simd={}", to_string(*chosen.simd)));
+  }
+  return settled;
 }
 
 }  // namespace armwright

@@ -121,12 +121,20 @@ std::vector<ArmDesign> make_directions(const TrackingConfig& config) {
 TrackingProblem::TrackingProblem(TrackingConfig config)
     : config_(std::move(config)),
       setup_(config_.robot, config_.task),
-      targets_(kTargetCache_bytes) {
+      targets_(kTargetCache_bytes),
+      plants_(config_.perturbation, config_.robot, config_.task) {
   check_design(config_.start);
   description_ = make_tracking_description(config_);
-  const bool has_derivatives = config_.engines.training->has_derivatives();
+  const bool is_exact =
+      !(config_.perturbation.applies_to(CaseRole::training) && config_.perturbation.changes_loop());
+  const bool has_derivatives = config_.engines.training->has_derivatives() && is_exact;
   description_.has_jacobian = description_.has_residuals && has_derivatives;
-  if (!has_derivatives) {
+  if (!is_exact) {
+    description_.jacobian_advice =
+        "there are no derivatives under friction, quantisation, delay or torque ripple in "
+        "training; "
+        "leave these out of [perturbation] or set apply_to to judging";
+  } else if (!has_derivatives) {
     description_.jacobian_advice =
         fmt::format("engine '{}' computes no derivatives; choose --engine articulated, which does",
                     config_.engines.training_name);
@@ -174,6 +182,40 @@ std::shared_ptr<const TargetTable> TrackingProblem::get_targets(const TestSet& s
   return table;
 }
 
+TrackingProblem::CaseInputs TrackingProblem::get_inputs(CaseRole role, const TestSet& set,
+                                                        std::uint64_t number) const {
+  return {get_targets(set, number), plants_.get(role, set.name(), number)};
+}
+
+void TrackingProblem::set_inputs(const ArmDesign& design, const CaseInputs& inputs,
+                                 std::deque<ArmDesign>& changed, TrackingJob& job) const {
+  job.design = &design;
+  job.targets = inputs.targets.get();
+  if (inputs.plant == nullptr) {
+    return;
+  }
+  const CasePlant& plant = *inputs.plant;
+  job.setup = plant.setup ? &*plant.setup : nullptr;
+  job.variation = plant.plant.variation ? &*plant.plant.variation : nullptr;
+  if (config_.perturbation.changes_design()) {
+    plant.plant.change_design(changed.emplace_back(design));
+    job.design = &changed.back();
+  }
+}
+
+std::vector<double> TrackingProblem::calc_derivatives(const PhysicsEngine& engine,
+                                                      const TrackingJob& job,
+                                                      const CaseInputs& inputs) const {
+  if (inputs.plant == nullptr || !config_.perturbation.changes_design()) {
+    return engine.calc_derivatives(setup_, job, directions_);
+  }
+  std::vector<ArmDesign> directions = directions_;
+  for (ArmDesign& direction : directions) {
+    inputs.plant->plant.change_design(direction);
+  }
+  return engine.calc_derivatives(setup_, job, directions);
+}
+
 ArmDesign TrackingProblem::make_design(std::span<const double> x) const {
   ArmDesign design = config_.start;
   for (std::size_t i = 0; i < config_.parameters.size(); ++i) {
@@ -203,7 +245,9 @@ std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs
   // An engine with SIMD needs some 60 us for a job: sets and tables are looked up once for all
   // neighbours that share a block. Nothing is taken from the map before the simulation ends.
   std::optional<TestSet> set;
-  std::vector<std::unordered_map<std::uint64_t, std::shared_ptr<const TargetTable>>> tables;
+  std::vector<std::unordered_map<std::uint64_t, CaseInputs>> inputs;
+  std::vector<const CaseInputs*> inputs_of_job;
+  std::deque<ArmDesign> changed;
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     const CaseJob& job = jobs[i];
     const auto [design, is_new] = designs.try_emplace(job.x.data());
@@ -212,15 +256,15 @@ std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs
     }
     if (i == 0 || job.block != jobs[i - 1].block) {
       set = get_set(job.block->set);
-      tables.emplace_back();
+      inputs.emplace_back();
     }
-    std::shared_ptr<const TargetTable>& table = tables.back()[job.number];
-    if (table == nullptr) {
-      table = get_targets(*set, job.number);
+    CaseInputs& its_inputs = inputs.back()[job.number];
+    if (its_inputs.targets == nullptr) {
+      its_inputs = get_inputs(job.block->role, *set, job.number);
     }
+    inputs_of_job.push_back(&its_inputs);
     TrackingJob& one = tracking.emplace_back();
-    one.design = &design->second;
-    one.targets = table.get();
+    set_inputs(design->second, its_inputs, changed, one);
     one.abandon_above_m = job.abandon_above;
     if (job.block->role == CaseRole::training) {
       one.cutoff_m = config_.cutoff_error_m;
@@ -233,8 +277,9 @@ std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs
     outcomes.push_back(make_outcome(std::move(results[i]), jobs[i].block->role, jobs[i].residuals,
                                     config_.task.count_first_point));
     const PhysicsEngine& engine = config_.engines.get(jobs[i].block->role);
-    if (jobs[i].jacobian && engine.has_derivatives() && !outcomes[i].residuals.empty()) {
-      outcomes[i].jacobian = engine.calc_derivatives(setup_, tracking[i], directions_);
+    if (jobs[i].jacobian && engine.has_derivatives() && tracking[i].variation == nullptr &&
+        !outcomes[i].residuals.empty()) {
+      outcomes[i].jacobian = calc_derivatives(engine, tracking[i], *inputs_of_job[i]);
       const std::size_t counted = outcomes[i].residuals.size() * directions_.size();
       outcomes[i].jacobian.erase(outcomes[i].jacobian.begin(),
                                  outcomes[i].jacobian.end() - static_cast<std::ptrdiff_t>(counted));
@@ -269,12 +314,12 @@ std::vector<TrackingResult> TrackingProblem::track(const ArmDesign& design, cons
                                                    std::uint64_t first, std::size_t count,
                                                    RecordingOptions recording) const {
   check_design(design);
-  std::vector<std::shared_ptr<const TargetTable>> tables;
+  std::vector<CaseInputs> inputs;
+  std::deque<ArmDesign> changed;
   std::vector<TrackingJob> jobs(count);
   for (std::size_t i = 0; i < count; ++i) {
-    tables.push_back(get_targets(set, first + i));
-    jobs[i].design = &design;
-    jobs[i].targets = tables.back().get();
+    inputs.push_back(get_inputs(CaseRole::test, set, first + i));
+    set_inputs(design, inputs.back(), changed, jobs[i]);
     jobs[i].recording = recording;
   }
   return config_.engines.judging->simulate(setup_, jobs);

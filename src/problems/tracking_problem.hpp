@@ -18,6 +18,7 @@
 // around the start values, sign kept; what is not a variable keeps its start value.
 #pragma once
 
+#include <deque>
 #include <limits>
 #include <map>
 #include <memory>
@@ -26,6 +27,8 @@
 #include <vector>
 
 #include "problems/engine_choice.hpp"
+#include "problems/perturbation.hpp"
+#include "problems/plant_cache.hpp"
 #include "problems/problem.hpp"
 #include "problems/target_cache.hpp"
 #include "sim/tracking.hpp"
@@ -70,6 +73,7 @@ struct TrackingConfig {
   EnginePair engines;           // both must be there (choose_engines)
   double cutoff_error_m = 1.0;  // training only
   TrackingObjective objective;
+  Perturbation perturbation;
   ArmDesign start;
   std::vector<DesignParameter> parameters;
   double bounds_factor = 100;
@@ -124,6 +128,19 @@ class TrackingProblem final : public Problem {
   std::vector<double> calc_jacobian(const ArmDesign& design, std::span<const CaseOutcome> outcomes,
                                     std::span<const double> residuals) const;
   std::shared_ptr<const TargetTable> get_targets(const TestSet& set, std::uint64_t number) const;
+  // What every simulation on a case shares.
+  struct CaseInputs {
+    std::shared_ptr<const TargetTable> targets;
+    std::shared_ptr<const CasePlant> plant;  // null: the nominal one
+  };
+  CaseInputs get_inputs(CaseRole role, const TestSet& set, std::uint64_t number) const;
+  // Fills `job` with a design on a case; `changed` keeps designs that the plant changes, for as
+  // long as the job is needed.
+  void set_inputs(const ArmDesign& design, const CaseInputs& inputs, std::deque<ArmDesign>& changed,
+                  TrackingJob& job) const;
+  // The job's residuals' derivatives; `inputs` are its case's.
+  std::vector<double> calc_derivatives(const PhysicsEngine& engine, const TrackingJob& job,
+                                       const CaseInputs& inputs) const;
 
   TrackingConfig config_;
   TrackingSetup setup_;
@@ -131,6 +148,7 @@ class TrackingProblem final : public Problem {
   std::vector<ArmDesign> directions_;  // how the design changes with each variable
   std::map<std::string, TestSet> sets_;
   mutable TargetCache targets_;
+  mutable PlantCache plants_;
 };
 
 }  // namespace armwright
