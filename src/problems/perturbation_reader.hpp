@@ -27,6 +27,12 @@ struct ReadPerturbation {
   std::vector<std::string> settled;
 };
 
+// A preset by itself: the name of a shipped file, or a path. Error{usage} names file, line and key.
+Perturbation load_perturbation(const std::string& preset, std::size_t joints);
+
+// All keys as KEY=VALUE texts: in place of whatever a problem's table says.
+std::vector<std::string> make_overrides(const Perturbation& perturbation);
+
 // Error{usage} names file, line and key.
 ReadPerturbation read_perturbation(const ConfigTable& table, std::size_t joints);
 
