@@ -119,22 +119,21 @@ LoadedProblem load_problem_tables(const std::filesystem::path& path, const ReadT
   loaded.optimizer = run.get_string("optimizer", "ga");
   loaded.budget = run.get_integer_or("budget", 10000, 0, 1'000'000'000'000);
   loaded.published = read_published(table.get_table_or_empty("published"));
-  std::optional<SimdLevel> simd;
+  std::vector<std::string> settled;
   if (analytic) {
     load_analytic(table, loaded);
   } else {
-    simd = load_tracking(table, engines, loaded);
+    settled = load_tracking(table, engines, loaded);
     if (table.has("sweep")) {
       loaded.sweep = read_sweep(table.get_table("sweep"), *loaded.tracking);
     }
   }
   table.refuse_unknown();
-  if (simd) {  // what "auto" has come to decides the last bits of every result
-    std::vector<std::string> settled(overrides.begin(), overrides.end());
-    settled.push_back(fmt::format("physics.simd={}", to_string(*simd)));
-    loaded.resolved_json = read_table(settled).to_json();
-  } else {
+  if (settled.empty()) {
     loaded.resolved_json = table.to_json();
+  } else {
+    settled.insert(settled.begin(), overrides.begin(), overrides.end());
+    loaded.resolved_json = read_table(settled).to_json();
   }
   return loaded;
 }

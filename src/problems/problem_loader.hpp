@@ -57,7 +57,7 @@ struct LoadedProblem {
   PublishedWinner published;
   std::optional<SweepPlan> sweep;
   // The whole configuration after inheritance and overrides; of engines with SIMD with the level
-  // that they use.
+  // that they use, and of perturbed plants with what a preset says in place of its name.
   std::string resolved_json;
   std::map<std::string, std::string>
       input_hashes;  // file name -> SHA-256 of every file that the configuration refers to

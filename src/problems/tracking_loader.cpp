@@ -14,6 +14,7 @@
 #include "problems/parameter_reader.hpp"
 #include "problems/tracking_description.hpp"
 #include "sim/designed_arm.hpp"
+#include "problems/perturbation_reader.hpp"
 
 namespace armwright {
 namespace {
@@ -126,7 +127,7 @@ std::filesystem::path resolve_named(const ConfigTable& table, std::string_view k
   }
 }
 
-std::optional<SimdLevel> load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
+std::vector<std::string> load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
                                        LoadedProblem& loaded) {
   TrackingConfig config;
   config.name = loaded.name;
@@ -174,10 +175,20 @@ std::optional<SimdLevel> load_tracking(const ConfigTable& table, std::span<const
   }
   config.torque_per_mass_n_m_per_kg = table.get_table_or_empty("motors").get_number_or(
       "torque_per_mass_n_m_per_kg", 0, {.lower = 0, .upper = 1e9, .lower_open = true});
+  ReadPerturbation perturbation =
+      read_perturbation(table.get_table_or_empty("perturbation"), config.robot.joint_count());
+  config.perturbation = std::move(perturbation.perturbation);
+  if (perturbation.preset) {
+    add_input(loaded, *perturbation.preset);
+  }
   check_limits(table.get_table_or_empty("objective"), config);
   loaded.tracking = make_tracking(std::move(config), variables, urdf);
   loaded.problem = loaded.tracking;
-  return chosen.simd;
+  std::vector<std::string> settled = std::move(perturbation.settled);
+  if (chosen.simd) {  // what "auto" has come to decides the last bits of every result
+    settled.push_back(fmt::format("physics.simd={}", to_string(*chosen.simd)));
+  }
+  return settled;
 }
 
 }  // namespace armwright

@@ -3,10 +3,10 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/config.hpp"
 #include "problems/problem_loader.hpp"
@@ -17,9 +17,9 @@ namespace armwright {
 std::filesystem::path resolve_named(const ConfigTable& table, std::string_view key,
                                     std::string_view kind);
 
-// Sets the problem and the hashes of its inputs. Returns the SIMD level that the engines use, if
-// any.
-std::optional<SimdLevel> load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
+// Sets the problem and the hashes of its inputs. Returns what the configuration leaves open and has
+// been settled by now, as overrides.
+std::vector<std::string> load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
                                        LoadedProblem& loaded);
 
 }  // namespace armwright

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <iterator>
 #include <numbers>
 #include <numeric>
@@ -18,15 +19,14 @@
 namespace armwright {
 namespace {
 
-constexpr std::size_t kTargetCache_bytes = std::size_t{512} << 20;
-
 // What simulate() puts into a case's metrics before the peaks and root-mean-squares of the joints'
 // efforts. The duration is that of the whole case, wherever its simulation ended.
 enum CaseMetric : std::size_t { kEnergy, kSaturation, kDuration, kFirstJointMetric };
 
 // The residuals of an outcome are the errors (m) of the points that count; aggregate() scales them.
+// `own_targets`: the job's are those of its design alone.
 CaseOutcome make_outcome(TrackingResult result, const TrackingTask& task, CaseRole role,
-                         const TrackingJob& job, bool residuals) {
+                         const TrackingJob& job, bool own_targets, bool residuals) {
   const TargetTable& targets = *job.targets;
   CaseOutcome outcome;
   outcome.reason = std::move(result.reason);
@@ -46,7 +46,7 @@ CaseOutcome make_outcome(TrackingResult result, const TrackingTask& task, CaseRo
       break;
     case SimulationStatus::unreachable:
       outcome.status = EvaluationStatus::unreachable;
-      if (role != CaseRole::training || job.setup == nullptr) {
+      if (role != CaseRole::training || !own_targets) {
         outcome.has_error = false;
         return outcome;
       }
@@ -101,8 +101,7 @@ std::vector<ArmDesign> make_directions(const TrackingConfig& config) {
 
 TrackingProblem::TrackingProblem(TrackingConfig config)
     : config_(std::move(config)),
-      setup_(std::make_shared<TrackingSetup>(config_.robot, config_.task)),
-      targets_(kTargetCache_bytes) {
+      inputs_(config_) {
   check_design(config_.start);
   description_ = make_tracking_description(config_);
   check_bounds();
@@ -139,6 +138,11 @@ void TrackingProblem::set_jacobian() {
     advice =
         "there are none to the masses of motors; leave [motors] out, or effort_min and effort_max "
         "out of [variables]";
+  } else if (config_.perturbation.applies_to(CaseRole::training) &&
+             config_.perturbation.changes_loop()) {
+    advice =
+        "there are none under friction, quantisation, delay or torque ripple in training; leave "
+        "these out of [perturbation] or set apply_to to judging";
   } else if (!config_.engines.training->has_derivatives()) {
     advice =
         fmt::format("engine '{}' computes no derivatives; choose --engine articulated, which does",
@@ -175,41 +179,6 @@ TestSet TrackingProblem::get_set(const std::string& name) const {
   return TestSet::make_generated(name, config_.workspace);
 }
 
-RobotModel TrackingProblem::make_robot(const ArmDesign& design) const {
-  return armwright::make_robot(config_.robot, design, config_.torque_per_mass_n_m_per_kg);
-}
-
-TrackingTask TrackingProblem::make_task(const ArmDesign& design) const {
-  return armwright::make_task(config_.task, design);
-}
-
-std::shared_ptr<const TrackingSetup> TrackingProblem::get_setup(const ArmDesign& design) const {
-  if (!is_stretched(design) && config_.torque_per_mass_n_m_per_kg == 0 && !design.speed_m_per_s) {
-    return setup_;
-  }
-  return std::make_shared<TrackingSetup>(make_robot(design), make_task(design));
-}
-
-bool TrackingProblem::has_own_targets(const ArmDesign& design) const {
-  return is_stretched(design) || design.speed_m_per_s;
-}
-
-std::shared_ptr<const TargetTable> TrackingProblem::get_targets(const ArmDesign& design,
-                                                                const TrackingSetup& setup,
-                                                                const TestSet& set,
-                                                                std::uint64_t number) const {
-  auto table = has_own_targets(design)
-                   ? std::make_shared<const TargetTable>(setup.make_targets(set.make_case(number)))
-                   : targets_.get(*setup_, set, number);
-  if (table->segments.size() < 2 && !config_.task.count_first_point) {
-    throw Error(ErrorKind::bad_data,
-                fmt::format("test set {}: case {} has 2 points, but the first after the start does "
-                            "not count (task.count_first_point is false); give it a third one",
-                            set.name(), number));
-  }
-  return table;
-}
-
 ArmDesign TrackingProblem::make_design(std::span<const double> x) const {
   ArmDesign design = config_.start;
   for (std::size_t i = 0; i < config_.parameters.size(); ++i) {
@@ -239,39 +208,37 @@ std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs
   // By where the decision vector lies. Nothing is taken from the maps before the simulation ends.
   struct Candidate {
     ArmDesign design;
-    std::shared_ptr<const TrackingSetup> setup;
-    bool own_targets = false;
+    TrackingInputs::OfDesign inputs;
   };
   std::unordered_map<const double*, Candidate> candidates;
+  // An engine with SIMD needs some 60 us for a job: sets, tables and plants are looked up once for
+  // all neighbours that share a block.
+  std::optional<TestSet> set;
+  std::deque<std::unordered_map<std::uint64_t, TrackingInputs::OfCase>> cases;
+  std::vector<const TrackingInputs::OfCase*> case_of_job;
+  TrackingInputs::Kept kept;
   std::vector<TrackingJob> tracking;
   tracking.reserve(jobs.size());
-  // An engine with SIMD needs some 60 us for a job: sets and tables are looked up once for all
-  // neighbours that share a block.
-  std::optional<TestSet> set;
-  std::vector<std::unordered_map<std::uint64_t, std::shared_ptr<const TargetTable>>> tables;
-  std::vector<std::shared_ptr<const TargetTable>> own_tables;  // of one job each
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     const CaseJob& job = jobs[i];
-    const auto [found, is_new] = candidates.try_emplace(job.x.data());
-    Candidate& candidate = found->second;
+    const auto [candidate, is_new] = candidates.try_emplace(job.x.data());
     if (is_new) {
-      candidate.design = make_design(job.x);
-      candidate.setup = get_setup(candidate.design);
-      candidate.own_targets = has_own_targets(candidate.design);
+      candidate->second.design = make_design(job.x);
+      candidate->second.inputs = inputs_.prepare(candidate->second.design);
     }
     if (i == 0 || job.block != jobs[i - 1].block) {
       set = get_set(job.block->set);
-      tables.emplace_back();
+      cases.emplace_back();
     }
-    std::shared_ptr<const TargetTable>& table =
-        candidate.own_targets ? own_tables.emplace_back() : tables.back()[job.number];
-    if (table == nullptr) {
-      table = get_targets(candidate.design, *candidate.setup, *set, job.number);
+    auto its_case = cases.back().find(job.number);
+    if (its_case == cases.back().end()) {
+      its_case = cases.back()
+                     .emplace(job.number, inputs_.prepare(job.block->role, *set, job.number))
+                     .first;
     }
-    TrackingJob& one = tracking.emplace_back();
-    one.design = &candidate.design;
-    one.targets = table.get();
-    one.setup = candidate.setup == setup_ ? nullptr : candidate.setup.get();
+    case_of_job.push_back(&its_case->second);
+    TrackingJob& one =
+        tracking.emplace_back(inputs_.make_job(candidate->second.inputs, its_case->second, kept));
     one.abandon_above_m = job.abandon_above;
     if (job.block->role == CaseRole::training) {
       one.cutoff_m = config_.cutoff_error_m;
@@ -281,11 +248,15 @@ std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs
   std::vector<CaseOutcome> outcomes;
   outcomes.reserve(jobs.size());
   for (std::size_t i = 0; i < jobs.size(); ++i) {
+    const bool own_targets = tracking[i].targets != case_of_job[i]->targets.get();
     outcomes.push_back(make_outcome(std::move(results[i]), config_.task, jobs[i].block->role,
-                                    tracking[i], jobs[i].residuals));
+                                    tracking[i], own_targets, jobs[i].residuals));
     const PhysicsEngine& engine = config_.engines.get(jobs[i].block->role);
-    if (jobs[i].jacobian && engine.has_derivatives() && !outcomes[i].residuals.empty()) {
-      outcomes[i].jacobian = engine.calc_derivatives(*setup_, tracking[i], directions_);
+    if (jobs[i].jacobian && engine.has_derivatives() && tracking[i].variation == nullptr &&
+        !outcomes[i].residuals.empty()) {
+      outcomes[i].jacobian =
+          engine.calc_derivatives(inputs_.setup(), tracking[i],
+                                  inputs_.change_directions(*case_of_job[i], directions_));
       const std::size_t counted = outcomes[i].residuals.size() * directions_.size();
       outcomes[i].jacobian.erase(outcomes[i].jacobian.begin(),
                                  outcomes[i].jacobian.end() - static_cast<std::ptrdiff_t>(counted));
@@ -304,7 +275,7 @@ std::vector<TrackingResult> TrackingProblem::simulate(std::span<const CaseJob> j
     while (end < jobs.size() && &config_.engines.get(jobs[end].block->role) == &engine) {
       ++end;
     }
-    auto some = engine.simulate(*setup_, tracking.subspan(first, end - first));
+    auto some = engine.simulate(inputs_.setup(), tracking.subspan(first, end - first));
     std::ranges::move(some, std::back_inserter(results));
     first = end;
   }
@@ -320,17 +291,16 @@ std::vector<TrackingResult> TrackingProblem::track(const ArmDesign& design, cons
                                                    std::uint64_t first, std::size_t count,
                                                    RecordingOptions recording) const {
   check_design(design);
-  const auto setup = get_setup(design);
-  std::vector<std::shared_ptr<const TargetTable>> tables;
-  std::vector<TrackingJob> jobs(count);
+  const TrackingInputs::OfDesign of_design = inputs_.prepare(design);
+  std::deque<TrackingInputs::OfCase> cases;
+  TrackingInputs::Kept kept;
+  std::vector<TrackingJob> jobs;
   for (std::size_t i = 0; i < count; ++i) {
-    tables.push_back(get_targets(design, *setup, set, first + i));
-    jobs[i].design = &design;
-    jobs[i].setup = setup == setup_ ? nullptr : setup.get();
-    jobs[i].targets = tables.back().get();
-    jobs[i].recording = recording;
+    cases.push_back(inputs_.prepare(CaseRole::test, set, first + i));
+    jobs.push_back(inputs_.make_job(of_design, cases.back(), kept));
+    jobs.back().recording = recording;
   }
-  return config_.engines.judging->simulate(*setup_, jobs);
+  return config_.engines.judging->simulate(inputs_.setup(), jobs);
 }
 
 Evaluation TrackingProblem::aggregate(std::span<const double> x,

@@ -8,53 +8,26 @@
 // been cut off at once.
 #pragma once
 
-#include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "problems/engine_choice.hpp"
 #include "problems/problem.hpp"
-#include "problems/target_cache.hpp"
-#include "problems/tracking_objective.hpp"
-#include "sim/tracking.hpp"
+#include "problems/tracking_config.hpp"
+#include "problems/tracking_inputs.hpp"
 
 namespace armwright {
-
-// One number of the design that is optimized.
-struct DesignParameter {
-  enum class Kind { gain, effort_min, effort_max, length_scale, section_scale, speed };
-  std::size_t joint = 0;  // not of the speed
-  Kind kind = Kind::gain;
-  std::size_t gain = 0;  // which one, for a gain
-};
-
-struct TrackingConfig {
-  std::string name;
-  std::string summary;
-  RobotModel robot;
-  double mass_scale = 1;  // what its masses were multiplied by when it was loaded
-  TrackingTask task;
-  WorkspaceSphere workspace;
-  EnginePair engines;           // both must be there (choose_engines)
-  double cutoff_error_m = 1.0;  // training only
-  TrackingObjective objective;
-  ArmDesign start;
-  std::vector<DesignParameter> parameters;
-  double bounds_factor = 100;
-  double length_bounds_factor = 1.5;
-  double section_bounds_factor = 2;
-  double speed_bounds_factor = 2;
-  double torque_per_mass_n_m_per_kg = 0;  // of the motors; 0: they weigh nothing
-};
 
 class TrackingProblem final : public Problem {
  public:
   // Error{usage} if the design is for another robot or a variable has no bounds; Error{bad_data} if
   // the robot does not suit the task.
   explicit TrackingProblem(TrackingConfig config);
+  TrackingProblem(const TrackingProblem&) = delete;
+  TrackingProblem& operator=(const TrackingProblem&) = delete;
 
   const ProblemDescription& description() const override { return description_; }
   BatchSize batch_size(CaseRole role) const override;
@@ -88,32 +61,28 @@ class TrackingProblem final : public Problem {
   void check_design(const ArmDesign& design) const;
   // The arm of a design without its load, its task, and both ready to be simulated; the problem's
   // own where the design changes nothing.
-  RobotModel make_robot(const ArmDesign& design) const;
-  TrackingTask make_task(const ArmDesign& design) const;
-  std::shared_ptr<const TrackingSetup> get_setup(const ArmDesign& design) const;
+  RobotModel make_robot(const ArmDesign& design) const { return inputs_.make_robot(design); }
+  TrackingTask make_task(const ArmDesign& design) const { return inputs_.make_task(design); }
+  std::shared_ptr<const TrackingSetup> get_setup(const ArmDesign& design) const {
+    return inputs_.get_setup(design);
+  }
 
   const TrackingConfig& config() const { return config_; }
-  const TrackingSetup& setup() const { return *setup_; }  // of the nominal arm and task
-  const TargetCache& targets() const { return targets_; }
+  const TrackingSetup& setup() const { return inputs_.setup(); }  // of the nominal arm and task
+  const TargetCache& targets() const { return inputs_.targets(); }
 
  private:
   // One result a job of `tracking`, each from the engine of its case's role.
   std::vector<TrackingResult> simulate(std::span<const CaseJob> jobs,
                                        std::span<const TrackingJob> tracking) const;
-  // `setup` is get_setup() of the design.
-  std::shared_ptr<const TargetTable> get_targets(const ArmDesign& design,
-                                                 const TrackingSetup& setup, const TestSet& set,
-                                                 std::uint64_t number) const;
-  bool has_own_targets(const ArmDesign& design) const;
   void check_bounds() const;  // that every design within them is an arm
   void set_jacobian();
 
   TrackingConfig config_;
-  std::shared_ptr<const TrackingSetup> setup_;
+  TrackingInputs inputs_;  // refers to the configuration
   ProblemDescription description_;
   std::vector<ArmDesign> directions_;  // how the design changes with each variable
   std::map<std::string, TestSet> sets_;
-  mutable TargetCache targets_;
 };
 
 }  // namespace armwright

@@ -31,7 +31,8 @@ class PhysicsEngine {
   // design whose gains and limits are the derivatives of the job's with respect to some variable.
   // Where a simulation has a kink (a limit, the largest of several, a turn that is left out), those
   // of the branch that it took; 0 for a point that was not reached, whose error is 0, or whose
-  // derivative exceeds all numbers. Nothing for a case that cannot be simulated. Thread-safe.
+  // derivative exceeds all numbers. Nothing for a case that cannot be simulated. The job must have
+  // no PlantVariation: rounded angles have no derivative. Thread-safe.
   virtual std::vector<double> calc_derivatives(const TrackingSetup& setup, const TrackingJob& job,
                                                std::span<const ArmDesign> directions) const;
   // How many jobs one call should get; any number is simulated alike.

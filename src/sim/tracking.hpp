@@ -21,6 +21,7 @@
 
 #include "sim/controller.hpp"
 #include "sim/kinematics.hpp"
+#include "sim/plant_variation.hpp"
 #include "sim/reference_signal.hpp"
 #include "sim/robot_model.hpp"
 #include "sim/test_case.hpp"
@@ -158,9 +159,11 @@ struct TrackingJob {
   // certain to exceed this: the errors of the points that counted so far, divided by the number of
   // all that count, do already. After the last point there is nothing left to abandon.
   double abandon_above_m = std::numeric_limits<double>::infinity();
-  // Where the design changes the arm itself: its own setup, of the same task (but for its speed)
-  // and number of joints.
+  // Where the design or the case changes the arm itself: its own setup, of the same task (speed and
+  // load aside) and number of joints.
   const TrackingSetup* setup = nullptr;
+  // What else the case's plant has. Null: nothing.
+  const PlantVariation* variation = nullptr;
 
   // The setup to simulate it with: its own, or that of the batch.
   const TrackingSetup& choose_setup(const TrackingSetup& of_batch) const {

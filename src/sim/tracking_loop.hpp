@@ -1,11 +1,13 @@
 // One tracking simulation, written once for every engine that steps a single arm: the timeline, the
-// controllers and the measures. `Arm` needs step(effort, dt), read_angles(q) and tip_position_m(),
-// and throws DivergenceError when it cannot go on.
+// controllers and the measures. `Arm` needs step(effort, dt), read_angles(q), read_rates(qd) and
+// tip_position_m(), and throws DivergenceError when it cannot go on.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "sim/arm_plant.hpp"
 #include "sim/ode_arm.hpp"
 #include "sim/tracking.hpp"
 #include "sim/tracking_result.hpp"
@@ -22,6 +24,9 @@ class TrackingLoop {
  private:
   template <class Arm>
   void step(Arm& arm, std::span<const double> targets);
+  // A substep of a perturbed plant.
+  template <class Arm>
+  void step_perturbed(Arm& arm);
   template <class Arm>
   void record(const Arm& arm, const Segment& segment, int step);
 
@@ -31,16 +36,23 @@ class TrackingLoop {
   double substep_s_;
   std::vector<std::unique_ptr<Controller>> controllers_;
   std::vector<double> q_, q_before_, effort_;
+  std::optional<ArmPlant> plant_;  // if it is perturbed
+  std::vector<double> plant_q_, plant_rate_;
   TrackingResult result_;
 };
 
 template <class Arm>
 void TrackingLoop::step(Arm& arm, std::span<const double> targets) {
+  const std::span<const double> measured = plant_ ? plant_->measure() : q_;
   for (std::size_t i = 0; i < q_.size(); ++i) {
-    effort_[i] = controllers_[i]->step(targets[i], q_[i], period_s_);
+    effort_[i] = controllers_[i]->step(targets[i], measured[i], period_s_);
   }
   for (int substep = 0; substep < setup_.task().physics.substeps; ++substep) {
-    arm.step(effort_, substep_s_);
+    if (plant_) {
+      step_perturbed(arm);
+    } else {
+      arm.step(effort_, substep_s_);
+    }
   }
   q_.swap(q_before_);
   arm.read_angles(q_);
@@ -53,6 +65,14 @@ void TrackingLoop::step(Arm& arm, std::span<const double> targets) {
     result_.energy_j += std::max(
         0.0, effort_[i] * calc_displacement(setup_.robot().joints[i].kind, q_before_[i], q_[i]));
   }
+}
+
+template <class Arm>
+void TrackingLoop::step_perturbed(Arm& arm) {
+  arm.read_rates(plant_rate_);
+  arm.step(plant_->calc_torque(effort_, plant_q_, plant_rate_), substep_s_);
+  arm.read_angles(plant_q_);
+  plant_->remember(plant_q_);
 }
 
 template <class Arm>
@@ -75,6 +95,11 @@ TrackingResult TrackingLoop::run(Arm& arm) {
   const bool recording = job_.recording.error_series || job_.recording.trajectory;
   try {
     arm.read_angles(q_);
+    if (job_.variation != nullptr) {
+      plant_.emplace(*job_.variation, setup_.robot(), q_);
+      plant_q_ = q_;
+      plant_rate_.resize(q_.size());
+    }
     for (const Segment& segment : job_.targets->segments) {
       double worst_squared = 0;
       for (int k = 0; k < segment.steps; ++k) {

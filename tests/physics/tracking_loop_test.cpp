@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -48,6 +49,7 @@ struct ScriptedArm {
     steps_s.push_back(dt_s);
   }
   void read_angles(std::span<double> q) const { std::copy(q_rad.begin(), q_rad.end(), q.begin()); }
+  void read_rates(std::span<double> qd) const { std::ranges::fill(qd, 0.0); }
   Eigen::Vector3d tip_position_m() const { return tip_m(static_cast<int>(steps_s.size())); }
 };
 

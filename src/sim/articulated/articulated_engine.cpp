@@ -55,8 +55,8 @@ class ArticulatedEngine final : public PhysicsEngine {
   std::vector<TrackingResult> simulate(const TrackingSetup& setup,
                                        std::span<const TrackingJob> jobs) const override {
     std::vector<TrackingResult> results(jobs.size());
-    // Jobs of one timeline and of arms of one shape each: these decide which code is run, which
-    // must not depend on the company that a job is in.
+    // Jobs of one timeline, of arms of one shape, and of perturbed plants or not, each: these
+    // decide which code is run, which must not depend on the company that a job is in.
     std::vector<std::vector<std::size_t>> alike;
     const auto get_chain = [&](std::size_t job) -> const ChainModel& {
       return jobs[job].choose_setup(setup).chain();
@@ -71,7 +71,8 @@ class ArticulatedEngine final : public PhysicsEngine {
       const TargetTable& targets = *jobs[i].targets;
       const auto found = std::find_if(alike.begin(), alike.end(), [&](const auto& group) {
         return have_same_timeline(*jobs[group.front()].targets, targets) &&
-               have_same_shape(get_chain(group.front()), get_chain(i));
+               have_same_shape(get_chain(group.front()), get_chain(i)) &&
+               (jobs[group.front()].variation == nullptr) == (jobs[i].variation == nullptr);
       });
       (found == alike.end() ? alike.emplace_back() : *found).push_back(i);
     }
@@ -88,6 +89,9 @@ class ArticulatedEngine final : public PhysicsEngine {
   bool has_derivatives() const override { return true; }
   std::vector<double> calc_derivatives(const TrackingSetup& setup, const TrackingJob& job,
                                        std::span<const ArmDesign> directions) const override {
+    if (job.variation != nullptr) {
+      throw std::logic_error("there are no derivatives of a perturbed plant");
+    }
     if (!job.targets->unreachable.empty()) {
       return {};
     }

@@ -56,6 +56,15 @@ enum StateSingle : int {
   kStateSingles
 };
 
+// What a perturbed plant has (sim/plant_variation.hpp), for each joint and once.
+enum PlantField : int { kViscous, kCoulomb, kRipple, kRipplePhase, kPlantFields };
+enum PlantSingle : int {
+  kRateScale,     // 1 / v_s
+  kRippleCycles,  // a turn
+  kQuantum,
+  kPlantSingles
+};
+
 // Of a recorded step, after the joints' angles and efforts: where the tip is.
 inline constexpr int kRecordSingles = 3;
 
@@ -69,8 +78,11 @@ constexpr int calc_state_packs(int joints) {
 constexpr int calc_dynamics_packs(int joints) {
   return 24 * joints + joints * joints;
 }
+constexpr int calc_plant_packs(int joints) {
+  return joints * kPlantFields + kPlantSingles;
+}
 constexpr int calc_scratch_packs(int joints) {
-  return 3 * joints + calc_dynamics_packs(joints);
+  return 4 * joints + calc_dynamics_packs(joints);
 }
 constexpr int calc_record_packs(int joints) {
   return joints * 2 + kRecordSingles;
@@ -106,8 +118,14 @@ struct SegmentCall {
   bool first_step_of_case = false;
   bool shared_targets = false;             // one table for all lanes: that of lane 0
   const double* const* targets = nullptr;  // a lane: angles of the segment's first step, row a step
-  T* records = nullptr;                    // calc_record_packs() a step, or null
-  std::uint32_t alive = 0;                 // one bit a lane; in and out
+  // Of perturbed plants; else null.
+  const T* plant = nullptr;    // calc_plant_packs() packs
+  T* past = nullptr;           // a ring of `past_length` x joints packs: angles after substeps
+  int past_length = 1;         // more than any lane's delay
+  int newest = 0;              // where in the ring the angles are as they are now
+  const int* delay = nullptr;  // a lane: of the measured angles, in substeps
+  T* records = nullptr;        // calc_record_packs() a step, or null
+  std::uint32_t alive = 0;     // one bit a lane; in and out
   // Out, for lanes that ended here: how, in which step, and the state as it was then.
   LaneEvent event[kMaxLanes] = {};
   int event_step[kMaxLanes] = {};

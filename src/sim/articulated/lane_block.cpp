@@ -50,6 +50,7 @@ LaneBlock<T>::LaneBlock(const TrackingSetup& setup, const Kernel<T>& kernel,
     }
     records_ = AlignedNumbers<T>(static_cast<std::size_t>(longest) * record_size_);
   }
+  reserve_plants(chosen, groups);
   slots_.assign(groups * lanes(), kFree);
   for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
     // Lanes that are left over hold the first job's arm, at rest and without controllers.
@@ -102,10 +103,76 @@ void LaneBlock<T>::place(std::size_t slot, std::size_t job) {
   }
   numbers[(kStateFields * joints_ + kCutoffSquared) * lanes()] =
       static_cast<T>(one.cutoff_m * one.cutoff_m);
+  if (perturbed_) {
+    place_plant(slot, job);
+  }
   TrackingResult& result = results_[job];
   result.point_error_m.reserve(one.targets->segments.size());
   if (one.recording.error_series) {
     result.error_series_m.reserve(static_cast<std::size_t>(one.targets->steps));
+  }
+}
+
+template <class T>
+void LaneBlock<T>::reserve_plants(std::span<const std::size_t> chosen, std::size_t groups) {
+  perturbed_ = jobs_[chosen.front()].variation != nullptr;
+  if (!perturbed_) {
+    return;
+  }
+  for (const std::size_t job : chosen) {
+    past_length_ = std::max(past_length_, jobs_[job].variation->delay_substeps + 1);
+  }
+  plant_size_ = calc_size(calc_plant_packs(static_cast<int>(joints_)), kernel_.lanes);
+  past_size_ = calc_size(past_length_ * static_cast<int>(joints_), kernel_.lanes);
+  plants_ = AlignedNumbers<T>(groups * plant_size_);
+  pasts_ = AlignedNumbers<T>(groups * past_size_);
+  delays_.assign(groups * lanes(), 0);
+}
+
+template <class T>
+void LaneBlock<T>::place_plant(std::size_t slot, std::size_t job) {
+  const PlantVariation& variation = *jobs_[job].variation;
+  T* const numbers = plants_.data() + slot / lanes() * plant_size_ + slot % lanes();
+  const auto set = [&](std::size_t pack, double value) {
+    numbers[pack * lanes()] = static_cast<T>(value);
+  };
+  for (std::size_t i = 0; i < joints_; ++i) {
+    set(kViscous * joints_ + i, variation.viscous_friction_n_m_s_per_rad[i]);
+    set(kCoulomb * joints_ + i, variation.coulomb_friction_n_m[i]);
+    set(kRipple * joints_ + i, variation.torque_ripple[i]);
+    set(kRipplePhase * joints_ + i, variation.ripple_phase_rad[i]);
+  }
+  set(kPlantFields * joints_ + kRateScale, 1 / variation.friction_transition_rad_per_s);
+  set(kPlantFields * joints_ + kRippleCycles, variation.ripple_cycles_per_turn);
+  set(kPlantFields * joints_ + kQuantum, variation.quantisation_rad);
+  delays_[slot] = variation.delay_substeps;
+  T* const past = pasts_.data() + slot / lanes() * past_size_ + slot % lanes();
+  for (std::size_t pack = 0; pack < past_size_ / lanes(); ++pack) {
+    past[pack * lanes()] = static_cast<T>(jobs_[job].targets->start_rad[pack % joints_]);
+  }
+}
+
+template <class T>
+void LaneBlock<T>::set_plant(std::size_t first, const Segment& timeline,
+                             SegmentCall<T>& call) const {
+  if (!perturbed_) {
+    return;
+  }
+  const std::int64_t substeps = std::int64_t{timeline.first_step} * call.substeps;
+  call.plant = plants_.data() + first / lanes() * plant_size_;
+  call.past = pasts_.data() + first / lanes() * past_size_;
+  call.past_length = past_length_;
+  call.newest = static_cast<int>(substeps % past_length_);
+  call.delay = delays_.data() + first;
+}
+
+template <class T>
+void LaneBlock<T>::copy_lane(const AlignedNumbers<T>& numbers, std::size_t size, std::size_t from,
+                             std::size_t to) const {
+  const T* const source = numbers.data() + from / lanes() * size + from % lanes();
+  T* const target = numbers.data() + to / lanes() * size + to % lanes();
+  for (std::size_t k = 0; k < size; k += lanes()) {
+    target[k] = source[k];
   }
 }
 
@@ -169,6 +236,7 @@ void LaneBlock<T>::run_segment(std::size_t group, std::size_t segment) {
   call.substeps = setup_.task().physics.substeps;
   call.period_s = static_cast<T>(setup_.task().control_period_s);
   call.first_step_of_case = segment == 0;
+  set_plant(first, timeline, call);
   call.targets = targets;
   call.final_state = final_state_.data();
   for (std::size_t lane = 0; recording_ && lane < lanes(); ++lane) {
@@ -279,11 +347,14 @@ void LaneBlock<T>::close_up() {
     while (slots_[gap] != kFree) {
       ++gap;
     }
-    for (std::size_t k = 0; k < state_size_ / lanes(); ++k) {
-      state(gap)[k * lanes()] = state(slot)[k * lanes()];
+    copy_lane(states_, state_size_, slot, gap);
+    if (own_models_) {
+      copy_lane(models_, model_size_, slot, gap);
     }
-    for (std::size_t k = 0; own_models_ && k < model_size_ / lanes(); ++k) {
-      model(gap)[k * lanes()] = model(slot)[k * lanes()];
+    if (perturbed_) {
+      copy_lane(plants_, plant_size_, slot, gap);
+      copy_lane(pasts_, past_size_, slot, gap);
+      delays_[gap] = delays_[slot];
     }
     slots_[gap] = slots_[slot];
   }

@@ -34,8 +34,8 @@ class AlignedNumbers {
 template <class T>
 class LaneBlock {
  public:
-  // `chosen`: the jobs' numbers, all of one timeline and of arms of one shape; results[i] is that
-  // of jobs[i].
+  // `chosen`: the jobs' numbers, all of one timeline and of arms of one shape, and either all with
+  // a PlantVariation or none; results[i] is that of jobs[i].
   LaneBlock(const TrackingSetup& setup, const Kernel<T>& kernel, std::span<const TrackingJob> jobs,
             std::span<const std::size_t> chosen, std::vector<TrackingResult>& results);
   void run();
@@ -48,6 +48,12 @@ class LaneBlock {
   T* state(std::size_t slot) const;  // of the slot's lane; packs lie lanes() apart
   T* model(std::size_t slot) const;
   void place(std::size_t slot, std::size_t job);
+  void reserve_plants(std::span<const std::size_t> chosen, std::size_t groups);
+  void place_plant(std::size_t slot, std::size_t job);
+  void set_plant(std::size_t first, const Segment& timeline, SegmentCall<T>& call) const;
+  // What the two slots' lanes have there: `size` numbers a pack of lanes.
+  void copy_lane(const AlignedNumbers<T>& numbers, std::size_t size, std::size_t from,
+                 std::size_t to) const;
   void run_segment(std::size_t group, std::size_t segment);
   void end_segment(std::size_t slot);
   void read_records(std::size_t slot, const Segment& segment, int steps);
@@ -69,6 +75,11 @@ class LaneBlock {
   std::vector<std::uint8_t> flags_;
   std::size_t state_size_, model_size_,
       record_size_;  // numbers of a pack of lanes (records: a step)
+  bool perturbed_ = false;
+  int past_length_ = 1;
+  std::size_t plant_size_ = 0, past_size_ = 0;
+  std::vector<int> delays_;  // one a slot
+  AlignedNumbers<T> plants_, pasts_;
   AlignedNumbers<T> states_, models_, scratch_, final_state_, records_;
 };
 

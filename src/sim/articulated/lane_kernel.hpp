@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "sim/articulated/chain_dynamics.hpp"
+#include "sim/articulated/lane_plant.hpp"
 
 namespace armwright::articulated {
 
@@ -16,7 +17,8 @@ inline constexpr T kFarthest = T{1e6};
 template <>
 inline constexpr float kFarthest<float> = 1e4F;
 
-template <class V, class Chain>
+// kPerturbed: plants have what LanePlant adds.
+template <class V, class Chain, bool kPerturbed = false>
 class SegmentKernel {
  public:
   using T = typename V::Scalar;
@@ -32,7 +34,8 @@ class SegmentKernel {
         state_(reinterpret_cast<V*>(call.state)),
         scratch_(reinterpret_cast<V*>(call.scratch)),
         chain_(call.joints, call.flags, call.tilted_gravity),
-        dynamics_(chain_, reinterpret_cast<const V*>(call.model), scratch_) {
+        dynamics_(chain_, reinterpret_cast<const V*>(call.model), scratch_),
+        plant_(call, chain_, scratch_) {
     effort_.place(scratch_, call.joints);
     acceleration_.place(scratch_, call.joints);
     way_.place(scratch_, call.joints);
@@ -51,17 +54,20 @@ class SegmentKernel {
     single(kWorstSquared) = V(0);
     dynamics_.set_posture(q, false);
     for (int step = 0; step < call_.steps; ++step) {
+      plant_.show_measured(q);
       control(step);
+      plant_.show_true(q);
       const bool measuring = recording || step >= call_.window_start;
       for (int substep = 1; substep <= call_.substeps; ++substep) {
         dynamics_.calc_equations(q, rate);
-        dynamics_.solve(&effort_[0], &acceleration_[0]);
+        dynamics_.solve(plant_.calc_torque(&effort_[0], q, rate), &acceleration_[0]);
         chain_.for_up([&](auto i) __attribute__((always_inline)) {
           rate[i] += substep_s * acceleration_[i];
           const V way = substep_s * rate[i];
           q[i] += way;
           way_[i] = substep == 1 ? way : way_[i] + way;
         });
+        plant_.remember(q);
         dynamics_.set_posture(q, measuring && substep == call_.substeps);
       }
       if (!check(step)) {
@@ -211,6 +217,7 @@ class SegmentKernel {
   V* scratch_;
   Chain chain_;
   ChainDynamics<V, Chain> dynamics_;
+  LanePlant<V, Chain, kPerturbed> plant_;
   PackList<V, Chain::kJoints> effort_, acceleration_, way_;
 };
 
@@ -251,8 +258,22 @@ void run_known_length(SegmentCall<typename V::Scalar>& call) {
   }
 }
 
+// Perturbed plants have fewer: every kernel takes long to compile.
+template <class V>
+void run_perturbed(SegmentCall<typename V::Scalar>& call) {
+  if (call.joints == 4 && !call.prismatic && !call.tilted_gravity &&
+      has_shape(call.flags, 4, kPalletiser)) {
+    SegmentKernel<V, Palletiser, true>::run(call);
+  } else {
+    SegmentKernel<V, AnyChain, true>::run(call);
+  }
+}
+
 template <class V>
 void run_segment(SegmentCall<typename V::Scalar>& call) {
+  if (call.plant != nullptr) {
+    return run_perturbed<V>(call);
+  }
   constexpr int kLongestKnown = 8;
   if constexpr (kHasKnownLengths) {
     if (!call.prismatic && call.joints <= kLongestKnown) {

@@ -1,0 +1,42 @@
+// All that a tracking problem is made of, as a problem's file says it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "problems/engine_choice.hpp"
+#include "problems/perturbation.hpp"
+#include "problems/tracking_objective.hpp"
+#include "sim/tracking.hpp"
+
+namespace armwright {
+
+// One number of the design that is optimized.
+struct DesignParameter {
+  enum class Kind { gain, effort_min, effort_max, length_scale, section_scale, speed };
+  std::size_t joint = 0;  // not of the speed
+  Kind kind = Kind::gain;
+  std::size_t gain = 0;  // which one, for a gain
+};
+
+struct TrackingConfig {
+  std::string name;
+  std::string summary;
+  RobotModel robot;
+  double mass_scale = 1;  // what its masses were multiplied by when it was loaded
+  TrackingTask task;
+  WorkspaceSphere workspace;
+  EnginePair engines;           // both must be there (choose_engines)
+  double cutoff_error_m = 1.0;  // training only
+  TrackingObjective objective;
+  Perturbation perturbation;
+  ArmDesign start;
+  std::vector<DesignParameter> parameters;
+  double bounds_factor = 100;
+  double length_bounds_factor = 1.5;
+  double section_bounds_factor = 2;
+  double speed_bounds_factor = 2;
+  double torque_per_mass_n_m_per_kg = 0;  // of the motors; 0: they weigh nothing
+};
+
+}  // namespace armwright
