@@ -143,6 +143,14 @@ void TrackingProblem::check_design(const ArmDesign& design) const {
                     design.joints.size(), config_.robot.name, config_.name,
                     config_.robot.joint_count()));
   }
+  const ControllerRow& controller = find_controller(design.controller);
+  if (controller.feed_forward != FeedForward::none &&
+      controller.feed_forward != config_.task.feed_forward) {
+    throw Error(ErrorKind::usage,
+                fmt::format("the design is for controller '{}', whose efforts in advance problem "
+                            "{} does not make; set control.controller to '{}'",
+                            controller.name, config_.name, controller.name));
+  }
 }
 
 void TrackingProblem::add_set(const TestSet& set) {
@@ -184,6 +192,13 @@ ArmDesign TrackingProblem::make_design(std::span<const double> x) const {
 
 std::vector<double> TrackingProblem::make_vector(const ArmDesign& design) const {
   check_design(design);
+  if (design.controller != config_.start.controller) {
+    throw Error(ErrorKind::usage,
+                fmt::format("the design is for controller '{}', the variables of problem {} are "
+                            "those of '{}'; set control.controller to '{}'",
+                            design.controller, config_.name, config_.start.controller,
+                            design.controller));
+  }
   ArmDesign copy = design;
   std::vector<double> x;
   for (const DesignParameter& parameter : config_.parameters) {

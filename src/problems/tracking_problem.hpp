@@ -15,7 +15,8 @@
 // cases l, divided by sqrt(e_0) where the objective has torque, then sqrt(w tau_j / tau_0) of each
 // joint j: the sum of their squares is the objective before the logarithm. Decision variables: any
 // of the controllers' gains and effort limits of any joints, in natural units, bounded by a factor
-// around the start values, sign kept; what is not a variable keeps its start value.
+// around the start values, sign kept, or by a range to either side where the gain has one
+// (GainSpec); what is not a variable keeps its start value.
 #pragma once
 
 #include <limits>

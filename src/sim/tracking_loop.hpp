@@ -21,7 +21,7 @@ class TrackingLoop {
 
  private:
   template <class Arm>
-  void step(Arm& arm, std::span<const double> targets);
+  void step(Arm& arm, int step);  // counted from the beginning of the case
   template <class Arm>
   void record(const Arm& arm, const Segment& segment, int step);
 
@@ -30,14 +30,17 @@ class TrackingLoop {
   double period_s_;
   double substep_s_;
   std::vector<std::unique_ptr<Controller>> controllers_;
+  bool has_feed_forward_ = false;
   std::vector<double> q_, q_before_, effort_;
   TrackingResult result_;
 };
 
 template <class Arm>
-void TrackingLoop::step(Arm& arm, std::span<const double> targets) {
+void TrackingLoop::step(Arm& arm, int step) {
+  const auto targets = job_.targets->angles(step);
   for (std::size_t i = 0; i < q_.size(); ++i) {
-    effort_[i] = controllers_[i]->step(targets[i], q_[i], period_s_);
+    const double feed_forward = has_feed_forward_ ? job_.targets->feed_forward(step)[i] : 0;
+    effort_[i] = controllers_[i]->step(targets[i], q_[i], period_s_, feed_forward);
   }
   for (int substep = 0; substep < setup_.task().physics.substeps; ++substep) {
     arm.step(effort_, substep_s_);
@@ -78,7 +81,7 @@ TrackingResult TrackingLoop::run(Arm& arm) {
     for (const Segment& segment : job_.targets->segments) {
       double worst_squared = 0;
       for (int k = 0; k < segment.steps; ++k) {
-        step(arm, job_.targets->angles(segment.first_step + k));
+        step(arm, segment.first_step + k);
         if (k >= segment.window_start) {
           worst_squared =
               std::max(worst_squared, (arm.tip_position_m() - segment.to_m).squaredNorm());

@@ -34,8 +34,8 @@ class AlignedNumbers {
 template <class T>
 class LaneBlock {
  public:
-  // `chosen`: the jobs' numbers, all of one timeline and of arms of one shape; results[i] is that
-  // of jobs[i].
+  // `chosen`: the jobs' numbers, all of one timeline, of arms of one shape and under one controller;
+  // results[i] is that of jobs[i].
   LaneBlock(const TrackingSetup& setup, const Kernel<T>& kernel, std::span<const TrackingJob> jobs,
             std::span<const std::size_t> chosen, std::vector<TrackingResult>& results);
   void run();
@@ -59,6 +59,7 @@ class LaneBlock {
   const TrackingSetup& setup_;
   const Kernel<T>& kernel_;
   std::span<const TrackingJob> jobs_;
+  const ControllerRow& controller_;
   std::vector<TrackingResult>& results_;
   std::size_t joints_;
   std::vector<std::size_t> slots_;  // the job in each lane, or kFree
@@ -67,6 +68,8 @@ class LaneBlock {
   bool prismatic_ = false;
   bool tilted_gravity_ = false;
   std::vector<std::uint8_t> flags_;
+  void (*control_)(SegmentCall<T>& call, int step) = nullptr;
+  int control_packs_ = 0;
   std::size_t state_size_, model_size_,
       record_size_;  // numbers of a pack of lanes (records: a step)
   AlignedNumbers<T> states_, models_, scratch_, final_state_, records_;
