@@ -14,7 +14,6 @@
 #include "cli/session.hpp"
 #include "cli/table.hpp"
 #include "cli/terminal.hpp"
-#include "sim/controller.hpp"
 #include "sim/reference_signal.hpp"
 
 namespace armwright {
@@ -27,6 +26,7 @@ constexpr const char* kExamples = R"(Examples:
   armwright list problems q1-complex               # its variables, bounds and settings (for --set)
   armwright list optimizers ga                     # what it is, can do, and its options (for --opt)
   armwright list optimizers ga --markdown          # the same as a page, as under docs/optimizers
+  armwright list controllers pi2d                  # its formula, and its gains (for variables.optimize)
   armwright list designs --json
   armwright list studies q1                        # a comparison of optimizers: who, on what, at what cost
 
@@ -75,18 +75,6 @@ std::vector<ListItem> list_signals() {
   return items;
 }
 
-std::vector<ListItem> list_controllers() {
-  std::vector<ListItem> items;
-  for (const ControllerRow& row : controller_table()) {
-    std::vector<std::string> gains;
-    for (const GainSpec& gain : row.gains) {
-      gains.push_back(fmt::format("{} [{}]", gain.name, gain.unit));
-    }
-    items.push_back({row.name, fmt::format("{}; gains {}", row.summary, join(gains, ", "))});
-  }
-  return items;
-}
-
 std::vector<ListKind> list_kinds() {
   return {make_problem_kind(),
           make_optimizer_kind(),
@@ -95,7 +83,7 @@ std::vector<ListKind> list_kinds() {
           make_design_kind(),
           make_study_kind(),
           make_plain_kind("signals", list_signals),
-          make_plain_kind("controllers", list_controllers)};
+          make_controller_kind()};
 }
 
 struct ListOptions {

@@ -69,7 +69,8 @@ DesignFile load_design(std::string_view name_or_path) {
     joint.has("section_scale");
     JointDrive drive;
     for (const GainSpec& gain : controller.gains) {
-      drive.gains.push_back(joint.get_number(gain.key, {.lower = 0}));
+      drive.gains.push_back(
+          joint.get_number(gain.key, gain.any_sign ? Range{} : Range{.lower = 0}));
     }
     drive.limits.min_n_m = joint.get_number("effort_min_n_m", {.upper = 0});
     drive.limits.max_n_m = joint.get_number("effort_max_n_m", {.lower = 0});

@@ -39,6 +39,15 @@ std::string write_toml(const nlohmann::json& value) {
   return write_scalar(value);
 }
 
+// Keys that were renamed since.
+void rename_old_keys(nlohmann::json& resolved) {
+  if (resolved.contains("task") && resolved.at("task").contains("control_period_s")) {
+    nlohmann::json& task = resolved.at("task");
+    resolved["control"]["period_s"] = task.at("control_period_s");
+    task.erase("control_period_s");
+  }
+}
+
 }  // namespace
 
 LoadedProblem load_recorded_problem(const std::string& resolved_json, const std::string& name,
@@ -52,6 +61,7 @@ LoadedProblem load_recorded_problem(const std::string& resolved_json, const std:
       start = resolved.at("replicate").at("start").get<std::vector<double>>();
       resolved.erase("replicate");
     }
+    rename_old_keys(resolved);
     for (const auto& [key, value] : resolved.items()) {
       toml += write_toml(key) + " = " + write_toml(value) + "\n";
     }

@@ -84,11 +84,19 @@ namespace {
 DecisionVariable make_variable(const TrackingConfig& config, const DesignParameter& parameter) {
   const std::string& joint = config.robot.joints[parameter.joint].name;
   DecisionVariable variable;
+  ArmDesign start = config.start;
+  variable.start = get_parameter(start, parameter);
   switch (parameter.kind) {
     case DesignParameter::Kind::gain: {
       const GainSpec& gain = find_controller(config.start.controller).gains[parameter.gain];
       variable.name = joint + "." + gain.name;
       variable.unit = gain.unit;
+      if (gain.range > 0) {
+        const double lower = variable.start - gain.range;
+        variable.lower = gain.any_sign ? lower : std::max(0.0, lower);
+        variable.upper = variable.start + gain.range;
+        return variable;
+      }
       break;
     }
     case DesignParameter::Kind::effort_min:
@@ -112,8 +120,6 @@ DecisionVariable make_variable(const TrackingConfig& config, const DesignParamet
       variable.unit = "m/s";
       break;
   }
-  ArmDesign start = config.start;
-  variable.start = get_parameter(start, parameter);
   if (variable.start == 0) {
     throw Error(ErrorKind::usage,
                 fmt::format("{} starts at 0, but a variable spans a factor around its start value; "

@@ -12,9 +12,10 @@
 #include "problems/design_file.hpp"
 #include "problems/objective_reader.hpp"
 #include "problems/parameter_reader.hpp"
-#include "problems/tracking_description.hpp"
-#include "sim/designed_arm.hpp"
 #include "problems/perturbation_reader.hpp"
+#include "problems/tracking_description.hpp"
+#include "sim/design_conversion.hpp"
+#include "sim/designed_arm.hpp"
 
 namespace armwright {
 namespace {
@@ -22,7 +23,8 @@ namespace {
 constexpr std::size_t kInputLimit_bytes = std::size_t{8} << 20;
 constexpr double kMostPeriods = 1e7;  // of a test case: 320 MB of target angles; published: 3925
 
-TrackingTask read_task(const ConfigTable& table, const ConfigTable& physics) {
+TrackingTask read_task(const ConfigTable& table, const ConfigTable& physics,
+                       const ConfigTable& control) {
   TrackingTask task;
   task.signal = find_signal(table.get_choice("signal", signal_names(), "complex"));
   task.speed_m_per_s =
@@ -33,11 +35,11 @@ TrackingTask read_task(const ConfigTable& table, const ConfigTable& physics) {
       table.get_number_or("trapezoid_acceleration_m_per_s2", task.trapezoid_acceleration_m_per_s2,
                           {.lower = 0, .upper = 1e6, .lower_open = true});
   task.rest_s = table.get_number_or("rest_s", task.rest_s, {.lower = 0, .upper = 60});
-  task.control_period_s =
-      table.get_number_or("control_period_s", task.control_period_s, {.lower = 1e-5, .upper = 0.1});
   task.count_first_point = table.get_bool_or("count_first_point", task.count_first_point);
   task.ik_bug = table.get_bool_or("ik_bug", task.ik_bug);
   task.load_kg = table.get_number_or("load_kg", task.load_kg, {.lower = 0, .upper = 1000});
+  task.control_period_s =
+      control.get_number_or("period_s", task.control_period_s, {.lower = 1e-5, .upper = 0.1});
 
   PhysicsSettings& p = task.physics;
   p.gravity_m_per_s2 =
@@ -70,15 +72,19 @@ WorkspaceSphere read_workspace(const ConfigTable& table) {
 }
 
 // Numbers that are each allowed, but together make a case that no memory holds.
-void check_length(const ConfigTable& table, const TrackingTask& task,
+void check_length(const ConfigTable& table, const ConfigTable& control, const TrackingTask& task,
                   const WorkspaceSphere& sphere) {
   const double periods = calc_case_duration_s(task, sphere) / task.control_period_s;
   if (periods > kMostPeriods) {
-    table.refuse(table.has("control_period_s") ? "control_period_s" : "speed_m_per_s",
-                 fmt::format("a test case would take {:.3g} control periods, possible are {:.3g}; "
-                             "raise control_period_s or speed_m_per_s, or lower distance_limit_m, "
-                             "rest_s or workspace.points",
-                             periods, kMostPeriods));
+    const std::string must = fmt::format(
+        "a test case would take {:.3g} control periods, possible are {:.3g}; raise "
+        "control.period_s or task.speed_m_per_s, or lower task.distance_limit_m, "
+        "task.rest_s or workspace.points",
+        periods, kMostPeriods);
+    if (control.has("period_s")) {
+      control.refuse("period_s", must);
+    }
+    table.refuse("speed_m_per_s", must);
   }
 }
 
@@ -95,6 +101,19 @@ void set_start_speed(const ConfigTable& variables, TrackingConfig& config) {
                     "are {:.3g}; lower speed_bounds_factor",
                     periods, kMostPeriods));
   }
+}
+
+// The start under the controller that the problem names, and the tables that it wants.
+void apply_controller(const ConfigTable& control, TrackingConfig& config) {
+  if (control.has("controller")) {
+    const std::string name = control.get_choice("controller", controller_names());
+    try {
+      config.start = convert_design(config.start, name, config.task.control_period_s);
+    } catch (const Error& error) {
+      control.refuse("controller", error.what());
+    }
+  }
+  config.task.feed_forward = find_controller(config.start.controller).feed_forward;
 }
 
 std::shared_ptr<const TrackingProblem> make_tracking(TrackingConfig config,
@@ -142,9 +161,10 @@ std::vector<std::string> load_tracking(const ConfigTable& table, std::span<const
   ChosenEngines chosen = choose_engines(physics, engines);
   config.engines = std::move(chosen.engines);
   const ConfigTable task = table.get_table_or_empty("task");
-  config.task = read_task(task, physics);
+  const ConfigTable control = table.get_table_or_empty("control");
+  config.task = read_task(task, physics, control);
   config.workspace = read_workspace(table.get_table_or_empty("workspace"));
-  check_length(task, config.task, config.workspace);
+  check_length(task, control, config.task, config.workspace);
   config.objective = read_objective(table.get_table_or_empty("objective"));
   config.cutoff_error_m = table.get_table_or_empty("training")
                               .get_number_or("cutoff_error_m", config.cutoff_error_m,
@@ -162,6 +182,7 @@ std::vector<std::string> load_tracking(const ConfigTable& table, std::span<const
                                  "made for this robot",
                                  config.start.joints.size(), config.robot.joint_count()));
   }
+  apply_controller(control, config);
   config.parameters = read_parameters(variables, config);
   const Range factor{.lower = 1, .upper = 100, .lower_open = true};
   config.length_bounds_factor =

@@ -100,8 +100,7 @@ std::vector<ArmDesign> make_directions(const TrackingConfig& config) {
 }  // namespace
 
 TrackingProblem::TrackingProblem(TrackingConfig config)
-    : config_(std::move(config)),
-      inputs_(config_) {
+    : config_(std::move(config)), inputs_(config_) {
   check_design(config_.start);
   description_ = make_tracking_description(config_);
   check_bounds();
@@ -160,6 +159,14 @@ void TrackingProblem::check_design(const ArmDesign& design) const {
                     design.joints.size(), config_.robot.name, config_.name,
                     config_.robot.joint_count()));
   }
+  const ControllerRow& controller = find_controller(design.controller);
+  if (controller.feed_forward != FeedForward::none &&
+      controller.feed_forward != config_.task.feed_forward) {
+    throw Error(ErrorKind::usage,
+                fmt::format("the design is for controller '{}', whose efforts in advance problem "
+                            "{} does not make; set control.controller to '{}'",
+                            controller.name, config_.name, controller.name));
+  }
 }
 
 void TrackingProblem::add_set(const TestSet& set) {
@@ -189,6 +196,13 @@ ArmDesign TrackingProblem::make_design(std::span<const double> x) const {
 
 std::vector<double> TrackingProblem::make_vector(const ArmDesign& design) const {
   check_design(design);
+  if (design.controller != config_.start.controller) {
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("the design is for controller '{}', the variables of problem {} are "
+                    "those of '{}'; set control.controller to '{}'",
+                    design.controller, config_.name, config_.start.controller, design.controller));
+  }
   ArmDesign copy = design;
   if (changes_speed(config_)) {
     copy.speed_m_per_s = design.speed_m_per_s.value_or(config_.task.speed_m_per_s);
@@ -254,9 +268,8 @@ std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs
     const PhysicsEngine& engine = config_.engines.get(jobs[i].block->role);
     if (jobs[i].jacobian && engine.has_derivatives() && tracking[i].variation == nullptr &&
         !outcomes[i].residuals.empty()) {
-      outcomes[i].jacobian =
-          engine.calc_derivatives(inputs_.setup(), tracking[i],
-                                  inputs_.change_directions(*case_of_job[i], directions_));
+      outcomes[i].jacobian = engine.calc_derivatives(
+          inputs_.setup(), tracking[i], inputs_.change_directions(*case_of_job[i], directions_));
       const std::size_t counted = outcomes[i].residuals.size() * directions_.size();
       outcomes[i].jacobian.erase(outcomes[i].jacobian.begin(),
                                  outcomes[i].jacobian.end() - static_cast<std::ptrdiff_t>(counted));

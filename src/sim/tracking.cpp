@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "sim/articulated/chain_model.hpp"
+#include "sim/articulated/feed_forward.hpp"
 #include "sim/simd_level.hpp"
 
 namespace armwright {
@@ -67,7 +68,8 @@ double calc_total_torque_n_m(const ArmDesign& design) {
 
 std::size_t TargetTable::size_bytes() const {
   return sizeof *this + segments.size() * sizeof(Segment) +
-         (start_rad.size() + angles_rad.size()) * sizeof(double) + unreachable.size();
+         (start_rad.size() + angles_rad.size() + feed_forward_n_m.size()) * sizeof(double) +
+         unreachable.size();
 }
 
 const char* to_string(SimulationStatus status) {
@@ -160,7 +162,20 @@ TargetTable TrackingSetup::make_targets(const TestCase& test_case) const {
     }
     repeat_angles(angles + distinct * kJoints, angles + segment.steps * kJoints);
   }
+  articulated::fill_feed_forward(*chain_, task_.feed_forward, period, table);
   return table;
+}
+
+void check_feed_forward(const TrackingJob& job) {
+  const ControllerRow& row = find_controller(job.design->controller);
+  const TargetTable& targets = *job.targets;
+  if (row.feed_forward != FeedForward::none && targets.unreachable.empty() &&
+      targets.feed_forward_n_m.size() != targets.angles_rad.size()) {
+    throw Error(ErrorKind::usage,
+                fmt::format("controller '{}' needs feed-forward efforts, which the targets of this "
+                            "task do not come with; set control.controller to '{}'",
+                            row.name, row.name));
+  }
 }
 
 }  // namespace armwright

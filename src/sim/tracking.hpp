@@ -51,6 +51,7 @@ struct TrackingTask {
   bool count_first_point = false;
   bool ik_bug = false;
   double load_kg = 0;
+  FeedForward feed_forward = FeedForward::none;  // what target tables hold beside the angles
   PhysicsSettings physics;
 };
 
@@ -88,11 +89,16 @@ struct TargetTable {
   int steps = 0;
   std::vector<double> start_rad;  // posture at rest at the beginning, one angle a joint
   std::vector<double>
-      angles_rad;           // steps x joints, row-major: target at the end of each control period
+      angles_rad;  // steps x joints, row-major: target at the end of each control period
+  // As many, of the arm of the setup that made the table; empty if the task asks for none.
+  std::vector<double> feed_forward_n_m;
   std::string unreachable;  // not empty: no simulation is possible, and why
 
   std::span<const double> angles(int step) const {
     return {angles_rad.data() + static_cast<std::size_t>(step) * joints, joints};
+  }
+  std::span<const double> feed_forward(int step) const {
+    return {feed_forward_n_m.data() + static_cast<std::size_t>(step) * joints, joints};
   }
   std::size_t size_bytes() const;
 };
@@ -170,5 +176,9 @@ struct TrackingJob {
     return setup != nullptr ? *setup : of_batch;
   }
 };
+
+// Error{usage} where the controller of a job that can be simulated wants efforts that its table of
+// targets does not hold.
+void check_feed_forward(const TrackingJob& job);
 
 }  // namespace armwright

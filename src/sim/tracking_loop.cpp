@@ -9,6 +9,8 @@ TrackingLoop::TrackingLoop(const TrackingSetup& setup, const TrackingJob& job)
       substep_s_(period_s_ / setup.task().physics.substeps) {
   const std::size_t joints = setup.robot().joint_count();
   const ControllerRow& row = find_controller(job.design->controller);
+  check_feed_forward(job);
+  has_feed_forward_ = row.feed_forward != FeedForward::none;
   for (std::size_t i = 0; i < joints; ++i) {
     const JointDrive& drive = job.design->joints[i];
     controllers_.push_back(row.make(drive.gains, drive.limits, setup.robot().joints[i].kind));

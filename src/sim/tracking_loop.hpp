@@ -23,7 +23,7 @@ class TrackingLoop {
 
  private:
   template <class Arm>
-  void step(Arm& arm, std::span<const double> targets);
+  void step(Arm& arm, int step);  // counted from the beginning of the case
   // A substep of a perturbed plant.
   template <class Arm>
   void step_perturbed(Arm& arm);
@@ -35,6 +35,7 @@ class TrackingLoop {
   double period_s_;
   double substep_s_;
   std::vector<std::unique_ptr<Controller>> controllers_;
+  bool has_feed_forward_ = false;
   std::vector<double> q_, q_before_, effort_;
   std::optional<ArmPlant> plant_;  // if it is perturbed
   std::vector<double> plant_q_, plant_rate_;
@@ -42,10 +43,12 @@ class TrackingLoop {
 };
 
 template <class Arm>
-void TrackingLoop::step(Arm& arm, std::span<const double> targets) {
+void TrackingLoop::step(Arm& arm, int step) {
+  const auto targets = job_.targets->angles(step);
   const std::span<const double> measured = plant_ ? plant_->measure() : q_;
   for (std::size_t i = 0; i < q_.size(); ++i) {
-    effort_[i] = controllers_[i]->step(targets[i], measured[i], period_s_);
+    const double feed_forward = has_feed_forward_ ? job_.targets->feed_forward(step)[i] : 0;
+    effort_[i] = controllers_[i]->step(targets[i], measured[i], period_s_, feed_forward);
   }
   for (int substep = 0; substep < setup_.task().physics.substeps; ++substep) {
     if (plant_) {
@@ -103,7 +106,7 @@ TrackingResult TrackingLoop::run(Arm& arm) {
     for (const Segment& segment : job_.targets->segments) {
       double worst_squared = 0;
       for (int k = 0; k < segment.steps; ++k) {
-        step(arm, job_.targets->angles(segment.first_step + k));
+        step(arm, segment.first_step + k);
         if (k >= segment.window_start) {
           worst_squared =
               std::max(worst_squared, (arm.tip_position_m() - segment.to_m).squaredNorm());

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "sim/design_conversion.hpp"
 #include "tracking_arms.hpp"
 
 namespace armwright::physics_test {
@@ -13,21 +14,26 @@ namespace {
 
 // One number of the design, in the order in which derivatives are asked for.
 double& get_number(ArmDesign& design, std::size_t which) {
-  JointDrive& joint = design.joints[which / 5];
-  const std::size_t k = which % 5;
-  return k < 3 ? joint.gains[k] : k == 3 ? joint.limits.min_n_m : joint.limits.max_n_m;
+  const std::size_t gains = design.joints.front().gains.size();
+  JointDrive& joint = design.joints[which / (gains + 2)];
+  const std::size_t k = which % (gains + 2);
+  return k < gains ? joint.gains[k] : k == gains ? joint.limits.min_n_m : joint.limits.max_n_m;
 }
-constexpr std::size_t kNumbers = 20;
+std::size_t count_numbers(const ArmDesign& design) {
+  return design.joints.size() * (design.joints.front().gains.size() + 2);
+}
+constexpr std::size_t kNumbers = 20;  // of a PID design
 
 // Along the numbers themselves, so that derivatives are those by their logarithms, as errors are:
 // m for a factor of e.
 std::vector<ArmDesign> make_directions(const ArmDesign& design) {
   ArmDesign zero = design;
-  for (std::size_t i = 0; i < kNumbers; ++i) {
+  const std::size_t numbers = count_numbers(design);
+  for (std::size_t i = 0; i < numbers; ++i) {
     get_number(zero, i) = 0;
   }
-  std::vector<ArmDesign> directions(kNumbers, zero);
-  for (std::size_t i = 0; i < kNumbers; ++i) {
+  std::vector<ArmDesign> directions(numbers, zero);
+  for (std::size_t i = 0; i < numbers; ++i) {
     ArmDesign copy = design;
     get_number(directions[i], i) = get_number(copy, i);
   }
@@ -48,8 +54,9 @@ std::vector<double> calc_errors(const PhysicsEngine& engine, const TrackingSetup
 std::vector<double> calc_differences(const PhysicsEngine& engine, const TrackingSetup& setup,
                                      const ArmDesign& design, const TargetTable& targets,
                                      double step) {
-  std::vector<double> differences(targets.segments.size() * kNumbers);
-  for (std::size_t i = 0; i < kNumbers; ++i) {
+  const std::size_t numbers = count_numbers(design);
+  std::vector<double> differences(targets.segments.size() * numbers);
+  for (std::size_t i = 0; i < numbers; ++i) {
     ArmDesign above = design;
     ArmDesign below = design;
     get_number(above, i) *= 1 + step;
@@ -57,7 +64,7 @@ std::vector<double> calc_differences(const PhysicsEngine& engine, const Tracking
     const auto high = calc_errors(engine, setup, above, targets);
     const auto low = calc_errors(engine, setup, below, targets);
     for (std::size_t k = 0; k < high.size(); ++k) {
-      differences[k * kNumbers + i] = (high[k] - low[k]) / (2 * step);
+      differences[k * numbers + i] = (high[k] - low[k]) / (2 * step);
     }
   }
   return differences;
@@ -84,18 +91,19 @@ Comparison compare(const TrackingSetup& setup, const ArmDesign& design,
   const TrackingJob job = make_job(design, targets);
   const auto exact = engine->calc_derivatives(setup, job, make_directions(design));
   const auto errors = calc_errors(*engine, setup, design, targets);
+  const std::size_t numbers = count_numbers(design);
   EXPECT_EQ(exact.size(), wide.size());
   Comparison comparison;
   for (std::size_t i = 0; i < exact.size(); ++i) {
     // Errors are rounded to some 1e-15 m, which differences divide by the step: 1e-10 m. The scale
     // never falls below the errors themselves, 1e-4 m at least.
-    const double scale = std::max(std::abs(wide[i]), errors[i / kNumbers]);
+    const double scale = std::max(std::abs(wide[i]), errors[i / numbers]);
     if (std::abs(wide[i] - narrow[i]) > kAgreement * scale) {
       ++comparison.rough;
       continue;
     }
     ++comparison.smooth;
-    comparison.with_influence += std::abs(wide[i]) > 0.01 * errors[i / kNumbers] ? 1 : 0;
+    comparison.with_influence += std::abs(wide[i]) > 0.01 * errors[i / numbers] ? 1 : 0;
     const double limit = (4 * narrow[i] - wide[i]) / 3;
     comparison.worst = std::max(comparison.worst, std::abs(exact[i] - limit) / scale);
   }
@@ -161,6 +169,29 @@ TEST_F(Derivatives, DoNotDependOnHowManyAreAskedForAtOnce) {
   }
   EXPECT_EQ(make_engine("articulated")->calc_derivatives(setup_, job, directions), all);
   EXPECT_TRUE(engine->calc_derivatives(setup_, job, {}).empty());
+}
+
+// Of every controller, made of the first design, with what starts at zero or at a kink moved off.
+TEST_F(Derivatives, AreTheLimitsOfDifferencesForEveryController) {
+  for (const ControllerRow& row : controller_table()) {
+    TrackingTask task = make_e6_task();
+    task.feed_forward = row.feed_forward;
+    const TrackingSetup setup(load_irb4600(), task);
+    const TargetTable targets = setup.make_targets(make_case(7, 8));
+    ArmDesign design = convert_design(kTableA1, row.name, task.control_period_s);
+    for (JointDrive& joint : design.joints) {
+      for (std::size_t k = 0; k < joint.gains.size(); ++k) {
+        joint.gains[k] += row.gains[k].any_sign ? 0.01 * std::cos(static_cast<double>(k))
+                          : row.gains[k].range > 0 ? -0.1
+                                                   : 0;
+      }
+    }
+    SCOPED_TRACE(row.name);
+    const Comparison comparison = compare(setup, design, targets);
+    EXPECT_LT(comparison.worst, 3 * kAgreement);
+    EXPECT_GT(comparison.smooth, 3 * comparison.rough);
+    EXPECT_GT(comparison.with_influence, comparison.smooth / 20);
+  }
 }
 
 // Points that were not reached count as the cut-off error, which depends on nothing.

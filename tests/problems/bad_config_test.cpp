@@ -10,11 +10,11 @@ namespace armwright {
 namespace {
 
 constexpr const char* kTopKeys =
-    "title, description, kind, schedule, sets, run, published, robot, physics, task, workspace, "
-    "objective, training, variables, sweep";
+    "title, description, kind, schedule, sets, run, published, robot, physics, task, control, "
+    "workspace, objective, training, variables, sweep";
 constexpr const char* kTaskKeys =
     "signal, speed_m_per_s, distance_limit_m, trapezoid_acceleration_m_per_s2, rest_s, "
-    "control_period_s, count_first_point, ik_bug, load_kg";
+    "count_first_point, ik_bug, load_kg";
 constexpr const char* kDesigns =
     "table-a1, table-a10, table-a11, table-a5, table-a6, table-a7, table-a8, table-a9";
 
@@ -57,8 +57,6 @@ const std::vector<Mistake> kTask = {
      "3: task.trapezoid_acceleration_m_per_s2 is 0; it must be a finite number > 0 and <= "
      "1000000"},
     {"[task]\nrest_s = -0.5", "3: task.rest_s is -0.5; it must be a finite number >= 0 and <= 60"},
-    {"[task]\ncontrol_period_s = 1",
-     "3: task.control_period_s is 1; it must be a finite number >= 1e-05 and <= 0.1"},
     {"[task]\ncount_first_point = 1",
      "3: task.count_first_point is 1, an integer; it must be true or false"},
     {"[task]\nik_bug = 'yes'", "3: task.ik_bug is 'yes', a string; it must be true or false"},
@@ -66,16 +64,28 @@ const std::vector<Mistake> kTask = {
      "3: task.load_kg is -20; it must be a finite number >= 0 and <= 1000"},
     {"task = 3", "2: task is 3, an integer; it must be a table, [task]"},
     // Each allowed for itself, but together 1e8 periods and more.
-    {"[task]\nspeed_m_per_s = 0.01\ncontrol_period_s = 1e-5",
-     "4: task.control_period_s is 1e-5; a test case would take 2.42e+08 control periods, possible "
-     "are 1e+07; raise control_period_s or speed_m_per_s, or lower distance_limit_m, rest_s or "
-     "workspace.points"},
+    {"[task]\nspeed_m_per_s = 0.01\n[control]\nperiod_s = 1e-5",
+     "5: control.period_s is 1e-5; a test case would take 2.42e+08 control periods, possible are "
+     "1e+07; raise control.period_s or task.speed_m_per_s, or lower task.distance_limit_m, "
+     "task.rest_s or workspace.points"},
     {"[task]\nspeed_m_per_s = 0.01\ndistance_limit_m = 100",
      "3: task.speed_m_per_s is 0.01; a test case would take 2.5e+07 control periods, possible are "
-     "1e+07; raise control_period_s or speed_m_per_s, or lower distance_limit_m, rest_s or "
-     "workspace.points"},
+     "1e+07; raise control.period_s or task.speed_m_per_s, or lower task.distance_limit_m, "
+     "task.rest_s or workspace.points"},
 };
 INSTANTIATE_TEST_SUITE_P(Task, BadSection, testing::ValuesIn(kTask));
+
+const std::vector<Mistake> kControl = {
+    {"[control]\nperiod_s = 1",
+     "3: control.period_s is 1; it must be a finite number >= 1e-05 and <= 0.1"},
+    {"[control]\ncontroller = 'pidd'", "3: unknown control.controller 'pidd'; did you mean 'pid'? "
+                                       "Valid: " +
+                                           join(controller_names(), ", ")},
+    {"[control]\nperiod = 0.01",
+     "3: unknown key control.period; did you mean 'control.period_s'? Valid here: period_s, "
+     "controller"},
+};
+INSTANTIATE_TEST_SUITE_P(Control, BadSection, testing::ValuesIn(kControl));
 
 const std::vector<Mistake> kPhysics = {
     {"[physics]\nengine = 'odee'",

@@ -141,9 +141,11 @@ std::vector<Outcome> simulate_lanes(SimdLevel level, const std::vector<LaneCase>
     return AlignedNumbers<T>(static_cast<std::size_t>(packs) * lanes);
   };
   const auto model = make_packs(calc_model_packs(joints));
-  const auto state = make_packs(calc_state_packs(joints));
+  const ControllerRow& pid = find_controller("pid");
+  const int control_packs = calc_control_packs(joints, pid.states, 3);
+  const auto state = make_packs(calc_state_packs(joints) + control_packs);
   const auto scratch = make_packs(calc_scratch_packs(joints));
-  const auto final_state = make_packs(calc_state_packs(joints));
+  const auto final_state = make_packs(calc_state_packs(joints) + control_packs);
   SegmentCall<T> call;
   std::vector<std::uint8_t> flags(n, static_cast<std::uint8_t>(allowed));
   std::vector<const double*> targets;
@@ -165,9 +167,11 @@ std::vector<Outcome> simulate_lanes(SimdLevel level, const std::vector<LaneCase>
       const JointDrive& drive = one.drives[i];
       set(kQ * n + i, one.start[static_cast<Eigen::Index>(i)]);
       set(kIntegrating * n + i, 1);
-      set(kGainP * n + i, drive.gains[0]);
-      set(kGainI * n + i, drive.gains[1]);
-      set(kGainD * n + i, drive.gains[2]);
+      const std::size_t first_gain = static_cast<std::size_t>(calc_state_packs(joints)) +
+                                     static_cast<std::size_t>(pid.states) * n + i;
+      for (std::size_t gain = 0; gain < 3; ++gain) {
+        set(first_gain + gain * n, drive.gains[gain]);
+      }
       set(kEffortMin * n + i, drive.limits.min_n_m);
       set(kEffortMax * n + i, drive.limits.max_n_m);
     }
@@ -184,6 +188,7 @@ std::vector<Outcome> simulate_lanes(SimdLevel level, const std::vector<LaneCase>
   call.flags = flags.data();
   call.model = model.data();
   call.state = state.data();
+  call.control_packs = control_packs;
   call.scratch = scratch.data();
   call.final_state = final_state.data();
   call.steps = time.steps;

@@ -165,7 +165,7 @@ TEST(PidController, RefusesWhatCannotWork) {
 }
 
 TEST(ControllerTable, HasThePidWithItsGains) {
-  EXPECT_THAT(controller_names(), testing::ElementsAre("pid"));
+  EXPECT_EQ(controller_names().front(), "pid");
   const ControllerRow& row = find_controller("pid");
   EXPECT_FALSE(row.summary.empty());
   ASSERT_EQ(row.gains.size(), 3u);
@@ -199,8 +199,8 @@ TEST(ControllerTable, MakesItForTheKindOfJoint) {
 }
 
 TEST(ControllerTable, NamesWhatItDoesNotKnow) {
-  EXPECT_EQ(usage_message([] { find_controller("pi"); }),
-            "unknown controller 'pi'; did you mean 'pid'? Valid: pid");
+  EXPECT_THAT(usage_message([] { find_controller("pidd"); }),
+              testing::StartsWith("unknown controller 'pidd'; did you mean 'pid'? Valid: pid, "));
   const std::array<double, 2> two = {100, 50};
   EXPECT_EQ(usage_message([&] {
               find_controller("pid").make(two, {-1, 1}, JointKind::revolute);

@@ -1,7 +1,6 @@
 #include "sim/articulated/articulated_engine.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 
 #include "sim/articulated/derivatives.hpp"
 #include "sim/articulated/lane_block.hpp"
@@ -39,9 +38,6 @@ bool have_same_shape(const ChainModel& a, const ChainModel& b) {
 // Error{usage} as from every engine where the design's numbers make no controller.
 void check_design(const ArmDesign& design, const RobotModel& robot) {
   const ControllerRow& row = find_controller(design.controller);
-  if (row.name != "pid") {
-    throw std::logic_error("the lanes know no controller but pid");
-  }
   for (std::size_t i = 0; i < design.joints.size(); ++i) {
     row.make(design.joints[i].gains, design.joints[i].limits, robot.joints[i].kind);
   }
@@ -55,8 +51,9 @@ class ArticulatedEngine final : public PhysicsEngine {
   std::vector<TrackingResult> simulate(const TrackingSetup& setup,
                                        std::span<const TrackingJob> jobs) const override {
     std::vector<TrackingResult> results(jobs.size());
-    // Jobs of one timeline, of arms of one shape, and of perturbed plants or not, each: these
-    // decide which code is run, which must not depend on the company that a job is in.
+    // Jobs of one timeline, of arms of one shape, under one controller, and of perturbed plants or
+    // not, each: these decide which code is run, which must not depend on the company that a job is
+    // in.
     std::vector<std::vector<std::size_t>> alike;
     const auto get_chain = [&](std::size_t job) -> const ChainModel& {
       return jobs[job].choose_setup(setup).chain();
@@ -65,6 +62,7 @@ class ArticulatedEngine final : public PhysicsEngine {
       if (i == 0 || jobs[i].design != jobs[i - 1].design) {
         check_design(*jobs[i].design, setup.robot());
       }
+      check_feed_forward(jobs[i]);
       if (apply_unreachable(jobs[i], results[i])) {
         continue;
       }
@@ -72,6 +70,7 @@ class ArticulatedEngine final : public PhysicsEngine {
       const auto found = std::find_if(alike.begin(), alike.end(), [&](const auto& group) {
         return have_same_timeline(*jobs[group.front()].targets, targets) &&
                have_same_shape(get_chain(group.front()), get_chain(i)) &&
+               jobs[group.front()].design->controller == jobs[i].design->controller &&
                (jobs[group.front()].variation == nullptr) == (jobs[i].variation == nullptr);
       });
       (found == alike.end() ? alike.emplace_back() : *found).push_back(i);
@@ -95,6 +94,7 @@ class ArticulatedEngine final : public PhysicsEngine {
     if (!job.targets->unreachable.empty()) {
       return {};
     }
+    check_feed_forward(job);
     return calc_point_derivatives(setup, job, directions);
   }
 

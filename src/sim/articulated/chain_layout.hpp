@@ -33,14 +33,10 @@ enum ModelSingle : int { kGravityX, kGravityZ, kTipX, kTipY, kTipZ, kModelSingle
 enum StateField : int {
   kQ,
   kRate,
-  kIntegral,  // of the error over time
-  kPreviousError,
   kIntegrating,  // 1, or 0 after a clamped step
-  kGainP,
-  kGainI,
-  kGainD,
   kEffortMin,
   kEffortMax,
+  kEffort,  // written where the controller is not the PID
   kPeakEffort,
   kSquaredEffort,  // summed over the steps
   kClampedSteps,
@@ -64,6 +60,11 @@ enum PlantSingle : int {
   kQuantum,
   kPlantSingles
 };
+// After those the control packs: what the controller keeps of each joint from step to step, then
+// its gains, as many fields of `joints` packs as it has.
+constexpr int calc_control_packs(int joints, int states, int gains) {
+  return joints * (states + gains);
+}
 
 // Of a recorded step, after the joints' angles and efforts: where the tip is.
 inline constexpr int kRecordSingles = 3;
@@ -109,8 +110,11 @@ struct SegmentCall {
   bool tilted_gravity = false;          // gravity is not parallel to the first axis
   bool prismatic = false;               // any joint is
   const T* model = nullptr;             // calc_model_packs() packs
-  T* state = nullptr;                   // calc_state_packs() packs
-  T* scratch = nullptr;                 // calc_scratch_packs() packs, for chains of any length
+  T* state = nullptr;                   // calc_state_packs() packs and the control packs
+  int control_packs = 0;
+  // The efforts of one step for all joints; null: the PID, which the kernels have inlined.
+  void (*control)(SegmentCall& call, int step) = nullptr;
+  T* scratch = nullptr;  // calc_scratch_packs() packs, for chains of any length
   int steps = 0;
   int window_start = 0;
   int substeps = 1;
@@ -118,6 +122,7 @@ struct SegmentCall {
   bool first_step_of_case = false;
   bool shared_targets = false;             // one table for all lanes: that of lane 0
   const double* const* targets = nullptr;  // a lane: angles of the segment's first step, row a step
+  const double* const* feed_forward = nullptr;  // likewise, if the controller asks for it
   // Of perturbed plants; else null.
   const T* plant = nullptr;    // calc_plant_packs() packs
   T* past = nullptr;           // a ring of `past_length` x joints packs: angles after substeps

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "sim/articulated/dual.hpp"
 #include "sim/articulated/number_simulation.hpp"
@@ -26,9 +27,11 @@ std::vector<NumberDrive<Number>> make_drives(const ArmDesign& design,
       }
       return Number(get(design.joints[joint]), *reinterpret_cast<const Slopes*>(slopes));
     };
-    drives.push_back({make([](const JointDrive& drive) { return drive.gains[0]; }),
-                      make([](const JointDrive& drive) { return drive.gains[1]; }),
-                      make([](const JointDrive& drive) { return drive.gains[2]; }),
+    std::vector<Number> gains;
+    for (std::size_t gain = 0; gain < design.joints[joint].gains.size(); ++gain) {
+      gains.push_back(make([gain](const JointDrive& drive) { return drive.gains[gain]; }));
+    }
+    drives.push_back({std::move(gains),
                       make([](const JointDrive& drive) { return drive.limits.min_n_m; }),
                       make([](const JointDrive& drive) { return drive.limits.max_n_m; })});
   }

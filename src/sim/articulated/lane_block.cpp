@@ -24,11 +24,15 @@ LaneBlock<T>::LaneBlock(const TrackingSetup& setup, const Kernel<T>& kernel,
     : setup_(setup),
       kernel_(kernel),
       jobs_(jobs),
+      controller_(find_controller(jobs[chosen.front()].design->controller)),
       results_(results),
       joints_(setup.robot().joint_count()) {
   const int n = static_cast<int>(joints_);
   const std::size_t groups = (chosen.size() + lanes() - 1) / lanes();
-  state_size_ = calc_size(calc_state_packs(n), kernel.lanes);
+  control_packs_ =
+      calc_control_packs(n, controller_.states, static_cast<int>(controller_.gains.size()));
+  kernel.find_control(controller_.law, control_);
+  state_size_ = calc_size(calc_state_packs(n) + control_packs_, kernel.lanes);
   model_size_ = calc_size(calc_model_packs(n), kernel.lanes);
   record_size_ = calc_size(calc_record_packs(n), kernel.lanes);
   const ChainModel& chain = setup_of(chosen.front()).chain();
@@ -95,11 +99,14 @@ void LaneBlock<T>::place(std::size_t slot, std::size_t job) {
     const JointDrive& drive = one.design->joints[i];
     set(kQ, one.targets->start_rad[i]);
     set(kIntegrating, 1);
-    set(kGainP, drive.gains[0]);
-    set(kGainI, drive.gains[1]);
-    set(kGainD, drive.gains[2]);
     set(kEffortMin, drive.limits.min_n_m);
     set(kEffortMax, drive.limits.max_n_m);
+    const std::size_t first_gain =
+        static_cast<std::size_t>(calc_state_packs(static_cast<int>(joints_))) +
+        static_cast<std::size_t>(controller_.states) * joints_ + i;
+    for (std::size_t gain = 0; gain < controller_.gains.size(); ++gain) {
+      numbers[(first_gain + gain * joints_) * lanes()] = static_cast<T>(drive.gains[gain]);
+    }
   }
   numbers[(kStateFields * joints_ + kCutoffSquared) * lanes()] =
       static_cast<T>(one.cutoff_m * one.cutoff_m);
@@ -218,11 +225,15 @@ void LaneBlock<T>::run_segment(std::size_t group, std::size_t segment) {
   }
   const Segment& timeline = jobs_[any].targets->segments[segment];
   const double* targets[kMaxLanes];
+  const double* feed_forward[kMaxLanes];
   call.shared_targets = true;
   for (std::size_t lane = 0; lane < lanes(); ++lane) {
     const std::size_t job = slots_[first + lane] == kFree ? any : slots_[first + lane];
     targets[lane] = jobs_[job].targets->angles(timeline.first_step).data();
     call.shared_targets &= targets[lane] == targets[0];
+    if (controller_.feed_forward != FeedForward::none) {
+      feed_forward[lane] = jobs_[job].targets->feed_forward(timeline.first_step).data();
+    }
   }
   call.joints = static_cast<int>(joints_);
   call.flags = flags_.data();
@@ -230,6 +241,8 @@ void LaneBlock<T>::run_segment(std::size_t group, std::size_t segment) {
   call.prismatic = prismatic_;
   call.model = model(first);
   call.state = state(first);
+  call.control_packs = control_packs_;
+  call.control = control_;
   call.scratch = scratch_.data();
   call.steps = timeline.steps;
   call.window_start = timeline.window_start;
@@ -238,6 +251,7 @@ void LaneBlock<T>::run_segment(std::size_t group, std::size_t segment) {
   call.first_step_of_case = segment == 0;
   set_plant(first, timeline, call);
   call.targets = targets;
+  call.feed_forward = feed_forward;
   call.final_state = final_state_.data();
   for (std::size_t lane = 0; recording_ && lane < lanes(); ++lane) {
     const std::size_t job = slots_[first + lane];

@@ -34,8 +34,8 @@ class AlignedNumbers {
 template <class T>
 class LaneBlock {
  public:
-  // `chosen`: the jobs' numbers, all of one timeline and of arms of one shape, and either all with
-  // a PlantVariation or none; results[i] is that of jobs[i].
+  // `chosen`: the jobs' numbers, all of one timeline, of arms of one shape and under one
+  // controller, and either all with a PlantVariation or none; results[i] is that of jobs[i].
   LaneBlock(const TrackingSetup& setup, const Kernel<T>& kernel, std::span<const TrackingJob> jobs,
             std::span<const std::size_t> chosen, std::vector<TrackingResult>& results);
   void run();
@@ -65,6 +65,7 @@ class LaneBlock {
   const TrackingSetup& setup_;
   const Kernel<T>& kernel_;
   std::span<const TrackingJob> jobs_;
+  const ControllerRow& controller_;
   std::vector<TrackingResult>& results_;
   std::size_t joints_;
   std::vector<std::size_t> slots_;  // the job in each lane, or kFree
@@ -73,6 +74,8 @@ class LaneBlock {
   bool prismatic_ = false;
   bool tilted_gravity_ = false;
   std::vector<std::uint8_t> flags_;
+  void (*control_)(SegmentCall<T>& call, int step) = nullptr;
+  int control_packs_ = 0;
   std::size_t state_size_, model_size_,
       record_size_;  // numbers of a pack of lanes (records: a step)
   bool perturbed_ = false;

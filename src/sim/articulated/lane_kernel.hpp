@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "sim/articulated/chain_dynamics.hpp"
+#include "sim/articulated/lane_control.hpp"
 #include "sim/articulated/lane_plant.hpp"
 
 namespace armwright::articulated {
@@ -86,18 +87,6 @@ class SegmentKernel {
     }
   }
 
-  ARMWRIGHT_INLINE V load_target(int step, int joint) const {
-    const int index = step * joints() + joint;
-    if (call_.shared_targets) {
-      return V(static_cast<T>(call_.targets[0][index]));
-    }
-    alignas(64) T lanes[V::kLanes];
-    for (int lane = 0; lane < V::kLanes; ++lane) {
-      lanes[lane] = static_cast<T>(call_.targets[lane][index]);
-    }
-    return *reinterpret_cast<const V*>(lanes);
-  }
-
   ARMWRIGHT_INLINE void control(int step) {
     if (!call_.shared_targets) {  // more streams than the machine follows by itself
       const int ahead = step + kStepsAhead < call_.steps ? step + kStepsAhead : call_.steps - 1;
@@ -105,28 +94,16 @@ class SegmentKernel {
         __builtin_prefetch(call_.targets[lane] + ahead * joints());
       }
     }
+    if (call_.control != nullptr) [[unlikely]] {
+      call_.control(call_, step);
+      chain_.for_up([&](auto i) __attribute__((always_inline)) { effort_[i] = field(kEffort)[i]; });
+      return;
+    }
     const V period_s = call_.period_s;
-    const V frequency = T{1} / call_.period_s;
+    const V frequency_hz = T{1} / call_.period_s;
     chain_.for_up([&](auto i) __attribute__((always_inline)) {
-      V error = load_target(step, i) - field(kQ)[i];
-      if (!chain_.slides(i)) {
-        error = lanes::wrap(error);
-      }
-      if (call_.first_step_of_case && step == 0) {
-        field(kPreviousError)[i] = error;  // the first step's derivative is zero
-      }
-      const V integral = field(kIntegral)[i] + field(kIntegrating)[i] * (error * period_s);
-      const V change = (error - field(kPreviousError)[i]) * frequency;
-      const V wanted =
-          field(kGainP)[i] * error + field(kGainI)[i] * integral + field(kGainD)[i] * change;
-      const V low = field(kEffortMin)[i];
-      const V high = field(kEffortMax)[i];
-      // NaN stays NaN: min and max yield their second argument where they cannot compare.
-      const V effort = min(high, max(low, wanted));
-      effort_[i] = effort;
-      field(kIntegral)[i] = integral;
-      field(kPreviousError)[i] = error;
-      field(kIntegrating)[i] = select(wanted < low, V(0), select(wanted > high, V(0), V(1)));
+      effort_[i] = control_joint<V, controllers::Pid>(call_, state_, joints(), i, !chain_.slides(i),
+                                                      step, period_s, frequency_hz);
     });
   }
 
@@ -193,7 +170,7 @@ class SegmentKernel {
   __attribute__((noinline)) static bool retire(SegmentCall<T>& call, std::uint32_t which,
                                                LaneEvent event, int step) {
     constexpr int kLanes = V::kLanes;
-    const int packs = calc_state_packs(call.joints);
+    const int packs = calc_state_packs(call.joints) + call.control_packs;
     for (int lane = 0; lane < kLanes; ++lane) {
       if ((which >> lane & 1) == 0) {
         continue;

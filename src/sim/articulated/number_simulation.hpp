@@ -14,7 +14,8 @@ namespace armwright::articulated {
 // What a design says of a joint.
 template <class Number>
 struct NumberDrive {
-  Number p, i, d, effort_min, effort_max;
+  std::vector<Number> gains;  // in the order of the controller's GainSpecs
+  Number effort_min, effort_max;
 };
 
 // The squares of the errors of the job's points, in m^2, as far as they are reached without a
@@ -28,7 +29,10 @@ std::vector<Number> calc_squared_errors(const TrackingSetup& setup, const Tracki
   const ChainModel& chain = own.chain();
   const int n = chain.joints();
   const std::vector<V> model(chain.numbers().begin(), chain.numbers().end());
-  std::vector<V> state(static_cast<std::size_t>(calc_state_packs(n)), V(0));
+  const ControllerRow& controller = find_controller(job.design->controller);
+  const int control_packs =
+      calc_control_packs(n, controller.states, static_cast<int>(controller.gains.size()));
+  std::vector<V> state(static_cast<std::size_t>(calc_state_packs(n) + control_packs), V(0));
   std::vector<V> final_state = state;
   std::vector<V> scratch(static_cast<std::size_t>(calc_scratch_packs(n)), V(0));
   for (int i = 0; i < n; ++i) {
@@ -38,11 +42,13 @@ std::vector<Number> calc_squared_errors(const TrackingSetup& setup, const Tracki
     const NumberDrive<Number>& drive = drives[static_cast<std::size_t>(i)];
     set(kQ, V(job.targets->start_rad[static_cast<std::size_t>(i)]));
     set(kIntegrating, V(1));
-    set(kGainP, V(drive.p));
-    set(kGainI, V(drive.i));
-    set(kGainD, V(drive.d));
     set(kEffortMin, V(drive.effort_min));
     set(kEffortMax, V(drive.effort_max));
+    int place = calc_state_packs(n) + controller.states * n + i;
+    for (const Number& gain : drive.gains) {
+      state[static_cast<std::size_t>(place)] = V(gain);
+      place += n;
+    }
   }
   V* const singles = state.data() + kStateFields * n;
   singles[kCutoffSquared] = V(job.cutoff_m * job.cutoff_m);
@@ -54,6 +60,9 @@ std::vector<Number> calc_squared_errors(const TrackingSetup& setup, const Tracki
       singles[kPointX + axis] = V(point[axis]);
     }
     const double* const targets = job.targets->angles(segment.first_step).data();
+    const double* const feed_forward = controller.feed_forward == FeedForward::none
+                                           ? nullptr
+                                           : job.targets->feed_forward(segment.first_step).data();
     SegmentCall<V> call;
     call.joints = n;
     call.flags = chain.flags().data();
@@ -61,6 +70,8 @@ std::vector<Number> calc_squared_errors(const TrackingSetup& setup, const Tracki
     call.prismatic = chain.prismatic();
     call.model = model.data();
     call.state = state.data();
+    call.control_packs = control_packs;
+    call.control = find_control<V>(controller.law, controllers::AllLaws{});
     call.scratch = scratch.data();
     call.steps = segment.steps;
     call.window_start = segment.window_start;
@@ -69,6 +80,7 @@ std::vector<Number> calc_squared_errors(const TrackingSetup& setup, const Tracki
     call.first_step_of_case = &segment == &job.targets->segments.front();
     call.shared_targets = true;
     call.targets = &targets;
+    call.feed_forward = &feed_forward;
     call.alive = 1;
     call.final_state = final_state.data();
     // Fewer kernels than for simulations: every one takes long to compile.

@@ -1,0 +1,82 @@
+// A small network for every joint, as the thesis's class diagram has it beside the PID:
+//   z_j = tanh(wj_error e / 0.1 + wj_integral S / 0.1 + wj_rate r / 1 + wj_bias),  j = 1, 2, 3,
+//   u = L (v_bias + v1 z_1 + v2 z_2 + v3 z_3),
+// with e (rad), S = sum(e) h (rad s) and r = (e - e_prev) / h (rad/s) in these units, and L the
+// larger effort limit. Weights have either sign. It starts as a PID that saturates softly: unit j
+// sees one input alone, with v_j = 4, so that where u = L each tanh is at 1/4, where it is straight
+// to 2 %.
+//
+// The example of a controller that is added with one file (docs/controllers.md).
+#pragma once
+
+#include "sim/controllers/law.hpp"
+#include "sim/controllers/tanh.hpp"
+
+namespace armwright::controllers {
+
+struct Neural {
+  static constexpr const char* kName = "neural";
+  static constexpr const char* kSummary =
+      "a network of three tanh units a joint, which sees the error, its integral and its rate";
+  static constexpr const char* kFormula =
+      "u = L (v_bias + sum_j vj tanh(wj_error e / 0.1 rad + wj_integral sum(e) h / 0.1 rad s + "
+      "wj_rate (e - e_prev) / h / 1 rad/s + wj_bias)), L the larger effort limit";
+  static constexpr double kWeights = 2;  // how far from its start a weight may go
+  static constexpr double kOutputs = 4;
+  static constexpr Gain kGains[] = {
+      {"w1_error", "w1_error", "1", kWeights, true},
+      {"w1_integral", "w1_integral", "1", kWeights, true},
+      {"w1_rate", "w1_rate", "1", kWeights, true},
+      {"w1_bias", "w1_bias", "1", kWeights, true},
+      {"w2_error", "w2_error", "1", kWeights, true},
+      {"w2_integral", "w2_integral", "1", kWeights, true},
+      {"w2_rate", "w2_rate", "1", kWeights, true},
+      {"w2_bias", "w2_bias", "1", kWeights, true},
+      {"w3_error", "w3_error", "1", kWeights, true},
+      {"w3_integral", "w3_integral", "1", kWeights, true},
+      {"w3_rate", "w3_rate", "1", kWeights, true},
+      {"w3_bias", "w3_bias", "1", kWeights, true},
+      {"v1", "v1", "1", kOutputs, true},
+      {"v2", "v2", "1", kOutputs, true},
+      {"v3", "v3", "1", kOutputs, true},
+      {"v_bias", "v_bias", "1", 1, true}};
+  static constexpr int kStates = 2;
+  static constexpr FeedForward kFeedForward = FeedForward::none;
+
+  static constexpr int kUnits = 3;
+  static constexpr double kError = 0.1;     // rad
+  static constexpr double kIntegral = 0.1;  // rad s
+  static constexpr double kRate = 1;        // rad/s
+
+  static void convert(const PidStart& pid, double* own) {
+    constexpr double kFirstOutput = 4;
+    for (int k = 0; k < kGainCount<Neural>; ++k) {
+      own[k] = 0;
+    }
+    const double scaled[] = {pid.p * kError, pid.i * kIntegral, pid.d * kRate};
+    for (int unit = 0; unit < kUnits; ++unit) {
+      own[4 * unit + unit] = scaled[unit] / (kFirstOutput * pid.effort_limit);
+      own[4 * kUnits + unit] = kFirstOutput;
+    }
+  }
+
+  template <class In, class V = typename In::Value>
+  ARMWRIGHT_INLINE static V calc(const In& in, Fields<V> gain, Fields<V> state) {
+    using T = typename V::Scalar;
+    state[0] = in.integrate(state[0], in.error);
+    const V error = in.error * V(static_cast<T>(1 / kError));
+    const V integral = state[0] * V(static_cast<T>(1 / kIntegral));
+    const V rate =
+        in.calc_rate(take_change(in, in.error, state[1])) * V(static_cast<T>(1 / kRate));
+    V sum = gain[5 * kUnits];
+    for (int unit = 0; unit < kUnits; ++unit) {
+      const int first = 4 * unit;
+      const V z = gain[first] * error + gain[first + 1] * integral + gain[first + 2] * rate +
+                  gain[first + 3];
+      sum += gain[4 * kUnits + unit] * calc_tanh(z);
+    }
+    return in.effort_limit * sum;
+  }
+};
+
+}  // namespace armwright::controllers

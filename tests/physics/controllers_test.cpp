@@ -1,0 +1,174 @@
+// Whole simulations under every controller: engines beside each other, lanes beside neighbours, and
+// feed-forward on an arm that is what the model says.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "base/expect_error.hpp"
+#include "sim/articulated/articulated_arm.hpp"
+#include "sim/design_conversion.hpp"
+#include "sim/kinematics.hpp"
+#include "sim/tracking_loop.hpp"
+#include "tracking_arms.hpp"
+
+namespace armwright::physics_test {
+namespace {
+
+class UnderController : public testing::TestWithParam<std::string> {
+ protected:
+  static TrackingTask make_task() {
+    TrackingTask task = make_e6_task();
+    task.feed_forward = find_controller(GetParam()).feed_forward;
+    return task;
+  }
+  static std::vector<TrackingResult> simulate(const std::string& engine,
+                                              const TrackingSetup& setup,
+                                              const std::vector<TrackingJob>& jobs) {
+    return make_engine(engine)->simulate(setup, jobs);
+  }
+  TrackingSetup setup_{load_irb4600(), make_task()};
+  ArmDesign design_ = convert_design(kTableA1, GetParam(), 0.01);
+};
+
+// Maximal coordinates with corrected joints against joint coordinates: a percent, as for the
+// published designs.
+TEST_P(UnderController, EnginesAgree) {
+  std::vector<TargetTable> targets;
+  std::vector<TrackingJob> jobs;
+  for (const int number : {1, 2, 3}) {
+    targets.push_back(setup_.make_targets(make_case(static_cast<std::uint64_t>(number), 12)));
+  }
+  for (const TargetTable& table : targets) {
+    jobs.push_back(make_job(design_, table));
+  }
+  const auto articulated = simulate("articulated", setup_, jobs);
+  for (const std::string& engine : engine_names()) {
+    const auto other = simulate(engine, setup_, jobs);
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+      ASSERT_EQ(other[i].status, SimulationStatus::ok) << engine << ": " << other[i].reason;
+      EXPECT_NEAR(other[i].mean_error_m / articulated[i].mean_error_m, 1, 0.01) << engine;
+      EXPECT_LT(other[i].mean_error_m, 0.1) << engine;
+    }
+  }
+}
+
+// The engine's single lane and a loop around one arm: the same equations in another order.
+TEST_P(UnderController, LanesAgreeWithALoop) {
+  const TargetTable targets = setup_.make_targets(make_case(4, 8));
+  const TrackingJob job = make_job(design_, targets);
+  ArticulatedArm arm(setup_.robot(), targets.start_rad, setup_.task().physics);
+  const TrackingResult alone = TrackingLoop(setup_, job).run(arm);
+  for (const std::string& level : supported_simd_names()) {
+    const TrackingResult lane =
+        make_engine("articulated", {.simd = parse_simd(level)})->simulate(setup_, {&job, 1}).front();
+    for (std::size_t k = 0; k < alone.point_error_m.size(); ++k) {
+      EXPECT_NEAR(lane.point_error_m[k], alone.point_error_m[k], 1e-9) << level;
+    }
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_NEAR(lane.rms_effort_n_m[i] / alone.rms_effort_n_m[i], 1, 1e-6) << level;
+      EXPECT_NEAR(lane.saturated_share[i], alone.saturated_share[i], 1e-3) << level;
+    }
+  }
+}
+
+// Under other controllers, with other gains, on other cases, cut off and diverging: the lanes beside
+// it change nothing of a job.
+TEST_P(UnderController, NeighboursDoNotMatter) {
+  TrackingTask task = make_task();
+  task.feed_forward = FeedForward::inverse_dynamics;  // serves those that want none, too
+  if (find_controller(GetParam()).feed_forward == FeedForward::gravity) {
+    task.feed_forward = FeedForward::gravity;
+  }
+  const TrackingSetup setup(load_irb4600(), task);
+  std::vector<TargetTable> targets;
+  for (std::uint64_t number = 0; number < 5; ++number) {
+    targets.push_back(setup.make_targets(make_case(number, 6)));
+  }
+  const ArmDesign limp = convert_design(kLimp, GetParam(), 0.01);
+  const ArmDesign others[] = {kTableA1, convert_design(kTableA1, "pi2d", 0.01), limp, kExploding,
+                              design_};
+  std::vector<TrackingJob> jobs;
+  for (std::size_t i = 0; i < 60; ++i) {
+    jobs.push_back(make_job(i % 3 == 0 ? design_ : others[i % 5], targets[i % 5],
+                            i % 2 == 0 ? 0.3 : kNever));
+  }
+  const auto engine = make_engine("articulated");
+  const auto together = engine->simulate(setup, jobs);
+  for (std::size_t i = 0; i < jobs.size(); i += 3) {
+    expect_identical(together[i], engine->simulate(setup, {&jobs[i], 1}).front());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Table, UnderController, testing::ValuesIn(controller_names()),
+                         [](const auto& test) { return test.param; });
+
+// No feedback at all: with one step a period the model's efforts take the model to its targets,
+// exactly; what rounding leaves grows on an arm without feedback, over some hundred steps by a few
+// powers of ten.
+TEST(FeedForwardTable, TakesTheModelToItsTargets) {
+  TrackingTask task = make_e6_task();
+  task.feed_forward = FeedForward::inverse_dynamics;
+  const TrackingSetup setup(load_irb4600(), task);
+  const TargetTable targets = setup.make_targets(make_case(3, 4));
+  ASSERT_EQ(targets.feed_forward_n_m.size(), targets.angles_rad.size());
+  ArticulatedArm arm(setup.robot(), targets.start_rad, task.physics);
+  std::vector<double> q(4);
+  double moved = 0;
+  for (int step = 0; step < targets.steps; ++step) {
+    arm.step(targets.feed_forward(step), task.control_period_s);
+    arm.read_angles(q);
+    for (std::size_t i = 0; i < 4; ++i) {
+      ASSERT_NEAR(calc_displacement(JointKind::revolute, targets.angles(step)[i], q[i]), 0, 1e-7)
+          << "step " << step;
+      moved = std::max(moved, std::abs(q[i] - targets.start_rad[i]));
+    }
+  }
+  EXPECT_GT(moved, 0.3);
+}
+
+TEST(FeedForwardTable, HoldsTheModelWhereItsTargetIs) {
+  TrackingTask task = make_e6_task();
+  task.feed_forward = FeedForward::gravity;
+  const TrackingSetup setup(load_irb4600(), task);
+  const TargetTable targets = setup.make_targets(make_case(3, 4));
+  // The posture before step k is the target at the end of step k - 1.
+  for (const int step : {0, 20, 60, 130}) {
+    const auto posture =
+        step == 0 ? std::span<const double>(targets.start_rad) : targets.angles(step - 1);
+    ArticulatedArm arm(setup.robot(), posture, task.physics);
+    const Eigen::VectorXd bias = arm.calc_bias();
+    arm.step(targets.feed_forward(step), 0.01);
+    std::vector<double> rates(4);
+    arm.read_rates(rates);
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_NEAR(rates[i], 0, 1e-12);
+      EXPECT_NEAR(targets.feed_forward(step)[i], bias[static_cast<Eigen::Index>(i)], 1e-9);
+    }
+  }
+  EXPECT_GT(std::abs(targets.feed_forward(0)[1]), 100);
+}
+
+TEST(FeedForwardTable, IsThereOnlyWhereItIsAskedForAndCounted) {
+  const TrackingSetup without(load_irb4600(), make_e6_task());
+  TrackingTask task = make_e6_task();
+  task.feed_forward = FeedForward::gravity;
+  const TrackingSetup with(load_irb4600(), task);
+  const TargetTable plain = without.make_targets(make_case(3, 4));
+  const TargetTable full = with.make_targets(make_case(3, 4));
+  EXPECT_TRUE(plain.feed_forward_n_m.empty());
+  EXPECT_EQ(plain.angles_rad, full.angles_rad);
+  EXPECT_EQ(full.size_bytes(), plain.size_bytes() + full.angles_rad.size() * sizeof(double));
+  const ArmDesign design = convert_design(kTableA1, "pid_gravity", 0.01);
+  const TrackingJob job = make_job(design, plain);
+  for (const std::string& engine : engine_names()) {
+    EXPECT_THAT(usage_error_of([&] { make_engine(engine)->simulate(without, {&job, 1}); }),
+                testing::HasSubstr("controller 'pid_gravity' needs feed-forward efforts"));
+  }
+}
+
+}  // namespace
+}  // namespace armwright::physics_test
