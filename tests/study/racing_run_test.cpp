@@ -112,10 +112,11 @@ TEST_F(RunTest, RacesDoNotDependOnThreadsOrInterruptions) {
     for (bool done = false; !done; ++starts) {
       ASSERT_LT(starts, 100);
       StopSignal stop;
-      StoppingObserver observer(stop, 60);  // a race of 8 on 6 cases costs less
+      // More than a race costs, or it would begin anew for ever.
+      StoppingObserver observer(stop, optimizer == "random" ? 250 : 60);
       done = execute_run({plan, temporary_ / (one + "-pieces"), 2, {}}, stop, observer).has_value();
     }
-    EXPECT_GT(starts, 3) << "the run was never interrupted";
+    EXPECT_GT(starts, 1) << "the run was never interrupted";
     expect_same_evaluations(read(one), read(one + "-pieces"));
     EXPECT_EQ(read_result(one), read_result(one + "-pieces"));
   }
