@@ -8,6 +8,7 @@
 #include "base/text.hpp"
 #include "cli/format.hpp"
 #include "cli/session.hpp"
+#include "sim/designed_arm.hpp"
 
 namespace armwright {
 namespace {
@@ -163,6 +164,11 @@ std::string format_design(const DesignFile& design, const Style& style) {
   }
   columns.push_back({"min [N m]"});
   columns.push_back({"max [N m]"});
+  const bool stretched = is_stretched(design.design);
+  if (stretched) {
+    columns.push_back({"length"});
+    columns.push_back({"section"});
+  }
   Table table(std::move(columns));
   for (std::size_t i = 0; i < design.design.joints.size(); ++i) {
     const JointDrive& joint = design.design.joints[i];
@@ -172,9 +178,17 @@ std::string format_design(const DesignFile& design, const Style& style) {
     }
     cells.push_back(format_significant(joint.limits.min_n_m, 6));
     cells.push_back(format_significant(joint.limits.max_n_m, 6));
+    if (stretched) {
+      cells.push_back(format_significant(joint.length_scale, 4));
+      cells.push_back(format_significant(joint.section_scale, 4));
+    }
     table.add_row(std::move(cells));
   }
-  return table.format(style, 2);
+  std::string text = table.format(style, 2);
+  if (design.design.speed_m_per_s) {
+    text += fmt::format("  speed {} m/s\n", format_significant(*design.design.speed_m_per_s, 4));
+  }
+  return text;
 }
 
 std::string describe_no_winner(const RunResult& result) {

@@ -171,6 +171,12 @@ int run_sweep(const SweepOptions& options, Session& session) {
   require_tracking(base);
   const ChosenSweep sweep = choose_sweep(options, base);
   const DesignFile design = load_design(sweep.design);
+  if (design.design.speed_m_per_s && sweep.parameter == "task.speed_m_per_s") {
+    throw Error(ErrorKind::usage,
+                fmt::format("the design {} has a speed of its own, whatever task.speed_m_per_s is; "
+                            "take speed_m_per_s out of its file to sweep it",
+                            sanitize(sweep.design)));
+  }
   // All values are validated before the first is simulated.
   std::vector<LoadedProblem> problems;
   for (const std::string& value : sweep.values) {

@@ -10,8 +10,9 @@ namespace armwright {
 namespace {
 
 constexpr const char* kTopKeys =
-    "title, description, kind, schedule, sets, run, published, robot, physics, task, control, "
-    "workspace, objective, training, variables, sweep";
+    "title, description, kind, schedule, racing, sets, run, published, robot, physics, task, "
+    "control, "
+    "workspace, objective, training, variables, motors, perturbation, sweep";
 constexpr const char* kTaskKeys =
     "signal, speed_m_per_s, distance_limit_m, trapezoid_acceleration_m_per_s2, rest_s, "
     "count_first_point, ik_bug, load_kg";
@@ -78,9 +79,10 @@ INSTANTIATE_TEST_SUITE_P(Task, BadSection, testing::ValuesIn(kTask));
 const std::vector<Mistake> kControl = {
     {"[control]\nperiod_s = 1",
      "3: control.period_s is 1; it must be a finite number >= 1e-05 and <= 0.1"},
-    {"[control]\ncontroller = 'pidd'", "3: unknown control.controller 'pidd'; did you mean 'pid'? "
-                                       "Valid: " +
-                                           join(controller_names(), ", ")},
+    {"[control]\ncontroller = 'pidd'",
+     "3: unknown control.controller 'pidd'; did you mean 'pid'? "
+     "Valid: " +
+         join(controller_names(), ", ")},
     {"[control]\nperiod = 0.01",
      "3: unknown key control.period; did you mean 'control.period_s'? Valid here: period_s, "
      "controller"},
@@ -138,7 +140,8 @@ const std::vector<Mistake> kObjective = {
     // A limit that this kind would not keep.
     {"[objective]\nkind = 'error_and_torque'\nerror_limit_m = 0.1",
      "4: unknown key objective.error_limit_m. Valid here: kind, logarithm, torque_weight, "
-     "error_scale_m, torque_scale_n_m"},
+     "error_scale_m, torque_scale_n_m, statistic, cvar_share, failure_penalty_m, energy_weight, "
+     "energy_scale_j, duration_weight, duration_scale_s"},
     {"[objective]\nkind = 'error_with_torque_limit'\ntotal_torque_limit_n_m = 851",
      "4: objective.total_torque_limit_n_m is 851; no design within the bounds has less than 852 N "
      "m; raise it or variables.bounds_factor"},
@@ -219,7 +222,8 @@ const std::vector<Mistake> kVariables = {
      "3: variables.bounds_factor is 1; it must be a finite number > 1 and <= 1000000000"},
     {"[variables]\nbound_factor = 10",
      "3: unknown key variables.bound_factor; did you mean 'variables.bounds_factor'? Valid here: "
-     "start, bounds_factor, optimize, joint"},
+     "start, bounds_factor, optimize, joint, task, length_bounds_factor, section_bounds_factor, "
+     "speed_bounds_factor"},
     {"[[variables.joint]]\nname = 'joint_9'\noptimize = ['p']",
      "3: unknown variables.joint[0].name 'joint_9'; did you mean 'joint_1'? Valid: joint_1, "
      "joint_2, joint_3, joint_4"},

@@ -10,9 +10,10 @@ namespace armwright {
 namespace {
 
 constexpr const char* kProblems =
-    "constrained, ellipsoid, initial, initial-0cm, initial-45cm, initial-90cm, q1-complex, "
-    "q1-ramp, q1-step, q1-trapezoid, q1-triangular, q2-e1, q2-e2, q2-e3, q2-e4, q2-e5, q2-e6, "
-    "q2-error, q2-pareto, q2-torque, q3-load, q4-speed, rastrigin, rosenbrock, sphere";
+    "co-design, constrained, ellipsoid, initial, initial-0cm, initial-45cm, initial-90cm, "
+    "q1-complex, q1-ramp, q1-step, q1-trapezoid, q1-triangular, q2-e1, q2-e2, q2-e3, q2-e4, q2-e5, "
+    "q2-e6, q2-energy, q2-error, q2-pareto, q2-torque, q3-load, q4-speed, rastrigin, rosenbrock, "
+    "sphere";
 constexpr const char* kDesigns =
     "table-a1, table-a10, table-a11, table-a5, table-a6, table-a7, table-a8, table-a9";
 constexpr const char* kOrPath = " (or the path of a .toml file)";
@@ -215,7 +216,7 @@ TEST(BadDesign, EveryMistakeInItsFileHasItsPlace) {
   EXPECT_EQ(folder.refusal_of_design(make_joint() + "effort_n_m = 5\n"),
             "d.toml:7: unknown key joint[0].effort_n_m; did you mean 'joint[0].effort_min_n_m'? "
             "Valid here: name, p_n_m_per_rad, i_n_m_per_rad_s, d_n_m_s_per_rad, effort_min_n_m, "
-            "effort_max_n_m");
+            "effort_max_n_m, length_scale, section_scale");
   EXPECT_EQ(folder.refusal_of_design(make_joint() + "[[published]]\nlabel = 'x'\n"),
             "d.toml:7: published[0].problem is missing; it must be a string");
   EXPECT_EQ(folder.refusal_of_design(

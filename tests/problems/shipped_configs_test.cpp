@@ -207,7 +207,7 @@ TEST(ShippedProblems, AreAllKnownHere) {
   for (const Experiment& experiment : make_experiments()) {
     expected.push_back(experiment.name);
   }
-  expected.insert(expected.end(), {"q2-pareto", "q2-torque", "q2-error"});
+  expected.insert(expected.end(), {"q2-pareto", "q2-torque", "q2-error", "q2-energy", "co-design"});
   EXPECT_THAT(list_configs("problems"), testing::UnorderedElementsAreArray(expected));
   std::vector<std::string> listed;
   for (const ProblemTitle& problem : list_problems()) {
@@ -216,6 +216,29 @@ TEST(ShippedProblems, AreAllKnownHere) {
     listed.push_back(problem.name);
   }
   EXPECT_EQ(listed, list_configs("problems"));
+}
+
+// Error and torque as E6 counts them, and the energy besides; the same for the start of the
+// co-design, whose motors are all that differs there.
+TEST(ShippedProblems, EnergyAndMotorsComeOnTopOfE6) {
+  const CaseBlock block{CaseRole::training, "train/3", {0, 1}};
+  double before_j = 0;
+  for (const std::string name : {"q2-energy", "co-design"}) {
+    const LoadedProblem loaded =
+        load_problem(name, std::vector<std::string>{"physics.engine=articulated"});
+    const TrackingProblem& problem = *loaded.tracking;
+    const Evaluation evaluation =
+        problem.evaluate(problem.make_vector(problem.config().start), block);
+    EXPECT_EQ(evaluation.status, EvaluationStatus::ok) << evaluation.reason;
+    const double error_m = evaluation.metrics.at(0);
+    const double torque_n_m = evaluation.metrics.at(1);
+    const double energy_j = evaluation.metrics.at(3);
+    EXPECT_NEAR(evaluation.objectives.at(0),
+                error_m / 0.0058 + torque_n_m / 963686 + 0.05 * energy_j / 30555, 1e-12);
+    EXPECT_GT(energy_j, before_j) << "heavier arms need more";
+    before_j = energy_j;
+  }
+  EXPECT_THAT(load_problem("co-design").problem->description().variables, SizeIs(28));
 }
 
 TEST(ShippedProblems, TheParetoProblemIsE6WithoutWeights) {

@@ -204,7 +204,8 @@ TEST(TrackingStatistics, TheSquaresOfAllResidualsAddUp) {
 TEST(ObjectiveTable, RefusesWhatCannotBeMeant) {
   const ProblemFolder folder;
   EXPECT_EQ(folder.refusal_of_base_with("[objective]\nstatistic = 'median'"),
-            "p.toml:3: unknown objective.statistic 'median'; valid: mean, worst, cvar, "
+            "p.toml:3: unknown objective.statistic 'median'; did you mean 'mean'? Valid: mean, "
+            "worst, cvar, "
             "mean_with_failures");
   EXPECT_EQ(folder.refusal_of_base_with("[objective]\nstatistic = 'cvar'\ncvar_share = 0"),
             "p.toml:4: objective.cvar_share is 0; it must be a finite number > 0 and <= 1");
