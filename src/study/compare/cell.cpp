@@ -30,21 +30,20 @@ std::vector<double> get_start(const ProblemDescription& problem) {
   return start;
 }
 
-void set_winner(const ProblemDescription& problem, const RunResult& result, double tolerance,
-                CellOutcome& outcome) {
-  outcome.value = kInfinity;
-  outcome.validation_value = kInfinity;
-  if (!result.winner) {
-    return;
-  }
-  const JudgedCandidate& winner = result.judged[*result.winner];
+bool needs_choices(const StudyPlan& plan) {
+  return plan.judge_along || !plan.targets.empty();
+}
+
+void set_winner(const LoadedProblem& loaded, const JudgedCandidate& winner, const Evaluation& test,
+                double tolerance, CellOutcome& outcome) {
+  const ProblemDescription& problem = loaded.problem->description();
   outcome.x = winner.candidate.x;
   outcome.validation_value = calc_test_value(problem, winner.validation, tolerance);
-  outcome.value = calc_test_value(problem, result.test, tolerance);
-  outcome.violation = calc_violation(result.test.constraint_values);
-  outcome.errors = result.test_summary;
-  outcome.objectives = result.test.objectives;
-  outcome.metrics = result.test.metrics;
+  outcome.value = calc_test_value(problem, test, tolerance);
+  outcome.violation = calc_violation(test.constraint_values);
+  outcome.errors = summarize_errors(loaded, test);
+  outcome.objectives = test.objectives;
+  outcome.metrics = test.metrics;
 }
 
 // A design on the test set, or that there is none.
@@ -54,7 +53,7 @@ CurvePoint make_point(const RunPlan& run, std::int64_t budget, const Evaluation*
     return {budget, kInfinity, static_cast<std::uint64_t>(run.problem.sets.test_cases)};
   }
   return {budget, calc_test_value(run.problem.problem->description(), *evaluation, tolerance),
-          count_failures(run.problem, *evaluation)};
+          summarize_errors(run.problem, *evaluation).failures};
 }
 
 // What the designs along the way are worth on the test set. False if stopped.
@@ -80,7 +79,7 @@ bool test_progress(const StudyPlan& plan, const Cell& cell, const RunPlan& run,
     designs.push_back(result.judged[i].candidate.x);
   }
   std::vector<Choice> choices;
-  if (!plan.targets.empty()) {
+  if (needs_choices(plan)) {
     auto made = make_choices(run, journal.training, result, checkpoints, where.jobs, stop);
     if (!made) {
       return false;
@@ -88,8 +87,8 @@ bool test_progress(const StudyPlan& plan, const Cell& cell, const RunPlan& run,
     choices = std::move(*made);
   }
   for (const Choice& choice : choices) {
-    if (choice.x) {
-      designs.push_back(*choice.x);
+    if (choice.chosen) {
+      designs.push_back(choice.chosen->candidate.x);
     }
   }
   DesignBench bench(run.problem, CaseRole::test, where.jobs, stop);
@@ -99,15 +98,19 @@ bool test_progress(const StudyPlan& plan, const Cell& cell, const RunPlan& run,
   const double tolerance = plan.constraint_tolerance;
   const Evaluation& start = bench.get(designs.front());
   outcome.start_value = calc_test_value(problem, start, tolerance);
-  outcome.start_failures = count_failures(run.problem, start);
+  outcome.start_failures = summarize_errors(run.problem, start).failures;
   for (const std::int64_t budget : checkpoints) {
     const Incumbent* incumbent = find_incumbent(budget);
     outcome.curve.push_back(make_point(
         run, budget, incumbent == nullptr ? nullptr : &bench.get(incumbent->x), tolerance));
   }
   for (const Choice& choice : choices) {
-    outcome.choices.push_back(
-        make_point(run, choice.budget, choice.x ? &bench.get(*choice.x) : nullptr, tolerance));
+    const Evaluation* evaluation = choice.chosen ? &bench.get(choice.chosen->candidate.x) : nullptr;
+    outcome.choices.push_back(make_point(run, choice.budget, evaluation, tolerance));
+  }
+  if (plan.judge_along && !choices.empty() && choices.back().chosen) {
+    const JudgedCandidate& winner = *choices.back().chosen;
+    set_winner(run.problem, winner, bench.get(winner.candidate.x), tolerance, outcome);
   }
   for (std::size_t i = 0; has_front && i < result.judged.size(); ++i) {
     const Evaluation& evaluation = bench.get(result.judged[i].candidate.x);
@@ -146,7 +149,7 @@ std::vector<CurvePoint> points_from_json(const json& list) {
 // Whether the cell holds what is asked of it.
 bool answers(const StudyPlan& plan, const CellOutcome& outcome) {
   const bool has_failures = outcome.start_failures.has_value();
-  return (plan.targets.empty() || !outcome.choices.empty()) &&
+  return (!needs_choices(plan) || !outcome.choices.empty()) &&
          (plan.value != StudyValue::failures || has_failures);
 }
 
@@ -263,8 +266,11 @@ std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
   outcome.cases = result->counts.cases;
   outcome.clipped = result->counts.clipped;
   outcome.failed_evaluations = result->counts.failed;
-  set_winner(request.plan.problem.problem->description(), *result, plan.constraint_tolerance,
-             outcome);
+  outcome.value = outcome.validation_value = kInfinity;
+  if (result->winner) {
+    set_winner(request.plan.problem, result->judged[*result->winner], result->test,
+               plan.constraint_tolerance, outcome);
+  }
   if (!test_progress(plan, cell, request.plan, *result, where, stop, outcome)) {
     return std::nullopt;
   }

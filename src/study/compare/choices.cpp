@@ -82,9 +82,9 @@ const Evaluation* DesignBench::find(std::span<const double> x) const {
   return nullptr;
 }
 
-std::uint64_t count_failures(const LoadedProblem& problem, const Evaluation& evaluation) {
+ErrorSummary summarize_errors(const LoadedProblem& problem, const Evaluation& evaluation) {
   const double limit = problem.tracking ? kFailureError_m : std::numeric_limits<double>::infinity();
-  return summarize(evaluation.case_errors, limit).failures;
+  return summarize(evaluation.case_errors, limit);
 }
 
 std::optional<std::vector<Choice>> make_choices(const RunPlan& run,
@@ -106,15 +106,17 @@ std::optional<std::vector<Choice>> make_choices(const RunPlan& run,
   std::vector<Choice> choices;
   for (std::size_t i = 0; i < budgets.size(); ++i) {
     std::vector<JudgedCandidate> judged;
+    if (i > 0 && choices.back().chosen) {
+      judged.push_back(*choices.back().chosen);
+    }
     for (const Candidate& candidate : selections[i]) {
       judged.push_back({candidate, bench.get(candidate.x)});
     }
-    const auto winner = Judge::choose_winner(run.problem.problem->description(), judged);
-    choices.push_back({budgets[i], winner ? std::optional(judged[*winner].candidate.x)
-                                          : std::optional<std::vector<double>>()});
-  }
-  if (!choices.empty() && result.winner) {
-    choices.back().x = result.judged[*result.winner].candidate.x;
+    if (i + 1 == budgets.size() && result.winner) {
+      judged.push_back(result.judged[*result.winner]);
+    }
+    const auto best = Judge::choose_winner(run.problem.problem->description(), judged);
+    choices.push_back({budgets[i], best ? std::optional(judged[*best]) : std::nullopt});
   }
   return choices;
 }

@@ -1,7 +1,7 @@
-// What somebody who stops a run early has of it: at each of some budgets the design that would have
-// been the run's winner, had it ended there, chosen on the validation set among what had been found
-// by then. No incumbent, which is good in training, and not the best so far on the test set, which
-// would be a selection there.
+// What somebody who stops a run early has of it: at each of some budgets the design that is best on
+// the validation set of all that were candidates for the win then or at the budgets before. No
+// incumbent, which is good in training, and not the best so far on the test set, which would be a
+// selection there.
 #pragma once
 
 #include <cstdint>
@@ -37,18 +37,18 @@ class DesignBench {
   std::vector<Evaluation> evaluations_;
 };
 
-// How many cases of an evaluation fail: an error above kFailureError_m, or none at all; of a
-// function those without number.
-std::uint64_t count_failures(const LoadedProblem& problem, const Evaluation& evaluation);
+// A case of an arm fails with an error above kFailureError_m, one of a function never.
+ErrorSummary summarize_errors(const LoadedProblem& problem, const Evaluation& evaluation);
 
 struct Choice {
   std::int64_t budget = 0;
-  std::optional<std::vector<double>> x;  // nothing before there is a candidate
+  // Nothing before there is a candidate.
+  std::optional<JudgedCandidate> chosen;
 };
 
-// `training` is the run's journal, in order; `budgets` increase. At the end of the run it is the
-// run's own winner. Before, what an optimizer recommends without evaluating it, which no journal
-// holds, is not among the candidates. Nothing if stopped.
+// `training` is the run's journal, in order; `budgets` increase. The last choice has the run's own
+// winner among its candidates; before, what an optimizer recommends without evaluating it, which no
+// journal holds, is not. Nothing if stopped.
 std::optional<std::vector<Choice>> make_choices(const RunPlan& run,
                                                 std::span<const EvaluationRecord> training,
                                                 const RunResult& result,

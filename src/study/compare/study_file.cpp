@@ -99,6 +99,7 @@ RawPlan read_file_plan(const ConfigTable& table, StudyPlan& plan) {
       static_cast<int>(selection.get_integer_or("last", plan.selection.last, 1, kMostSelected));
   plan.selection.best =
       static_cast<int>(selection.get_integer_or("best", plan.selection.best, 0, kMostSelected));
+  plan.judge_along = selection.get_bool_or("along", false);
   read_targets(table, plan);
   raw.schedule = read_schedule_key(table);
   raw.settings = get_strings_or_none(table, "set");

@@ -184,7 +184,7 @@ StudyCost calc_cost(const StudyPlan& plan) {
     cost.cells += runs;
     cost.training += runs * plan.budget;
     // With targets also the winners that there would have been at the checkpoints.
-    const bool has_targets = !plan.targets.empty();
+    const bool has_targets = !plan.targets.empty() || plan.judge_along;
     cost.validation += runs * judged * (has_targets ? tested : 1) * sets.validation_cases;
     // The winner, the start, the incumbents at the checkpoints, a front.
     cost.test +=

@@ -69,6 +69,10 @@ struct StudyPlan {
   // Width of the box that starts are drawn from, as a share of the bounds' box.
   double start_spread = 0.1;
   Selection selection{.last = 5, .best = 5};
+  // The winner is the best, on the validation set, of the candidates at all checkpoints, not only
+  // of those at the end: whoever trains on few cases for long ends with designs that hold on no
+  // others.
+  bool judge_along = false;
   // By how much a constraint may be violated on validation and test sets, which nobody trained on,
   // for a design to count as feasible there.
   double constraint_tolerance = 0;

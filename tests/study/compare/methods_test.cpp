@@ -83,9 +83,8 @@ name = "ga"
 label = "ga, one fresh case"
 options = ["population=6"]
 schedule = "fresh:1"
-[[target]]
-label = "holds"
-failures = 0
+[selection]
+along = true
 )");
   const StudyResult result = study(plan, "study");
   EXPECT_TRUE(result.missing.empty());
@@ -94,7 +93,8 @@ failures = 0
     EXPECT_EQ(cell.errors.cases, 6u);
     EXPECT_EQ(cell.curve.back().budget, 100);
     EXPECT_EQ(cell.value, static_cast<double>(cell.errors.failures) / 6);
-    EXPECT_EQ(cell.choices.back().failures, cell.errors.failures);
+    EXPECT_EQ(cell.choices.back().failures,
+              cell.errors.failures);  // judged along, it is the winner
   }
   EXPECT_EQ(result.problems[0].quantity.name, "share of failed test cases");
   EXPECT_THAT(describe_verdict(plan, result),
