@@ -78,11 +78,11 @@ void check_length(const ConfigTable& table, const ConfigTable& control, const Tr
     periods += (duration_s + task.rest_s) / task.control_period_s;
   }
   if (periods > kMostPeriods) {
-    const std::string must =
-        fmt::format("a test case would take {:.3g} control periods, possible are {:.3g}; raise "
-                    "control.period_s or task.speed_m_per_s, or lower task.distance_limit_m, "
-                    "task.rest_s or workspace.points",
-                    periods, kMostPeriods);
+    const std::string must = fmt::format(
+        "a test case would take {:.3g} control periods, possible are {:.3g}; raise "
+        "control.period_s or task.speed_m_per_s, or lower task.distance_limit_m, "
+        "task.rest_s or workspace.points",
+        periods, kMostPeriods);
     if (control.has("period_s")) {
       control.refuse("period_s", must);
     }

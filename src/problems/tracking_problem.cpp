@@ -193,11 +193,11 @@ ArmDesign TrackingProblem::make_design(std::span<const double> x) const {
 std::vector<double> TrackingProblem::make_vector(const ArmDesign& design) const {
   check_design(design);
   if (design.controller != config_.start.controller) {
-    throw Error(ErrorKind::usage,
-                fmt::format("the design is for controller '{}', the variables of problem {} are "
-                            "those of '{}'; set control.controller to '{}'",
-                            design.controller, config_.name, config_.start.controller,
-                            design.controller));
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("the design is for controller '{}', the variables of problem {} are "
+                    "those of '{}'; set control.controller to '{}'",
+                    design.controller, config_.name, config_.start.controller, design.controller));
   }
   ArmDesign copy = design;
   std::vector<double> x;

@@ -84,7 +84,7 @@ struct TargetTable {
   int steps = 0;
   std::vector<double> start_rad;  // posture at rest at the beginning, one angle a joint
   std::vector<double>
-      angles_rad;           // steps x joints, row-major: target at the end of each control period
+      angles_rad;  // steps x joints, row-major: target at the end of each control period
   // As many, of the arm of the setup that made the table; empty if the task asks for none.
   std::vector<double> feed_forward_n_m;
   std::string unreachable;  // not empty: no simulation is possible, and why

@@ -78,9 +78,10 @@ INSTANTIATE_TEST_SUITE_P(Task, BadSection, testing::ValuesIn(kTask));
 const std::vector<Mistake> kControl = {
     {"[control]\nperiod_s = 1",
      "3: control.period_s is 1; it must be a finite number >= 1e-05 and <= 0.1"},
-    {"[control]\ncontroller = 'pidd'", "3: unknown control.controller 'pidd'; did you mean 'pid'? "
-                                       "Valid: " +
-                                           join(controller_names(), ", ")},
+    {"[control]\ncontroller = 'pidd'",
+     "3: unknown control.controller 'pidd'; did you mean 'pid'? "
+     "Valid: " +
+         join(controller_names(), ", ")},
     {"[control]\nperiod = 0.01",
      "3: unknown key control.period; did you mean 'control.period_s'? Valid here: period_s, "
      "controller"},

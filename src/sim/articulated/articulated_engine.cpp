@@ -51,8 +51,8 @@ class ArticulatedEngine final : public PhysicsEngine {
   std::vector<TrackingResult> simulate(const TrackingSetup& setup,
                                        std::span<const TrackingJob> jobs) const override {
     std::vector<TrackingResult> results(jobs.size());
-    // Jobs of one timeline, of arms of one shape and under one controller each: these decide which code is run, which
-    // must not depend on the company that a job is in.
+    // Jobs of one timeline, of arms of one shape and under one controller each: these decide which
+    // code is run, which must not depend on the company that a job is in.
     std::vector<std::vector<std::size_t>> alike;
     const auto get_chain = [&](std::size_t job) -> const ChainModel& {
       return jobs[job].choose_setup(setup).chain();

@@ -52,8 +52,8 @@ enum StateSingle : int {
   kStateSingles
 };
 
-// After those the control packs: what the controller keeps of each joint from step to step, then its
-// gains, as many fields of `joints` packs as it has.
+// After those the control packs: what the controller keeps of each joint from step to step, then
+// its gains, as many fields of `joints` packs as it has.
 constexpr int calc_control_packs(int joints, int states, int gains) {
   return joints * (states + gains);
 }
@@ -103,7 +103,7 @@ struct SegmentCall {
   int control_packs = 0;
   // The efforts of one step for all joints; null: the PID, which the kernels have inlined.
   void (*control)(SegmentCall& call, int step) = nullptr;
-  T* scratch = nullptr;                 // calc_scratch_packs() packs, for chains of any length
+  T* scratch = nullptr;  // calc_scratch_packs() packs, for chains of any length
   int steps = 0;
   int window_start = 0;
   int substeps = 1;
@@ -112,8 +112,8 @@ struct SegmentCall {
   bool shared_targets = false;             // one table for all lanes: that of lane 0
   const double* const* targets = nullptr;  // a lane: angles of the segment's first step, row a step
   const double* const* feed_forward = nullptr;  // likewise, if the controller asks for it
-  T* records = nullptr;                    // calc_record_packs() a step, or null
-  std::uint32_t alive = 0;                 // one bit a lane; in and out
+  T* records = nullptr;                         // calc_record_packs() a step, or null
+  std::uint32_t alive = 0;                      // one bit a lane; in and out
   // Out, for lanes that ended here: how, in which step, and the state as it was then.
   LaneEvent event[kMaxLanes] = {};
   int event_step[kMaxLanes] = {};

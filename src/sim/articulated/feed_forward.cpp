@@ -52,8 +52,9 @@ void fill_feed_forward(const ChainModel& chain, FeedForward kind, double period_
     for (std::size_t i = 0; i < n; ++i) {
       double effort = dynamics.bias(static_cast<int>(i)).v;
       for (std::size_t j = 0; j < n; ++j) {
-        effort += dynamics.mass(static_cast<int>(std::max(i, j)), static_cast<int>(std::min(i, j))).v *
-                  acceleration[j].v;
+        effort +=
+            dynamics.mass(static_cast<int>(std::max(i, j)), static_cast<int>(std::min(i, j))).v *
+            acceleration[j].v;
       }
       efforts[i] = effort;
     }

@@ -34,8 +34,8 @@ class AlignedNumbers {
 template <class T>
 class LaneBlock {
  public:
-  // `chosen`: the jobs' numbers, all of one timeline, of arms of one shape and under one controller;
-  // results[i] is that of jobs[i].
+  // `chosen`: the jobs' numbers, all of one timeline, of arms of one shape and under one
+  // controller; results[i] is that of jobs[i].
   LaneBlock(const TrackingSetup& setup, const Kernel<T>& kernel, std::span<const TrackingJob> jobs,
             std::span<const std::size_t> chosen, std::vector<TrackingResult>& results);
   void run();

@@ -62,8 +62,8 @@ void control_joints(SegmentCall<typename V::Scalar>& call, int step) {
   const V frequency_hz = typename V::Scalar{1} / call.period_s;
   for (int joint = 0; joint < call.joints; ++joint) {
     const bool turns = (call.flags[joint] & kPrismatic) == 0;
-    state[kEffort * call.joints + joint] = control_joint<V, Law>(
-        call, state, call.joints, joint, turns, step, period_s, frequency_hz);
+    state[kEffort * call.joints + joint] =
+        control_joint<V, Law>(call, state, call.joints, joint, turns, step, period_s, frequency_hz);
   }
 }
 

@@ -90,9 +90,7 @@ class SegmentKernel {
     }
     if (call_.control != nullptr) [[unlikely]] {
       call_.control(call_, step);
-      chain_.for_up([&](auto i) __attribute__((always_inline)) {
-        effort_[i] = field(kEffort)[i];
-      });
+      chain_.for_up([&](auto i) __attribute__((always_inline)) { effort_[i] = field(kEffort)[i]; });
       return;
     }
     const V period_s = call_.period_s;
