@@ -25,9 +25,9 @@ const char* describe(FeedForward feed_forward) {
 
 // What bounds a gain as a decision variable.
 std::string describe_bounds(const GainSpec& gain) {
-  return gain.range == 0 ? "start / bounds_factor to start x bounds_factor"
-                         : fmt::format("start +- {}{}", gain.range,
-                                       gain.any_sign ? "" : ", not below 0");
+  return gain.range == 0
+             ? "start / bounds_factor to start x bounds_factor"
+             : fmt::format("start +- {}{}", gain.range, gain.any_sign ? "" : ", not below 0");
 }
 
 std::string explain(const std::string& name, const Style& style) {
@@ -84,8 +84,7 @@ ListKind make_controller_kind() {
   return {.name = "controllers",
           .list = list,
           .explain = explain,
-          .explain_as_json =
-              [](const std::string& name) { return to_json(find_controller(name)); },
+          .explain_as_json = [](const std::string& name) { return to_json(find_controller(name)); },
           .list_as_json = list_as_json};
 }
 

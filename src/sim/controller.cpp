@@ -154,9 +154,9 @@ double PidController::step(double setpoint, double measurement, double dt_s, dou
                                        first_, saturated_);
   std::array<Number, 3> gains = {gains_[0], gains_[1], gains_[2]};
   std::array<Number, 2> states = {states_[0], states_[1]};
-  const double wanted = controllers::Pid::calc(in, Fields<Number>{gains.data(), 1},
-                                               Fields<Number>{states.data(), 1})
-                            .v;
+  const double wanted =
+      controllers::Pid::calc(in, Fields<Number>{gains.data(), 1}, Fields<Number>{states.data(), 1})
+          .v;
   states_ = {states[0].v, states[1].v};
   first_ = false;
   saturated_ = wanted < limits_.min_n_m || wanted > limits_.max_n_m;

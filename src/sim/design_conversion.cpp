@@ -24,18 +24,18 @@ ArmDesign convert_design(const ArmDesign& design, std::string_view controller, d
   for (std::size_t joint = 0; joint < design.joints.size(); ++joint) {
     const JointDrive& pid = design.joints[joint];
     JointDrive drive{std::vector<double>(row.gains.size()), pid.limits};
-    row.convert({pid.gains.at(0), pid.gains.at(1), pid.gains.at(2), calc_largest_torque_n_m(pid),
-                 period_s},
-                drive.gains.data());
+    row.convert(
+        {pid.gains.at(0), pid.gains.at(1), pid.gains.at(2), calc_largest_torque_n_m(pid), period_s},
+        drive.gains.data());
     for (std::size_t gain = 0; gain < drive.gains.size(); ++gain) {
       if (!std::isfinite(drive.gains[gain])) {
-        throw Error(ErrorKind::usage,
-                    fmt::format("'{}' cannot be made of the start's joint {}, whose PID has p = {}, "
-                                "i = {}, d = {} and an effort limit of {} N m: {} would be {}; "
-                                "name another start",
-                                row.name, joint + 1, pid.gains[0], pid.gains[1], pid.gains[2],
-                                calc_largest_torque_n_m(pid), row.gains[gain].key,
-                                drive.gains[gain]));
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("'{}' cannot be made of the start's joint {}, whose PID has p = {}, "
+                        "i = {}, d = {} and an effort limit of {} N m: {} would be {}; "
+                        "name another start",
+                        row.name, joint + 1, pid.gains[0], pid.gains[1], pid.gains[2],
+                        calc_largest_torque_n_m(pid), row.gains[gain].key, drive.gains[gain]));
       }
     }
     converted.joints.push_back(std::move(drive));

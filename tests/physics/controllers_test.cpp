@@ -25,8 +25,7 @@ class UnderController : public testing::TestWithParam<std::string> {
     task.feed_forward = find_controller(GetParam()).feed_forward;
     return task;
   }
-  static std::vector<TrackingResult> simulate(const std::string& engine,
-                                              const TrackingSetup& setup,
+  static std::vector<TrackingResult> simulate(const std::string& engine, const TrackingSetup& setup,
                                               const std::vector<TrackingJob>& jobs) {
     return make_engine(engine)->simulate(setup, jobs);
   }
@@ -35,7 +34,8 @@ class UnderController : public testing::TestWithParam<std::string> {
 };
 
 // Maximal coordinates with corrected joints against joint coordinates: a percent, as for the
-// published designs.
+// published designs, and 10 um, in which ODE's plant is not the one that efforts in advance are
+// for.
 TEST_P(UnderController, EnginesAgree) {
   std::vector<TargetTable> targets;
   std::vector<TrackingJob> jobs;
@@ -50,7 +50,9 @@ TEST_P(UnderController, EnginesAgree) {
     const auto other = simulate(engine, setup_, jobs);
     for (std::size_t i = 0; i < jobs.size(); ++i) {
       ASSERT_EQ(other[i].status, SimulationStatus::ok) << engine << ": " << other[i].reason;
-      EXPECT_NEAR(other[i].mean_error_m / articulated[i].mean_error_m, 1, 0.01) << engine;
+      EXPECT_NEAR(other[i].mean_error_m, articulated[i].mean_error_m,
+                  0.01 * articulated[i].mean_error_m + 1e-5)
+          << engine;
       EXPECT_LT(other[i].mean_error_m, 0.1) << engine;
     }
   }
@@ -63,8 +65,9 @@ TEST_P(UnderController, LanesAgreeWithALoop) {
   ArticulatedArm arm(setup_.robot(), targets.start_rad, setup_.task().physics);
   const TrackingResult alone = TrackingLoop(setup_, job).run(arm);
   for (const std::string& level : supported_simd_names()) {
-    const TrackingResult lane =
-        make_engine("articulated", {.simd = parse_simd(level)})->simulate(setup_, {&job, 1}).front();
+    const TrackingResult lane = make_engine("articulated", {.simd = parse_simd(level)})
+                                    ->simulate(setup_, {&job, 1})
+                                    .front();
     for (std::size_t k = 0; k < alone.point_error_m.size(); ++k) {
       EXPECT_NEAR(lane.point_error_m[k], alone.point_error_m[k], 1e-9) << level;
     }
@@ -75,8 +78,8 @@ TEST_P(UnderController, LanesAgreeWithALoop) {
   }
 }
 
-// Under other controllers, with other gains, on other cases, cut off and diverging: the lanes beside
-// it change nothing of a job.
+// Under other controllers, with other gains, on other cases, cut off and diverging: the lanes
+// beside it change nothing of a job.
 TEST_P(UnderController, NeighboursDoNotMatter) {
   TrackingTask task = make_task();
   task.feed_forward = FeedForward::inverse_dynamics;  // serves those that want none, too
@@ -93,8 +96,8 @@ TEST_P(UnderController, NeighboursDoNotMatter) {
                               design_};
   std::vector<TrackingJob> jobs;
   for (std::size_t i = 0; i < 60; ++i) {
-    jobs.push_back(make_job(i % 3 == 0 ? design_ : others[i % 5], targets[i % 5],
-                            i % 2 == 0 ? 0.3 : kNever));
+    jobs.push_back(
+        make_job(i % 3 == 0 ? design_ : others[i % 5], targets[i % 5], i % 2 == 0 ? 0.3 : kNever));
   }
   const auto engine = make_engine("articulated");
   const auto together = engine->simulate(setup, jobs);
@@ -165,7 +168,9 @@ TEST(FeedForwardTable, IsThereOnlyWhereItIsAskedForAndCounted) {
   const ArmDesign design = convert_design(kTableA1, "pid_gravity", 0.01);
   const TrackingJob job = make_job(design, plain);
   for (const std::string& engine : engine_names()) {
-    EXPECT_THAT(usage_error_of([&] { make_engine(engine)->simulate(without, {&job, 1}); }),
+    EXPECT_THAT(usage_error_of([&] {
+                  make_engine(engine)->simulate(without, {&job, 1});
+                }),
                 testing::HasSubstr("controller 'pid_gravity' needs feed-forward efforts"));
   }
 }

@@ -43,19 +43,19 @@ void expect_steps(const std::string& name, const std::vector<double>& gains, Eff
 // P 100, I 50, I2 20, D 2, h 0.1.
 TEST(ControlLaws, Pi2dByHand) {
   expect_steps("pi2d", {100, 50, 20, 2}, {-30, 30},
-               {{0.2, 0, 21.04},       // e 0.2, S 0.02, SS 0.002: 20 + 1 + 0.04
-                {0.2, 0, 22.12},       // S 0.04, SS 0.006: 20 + 2 + 0.12
-                {0.2, -0.1, 30},       // e 0.3, S 0.07, SS 0.013: 30 + 3.5 + 0.26 + 2, clamped
-                {0.2, 0, 21.76},       // e 0.2, both kept: 20 + 3.5 + 0.26 - 2
-                {0.2, 0, 24.94}});     // S 0.09, SS 0.022: 20 + 4.5 + 0.44
+               {{0.2, 0, 21.04},    // e 0.2, S 0.02, SS 0.002: 20 + 1 + 0.04
+                {0.2, 0, 22.12},    // S 0.04, SS 0.006: 20 + 2 + 0.12
+                {0.2, -0.1, 30},    // e 0.3, S 0.07, SS 0.013: 30 + 3.5 + 0.26 + 2, clamped
+                {0.2, 0, 21.76},    // e 0.2, both kept: 20 + 3.5 + 0.26 - 2
+                {0.2, 0, 24.94}});  // S 0.09, SS 0.022: 20 + 4.5 + 0.44
 }
 
 // P 100, I 50, D 2, T 0.1, b 0.5, c 0.25, h 0.1.
 TEST(ControlLaws, PidFilteredByHand) {
   expect_steps("pid_filtered", {100, 50, 2, 0.1, 0.5, 0.25}, {-1000, 1000},
-               {{0.2, 0, 21},          // e 0.2, S 0.02, w 0, f 0: 20 + 1
-                {0.4, 0.1, 22},        // e 0.3, S 0.05, w 0.2, f -0.25: 100 x 0.2 + 2.5 - 0.5
-                {0.4, 0.2, 12.25}});   // e 0.2, S 0.07, f -0.625: 100 x 0.1 + 3.5 - 1.25
+               {{0.2, 0, 21},         // e 0.2, S 0.02, w 0, f 0: 20 + 1
+                {0.4, 0.1, 22},       // e 0.3, S 0.05, w 0.2, f -0.25: 100 x 0.2 + 2.5 - 0.5
+                {0.4, 0.2, 12.25}});  // e 0.2, S 0.07, f -0.625: 100 x 0.1 + 3.5 - 1.25
 }
 
 TEST(ControlLaws, PidFilteredIsThePidWithoutFilterAndWeights) {
@@ -81,9 +81,9 @@ TEST(ControlLaws, TheWeighedSetpointDoesNotSeeTheWrap) {
 TEST(ControlLaws, FeedForwardIsAddedByItsShare) {
   for (const char* name : {"pid_gravity", "pid_computed_torque"}) {
     expect_steps(name, {100, 50, 2, 0.5}, {-30, 30},
-                 {{0.2, 0, 24.5, 7},      // 20 + 1 + 0.5 x 7
-                  {0.2, 0, 30, 20},       // 20 + 2 + 10, clamped
-                  {0.2, 0, 15, -14},      // 20 + 2 kept - 7
+                 {{0.2, 0, 24.5, 7},  // 20 + 1 + 0.5 x 7
+                  {0.2, 0, 30, 20},   // 20 + 2 + 10, clamped
+                  {0.2, 0, 15, -14},  // 20 + 2 kept - 7
                   {0.3, 0, 30, 1e9}});
   }
 }
@@ -91,9 +91,9 @@ TEST(ControlLaws, FeedForwardIsAddedByItsShare) {
 // kp 10, kv 5, ki 20, share 0.5, h 0.1.
 TEST(ControlLaws, CascadeByHand) {
   expect_steps("cascade", {10, 5, 20, 0.5}, {-1000, 1000},
-               {{0.2, 0, 14},       // e_v = 10 x 0.2, sum 0.2: 10 + 4
-                {0.3, 0.1, 14.5},   // e_v = 2 + 0.5 x 1 - 1, sum 0.35: 7.5 + 7
-                {0.3, 0.3, -7}});   // e_v = 0 + 0 - 2, sum 0.15: -10 + 3
+               {{0.2, 0, 14},      // e_v = 10 x 0.2, sum 0.2: 10 + 4
+                {0.3, 0.1, 14.5},  // e_v = 2 + 0.5 x 1 - 1, sum 0.35: 7.5 + 7
+                {0.3, 0.3, -7}});  // e_v = 0 + 0 - 2, sum 0.15: -10 + 3
 }
 
 // From where it stands on its target: sum(e_v) h = kp sum(e) h + e.
@@ -120,11 +120,11 @@ TEST(ControlLaws, NeuralByHand) {
   gains[13] = -3;
   gains[14] = 0.25;
   gains[15] = 0.1;
-  const double first = 10 * (0.1 + 2 * std::tanh(0.2) - 3 * std::tanh(0.5 * 0.02) +
-                             0.25 * std::tanh(0.3));
+  const double first =
+      10 * (0.1 + 2 * std::tanh(0.2) - 3 * std::tanh(0.5 * 0.02) + 0.25 * std::tanh(0.3));
   // e 0.03, S 0.005, rate 0.1; L is 10.
-  const double second = 10 * (0.1 + 2 * std::tanh(0.3) - 3 * std::tanh(0.5 * 0.05) +
-                              0.25 * std::tanh(0.3 - 2 * 0.1));
+  const double second =
+      10 * (0.1 + 2 * std::tanh(0.3) - 3 * std::tanh(0.5 * 0.05) + 0.25 * std::tanh(0.3 - 2 * 0.1));
   expect_steps("neural", gains, {-10, 8}, {{0.5, 0.48, first}, {0.5, 0.47, second}});
 }
 
@@ -136,9 +136,9 @@ TEST(ControlLaws, TanhIsWithinItsBounds) {
   for (double x = -25; x < 25; x += 1.0 / 1024) {
     worst = std::max(worst, std::abs(controllers::calc_tanh(Double(x)).v - std::tanh(x)));
     const auto single = static_cast<float>(x);
-    worst_float = std::max(
-        worst_float, std::abs(static_cast<double>(controllers::calc_tanh(Float(single)).v) -
-                              std::tanh(static_cast<double>(single))));
+    worst_float = std::max(worst_float,
+                           std::abs(static_cast<double>(controllers::calc_tanh(Float(single)).v) -
+                                    std::tanh(static_cast<double>(single))));
   }
   EXPECT_LT(worst, 1e-15);
   EXPECT_GT(worst, 0);
@@ -188,7 +188,8 @@ TEST_P(EveryController, StartsWithUsableGains) {
   }
 }
 
-// Small errors that come and go slowly are answered much as by the PID it was made of: to a quarter.
+// Small errors that come and go slowly are answered much as by the PID it was made of: to a
+// quarter.
 TEST_P(EveryController, StartsNearThePid) {
   const auto controller = make();
   PidController pid(270000, 700000, 30000, kLimits);
@@ -198,7 +199,8 @@ TEST_P(EveryController, StartsNearThePid) {
     const double error = 0.02 * std::sin(0.08 * k);
     const double expected = pid.step(0.5, 0.5 - error, 0.01);
     largest = std::max(largest, std::abs(expected));
-    difference = std::max(difference, std::abs(controller->step(0.5, 0.5 - error, 0.01) - expected));
+    difference =
+        std::max(difference, std::abs(controller->step(0.5, 0.5 - error, 0.01) - expected));
   }
   EXPECT_GT(largest, 1000);
   EXPECT_LT(difference, 0.25 * largest);
@@ -278,9 +280,9 @@ TEST_P(EveryController, RefusesWhatCannotWork) {
                                  std::to_string(gains.size() - 1) + ": " + row().gains[0].name));
   gains.pop_back();
   gains.back() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(usage_error_of([&] { row().make(gains, kLimits, JointKind::revolute); }),
-            "controller '" + row().name + "': " + row().gains.back().key +
-                " is nan; it must be finite");
+  EXPECT_EQ(
+      usage_error_of([&] { row().make(gains, kLimits, JointKind::revolute); }),
+      "controller '" + row().name + "': " + row().gains.back().key + " is nan; it must be finite");
 }
 
 // The same law for one number and for lanes. On one lane without fused operations it is the same
@@ -326,8 +328,8 @@ double compare_lanes(const ControllerRow& row, const std::vector<double>& gains,
         number(calc_state_packs(kJoints) + (row.states + k) * kJoints + joint, lane) =
             static_cast<T>(own[static_cast<std::size_t>(k)]);
       }
-      alone.push_back(row.make(own, limits,
-                               flags[joint] == 0 ? JointKind::revolute : JointKind::prismatic));
+      alone.push_back(
+          row.make(own, limits, flags[joint] == 0 ? JointKind::revolute : JointKind::prismatic));
     }
   }
   SegmentCall<T> call;
@@ -355,13 +357,13 @@ double compare_lanes(const ControllerRow& row, const std::vector<double>& gains,
       for (int joint = 0; joint < kJoints; ++joint) {
         const auto index = static_cast<std::size_t>(step * kJoints + joint);
         Controller& one = *alone[lane * kJoints + static_cast<std::size_t>(joint)];
-        const double expected = one.step(static_cast<T>(targets[lane][index]),
-                                         number(kQ * kJoints + joint, lane), call.period_s,
-                                         static_cast<T>(feed_forward[lane][index]));
+        const double expected =
+            one.step(static_cast<T>(targets[lane][index]), number(kQ * kJoints + joint, lane),
+                     call.period_s, static_cast<T>(feed_forward[lane][index]));
         clamped += one.saturated() ? 1 : 0;
-        worst = std::max(worst, std::abs(static_cast<double>(number(kEffort * kJoints + joint,
-                                                                    lane)) -
-                                         expected));
+        worst = std::max(
+            worst,
+            std::abs(static_cast<double>(number(kEffort * kJoints + joint, lane)) - expected));
         EXPECT_EQ(number(kIntegrating * kJoints + joint, lane), one.saturated() ? 0 : 1);
       }
     }

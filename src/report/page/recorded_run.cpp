@@ -55,7 +55,8 @@ std::optional<NamedProblem> find_named_problem(const RecordedRun& run) {
 // What decides how a design is judged, a line each: not the title, nor how it was found.
 std::map<std::string, json> list_settings(const json& resolved) {
   std::map<std::string, json> settings;
-  for (const char* table : {"robot", "task", "control", "physics", "workspace", "objective", "variables"}) {
+  for (const char* table :
+       {"robot", "task", "control", "physics", "workspace", "objective", "variables"}) {
     if (resolved.contains(table) && resolved[table].is_object()) {
       for (const auto& [key, value] : resolved[table].items()) {
         settings[fmt::format("{}.{}", table, key)] = value;

@@ -23,23 +23,22 @@ struct Neural {
       "wj_rate (e - e_prev) / h / 1 rad/s + wj_bias)), L the larger effort limit";
   static constexpr double kWeights = 2;  // how far from its start a weight may go
   static constexpr double kOutputs = 4;
-  static constexpr Gain kGains[] = {
-      {"w1_error", "w1_error", "1", kWeights, true},
-      {"w1_integral", "w1_integral", "1", kWeights, true},
-      {"w1_rate", "w1_rate", "1", kWeights, true},
-      {"w1_bias", "w1_bias", "1", kWeights, true},
-      {"w2_error", "w2_error", "1", kWeights, true},
-      {"w2_integral", "w2_integral", "1", kWeights, true},
-      {"w2_rate", "w2_rate", "1", kWeights, true},
-      {"w2_bias", "w2_bias", "1", kWeights, true},
-      {"w3_error", "w3_error", "1", kWeights, true},
-      {"w3_integral", "w3_integral", "1", kWeights, true},
-      {"w3_rate", "w3_rate", "1", kWeights, true},
-      {"w3_bias", "w3_bias", "1", kWeights, true},
-      {"v1", "v1", "1", kOutputs, true},
-      {"v2", "v2", "1", kOutputs, true},
-      {"v3", "v3", "1", kOutputs, true},
-      {"v_bias", "v_bias", "1", 1, true}};
+  static constexpr Gain kGains[] = {{"w1_error", "w1_error", "1", kWeights, true},
+                                    {"w1_integral", "w1_integral", "1", kWeights, true},
+                                    {"w1_rate", "w1_rate", "1", kWeights, true},
+                                    {"w1_bias", "w1_bias", "1", kWeights, true},
+                                    {"w2_error", "w2_error", "1", kWeights, true},
+                                    {"w2_integral", "w2_integral", "1", kWeights, true},
+                                    {"w2_rate", "w2_rate", "1", kWeights, true},
+                                    {"w2_bias", "w2_bias", "1", kWeights, true},
+                                    {"w3_error", "w3_error", "1", kWeights, true},
+                                    {"w3_integral", "w3_integral", "1", kWeights, true},
+                                    {"w3_rate", "w3_rate", "1", kWeights, true},
+                                    {"w3_bias", "w3_bias", "1", kWeights, true},
+                                    {"v1", "v1", "1", kOutputs, true},
+                                    {"v2", "v2", "1", kOutputs, true},
+                                    {"v3", "v3", "1", kOutputs, true},
+                                    {"v_bias", "v_bias", "1", 1, true}};
   static constexpr int kStates = 2;
   static constexpr FeedForward kFeedForward = FeedForward::none;
 
@@ -66,8 +65,7 @@ struct Neural {
     state[0] = in.integrate(state[0], in.error);
     const V error = in.error * V(static_cast<T>(1 / kError));
     const V integral = state[0] * V(static_cast<T>(1 / kIntegral));
-    const V rate =
-        in.calc_rate(take_change(in, in.error, state[1])) * V(static_cast<T>(1 / kRate));
+    const V rate = in.calc_rate(take_change(in, in.error, state[1])) * V(static_cast<T>(1 / kRate));
     V sum = gain[5 * kUnits];
     for (int unit = 0; unit < kUnits; ++unit) {
       const int first = 4 * unit;

@@ -19,10 +19,12 @@ struct PidFiltered {
   static constexpr const char* kFormula =
       "u = p (e - (1 - b) w) + i sum(e) h + d f, "
       "f = (filter f_prev + e - e_prev - (1 - c) (r - r_prev)) / (filter + h), w = r - r_first";
-  static constexpr Gain kGains[] = {
-      {"p", "p_n_m_per_rad", "N m/rad"},   {"i", "i_n_m_per_rad_s", "N m/(rad s)"},
-      {"d", "d_n_m_s_per_rad", "N m s/rad"}, {"filter", "filter_s", "s"},
-      {"b", "b", "1", 1},                  {"c", "c", "1", 1}};
+  static constexpr Gain kGains[] = {{"p", "p_n_m_per_rad", "N m/rad"},
+                                    {"i", "i_n_m_per_rad_s", "N m/(rad s)"},
+                                    {"d", "d_n_m_s_per_rad", "N m s/rad"},
+                                    {"filter", "filter_s", "s"},
+                                    {"b", "b", "1", 1},
+                                    {"c", "c", "1", 1}};
   static constexpr int kStates = 5;
   static constexpr FeedForward kFeedForward = FeedForward::none;
 

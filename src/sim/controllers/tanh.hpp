@@ -21,9 +21,9 @@ ARMWRIGHT_INLINE V calc_tanh(V x) {
   const V y = min(constant(20), max(constant(-20), x)) * constant(0.125);
   const V square = y * y;
   // In units of 135135, so that squares of squares stay within the range of a float.
-  V n = y * (V(1) + square * (constant(17325.0 / 135135) +
-                              square * (constant(378.0 / 135135) +
-                                        square * constant(1.0 / 135135))));
+  V n =
+      y * (V(1) + square * (constant(17325.0 / 135135) +
+                            square * (constant(378.0 / 135135) + square * constant(1.0 / 135135))));
   V d = V(1) + square * (constant(62370.0 / 135135) +
                          square * (constant(3150.0 / 135135) + square * constant(28.0 / 135135)));
   for (int k = 0; k < 3; ++k) {
