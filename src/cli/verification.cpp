@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <iterator>
 #include <set>
 
 #include "base/text.hpp"
@@ -14,8 +13,6 @@ namespace armwright {
 namespace {
 
 using Rows = std::vector<VerifyRow>;
-
-constexpr double kMassFactors[] = {0.9, 1, 1.1};
 
 // "2", "2 and 5", "2, 5 and 10"
 std::string enumerate(const std::vector<std::string>& words) {
@@ -57,22 +54,39 @@ bool all_hold(std::span<const VerifyRow> rows) {
 }  // namespace
 
 std::vector<VerifySetting> list_verify_settings(const VerifySetting& own,
-                                                std::span<const std::string> engines) {
-  std::vector<std::string> its_first = {own.engine};
-  std::ranges::copy_if(engines, std::back_inserter(its_first),
-                       [&](const std::string& engine) { return engine != own.engine; });
-  const std::set<int> substeps = {own.substeps, 1, 2, 5, 10};
+                                                const VerifyMatrix& matrix) {
+  std::vector<std::string> engines = matrix.engines;
+  std::ranges::stable_partition(engines,
+                                [&](const std::string& engine) { return engine == own.engine; });
   std::vector<VerifySetting> settings = {own};
-  for (const std::string& engine : its_first) {
-    for (const int count : substeps) {
-      for (const double factor : kMassFactors) {
-        if (engine != own.engine || count != own.substeps || factor != own.mass_factor) {
-          settings.push_back({engine, count, factor});
-        }
+  const auto add = [&](const std::string& engine, int substeps, const std::string& plant) {
+    VerifySetting setting{engine, substeps, 1, plant};
+    if (plant == kLighter || plant == kHeavier) {
+      setting.mass_factor = plant == kLighter ? 0.9 : 1.1;
+      setting.perturbation = own.perturbation;
+    }
+    if (std::ranges::find(settings, setting) == settings.end()) {
+      settings.push_back(std::move(setting));
+    }
+  };
+  for (const std::string& engine : engines) {
+    for (const int substeps : std::set(matrix.substeps.begin(), matrix.substeps.end())) {
+      for (const std::string& plant : matrix.plants) {
+        add(engine, substeps, plant);
       }
     }
   }
+  for (const std::string& plant : matrix.own_plants) {
+    add(own.engine, own.substeps, plant);
+  }
   return settings;
+}
+
+std::string describe_plant(const VerifySetting& setting) {
+  if (setting.mass_factor != 1) {
+    return fmt::format("masses {:+.0f} %", 100 * (setting.mass_factor - 1));
+  }
+  return setting.perturbation.empty() ? "own" : setting.perturbation;
 }
 
 const char* to_string(Verdict verdict) {
@@ -108,35 +122,44 @@ std::string conclude(const std::string& design, std::span<const VerifyRow> rows)
         "{} has no median error even under its own setting: there is nothing that could hold.",
         design);
   }
-  Rows engines, substeps, masses, mixed;
+  Rows engines, substeps, masses, plants, mixed;
   for (const VerifyRow& row : rows.subspan(1)) {
     const bool engine = row.setting.engine != own.setting.engine;
     const bool steps = row.setting.substeps != own.setting.substeps;
     const bool mass = row.setting.mass_factor != own.setting.mass_factor;
-    Rows& group = engine + steps + mass > 1 ? mixed : engine ? engines : steps ? substeps : masses;
+    const bool plant = row.setting.perturbation != own.setting.perturbation;
+    Rows& group = engine + steps + mass + plant > 1 ? mixed
+                  : engine                          ? engines
+                  : steps                           ? substeps
+                  : mass                            ? masses
+                                                    : plants;
     group.push_back(row);
   }
   const auto holding = std::ranges::count(rows.subspan(1), Verdict::holds, &VerifyRow::verdict);
   std::string text = fmt::format("{} holds in {} of the {} settings beside its own.", design,
                                  holding, rows.size() - 1);
-  text += engines.empty()
-              ? std::string(" No other engine is built in.")
-              : " Engines:" +
-                    describe_all(engines, "in", [](const VerifySetting& s) { return s.engine; });
-  text += " Time steps:" + describe_all(substeps, "with", [](const VerifySetting& s) {
-            return format_count(static_cast<unsigned long long>(s.substeps), "substep");
-          });
+  const auto add = [&](const std::string& title, const Rows& group, const std::string& preposition,
+                       const std::function<std::string(const VerifySetting&)>& name) {
+    text +=
+        group.empty() ? "" : fmt::format(" {}:{}", title, describe_all(group, preposition, name));
+  };
+  add("Engines", engines, "in", [](const VerifySetting& s) { return s.engine; });
+  add("Time steps", substeps, "with", [](const VerifySetting& s) {
+    return format_count(static_cast<unsigned long long>(s.substeps), "substep");
+  });
   if (!all_hold(substeps)) {
     text +=
         " More substeps are nearer to the real arm, so the design relies on the simulation's"
         " own time step.";
   }
-  text += " Masses:" + describe_all(masses, "with", [](const VerifySetting& s) {
-            return fmt::format("{:+.0f} %", 100 * (s.mass_factor - 1));
-          });
-  const auto mixed_holding = std::ranges::count(mixed, Verdict::holds, &VerifyRow::verdict);
-  text += fmt::format(" Where several of these change at once, it holds in {} of {}.",
-                      mixed_holding, mixed.size());
+  add("Masses", masses, "with",
+      [](const VerifySetting& s) { return fmt::format("{:+.0f} %", 100 * (s.mass_factor - 1)); });
+  add("Perturbed plants", plants, "with", describe_plant);
+  if (!mixed.empty()) {
+    const auto mixed_holding = std::ranges::count(mixed, Verdict::holds, &VerifyRow::verdict);
+    text += fmt::format(" Where several of these change at once, it holds in {} of {}.",
+                        mixed_holding, mixed.size());
+  }
   return text;
 }
 

@@ -1,6 +1,6 @@
 // Whether a design holds where nothing that matters of the arm has changed: under other physics
-// engines, finer time steps and slightly different masses. Settings to try, a verdict on each, and
-// what follows.
+// engines, finer time steps, slightly different masses and perturbed plants. Settings to try, a
+// verdict on each, and what follows.
 #pragma once
 
 #include <optional>
@@ -17,12 +17,31 @@ struct VerifySetting {
   std::string engine;
   int substeps = 1;
   double mass_factor = 1;  // on top of the problem's own
+  // A preset of perturbed plants, "none" (kNoPerturbation), or "" for the problem's own ones.
+  std::string perturbation = "none";
+
+  bool operator==(const VerifySetting&) const = default;
 };
 
-// `own` combined with every engine, 1, 2, 5 and 10 substeps (and its own number of them), and
-// masses of -10 %, 0 and +10 %. `own` comes first, its engine before the others.
+inline constexpr const char* kNoPerturbation = "none";
+inline constexpr const char* kLighter = "lighter";  // all masses -10 %, not drawn
+inline constexpr const char* kHeavier = "heavier";  // +10 %
+
+// What is combined with what. Plants: kNoPerturbation, kLighter, kHeavier and names of presets.
+struct VerifyMatrix {
+  std::vector<std::string> engines;
+  std::vector<int> substeps;
+  std::vector<std::string> plants;
+  std::vector<std::string> own_plants;  // only under the design's own engine and substeps
+};
+inline const std::vector<int> kUsualSubsteps = {1, 2, 5, 10};
+inline const std::vector<std::string> kUsualPlants = {kNoPerturbation, kLighter, kHeavier};
+
+// All combinations, each once. `own` comes first, its engine before the others.
 std::vector<VerifySetting> list_verify_settings(const VerifySetting& own,
-                                                std::span<const std::string> engines);
+                                                const VerifyMatrix& matrix);
+// "0 %", "-10 %", or the preset's name; "own" for the problem's own plants.
+std::string describe_plant(const VerifySetting& setting);
 
 enum class Verdict { holds, worse, fails };
 const char* to_string(Verdict verdict);

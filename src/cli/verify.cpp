@@ -1,10 +1,14 @@
-// armwright verify: does a design hold under other engines, time steps and masses?
+// armwright verify: does a design hold under other engines, time steps, masses and on perturbed
+// plants?
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
+#include "base/error.hpp"
 #include "base/text.hpp"
 #include "cli/arguments.hpp"
 #include "cli/design_evaluation.hpp"
@@ -16,7 +20,9 @@
 #include "cli/table.hpp"
 #include "cli/terminal.hpp"
 #include "cli/verification.hpp"
+#include "problems/config_files.hpp"
 #include "problems/design_file.hpp"
+#include "problems/perturbation_reader.hpp"
 #include "sim/physics_engine.hpp"
 
 namespace armwright {
@@ -30,22 +36,28 @@ constexpr const char* kExamples = R"(Examples:
   armwright verify table-a10                       # a published design, on the problem it was made for
   armwright verify results/q1-complex-ga-seed1/winner.toml --problem q1-complex --cases 200
   armwright verify table-a5 --set task.load_kg=5 --json
+  armwright verify table-a1 --problem q1-complex --engines articulated --substeps 10 --cases 10000 \
+      --perturbations none,friction,sensor,all
 
 The design is simulated in every engine that is built in, with 1, 2, 5 and 10 substeps of the physics in a control
 period (physics.substeps), and with all masses and inertias of the arm at -10 %, 0 and +10 % (robot.mass_scale), in
-all combinations. Each is compared with the design's own setting, the problem as it is:
+all combinations; and under its own engine and time step on perturbed plants, one for each case, of every shipped kind
+but those that weaken motors or change gains. --engines, --substeps and --perturbations choose others: then all of
+these are combined. Each is compared with the design's own setting, the problem as it is:
 
   holds   no more cases fail, and the median error is at most 1.1 times its own
   worse   no more cases fail, but the median error is larger than that
   fails   more cases fail, or the median error is more than 10 times its own or does not exist
 
-A failure is a case with an error above 100 mm or none at all. The exit code is 3 if something does not hold.)";
+A failure is a case with an error above 100 mm or none at all; the first one of each setting is named with the command
+that simulates it again and writes down its motion. The exit code is 3 if something does not hold.)";
 
 struct VerifyOptions {
   std::string design;
   std::string problem;
   OverrideOptions overrides;
   CaseOptions cases;
+  std::vector<std::string> engines, substeps, perturbations;
   JobsOption jobs;
   bool json = false;
   bool quiet = false;
@@ -56,15 +68,20 @@ struct VerifiedDesign {
   std::string problem;
   ChosenCases cases;
   std::vector<VerifyRow> rows;       // the first is the design's own setting
-  std::vector<std::string> reasons;  // one a row: why its first case without a number has none
+  std::vector<ErrorSurvey> surveys;  // one a row
+  std::vector<std::string> replays;  // one a row: the command for its first failure, if any
 };
 
 VerifySetting get_own_setting(const TrackingProblem& problem) {
-  return {problem.config().engines.judging_name, problem.config().task.physics.substeps, 1};
+  const TrackingConfig& config = problem.config();
+  return {config.engines.judging_name, config.task.physics.substeps, 1,
+          config.perturbation.applies_to(CaseRole::test) ? "" : kNoPerturbation};
 }
 
-std::string format_mass(double factor) {
-  return factor == 1 ? "0 %" : fmt::format("{:+.0f} %", 100 * (factor - 1));
+std::string describe_setting(const VerifySetting& setting) {
+  return fmt::format("{}, {}, {}", setting.engine,
+                     format_count(static_cast<unsigned long long>(setting.substeps), "substep"),
+                     sanitize(describe_plant(setting)));
 }
 
 std::string format_text(const VerifiedDesign& verified, const Style& style) {
@@ -73,7 +90,7 @@ std::string format_text(const VerifiedDesign& verified, const Style& style) {
       format_count(verified.cases.count, "case"), sanitize(verified.cases.set.name())));
   Table table({{"engine", false},
                {"substeps"},
-               {"masses"},
+               {"plant", false},
                {"mean mm"},
                {"median mm"},
                {"worst mm"},
@@ -83,7 +100,7 @@ std::string format_text(const VerifiedDesign& verified, const Style& style) {
   for (const VerifyRow& row : verified.rows) {
     const bool own = &row == &verified.rows.front();
     table.add_row({row.setting.engine, fmt::format("{}", row.setting.substeps),
-                   format_mass(row.setting.mass_factor), format_mm(row.summary.mean),
+                   sanitize(describe_plant(row.setting)), format_mm(row.summary.mean),
                    format_mm(row.summary.median), format_mm(row.summary.worst),
                    fmt::format("{}", row.summary.failures),
                    row.ratio ? format_significant(*row.ratio, 3) : "-",
@@ -93,6 +110,14 @@ std::string format_text(const VerifiedDesign& verified, const Style& style) {
   for (const std::string& line :
        wrap_words(conclude(sanitize(verified.design), verified.rows), 100)) {
     text += line + "\n";
+  }
+  const char* title = "\nThe first failure of each, to be simulated again:\n";
+  for (std::size_t i = 0; i < verified.rows.size(); ++i) {
+    if (!verified.replays[i].empty()) {
+      text += fmt::format("{}  {}: case {}\n    {}\n", std::exchange(title, ""),
+                          describe_setting(verified.rows[i].setting),
+                          verified.surveys[i].first_failure, sanitize(verified.replays[i]));
+    }
   }
   return text;
 }
@@ -109,6 +134,8 @@ std::string format_json(const VerifiedDesign& verified) {
     json one = {{"engine", row.setting.engine},
                 {"substeps", row.setting.substeps},
                 {"mass_factor", row.setting.mass_factor},
+                {"perturbation",
+                 row.setting.perturbation.empty() ? "own" : sanitize(row.setting.perturbation)},
                 {"own_setting", i == 0},
                 {"mean_error_m", to_json_value(row.summary.mean)},
                 {"median_error_m", to_json_value(row.summary.median)},
@@ -117,8 +144,12 @@ std::string format_json(const VerifiedDesign& verified) {
                 {"without_number", row.summary.without_number},
                 {"median_ratio", to_json_value(row.ratio)},
                 {"verdict", to_string(row.verdict)}};
-    if (!verified.reasons[i].empty()) {
-      one["reason"] = sanitize(verified.reasons[i]);
+    if (!verified.surveys[i].reason.empty()) {
+      one["reason"] = sanitize(verified.surveys[i].reason);
+    }
+    if (!verified.replays[i].empty()) {
+      one["first_failure"] = verified.surveys[i].first_failure;
+      one["replay"] = sanitize(verified.replays[i]);
     }
     rows.push_back(std::move(one));
   }
@@ -135,29 +166,107 @@ std::string format_json(const VerifiedDesign& verified) {
          "\n";
 }
 
-// The problem again, under another setting.
-LoadedProblem load_variant(const DesignFile& design, const VerifyOptions& options,
-                           const VerifySetting& setting, double own_mass_scale) {
-  std::vector<std::string> overrides = options.overrides.get();
-  overrides.push_back("physics.engine=" + setting.engine);
-  overrides.push_back("physics.judging_engine=" + setting.engine);
-  // Designs are judged in double, and only some engines have a SIMD level.
-  overrides.push_back("physics.precision=double");
-  if (!find_engine(setting.engine).simd) {
-    overrides.push_back("physics.simd=auto");
+// What makes the setting's plants of the problem's own.
+std::vector<std::string> list_plant_overrides(const VerifySetting& setting,
+                                              const TrackingConfig& config) {
+  if (setting.perturbation.empty()) {
+    return {};
   }
-  overrides.push_back(fmt::format("physics.substeps={}", setting.substeps));
-  overrides.push_back("robot.mass_scale=" + format_exact(own_mass_scale * setting.mass_factor));
-  return load_its_problem(design, options.problem, std::move(overrides), true);
+  if (setting.perturbation == kNoPerturbation) {
+    return config.perturbation.applies_to(CaseRole::test) ? make_overrides(Perturbation{})
+                                                          : std::vector<std::string>{};
+  }
+  if (config.perturbation.changes_anything()) {
+    return make_overrides(load_perturbation(setting.perturbation, config.robot.joint_count()));
+  }
+  return {"perturbation.preset=" + setting.perturbation, "perturbation.apply_to=everywhere"};
 }
 
-std::string find_reason(const DesignEvaluation& evaluation) {
-  for (const TrackingResult& result : evaluation.results) {
-    if (result.status != SimulationStatus::ok) {
-      return result.reason;
+// What makes the setting of the problem as its file is: what the user changed about it, then the
+// setting's own changes.
+std::vector<std::string> list_overrides(const VerifyOptions& options, const VerifySetting& setting,
+                                        const TrackingConfig& config) {
+  std::vector<std::string> changes = list_plant_overrides(setting, config);
+  changes.push_back("physics.engine=" + setting.engine);
+  changes.push_back("physics.judging_engine=" + setting.engine);
+  // Designs are judged in double, and only some engines have a SIMD level.
+  changes.push_back("physics.precision=double");
+  if (!find_engine(setting.engine).simd) {
+    changes.push_back("physics.simd=auto");
+  }
+  changes.push_back(fmt::format("physics.substeps={}", setting.substeps));
+  changes.push_back("robot.mass_scale=" + format_exact(config.mass_scale * setting.mass_factor));
+  std::vector<std::string> all;
+  for (std::string& own : options.overrides.get()) {
+    if (std::ranges::find(changes, get_override_key(own), get_override_key) == changes.end()) {
+      all.push_back(std::move(own));
     }
   }
-  return "";
+  std::ranges::move(changes, std::back_inserter(all));
+  return all;
+}
+
+// The command that simulates one case again and writes down its motion.
+std::string make_replay(const VerifyOptions& options, std::span<const std::string> overrides,
+                        std::uint64_t number) {
+  std::vector<std::string> words = {"armwright", "evaluate", options.design};
+  const auto add = [&](const std::string& flag, const std::string& value) {
+    if (!value.empty()) {
+      words.insert(words.end(), {flag, value});
+    }
+  };
+  add("--problem", options.problem);
+  add("--test-set", options.cases.test_set);
+  add("--test-cases", options.cases.test_cases);
+  for (const std::string& assignment : overrides) {
+    add("--set", assignment);
+  }
+  add("--cases", "1");
+  add("--case", fmt::format("{}", number));
+  add("--trajectory", fmt::format("case-{}.csv", number));
+  return quote_command(words);
+}
+
+// Presets that a design should stand: not those that are there to train with.
+std::vector<std::string> list_usual_presets(std::size_t joints) {
+  std::vector<std::string> presets = list_configs("perturbations");
+  std::erase_if(presets, [&](const std::string& name) {
+    return load_perturbation(name, joints).changes_design();
+  });
+  return presets;
+}
+
+VerifyMatrix choose_matrix(const VerifyOptions& options, const VerifySetting& own,
+                           std::size_t joints) {
+  VerifyMatrix matrix{engine_names(), kUsualSubsteps, kUsualPlants, {}};
+  matrix.substeps.push_back(own.substeps);
+  if (!options.engines.empty()) {
+    for (const std::string& name : options.engines) {
+      find_engine(name);
+    }
+    matrix.engines = options.engines;
+  }
+  if (!options.substeps.empty()) {
+    matrix.substeps.clear();
+    for (const std::string& text : options.substeps) {
+      matrix.substeps.push_back(static_cast<int>(parse_count("--substeps", text, 1, 1000)));
+    }
+  }
+  if (options.perturbations.empty()) {
+    matrix.own_plants = list_usual_presets(joints);
+    return matrix;
+  }
+  std::vector<std::string> known = list_configs("perturbations");
+  known.insert(known.begin(), kUsualPlants.begin(), kUsualPlants.end());
+  for (const std::string& name : options.perturbations) {
+    const bool is_path = name.find('/') != std::string::npos || name.ends_with(".toml");
+    if (!is_path && std::ranges::find(known, name) == known.end()) {
+      throw Error(ErrorKind::usage,
+                  describe_unknown("perturbation", name, known) + " (or the path of a .toml file)");
+    }
+  }
+  matrix.plants = options.perturbations;
+  return matrix;
 }
 
 int run_verify(const VerifyOptions& options, Session& session) {
@@ -171,31 +280,38 @@ int run_verify(const VerifyOptions& options, Session& session) {
   if (options.cases.cases.empty()) {
     cases.count = std::min(cases.count, kUsualCases);
   }
-  const auto settings = list_verify_settings(get_own_setting(tracking), engine_names());
+  const VerifySetting own_setting = get_own_setting(tracking);
+  const auto settings = list_verify_settings(
+      own_setting, choose_matrix(options, own_setting, tracking.config().robot.joint_count()));
   // All settings are validated before the first is simulated.
+  std::vector<std::vector<std::string>> overrides;
   std::vector<LoadedProblem> problems;
   for (const VerifySetting& setting : settings) {
-    problems.push_back(load_variant(design, options, setting, tracking.config().mass_scale));
+    overrides.push_back(list_overrides(options, setting, tracking.config()));
+    problems.push_back(load_its_problem(design, options.problem, overrides.back(), true));
   }
 
   catch_signals(session.stop);
   ProgressBar bar(options.quiet, {"error", "m"});
-  VerifiedDesign verified{design.name, base.name, cases, {}, {}};
+  VerifiedDesign verified{design.name, base.name, cases, {}, {}, {}};
   BarShare share{0, cases.count * settings.size()};
   for (std::size_t i = 0; i < settings.size(); ++i) {
-    const auto evaluation = evaluate_with_progress(*problems[i].tracking, design.design, cases,
-                                                   jobs, session.stop, bar, share);
+    auto survey = survey_with_progress(*problems[i].tracking, design.design, cases, jobs,
+                                       session.stop, bar, share);
     problems[i] = {};  // its targets are of no use to the next
-    if (!evaluation) {
+    if (!survey) {
       bar.clear();
       write_message(fmt::format("{}; nothing was written", describe_stop(session.stop.reason())));
       return get_stop_code(session.stop.reason());
     }
     share.done_before += cases.count;
     const ErrorSummary& own =
-        verified.rows.empty() ? evaluation->summary : verified.rows.front().summary;
-    verified.rows.push_back(judge_setting(settings[i], evaluation->summary, own));
-    verified.reasons.push_back(find_reason(*evaluation));
+        verified.rows.empty() ? survey->summary : verified.rows.front().summary;
+    verified.rows.push_back(judge_setting(settings[i], survey->summary, own));
+    verified.replays.push_back(survey->summary.failures == 0
+                                   ? ""
+                                   : make_replay(options, overrides[i], survey->first_failure));
+    verified.surveys.push_back(std::move(*survey));
   }
   bar.clear();
   write_stdout(options.json ? format_json(verified)
@@ -209,7 +325,9 @@ void add_verify(CLI::App& app, Session& session) {
   auto options = std::make_shared<VerifyOptions>();
   CLI::App* command = add_command(
       app, session, "verify",
-      "Try whether a design holds under other engines, time steps and masses", kExamples);
+      "Try whether a design holds under other engines, time steps and masses, and on perturbed\n"
+      "plants",
+      kExamples);
   add_design_argument(*command, options->design);
   command
       ->add_option("--problem,-p", options->problem,
@@ -218,6 +336,22 @@ void add_verify(CLI::App& app, Session& session) {
       ->type_name("PROBLEM");
   options->overrides.add_to(*command);
   options->cases.add_to(*command);
+  command
+      ->add_option("--engines", options->engines,
+                   "Engines to try, separated by commas (default: all that are built in)")
+      ->delimiter(',')
+      ->type_name("NAMES");
+  command
+      ->add_option("--substeps", options->substeps,
+                   "Plant steps in a control period to try (default: 1,2,5,10 and its own)")
+      ->delimiter(',')
+      ->type_name("NUMBERS");
+  command
+      ->add_option("--perturbations", options->perturbations,
+                   "Plants to try: none, lighter and heavier (all masses -10 and +10 %), shipped\n"
+                   "perturbations (configs/perturbations) and paths of such files")
+      ->delimiter(',')
+      ->type_name("NAMES");
   options->jobs.add_to(*command);
   command->add_flag("--json", options->json, "Print everything as JSON")->group("Output");
   command->add_flag("--quiet,-q", options->quiet, "No progress")->group("Output");

@@ -10,6 +10,44 @@
 
 namespace armwright {
 
+namespace {
+
+// Hands the results over batch by batch, in the cases' order. False if it was stopped.
+template <class Take>
+bool simulate_all(const TrackingProblem& problem, const ArmDesign& design, const ChosenCases& cases,
+                  unsigned jobs, StopSignal& stop, RunObserver& observer, BarShare share,
+                  const Take& take) {
+  // Between two looks at the progress: enough to occupy all threads.
+  constexpr std::uint64_t kCasesPerJob = 10;
+  constexpr std::uint64_t kBatchesPerJob = 4;
+  const std::uint64_t at_once =
+      jobs * std::max<std::uint64_t>(kCasesPerJob,
+                                     kBatchesPerJob * problem.batch_size(CaseRole::test).largest);
+  Progress progress;
+  progress.phase = Progress::Phase::test;
+  progress.done = share.done_before;
+  progress.total = share.total;
+  observer.on_progress(progress);
+  for (std::uint64_t first = 0; first < cases.count;) {
+    const std::uint64_t count = std::min(cases.count - first, at_once);
+    auto results = evaluate_design(problem, design, cases.set, first, count, jobs, stop);
+    if (!results) {
+      return false;
+    }
+    take(std::move(*results));
+    first += count;
+    progress.done = share.done_before + first;
+    observer.on_progress(progress);
+  }
+  return true;
+}
+
+double get_number(const TrackingResult& result) {
+  return get_error(result).value_or(std::numeric_limits<double>::quiet_NaN());
+}
+
+}  // namespace
+
 const TrackingProblem& require_tracking(const LoadedProblem& problem) {
   if (problem.tracking == nullptr) {
     throw Error(
@@ -30,35 +68,19 @@ std::optional<DesignEvaluation> evaluate_with_progress(const TrackingProblem& pr
                                                        const ChosenCases& cases, unsigned jobs,
                                                        StopSignal& stop, RunObserver& observer,
                                                        BarShare share) {
-  // Between two looks at the progress: enough to occupy all threads.
-  constexpr std::uint64_t kCasesPerJob = 10;
-  constexpr std::uint64_t kBatchesPerJob = 4;
-  const std::uint64_t at_once =
-      jobs * std::max<std::uint64_t>(kCasesPerJob,
-                                     kBatchesPerJob * problem.batch_size(CaseRole::test).largest);
-  Progress progress;
-  progress.phase = Progress::Phase::test;
-  progress.done = share.done_before;
-  progress.total = share.total;
-  observer.on_progress(progress);
   DesignEvaluation evaluation;
-  while (evaluation.results.size() < cases.count) {
-    const std::uint64_t first = evaluation.results.size();
-    const std::uint64_t count = std::min(cases.count - first, at_once);
-    auto results = evaluate_design(problem, design, cases.set, first, count, jobs, stop);
-    if (!results) {
-      return std::nullopt;
-    }
-    std::move(results->begin(), results->end(), std::back_inserter(evaluation.results));
-    progress.done = share.done_before + evaluation.results.size();
-    observer.on_progress(progress);
+  const auto keep = [&](std::vector<TrackingResult> results) {
+    std::ranges::move(results, std::back_inserter(evaluation.results));
+  };
+  if (!simulate_all(problem, design, cases, jobs, stop, observer, share, keep)) {
+    return std::nullopt;
   }
   std::vector<double> errors;
   double energy_j = 0;
   double numbers = 0;
   for (const TrackingResult& result : evaluation.results) {
     const auto error = get_error(result);
-    errors.push_back(error.value_or(std::numeric_limits<double>::quiet_NaN()));
+    errors.push_back(get_number(result));
     energy_j += error ? result.energy_j : 0;
     numbers += error ? 1 : 0;
   }
@@ -68,6 +90,33 @@ std::optional<DesignEvaluation> evaluate_with_progress(const TrackingProblem& pr
     evaluation.mean_energy_j = energy_j / numbers;
   }
   return evaluation;
+}
+
+std::optional<ErrorSurvey> survey_with_progress(const TrackingProblem& problem,
+                                                const ArmDesign& design, const ChosenCases& cases,
+                                                unsigned jobs, StopSignal& stop,
+                                                RunObserver& observer, BarShare share) {
+  ErrorSurvey survey;
+  std::vector<double> errors;
+  bool failed = false;
+  const auto take = [&](const std::vector<TrackingResult>& results) {
+    for (const TrackingResult& result : results) {
+      const double error = get_number(result);
+      if (!failed && !(error <= kFailureError_m)) {
+        failed = true;
+        survey.first_failure = errors.size();
+      }
+      if (survey.reason.empty() && result.status != SimulationStatus::ok) {
+        survey.reason = result.reason;
+      }
+      errors.push_back(error);
+    }
+  };
+  if (!simulate_all(problem, design, cases, jobs, stop, observer, share, take)) {
+    return std::nullopt;
+  }
+  survey.summary = summarize(errors, kFailureError_m);
+  return survey;
 }
 
 std::vector<CaseFailure> list_failures(std::span<const TrackingResult> results) {

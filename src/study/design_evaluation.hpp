@@ -43,6 +43,17 @@ std::optional<DesignEvaluation> evaluate_with_progress(const TrackingProblem& pr
                                                        StopSignal& stop, RunObserver& observer,
                                                        BarShare share);
 
+// The same without keeping what every case was like, for as many cases as one likes.
+struct ErrorSurvey {
+  ErrorSummary summary;
+  std::uint64_t first_failure = 0;  // of summary.failures, if there are any
+  std::string reason;               // why the first case without a number has none
+};
+std::optional<ErrorSurvey> survey_with_progress(const TrackingProblem& problem,
+                                                const ArmDesign& design, const ChosenCases& cases,
+                                                unsigned jobs, StopSignal& stop,
+                                                RunObserver& observer, BarShare share);
+
 // The error of a case, if it has one.
 std::optional<double> get_error(const TrackingResult& result);
 

@@ -2,8 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 
 #include "base/temporary_folder.hpp"
 #include "e2e/program.hpp"
@@ -17,6 +19,9 @@ using testing::AllOf;
 using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::IsEmpty;
+
+// What is tried under a design's own engine and time step: of configs/perturbations all but weak.
+constexpr std::size_t kPresets = 6;
 
 class Verify : public testing::Test {
  protected:
@@ -51,7 +56,7 @@ TEST_F(Verify, ShowsThatTableA10FailsWithTwoSubsteps) {
   const json verified = verify({"table-a10", "--cases", "2"}, 3);
   EXPECT_EQ(verified["problem"], "q2-e6");
   EXPECT_EQ(verified["holds"], false);
-  EXPECT_EQ(verified["rows"].size(), engine_names().size() * 4 * 3);
+  EXPECT_EQ(verified["rows"].size(), engine_names().size() * 4 * 3 + kPresets);
   EXPECT_EQ(verified["rows"][0]["own_setting"], true);
   for (const std::string& engine : engine_names()) {
     const json once = find_row(verified, engine, 1, 1);
@@ -82,7 +87,7 @@ TEST_F(Verify, TriesWhatItSays) {
   const json verified = verify({"table-a5", "--problem", "q1-complex", "--cases", "1", "--set",
                                 "robot.mass_scale=2", "--set", "physics.substeps=3"},
                                3);
-  EXPECT_EQ(verified["rows"].size(), engine_names().size() * 5 * 3);
+  EXPECT_EQ(verified["rows"].size(), engine_names().size() * 5 * 3 + kPresets);
   const json evaluated =
       json::parse(run({"evaluate", "table-a5", "--problem", "q1-complex", "--cases", "1", "--set",
                        "robot.mass_scale=1.8", "--set", "physics.substeps=2", "--json", "-q"})
@@ -96,7 +101,41 @@ TEST_F(Verify, AnEnginesOwnChoicesAreNotTheOthers) {
       verify({"table-a5", "--problem", "q1-complex", "--cases", "1", "--engine", "articulated",
               "--simd", "scalar", "--set", "physics.precision=float"},
              3);
-  EXPECT_EQ(verified["rows"].size(), engine_names().size() * 4 * 3);
+  EXPECT_EQ(verified["rows"].size(), engine_names().size() * 4 * 3 + kPresets);
+}
+
+// Flags choose the matrix; a row is what `evaluate` gives with the preset, and the command that it
+// names for its first failure simulates that case.
+TEST_F(Verify, TriesPerturbedPlantsAndSaysHowToReplayAFailure) {
+  const json verified =
+      verify({"table-a10", "--engines", "articulated", "--substeps", "1,2", "--perturbations",
+              "none,masses-10", "--cases", "3", "--set", "physics.engine=articulated"},
+             3);
+  ASSERT_EQ(verified["rows"].size(), 4U);
+  const json& masses = verified["rows"][1];
+  EXPECT_EQ(masses["perturbation"], "masses-10");
+  const json evaluated =
+      json::parse(run({"evaluate", "table-a10", "--cases", "3", "--engine", "articulated", "--set",
+                       "perturbation.preset=masses-10", "--json", "-q"})
+                      .out);
+  EXPECT_EQ(masses["mean_error_m"], evaluated["summary"]["mean_error_m"]);
+  EXPECT_FALSE(masses.contains("replay"));
+  const json& failed = verified["rows"][2];
+  EXPECT_EQ(failed["substeps"], 2);
+  EXPECT_EQ(failed["first_failure"], 0);
+  std::vector<std::string> words;
+  std::istringstream text(failed["replay"].get<std::string>());
+  for (std::string word; text >> word;) {
+    std::erase(word, '\'');
+    words.push_back(word);
+  }
+  ASSERT_EQ(words.front(), "armwright");
+  words.erase(words.begin());
+  EXPECT_NE(run(words).exit_code, 2);
+  std::ifstream motion(folder_.path() / "case-0.csv");
+  std::string header;
+  std::getline(motion, header);
+  EXPECT_THAT(header, HasSubstr("time_s"));
 }
 
 TEST_F(Verify, PrintsATableAndAConclusion) {
@@ -104,16 +143,17 @@ TEST_F(Verify, PrintsATableAndAConclusion) {
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("table-a10 on q2-e6: the first 1 case of test/2"),
                                  HasSubstr("its own setting"), HasSubstr("table-a10 holds in "),
-                                 ContainsRegex("\nengine +substeps  masses")));
+                                 ContainsRegex("\nengine +substeps  plant ")));
   EXPECT_THAT(outcome.err, HasSubstr("no --problem given: using q2-e6"));
 }
 
 // Soft controllers hardly notice the time step, and this workspace asks little of them.
 TEST_F(Verify, EndsWithZeroWhereEverythingHolds) {
-  const json verified = verify({"table-a1", "--problem", "q1-complex", "--cases", "1", "--set",
-                                "physics.gravity_m_per_s2=0", "--set", "task.speed_m_per_s=0.05",
-                                "--set", "task.ik_bug=true", "--set", "workspace.points=3"},
-                               0);
+  const json verified = verify(
+      {"table-a1", "--problem", "q1-complex", "--cases", "1", "--set", "physics.gravity_m_per_s2=0",
+       "--set", "task.speed_m_per_s=0.05", "--set", "task.ik_bug=true", "--set",
+       "workspace.points=3", "--perturbations", "none,lighter,heavier,sensor"},
+      0);
   EXPECT_EQ(verified["holds"], true);
 }
 
@@ -128,6 +168,9 @@ TEST_F(Verify, ExplainsItselfAndRefusesWhatIsWrong) {
   refuse({"verify", "table-a1"}, "--problem is missing");
   refuse({"verify", "table-a5", "--problem", "sphere"}, "'sphere' is an analytic function");
   refuse({"verify", "table-a5", "--cases", "0"}, "--cases is '0'");
+  refuse({"verify", "table-a5", "--substeps", "1,0"}, "--substeps is '0'");
+  refuse({"verify", "table-a5", "--engines", "od"}, "did you mean 'ode'?");
+  refuse({"verify", "table-a5", "--perturbations", "none,fricton"}, "did you mean 'friction'?");
   refuse({"evaluate", "table-a5", "--set", "robot.mass_scale=0"},
          "robot.mass_scale is 0; it must be a finite number >= 0.01 and <= 100");
 }
