@@ -16,9 +16,17 @@ std::vector<DesignParameter> read_parameters(const ConfigTable& table,
   for (const GainSpec& gain : controller.gains) {
     valid.push_back(gain.name);
   }
+  const std::vector<std::string> gains = valid;
   valid.insert(valid.end(), {"effort_min", "effort_max"});
   const auto read_names = [&](const ConfigTable& where) {
-    const auto names = where.get_strings("optimize");
+    std::vector<std::string> names;
+    for (const std::string& name : where.get_strings("optimize")) {
+      if (name == "gains") {  // all of them, whatever the controller
+        names.insert(names.end(), gains.begin(), gains.end());
+      } else {
+        names.push_back(name);
+      }
+    }
     for (auto name = names.begin(); name != names.end(); ++name) {
       if (std::find(valid.begin(), valid.end(), *name) == valid.end()) {
         where.refuse("optimize", describe_unknown("design parameter", *name, valid));

@@ -8,7 +8,8 @@
 
 namespace armwright {
 
-// "p", "i", "d", "effort_min", "effort_max", for every joint or for those with a
+// The controller's gains by name ("p", "i", "d") or all of them ("gains"), "effort_min" and
+// "effort_max", for every joint or for those with a
 // [[variables.joint]] of their own.
 std::vector<DesignParameter> read_parameters(const ConfigTable& table,
                                              const TrackingConfig& config);

@@ -16,7 +16,9 @@ namespace {
 using testing::HasSubstr;
 
 LoadedProblem load(const std::vector<std::string>& overrides) {
-  return load_problem("q2-e6", overrides);
+  std::vector<std::string> all = {R"(variables.optimize=["gains", "effort_min", "effort_max"])"};
+  all.insert(all.end(), overrides.begin(), overrides.end());
+  return load_problem("q2-e6", all);
 }
 
 const DecisionVariable& get_variable(const LoadedProblem& loaded, const std::string& name) {
@@ -137,6 +139,17 @@ TEST(Control, RangesAreLinearAndStopAtZero) {
   EXPECT_EQ(weight.lower, -2);
   EXPECT_EQ(weight.start, 0);
   EXPECT_EQ(weight.upper, 2);
+}
+
+TEST(Control, GainsStandForAllOfAController) {
+  EXPECT_EQ(load({}).problem->description().variables.size(), 20U);
+  EXPECT_THAT(usage_error_of([] {
+                load({"control.controller=cascade", R"(variables.optimize=["p"])"});
+              }),
+              HasSubstr("unknown design parameter 'p'; did you mean 'kp'? Valid: kp, kv, ki, share, "
+                        "effort_min, effort_max"));
+  EXPECT_THAT(usage_error_of([] { load({R"(variables.optimize=["gains", "i"])"}); }),
+              HasSubstr("'i' stands there twice"));
 }
 
 TEST(Control, TheFilterStartsAtATenthOfThePeriod) {
