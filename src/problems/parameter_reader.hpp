@@ -9,8 +9,7 @@
 namespace armwright {
 
 // The controller's gains by name ("p", "i", "d") or all of them ("gains"), "effort_min" and
-// "effort_max", for every joint or for those with a
-// [[variables.joint]] of their own.
+// "effort_max", for every joint or for those with a [[variables.joint]] of their own.
 std::vector<DesignParameter> read_parameters(const ConfigTable& table,
                                              const TrackingConfig& config);
 
