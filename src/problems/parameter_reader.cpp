@@ -17,12 +17,19 @@ std::vector<DesignParameter> read_parameters(const ConfigTable& table,
   for (const GainSpec& gain : controller.gains) {
     valid.push_back(gain.name);
   }
-  const std::size_t gains = valid.size();
+  const std::vector<std::string> gains = valid;
   valid.insert(valid.end(), {"effort_min", "effort_max"});
   const std::vector<std::string> drives = valid;
   valid.insert(valid.end(), {"length_scale", "section_scale"});
   const auto read_names = [&](const ConfigTable& where) {
-    const auto names = where.get_strings("optimize");
+    std::vector<std::string> names;
+    for (const std::string& name : where.get_strings("optimize")) {
+      if (name == "gains") {  // all of them, whatever the controller
+        names.insert(names.end(), gains.begin(), gains.end());
+      } else {
+        names.push_back(name);
+      }
+    }
     for (auto name = names.begin(); name != names.end(); ++name) {
       if (std::find(valid.begin(), valid.end(), *name) == valid.end()) {
         where.refuse("optimize", describe_unknown("design parameter", *name, valid));
@@ -61,7 +68,7 @@ std::vector<DesignParameter> read_parameters(const ConfigTable& table,
       constexpr std::array kOthers = {
           DesignParameter::Kind::effort_min, DesignParameter::Kind::effort_max,
           DesignParameter::Kind::length_scale, DesignParameter::Kind::section_scale};
-      parameter.kind = i < gains ? DesignParameter::Kind::gain : kOthers[i - gains];
+      parameter.kind = i < gains.size() ? DesignParameter::Kind::gain : kOthers[i - gains.size()];
       parameter.gain = i;
       parameters.push_back(parameter);
     }

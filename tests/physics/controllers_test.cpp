@@ -34,7 +34,7 @@ class UnderController : public testing::TestWithParam<std::string> {
 };
 
 // Maximal coordinates with corrected joints against joint coordinates: a percent, as for the
-// published designs, and 10 um, in which ODE's plant is not the one that efforts in advance are
+// published designs, and 50 um, in which ODE's plant is not the one that efforts in advance are
 // for.
 TEST_P(UnderController, EnginesAgree) {
   std::vector<TargetTable> targets;
@@ -51,7 +51,7 @@ TEST_P(UnderController, EnginesAgree) {
     for (std::size_t i = 0; i < jobs.size(); ++i) {
       ASSERT_EQ(other[i].status, SimulationStatus::ok) << engine << ": " << other[i].reason;
       EXPECT_NEAR(other[i].mean_error_m, articulated[i].mean_error_m,
-                  0.01 * articulated[i].mean_error_m + 1e-5)
+                  0.01 * articulated[i].mean_error_m + 5e-5)
           << engine;
       EXPECT_LT(other[i].mean_error_m, 0.1) << engine;
     }

@@ -16,7 +16,9 @@ namespace {
 using testing::HasSubstr;
 
 LoadedProblem load(const std::vector<std::string>& overrides) {
-  return load_problem("q2-e6", overrides);
+  std::vector<std::string> all = {R"(variables.optimize=["gains", "effort_min", "effort_max"])"};
+  all.insert(all.end(), overrides.begin(), overrides.end());
+  return load_problem("q2-e6", all);
 }
 
 const DecisionVariable& get_variable(const LoadedProblem& loaded, const std::string& name) {
@@ -139,6 +141,18 @@ TEST(Control, RangesAreLinearAndStopAtZero) {
   EXPECT_EQ(weight.upper, 2);
 }
 
+TEST(Control, GainsStandForAllOfAController) {
+  EXPECT_EQ(load({}).problem->description().variables.size(), 20U);
+  EXPECT_THAT(
+      usage_error_of([] {
+        load({"control.controller=cascade", R"(variables.optimize=["p"])"});
+      }),
+      HasSubstr("unknown design parameter 'p'; did you mean 'kp'? Valid: kp, kv, ki, share, "
+                "effort_min, effort_max"));
+  EXPECT_THAT(usage_error_of([] { load({R"(variables.optimize=["gains", "i"])"}); }),
+              HasSubstr("'i' stands there twice"));
+}
+
 TEST(Control, TheFilterStartsAtATenthOfThePeriod) {
   const LoadedProblem loaded = load({"control.controller=pid_filtered", "control.period_s=0.004"});
   EXPECT_EQ(loaded.tracking->config().task.control_period_s, 0.004);
@@ -150,11 +164,11 @@ TEST(Control, RefusesAStartThatMakesNoController) {
   folder.write("d.toml",
                "name = 'd'\n" + make_joint() + make_joint() + make_joint() +
                    make_joint("p_n_m_per_rad = 300", "i_n_m_per_rad_s = 0", "d_n_m_s_per_rad = 0"));
-  EXPECT_EQ(
-      folder.refusal_of_base_with("[control]\ncontroller = 'cascade'\n[variables]\nstart = 'd'"),
-      "p.toml:3: control.controller is 'cascade'; 'cascade' cannot be made of the start's "
-      "joint 4, whose PID has p = 300, i = 0, d = 0 and an effort limit of 200 N m: kp_per_s "
-      "would be inf; name another start");
+  EXPECT_EQ(folder.refusal_of_base_with(
+                "[control]\ncontroller = 'cascade'\n[variables]\nstart = 'd.toml'"),
+            "p.toml:3: control.controller is 'cascade'; 'cascade' cannot be made of the start's "
+            "joint 4, whose PID has p = 300, i = 0, d = 0 and an effort limit of 200 N m: kp_per_s "
+            "would be inf; name another start");
 }
 
 TEST(Control, ADesignNeedsTheTablesOfItsController) {
