@@ -256,8 +256,8 @@ std::vector<std::string> describe_limits(const StudyPlan& plan, const StudyResul
   if (methods > 0) {
     sentences.push_back(
         "Methods spend the same budget in ways of their own, or have controllers of their own; "
-        "what "
-        "their designs are worth is measured alike.");
+        "what their "
+        "designs are worth is measured alike.");
   }
   const auto has = [&](Schedule::Kind kind) {
     return std::ranges::any_of(

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "base/expect_error.hpp"
 #include "study/compare/choices.hpp"
