@@ -118,7 +118,7 @@ TEST(StretchedLink, RefusesWhatIsNoStretching) {
 }
 
 TEST(StretchedArm, InverseKinematicsLeadItsTipToTheTarget) {
-  const RobotModel nominal = 
+  const RobotModel nominal =
       load_urdf(std::filesystem::path(ARMWRIGHT_CONFIGS) / "robots/irb4600_40_255.urdf");
   ArmDesign design;
   design.joints.resize(4);
