@@ -331,10 +331,11 @@ TEST(BadConfig, AnalyticFunctionsAreCheckedToo) {
             "ellipsoid, rosenbrock, rastrigin, constrained");
   EXPECT_EQ(folder.refusal_of("kind = 'analytic'\n[function]\nname = 'rosenbrock'\ndimension = 1"),
             "p.toml:4: function.dimension is 1; it must be an integer from 2 to 1000");
-  EXPECT_EQ(folder.refusal_of(
-                "kind = 'analytic'\n[function]\nname = 'sphere'\n[task]\nspeed_m_per_s = 1"),
-            "p.toml:4: unknown key task. Valid here: title, description, kind, schedule, sets, "
-            "run, published, function");
+  EXPECT_EQ(
+      folder.refusal_of(
+          "kind = 'analytic'\n[function]\nname = 'sphere'\n[task]\nspeed_m_per_s = 1"),
+      "p.toml:4: unknown key task. Valid here: title, description, kind, schedule, racing, sets, "
+      "run, published, function");
 }
 
 struct BadOverride {

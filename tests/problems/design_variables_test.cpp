@@ -263,9 +263,9 @@ TEST(DesignVariables, BadInputIsRefusedWithPlaceAndAdvice) {
             "d.toml:1: speed_m_per_s is -1; it must be a finite number >= 0.01 and <= 100");
   // 5.18 m of moves above 0.9 m and 21 of 0.9 m, at 1 mm/s.
   EXPECT_EQ(folder.refusal_of("extends = \"base\"\n[task]\nspeed_m_per_s = 0.01\nrest_s = 0\n"
-                              "control_period_s = 1e-3\n[variables]\ntask = ['speed']\n"
+                              "[control]\nperiod_s = 1e-3\n[variables]\ntask = ['speed']\n"
                               "speed_bounds_factor = 10"),
-            "p.toml:8: variables.speed_bounds_factor is 10; a test case at the slowest speed would "
+            "p.toml:9: variables.speed_bounds_factor is 10; a test case at the slowest speed would "
             "take 2.41e+07 control periods, possible are 1e+07; lower speed_bounds_factor");
 }
 

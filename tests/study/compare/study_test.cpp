@@ -214,7 +214,7 @@ TEST(PairResult, TheDirectionIsThatOfThePairs) {
 // What a run has for good counts, not what it had once by luck.
 TEST(Trace, IsTheWorstFromThereOn) {
   CellOutcome cell;
-  cell.curve = {{10, 5}, {20, 1}, {30, 4}, {40, 3}};
+  cell.curve = {{10, 5, {}}, {20, 1, {}}, {30, 4, {}}, {40, 3, {}}};
   std::vector<double> values;
   for (const TracePoint& point : make_trace(cell)) {
     values.push_back(point.best_value);
