@@ -95,24 +95,9 @@ std::string to_json(const RunPlan& plan) {
   return whole.dump(2);
 }
 
-namespace {
-
-// A setting by the name that it has had since.
-std::string rename_old_key(const std::string& pointer) {
-  constexpr std::string_view kOld = "/task/control_period_s";
-  return pointer.ends_with(kOld)
-             ? pointer.substr(0, pointer.size() - kOld.size()) + "/control/period_s"
-             : pointer;
-}
-
-}  // namespace
-
 std::vector<std::string> describe_differences(const std::string& recorded_json,
                                               const std::string& now_json) {
-  json recorded;
-  for (const auto& [key, value] : json::parse(recorded_json).flatten().items()) {
-    recorded[rename_old_key(key)] = value;
-  }
+  const json recorded = json::parse(recorded_json).flatten();
   const json now = json::parse(now_json).flatten();
   std::vector<std::string> differences;
   const auto name = [](std::string pointer) {

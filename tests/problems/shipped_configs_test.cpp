@@ -208,6 +208,10 @@ TEST(ShippedProblems, AreAllKnownHere) {
     expected.push_back(experiment.name);
   }
   expected.insert(expected.end(), {"q2-pareto", "q2-torque", "q2-error", "q2-energy", "co-design"});
+  for (const std::string experiment : {"q1", "e6", "q3"}) {
+    expected.push_back("robust-" + experiment);
+    expected.push_back("faithful-" + experiment);
+  }
   EXPECT_THAT(list_configs("problems"), testing::UnorderedElementsAreArray(expected));
   std::vector<std::string> listed;
   for (const ProblemTitle& problem : list_problems()) {
@@ -216,6 +220,30 @@ TEST(ShippedProblems, AreAllKnownHere) {
     listed.push_back(problem.name);
   }
   EXPECT_EQ(listed, list_configs("problems"));
+}
+
+// Only training is perturbed: what they are judged by is the problem that they extend, with the
+// physics as it says.
+TEST(ShippedProblems, DesignsThatHoldAreJudgedOnTheNominalArm) {
+  const std::vector<std::string> articulated = {"physics.engine=articulated"};
+  for (const auto& [name, base, set] : {std::tuple{"robust-e6", "q2-e6", "physics.substeps=1"},
+                                        {"faithful-e6", "q2-e6", "physics.substeps=10"},
+                                        {"robust-q1", "q1-complex", "task.ik_bug=false"},
+                                        {"faithful-q3", "q3-load", "physics.substeps=10"}}) {
+    std::vector<std::string> overrides = articulated;
+    overrides.emplace_back(set);
+    const LoadedProblem robust = load_problem(name);
+    const LoadedProblem plain = load_problem(base, overrides);
+    const std::vector<double> x = robust.tracking->make_vector(robust.tracking->config().start);
+    const CaseBlock unseen{CaseRole::test, "test/2", {7}};
+    EXPECT_EQ(robust.problem->evaluate(x, unseen).case_errors,
+              plain.problem->evaluate(x, unseen).case_errors)
+        << name;
+    const CaseBlock seen{CaseRole::training, "train/1", {7}};
+    EXPECT_NE(robust.problem->evaluate(x, seen).case_errors,
+              plain.problem->evaluate(x, seen).case_errors)
+        << name;
+  }
 }
 
 // Error and torque as E6 counts them, and the energy besides; the same for the start of the

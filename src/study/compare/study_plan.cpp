@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "base/hash.hpp"
@@ -71,27 +70,8 @@ std::uint64_t make_seed(const std::string& stream) {
 
 }  // namespace
 
-namespace {
-
-// Under the name that it had before, so that plans which are older hold their problems' hashes.
-std::string spell_as_before(const std::string& resolved_json) {
-  nlohmann::json resolved = nlohmann::json::parse(resolved_json);
-  if (!resolved.contains("control") || !resolved.at("control").contains("period_s")) {
-    return resolved_json;
-  }
-  nlohmann::json& control = resolved.at("control");
-  resolved["task"]["control_period_s"] = control.at("period_s");
-  control.erase("period_s");
-  if (control.empty()) {
-    resolved.erase("control");
-  }
-  return resolved.dump();
-}
-
-}  // namespace
-
 std::string calc_configuration_hash(const LoadedProblem& problem) {
-  std::string text = spell_as_before(problem.resolved_json);
+  std::string text = problem.resolved_json;
   for (const auto& [file, hash] : problem.input_hashes) {
     text += fmt::format("\n{} {}", file, hash);
   }
