@@ -113,7 +113,7 @@ TEST(StudyPlan, CoevolvedCasesAreInSetsOfTheirOwn) {
   EXPECT_EQ(hashes.size(), list_used_sets(plan).size());
 }
 
-TEST(StudyPlan, RacingIsTheSameForEveryOptimizer) {
+TEST(StudyPlan, ARaceIsASettingOfTheProblem) {
   StudyRequest request = make_small_request();
   request.settings = {"racing.kind=halving", "racing.first_cases=2"};
   const StudyPlan plan = make_study_plan(request);
@@ -121,11 +121,11 @@ TEST(StudyPlan, RacingIsTheSameForEveryOptimizer) {
     EXPECT_EQ(to_text(make_run_plan(plan, cell).racing), "halving:2:2");
   }
   const TemporaryFolder folder;
-  const std::string privilege =
+  const std::string key =
       "problems = ['sphere']\nbudget = 100\n[[optimizer]]\nname = "
       "'ga'\nracing = 'halving'\n";
-  EXPECT_THAT(usage_error_of([&] { load(folder, privilege); }),
-              HasSubstr("it is the same for every optimizer of a comparison"));
+  EXPECT_THAT(usage_error_of([&] { load(folder, key); }),
+              HasSubstr("mine.toml:5: unknown key optimizer[0].racing"));
 }
 
 TEST(StudyPlan, AReplicateGivesEveryOptimizerTheSameStartAndCases) {

@@ -192,7 +192,8 @@ TEST(StudyTargets, MistakesAreNamed) {
          "reference: unknown optimizer of the study 'gaa'");
   expect("reference = 'ga'\n", "", "and the study has no [[target]]");
   expect("value = 'failures'\n", "", "and sphere is a function");
-  expect("value = 'failure'\n", "", "value is 'failure'");
+  expect("value = 'failure'\n", "",
+         "mine.toml:1: unknown value 'failure'; did you mean 'failures'?");
 }
 
 TEST_F(StudyTest, TargetsComeToTablesAndVerdictAndCanBeAddedLater) {
