@@ -136,10 +136,12 @@ int PageServer::port() const {
 
 void PageServer::serve(StopSignal& stop) {
   std::jthread watcher([this, &stop](const std::stop_token& ended) {
-    while (!ended.stop_requested() && !stop.requested()) {
+    while (!ended.stop_requested()) {
+      if (stop.requested()) {  // again and again: before the server listens, nothing comes of it
+        server_->http.stop();
+      }
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
-    server_->http.stop();
   });
   server_->http.listen_after_bind();
 }
