@@ -8,6 +8,7 @@
 #include "base/text.hpp"
 #include "cli/format.hpp"
 #include "cli/terminal.hpp"
+#include "sim/controller.hpp"
 
 namespace armwright {
 namespace {
@@ -30,6 +31,10 @@ TestSet choose_set(const LoadedProblem& problem, const CaseOptions& options) {
 
 LoadedProblem load_its_problem(const DesignFile& design, const std::string& problem,
                                std::vector<std::string> overrides, bool quiet) {
+  if (find_controller(design.design.controller).feed_forward != FeedForward::none) {
+    // Its efforts in advance are made along with the problem's targets.
+    overrides.insert(overrides.begin(), "control.controller=" + design.design.controller);
+  }
   if (!problem.empty()) {
     return load_problem(problem, overrides);
   }

@@ -177,7 +177,9 @@ std::vector<std::string> list_plant_overrides(const VerifySetting& setting,
                                                           : std::vector<std::string>{};
   }
   if (config.perturbation.changes_anything()) {
-    return make_overrides(load_perturbation(setting.perturbation, config.robot.joint_count()));
+    Perturbation plants = load_perturbation(setting.perturbation, config.robot.joint_count());
+    plants.where = Perturbation::Where::everywhere;  // a kind that is there to train with, too
+    return make_overrides(plants);
   }
   return {"perturbation.preset=" + setting.perturbation, "perturbation.apply_to=everywhere"};
 }

@@ -18,6 +18,13 @@ void read_statistic(const ConfigTable& table, TrackingObjective& objective) {
   static const std::vector<std::string> names = {"mean", "worst", "cvar", "mean_with_failures"};
   const std::string name = table.get_choice("statistic", names, "mean");
   objective.statistic = static_cast<Statistic>(std::ranges::find(names, name) - names.begin());
+  for (const char* key : {"cvar_share", "failure_penalty_m"}) {
+    if (table.has(key) && !table.has("statistic")) {
+      table.refuse(key,
+                   "it does nothing to the mean; set objective.statistic to cvar or "
+                   "mean_with_failures, or leave it out");
+    }
+  }
   objective.cvar_share = table.get_number_or("cvar_share", objective.cvar_share,
                                              {.lower = 0, .upper = 1, .lower_open = true});
   objective.failure_penalty_m =

@@ -195,7 +195,7 @@ std::vector<std::string> load_tracking(const ConfigTable& table, std::span<const
     set_start_speed(variables, config);
   }
   config.torque_per_mass_n_m_per_kg = table.get_table_or_empty("motors").get_number_or(
-      "torque_per_mass_n_m_per_kg", 0, {.lower = 0, .upper = 1e9, .lower_open = true});
+      "torque_per_mass_n_m_per_kg", 0, {.lower = 0, .upper = 1e9});
   ReadPerturbation perturbation =
       read_perturbation(table.get_table_or_empty("perturbation"), config.robot.joint_count());
   config.perturbation = std::move(perturbation.perturbation);

@@ -241,6 +241,23 @@ TEST_F(Cli, EvaluatesTheOracleCases) {
   }
 }
 
+// A design with efforts in advance brings its controller along.
+TEST_F(Cli, EvaluatesDesignsOfAnyController) {
+  const std::string made_with = "control.controller=pid_computed_torque";
+  const std::string folder = folder_.path() / "run";
+  const Outcome made =
+      run({"optimize", "q2-e6", "--set", made_with, "--engine", "articulated", "--budget", "35",
+           "--set", "sets.test_cases=2", "--set", "sets.validation_cases=1", "--out", folder});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  std::vector<std::string> evaluate = {"evaluate", folder + "/winner.toml", "--problem", "q2-e6",
+                                       "--engine", "articulated",           "--cases",   "2",
+                                       "--json"};
+  const Outcome alone = run(evaluate);
+  EXPECT_EQ(alone.exit_code, 0) << alone.err;
+  evaluate.insert(evaluate.end(), {"--set", made_with});
+  EXPECT_EQ(alone.out, run(evaluate).out);
+}
+
 TEST_F(Cli, AnUnreachableTargetIsNamedAndHasNoNumber) {
   const auto file = write("far.csv",
                           "case,point,x_m,y_m,z_m\n0,0,1.4,0,0.9\n0,1,1.4,0.3,0.9\n"

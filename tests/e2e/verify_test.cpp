@@ -152,7 +152,7 @@ TEST_F(Verify, EndsWithZeroWhereEverythingHolds) {
   const json verified = verify(
       {"table-a1", "--problem", "q1-complex", "--cases", "1", "--set", "physics.gravity_m_per_s2=0",
        "--set", "task.speed_m_per_s=0.05", "--set", "task.ik_bug=true", "--set",
-       "workspace.points=3", "--perturbations", "none,lighter,heavier,sensor"},
+       "workspace.points=3", "--perturbations", "none,lighter,heavier,ripple"},
       0);
   EXPECT_EQ(verified["holds"], true);
 }

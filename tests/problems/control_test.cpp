@@ -187,6 +187,18 @@ TEST(Control, ADesignNeedsTheTablesOfItsController) {
                         "those of 'pid'"));
 }
 
+TEST(Control, AConvertedStartKeepsItsArmAndItsSpeed) {
+  ArmDesign start = load({}).tracking->config().start;
+  start.joints[1].length_scale = 1.1;
+  start.joints[2].section_scale = 0.9;
+  start.speed_m_per_s = 1.25;
+  const ArmDesign converted = convert_design(start, "pi2d", 0.01);
+  EXPECT_EQ(converted.joints[1].length_scale, 1.1);
+  EXPECT_EQ(converted.joints[2].section_scale, 0.9);
+  EXPECT_EQ(converted.speed_m_per_s, 1.25);
+  EXPECT_EQ(converted.joints[3].limits.max_n_m, start.joints[3].limits.max_n_m);
+}
+
 // What runs recorded before the control period had a table of its own.
 TEST(Control, RecordsOfOldRunsCanBeRead) {
   const LoadedProblem now = load({"control.period_s=0.005"});

@@ -254,9 +254,10 @@ TEST(DesignVariables, BadInputIsRefusedWithPlaceAndAdvice) {
   EXPECT_EQ(folder.refusal_of("extends = \"base\"\n[variables]\nlength_bounds_factor = 1"),
             "p.toml:3: variables.length_bounds_factor is 1; it must be a finite number > 1 and <= "
             "100");
-  EXPECT_EQ(folder.refusal_of("extends = \"base\"\n[motors]\ntorque_per_mass_n_m_per_kg = 0"),
-            "p.toml:3: motors.torque_per_mass_n_m_per_kg is 0; it must be a finite number > 0 and "
-            "<= 1000000000");
+  EXPECT_EQ(
+      folder.refusal_of("extends = \"base\"\n[motors]\ntorque_per_mass_n_m_per_kg = -1"),
+      "p.toml:3: motors.torque_per_mass_n_m_per_kg is -1; it must be a finite number >= 0 and "
+      "<= 1000000000");
   EXPECT_EQ(folder.refusal_of_design(make_joint() + "length_scale = 0\n"),
             "d.toml:7: joint[0].length_scale is 0; it must be a finite number >= 0.01 and <= 100");
   EXPECT_EQ(folder.refusal_of_design("speed_m_per_s = -1\n" + make_joint()),

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/expect_error.hpp"
 #include "problems/problem_folder.hpp"
 
 namespace armwright {
@@ -219,6 +220,16 @@ TEST(ObjectiveTable, RefusesWhatCannotBeMeant) {
                                         "energy_scale_j = 1"),
             "p.toml:4: objective.energy_weight is 1; only the kinds error and error_and_torque are "
             "sums; choose one of them or leave it out");
+}
+
+TEST(TrackingObjective, WhatAStatisticDoesNotReadIsRefused) {
+  for (const std::string key : {"cvar_share", "failure_penalty_m"}) {
+    EXPECT_THAT(usage_error_of([&] {
+                  load_problem("q2-e6", std::vector<std::string>{"objective." + key + "=0.2"});
+                }),
+                testing::HasSubstr("it does nothing to the mean; set objective.statistic"))
+        << key;
+  }
 }
 
 }  // namespace
