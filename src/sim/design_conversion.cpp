@@ -19,11 +19,12 @@ ArmDesign convert_design(const ArmDesign& design, std::string_view controller, d
                             "be turned into one for '{}'; name another start",
                             design.controller, row.name));
   }
-  ArmDesign converted;
+  ArmDesign converted = design;
   converted.controller = row.name;
   for (std::size_t joint = 0; joint < design.joints.size(); ++joint) {
     const JointDrive& pid = design.joints[joint];
-    JointDrive drive{std::vector<double>(row.gains.size()), pid.limits};
+    JointDrive& drive = converted.joints[joint];
+    drive.gains.assign(row.gains.size(), 0.0);
     row.convert(
         {pid.gains.at(0), pid.gains.at(1), pid.gains.at(2), calc_largest_torque_n_m(pid), period_s},
         drive.gains.data());
@@ -38,7 +39,6 @@ ArmDesign convert_design(const ArmDesign& design, std::string_view controller, d
                         calc_largest_torque_n_m(pid), row.gains[gain].key, drive.gains[gain]));
       }
     }
-    converted.joints.push_back(std::move(drive));
   }
   return converted;
 }
