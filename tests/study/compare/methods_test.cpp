@@ -142,6 +142,10 @@ TEST(StudyMethods, ChangeNothingButTraining) {
   expect("set = ['task.speed_m_per_s=1']\n",
          "task.speed_m_per_s is the same for every optimizer of a comparison");
   expect("set = ['objective.kind=error']\n", "objective.kind is the same for every optimizer");
+  expect("set = ['control.period_s=0.005']\n",
+         "control.period_s is the same for every optimizer of a comparison");
+  expect("set = ['control={controller=\"pid\",period_s=0.005}']\n",
+         "control is the same for every optimizer of a comparison");
   expect("set = ['schedule.kind=fresh']\n", "for schedule.kind write schedule = \"KIND:K\"");
   expect("schedule = 'often:1'\n", "schedule is 'often:1'; it must be fresh:K");
   expect("schedule = 'fixed:101'\n", "a budget of 100 cases does not pay for one evaluation");
