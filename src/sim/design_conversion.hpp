@@ -8,7 +8,7 @@
 namespace armwright {
 
 // The design itself if it is for that controller; otherwise a PID design as the controller's row
-// turns its gains into its own (ControllerRow::convert), the effort limits kept. Error{usage} for a
+// turns its gains into its own (ControllerRow::convert), all else kept. Error{usage} for a
 // design of any other controller, and where a gain comes out as no number.
 ArmDesign convert_design(const ArmDesign& design, std::string_view controller, double period_s);
 

@@ -113,10 +113,10 @@ void add_running_times(const StudyPlan& plan, const ProblemResult& problem,
     for (const CellOutcome* run : runs) {
       const double cost = calc_cost_to_target(make_trace(*run), time.target);
       const bool reached = std::isfinite(cost);
-      // One that gave up early has spent no more than that.
+      // One that ended early has spent no more than that, whether it had reached the target or not.
       const double spent =
           run->cases > 0 ? static_cast<double>(run->cases) : static_cast<double>(plan.budget);
-      trials.push_back({reached ? cost : spent, reached});
+      trials.push_back({std::min(cost, spent), reached});
       time.reached += reached ? 1 : 0;
     }
     if (time.reached > 0) {

@@ -14,16 +14,19 @@ namespace {
 
 using nlohmann::json;
 
-// How training goes, and what kind of controller the designs have. All else is what is asked of a
-// design.
-constexpr const char* kMethodTables[] = {"racing", "schedule", "perturbation", "control"};
+// How training goes. With what kind of controller the designs have, kController, that is a
+// method's; all else is what is asked of a design. So is the rest of [control]: the plant is
+// integrated in steps of the control period.
+constexpr const char* kMethodTables[] = {"racing", "schedule", "perturbation"};
+constexpr std::string_view kController = "control.controller";
 
 std::string get_table(std::string_view setting) {
   return std::string(setting.substr(0, setting.find_first_of(".=")));
 }
 
 std::string get_key(std::string_view setting) {
-  return std::string(setting.substr(0, setting.find('=')));
+  const std::string_view key = setting.substr(0, setting.find('='));
+  return std::string(key.substr(0, key.find_last_not_of(' ') + 1));
 }
 
 // The perturbation that designs meet in validation and tests; null if there is none.
@@ -43,6 +46,12 @@ json leave_method_out(const LoadedProblem& problem) {
   json resolved = json::parse(problem.resolved_json);
   for (const char* table : kMethodTables) {
     resolved.erase(table);
+  }
+  if (const auto control = resolved.find("control"); control != resolved.end()) {
+    control->erase("controller");
+    if (control->empty()) {
+      resolved.erase(control);
+    }
   }
   return resolved;
 }
@@ -80,14 +89,15 @@ std::vector<std::string> read_method_settings(const ConfigTable& optimizer) {
   const std::vector<std::string> settings = optimizer.get_strings("set");
   for (const std::string& setting : settings) {
     const std::string key = get_key(setting);
-    if (std::ranges::find(kMethodTables, get_table(setting)) == std::end(kMethodTables)) {
+    if (key != kController &&
+        std::ranges::find(kMethodTables, get_table(setting)) == std::end(kMethodTables)) {
       optimizer.refuse(
           "set",
           fmt::format("{} is the same for every optimizer of a comparison. Of an optimizer's "
                       "own may be how its budget is spent in training and what controls its "
                       "designs: schedule = \"KIND:K\", and in `set` racing.*, schedule.*, "
-                      "perturbation.* and control.*",
-                      sanitize(key)));
+                      "perturbation.* and {}",
+                      sanitize(key), kController));
     }
     if (key == "schedule.kind" || key == "schedule.cases" || key == "schedule.fixed_cases") {
       optimizer.refuse("set", fmt::format("for {} write schedule = \"KIND:K\"", key));

@@ -7,11 +7,13 @@
 #include <cstring>
 #include <set>
 
+#include "base/error.hpp"
 #include "base/hash.hpp"
 #include "base/random.hpp"
 #include "base/text.hpp"
 #include "optimizers/search_space.hpp"
 #include "problems/replicate.hpp"
+#include "sim/design_conversion.hpp"
 #include "study/compare/escape.hpp"
 
 namespace armwright {
@@ -38,26 +40,41 @@ std::vector<double> draw_near_start(std::span<const DecisionVariable> variables,
   return space.to_point(space.draw_between(lower, upper, random));
 }
 
-// The same for every optimizer of a replicate. A method whose designs have other variables shares
-// those that go by the same name; each of the others has a stream of its own.
-std::vector<double> draw_start(const StudyPlan& plan, const Cell& cell) {
-  const auto& variables = plan.problems[cell.problem].loaded.problem->description().variables;
-  const auto& own = get_problem(plan, cell).problem->description().variables;
-  const std::string stream = make_stream(plan, cell) + "/start";
-  const std::vector<double> start = draw_near_start(variables, plan.start_spread, stream);
-  if (std::ranges::equal(variables, own, {}, &DecisionVariable::name, &DecisionVariable::name)) {
-    return start;
-  }
+// A start of the problem as a method with another controller begins from it: the same PID, turned
+// into that controller. Drawn in the method's own variables instead, it would be another start,
+// and weights of a network, moved a share of their range each, no controller at all.
+std::vector<double> convert_start(const StudyPlan& plan, const Cell& cell,
+                                  const std::vector<double>& start) {
+  const TrackingProblem& own = *get_problem(plan, cell).tracking;
+  const ArmDesign design = plan.problems[cell.problem].loaded.tracking->make_design(start);
   std::vector<double> own_start;
-  for (const DecisionVariable& variable : own) {
-    const auto shared = std::ranges::find(variables, variable.name, &DecisionVariable::name);
-    const double value =
-        shared != variables.end()
-            ? start[static_cast<std::size_t>(shared - variables.begin())]
-            : draw_near_start({&variable, 1}, plan.start_spread, stream + "/" + variable.name)[0];
-    own_start.push_back(std::clamp(value, variable.lower, variable.upper));
+  try {
+    const TrackingConfig& config = own.config();
+    own_start = own.make_vector(
+        convert_design(design, config.start.controller, config.task.control_period_s));
+  } catch (const Error& error) {
+    throw Error(error.kind(),
+                fmt::format("optimizer {} on {}: {}", plan.optimizers[cell.optimizer].label,
+                            plan.problems[cell.problem].label, error.what()));
+  }
+  const auto& variables = own.description().variables;
+  for (std::size_t i = 0; i < variables.size(); ++i) {
+    own_start[i] = std::clamp(own_start[i], variables[i].lower, variables[i].upper);
   }
   return own_start;
+}
+
+// The same for every method of a replicate.
+std::vector<double> draw_start(const StudyPlan& plan, const Cell& cell) {
+  const LoadedProblem& problem = plan.problems[cell.problem].loaded;
+  const std::vector<double> start =
+      draw_near_start(problem.problem->description().variables, plan.start_spread,
+                      make_stream(plan, cell) + "/start");
+  const LoadedProblem& own = get_problem(plan, cell);
+  const bool has_own_controller =
+      problem.tracking && own.tracking &&
+      own.tracking->config().start.controller != problem.tracking->config().start.controller;
+  return has_own_controller ? convert_start(plan, cell, start) : start;
 }
 
 // 63 bits of the cell's name, so that it can be typed as --seed.

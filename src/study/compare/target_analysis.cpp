@@ -36,13 +36,12 @@ TargetTime make_time(const std::string& stream, std::vector<Trial> trials) {
 }  // namespace
 
 Trial make_target_trial(const StudyPlan& plan, const StudyTarget& target, const CellOutcome& cell) {
-  // One that gave up early has spent no more than that.
-  Trial trial{.cost = static_cast<double>(cell.cases > 0 ? static_cast<std::int64_t>(cell.cases)
-                                                         : plan.budget),
-              .reached = false};
+  // One that ended early has spent no more than that, whether it had reached the target or not.
+  const std::int64_t spent = cell.cases > 0 ? static_cast<std::int64_t>(cell.cases) : plan.budget;
+  Trial trial{.cost = static_cast<double>(spent), .reached = false};
   for (auto point = cell.choices.rbegin(); point != cell.choices.rend() && meets(target, *point);
        ++point) {
-    trial = {.cost = static_cast<double>(point->budget), .reached = true};
+    trial = {.cost = static_cast<double>(std::min(point->budget, spent)), .reached = true};
   }
   return trial;
 }

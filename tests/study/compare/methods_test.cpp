@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "base/expect_error.hpp"
+#include "sim/design_conversion.hpp"
 #include "study/compare/study_support.hpp"
 #include "study/compare/verdict.hpp"
 
@@ -54,6 +55,80 @@ schedule = "fresh:1"
   EXPECT_NE(fixed.seed, fresh.seed);
 }
 
+// The arm that a cell begins with.
+ArmDesign make_start(const RunPlan& run) {
+  std::vector<double> x;
+  for (const DecisionVariable& variable : run.problem.problem->description().variables) {
+    x.push_back(variable.start);
+  }
+  return run.problem.tracking->make_design(x);
+}
+
+TEST(StudyMethods, WithOtherControllersBeginFromTheSamePid) {
+  const TemporaryFolder folder;
+  std::string toml = R"(problems = ["q2-e6"]
+schedule = "fixed:5"
+replicates = 4
+budget = 100
+baselines = false
+set = ["physics.engine=articulated", "workspace.points=4"]
+)";
+  // The problem's own first.
+  const std::vector<std::string> names = {
+      "pid", "pid_filtered", "pi2d", "pid_gravity", "pid_computed_torque", "cascade", "neural"};
+  for (const std::string& name : names) {
+    toml += "[[optimizer]]\nname = \"cmaes\"\nlabel = \"" + name +
+            "\"\nset = [\"control.controller=" + name + "\"]\n";
+  }
+  const StudyPlan plan = load(folder, toml);
+  for (const Cell& cell : list_cells(plan)) {
+    SCOPED_TRACE(names[cell.optimizer] + " " + std::to_string(cell.replicate));
+    const ArmDesign pid = make_start(make_run_plan(plan, {0, 0, cell.replicate}));
+    const RunPlan run = make_run_plan(plan, cell);
+    const TrackingProblem& own = *run.problem.tracking;
+    const ArmDesign start = make_start(run);
+    const ArmDesign converted =
+        convert_design(pid, names[cell.optimizer], own.config().task.control_period_s);
+    EXPECT_EQ(own.make_vector(start), own.make_vector(converted));
+    // So that none begins with an arm that falls down.
+    for (const TrackingResult& result : own.track(start, own.get_set("test/1"), 0, 5, {})) {
+      EXPECT_LT(result.mean_error_m, kFailureError_m);
+    }
+  }
+}
+
+// What is not the controller's, lengths of links and the speed, is the same start as well.
+TEST(StudyMethods, WithOtherControllersBeginWithTheSameArm) {
+  const TemporaryFolder folder;
+  std::string toml = kHead;
+  toml.replace(toml.find("set = ["), 7,
+               "set = [\"variables.optimize=['gains', 'length_scale']\", "
+               "\"variables.task=['speed']\", ");
+  const StudyPlan plan = load(folder, toml +
+                                          "[[optimizer]]\nname = 'ga'\n"
+                                          "[[optimizer]]\nname = 'ga'\nlabel = 'neural'\n"
+                                          "set = ['control.controller=neural']\n");
+  const ArmDesign pid = make_start(make_run_plan(plan, {0, 0, 1}));
+  const ArmDesign neural = make_start(make_run_plan(plan, {0, 1, 1}));
+  EXPECT_EQ(neural.controller, "neural");
+  EXPECT_NE(pid.joints[0].length_scale, 1);
+  EXPECT_EQ(pid.joints[0].length_scale, neural.joints[0].length_scale);
+  EXPECT_EQ(pid.speed_m_per_s, neural.speed_m_per_s);
+}
+
+TEST(StudyMethods, WhoseStartIsNoPidIsRefused) {
+  const TemporaryFolder folder;
+  std::string toml = kHead;
+  toml.replace(toml.find("set = ["), 7, "set = [\"control.controller=pi2d\", ");
+  EXPECT_THAT(usage_error_of([&] {
+                load(folder, toml +
+                                 "[[optimizer]]\nname = 'ga'\nlabel = 'plain'\n"
+                                 "set = ['control.controller=pid']\n");
+              }),
+              HasSubstr("optimizer plain on q1-complex: the start design is for controller "
+                        "'pi2d'"));
+}
+
 TEST(StudyMethods, ChangeNothingButTraining) {
   const TemporaryFolder folder;
   const auto expect = [&](const std::string& method, const std::string& message) {
@@ -67,6 +142,10 @@ TEST(StudyMethods, ChangeNothingButTraining) {
   expect("set = ['task.speed_m_per_s=1']\n",
          "task.speed_m_per_s is the same for every optimizer of a comparison");
   expect("set = ['objective.kind=error']\n", "objective.kind is the same for every optimizer");
+  expect("set = ['control.period_s=0.005']\n",
+         "control.period_s is the same for every optimizer of a comparison");
+  expect("set = ['control={controller=\"pid\",period_s=0.005}']\n",
+         "control is the same for every optimizer of a comparison");
   expect("set = ['schedule.kind=fresh']\n", "for schedule.kind write schedule = \"KIND:K\"");
   expect("schedule = 'often:1'\n", "schedule is 'often:1'; it must be fresh:K");
   expect("schedule = 'fixed:101'\n", "a budget of 100 cases does not pay for one evaluation");

@@ -82,6 +82,15 @@ failures = 1
   expect(find({{10, 0.9, 0}, {20, 0.9, 0}, {30, 0.9, 2}}), 100, false);
   expect(find({{10, kInf, 10}, {20, kInf, 10}, {30, 0.9, std::nullopt}}), 100, false);
   expect(find({}), 100, false);
+  // A run that ended after 25 cases spent no more than those, whatever the last checkpoint says.
+  const auto find_ended = [&](std::vector<CurvePoint> choices) {
+    CellOutcome cell = make_cell("ga", 1, std::move(choices));
+    cell.cases = 25;
+    return make_target_trial(plan, plan.targets[0], cell);
+  };
+  expect(find_ended({{10, 1.1, 0}, {20, 1.1, 0}, {30, 0.4, 0}}), 25, true);
+  expect(find_ended({{10, 1.1, 0}, {20, 0.4, 0}, {30, 0.4, 0}}), 20, true);
+  expect(find_ended({{10, 1.1, 0}, {20, 1.1, 0}, {30, 1.1, 0}}), 25, false);
 }
 
 TEST(TargetTimes, AreChargedWithTheFailures) {
