@@ -128,8 +128,10 @@ json make_replay_set(PageSimulator& simulator, const TrackingProblem& problem,
   simulator.run(motions.size(), [&](std::size_t i) {
     const NamedDesign& design = designs[i % designs.size()];
     const ReplayRequest& one = cases[i / designs.size()];
-    motions[i] = make_motion(design.id, problem.track(design.design, one.set, one.number,
-                                                      {.error_series = true, .trajectory = true}));
+    const TrackingProblem& its_problem = design.problem != nullptr ? *design.problem : problem;
+    motions[i] =
+        make_motion(design.id, its_problem.track(design.design, one.set, one.number,
+                                                 {.error_series = true, .trajectory = true}));
   });
   json list = json::array();
   for (const NamedDesign& design : designs) {

@@ -17,6 +17,9 @@ struct NamedDesign {
   std::string id;    // "winner"
   std::string name;  // as shown
   ArmDesign design;
+  // That it is simulated in, as by a method that makes other efforts in advance; null: the one of
+  // the designs beside it. All of them share robot, task and cases.
+  const TrackingProblem* problem = nullptr;
 };
 
 struct ReplayRequest {

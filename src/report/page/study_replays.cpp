@@ -28,18 +28,27 @@ struct BestDesign {
   NamedDesign named;
 };
 
-// Of the best optimizers one each, best optimizer first.
+// Of the best optimizers one each, best optimizer first. A method's design is of its method's
+// problem: another controller may want efforts in advance that the others' problem does not make.
 std::vector<BestDesign> find_best_designs(const StudyPlan& plan, const StudyResult& result,
-                                          std::size_t problem) {
+                                          std::size_t problem, std::vector<std::string>& notes) {
   std::vector<BestDesign> designs;
   for (const std::size_t o : result.problems[problem].order) {
     const std::string& label = plan.optimizers[o].label;
     const CellOutcome* cell = find_best_cell(result.cells, plan.problems[problem].label, label);
-    if (cell != nullptr && designs.size() < kMostDesigns) {
-      designs.push_back(
-          {cell,
-           {fmt::format("optimizer-{}", o), fmt::format("{}, replicate {}", label, cell->replicate),
-            get_problem(plan, {problem, o, 1}).tracking->make_design(cell->x)}});
+    if (cell == nullptr || designs.size() >= kMostDesigns) {
+      continue;
+    }
+    const TrackingProblem& its_problem = *get_problem(plan, {problem, o, cell->replicate}).tracking;
+    NamedDesign named{fmt::format("optimizer-{}", o),
+                      fmt::format("{}, replicate {}", label, cell->replicate),
+                      its_problem.make_design(cell->x), &its_problem};
+    try {
+      its_problem.check_design(named.design);
+      designs.push_back({cell, std::move(named)});
+    } catch (const Error& error) {  // the page is of more than this
+      notes.push_back(fmt::format("The replay of {} on {} is left out: {}.", sanitize(label),
+                                  sanitize(plan.problems[problem].label), sanitize(error.what())));
     }
   }
   return designs;
@@ -140,7 +149,7 @@ json make_study_replays(const StudyPlan& plan, const StudyResult& result,
   for (const std::size_t p : shown) {
     const StudyProblem& problem = plan.problems[p];
     const TrackingProblem& tracking = *problem.loaded.tracking;
-    const auto best = find_best_designs(plan, result, p);
+    const auto best = find_best_designs(plan, result, p, notes);
     const auto requests = choose_cases(plan, problem, best, folder, cases);
     std::vector<NamedDesign> designs;
     for (const BestDesign& one : best) {

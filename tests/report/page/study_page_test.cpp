@@ -145,6 +145,35 @@ TEST_F(StudyPage, HasReplaysOfTheBestDesigns) {
               HasSubstr("it must be SET:NUMBER"));
 }
 
+TEST_F(StudyPage, ReplaysAMethodsDesignsInItsOwnProblem) {
+  std::ofstream(temporary_ / "plan.toml") << R"(
+replicates = 2
+budget = 40
+baselines = false
+[[problem]]
+name = "q2-e6"
+set = ["physics.engine=articulated", "workspace.points=4", "sets.validation_cases=3",
+       "sets.test_cases=4"]
+[[optimizer]]
+name = "random"
+label = "pid"
+[[optimizer]]
+name = "random"
+label = "gravity"
+set = ["control.controller=pid_gravity"]
+)";
+  StudyRequest request;
+  request.file = (temporary_ / "plan.toml").string();
+  study(make_study_plan(request), "study");
+  const json page = make("study", {.jobs = 2, .cases = {}});
+  ASSERT_EQ(page["replays"].size(), 1u);
+  const json& replay = page["replays"][0];
+  EXPECT_EQ(replay["designs"].size(), 3u);
+  for (const json& motion : replay["cases"][0]["motions"]) {
+    EXPECT_NE(motion["status"], "diverged") << motion["design"];
+  }
+}
+
 TEST_F(StudyPage, SimulatesNothingIfSoAsked) {
   study(make_study_plan(make_arm_request()), "study");
   const json page = make("study", {.cases = {}, .simulate = false});
