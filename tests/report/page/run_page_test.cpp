@@ -154,6 +154,21 @@ TEST_F(RunPage, CommandsLeadToTheRunsProblem) {
   }
 }
 
+TEST_F(RunPage, CommandsNameMotorsAndPlants) {
+  make_run(make_plan("q1-complex", "ga", 16,
+                     {"motors.torque_per_mass_n_m_per_kg=50", "perturbation.mass_relative=0.1",
+                      "perturbation.load_kg=[1,2]"}),
+           "a");
+  const std::string command = make_page("a")["arm"]["response"]["series"][0]["command"];
+  EXPECT_THAT(command, HasSubstr("motors.torque_per_mass_n_m_per_kg=50"));
+  EXPECT_THAT(command, HasSubstr("perturbation.mass_relative=0.1"));
+  EXPECT_THAT(command, HasSubstr("perturbation.load_kg=[1"));
+  // A preset is recorded as what it holds.
+  make_run(make_plan("q1-complex", "ga", 16, {"perturbation.preset=weak"}), "b");
+  const std::string other = make_page("b")["arm"]["response"]["series"][0]["command"];
+  EXPECT_THAT(other, HasSubstr("--set perturbation.effort_limit_sigma="));
+}
+
 TEST_F(RunPage, OfAFunctionHasNoArm) {
   make_run(make_plan("rastrigin", "random", 900), "a");
   const json page = make_page("a");
