@@ -133,7 +133,7 @@ void add_arm(const RecordedRun& run, const PageOptions& options, PageSimulator* 
         make_replay_set(*simulator, problem, {"run", "Motions"}, 0, named, requests));
   }
   page["test"] = make_test_errors(run, designs);
-  page["arm"] = make_arm_evidence(run, designs, has_winner ? simulator : nullptr);
+  page["arm"] = make_arm_evidence(run, designs, has_winner ? simulator : nullptr, notes);
 }
 
 json make_page(const RecordedRun& run, const PageOptions& options, PageSimulator& simulator) {

@@ -19,6 +19,7 @@ namespace {
 using nlohmann::json;
 using testing::Contains;
 using testing::HasSubstr;
+using testing::Not;
 
 // The fields of an interface in web/src/data.ts, those that it extends left out.
 std::set<std::string> read_interface(const std::string& name) {
@@ -167,6 +168,16 @@ TEST_F(RunPage, CommandsNameMotorsAndPlants) {
   make_run(make_plan("q1-complex", "ga", 16, {"perturbation.preset=weak"}), "b");
   const std::string other = make_page("b")["arm"]["response"]["series"][0]["command"];
   EXPECT_THAT(other, HasSubstr("--set perturbation.effort_limit_sigma="));
+}
+
+TEST_F(RunPage, SweepsNoDesignWithASpeedOfItsOwn) {
+  make_run(make_plan("q1-complex", "ga", 16, {R"(variables.task=["speed"])"}), "a");
+  const json page = make_page("a");
+  const json& sweep = page["arm"]["sweep"];
+  ASSERT_EQ(sweep["series"].size(), 1u);  // the published one
+  EXPECT_EQ(sweep["series"][0]["name"], page["arm"]["designs"][2]["name"]);
+  EXPECT_THAT(sweep["command"].get<std::string>(), Not(HasSubstr("winner.toml")));
+  EXPECT_THAT(notes_of(page), Contains(HasSubstr("leaves out winner.")));
 }
 
 TEST_F(RunPage, OfAFunctionHasNoArm) {
