@@ -180,6 +180,21 @@ TEST_F(RunPage, SweepsNoDesignWithASpeedOfItsOwn) {
   EXPECT_THAT(notes_of(page), Contains(HasSubstr("leaves out winner.")));
 }
 
+TEST_F(RunPage, SaysThatATrainingCaseIsReplayedOnAnotherPlant) {
+  const auto get_label = [&](const std::string& folder, std::vector<std::string> overrides) {
+    make_run(make_plan("q1-complex", "ga", 16, std::move(overrides)), folder);
+    const json page = make_page(folder);
+    EXPECT_EQ(page["replays"][0]["cases"][0]["set"], "train/1");
+    return page["replays"][0]["cases"][0]["label"].get<std::string>();
+  };
+  const std::string mass = "perturbation.mass_relative=0.1";
+  EXPECT_THAT(get_label("a", {mass}), Not(HasSubstr("plant")));
+  EXPECT_THAT(get_label("b", {mass, "perturbation.apply_to=training"}),
+              HasSubstr("here on the nominal one"));
+  EXPECT_THAT(get_label("c", {mass, "perturbation.apply_to=judging"}),
+              HasSubstr("here on a perturbed one"));
+}
+
 TEST_F(RunPage, OfAFunctionHasNoArm) {
   make_run(make_plan("rastrigin", "random", 900), "a");
   const json page = make_page("a");
