@@ -195,6 +195,23 @@ TEST_F(RunPage, SaysThatATrainingCaseIsReplayedOnAnotherPlant) {
               HasSubstr("here on a perturbed one"));
 }
 
+TEST_F(RunPage, DesignsThatMoveAnotherArmHaveAReplayOfTheirOwn) {
+  make_run(make_plan("q1-complex", "ga", 16, {R"(variables.optimize=["p","length_scale"])"}), "a");
+  const json page = make_page("a");
+  ASSERT_EQ(page["replays"].size(), 2u);
+  const json& own = page["replays"][0];
+  const json& nominal = page["replays"][1];
+  EXPECT_EQ(own["title"], "Motions: winner");
+  ASSERT_EQ(own["designs"].size(), 1u);
+  EXPECT_EQ(nominal["designs"].size(), 2u);
+  EXPECT_NE(own["id"], nominal["id"]);
+  const auto get_end = [&](const json& replay) {
+    return page["robots"][replay["robot"].get<std::size_t>()]["joints"][2]["origin"]["position"];
+  };
+  EXPECT_NE(get_end(own), get_end(nominal));
+  EXPECT_NE(own["cases"][1]["start_q"], nominal["cases"][1]["start_q"]);
+}
+
 TEST_F(RunPage, OfAFunctionHasNoArm) {
   make_run(make_plan("rastrigin", "random", 900), "a");
   const json page = make_page("a");
