@@ -142,17 +142,19 @@ json make_response(const RecordedRun& run, const std::vector<ShownDesign>& desig
       std::move(series));
 }
 
-std::vector<NamedDesign> choose_swept(const std::vector<ShownDesign>& designs) {
-  std::vector<NamedDesign> swept;
+// A design with a speed of its own moves at that, whatever the task's is: it cannot be swept.
+std::vector<const ShownDesign*> choose_swept(const std::vector<ShownDesign>& designs) {
+  std::vector<const ShownDesign*> swept;
   for (const ShownDesign& design : designs) {
-    if (design.named.id != "base") {
-      swept.push_back(design.named);
+    if (design.named.id != "base" && !design.named.design.speed_m_per_s) {
+      swept.push_back(&design);
     }
   }
   return swept;
 }
 
-SweepRequest make_sweep_request(const RecordedRun& run, const std::vector<ShownDesign>& designs) {
+SweepRequest make_sweep_request(const RecordedRun& run,
+                                const std::vector<const ShownDesign*>& swept) {
   constexpr double kFirst_m_per_s = 0.5;
   constexpr double kStep_m_per_s = 0.25;
   constexpr int kSpeeds = 11;
@@ -165,15 +167,40 @@ SweepRequest make_sweep_request(const RecordedRun& run, const std::vector<ShownD
   const CaseSets& sets = run.problem->sets;
   request.set = sets.test;
   request.cases = static_cast<std::uint64_t>(std::min(sets.test_cases, kMostSweepCases));
-  if (!run.problem_words.empty() && !designs.front().word.empty()) {
+  if (!run.problem_words.empty() && !swept.empty() && !swept.front()->word.empty()) {
     std::vector<std::string> words = {"armwright", "sweep"};
     words.insert(words.end(), run.problem_words.begin() + 1, run.problem_words.end());
-    words.insert(words.end(), {"--design", designs.front().word, "--parameter",
-                               "task.speed_m_per_s", "--values", join(values, ","), "--test-set",
-                               sets.test, "--cases", fmt::format("{}", request.cases)});
+    words.insert(words.end(), {"--design", swept.front()->word, "--parameter", "task.speed_m_per_s",
+                               "--values", join(values, ","), "--test-set", sets.test, "--cases",
+                               fmt::format("{}", request.cases)});
     request.command = quote_command(words);
   }
   return request;
+}
+
+json make_sweep(const RecordedRun& run, const std::vector<ShownDesign>& designs,
+                PageSimulator& simulator, std::vector<std::string>& notes) {
+  const auto swept = choose_swept(designs);
+  std::vector<std::string> own_speed;
+  for (const ShownDesign& design : designs) {
+    if (design.named.design.speed_m_per_s && design.named.id != "base") {
+      own_speed.push_back(sanitize(design.named.name));
+    }
+  }
+  if (!own_speed.empty()) {
+    notes.push_back(
+        fmt::format("Designs with a speed of their own move at that, whatever the task's is: the "
+                    "sweep over the speed leaves out {}.",
+                    join(own_speed, ", ")));
+  }
+  if (swept.empty()) {
+    return nullptr;
+  }
+  std::vector<NamedDesign> named;
+  for (const ShownDesign* design : swept) {
+    named.push_back(design->named);
+  }
+  return make_speed_sweep(simulator, *run.tracking(), make_sweep_request(run, swept), named);
 }
 
 }  // namespace
@@ -213,20 +240,20 @@ json make_test_errors(const RecordedRun& run, const std::vector<ShownDesign>& de
 }
 
 std::uint64_t count_sweep_cases(const RecordedRun& run, const std::vector<ShownDesign>& designs) {
-  const SweepRequest request = make_sweep_request(run, designs);
-  return request.speeds_m_per_s.size() * request.cases * choose_swept(designs).size();
+  const auto swept = choose_swept(designs);
+  const SweepRequest request = make_sweep_request(run, swept);
+  return request.speeds_m_per_s.size() * request.cases * swept.size();
 }
 
 json make_arm_evidence(const RecordedRun& run, const std::vector<ShownDesign>& designs,
-                       PageSimulator* simulator) {
+                       PageSimulator* simulator, std::vector<std::string>& notes) {
   json list = json::array();
   for (const ShownDesign& design : designs) {
     list.push_back(make_design_info(design.named));
   }
   json sweep = nullptr;
-  if (simulator != nullptr && !choose_swept(designs).empty()) {
-    sweep = make_speed_sweep(*simulator, *run.tracking(), make_sweep_request(run, designs),
-                             choose_swept(designs));
+  if (simulator != nullptr) {
+    sweep = make_sweep(run, designs, *simulator, notes);
   }
   return {{"designs", std::move(list)},
           {"parameters", make_parameters(run, designs)},

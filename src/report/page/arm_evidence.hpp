@@ -35,9 +35,9 @@ void simulate_designs(const RecordedRun& run, PageSimulator& simulator,
 // recorded of its winner.
 nlohmann::json make_test_errors(const RecordedRun& run, const std::vector<ShownDesign>& designs);
 
-// ArmEvidence; `simulator` null: no sweep.
+// ArmEvidence; `simulator` null: no sweep. `notes` get what that leaves out.
 nlohmann::json make_arm_evidence(const RecordedRun& run, const std::vector<ShownDesign>& designs,
-                                 PageSimulator* simulator);
+                                 PageSimulator* simulator, std::vector<std::string>& notes);
 
 // How many cases the sweep of make_arm_evidence() simulates.
 std::uint64_t count_sweep_cases(const RecordedRun& run, const std::vector<ShownDesign>& designs);

@@ -23,8 +23,16 @@ void add_training_case(const RecordedRun& run, ReplayList& replays) {
   });
   const bool has_second = run.schedule.changes_cases() && second != training.end();
   const CaseBlock& cases = (has_second ? *second : training.front()).cases;
-  replays.add(cases.set, cases.numbers.front(),
-              has_second ? "what the second generation was trained on" : "the first of training");
+  std::string why =
+      has_second ? "what the second generation was trained on" : "the first of training";
+  const Perturbation& plants = run.tracking()->config().perturbation;
+  // A replay moves designs as they are judged.
+  if (plants.applies_to(CaseRole::training) != plants.applies_to(CaseRole::test)) {
+    why += plants.applies_to(CaseRole::training)
+               ? ", there on a perturbed plant, here on the nominal one"
+               : ", there on the nominal plant, here on a perturbed one";
+  }
+  replays.add(cases.set, cases.numbers.front(), why);
 }
 
 void add_by_rank(const RecordedRun& run, const std::vector<double>& errors, ReplayList& replays) {

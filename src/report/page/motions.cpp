@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/text.hpp"
 #include "report/page/packed.hpp"
 #include "report/page/page_json.hpp"
+#include "sim/designed_arm.hpp"
 #include "sim/reference_signal.hpp"
 
 namespace armwright {
@@ -64,9 +66,26 @@ json make_segment(const Segment& segment) {
           {"duration_s", segment.duration_s}};
 }
 
-json make_case(const TrackingProblem& problem, const ReplayRequest& request) {
+const TrackingProblem& get_problem(const TrackingProblem& problem, const NamedDesign& design) {
+  return design.problem != nullptr ? *design.problem : problem;
+}
+
+bool is_same_arm(const ArmDesign& a, const ArmDesign& b) {
+  return std::ranges::equal(a.joints, b.joints, [](const JointDrive& one, const JointDrive& other) {
+    return one.length_scale == other.length_scale && one.section_scale == other.section_scale;
+  });
+}
+
+bool is_same_motion(const TrackingProblem& problem, const NamedDesign& a, const NamedDesign& b) {
+  const TrackingTask task_of_a = get_problem(problem, a).make_task(a.design);
+  const TrackingTask task_of_b = get_problem(problem, b).make_task(b.design);
+  return is_same_arm(a.design, b.design) && task_of_a.speed_m_per_s == task_of_b.speed_m_per_s &&
+         task_of_a.control_period_s == task_of_b.control_period_s;
+}
+
+json make_case(const TrackingSetup& setup, const ReplayRequest& request) {
   const TestCase test_case = request.set.make_case(request.number);
-  const TargetTable targets = problem.setup().make_targets(test_case);
+  const TargetTable targets = setup.make_targets(test_case);
   json points = json::array();
   for (const Eigen::Vector3d& point : test_case.points_m) {
     points.push_back(make_point(point));
@@ -76,7 +95,7 @@ json make_case(const TrackingProblem& problem, const ReplayRequest& request) {
   for (const Segment& segment : targets.segments) {
     segments.push_back(make_segment(segment));
     for (int step = 0; step < segment.steps; ++step) {
-      const Eigen::Vector3d place = problem.setup().calc_target_position(segment, step);
+      const Eigen::Vector3d place = setup.calc_target_position(segment, step);
       append(target, {place.data(), 3});
     }
   }
@@ -121,15 +140,54 @@ json make_task_info(const TrackingTask& task) {
           {"ik_bug", task.ik_bug}};
 }
 
+std::vector<std::vector<NamedDesign>> divide_by_motion(const TrackingProblem& problem,
+                                                       std::span<const NamedDesign> designs) {
+  std::vector<std::vector<NamedDesign>> groups;
+  for (const NamedDesign& design : designs) {
+    const auto group = std::ranges::find_if(groups, [&](const std::vector<NamedDesign>& known) {
+      return is_same_motion(problem, known.front(), design);
+    });
+    if (group == groups.end()) {
+      groups.push_back({design});
+    } else {
+      group->push_back(design);
+    }
+  }
+  return groups;
+}
+
+ReplayText make_group_text(ReplayText text, std::span<const std::vector<NamedDesign>> groups,
+                           std::size_t group) {
+  if (groups.size() > 1) {
+    std::vector<std::string> names;
+    for (const NamedDesign& design : groups[group]) {
+      names.push_back(design.name);
+    }
+    text.title += ": " + join(names, "; ");
+  }
+  if (group > 0) {
+    text.id += fmt::format("-{}", group + 1);
+  }
+  return text;
+}
+
+RobotModel make_shown_arm(const TrackingProblem& problem, const NamedDesign& design) {
+  return make_robot(problem.config().robot, design.design, 0);
+}
+
 json make_replay_set(PageSimulator& simulator, const TrackingProblem& problem,
                      const ReplayText& text, std::size_t robot,
                      std::span<const NamedDesign> designs, std::span<const ReplayRequest> cases) {
+  const TrackingProblem& first_problem = get_problem(problem, designs.front());
+  const auto setup = first_problem.get_setup(designs.front().design);
   std::vector<json> motions(designs.size() * cases.size());
   simulator.run(motions.size(), [&](std::size_t i) {
     const NamedDesign& design = designs[i % designs.size()];
     const ReplayRequest& one = cases[i / designs.size()];
-    motions[i] = make_motion(design.id, problem.track(design.design, one.set, one.number,
-                                                      {.error_series = true, .trajectory = true}));
+    const TrackingResult result =
+        get_problem(problem, design)
+            .track(design.design, one.set, one.number, {.error_series = true, .trajectory = true});
+    motions[i] = make_motion(design.id, result);
   });
   json list = json::array();
   for (const NamedDesign& design : designs) {
@@ -137,7 +195,7 @@ json make_replay_set(PageSimulator& simulator, const TrackingProblem& problem,
   }
   json replayed = json::array();
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    json& one = replayed.emplace_back(make_case(problem, cases[i]));
+    json& one = replayed.emplace_back(make_case(*setup, cases[i]));
     for (std::size_t k = 0; k < designs.size(); ++k) {
       one["motions"].push_back(std::move(motions[i * designs.size() + k]));
     }
@@ -145,7 +203,7 @@ json make_replay_set(PageSimulator& simulator, const TrackingProblem& problem,
   return {{"id", text.id},
           {"title", text.title},
           {"robot", robot},
-          {"task", make_task_info(problem.config().task)},
+          {"task", make_task_info(first_problem.make_task(designs.front().design))},
           {"designs", std::move(list)},
           {"cases", std::move(replayed)}};
 }

@@ -52,11 +52,12 @@ std::optional<NamedProblem> find_named_problem(const RecordedRun& run) {
   return std::nullopt;
 }
 
-// What decides how a design is judged, a line each: not the title, nor how it was found.
+// What decides how a design is judged, a line each: not the title, nor how it was found, which
+// races, schedules and the cut-off of training belong to.
 std::map<std::string, json> list_settings(const json& resolved) {
   std::map<std::string, json> settings;
-  for (const char* table :
-       {"robot", "task", "control", "physics", "workspace", "objective", "variables"}) {
+  for (const char* table : {"robot", "task", "control", "physics", "motors", "perturbation",
+                            "workspace", "objective", "variables"}) {
     if (resolved.contains(table) && resolved[table].is_object()) {
       for (const auto& [key, value] : resolved[table].items()) {
         settings[fmt::format("{}.{}", table, key)] = value;

@@ -182,4 +182,22 @@ json make_robot(const RobotModel& model, double load_kg, const std::filesystem::
           {"meshes", meshes.take()}};
 }
 
+std::size_t add_robot(const RobotModel& model, double load_kg,
+                      const std::filesystem::path& urdf_folder, json& robots,
+                      std::vector<std::string>& notes) {
+  std::vector<std::string> its_notes;
+  json robot = make_robot(model, load_kg, urdf_folder, its_notes);
+  const auto known = std::ranges::find(robots, robot);
+  if (known != robots.end()) {
+    return static_cast<std::size_t>(known - robots.begin());
+  }
+  robots.push_back(std::move(robot));
+  for (std::string& note : its_notes) {  // an arm with other links lacks the same meshes
+    if (std::ranges::find(notes, note) == notes.end()) {
+      notes.push_back(std::move(note));
+    }
+  }
+  return robots.size() - 1;
+}
+
 }  // namespace armwright

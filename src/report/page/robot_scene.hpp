@@ -20,4 +20,9 @@ nlohmann::json make_robot(const RobotModel& model, double load_kg,
                           const std::filesystem::path& urdf_folder,
                           std::vector<std::string>& notes);
 
+// The index in `robots` of that robot, which is added unless it is there already.
+std::size_t add_robot(const RobotModel& model, double load_kg,
+                      const std::filesystem::path& urdf_folder, nlohmann::json& robots,
+                      std::vector<std::string>& notes);
+
 }  // namespace armwright

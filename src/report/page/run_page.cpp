@@ -127,13 +127,18 @@ void add_arm(const RecordedRun& run, const PageOptions& options, PageSimulator* 
       simulate_designs(run, *simulator, designs);
       compare_with_record(run, designs, notes);
     }
-    page["robots"].push_back(make_robot(problem.config().robot, problem.config().task.load_kg,
-                                        run.find_urdf_folder(), notes));
-    page["replays"].push_back(
-        make_replay_set(*simulator, problem, {"run", "Motions"}, 0, named, requests));
+    const auto groups = divide_by_motion(problem, named);
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      const std::size_t robot =
+          add_robot(make_shown_arm(problem, groups[g].front()), problem.config().task.load_kg,
+                    run.find_urdf_folder(), page["robots"], notes);
+      page["replays"].push_back(make_replay_set(*simulator, problem,
+                                                make_group_text({"run", "Motions"}, groups, g),
+                                                robot, groups[g], requests));
+    }
   }
   page["test"] = make_test_errors(run, designs);
-  page["arm"] = make_arm_evidence(run, designs, has_winner ? simulator : nullptr);
+  page["arm"] = make_arm_evidence(run, designs, has_winner ? simulator : nullptr, notes);
 }
 
 json make_page(const RecordedRun& run, const PageOptions& options, PageSimulator& simulator) {

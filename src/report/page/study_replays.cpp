@@ -21,6 +21,7 @@ using nlohmann::json;
 
 constexpr std::size_t kMostProblems = 4;
 constexpr std::size_t kMostDesigns = 6;
+constexpr std::size_t kMostGroups = 3;                    // with arms or targets of their own
 constexpr std::size_t kMostBytes = std::size_t{3} << 20;  // of all replays
 
 struct BestDesign {
@@ -28,18 +29,27 @@ struct BestDesign {
   NamedDesign named;
 };
 
-// Of the best optimizers one each, best optimizer first.
+// Of the best optimizers one each, best optimizer first. A method's design is of its method's
+// problem: another controller may want efforts in advance that the others' problem does not make.
 std::vector<BestDesign> find_best_designs(const StudyPlan& plan, const StudyResult& result,
-                                          std::size_t problem) {
+                                          std::size_t problem, std::vector<std::string>& notes) {
   std::vector<BestDesign> designs;
   for (const std::size_t o : result.problems[problem].order) {
     const std::string& label = plan.optimizers[o].label;
     const CellOutcome* cell = find_best_cell(result.cells, plan.problems[problem].label, label);
-    if (cell != nullptr && designs.size() < kMostDesigns) {
-      designs.push_back(
-          {cell,
-           {fmt::format("optimizer-{}", o), fmt::format("{}, replicate {}", label, cell->replicate),
-            get_problem(plan, {problem, o, 1}).tracking->make_design(cell->x)}});
+    if (cell == nullptr || designs.size() >= kMostDesigns) {
+      continue;
+    }
+    const TrackingProblem& its_problem = *get_problem(plan, {problem, o, cell->replicate}).tracking;
+    NamedDesign named{fmt::format("optimizer-{}", o),
+                      fmt::format("{}, replicate {}", label, cell->replicate),
+                      its_problem.make_design(cell->x), &its_problem};
+    try {
+      its_problem.check_design(named.design);
+      designs.push_back({cell, std::move(named)});
+    } catch (const Error& error) {  // the page is of more than this
+      notes.push_back(fmt::format("The replay of {} on {} is left out: {}.", sanitize(label),
+                                  sanitize(plan.problems[problem].label), sanitize(error.what())));
     }
   }
   return designs;
@@ -89,19 +99,6 @@ std::filesystem::path find_urdf_folder(const StudyProblem& problem) {
   }
 }
 
-std::size_t add_robot(const StudyProblem& problem, json& robots, std::vector<std::string>& notes) {
-  const TrackingConfig& config = problem.loaded.tracking->config();
-  std::vector<std::string> its_notes;
-  json robot = make_robot(config.robot, config.task.load_kg, find_urdf_folder(problem), its_notes);
-  const auto known = std::ranges::find(robots, robot);
-  if (known != robots.end()) {
-    return static_cast<std::size_t>(known - robots.begin());
-  }
-  robots.push_back(std::move(robot));
-  notes.insert(notes.end(), its_notes.begin(), its_notes.end());
-  return robots.size() - 1;
-}
-
 // Takes out motions until the replay is small enough: the last cases but the first and those asked
 // for, then the designs before the start, the last of which are the worst. The leader and the
 // start stay.
@@ -140,23 +137,37 @@ json make_study_replays(const StudyPlan& plan, const StudyResult& result,
   for (const std::size_t p : shown) {
     const StudyProblem& problem = plan.problems[p];
     const TrackingProblem& tracking = *problem.loaded.tracking;
-    const auto best = find_best_designs(plan, result, p);
+    const auto best = find_best_designs(plan, result, p, notes);
     const auto requests = choose_cases(plan, problem, best, folder, cases);
     std::vector<NamedDesign> designs;
     for (const BestDesign& one : best) {
       designs.push_back(one.named);
     }
     designs.push_back({"start", "where the problem starts", tracking.config().start});
-    const std::size_t robot = add_robot(problem, robots, notes);
-    simulator.expect(designs.size() * requests.size());
-    json replay = make_replay_set(simulator, tracking,
-                                  {fmt::format("problem-{}", p), sanitize(problem.label)}, robot,
-                                  designs, requests);
-    shrink(replay, kMostBytes / shown.size(), 1 + cases.size());
-    if (replay["designs"].size() < designs.size() || replay["cases"].size() < requests.size()) {
+    auto groups = divide_by_motion(tracking, designs);
+    bool is_whole = groups.size() <= kMostGroups;
+    if (!is_whole) {  // those of the leader, of the next and of the start stay
+      groups.erase(groups.begin() + kMostGroups - 1, groups.end() - 1);
+    }
+    const auto folder_of_meshes = find_urdf_folder(problem);
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      const auto& group = groups[g];
+      const std::size_t robot =
+          add_robot(make_shown_arm(tracking, group.front()), tracking.config().task.load_kg,
+                    folder_of_meshes, robots, notes);
+      simulator.expect(group.size() * requests.size());
+      json replay = make_replay_set(
+          simulator, tracking,
+          make_group_text({fmt::format("problem-{}", p), sanitize(problem.label)}, groups, g),
+          robot, group, requests);
+      shrink(replay, kMostBytes / shown.size() / groups.size(), 1 + cases.size());
+      is_whole = is_whole && replay["designs"].size() == group.size() &&
+                 replay["cases"].size() == requests.size();
+      replays.push_back(std::move(replay));
+    }
+    if (!is_whole) {
       smaller.push_back(sanitize(problem.label));
     }
-    replays.push_back(std::move(replay));
   }
   if (!smaller.empty()) {
     notes.push_back(

@@ -80,6 +80,31 @@ TEST_F(Motions, ADivergedMotionGoesAsFarAsItWent) {
   }
 }
 
+TEST_F(Motions, DesignsWithASpeedOfTheirOwnHaveTheirOwnTargets) {
+  ArmDesign slow = design_;
+  slow.speed_m_per_s = 0.75;
+  ArmDesign same = design_;
+  same.speed_m_per_s = problem_->config().task.speed_m_per_s;
+  const std::vector<NamedDesign> designs = {
+      {"slow", "slow", slow}, {"plain", "plain", design_}, {"same", "same", same}};
+  const auto groups = divide_by_motion(*problem_, designs);
+  ASSERT_EQ(groups.size(), 2u);
+  EXPECT_EQ(groups[1].size(), 2u);
+  const ReplayText text = make_group_text({"run", "Motions"}, groups, 1);
+  EXPECT_EQ(text.id, "run-2");
+  EXPECT_EQ(text.title, "Motions: plain; same");
+  const ReplayRequest request{problem_->get_set("test/2"), 0, "a case"};
+  const auto replay = [&](std::size_t group) {
+    return make_replay_set(simulator_, *problem_, text, 0, groups[group], std::span(&request, 1));
+  };
+  const json own = replay(0);
+  EXPECT_EQ(own["task"]["speed_m_per_s"], 0.75);
+  EXPECT_EQ(own["cases"][0]["motions"][0]["steps"], own["cases"][0]["steps"]);
+  const json plain = replay(1);
+  EXPECT_EQ(plain["cases"][0]["motions"][1]["steps"], plain["cases"][0]["steps"]);
+  EXPECT_GT(own["cases"][0]["steps"], plain["cases"][0]["steps"]);
+}
+
 TEST_F(Motions, AResponseIsTheMeanOfEachPoint) {
   constexpr std::size_t kCases = 9;
   const auto results =

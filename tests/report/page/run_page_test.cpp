@@ -19,6 +19,7 @@ namespace {
 using nlohmann::json;
 using testing::Contains;
 using testing::HasSubstr;
+using testing::Not;
 
 // The fields of an interface in web/src/data.ts, those that it extends left out.
 std::set<std::string> read_interface(const std::string& name) {
@@ -152,6 +153,63 @@ TEST_F(RunPage, CommandsLeadToTheRunsProblem) {
   for (const json& row : page["arm"]["results"]) {
     EXPECT_TRUE(row["published_mean_m"].is_null());
   }
+}
+
+TEST_F(RunPage, CommandsNameMotorsAndPlants) {
+  make_run(make_plan("q1-complex", "ga", 16,
+                     {"motors.torque_per_mass_n_m_per_kg=50", "perturbation.mass_relative=0.1",
+                      "perturbation.load_kg=[1,2]"}),
+           "a");
+  const std::string command = make_page("a")["arm"]["response"]["series"][0]["command"];
+  EXPECT_THAT(command, HasSubstr("motors.torque_per_mass_n_m_per_kg=50"));
+  EXPECT_THAT(command, HasSubstr("perturbation.mass_relative=0.1"));
+  EXPECT_THAT(command, HasSubstr("perturbation.load_kg=[1"));
+  // A preset is recorded as what it holds.
+  make_run(make_plan("q1-complex", "ga", 16, {"perturbation.preset=weak"}), "b");
+  const std::string other = make_page("b")["arm"]["response"]["series"][0]["command"];
+  EXPECT_THAT(other, HasSubstr("--set perturbation.effort_limit_sigma="));
+}
+
+TEST_F(RunPage, SweepsNoDesignWithASpeedOfItsOwn) {
+  make_run(make_plan("q1-complex", "ga", 16, {R"(variables.task=["speed"])"}), "a");
+  const json page = make_page("a");
+  const json& sweep = page["arm"]["sweep"];
+  ASSERT_EQ(sweep["series"].size(), 1u);  // the published one
+  EXPECT_EQ(sweep["series"][0]["name"], page["arm"]["designs"][2]["name"]);
+  EXPECT_THAT(sweep["command"].get<std::string>(), Not(HasSubstr("winner.toml")));
+  EXPECT_THAT(notes_of(page), Contains(HasSubstr("leaves out winner.")));
+}
+
+TEST_F(RunPage, SaysThatATrainingCaseIsReplayedOnAnotherPlant) {
+  const auto get_label = [&](const std::string& folder, std::vector<std::string> overrides) {
+    make_run(make_plan("q1-complex", "ga", 16, std::move(overrides)), folder);
+    const json page = make_page(folder);
+    EXPECT_EQ(page["replays"][0]["cases"][0]["set"], "train/1");
+    return page["replays"][0]["cases"][0]["label"].get<std::string>();
+  };
+  const std::string mass = "perturbation.mass_relative=0.1";
+  EXPECT_THAT(get_label("a", {mass}), Not(HasSubstr("plant")));
+  EXPECT_THAT(get_label("b", {mass, "perturbation.apply_to=training"}),
+              HasSubstr("here on the nominal one"));
+  EXPECT_THAT(get_label("c", {mass, "perturbation.apply_to=judging"}),
+              HasSubstr("here on a perturbed one"));
+}
+
+TEST_F(RunPage, DesignsThatMoveAnotherArmHaveAReplayOfTheirOwn) {
+  make_run(make_plan("q1-complex", "ga", 16, {R"(variables.optimize=["p","length_scale"])"}), "a");
+  const json page = make_page("a");
+  ASSERT_EQ(page["replays"].size(), 2u);
+  const json& own = page["replays"][0];
+  const json& nominal = page["replays"][1];
+  EXPECT_EQ(own["title"], "Motions: winner");
+  ASSERT_EQ(own["designs"].size(), 1u);
+  EXPECT_EQ(nominal["designs"].size(), 2u);
+  EXPECT_NE(own["id"], nominal["id"]);
+  const auto get_end = [&](const json& replay) {
+    return page["robots"][replay["robot"].get<std::size_t>()]["joints"][2]["origin"]["position"];
+  };
+  EXPECT_NE(get_end(own), get_end(nominal));
+  EXPECT_NE(own["cases"][1]["start_q"], nominal["cases"][1]["start_q"]);
 }
 
 TEST_F(RunPage, OfAFunctionHasNoArm) {

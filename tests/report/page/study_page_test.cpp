@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "base/expect_error.hpp"
 #include "base/text.hpp"
@@ -143,6 +144,46 @@ TEST_F(StudyPage, HasReplaysOfTheBestDesigns) {
   EXPECT_THAT(ids, Contains("test/9:17"));
   EXPECT_THAT(usage_error_of([&] { make("study", {.cases = {"test/2"}}); }),
               HasSubstr("it must be SET:NUMBER"));
+}
+
+TEST_F(StudyPage, ReplaysAMethodsDesignsInItsOwnProblem) {
+  std::ofstream(temporary_ / "plan.toml") << R"(
+replicates = 2
+budget = 40
+baselines = false
+[[problem]]
+name = "q2-e6"
+set = ["physics.engine=articulated", "workspace.points=4", "sets.validation_cases=3",
+       "sets.test_cases=4"]
+[[optimizer]]
+name = "random"
+label = "pid"
+[[optimizer]]
+name = "random"
+label = "gravity"
+set = ["control.controller=pid_gravity"]
+[[optimizer]]
+name = "random"
+label = "slow"
+set = ["control.period_s=0.02"]
+)";
+  StudyRequest request;
+  request.file = (temporary_ / "plan.toml").string();
+  study(make_study_plan(request), "study");
+  const json page = make("study", {.jobs = 2, .cases = {}});
+  ASSERT_EQ(page["replays"].size(), 2u);  // one for each control period
+  std::set<std::string> ids;
+  std::set<double> periods_s;
+  for (const json& replay : page["replays"]) {
+    EXPECT_EQ(replay["robot"], 0);
+    periods_s.insert(replay["task"]["control_period_s"].get<double>());
+    for (const json& motion : replay["cases"][0]["motions"]) {
+      ids.insert(motion["design"]);
+      EXPECT_LE(motion["steps"], replay["cases"][0]["steps"]);
+    }
+  }
+  EXPECT_EQ(ids, (std::set<std::string>{"optimizer-0", "optimizer-1", "optimizer-2", "start"}));
+  EXPECT_EQ(periods_s, (std::set<double>{0.01, 0.02}));
 }
 
 TEST_F(StudyPage, SimulatesNothingIfSoAsked) {
