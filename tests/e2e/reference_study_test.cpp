@@ -25,9 +25,10 @@ int run_script(const TemporaryFolder& folder, const std::string& arguments) {
 TEST(ReferenceStudy, RunsCollectsAndGoesOn) {
   const TemporaryFolder folder;
   const auto tables = folder / "study" / "tables";
-  const std::string parts = "running-times cases coevolution q2-front";
+  const std::string parts = "running-times cases coevolution controllers q2-front";
   ASSERT_EQ(run_script(folder, "--quick --jobs 2 " + parts), 0) << read_text(folder / "out.txt");
-  for (const std::string part : {"running-times", "cases", "coevolution", "q2-front"}) {
+  for (const std::string part :
+       {"running-times", "cases", "coevolution", "controllers", "q2-front"}) {
     EXPECT_THAT(read_text(tables / part / "study.toml"), HasSubstr("plan_sha256")) << part;
     EXPECT_THAT(read_text(tables / part / "verdict.txt"), HasSubstr("nothing can be concluded"));
   }
