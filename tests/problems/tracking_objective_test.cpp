@@ -210,8 +210,9 @@ TEST(ObjectiveTable, RefusesWhatCannotBeMeant) {
             "mean_with_failures");
   EXPECT_EQ(folder.refusal_of_base_with("[objective]\nstatistic = 'cvar'\ncvar_share = 0"),
             "p.toml:4: objective.cvar_share is 0; it must be a finite number > 0 and <= 1");
-  EXPECT_EQ(folder.refusal_of_base_with("[objective]\nfailure_penalty_m = -1"),
-            "p.toml:3: objective.failure_penalty_m is -1; it must be a finite number > 0 and <= "
+  EXPECT_EQ(folder.refusal_of_base_with("[objective]\nstatistic = 'mean_with_failures'\n"
+                                        "failure_penalty_m = -1"),
+            "p.toml:4: objective.failure_penalty_m is -1; it must be a finite number > 0 and <= "
             "1000000000000");
   EXPECT_EQ(folder.refusal_of_base_with("[objective]\nenergy_weight = 1"),
             "p.toml:2: objective.energy_scale_j is missing; it must be a finite number > 0 and <= "
