@@ -72,21 +72,6 @@ INSTANTIATE_TEST_SUITE_P(Table, RacingOptimizers, testing::ValuesIn(optimizer_na
                            return name;
                          });
 
-// Stops a run after a number of cases, as Ctrl-C would.
-class StoppingObserver final : public SilentObserver {
- public:
-  StoppingObserver(StopSignal& stop, std::uint64_t after) : stop_(stop), after_(after) {}
-  void on_progress(const Progress& progress) override {
-    if (progress.done - progress.replayed >= after_) {
-      stop_.request(StopReason::interrupted);
-    }
-  }
-
- private:
-  StopSignal& stop_;
-  std::uint64_t after_;
-};
-
 struct Setting {
   std::string optimizer, schedule, racing;
 };

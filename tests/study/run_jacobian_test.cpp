@@ -71,20 +71,6 @@ TEST_F(RunTest, DerivativesAreChargedExactlyAndInWholeCandidates) {
   }
 }
 
-// Stops a run as soon as something new was evaluated, as Ctrl-C would.
-class StoppingObserver final : public SilentObserver {
- public:
-  explicit StoppingObserver(StopSignal& stop) : stop_(stop) {}
-  void on_progress(const Progress& progress) override {
-    if (progress.done > progress.replayed) {
-      stop_.request(StopReason::interrupted);
-    }
-  }
-
- private:
-  StopSignal& stop_;
-};
-
 TEST_F(RunTest, DerivativesAreReplayedBitForBit) {
   const RunPlan plan = make_plan("articulated", 54);
   run(plan, "whole", 1);
@@ -92,7 +78,7 @@ TEST_F(RunTest, DerivativesAreReplayedBitForBit) {
   for (bool done = false; !done; ++starts) {
     ASSERT_LT(starts, 100);
     StopSignal stop;
-    StoppingObserver observer(stop);
+    StoppingObserver observer(stop, 1);  // as soon as something new was evaluated
     done = execute_run({plan, temporary_ / "pieces", 2, {}}, stop, observer).has_value();
   }
   EXPECT_GT(starts, 3) << "the run was never interrupted";
@@ -116,7 +102,7 @@ TEST_F(RunTest, DerivativesAreReplayedBitForBit) {
 TEST_F(RunTest, AReplayThatAsksForOtherDerivativesIsRefused) {
   RunPlan plan = make_plan("articulated", 54);
   StopSignal stop;
-  StoppingObserver observer(stop);
+  StoppingObserver observer(stop, 1);  // as soon as something new was evaluated
   EXPECT_FALSE(execute_run({plan, temporary_ / "a", 2, {}}, stop, observer));
   class Plain : public Optimizer {
    public:

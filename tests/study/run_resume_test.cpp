@@ -15,21 +15,6 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-// Stops a run after a number of cases, as Ctrl-C would.
-class StoppingObserver final : public SilentObserver {
- public:
-  StoppingObserver(StopSignal& stop, std::uint64_t after) : stop_(stop), after_(after) {}
-  void on_progress(const Progress& progress) override {
-    if (progress.done - progress.replayed >= after_) {
-      stop_.request(StopReason::interrupted);
-    }
-  }
-
- private:
-  StopSignal& stop_;
-  std::uint64_t after_;
-};
-
 TEST_F(RunTest, ARunStoppedEveryFewCasesEndsAsAnUninterruptedOne) {
   for (const std::string optimizer : {"ga", "random"}) {
     const std::string whole = optimizer + "-whole";

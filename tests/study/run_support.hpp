@@ -30,6 +30,21 @@ class SilentObserver : public RunObserver {
   std::mutex mutex_;
 };
 
+// Stops a run after a number of cases, as Ctrl-C would.
+class StoppingObserver final : public SilentObserver {
+ public:
+  StoppingObserver(StopSignal& stop, std::uint64_t after) : stop_(stop), after_(after) {}
+  void on_progress(const Progress& progress) override {
+    if (progress.done - progress.replayed >= after_) {
+      stop_.request(StopReason::interrupted);
+    }
+  }
+
+ private:
+  StopSignal& stop_;
+  std::uint64_t after_;
+};
+
 // A short run of the thesis's problem: few cases to judge on, small populations.
 inline RunPlan make_small_plan(const std::string& optimizer = "ga", std::int64_t budget = 40) {
   RunPlan plan;

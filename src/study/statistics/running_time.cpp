@@ -47,6 +47,30 @@ double draw_running_time(std::span<const Trial> trials, RandomStream& random) {
   }
 }
 
+std::vector<std::size_t> draw_numbers(std::size_t count, RandomStream& random) {
+  std::vector<std::size_t> numbers(count);
+  for (std::size_t& number : numbers) {
+    number = random.below(count);
+  }
+  return numbers;
+}
+
+double calc_expected_of(std::span<const Trial> trials, std::span<const std::size_t> numbers) {
+  std::vector<Trial> drawn;
+  for (const std::size_t number : numbers) {
+    drawn.push_back(trials[number]);
+  }
+  return calc_expected_running_time(drawn);
+}
+
+// Nothing if that is infinite / infinite or 0 / 0.
+std::optional<double> divide(double a, double b) {
+  if ((std::isinf(a) && std::isinf(b)) || (a == 0 && b == 0)) {
+    return std::nullopt;
+  }
+  return a / b;
+}
+
 }  // namespace
 
 double calc_cost_to_target(std::span<const TracePoint> trace, double target) {
@@ -100,34 +124,6 @@ Interval calc_expected_running_time_interval(std::span<const Trial> trials, doub
   }
   return calc_percentile_interval(means, level);
 }
-
-namespace {
-
-std::vector<std::size_t> draw_numbers(std::size_t count, RandomStream& random) {
-  std::vector<std::size_t> numbers(count);
-  for (std::size_t& number : numbers) {
-    number = random.below(count);
-  }
-  return numbers;
-}
-
-double calc_expected_of(std::span<const Trial> trials, std::span<const std::size_t> numbers) {
-  std::vector<Trial> drawn;
-  for (const std::size_t number : numbers) {
-    drawn.push_back(trials[number]);
-  }
-  return calc_expected_running_time(drawn);
-}
-
-// Nothing if that is infinite / infinite or 0 / 0.
-std::optional<double> divide(double a, double b) {
-  if ((std::isinf(a) && std::isinf(b)) || (a == 0 && b == 0)) {
-    return std::nullopt;
-  }
-  return a / b;
-}
-
-}  // namespace
 
 Interval calc_resampled_running_time_interval(std::span<const Trial> trials, double level,
                                               int resamples, std::string_view stream) {

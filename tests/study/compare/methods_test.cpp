@@ -1,8 +1,6 @@
 // Methods: the same optimizer spending the same budget in another way.
 #include <gmock/gmock.h>
 
-#include <fstream>
-
 #include "base/expect_error.hpp"
 #include "sim/design_conversion.hpp"
 #include "study/compare/study_support.hpp"
@@ -24,17 +22,9 @@ set = ["physics.engine=articulated", "workspace.points=4", "sets.test_cases=6",
        "sets.validation_cases=3"]
 )";
 
-StudyPlan load(const TemporaryFolder& folder, const std::string& toml) {
-  const auto file = folder / "mine.toml";
-  std::ofstream(file) << toml;
-  StudyRequest request;
-  request.file = file.string();
-  return make_study_plan(request);
-}
-
 TEST(StudyMethods, SpendTheSameBudgetOnTheSameCasesFromTheSameStart) {
   const TemporaryFolder folder;
-  const StudyPlan plan = load(folder, std::string(kHead) + R"(
+  const StudyPlan plan = load_plan(folder, std::string(kHead) + R"(
 [[optimizer]]
 name = "ga"
 label = "five fixed"
@@ -80,7 +70,7 @@ set = ["physics.engine=articulated", "workspace.points=4"]
     toml += "[[optimizer]]\nname = \"cmaes\"\nlabel = \"" + name +
             "\"\nset = [\"control.controller=" + name + "\"]\n";
   }
-  const StudyPlan plan = load(folder, toml);
+  const StudyPlan plan = load_plan(folder, toml);
   for (const Cell& cell : list_cells(plan)) {
     SCOPED_TRACE(names[cell.optimizer] + " " + std::to_string(cell.replicate));
     const ArmDesign pid = make_start(make_run_plan(plan, {0, 0, cell.replicate}));
@@ -104,10 +94,10 @@ TEST(StudyMethods, WithOtherControllersBeginWithTheSameArm) {
   toml.replace(toml.find("set = ["), 7,
                "set = [\"variables.optimize=['gains', 'length_scale']\", "
                "\"variables.task=['speed']\", ");
-  const StudyPlan plan = load(folder, toml +
-                                          "[[optimizer]]\nname = 'ga'\n"
-                                          "[[optimizer]]\nname = 'ga'\nlabel = 'neural'\n"
-                                          "set = ['control.controller=neural']\n");
+  const StudyPlan plan = load_plan(folder, toml +
+                                               "[[optimizer]]\nname = 'ga'\n"
+                                               "[[optimizer]]\nname = 'ga'\nlabel = 'neural'\n"
+                                               "set = ['control.controller=neural']\n");
   const ArmDesign pid = make_start(make_run_plan(plan, {0, 0, 1}));
   const ArmDesign neural = make_start(make_run_plan(plan, {0, 1, 1}));
   EXPECT_EQ(neural.controller, "neural");
@@ -121,9 +111,9 @@ TEST(StudyMethods, WhoseStartIsNoPidIsRefused) {
   std::string toml = kHead;
   toml.replace(toml.find("set = ["), 7, "set = [\"control.controller=pi2d\", ");
   EXPECT_THAT(usage_error_of([&] {
-                load(folder, toml +
-                                 "[[optimizer]]\nname = 'ga'\nlabel = 'plain'\n"
-                                 "set = ['control.controller=pid']\n");
+                load_plan(folder, toml +
+                                      "[[optimizer]]\nname = 'ga'\nlabel = 'plain'\n"
+                                      "set = ['control.controller=pid']\n");
               }),
               HasSubstr("optimizer plain on q1-complex: the start design is for controller "
                         "'pi2d'"));
@@ -133,7 +123,7 @@ TEST(StudyMethods, ChangeNothingButTraining) {
   const TemporaryFolder folder;
   const auto expect = [&](const std::string& method, const std::string& message) {
     EXPECT_THAT(usage_error_of([&] {
-                  load(folder, std::string(kHead) + "[[optimizer]]\nname = 'ga'\n" + method);
+                  load_plan(folder, std::string(kHead) + "[[optimizer]]\nname = 'ga'\n" + method);
                 }),
                 HasSubstr(message));
   };
@@ -155,7 +145,7 @@ TEST(StudyMethods, ChangeNothingButTraining) {
 
 TEST_F(StudyTest, MethodsAreComparedLikeOptimizers) {
   const TemporaryFolder folder;
-  const StudyPlan plan = load(folder, std::string("value = \"failures\"\n") + kHead + R"(
+  const StudyPlan plan = load_plan(folder, std::string("value = \"failures\"\n") + kHead + R"(
 optimizers = ["nlopt:cobyla"]
 [[optimizer]]
 name = "ga"

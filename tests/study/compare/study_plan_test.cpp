@@ -24,14 +24,6 @@ std::vector<std::string> get_labels(const StudyPlan& plan) {
   return labels;
 }
 
-StudyPlan load(const TemporaryFolder& folder, const std::string& toml) {
-  const auto file = folder / "mine.toml";
-  std::ofstream(file) << toml;
-  StudyRequest request;
-  request.file = file.string();
-  return make_study_plan(request);
-}
-
 constexpr const char* kHead = "problems = ['sphere']\nbudget = 100\nreplicates = 3\n";
 
 TEST(StudyPlan, BaselinesTakePartUnlessAskedNotTo) {
@@ -52,19 +44,19 @@ TEST(StudyPlan, NoOptimizerCanBeGivenMoreThanOthers) {
     const std::string toml = std::string(kHead) +
                              "optimizers = ['ga']\n[[optimizer]]\nname = 'cmaes'\n" + privilege +
                              "\n";
-    EXPECT_THAT(usage_error_of([&] { load(folder, toml); }),
+    EXPECT_THAT(usage_error_of([&] { load_plan(folder, toml); }),
                 HasSubstr("it is the same for every optimizer of a comparison"));
   }
   const std::string unknown =
       std::string(kHead) + "optimizers = ['ga']\n[[optimizer]]\nname = 'cmaes'\nevaluations = 5\n";
-  EXPECT_THAT(usage_error_of([&] { load(folder, unknown); }),
+  EXPECT_THAT(usage_error_of([&] { load_plan(folder, unknown); }),
               HasSubstr("unknown key optimizer[0].evaluations"));
 }
 
 TEST(StudyPlan, MistakesAreNamed) {
   const TemporaryFolder folder;
   const auto expect = [&](const std::string& toml, const std::string& message) {
-    EXPECT_THAT(usage_error_of([&] { load(folder, toml); }), HasSubstr(message));
+    EXPECT_THAT(usage_error_of([&] { load_plan(folder, toml); }), HasSubstr(message));
   };
   expect("optimizers = ['ga']\nbudget = 10\n", "the study names no problem");
   expect("problems = ['sphere']\nbudget = 10\n", "the study names no optimizer");
@@ -124,7 +116,7 @@ TEST(StudyPlan, ARaceIsASettingOfTheProblem) {
   const std::string key =
       "problems = ['sphere']\nbudget = 100\n[[optimizer]]\nname = "
       "'ga'\nracing = 'halving'\n";
-  EXPECT_THAT(usage_error_of([&] { load(folder, key); }),
+  EXPECT_THAT(usage_error_of([&] { load_plan(folder, key); }),
               HasSubstr("mine.toml:5: unknown key optimizer[0].racing"));
 }
 
@@ -172,7 +164,7 @@ TEST(StudyPlan, SetsHaveNoCaseInCommonAndAreNamedByHash) {
 
 TEST(StudyPlan, TheResolvedPlanReadsBackAsItself) {
   const TemporaryFolder folder;
-  const StudyPlan plan = load(folder, std::string(kHead) + R"(
+  const StudyPlan plan = load_plan(folder, std::string(kHead) + R"(
 optimizers = ["random"]
 [[optimizer]]
 name = "ga"
@@ -200,11 +192,11 @@ TEST(StudyPlan, IsReadBackOnTheSimdLevelThatItWasMadeWith) {
   ASSERT_NE(toml.find(setting), std::string::npos);
   toml.erase(toml.find(setting), setting.size());
   const TemporaryFolder folder;
-  const StudyPlan read = load(folder, toml);
+  const StudyPlan read = load_plan(folder, toml);
   EXPECT_EQ(calc_configuration_hash(read.problems[0].loaded),
             calc_configuration_hash(made.problems[0].loaded));
   toml.replace(toml.find("configuration_sha256 = \"") + 24, 4, "0000");
-  EXPECT_THAT(usage_error_of([&] { load(folder, toml); }),
+  EXPECT_THAT(usage_error_of([&] { load_plan(folder, toml); }),
               HasSubstr("is not the one that the plan was made with"));
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <string>
 #include <vector>
@@ -25,6 +26,15 @@ inline StudyRequest make_small_request() {
   request.replicates = 6;
   request.budget = 120;
   return request;
+}
+
+// Of a plan that says this, as the file mine.toml.
+inline StudyPlan load_plan(const TemporaryFolder& folder, const std::string& toml) {
+  const auto file = folder / "mine.toml";
+  std::ofstream(file) << toml;
+  StudyRequest request;
+  request.file = file.string();
+  return make_study_plan(request);
 }
 
 // All files below a folder, by their relative path.

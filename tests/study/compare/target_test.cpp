@@ -21,14 +21,6 @@ using testing::HasSubstr;
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
-StudyPlan load(const TemporaryFolder& folder, const std::string& toml) {
-  const auto file = folder / "mine.toml";
-  std::ofstream(file) << toml;
-  StudyRequest request;
-  request.file = file.string();
-  return make_study_plan(request);
-}
-
 constexpr const char* kFunctions = R"(problems = ["sphere", "rosenbrock"]
 optimizers = ["ga", "cmaes"]
 set = ["function.dimension=3"]
@@ -61,7 +53,7 @@ CellOutcome make_cell(const std::string& optimizer, int replicate,
 
 TEST(TargetTrial, IsReachedFromWhereTheChosenDesignsStayGood) {
   const TemporaryFolder folder;
-  const StudyPlan plan = load(folder, std::string(kArm) + R"(
+  const StudyPlan plan = load_plan(folder, std::string(kArm) + R"(
 [[target]]
 label = "good"
 value = 1.0
@@ -95,7 +87,7 @@ failures = 1
 
 TEST(TargetTimes, AreChargedWithTheFailures) {
   const TemporaryFolder folder;
-  const StudyPlan plan = load(folder, std::string("reference = \"ga\"\n") + kArm + R"(
+  const StudyPlan plan = load_plan(folder, std::string("reference = \"ga\"\n") + kArm + R"(
 [[target]]
 label = "good"
 value = 1.0
@@ -131,7 +123,7 @@ TEST(FailureShares, AreComparedAsValuesAre) {
   const TemporaryFolder folder;
   std::string toml = kArm;
   toml.replace(toml.find("replicates = 4"), 14, "replicates = 7");
-  const StudyPlan plan = load(folder, toml);
+  const StudyPlan plan = load_plan(folder, toml);
   std::vector<CellOutcome> cells;
   for (const std::string optimizer : {"ga", "cmaes"}) {
     for (int r = 1; r <= 7; ++r) {
@@ -187,7 +179,8 @@ TEST(StudyTargets, MistakesAreNamed) {
   const TemporaryFolder folder;
   const auto expect = [&](const std::string& top, const std::string& end,
                           const std::string& message) {
-    EXPECT_THAT(usage_error_of([&] { load(folder, top + kFunctions + end); }), HasSubstr(message));
+    EXPECT_THAT(usage_error_of([&] { load_plan(folder, top + kFunctions + end); }),
+                HasSubstr(message));
   };
   expect("", "[[target]]\nlabel = 'a'\n", "it must have a value (the objective on the test set");
   expect("", "[[target]]\nlabel = 'a'\nvalue = 1\n[[target]]\nlabel = 'a'\nvalue = 2\n",
@@ -207,9 +200,10 @@ TEST(StudyTargets, MistakesAreNamed) {
 
 TEST_F(StudyTest, TargetsComeToTablesAndVerdictAndCanBeAddedLater) {
   const TemporaryFolder folder;
-  const StudyPlan without = load(folder, kFunctions);
+  const StudyPlan without = load_plan(folder, kFunctions);
   study(without, "study");
-  const StudyPlan plan = load(folder, std::string("reference = \"random\"\n") + kFunctions + R"(
+  const StudyPlan plan =
+      load_plan(folder, std::string("reference = \"random\"\n") + kFunctions + R"(
 [[target]]
 label = "near"
 problems = ["sphere"]
@@ -243,7 +237,7 @@ value = -1.0
 TEST_F(StudyTest, AResolvedPlanWithTargetsAndMethodsReadsBackAsItself) {
   const TemporaryFolder folder;
   const StudyPlan plan =
-      load(folder, std::string("value = \"failures\"\nreference = \"one\"\n") + kArm + R"(
+      load_plan(folder, std::string("value = \"failures\"\nreference = \"one\"\n") + kArm + R"(
 [[optimizer]]
 name = "ga"
 label = "one"
