@@ -44,6 +44,7 @@ struct Perturbation {
   double effort_limit_sigma = 0;
   double gain_sigma = 0;
 
+  bool operator==(const Perturbation&) const = default;
   bool applies_to(CaseRole role) const;
   bool changes_arm() const { return mass_relative > 0 || load_kg; }
   bool changes_loop() const;  // anything of PlantVariation

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -29,15 +30,14 @@ std::string get_key(std::string_view setting) {
   return std::string(key.substr(0, key.find_last_not_of(' ') + 1));
 }
 
-// The perturbation that designs meet in validation and tests; null if there is none.
-json get_judged_perturbation(const LoadedProblem& problem) {
-  const json resolved = json::parse(problem.resolved_json);
-  const auto found = resolved.find("perturbation");
-  if (found == resolved.end() || found->value("apply_to", "everywhere") == "training") {
-    return nullptr;
+// The perturbation that designs meet in validation and tests; nothing if there is none, whatever
+// its table says.
+std::optional<Perturbation> get_judged_perturbation(const LoadedProblem& problem) {
+  if (!problem.tracking || !problem.tracking->config().perturbation.applies_to(CaseRole::test)) {
+    return {};
   }
-  json perturbation = *found;
-  perturbation.erase("apply_to");
+  Perturbation perturbation = problem.tracking->config().perturbation;
+  perturbation.where = Perturbation::Where::judging;  // whether training has it as well
   return perturbation;
 }
 

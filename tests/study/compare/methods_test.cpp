@@ -143,6 +143,32 @@ TEST(StudyMethods, ChangeNothingButTraining) {
          "optimizer 'nlopt:cobyla' has no generations");
 }
 
+TEST(StudyMethods, MayPerturbWhatIsNotJudged) {
+  const TemporaryFolder folder;
+  const auto load_method = [&](const std::string& problem, const std::string& method) {
+    std::string toml = kHead;
+    toml.replace(toml.find("set = ["), 7, "set = [" + problem);
+    return load_plan(folder,
+                     toml + "[[optimizer]]\nname = 'ga'\nlabel = 'own'\nset = [" + method + "]\n");
+  };
+  const auto expect_refused = [&](const std::string& problem, const std::string& method) {
+    EXPECT_THAT(usage_error_of([&] { load_method(problem, method); }),
+                HasSubstr("optimizer own on q1-complex: its designs would be judged on other "
+                          "plants"))
+        << method;
+  };
+  load_method("", "'perturbation.mass_relative=0'");
+  load_method("", "'perturbation.set=plant/2'");
+  load_method("", "'perturbation.mass_relative=0.1', 'perturbation.apply_to=training'");
+  load_method("'perturbation.mass_relative=0.1',", "'perturbation.apply_to=judging'");
+  expect_refused("", "'perturbation.mass_relative=0.1'");
+  expect_refused("", "'perturbation.mass_relative=0.1', 'perturbation.apply_to=judging'");
+  expect_refused("'perturbation.mass_relative=0.1',", "'perturbation.mass_relative=0'");
+  expect_refused("'perturbation.mass_relative=0.1',", "'perturbation.mass_relative=0.2'");
+  expect_refused("'perturbation.mass_relative=0.1',", "'perturbation.set=plant/2'");
+  expect_refused("'perturbation.mass_relative=0.1',", "'perturbation.apply_to=training'");
+}
+
 TEST_F(StudyTest, MethodsAreComparedLikeOptimizers) {
   const TemporaryFolder folder;
   const StudyPlan plan = load_plan(folder, std::string("value = \"failures\"\n") + kHead + R"(
