@@ -126,6 +126,10 @@ void announce(const RunRequest& request) {
                     "generation; this run trains on the same cases throughout",
                     to_text(plan.problem.schedule)));
   }
+  const std::string no_race = explain_no_race(plan.optimizer, plan.racing, plan.schedule);
+  if (!no_race.empty()) {
+    write_message(fmt::format("racing {} has no effect: {}", to_text(plan.racing), no_race));
+  }
   write_message(fmt::format("folder {} ({})", request.folder.string(), known ? "found" : "new"));
 }
 

@@ -191,12 +191,7 @@ std::vector<Score> RunEvaluator::evaluate_with_jacobian(
 }
 
 bool RunEvaluator::races(Racing::Kind kind, bool with_jacobian) const {
-  // Residuals and derivatives are of all cases or of no use. A batch is a field of competitors only
-  // where it is a generation or a sample: the points of a difference quotient are none.
-  const Capabilities& can = plan_.optimizer.capabilities;
-  const bool competes = can.generations || can.sampling;
-  return plan_.racing.kind == kind && !wants_residuals_ && !with_jacobian &&
-         (kind != Racing::Kind::halving || competes);
+  return plan_.racing.kind == kind && !with_jacobian && can_race(plan_.optimizer, kind);
 }
 
 std::vector<Score> RunEvaluator::evaluate(std::span<const std::vector<double>> points,

@@ -27,6 +27,31 @@ Schedule choose_schedule(const LoadedProblem& problem, const OptimizerRow& optim
   return problem.schedule;
 }
 
+bool can_race(const OptimizerRow& optimizer, Racing::Kind kind) {
+  const Capabilities& can = optimizer.capabilities;
+  const bool wants_residuals = can.residuals || optimizer.requirements.residuals;
+  const bool competes = can.generations || can.sampling;
+  return kind != Racing::Kind::none && !wants_residuals &&
+         (kind != Racing::Kind::halving || competes);
+}
+
+std::string explain_no_race(const OptimizerRow& optimizer, const Racing& racing,
+                            const Schedule& schedule) {
+  if (racing.kind == Racing::Kind::none) {
+    return "";
+  }
+  if (!can_race(optimizer, racing.kind)) {
+    return can_race(optimizer, Racing::Kind::abandonment)
+               ? "candidates race within a generation or a sample, and there are none"
+               : "least squares need the errors of all cases";
+  }
+  if (racing.kind == Racing::Kind::abandonment && racing.chunk_cases >= schedule.cases) {
+    return fmt::format("chunks of {} leave nothing of {} to give up", racing.chunk_cases,
+                       to_text(schedule));
+  }
+  return "";
+}
+
 void check_plan(const RunPlan& plan) {
   const OptimizerRow& row = plan.optimizer;
   const std::string unsuitable = explain_unsuitable(row, plan.problem.problem->description());
@@ -55,6 +80,17 @@ void check_plan(const RunPlan& plan) {
                             "none there, or one objective without limits",
                             to_string(plan.racing.kind), plan.problem.name,
                             problem.constraints.empty() ? "several objectives" : "constraints"));
+  }
+  if (plan.racing.kind == Racing::Kind::halving && plan.racing.first_cases >= plan.schedule.cases) {
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("racing {} gives every candidate {} to begin with, and schedule {} has "
+                    "no more: there is no race. Use a schedule of more cases, fewer "
+                    "racing.first_cases, or racing none",
+                    to_text(plan.racing),
+                    plan.racing.first_cases == 1 ? "1 case"
+                                                 : fmt::format("{} cases", plan.racing.first_cases),
+                    to_text(plan.schedule)));
   }
   if (plan.racing.kind == Racing::Kind::abandonment &&
       !plan.problem.problem->calc_lower_bound(std::vector<double>(problem.variables.size()), {},

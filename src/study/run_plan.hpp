@@ -36,6 +36,14 @@ struct RunPlan {
 // the first `fixed_cases` cases for every candidate.
 Schedule choose_schedule(const LoadedProblem& problem, const OptimizerRow& optimizer);
 
+// Whether candidates race at all under an optimizer: residuals are of all cases or of no use, and a
+// batch is a field of competitors only where it is a generation or a sample; the points of a
+// difference quotient are none.
+bool can_race(const OptimizerRow& optimizer, Racing::Kind kind);
+// Why racing changes nothing; empty if it does, or if there is none.
+std::string explain_no_race(const OptimizerRow& optimizer, const Racing& racing,
+                            const Schedule& schedule);
+
 // Checks what no single part can: optimizer against schedule and problem. Throws Error{usage}.
 void check_plan(const RunPlan& plan);
 

@@ -218,6 +218,33 @@ TEST(RacingPlan, WhatCannotBeRankedIsRefused) {
   EXPECT_THAT(check("sphere", "abandonment"), HasSubstr("cannot tell; use racing halving"));
 }
 
+TEST(RacingPlan, OfWhichNothingComesIsRefusedOrSaid) {
+  RunPlan plan;
+  plan.problem = load_problem("sphere");
+  plan.optimizer = load_optimizer("cmaes");
+  plan.schedule = {.kind = Schedule::Kind::fixed, .cases = 5};
+  plan.racing = *read_racing("halving:4");
+  check_plan(plan);
+  plan.racing = *read_racing("halving:5");
+  EXPECT_THAT(usage_error_of([&] { check_plan(plan); }),
+              HasSubstr("racing halving:5:2 gives every candidate 5 cases to begin with, and "
+                        "schedule fixed:5 has no more: there is no race"));
+  const auto explain = [&](const std::string& optimizer, const std::string& racing) {
+    return explain_no_race(load_optimizer(optimizer), *read_racing(racing), plan.schedule);
+  };
+  for (const std::string optimizer : {"cmaes", "ga", "random"}) {
+    EXPECT_EQ(explain(optimizer, "halving:2"), "");
+  }
+  EXPECT_THAT(explain("nlopt:cobyla", "halving:2"), HasSubstr("within a generation or a sample"));
+  EXPECT_EQ(explain("nlopt:cobyla", "abandonment"), "");
+  EXPECT_EQ(explain("nlopt:cobyla", "none"), "");
+  EXPECT_THAT(explain("cmaes", "abandonment:1:5"), HasSubstr("leave nothing of fixed:5"));
+  if (load_optimizer("ceres:lm").unavailable.empty()) {
+    EXPECT_THAT(explain("ceres:lm", "halving:2"), HasSubstr("the errors of all cases"));
+    EXPECT_THAT(explain("ceres:lm", "abandonment"), HasSubstr("the errors of all cases"));
+  }
+}
+
 // The true objective, up to its constant: the squared distance of the winner from (1, ..., 1).
 double calc_distance(const RunResult& result) {
   double square = 0;

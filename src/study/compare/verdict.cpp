@@ -220,6 +220,34 @@ std::vector<std::string> describe_overall(const StudyPlan& plan, const StudyResu
   return sentences;
 }
 
+// Methods for which racing was asked for and changes nothing, and why.
+std::vector<std::string> describe_raceless(const StudyPlan& plan) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> raceless;  // by the reason
+  for (std::size_t o = 0; o < plan.optimizers.size(); ++o) {
+    for (std::size_t p = 0; p < plan.problems.size(); ++p) {
+      const Cell cell{p, o, 1};
+      const std::string reason = explain_no_race(
+          plan.optimizers[o].row, get_problem(plan, cell).racing, get_schedule(plan, cell));
+      if (reason.empty()) {
+        continue;
+      }
+      auto found = std::ranges::find(raceless, reason,
+                                     &std::pair<std::string, std::vector<std::string>>::first);
+      if (found == raceless.end()) {
+        found = raceless.insert(found, {reason, {}});
+      }
+      if (found->second.empty() || found->second.back() != plan.optimizers[o].label) {
+        found->second.push_back(plan.optimizers[o].label);
+      }
+    }
+  }
+  std::vector<std::string> sentences;
+  for (const auto& [reason, labels] : raceless) {
+    sentences.push_back(fmt::format("Racing has no effect on {}: {}.", join_names(labels), reason));
+  }
+  return sentences;
+}
+
 std::vector<std::string> describe_limits(const StudyPlan& plan, const StudyResult& result) {
   std::vector<std::string> sentences;
   std::vector<std::string> failed;
@@ -256,8 +284,10 @@ std::vector<std::string> describe_limits(const StudyPlan& plan, const StudyResul
   if (methods > 0) {
     sentences.push_back(
         "Methods spend the same budget in ways of their own, or have controllers of their own; "
-        "what their "
-        "designs are worth is measured alike.");
+        "what their designs are worth is measured alike.");
+  }
+  for (std::string& sentence : describe_raceless(plan)) {
+    sentences.push_back(std::move(sentence));
   }
   const auto has = [&](Schedule::Kind kind) {
     return std::ranges::any_of(

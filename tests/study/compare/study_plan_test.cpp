@@ -108,6 +108,7 @@ TEST(StudyPlan, CoevolvedCasesAreInSetsOfTheirOwn) {
 TEST(StudyPlan, ARaceIsASettingOfTheProblem) {
   StudyRequest request = make_small_request();
   request.settings = {"racing.kind=halving", "racing.first_cases=2"};
+  request.schedule = Schedule{.kind = Schedule::Kind::fixed, .cases = 5};
   const StudyPlan plan = make_study_plan(request);
   for (const Cell& cell : list_cells(plan)) {
     EXPECT_EQ(to_text(make_run_plan(plan, cell).racing), "halving:2:2");

@@ -144,6 +144,17 @@ TEST_F(StudyTest, WhereNoDifferenceCouldBeSignificantTheVerdictSaysSo) {
                                  "replicates would do")));
 }
 
+TEST_F(StudyTest, TheVerdictSaysWhomRacingHasNoEffectOn) {
+  StudyRequest request = make_small_request();
+  request.optimizers = {"cmaes", "nlopt:cobyla"};
+  request.settings.insert(request.settings.end(), {"racing.kind=halving", "racing.first_cases=2"});
+  request.schedule = Schedule{.kind = Schedule::Kind::fixed, .cases = 5};
+  const StudyPlan plan = make_study_plan(request);
+  EXPECT_THAT(describe_verdict(plan, analyze_study(plan, temporary_ / "none")),
+              testing::Contains("Racing has no effect on nlopt:cobyla: candidates race within a "
+                                "generation or a sample, and there are none."));
+}
+
 TEST_F(StudyTest, TheVerdictSaysThatBaselinesWereLeftOut) {
   StudyRequest request = make_small_request();
   request.baselines = false;
