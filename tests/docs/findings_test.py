@@ -40,6 +40,10 @@ class FindingsTest(unittest.TestCase):
         template = "{% rows %}\nfor row in rows('q9/summary.csv'):\n    emit(row['optimizer'], mm(row['median']))\n{% end %}\n"
         self.assertEqual(self.make(template), "| ga | 1.25 |\n| fast | 0.100 |\n")
 
+    def test_what_a_block_defines_is_there_further_down(self):
+        template = "{% rows %}\ndef median(name):\n    return get('q9/summary.csv', 'median', optimizer=name)\n{% end %}\n{{ mm(median('ga')) }}"
+        self.assertEqual(self.make(template), "1.25")
+
     def test_numbers_are_rounded_to_digits_that_count(self):
         for value, count, text in ((28927, 3, "28 900"), (99.96, 3, "100"), (0.0456, 2, "0.046"), (9876, 4, "9876"), (0, 3, "0"), ("inf", 3, "∞")):
             self.assertEqual(findings.digits(value, count), text)
