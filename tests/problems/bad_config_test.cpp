@@ -16,8 +16,6 @@ constexpr const char* kTopKeys =
 constexpr const char* kTaskKeys =
     "signal, speed_m_per_s, distance_limit_m, trapezoid_acceleration_m_per_s2, rest_s, "
     "count_first_point, ik_bug, load_kg";
-constexpr const char* kDesigns =
-    "table-a1, table-a10, table-a11, table-a5, table-a6, table-a7, table-a8, table-a9";
 
 struct Mistake {
   std::string text;     // behind `extends = "base"`, from line 2 on
@@ -203,7 +201,7 @@ const std::vector<Mistake> kVariables = {
     {"[variables]\nstart = 'table-b1'",
      std::string("3: variables.start is 'table-b1'; unknown design 'table-b1'; did you mean "
                  "'table-a1'? Valid: ") +
-         kDesigns + " (or the path of a .toml file)"},
+         kShippedDesigns + " (or the path of a .toml file)"},
     {"[variables]\noptimize = ['p', 'effort']",
      "3: variables.optimize is ['p', 'effort']; unknown design parameter 'effort'. Valid: p, i, d, "
      "effort_min, effort_max, length_scale, section_scale"},
@@ -251,7 +249,7 @@ const std::vector<Mistake> kOther = {
      "here: error_m, total_torque_n_m, design, where"},
     {"[published]\ndesign = 'q1-complex'",
      std::string("3: published.design is 'q1-complex'; unknown design 'q1-complex'. Valid: ") +
-         kDesigns + " (or the path of a .toml file)"},
+         kShippedDesigns + " (or the path of a .toml file)"},
     {"[sweep]\nvalues = [1]\ndesign = 'table-a10'",
      "2: sweep.parameter is missing; it must be a string"},
     {"[sweep]\nparameter = 'task.load_kg'\nvalues = []\ndesign = 'table-a10'",
@@ -261,7 +259,7 @@ const std::vector<Mistake> kOther = {
     {"[sweep]\nparameter = 'task.load_kg'\nvalues = [1]\ndesign = 'tabl-a5'",
      std::string("5: sweep.design is 'tabl-a5'; unknown design 'tabl-a5'; did you mean "
                  "'table-a5'? Valid: ") +
-         kDesigns + " (or the path of a .toml file)"},
+         kShippedDesigns + " (or the path of a .toml file)"},
     {"colour = 'red'", std::string("2: unknown key colour. Valid here: ") + kTopKeys},
     {"title = 3", "2: title is 3, an integer; it must be a string"},
 };

@@ -13,6 +13,11 @@
 
 namespace armwright {
 
+// As messages list them.
+inline constexpr const char* kShippedDesigns =
+    "faithful-e6, faithful-e6-computed-torque, faithful-q1, faithful-q3, robust-e6, robust-q1, "
+    "robust-q3, table-a1, table-a10, table-a11, table-a5, table-a6, table-a7, table-a8, table-a9";
+
 class ProblemFolder {
  public:
   // base.toml is the least that makes a problem of the shipped arm.

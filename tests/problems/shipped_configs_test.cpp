@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <bit>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -22,6 +23,13 @@ using testing::SizeIs;
 using testing::UnorderedElementsAre;
 
 constexpr std::int64_t kPopulation = 35;
+const std::filesystem::path kReferenceDesigns = ARMWRIGHT_CONFIGS "/../results/reference/designs";
+
+std::string read_bytes(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  EXPECT_TRUE(stream) << path;
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
 
 struct Experiment {
   std::string name;
@@ -189,9 +197,7 @@ TEST_P(ShippedExperiment, RecordsItsConfigurationAndWhatItWasMadeFrom) {
   ASSERT_THAT(loaded.input_hashes, SizeIs(2));
   for (const std::string name : {"robots/irb4600_40_255.urdf", "designs/table-a1.toml"}) {
     const std::filesystem::path path = find_config_folder() / name;
-    std::ifstream stream(path, std::ios::binary);
-    const std::string content(std::istreambuf_iterator<char>(stream), {});
-    EXPECT_EQ(loaded.input_hashes.at(path.filename().string()), calc_sha256_hex(content));
+    EXPECT_EQ(loaded.input_hashes.at(path.filename().string()), calc_sha256_hex(read_bytes(path)));
   }
 }
 
@@ -355,11 +361,18 @@ TEST(ShippedDesigns, HaveTheTotalTorqueOfTheThesis) {
   EXPECT_EQ(calc_total_torque_n_m(load_design("table-a1").design), 85200);
 }
 
+std::vector<std::string> list_designs(bool of_the_thesis) {
+  std::vector<std::string> names = list_configs("designs");
+  std::erase_if(
+      names, [&](const std::string& name) { return name.starts_with("table-") != of_the_thesis; });
+  return names;
+}
+
 TEST(ShippedDesigns, AreThoseOfTheAppendixForThisArm) {
-  EXPECT_THAT(list_configs("designs"),
-              UnorderedElementsAre("table-a1", "table-a5", "table-a6", "table-a7", "table-a8",
-                                   "table-a9", "table-a10", "table-a11"));
-  for (const std::string& name : list_configs("designs")) {
+  const std::vector<std::string> names = list_designs(true);
+  EXPECT_THAT(names, UnorderedElementsAre("table-a1", "table-a5", "table-a6", "table-a7",
+                                          "table-a8", "table-a9", "table-a10", "table-a11"));
+  for (const std::string& name : names) {
     SCOPED_TRACE(name);
     const DesignFile file = load_design(name);
     EXPECT_EQ(file.name, name);
@@ -374,6 +387,23 @@ TEST(ShippedDesigns, AreThoseOfTheAppendixForThisArm) {
       EXPECT_GT(joint.limits.max_n_m, 0);
     }
   }
+}
+
+TEST(ShippedDesigns, OfOurOwnAreThoseOfTheReferenceStudy) {
+  for (const std::string& name : list_designs(false)) {
+    SCOPED_TRACE(name);
+    EXPECT_EQ(read_bytes(find_config_folder() / "designs" / (name + ".toml")),
+              read_bytes(kReferenceDesigns / (name + ".toml")));
+    const DesignFile file = load_design(name);
+    EXPECT_EQ(file.name, name);
+    EXPECT_THAT(file.source, testing::StartsWith("armwright optimize "));
+    EXPECT_THAT(file.joint_names, ElementsAre("joint_1", "joint_2", "joint_3", "joint_4"));
+  }
+  std::size_t made = 0;
+  for (const auto& file : std::filesystem::directory_iterator(kReferenceDesigns)) {
+    made += file.path().extension() == ".toml" ? 1 : 0;
+  }
+  EXPECT_EQ(list_designs(false).size(), made);
 }
 
 TEST(ShippedDesigns, PublishedResultsNameProblemsThatLoad) {
