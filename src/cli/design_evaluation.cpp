@@ -13,8 +13,6 @@
 namespace armwright {
 namespace {
 
-constexpr std::int64_t kMostCases = 1'000'000;
-
 TestSet choose_set(const LoadedProblem& problem, const CaseOptions& options) {
   if (!options.test_cases.empty()) {
     return TestSet::load(options.test_cases);

@@ -57,7 +57,6 @@ struct OptimizeOptions {
 };
 
 std::vector<std::string> OptimizeOptions::get_overrides() const {
-  constexpr std::int64_t kMostCases = 1'000'000;
   std::vector<std::string> all = overrides.get();
   if (!validation_cases.empty()) {
     all.push_back(fmt::format("sets.validation_cases={}",

@@ -237,7 +237,6 @@ void show(const ReproduceOptions& options, const std::vector<PartResult>& result
 }
 
 int run_reproduce(const ReproduceOptions& options, Session& session) {
-  constexpr std::int64_t kMostCases = 1'000'000;
   const bool is_kept = !options.folder.out.empty() || options.folder.another;
   ReproductionRequest request;
   request.tables = options.tables;

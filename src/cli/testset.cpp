@@ -18,8 +18,6 @@
 namespace armwright {
 namespace {
 
-constexpr std::int64_t kMostCases = 1'000'000;
-
 constexpr const char* kExamples = R"(Examples:
   armwright testset export test/2 --cases 500 --out test-2.json
   armwright testset import mine.csv --out mine.json

@@ -16,8 +16,6 @@
 namespace armwright {
 namespace {
 
-constexpr std::int64_t kMostCases = 1'000'000;
-
 CaseSets read_sets(const ConfigTable& table, CaseSets sets) {
   const auto read_name = [&](std::string_view key, std::string_view prefix, std::string& name) {
     name = table.get_string(key, name);

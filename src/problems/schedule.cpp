@@ -12,7 +12,6 @@
 namespace armwright {
 namespace {
 
-constexpr std::int64_t kMostCases = 1'000'000;
 constexpr int kLargestEta = 1000;
 constexpr double kLargestMargin = 1e6;
 

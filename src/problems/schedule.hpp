@@ -11,6 +11,9 @@
 
 namespace armwright {
 
+// That a schedule, a set or one design's judgement may have.
+inline constexpr std::int64_t kMostCases = 1'000'000;
+
 struct Schedule {
   enum class Kind : std::uint8_t {
     fixed,        // the first K of the training set, always

@@ -238,12 +238,15 @@ std::vector<Score> RunEvaluator::evaluate_batch(std::span<const std::vector<doub
   if (journal_ended_ && !missing.empty()) {
     refuse_replay(batch.records[missing.front()].index, "the recorded run had ended before it");
   }
-  if (!halves) {
-    simulate(batch, missing);
-  } else if (missing.empty()) {
-    check_race(batch.records);
+  if (halves && !missing.empty()) {
+    halve(batch);  // all of it: nothing is taken from the journal
   } else {
-    halve(batch);
+    count_replayed(batch);
+    if (halves) {
+      check_race(batch.records);
+    } else {
+      simulate(batch, missing);
+    }
   }
 
   // A stop can leave holes; the optimizer learns the results before the first, and a resumed run
@@ -279,10 +282,17 @@ std::vector<std::size_t> RunEvaluator::answer_from_journal(Batch& batch) {
     record.evaluation = std::move(recorded.evaluation);
     recorded_[record.index].reset();
     batch.answered[i] = true;
-    batch.replayed_cases += record.calc_charge();
-    ++counts_.replayed;
   }
   return missing;
+}
+
+void RunEvaluator::count_replayed(Batch& batch) {
+  for (std::size_t i = 0; i < batch.records.size(); ++i) {
+    if (batch.answered[i]) {
+      batch.replayed_cases += batch.records[i].calc_charge();
+      ++counts_.replayed;
+    }
+  }
 }
 
 void RunEvaluator::simulate(Batch& batch, const std::vector<std::size_t>& missing) {
@@ -337,8 +347,6 @@ void RunEvaluator::halve(Batch& batch) {
   for (const EvaluationRecord& record : batch.records) {
     candidates.emplace_back(record.x);
   }
-  counts_.replayed -= static_cast<std::uint64_t>(std::ranges::count(batch.answered, true));
-  batch.replayed_cases = 0;
   std::mutex mutex;
   std::uint64_t cases = 0;
   const double penalty = plan_.problem.problem->penalty_objectives().front();

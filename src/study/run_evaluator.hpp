@@ -97,6 +97,7 @@ class RunEvaluator final : public Evaluator {
                                     bool with_jacobian);
   bool races(Racing::Kind kind, bool with_jacobian) const;
   std::vector<std::size_t> answer_from_journal(Batch& batch);
+  void count_replayed(Batch& batch);  // what the journal has answered
   void simulate(Batch& batch, const std::vector<std::size_t>& missing);
   void halve(Batch& batch);
   std::uint64_t calc_cases_left() const {
