@@ -127,7 +127,8 @@ std::string describe_targets(const StudyPlan& plan, const StudyProblem& problem,
                              const ProblemResult& result, const Style& style) {
   std::string text;
   for (std::size_t t = 0; t < result.fixed_targets.size(); ++t) {
-    std::vector<Column> columns = {{"optimizer", false}, {"runs"}, {"expected cases"}, {"95 %"}};
+    std::vector<Column> columns = {
+        {"optimizer", false}, {"runs"}, {"kept"}, {"expected cases"}, {"95 %"}};
     if (!plan.reference.empty()) {
       columns.push_back({"times " + plan.reference});
       columns.push_back({"95 %"});
@@ -141,9 +142,10 @@ std::string describe_targets(const StudyPlan& plan, const StudyProblem& problem,
       const auto format_interval = [](const Interval& interval, auto format) {
         return format(interval.lower) + " to " + format(interval.upper);
       };
-      std::vector<std::string> row = {
-          plan.optimizers[o].label, fmt::format("{}/{}", time.reached, time.trials.size()),
-          format_cases(time.expected), format_interval(time.interval, format_cases)};
+      std::vector<std::string> row = {plan.optimizers[o].label,
+                                      fmt::format("{}/{}", time.reached, time.trials.size()),
+                                      std::to_string(time.kept), format_cases(time.expected),
+                                      format_interval(time.interval, format_cases)};
       if (!plan.reference.empty()) {
         const auto& ratio = time.ratio;
         row.push_back(ratio && ratio->ratio ? format_ratio(*ratio->ratio) : "-");

@@ -18,7 +18,7 @@
 namespace armwright {
 namespace {
 
-constexpr std::int64_t kMostCases = 1'000'000'000'000;
+constexpr std::int64_t kMostBudget = 1'000'000'000'000;
 constexpr int kMostReplicates = 10'000;
 constexpr int kMostSelected = 10'000;
 constexpr int kMostCheckpoints = 1000;
@@ -85,11 +85,13 @@ RawPlan read_file_plan(const ConfigTable& table, StudyPlan& plan) {
       table.get_integer_or("seed", 1, 0, std::numeric_limits<std::int64_t>::max()));
   plan.replicates =
       static_cast<int>(table.get_integer_or("replicates", plan.replicates, 1, kMostReplicates));
-  plan.budget = table.get_integer_or("budget", 0, 1, kMostCases);
+  plan.budget = table.get_integer_or("budget", 0, 1, kMostBudget);
   plan.start_spread =
       table.get_number_or("start_spread", plan.start_spread, {.lower = 0, .upper = 2});
   plan.checkpoints =
       static_cast<int>(table.get_integer_or("checkpoints", plan.checkpoints, 1, kMostCheckpoints));
+  plan.first_checkpoint = table.get_integer_or("first_checkpoint", plan.first_checkpoint, 1,
+                                               plan.budget > 0 ? plan.budget : kMostBudget);
   plan.constraint_tolerance = table.get_number_or("constraint_tolerance", plan.constraint_tolerance,
                                                   {.lower = 0, .upper = 1});
   plan.final_engine = table.get_string("final_engine", "");

@@ -86,10 +86,12 @@ std::string make_method(const StudyOptimizer& optimizer) {
 std::string make_body(const StudyPlan& plan) {
   std::string text = fmt::format(
       "name = {}\ntitle = {}\nseed = {}\nreplicates = {}\nbudget = {}\nstart_spread = {}\n"
-      "constraint_tolerance = {}\ncheckpoints = {}\nfinal_engine = {}\nbaselines = "
+      "constraint_tolerance = {}\ncheckpoints = {}\n{}final_engine = {}\nbaselines = "
       "{}\n{}\n[selection]\nlast = {}\nbest = {}\n{}",
       quote(plan.name), quote(plan.title), plan.seed, plan.replicates, plan.budget,
       format_number(plan.start_spread), format_number(plan.constraint_tolerance), plan.checkpoints,
+      plan.first_checkpoint > 1 ? fmt::format("first_checkpoint = {}\n", plan.first_checkpoint)
+                                : "",
       quote(plan.final_engine), plan.baselines ? "true" : "false", make_questions(plan),
       plan.selection.last, plan.selection.best, plan.judge_along ? "along = true\n" : "");
   for (const StudyProblem& problem : plan.problems) {

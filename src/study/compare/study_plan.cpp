@@ -152,12 +152,14 @@ std::filesystem::path make_cell_path(const StudyPlan& plan, const Cell& cell) {
          escape_name(plan.optimizers[cell.optimizer].label) / fmt::format("r{:02}", cell.replicate);
 }
 
-std::vector<std::int64_t> calc_checkpoints(std::int64_t budget, int cases, int count) {
+std::vector<std::int64_t> calc_checkpoints(std::int64_t first, std::int64_t budget, int cases,
+                                           int count) {
   const std::int64_t evaluations = budget / cases;
+  const auto fewest = static_cast<double>(std::max<std::int64_t>(1, first / cases));
   std::set<std::int64_t> chosen;
   for (int i = 0; i < count && evaluations > 0; ++i) {
     const double share = count == 1 ? 1 : static_cast<double>(i) / (count - 1);
-    const double exact = std::pow(static_cast<double>(evaluations), share);
+    const double exact = fewest * std::pow(static_cast<double>(evaluations) / fewest, share);
     chosen.insert(std::clamp(std::llround(exact), 1LL, static_cast<long long>(evaluations)) *
                   cases);
   }
@@ -165,19 +167,20 @@ std::vector<std::int64_t> calc_checkpoints(std::int64_t budget, int cases, int c
 }
 
 std::vector<std::int64_t> list_checkpoints(const StudyPlan& plan, std::size_t problem) {
-  return calc_checkpoints(plan.budget, plan.problems[problem].schedule.cases, plan.checkpoints);
+  return calc_checkpoints(plan.first_checkpoint, plan.budget, plan.problems[problem].schedule.cases,
+                          plan.checkpoints);
 }
 
 StudyCost calc_cost(const StudyPlan& plan) {
   StudyCost cost;
   const auto runs = static_cast<std::int64_t>(plan.optimizers.size()) * plan.replicates;
-  for (const StudyProblem& problem : plan.problems) {
+  for (std::size_t p = 0; p < plan.problems.size(); ++p) {
+    const StudyProblem& problem = plan.problems[p];
     const CaseSets& sets = problem.loaded.sets;
     const bool fronts = problem.loaded.problem->description().objectives.size() > 1;
     const Selection selection = choose_selection(plan, problem);
     const std::int64_t judged = selection.last + selection.best;
-    const auto tested = static_cast<std::int64_t>(
-        calc_checkpoints(plan.budget, problem.schedule.cases, plan.checkpoints).size());
+    const auto tested = static_cast<std::int64_t>(list_checkpoints(plan, p).size());
     cost.cells += runs;
     cost.training += runs * plan.budget;
     // With targets also the winners that there would have been at the checkpoints.

@@ -76,7 +76,8 @@ struct StudyPlan {
   // By how much a constraint may be violated on validation and test sets, which nobody trained on,
   // for a design to count as feasible there.
   double constraint_tolerance = 0;
-  int checkpoints = 20;      // budgets, logarithmically spaced, at which incumbents are tested
+  int checkpoints = 20;  // budgets, logarithmically spaced, at which incumbents are tested
+  std::int64_t first_checkpoint = 1;  // the smallest of them, in cases; at least one evaluation
   std::string final_engine;  // the best design of every optimizer and problem once more; or empty
   bool baselines = true;     // random search and a local search are in the pool by themselves
   StudyValue value = StudyValue::objective;
@@ -143,7 +144,8 @@ std::filesystem::path make_cell_path(const StudyPlan& plan, const Cell& cell);
 
 // Budgets at which incumbents are tested: from one evaluation to the whole, logarithmically spaced,
 // whole evaluations, without repetitions.
-std::vector<std::int64_t> calc_checkpoints(std::int64_t budget, int cases, int count);
+std::vector<std::int64_t> calc_checkpoints(std::int64_t first, std::int64_t budget, int cases,
+                                           int count);
 
 // Those of a problem: the same for all optimizers, in evaluations by the problem's own schedule.
 std::vector<std::int64_t> list_checkpoints(const StudyPlan& plan, std::size_t problem);

@@ -11,7 +11,8 @@
 //
 // Fixed targets are another thing: there a run counts as somebody uses it who stops it early and
 // takes the design that is best on the validation set by then (choices.hpp). It has reached the
-// target at the first checkpoint from which on all designs so chosen meet it on the test set.
+// target at the first checkpoint at which the design so chosen meets it on the test set, whatever
+// comes after: a running time must not depend on how much longer the run was given.
 #pragma once
 
 #include <cstdint>
@@ -52,6 +53,7 @@ struct RunningTime {
 struct TargetTime {
   std::vector<Trial> trials;  // one a replicate
   int reached = 0;
+  int kept = 0;         // of these, runs whose last choice, the winner, meets it as well
   double expected = 0;  // simulated cases, with restarts; infinite if never reached
   Interval interval;    // over replicates; infinite where too few of them reached it
   // Of the plan's reference, if it has one: the expected running time divided by the reference's.

@@ -38,12 +38,12 @@ TargetTime make_time(const std::string& stream, std::vector<Trial> trials) {
 Trial make_target_trial(const StudyPlan& plan, const StudyTarget& target, const CellOutcome& cell) {
   // One that ended early has spent no more than that, whether it had reached the target or not.
   const std::int64_t spent = cell.cases > 0 ? static_cast<std::int64_t>(cell.cases) : plan.budget;
-  Trial trial{.cost = static_cast<double>(spent), .reached = false};
-  for (auto point = cell.choices.rbegin(); point != cell.choices.rend() && meets(target, *point);
-       ++point) {
-    trial = {.cost = static_cast<double>(std::min(point->budget, spent)), .reached = true};
+  const auto first = std::ranges::find_if(
+      cell.choices, [&](const CurvePoint& point) { return meets(target, point); });
+  if (first == cell.choices.end()) {
+    return {.cost = static_cast<double>(spent), .reached = false};
   }
-  return trial;
+  return {.cost = static_cast<double>(std::min(first->budget, spent)), .reached = true};
 }
 
 void add_targets(const StudyPlan& plan, std::span<const std::vector<const CellOutcome*>> runs,
@@ -63,7 +63,11 @@ void add_targets(const StudyPlan& plan, std::span<const std::vector<const CellOu
       for (const CellOutcome* run : runs[o]) {
         trials.push_back(make_target_trial(plan, target, *run));
       }
-      result.optimizers[o].target_times.push_back(make_time(get_stream(o), std::move(trials)));
+      TargetTime time = make_time(get_stream(o), std::move(trials));
+      time.kept = static_cast<int>(std::ranges::count_if(runs[o], [&](const CellOutcome* run) {
+        return !run->choices.empty() && meets(target, run->choices.back());
+      }));
+      result.optimizers[o].target_times.push_back(std::move(time));
     }
     const auto reference =
         std::ranges::find(plan.optimizers, plan.reference, &StudyOptimizer::label);

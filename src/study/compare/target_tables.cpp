@@ -31,18 +31,18 @@ double calc_share(const TargetTime& time) {
 
 std::string make_targets_table(const StudyPlan& plan, const StudyResult& result) {
   std::string csv =
-      "problem,target,value_at_most,failures_at_most,optimizer,reached,runs,success_share,"
+      "problem,target,value_at_most,failures_at_most,optimizer,reached,kept,runs,success_share,"
       "expected_cases,lower_95,upper_95,reference,ratio,ratio_lower_95,ratio_upper_95\n";
   for (const ProblemResult& problem : result.problems) {
     for (std::size_t t = 0; t < problem.fixed_targets.size(); ++t) {
       const StudyTarget& target = plan.targets[problem.fixed_targets[t]];
       for (std::size_t o = 0; o < problem.optimizers.size(); ++o) {
         const TargetTime& time = problem.optimizers[o].target_times[t];
-        csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}", quote_csv(problem.label),
+        csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}", quote_csv(problem.label),
                            quote_csv(target.label), target.value ? number(*target.value) : "",
                            target.failures ? std::to_string(*target.failures) : "",
-                           quote_csv(plan.optimizers[o].label), time.reached, time.trials.size(),
-                           number(calc_share(time)), number(time.expected),
+                           quote_csv(plan.optimizers[o].label), time.reached, time.kept,
+                           time.trials.size(), number(calc_share(time)), number(time.expected),
                            number(time.interval.lower), number(time.interval.upper),
                            quote_csv(plan.reference));
         if (const auto& ratio = time.ratio) {
@@ -101,6 +101,7 @@ json target_times_to_json(const StudyPlan& plan, const ProblemResult& problem,
                   {"value", target.value ? json(*target.value) : json()},
                   {"failures", target.failures ? json(*target.failures) : json()},
                   {"reached", time.reached},
+                  {"kept", time.kept},
                   {"runs", time.trials.size()},
                   {"expected_cases", value_to_json(time.expected)},
                   {"interval", interval_to_json(time.interval)},

@@ -22,10 +22,10 @@ std::string format_ratio(double ratio) {
 }
 
 std::string describe_time(const StudyPlan& plan, const std::string& label, const TargetTime& time) {
-  std::string text =
-      fmt::format("{} needs {} simulations (95 %: {} to {}; reached in {} of {} runs)", label,
-                  format_cases(time.expected), format_cases(time.interval.lower),
-                  format_cases(time.interval.upper), time.reached, time.trials.size());
+  std::string text = fmt::format(
+      "{} needs {} simulations (95 %: {} to {}; reached in {} of {} runs, kept to the end in {})",
+      label, format_cases(time.expected), format_cases(time.interval.lower),
+      format_cases(time.interval.upper), time.reached, time.trials.size(), time.kept);
   if (time.ratio && time.ratio->ratio && label != plan.reference) {
     text +=
         fmt::format(", {} times what {} needs (95 %: {} to {})", format_ratio(*time.ratio->ratio),

@@ -202,9 +202,11 @@ TEST(StudyPlan, IsReadBackOnTheSimdLevelThatItWasMadeWith) {
 }
 
 TEST(StudyPlan, CheckpointsAreWholeEvaluationsUpToTheBudget) {
-  EXPECT_THAT(calc_checkpoints(2000, 5, 4), ElementsAre(5, 35, 270, 2000));
-  EXPECT_THAT(calc_checkpoints(12, 5, 20), ElementsAre(5, 10));
-  EXPECT_THAT(calc_checkpoints(7, 1, 1), ElementsAre(7));
+  EXPECT_THAT(calc_checkpoints(1, 2000, 5, 4), ElementsAre(5, 35, 270, 2000));
+  EXPECT_THAT(calc_checkpoints(1, 12, 5, 20), ElementsAre(5, 10));
+  EXPECT_THAT(calc_checkpoints(1, 7, 1, 1), ElementsAre(7));
+  EXPECT_THAT(calc_checkpoints(500, 4000, 5, 4), ElementsAre(500, 1000, 2000, 4000));
+  EXPECT_THAT(calc_checkpoints(2000, 2000, 5, 4), ElementsAre(2000));
 }
 
 TEST(StudyPlan, NamesOfFilesAreNeverAlikeHiddenOrElsewhere) {

@@ -51,7 +51,7 @@ CellOutcome make_cell(const std::string& optimizer, int replicate,
   return cell;
 }
 
-TEST(TargetTrial, IsReachedFromWhereTheChosenDesignsStayGood) {
+TEST(TargetTrial, IsReachedWhereAChosenDesignMeetsIt) {
   const TemporaryFolder folder;
   const StudyPlan plan = load_plan(folder, std::string(kArm) + R"(
 [[target]]
@@ -67,11 +67,11 @@ failures = 1
     EXPECT_EQ(trial.reached, reached);
   };
   expect(find({{10, 1.0, 1}, {20, 0.5, 0}, {30, 0.4, 0}}), 10, true);
-  // Good once, by luck: what counts begins after the last design that is not.
-  expect(find({{10, 0.9, 0}, {20, 1.1, 0}, {30, 0.4, 0}}), 30, true);
+  // What comes after it was there does not count, or a longer run would take longer to get there.
+  expect(find({{10, 1.1, 0}, {20, 0.9, 0}, {30, 1.1, 0}}), 20, true);
   // Many failures, whatever the objective.
-  expect(find({{10, 0.9, 0}, {20, 0.9, 2}, {30, 0.9, 1}}), 30, true);
-  expect(find({{10, 0.9, 0}, {20, 0.9, 0}, {30, 0.9, 2}}), 100, false);
+  expect(find({{10, 0.9, 2}, {20, 0.9, 3}, {30, 0.9, 1}}), 30, true);
+  expect(find({{10, 0.9, 2}, {20, 0.9, 3}, {30, 0.9, 2}}), 100, false);
   expect(find({{10, kInf, 10}, {20, kInf, 10}, {30, 0.9, std::nullopt}}), 100, false);
   expect(find({}), 100, false);
   // A run that ended after 25 cases spent no more than those, whatever the last checkpoint says.
@@ -95,7 +95,7 @@ value = 1.0
   std::vector<CellOutcome> cells;
   const std::vector<CurvePoint> never = {{10, 3, 0}, {30, 2, 0}};
   // ga: two of four, at 10 and 30, the others spend 100 each: (10 + 30 + 200) / 2 = 120.
-  cells.push_back(make_cell("ga", 1, {{10, 0.9, 0}, {30, 0.8, 0}}));
+  cells.push_back(make_cell("ga", 1, {{10, 0.9, 0}, {30, 1.1, 0}}));  // and lost again
   cells.push_back(make_cell("ga", 2, {{10, 2, 0}, {30, 0.8, 0}}));
   cells.push_back(make_cell("ga", 3, never));
   cells.push_back(make_cell("ga", 4, never));
@@ -106,12 +106,14 @@ value = 1.0
   ASSERT_THAT(result.fixed_targets, ElementsAre(0u));
   const TargetTime& ga = result.optimizers[0].target_times[0];
   EXPECT_EQ(ga.reached, 2);
+  EXPECT_EQ(ga.kept, 1);
   EXPECT_EQ(ga.expected, 120);
   // All four resampled fail with a chance of 1/16, more than the 2.5 % that is left out.
   EXPECT_EQ(ga.interval.upper, kInf);
   EXPECT_EQ(*ga.ratio->ratio, 1);
   const TargetTime& cmaes = result.optimizers[1].target_times[0];
   EXPECT_EQ(cmaes.reached, 4);
+  EXPECT_EQ(cmaes.kept, 4);
   EXPECT_EQ(cmaes.expected, 10);
   EXPECT_EQ(cmaes.interval.lower, 10);
   EXPECT_EQ(cmaes.interval.upper, 10);
