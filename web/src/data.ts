@@ -306,6 +306,7 @@ export interface StudyData extends PageBase {
   optimizers: { label: string; name: string }[]; // in the plan's order; all lists "one an optimizer" follow it
   replicates: number;
   budget: number;
+  reference: string; // the optimizer that times to fixed targets are divided by; may be empty
   problems: StudyProblem[];
   overall: StudyOverall | null; // of at least one complete problem
 }
@@ -338,6 +339,15 @@ export interface StudyOptimizerResult {
   anytime_area: number | null;
   cases: number | null; // median
   running_times: { target: number; reached: number; expected: number | null; interval: [number | null, number | null] }[];
+  // To each of the problem's fixed targets; the ratio is to the study's reference.
+  target_times: {
+    reached: number;
+    kept: number; // runs whose winner meets it
+    expected: number | null;
+    interval: [number | null, number | null];
+    ratio: number | null;
+    ratio_interval: [number | null, number | null];
+  }[];
   curve: { q1: (number | null)[]; median: (number | null)[]; q3: (number | null)[] }; // at the checkpoints
   ecdf: number[]; // likewise
   final_check: { engine: string; value: number | null; failures: number; cases: number; replicate: number } | null;
@@ -370,6 +380,7 @@ export interface StudyProblem {
   start: number | null;
   checkpoints: number[];
   targets: number[];
+  fixed_targets: string[]; // in words
   variables: { name: string; unit: string; lower: number; upper: number; start: number; logarithmic: boolean }[];
   results: StudyOptimizerResult[]; // one an optimizer
   friedman: Friedman | null;

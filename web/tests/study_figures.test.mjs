@@ -159,6 +159,28 @@ test('what is missing is left out and said', () => {
   check_tabs(study.make_study_tabs({ ...data, problems: [], optimizers: [] }));
 });
 
+test('fixed targets are a table, fastest first, where the study has some', () => {
+  const data = study.make_study_data({ optimizers: 3, replicates: 4, problems: 2 });
+  check_tabs(study.make_study_tabs(data));
+  assert.equal(find(study.make_study_tabs(data), 'targets-q1-problem-1'), undefined);
+  const targets = ["'near' (error at most 0.3 mm)", "'far' (at most 0 of 10 test cases failing)"];
+  const asked = study.make_study_data({ optimizers: 3, replicates: 4, problems: 2, targets });
+  asked.problems[0].order.reverse();
+  const tabs = study.make_study_tabs(asked);
+  check_tabs(tabs);
+  const { table } = find(tabs, 'targets-q1-problem-1');
+  assert.equal(table.rows.length, 6);
+  assert.deepEqual(table.rows[0], [targets[0], asked.optimizers[0].label, 4, 2, 4, 300, 300, null]);
+  assert.deepEqual(
+    table.rows.map((row) => row[5]),
+    [300, 600, 900, 300, 600, 900],
+  );
+  asked.reference = asked.optimizers[1].label;
+  const compared = find(study.make_study_tabs(asked), 'targets-q1-problem-1').table;
+  assert.equal(compared.columns[8].label, 'times ' + asked.reference);
+  assert.deepEqual(compared.rows[1].slice(8), [2, 0.5, null]);
+});
+
 test('every run is in the figure of values, those without value beyond the axis', () => {
   const data = study.make_study_data({ optimizers: 6, replicates: 15, problems: 1, infinite: 'some' });
   const lost = data.problems[0].results.reduce((sum, one) => sum + one.infinite, 0);

@@ -84,6 +84,7 @@ std::optional<std::string> make_study_page(const std::filesystem::path& folder,
       {"verdict", describe_verdict(plan, result)},
       {"optimizers", make_optimizers(plan)},
       {"replicates", plan.replicates},
+      {"reference", sanitize(plan.reference)},
       {"budget", plan.budget},
       {"problems", make_problems(plan, result, folder)},
       {"overall", make_study_overall(plan, result, notes)}};

@@ -6,6 +6,7 @@
 #include "base/text.hpp"
 #include "report/page/page_json.hpp"
 #include "report/page/study_parts.hpp"
+#include "study/compare/verdict_targets.hpp"
 #include "study/statistics/spread.hpp"
 
 namespace armwright {
@@ -59,6 +60,34 @@ json make_running_times(std::span<const RunningTime> times) {
   return list;
 }
 
+// Of an optimizer to each of make_fixed_targets().
+json make_target_times(std::span<const TargetTime> times) {
+  const auto make_interval = [](const Interval& interval) {
+    return json{finite_or_null(interval.lower), finite_or_null(interval.upper)};
+  };
+  json list = json::array();
+  for (const TargetTime& time : times) {
+    const bool compared = time.ratio && time.ratio->ratio;
+    list.push_back({{"reached", time.reached},
+                    {"kept", time.kept},
+                    {"expected", finite_or_null(time.expected)},
+                    {"interval", make_interval(time.interval)},
+                    {"ratio", compared ? finite_or_null(*time.ratio->ratio) : json(nullptr)},
+                    {"ratio_interval",
+                     compared ? make_interval(time.ratio->interval) : json{nullptr, nullptr}}});
+  }
+  return list;
+}
+
+json make_fixed_targets(const StudyPlan& plan, const StudyProblem& problem,
+                        const ProblemResult& result) {
+  json list = json::array();
+  for (const std::size_t t : result.fixed_targets) {
+    list.push_back(sanitize(describe_target(problem, plan.targets[t])));
+  }
+  return list;
+}
+
 json make_curve(std::span<const Spread> curve) {
   json q1 = json::array(), median = json::array(), q3 = json::array();
   for (const Spread& spread : curve) {
@@ -105,6 +134,7 @@ json make_result(const StudyPlan& plan, const Cell& first, std::span<const CellO
       {"anytime_area", of_any(one.anytime_area)},
       {"cases", of_any(one.cases)},
       {"running_times", make_running_times(one.running_times)},
+      {"target_times", make_target_times(one.target_times)},
       {"curve", make_curve(one.curve)},
       {"ecdf", one.ecdf},
       {"final_check", make_final_check(one.final_check)}};
@@ -185,6 +215,7 @@ json make_study_problem(const StudyPlan& plan, std::size_t number,
           {"start", finite_or_null(result.start)},
           {"checkpoints", result.checkpoints},
           {"targets", result.targets},
+          {"fixed_targets", make_fixed_targets(plan, problem, result)},
           {"variables", make_variables(description)},
           {"results", std::move(results)},
           {"friedman", make_friedman(result.friedman)},

@@ -179,6 +179,46 @@ set = ["control.controller=pid_gravity"]
   EXPECT_EQ(ids, (std::set<std::string>{"optimizer-0", "optimizer-1", "start"}));
 }
 
+TEST_F(StudyPage, HasTheFixedTargetsOfTheStudy) {
+  std::ofstream(temporary_ / "plan.toml") << R"(
+problems = ["sphere", "rosenbrock"]
+replicates = 2
+budget = 40
+reference = "random"
+baselines = false
+optimizers = ["random", "nlopt:sbplx"]
+[[target]]
+label = "easy"
+problems = ["sphere"]
+value = 1000.0
+[[target]]
+label = "never"
+problems = ["sphere"]
+value = -1.0
+)";
+  StudyRequest request;
+  request.file = (temporary_ / "plan.toml").string();
+  const StudyResult result = study(make_study_plan(request), "study");
+  const json page = make("study");
+  EXPECT_EQ(page["reference"], "random");
+  const json& sphere = page["problems"][0];
+  EXPECT_EQ(sphere["fixed_targets"], (json{"'easy' (f at most 1000)", "'never' (f at most -1)"}));
+  EXPECT_THAT(page["problems"][1]["fixed_targets"], IsEmpty());
+  const json& times = sphere["results"][1]["target_times"];
+  const TargetTime& easy = result.problems[0].optimizers[1].target_times[0];
+  EXPECT_EQ(times[0]["reached"], 2);
+  EXPECT_EQ(times[0]["kept"], 2);
+  EXPECT_EQ(times[0]["expected"], easy.expected);
+  EXPECT_EQ(times[0]["interval"], (json{easy.interval.lower, easy.interval.upper}));
+  EXPECT_EQ(times[0]["ratio"], *easy.ratio->ratio);
+  EXPECT_EQ(times[1], (json{{"reached", 0},
+                            {"kept", 0},
+                            {"expected", nullptr},
+                            {"interval", {nullptr, nullptr}},
+                            {"ratio", nullptr},
+                            {"ratio_interval", {nullptr, nullptr}}}));
+}
+
 TEST_F(StudyPage, SimulatesNothingIfSoAsked) {
   study(make_study_plan(make_arm_request()), "study");
   const json page = make("study", {.cases = {}, .simulate = false});

@@ -10,7 +10,14 @@ import { make_pairs } from './study_pairs';
 import { make_scope, type Scope } from './study_parts';
 import { make_convergence, make_profiles, make_runtime_ecdf } from './study_progress';
 import { make_overall_ranks, make_problem_ranks } from './study_ranks';
-import { make_cells_table, make_overall_table, make_pairs_table, make_ranking_table, make_running_times_table } from './study_tables';
+import {
+  make_cells_table,
+  make_overall_table,
+  make_pairs_table,
+  make_ranking_table,
+  make_running_times_table,
+  make_targets_table,
+} from './study_tables';
 import { make_values } from './study_values';
 
 // With more problems than these, tabs would not fit side by side: then figures have a choice.
@@ -70,6 +77,7 @@ function make_problem_items(scope: Scope): Item[] {
     single ? null : make_problem_ranks(scope, 'replicate-ranks' + scope.suffix),
     make_pairs(scope),
     single ? null : make_ranking_table(scope),
+    make_targets_table(scope),
     make_running_times_table(scope),
     make_pairs_table(scope),
     make_cells_table(scope),

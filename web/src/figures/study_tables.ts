@@ -191,6 +191,53 @@ export function make_running_times_table(scope: Scope): TableItem {
   };
 }
 
+// The study's own targets, if it has any for these problems.
+export function make_targets_table(scope: Scope): TableItem | null {
+  const reference = scope.data.reference;
+  const times: Column[] = [
+    { label: 'target' },
+    { label: 'optimizer' },
+    { label: 'runs that reached it', numeric: true, digits: 9 },
+    { label: 'kept to the end', numeric: true, digits: 9 },
+    { label: 'runs', numeric: true, digits: 9 },
+    { label: 'expected running time', unit: 'cases', numeric: true, digits: 6 },
+    { label: '95 % from', unit: 'cases', numeric: true, digits: 6 },
+    { label: 'to', unit: 'cases', numeric: true, digits: 6 },
+  ];
+  const ratios: Column[] = [
+    { label: 'times ' + reference, numeric: true, digits: 3 },
+    { label: '95 % from', numeric: true, digits: 3 },
+    { label: 'to', numeric: true, digits: 3 },
+  ];
+  const columns = () => (reference ? times.concat(ratios) : times);
+  const rows = (problem: StudyProblem): Row[] =>
+    problem.fixed_targets.reduce((all, target, t) => {
+      const time_of = (o: number) => problem.results[o].target_times[t];
+      const order = sort_by(get_order(scope, problem), (o) => time_of(o).expected ?? Infinity);
+      return all.concat(
+        order.map((o): Row => {
+          const time = time_of(o);
+          const runs = problem.results[o].cells.length;
+          const row: Row = [target, scope.names[o], time.reached, time.kept, runs, time.expected, time.interval[0], time.interval[1]];
+          return reference ? row.concat([time.ratio, time.ratio_interval[0], time.ratio_interval[1]]) : row;
+        }),
+      );
+    }, [] as Row[]);
+  if (scope.problems.every((problem) => problem.fixed_targets.length === 0)) {
+    return null;
+  }
+  return {
+    kind: 'table',
+    id: 'targets' + scope.suffix,
+    title: end_title(scope, 'Fixed targets'),
+    caption:
+      'How many simulated cases it would take on average until the design that is best on the validation set by then meets a target on the test set: all cases spent, divided by the number of runs that got there. ' +
+      'Kept are those whose winner meets it as well. A dash is a time without a bound. ' +
+      describe_size(scope),
+    table: tabulate(scope, () => ({ unit: '', factor: 1 }), columns, rows),
+  };
+}
+
 // Optimizers over all problems.
 export function make_overall_table(scope: Scope): TableItem | null {
   const overall = scope.data.overall;
