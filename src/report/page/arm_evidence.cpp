@@ -255,12 +255,13 @@ json make_arm_evidence(const RecordedRun& run, const std::vector<ShownDesign>& d
   if (simulator != nullptr) {
     sweep = make_sweep(run, designs, *simulator, notes);
   }
-  return {{"designs", std::move(list)},
-          {"parameters", make_parameters(run, designs)},
-          {"results", make_result_rows(designs)},
-          {"response", make_response(run, designs)},
-          {"signals", make_signals(run.tracking()->config().task, true)},
-          {"sweep", std::move(sweep)}};
+  // Of the winner's own speed, if it has one.
+  const TrackingProblem& tracking = *run.tracking();
+  const TrackingTask task =
+      designs.empty() ? tracking.config().task : tracking.make_task(designs.front().named.design);
+  return {{"designs", std::move(list)},           {"parameters", make_parameters(run, designs)},
+          {"results", make_result_rows(designs)}, {"response", make_response(run, designs)},
+          {"signals", make_signals(task, true)},  {"sweep", std::move(sweep)}};
 }
 
 }  // namespace armwright

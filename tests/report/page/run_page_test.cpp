@@ -171,13 +171,19 @@ TEST_F(RunPage, CommandsNameMotorsAndPlants) {
 }
 
 TEST_F(RunPage, SweepsNoDesignWithASpeedOfItsOwn) {
-  make_run(make_plan("q1-complex", "ga", 16, {R"(variables.task=["speed"])"}), "a");
+  make_run(make_plan("q1-complex", "ga", 200,
+                     {R"(variables.task=["speed"])", "physics.engine=articulated"}),
+           "a");
   const json page = make_page("a");
   const json& sweep = page["arm"]["sweep"];
   ASSERT_EQ(sweep["series"].size(), 1u);  // the published one
   EXPECT_EQ(sweep["series"][0]["name"], page["arm"]["designs"][2]["name"]);
   EXPECT_THAT(sweep["command"].get<std::string>(), Not(HasSubstr("winner.toml")));
   EXPECT_THAT(notes_of(page), Contains(HasSubstr("leaves out winner.")));
+  // Its signals are at its speed, too.
+  const auto speed = page["arm"]["signals"]["speed_m_per_s"].get<double>();
+  EXPECT_NE(speed, 1.5);
+  EXPECT_EQ(speed, page["replays"][0]["task"]["speed_m_per_s"]);
 }
 
 TEST_F(RunPage, SaysThatATrainingCaseIsReplayedOnAnotherPlant) {
