@@ -142,14 +142,15 @@ std::string describe_targets(const StudyPlan& plan, const StudyProblem& problem,
       const auto format_interval = [](const Interval& interval, auto format) {
         return format(interval.lower) + " to " + format(interval.upper);
       };
-      std::vector<std::string> row = {plan.optimizers[o].label,
-                                      fmt::format("{}/{}", time.reached, time.trials.size()),
-                                      std::to_string(time.kept), format_cases(time.expected),
-                                      format_interval(time.interval, format_cases)};
+      const bool ever = std::isfinite(time.expected);
+      std::vector<std::string> row = {
+          plan.optimizers[o].label, fmt::format("{}/{}", time.reached, time.trials.size()),
+          std::to_string(time.kept), ever ? format_cases(time.expected) : "-",
+          ever ? format_interval(time.interval, format_cases) : "-"};
       if (!plan.reference.empty()) {
-        const auto& ratio = time.ratio;
-        row.push_back(ratio && ratio->ratio ? format_ratio(*ratio->ratio) : "-");
-        row.push_back(ratio ? format_interval(ratio->interval, format_ratio) : "-");
+        const bool compared = time.ratio && time.ratio->ratio;
+        row.push_back(compared ? format_ratio(*time.ratio->ratio) : "-");
+        row.push_back(compared ? format_interval(time.ratio->interval, format_ratio) : "-");
       }
       table.add_row(std::move(row));
     }
