@@ -90,8 +90,8 @@ RawPlan read_file_plan(const ConfigTable& table, StudyPlan& plan) {
       table.get_number_or("start_spread", plan.start_spread, {.lower = 0, .upper = 2});
   plan.checkpoints =
       static_cast<int>(table.get_integer_or("checkpoints", plan.checkpoints, 1, kMostCheckpoints));
-  plan.first_checkpoint = table.get_integer_or("first_checkpoint", plan.first_checkpoint, 1,
-                                               plan.budget > 0 ? plan.budget : kMostBudget);
+  plan.first_checkpoint =
+      table.get_integer_or("first_checkpoint", plan.first_checkpoint, 1, kMostBudget);
   plan.constraint_tolerance = table.get_number_or("constraint_tolerance", plan.constraint_tolerance,
                                                   {.lower = 0, .upper = 1});
   plan.final_engine = table.get_string("final_engine", "");

@@ -77,7 +77,7 @@ struct StudyPlan {
   // for a design to count as feasible there.
   double constraint_tolerance = 0;
   int checkpoints = 20;  // budgets, logarithmically spaced, at which incumbents are tested
-  std::int64_t first_checkpoint = 1;  // the smallest of them, in cases; at least one evaluation
+  std::int64_t first_checkpoint = 1;  // the smallest of them, in cases; of a smaller budget itself
   std::string final_engine;  // the best design of every optimizer and problem once more; or empty
   bool baselines = true;     // random search and a local search are in the pool by themselves
   StudyValue value = StudyValue::objective;

@@ -207,6 +207,7 @@ TEST(StudyPlan, CheckpointsAreWholeEvaluationsUpToTheBudget) {
   EXPECT_THAT(calc_checkpoints(1, 7, 1, 1), ElementsAre(7));
   EXPECT_THAT(calc_checkpoints(500, 4000, 5, 4), ElementsAre(500, 1000, 2000, 4000));
   EXPECT_THAT(calc_checkpoints(2000, 2000, 5, 4), ElementsAre(2000));
+  EXPECT_THAT(calc_checkpoints(2000, 160, 5, 4), ElementsAre(160));
 }
 
 TEST(StudyPlan, NamesOfFilesAreNeverAlikeHiddenOrElsewhere) {
