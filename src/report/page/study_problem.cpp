@@ -48,23 +48,23 @@ json make_cell(const StudyPlan& plan, const Cell& cell, const CellOutcome& outco
           {"command", quote_command(words)}};
 }
 
+json make_interval(const Interval& interval) {
+  return {finite_or_null(interval.lower), finite_or_null(interval.upper)};
+}
+
 json make_running_times(std::span<const RunningTime> times) {
   json list = json::array();
   for (const RunningTime& time : times) {
-    list.push_back(
-        {{"target", finite_or_null(time.target)},
-         {"reached", time.reached},
-         {"expected", finite_or_null(time.expected)},
-         {"interval", {finite_or_null(time.interval.lower), finite_or_null(time.interval.upper)}}});
+    list.push_back({{"target", finite_or_null(time.target)},
+                    {"reached", time.reached},
+                    {"expected", finite_or_null(time.expected)},
+                    {"interval", make_interval(time.interval)}});
   }
   return list;
 }
 
 // Of an optimizer to each of make_fixed_targets().
 json make_target_times(std::span<const TargetTime> times) {
-  const auto make_interval = [](const Interval& interval) {
-    return json{finite_or_null(interval.lower), finite_or_null(interval.upper)};
-  };
   json list = json::array();
   for (const TargetTime& time : times) {
     const bool compared = time.ratio && time.ratio->ratio;
