@@ -23,8 +23,6 @@ RunEvaluator::RunEvaluator(const RunPlan& plan, CaseRunner& runner, StopSignal& 
       stop_(stop),
       journal_(journal),
       observer_(observer),
-      wants_residuals_(plan.optimizer.capabilities.residuals ||
-                       plan.optimizer.requirements.residuals),
       journal_ended_(recorded.ended),
       candidates_(plan) {
   for (EvaluationRecord& record : recorded.training) {
@@ -332,7 +330,7 @@ void RunEvaluator::simulate(Batch& batch, const std::vector<std::size_t>& missin
     return;
   }
   runner_.run(
-      candidates, block_, wants_residuals_ || batch.with_jacobian,
+      candidates, block_, wants_residuals(plan_.optimizer) || batch.with_jacobian,
       [&](std::size_t candidate, Evaluation evaluation) {
         finish(candidate, std::move(evaluation));
         progress(batch.records[missing[candidate]].calc_charge(), 1);

@@ -120,7 +120,6 @@ class RunEvaluator final : public Evaluator {
   std::vector<std::optional<EvaluationRecord>> recorded_;  // by index
   bool budget_spent_ = false;
   bool stopped_ = false;
-  bool wants_residuals_;  // the optimizer; for others they are neither made nor recorded
   bool journal_ended_;
   RunCounts counts_;
   std::uint64_t replayed_cases_ = 0;  // those of counts_.replayed

@@ -27,11 +27,14 @@ Schedule choose_schedule(const LoadedProblem& problem, const OptimizerRow& optim
   return problem.schedule;
 }
 
+bool wants_residuals(const OptimizerRow& optimizer) {
+  return optimizer.capabilities.residuals || optimizer.requirements.residuals;
+}
+
 bool can_race(const OptimizerRow& optimizer, Racing::Kind kind) {
   const Capabilities& can = optimizer.capabilities;
-  const bool wants_residuals = can.residuals || optimizer.requirements.residuals;
   const bool competes = can.generations || can.sampling;
-  return kind != Racing::Kind::none && !wants_residuals &&
+  return kind != Racing::Kind::none && !wants_residuals(optimizer) &&
          (kind != Racing::Kind::halving || competes);
 }
 

@@ -36,6 +36,9 @@ struct RunPlan {
 // the first `fixed_cases` cases for every candidate.
 Schedule choose_schedule(const LoadedProblem& problem, const OptimizerRow& optimizer);
 
+// Whether the optimizer gets residuals; for others they are neither made nor recorded.
+bool wants_residuals(const OptimizerRow& optimizer);
+
 // Whether candidates race at all under an optimizer: residuals are of all cases or of no use, and a
 // batch is a field of competitors only where it is a generation or a sample; the points of a
 // difference quotient are none.

@@ -142,8 +142,8 @@ RunPlan make_run_plan(const StudyPlan& plan, const Cell& cell);
 // "cells/q1-complex/ga/r01", relative to the study's folder.
 std::filesystem::path make_cell_path(const StudyPlan& plan, const Cell& cell);
 
-// Budgets at which incumbents are tested: from one evaluation to the whole, logarithmically spaced,
-// whole evaluations, without repetitions.
+// Budgets at which incumbents are tested: from `first` cases, but at least one evaluation, to the
+// whole, logarithmically spaced, whole evaluations, without repetitions.
 std::vector<std::int64_t> calc_checkpoints(std::int64_t first, std::int64_t budget, int cases,
                                            int count);
 
