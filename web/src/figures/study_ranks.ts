@@ -20,7 +20,7 @@ export interface Ranks {
 const kRowHeight = 19;
 const kBarHeight = 8;
 const kAbove = 46; // pixels over the axis
-const kMargin = 176;
+const kMargin = 212; // for names of some thirty letters and a rank
 
 // All longest stretches, in the order of ranks, of which no two are told apart.
 export function find_cliques(problem: StudyProblem, ranks: number[]): number[][] {

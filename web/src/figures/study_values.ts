@@ -21,6 +21,8 @@ import {
   type Unit,
 } from './study_parts';
 
+const kMostNames = 260; // pixels: methods have long names that differ at their ends
+
 export function describe_cell(scope: Scope, problem: StudyProblem, optimizer: number, cell: StudyCell, unit: Unit): string {
   const failed = cell.failures > 0 ? '; ' + cell.failures + (cell.failures === 1 ? ' test case' : ' test cases') + ' failed' : '';
   const failure = cell.failure === '' ? '' : '; the optimizer failed';
@@ -137,7 +139,7 @@ function draw_values(look: Look, scope: Scope, problem: StudyProblem): EChartsOp
     });
   });
   const names = order.map((o) => scope.names[o]);
-  const width = Math.min(150, Math.max(30, Math.ceil(names.reduce((most, name) => Math.max(most, estimate_width(name, 11)), 0))));
+  const width = Math.min(kMostNames, Math.max(30, Math.ceil(names.reduce((most, name) => Math.max(most, estimate_width(name, 11)), 0))));
   const quantity = name_axis(problem.quantity.name, unit.unit);
   return make_ranked_chart(
     look,
@@ -150,7 +152,7 @@ function draw_values(look: Look, scope: Scope, problem: StudyProblem): EChartsOp
     ],
     [],
     [],
-    { grid: { left: width + 18, right: 20, top: 10, bottom: 46 } },
+    { grid: { left: width + 24, right: 20, top: 10, bottom: 46 } },
   );
 }
 
