@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/file_descriptor.hpp"
 
 namespace armwright {
 namespace {
@@ -22,24 +21,6 @@ FileDescriptor open_file(const std::filesystem::path& path, int flags, std::stri
   }
   return FileDescriptor(fd);
 }
-
-// Takes a half-written file away again, unless it was renamed into place.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(std::filesystem::path path) : path_(std::move(path)) {}
-  ~TemporaryFile() {
-    if (!path_.empty()) {
-      ::unlink(path_.c_str());
-    }
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-  void release() { path_.clear(); }
-
- private:
-  std::filesystem::path path_;
-};
 
 }  // namespace
 
@@ -72,34 +53,62 @@ std::string read_file(const std::filesystem::path& path, std::size_t limit_bytes
   }
 }
 
-void write_file_atomically(const std::filesystem::path& path, std::string_view content) {
-  const std::filesystem::path new_path = path.string() + ".new";
-  FileDescriptor file = open_file(new_path, O_WRONLY | O_CREAT | O_TRUNC, "write it");
-  TemporaryFile temporary(new_path);
+AtomicFile::AtomicFile(const std::filesystem::path& path)
+    : path_(path),
+      new_path_(path.string() + ".new"),
+      file_(open_file(new_path_, O_WRONLY | O_CREAT | O_TRUNC, "write it")) {}
+
+AtomicFile::~AtomicFile() {
+  if (!new_path_.empty()) {
+    ::unlink(new_path_.c_str());
+  }
+}
+
+void AtomicFile::write(std::string_view content) {
+  constexpr std::size_t kBufferBytes = std::size_t{256} << 10;
+  buffer_ += content;
+  if (buffer_.size() >= kBufferBytes) {
+    write_buffer();
+  }
+}
+
+void AtomicFile::write_buffer() {
+  std::string_view content = buffer_;
   while (!content.empty()) {
-    const ssize_t put = ::write(file.get(), content.data(), content.size());
+    const ssize_t put = ::write(file_.get(), content.data(), content.size());
     if (put < 0 && errno == EINTR) {
       continue;
     }
     if (put < 0) {
-      fail_io(temporary.path(), "write it", errno);
+      fail_io(new_path_, "write it", errno);
     }
     content.remove_prefix(static_cast<std::size_t>(put));
   }
-  if (::fsync(file.get()) != 0 && errno != EINVAL && errno != EROFS) {
-    fail_io(temporary.path(), "sync it to the disk", errno);
+  buffer_.clear();
+}
+
+void AtomicFile::commit() {
+  write_buffer();
+  if (::fsync(file_.get()) != 0 && errno != EINVAL && errno != EROFS) {
+    fail_io(new_path_, "sync it to the disk", errno);
   }
-  if (file.close() != 0) {
-    fail_io(temporary.path(), "close it", errno);
+  if (file_.close() != 0) {
+    fail_io(new_path_, "close it", errno);
   }
-  if (::rename(temporary.path().c_str(), path.c_str()) != 0) {
-    fail_io(path, "put it in place", errno);
+  if (::rename(new_path_.c_str(), path_.c_str()) != 0) {
+    fail_io(path_, "put it in place", errno);
   }
-  temporary.release();
-  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  new_path_.clear();
+  const auto folder = path_.has_parent_path() ? path_.parent_path() : std::filesystem::path(".");
   const FileDescriptor directory = open_file(folder, O_RDONLY | O_DIRECTORY, "open its folder");
-  ::fsync(
-      directory.get());  // some file systems cannot sync a folder; the rename itself has succeeded
+  // Some file systems cannot sync a folder; the rename itself has succeeded.
+  ::fsync(directory.get());
+}
+
+void write_file_atomically(const std::filesystem::path& path, std::string_view content) {
+  AtomicFile file(path);
+  file.write(content);
+  file.commit();
 }
 
 void make_folder(const std::filesystem::path& path) {

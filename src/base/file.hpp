@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "base/file_descriptor.hpp"
+
 namespace armwright {
 
 // Throws Error{io} "PATH: cannot DOING: the operating system's reason" for an errno.
@@ -16,7 +18,29 @@ namespace armwright {
 // Error{bad_data} if the file is larger than `limit_bytes`.
 std::string read_file(const std::filesystem::path& path, std::size_t limit_bytes);
 
-// Writes a temporary file beside `path`, syncs it, renames it over `path` and syncs the folder.
+// A file that is written piece by piece and takes its place only as a whole: until commit() it
+// bears the name "PATH.new", and without it it is taken away again.
+class AtomicFile {
+ public:
+  explicit AtomicFile(const std::filesystem::path& path);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  void write(std::string_view content);
+  // Syncs it, renames it over `path` and syncs the folder.
+  void commit();
+
+ private:
+  void write_buffer();
+
+  std::filesystem::path path_;
+  std::filesystem::path new_path_;  // empty once it has been renamed
+  FileDescriptor file_;
+  std::string buffer_;
+};
+
+// The whole of an AtomicFile at once.
 void write_file_atomically(const std::filesystem::path& path, std::string_view content);
 
 // As mkdir -p; an Error{io} says which folder could not be made and why.

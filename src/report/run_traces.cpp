@@ -177,7 +177,7 @@ const TracedEvaluation* RunTrace::find_best() const {
 
 RunTrace read_trace(const RunEntry& run) {
   const RunResult result = load_result(run.folder);
-  JournalContent journal = read_journal(run.folder / "journal");
+  const JournalContent journal = read_journal(run.folder / "journal");
   RunTrace trace;
   trace.run = run;
   trace.seed = result.seed;
@@ -198,7 +198,7 @@ RunTrace read_trace(const RunEntry& run) {
   }
   std::uint64_t simulated_cases = 0;
   trace.evaluations.reserve(journal.training.size());
-  for (EvaluationRecord& record : journal.training) {
+  for (EvaluationRecord record : journal.training) {
     if (record.x.size() != trace.names.variables.size()) {
       throw Error(ErrorKind::bad_data,
                   fmt::format("{}: evaluation {} has {} variables, but result.json names {}; they "

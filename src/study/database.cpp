@@ -6,7 +6,6 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <span>
 
 #include "base/error.hpp"
 
@@ -105,8 +104,8 @@ std::string get_role_name(CaseRole role) {
   return "?";
 }
 
-void insert_records(Database& database, const ProblemDescription& problem,
-                    std::span<const EvaluationRecord> records) {
+template <class Records>
+void insert_records(Database& database, const ProblemDescription& problem, const Records& records) {
   Insert evaluation(database, "INSERT INTO evaluation VALUES (?,?,?,?,?,?,?,?,?,?,?,?)");
   Insert case_error(database, "INSERT INTO case_error VALUES (?,?,?,?)");
   for (const EvaluationRecord& record : records) {

@@ -32,6 +32,15 @@ constexpr auto kSyncInterval = std::chrono::seconds(1);
 // Fits a core's L2 cache; larger writes gain nothing.
 constexpr std::size_t kBufferBytes = std::size_t{256} << 10;
 
+// For reading what is there while more is appended.
+FileDescriptor duplicate(const FileDescriptor& fd, const std::filesystem::path& file) {
+  FileDescriptor copy(::fcntl(fd.get(), F_DUPFD_CLOEXEC, 0));
+  if (!copy.is_open()) {
+    fail_io(file, "open it a second time", errno);
+  }
+  return copy;
+}
+
 }  // namespace
 
 // Two threads, both asleep unless there is something to do: one writes what append() left in the
@@ -45,7 +54,7 @@ class Journal::Writer {
     if (!fd_.is_open()) {
       fail_io(file_, "open it for appending", errno);
     }
-    JournalScan scan = scan_journal(fd_.get(), file_);
+    JournalScan scan = scan_journal(duplicate(fd_, file_), file_);
     if (scan.content.torn_bytes != 0) {
       cut_torn_end(fd_.get(), scan.good_bytes, file_);
       unsynced_ = true;

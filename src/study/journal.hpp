@@ -18,32 +18,14 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "optimizers/evaluator.hpp"
-#include "problems/problem.hpp"
+#include "study/evaluation_record.hpp"
+#include "study/recorded_evaluations.hpp"
 
 namespace armwright {
-
-// One candidate's evaluation, as asked for and as answered.
-struct EvaluationRecord {
-  // In cases of the budget.
-  std::uint64_t calc_charge() const {
-    return cases.numbers.size() *
-           (with_jacobian ? static_cast<std::uint64_t>(calc_jacobian_charge(x.size())) : 1);
-  }
-
-  std::uint64_t index = 0;       // place among the evaluations of its role, from 0
-  std::uint64_t generation = 0;  // 0 for optimizers without generations
-  std::vector<double> x;         // as evaluated, inside the bounds
-  bool clipped = false;          // the optimizer had asked for a point outside
-  bool with_jacobian = false;    // asked for with exact derivatives
-  CaseBlock cases;
-  Evaluation evaluation;
-};
 
 // The run has come to its end; written once, last. `reason` is "budget" or
 // "optimizer finished".
@@ -53,7 +35,7 @@ struct EndRecord {
 };
 
 struct JournalContent {
-  std::vector<EvaluationRecord> training;    // sorted by index; a kill can leave gaps near the end
+  RecordedEvaluations training;
   std::vector<EvaluationRecord> judgements;  // validation and test, in the order written
   bool ended = false;
   EndRecord end;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "base/file_descriptor.hpp"
 #include "study/journal.hpp"
 
 namespace armwright {
@@ -15,8 +16,9 @@ struct JournalScan {
       0;  // where the last intact record ends; 0 if not even the magic is whole
 };
 
-// `fd` is open for reading and stays open; the file is not changed. Error{io} if it cannot be read
-// or is no regular file, Error{bad_data} if it is not a journal or is damaged before its end.
-JournalScan scan_journal(int fd, const std::filesystem::path& file);
+// `descriptor` is open for reading and goes to the content; the file is not changed. Error{io} if
+// it cannot be read or is no regular file, Error{bad_data} if it is not a journal or is damaged
+// before its end.
+JournalScan scan_journal(FileDescriptor descriptor, const std::filesystem::path& file);
 
 }  // namespace armwright

@@ -23,13 +23,9 @@ RunEvaluator::RunEvaluator(const RunPlan& plan, CaseRunner& runner, StopSignal& 
       stop_(stop),
       journal_(journal),
       observer_(observer),
+      recorded_(std::move(recorded.training)),
       journal_ended_(recorded.ended),
       candidates_(plan) {
-  for (EvaluationRecord& record : recorded.training) {
-    recorded_.resize(std::max<std::size_t>(recorded_.size(), record.index + 1));
-    const std::uint64_t index = record.index;
-    recorded_[index] = std::move(record);
-  }
   block_.role = CaseRole::training;
   block_.set = get_training_set(plan.problem.sets.training, plan.schedule);
   block_.numbers.resize(static_cast<std::size_t>(plan.schedule.cases));
@@ -153,29 +149,26 @@ void RunEvaluator::refuse_replay(std::uint64_t evaluation, const std::string& di
 }
 
 void RunEvaluator::check_replay_complete() const {
-  for (const auto& record : recorded_) {
-    if (record) {
-      refuse_replay(record->index, "it is recorded, and no longer asked for");
-    }
+  const std::size_t next = recorded_.find_number(counts_.evaluations);
+  if (next < recorded_.size()) {
+    refuse_replay(recorded_.get_index(next), "it is recorded, and no longer asked for");
   }
 }
 
 void RunEvaluator::take_remaining_recorded() {
-  for (auto& record : recorded_) {
-    if (!record) {
-      continue;
+  const std::size_t first = recorded_.find_number(counts_.evaluations);
+  for (std::size_t number = first; number < recorded_.size(); ++number) {
+    EvaluationRecord record = recorded_[number];
+    if (record.generation < counts_.generations) {
+      refuse_replay(record.index, "its generation is over");
     }
-    if (record->generation < counts_.generations) {
-      refuse_replay(record->index, "its generation is over");
-    }
-    while (counts_.generations < record->generation) {
+    while (counts_.generations < record.generation) {
       start_generation();
     }
     ++counts_.replayed;
-    replayed_cases_ += record->calc_charge();
+    replayed_cases_ += record.calc_charge();
     Score score;  // nobody is asking any more
-    take(std::move(*record), score);
-    record.reset();
+    take(std::move(record), score);
   }
   report(0, 0);
 }
@@ -270,15 +263,14 @@ std::vector<std::size_t> RunEvaluator::answer_from_journal(Batch& batch) {
   batch.answered.resize(batch.records.size());
   for (std::size_t i = 0; i < batch.records.size(); ++i) {
     EvaluationRecord& record = batch.records[i];
-    if (record.index >= recorded_.size() || !recorded_[record.index]) {
+    auto recorded = recorded_.find(record.index);
+    if (!recorded) {
       missing.push_back(i);
       continue;
     }
-    EvaluationRecord& recorded = *recorded_[record.index];
-    check_replay(record, recorded, batch.threshold);
-    record.cases.numbers = std::move(recorded.cases.numbers);
-    record.evaluation = std::move(recorded.evaluation);
-    recorded_[record.index].reset();
+    check_replay(record, *recorded, batch.threshold);
+    record.cases.numbers = std::move(recorded->cases.numbers);
+    record.evaluation = std::move(recorded->evaluation);
     batch.answered[i] = true;
   }
   return missing;

@@ -73,7 +73,7 @@ class RunEvaluator final : public Evaluator {
   // The smallest of an evaluation; nothing without constraints, or if none had a number.
   std::optional<double> least_violation() const { return least_violation_; }
   // Once the optimizer has returned by itself: Error{bad_data} if the journal holds more
-  // evaluations than it asked for.
+  // evaluations than it asked for; not after a stop.
   void check_replay_complete() const;
   // Once the optimizer has failed: counts and remembers, as if it had asked for them, the
   // evaluations in the journal that it has not come to, those behind a gap too. What an earlier
@@ -117,7 +117,7 @@ class RunEvaluator final : public Evaluator {
   StopSignal& stop_;
   Journal& journal_;
   RunObserver& observer_;
-  std::vector<std::optional<EvaluationRecord>> recorded_;  // by index
+  const RecordedEvaluations recorded_;
   bool budget_spent_ = false;
   bool stopped_ = false;
   bool journal_ended_;

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <functional>
-#include <map>
+#include <optional>
 
 #include "base/bits.hpp"
 #include "base/file.hpp"
@@ -17,41 +17,46 @@ namespace armwright {
 namespace {
 
 // With generations one row each, otherwise one row an improvement; feasible evaluations only.
-std::string make_convergence_csv(const ProblemDescription& problem, const JournalContent& journal) {
+void write_convergence_csv(const std::filesystem::path& path, const ProblemDescription& problem,
+                           const RecordedEvaluations& training) {
   struct Row {
     std::uint64_t evaluations = 0, cases = 0, generation = 0, counted = 0;
     double best = 0, sum = 0;
   };
-  std::vector<Row> rows;
+  AtomicFile file(path);
+  file.write("evaluations,cases,generation,best_objective,mean_objective\n");
+  std::optional<Row> row;
+  const auto write_row = [&] {
+    if (row) {
+      file.write(fmt::format("{},{},{},{},{}\n", row->evaluations, row->cases, row->generation,
+                             format_exact(row->best),
+                             format_exact(row->sum / static_cast<double>(row->counted))));
+    }
+  };
   std::uint64_t cases = 0;
-  for (const EvaluationRecord& record : journal.training) {
+  for (const EvaluationRecord& record : training) {
     cases += record.calc_charge();
     if (!is_feasible(record.evaluation)) {
       continue;
     }
     const double objective = calc_scalar(problem, record.evaluation.objectives);
     const bool same_generation =
-        record.generation > 0 && !rows.empty() && rows.back().generation == record.generation;
+        record.generation > 0 && row && row->generation == record.generation;
     if (!same_generation) {
-      if (record.generation == 0 && !rows.empty() && objective >= rows.back().best) {
+      if (record.generation == 0 && row && objective >= row->best) {
         continue;
       }
-      rows.push_back({.generation = record.generation, .best = objective});
+      write_row();
+      row = Row{.generation = record.generation, .best = objective};
     }
-    Row& row = rows.back();
-    row.evaluations = record.index + 1;
-    row.cases = cases;
-    row.best = std::min(row.best, objective);
-    row.sum += objective;
-    ++row.counted;
+    row->evaluations = record.index + 1;
+    row->cases = cases;
+    row->best = std::min(row->best, objective);
+    row->sum += objective;
+    ++row->counted;
   }
-  std::string csv = "evaluations,cases,generation,best_objective,mean_objective\n";
-  for (const Row& row : rows) {
-    csv += fmt::format("{},{},{},{},{}\n", row.evaluations, row.cases, row.generation,
-                       format_exact(row.best),
-                       format_exact(row.sum / static_cast<double>(row.counted)));
-  }
-  return csv;
+  write_row();
+  file.commit();
 }
 
 // The judged designs of a problem with several objectives, by the first of them on the validation
@@ -178,8 +183,8 @@ void write_derived_files(const RunFolder& folder, const RunPlan& plan, const Run
   const auto& path = folder.path();
   const bool all = derived == DerivedFiles::all;
   if (all) {
-    write_file_atomically(path / "convergence.csv",
-                          make_convergence_csv(plan.problem.problem->description(), journal));
+    write_convergence_csv(path / "convergence.csv", plan.problem.problem->description(),
+                          journal.training);
     journal.judgements = select_judgements(journal, result);
     write_database(path / "results.sqlite", plan.problem.problem->description(), journal);
   }

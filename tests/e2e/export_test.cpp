@@ -363,16 +363,17 @@ TEST_F(Export, HasTheWinnersDesignAndTheTestCasesThatItMet) {
 
 TEST_F(Export, ComesBackAsADesignBitForBit) {
   const JournalContent journal = read_journal(path("arm/journal"));
-  const auto best = std::ranges::min_element(
-      journal.training, {},
-      [](const EvaluationRecord& record) { return record.evaluation.objectives.front(); });
+  EvaluationRecord best = journal.training.front();
+  for (const EvaluationRecord& record : journal.training) {
+    best = record.evaluation.objectives < best.evaluation.objectives ? record : best;
+  }
   for (const std::string format : {"csv", "json", "ioh"}) {
     const std::string out = "back-" + format;
     ASSERT_EQ(run({"export", "arm", "--format", format, "--out", out}).exit_code, 0);
     const Outcome outcome = run({"import", out, "--out", out + ".toml"});
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     const DesignFile design = load_design(path(out + ".toml").string());
-    EXPECT_EQ(load_problem("q1-complex").tracking->make_vector(design.design), best->x);
+    EXPECT_EQ(load_problem("q1-complex").tracking->make_vector(design.design), best.x);
     EXPECT_EQ(run({"import", out}).out, read_text(path(out + ".toml")));
   }
   EXPECT_EQ(read("read_ioh.py", "back-ioh").at("ga").at("q1-complex").size(), 1u);

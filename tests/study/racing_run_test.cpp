@@ -145,7 +145,7 @@ TEST_F(RunTest, AJournalOfAnotherRaceIsRefused) {
       return record.evaluation.status == EvaluationStatus::abandoned;
     });
     ASSERT_NE(lost, content.training.end());
-    const auto at = static_cast<std::size_t>(lost - content.training.begin());
+    const std::size_t at = lost.number();
     const auto resume_with = [&](const std::function<void(EvaluationRecord&)>& change) {
       std::filesystem::remove(temporary_ / racing / "journal");
       std::filesystem::remove(temporary_ / racing / "result.json");

@@ -263,7 +263,8 @@ std::vector<double> RecordedRun::find_best() const {
     return result->winner ? result->judged[*result->winner].candidate.x : std::vector<double>{};
   }
   const auto incumbents = find_incumbents(describe(), journal.training, schedule.changes_cases());
-  return incumbents.empty() ? std::vector<double>{} : incumbents.back().x;
+  return incumbents.empty() ? std::vector<double>{}
+                            : journal.training.find(incumbents.back().evaluation).value().x;
 }
 
 fs::path RecordedRun::find_urdf_folder() const {

@@ -77,19 +77,21 @@ void add_setting(const RecordedRun& run, Facts& facts) {
 }
 
 void add_counts(const RecordedRun& run, Facts& facts) {
-  const auto& training = run.journal.training;
-  facts.add("Budget", fmt::format("{} of {} cases", count_charged_cases(run), run.budget));
-  facts.add("Evaluations", fmt::format("{}", training.size()));
-  facts.add("Clipped to the bounds",
-            fmt::format("{}", std::ranges::count_if(training, &EvaluationRecord::clipped)));
-  const auto lost = std::ranges::count_if(training, [](const EvaluationRecord& record) {
-    return record.evaluation.status == EvaluationStatus::abandoned;
-  });
+  std::uint64_t cases = 0;
+  std::uint64_t clipped = 0;
+  std::uint64_t lost = 0;
+  std::uint64_t failed = 0;
+  for (const EvaluationRecord& record : run.journal.training) {
+    cases += record.calc_charge();
+    clipped += record.clipped ? 1 : 0;
+    lost += record.evaluation.status == EvaluationStatus::abandoned ? 1 : 0;
+    failed += record.evaluation.objectives.empty() ? 1 : 0;
+  }
+  facts.add("Budget", fmt::format("{} of {} cases", cases, run.budget));
+  facts.add("Evaluations", fmt::format("{}", run.journal.training.size()));
+  facts.add("Clipped to the bounds", fmt::format("{}", clipped));
   facts.add("Dropped in races", lost > 0 ? fmt::format("{}", lost) : "");
-  facts.add("Evaluations without a number",
-            fmt::format("{}", std::ranges::count_if(training, [](const EvaluationRecord& record) {
-                          return record.evaluation.objectives.empty();
-                        })));
+  facts.add("Evaluations without a number", fmt::format("{}", failed));
 }
 
 void add_result(const RunResult& result, Facts& facts) {
@@ -126,14 +128,6 @@ void add_result(const RunResult& result, Facts& facts) {
 }
 
 }  // namespace
-
-std::int64_t count_charged_cases(const RecordedRun& run) {
-  std::int64_t cases = 0;
-  for (const EvaluationRecord& record : run.journal.training) {
-    cases += static_cast<std::int64_t>(record.calc_charge());
-  }
-  return cases;
-}
 
 json make_run_facts(const RecordedRun& run) {
   Facts facts;

@@ -10,7 +10,4 @@ namespace armwright {
 // A list of Fact.
 nlohmann::json make_run_facts(const RecordedRun& run);
 
-// Of the budget, as far as the journal goes.
-std::int64_t count_charged_cases(const RecordedRun& run);
-
 }  // namespace armwright

@@ -26,7 +26,7 @@ std::optional<double> get_value(const ProblemDescription& problem, const Evaluat
 
 // The first of the best; null if none is feasible.
 const EvaluationRecord* find_best(const ProblemDescription& problem,
-                                  std::span<const EvaluationRecord> records) {
+                                  const std::vector<EvaluationRecord>& records) {
   const EvaluationRecord* best = nullptr;
   double least = 0;
   for (const EvaluationRecord& record : records) {
@@ -39,16 +39,27 @@ const EvaluationRecord* find_best(const ProblemDescription& problem,
   return best;
 }
 
+// A part at a time, as a run may have more evaluations than fit into the memory.
+std::vector<EvaluationRecord> read_part(const RecordedRun& run, const HistoryPart& part) {
+  std::vector<EvaluationRecord> records;
+  records.reserve(part.count);
+  for (std::size_t i = 0; i < part.count; ++i) {
+    records.push_back(run.journal.training[part.first + i]);
+  }
+  return records;
+}
+
 struct PartSummary {
   double best = kNone, mean = kNone, worst = kNone;
   std::uint64_t failed = 0;
 };
 
-PartSummary summarize_part(const ProblemDescription& problem, const HistoryPart& part) {
+PartSummary summarize_part(const ProblemDescription& problem,
+                           const std::vector<EvaluationRecord>& records) {
   PartSummary summary;
   double sum = 0;
   double count = 0;
-  for (const EvaluationRecord& record : part.records) {
+  for (const EvaluationRecord& record : records) {
     summary.failed += record.evaluation.objectives.empty() ? 1 : 0;
     if (const auto value = get_value(problem, record)) {
       summary.best = std::fmin(summary.best, *value);  // of a number and none, the number
@@ -63,24 +74,26 @@ PartSummary summarize_part(const ProblemDescription& problem, const HistoryPart&
 
 }  // namespace
 
-History divide_history(std::span<const EvaluationRecord> training) {
+History divide_history(const RecordedEvaluations& training) {
   History history;
   history.by_generation = !training.empty() && training.back().generation > 0;
   const std::size_t block = (training.size() + kMostBlocks - 1) / kMostBlocks;
   std::int64_t cases = 0;
-  std::size_t first = 0;
+  std::size_t number = 0;
   std::vector<HistoryPart> parts;
-  for (std::size_t i = 0; i < training.size(); ++i) {
-    cases += static_cast<std::int64_t>(training[i].calc_charge());
-    const bool is_last = i + 1 == training.size();
-    const bool ends = history.by_generation
-                          ? is_last || training[i + 1].generation != training[i].generation
-                          : is_last || i + 1 - first == block;
-    if (ends) {
-      parts.push_back({history.by_generation ? training[i].generation : training[i].index + 1,
-                       cases, training.subspan(first, i + 1 - first)});
-      first = i + 1;
+  for (const EvaluationRecord& record : training) {
+    const bool begins =
+        parts.empty() || (history.by_generation ? record.generation != parts.back().index
+                                                : parts.back().count == block);
+    if (begins) {
+      parts.push_back({.first = number});
     }
+    cases += static_cast<std::int64_t>(record.calc_charge());
+    HistoryPart& part = parts.back();
+    part.index = history.by_generation ? record.generation : record.index + 1;
+    part.cases = cases;
+    ++part.count;
+    ++number;
   }
   const std::size_t stride = (parts.size() + kMostGenerations - 1) / kMostGenerations;
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -113,7 +126,7 @@ json make_training(const RecordedRun& run, const History& history, json incumben
     training[key] = json::array();
   }
   for (const HistoryPart& part : history.parts) {
-    const PartSummary summary = summarize_part(description, part);
+    const PartSummary summary = summarize_part(description, read_part(run, part));
     training["index"].push_back(part.index);
     training["cases"].push_back(part.cases);
     training["best"].push_back(finite_or_null(summary.best));
@@ -127,37 +140,36 @@ json make_training(const RecordedRun& run, const History& history, json incumben
 json make_variables(const RecordedRun& run, const History& history) {
   const ProblemDescription description = run.describe();
   const std::vector<double> winner = run.result ? run.find_best() : std::vector<double>{};
-  std::vector<const EvaluationRecord*> bests;
-  for (const HistoryPart& part : history.parts) {
-    bests.push_back(find_best(description, part.records));
-  }
   json list = json::array();
-  std::vector<double> values;
   for (std::size_t i = 0; i < description.variables.size(); ++i) {
     const DecisionVariable& variable = description.variables[i];
-    json one = {{"name", variable.name},
-                {"unit", variable.unit},
-                {"lower", variable.lower},
-                {"upper", variable.upper},
-                {"start", variable.start},
-                {"logarithmic", variable.scale == Scale::logarithmic},
-                {"winner", winner.empty() ? json(nullptr) : finite_or_null(winner[i])},
-                {"best", json::array()},
-                {"q1", json::array()},
-                {"median", json::array()},
-                {"q3", json::array()}};
-    for (std::size_t k = 0; k < history.parts.size(); ++k) {
+    list.push_back({{"name", variable.name},
+                    {"unit", variable.unit},
+                    {"lower", variable.lower},
+                    {"upper", variable.upper},
+                    {"start", variable.start},
+                    {"logarithmic", variable.scale == Scale::logarithmic},
+                    {"winner", winner.empty() ? json(nullptr) : finite_or_null(winner[i])},
+                    {"best", json::array()},
+                    {"q1", json::array()},
+                    {"median", json::array()},
+                    {"q3", json::array()}});
+  }
+  std::vector<double> values;
+  for (std::size_t k = 0; k < history.parts.size() && !list.empty(); ++k) {
+    const auto records = read_part(run, history.parts[k]);
+    const EvaluationRecord* const best = find_best(description, records);
+    for (std::size_t i = 0; i < list.size(); ++i) {
       values.clear();
-      for (const EvaluationRecord& record : history.parts[k].records) {
+      for (const EvaluationRecord& record : records) {
         values.push_back(record.x[i]);
       }
       const Spread spread = calc_spread(values);
-      one["best"].push_back(bests[k] == nullptr ? json(nullptr) : finite_or_null(bests[k]->x[i]));
-      one["q1"].push_back(finite_or_null(spread.lower_quartile));
-      one["median"].push_back(finite_or_null(spread.median));
-      one["q3"].push_back(finite_or_null(spread.upper_quartile));
+      list[i]["best"].push_back(best == nullptr ? json(nullptr) : finite_or_null(best->x[i]));
+      list[i]["q1"].push_back(finite_or_null(spread.lower_quartile));
+      list[i]["median"].push_back(finite_or_null(spread.median));
+      list[i]["q3"].push_back(finite_or_null(spread.upper_quartile));
     }
-    list.push_back(std::move(one));
   }
   return list;
 }

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -16,7 +15,8 @@ namespace armwright {
 struct HistoryPart {
   std::uint64_t index = 0;  // of the generation, or number of the last evaluation, from 1
   std::int64_t cases = 0;   // of the budget, at its end
-  std::span<const EvaluationRecord> records;
+  std::size_t first = 0;    // of the recorded ones, by number
+  std::size_t count = 0;
 };
 
 struct History {
@@ -26,7 +26,7 @@ struct History {
 };
 
 // At most 1000 generations, every n-th and the last, or 400 blocks of the same length.
-History divide_history(std::span<const EvaluationRecord> training);
+History divide_history(const RecordedEvaluations& training);
 
 // At most `most` of them, evenly spread, the first and the last included.
 std::vector<Incumbent> thin_out(const std::vector<Incumbent>& incumbents, std::size_t most);

@@ -42,14 +42,13 @@ json make_incumbents(const RecordedRun& run, const std::vector<Incumbent>& shown
   block.numbers.resize(incumbents["test_cases"].get<std::size_t>());
   std::iota(block.numbers.begin(), block.numbers.end(), std::uint64_t{0});
   for (const Incumbent& incumbent : shown) {
-    const auto record =
-        std::ranges::find(run.journal.training, incumbent.evaluation, &EvaluationRecord::index);
-    incumbents["index"].push_back(by_generation ? record->generation : incumbent.evaluation + 1);
+    const EvaluationRecord record = run.journal.training.find(incumbent.evaluation).value();
+    incumbents["index"].push_back(by_generation ? record.generation : incumbent.evaluation + 1);
     incumbents["cases"].push_back(incumbent.cases);
     incumbents["training"].push_back(finite_or_null(incumbent.objective));
     json& test = incumbents["test"].emplace_back(nullptr);
     if (simulator != nullptr) {
-      const Evaluation evaluation = simulator->evaluate(*run.problem->problem, incumbent.x, block);
+      const Evaluation evaluation = simulator->evaluate(*run.problem->problem, record.x, block);
       if (!evaluation.objectives.empty()) {
         test = finite_or_null(calc_scalar(run.describe(), evaluation.objectives));
       }
@@ -161,7 +160,9 @@ json make_page(const RecordedRun& run, const PageOptions& options, PageSimulator
   const Quantity quantity = get_scalar_quantity(description.objectives);
   json progress = nullptr;
   if (!run.result) {
-    progress = {{"done", count_charged_cases(run)}, {"total", run.budget}, {"unit", "cases"}};
+    progress = {{"done", history.parts.empty() ? 0 : history.parts.back().cases},
+                {"total", run.budget},
+                {"unit", "cases"}};
   }
   json page = {{"format", 1},
                {"kind", "run"},

@@ -68,10 +68,13 @@ bool test_progress(const StudyPlan& plan, const Cell& cell, const RunPlan& run,
     const auto after = std::ranges::upper_bound(incumbents, budget, {}, &Incumbent::cases);
     return after == incumbents.begin() ? nullptr : &*std::prev(after);
   };
+  const auto find_design = [&](const Incumbent& incumbent) {
+    return journal.training.find(incumbent.evaluation).value().x;
+  };
   std::vector<std::vector<double>> designs = {get_start(problem)};
   for (const std::int64_t budget : checkpoints) {
     if (const Incumbent* incumbent = find_incumbent(budget)) {
-      designs.push_back(incumbent->x);
+      designs.push_back(find_design(*incumbent));
     }
   }
   const bool has_front = problem.objectives.size() > 1;
@@ -102,7 +105,8 @@ bool test_progress(const StudyPlan& plan, const Cell& cell, const RunPlan& run,
   for (const std::int64_t budget : checkpoints) {
     const Incumbent* incumbent = find_incumbent(budget);
     outcome.curve.push_back(make_point(
-        run, budget, incumbent == nullptr ? nullptr : &bench.get(incumbent->x), tolerance));
+        run, budget, incumbent == nullptr ? nullptr : &bench.get(find_design(*incumbent)),
+        tolerance));
   }
   for (const Choice& choice : choices) {
     const Evaluation* evaluation = choice.chosen ? &bench.get(choice.chosen->candidate.x) : nullptr;

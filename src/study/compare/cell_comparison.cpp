@@ -110,8 +110,8 @@ std::optional<CellDifference> compare_records(const EvaluationRecord& a, const E
   return search.take(std::move(where));
 }
 
-void compare_lists(const std::vector<EvaluationRecord>& recorded,
-                   const std::vector<EvaluationRecord>& now, const char* what, std::size_t& same,
+template <class Records>
+void compare_lists(const Records& recorded, const Records& now, const char* what, std::size_t& same,
                    std::optional<CellDifference>& difference) {
   for (std::size_t i = 0; !difference && i < std::min(recorded.size(), now.size()); ++i) {
     difference = compare_records(recorded[i], now[i], fmt::format("{} {}", what, i));

@@ -14,7 +14,7 @@ namespace {
 
 // The candidates that would have been judged at each of the budgets.
 std::vector<std::vector<Candidate>> select_along(const RunPlan& run,
-                                                 std::span<const EvaluationRecord> training,
+                                                 const RecordedEvaluations& training,
                                                  std::span<const std::int64_t> budgets) {
   std::vector<std::vector<Candidate>> selections;
   CandidatePool pool(run);
@@ -88,7 +88,7 @@ ErrorSummary summarize_errors(const LoadedProblem& problem, const Evaluation& ev
 }
 
 std::optional<std::vector<Choice>> make_choices(const RunPlan& run,
-                                                std::span<const EvaluationRecord> training,
+                                                const RecordedEvaluations& training,
                                                 const RunResult& result,
                                                 std::span<const std::int64_t> budgets,
                                                 unsigned jobs, StopSignal& stop) {

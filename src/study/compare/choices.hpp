@@ -50,7 +50,7 @@ struct Choice {
 // winner among its candidates; before, what an optimizer recommends without evaluating it, which no
 // journal holds, is not. Nothing if stopped.
 std::optional<std::vector<Choice>> make_choices(const RunPlan& run,
-                                                std::span<const EvaluationRecord> training,
+                                                const RecordedEvaluations& training,
                                                 const RunResult& result,
                                                 std::span<const std::int64_t> budgets,
                                                 unsigned jobs, StopSignal& stop);

@@ -6,7 +6,7 @@
 namespace armwright {
 
 std::vector<Incumbent> find_incumbents(const ProblemDescription& problem,
-                                       std::span<const EvaluationRecord> training, bool fresh) {
+                                       const RecordedEvaluations& training, bool fresh) {
   std::vector<Incumbent> incumbents;
   std::optional<Incumbent> best;
   std::uint64_t generation = 0;
@@ -30,7 +30,7 @@ std::vector<Incumbent> find_incumbents(const ProblemDescription& problem,
     if (best && best->objective <= objective) {
       continue;
     }
-    best = Incumbent{cases, record.index, objective, record.x};
+    best = Incumbent{cases, record.index, objective};
     if (!fresh) {
       incumbents.push_back(*best);
     }

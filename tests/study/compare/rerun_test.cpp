@@ -137,14 +137,16 @@ TEST_F(Rerun, AnotherJournalIsFoundAtTheFirstDifferentEvaluation) {
 
 TEST_F(Rerun, AChangedEvaluationIsFound) {
   make_two("random");
-  JournalContent content = read_journal(recorded() / "journal");
+  const JournalContent content = read_journal(recorded() / "journal");
   std::filesystem::remove(recorded() / "journal");
   JournalContent nothing;
   Journal journal(recorded() / "journal", nothing);
-  content.training[17].evaluation.objectives[0] =
-      std::nextafter(content.training[17].evaluation.objectives[0], 0);
-  for (auto record = content.training.rbegin(); record != content.training.rend(); ++record) {
-    journal.append(*record);  // in another order, which does not matter
+  for (std::size_t i = content.training.size(); i-- > 0;) {  // in another order: no matter
+    EvaluationRecord record = content.training[i];
+    if (i == 17) {
+      record.evaluation.objectives[0] = std::nextafter(record.evaluation.objectives[0], 0);
+    }
+    journal.append(record);
   }
   for (const EvaluationRecord& record : content.judgements) {
     journal.append(record);
@@ -160,13 +162,12 @@ TEST_F(Rerun, AChangedEvaluationIsFound) {
 
 TEST_F(Rerun, AMissingEvaluationIsFound) {
   make_two("random");
-  JournalContent content = read_journal(recorded() / "journal");
+  const JournalContent content = read_journal(recorded() / "journal");
   std::filesystem::remove(recorded() / "journal");
   JournalContent nothing;
   Journal journal(recorded() / "journal", nothing);
-  content.training.pop_back();
-  for (const EvaluationRecord& record : content.training) {
-    journal.append(record);
+  for (std::size_t i = 0; i + 1 < content.training.size(); ++i) {
+    journal.append(content.training[i]);
   }
   journal.close();
   const auto difference = compare_cells(recorded(), now()).difference;
