@@ -23,6 +23,7 @@ class CaseCache {
   // values go when the limit is reached (they live on as long as somebody holds them).
   template <class Make>
   std::shared_ptr<const Value> get(const std::string& set, std::uint64_t number, const Make& make);
+  void clear();  // thread-safe; values live on as long as somebody holds them
   std::uint64_t computed() const { return computed_; }  // values made so far
 
  private:
@@ -79,6 +80,16 @@ std::shared_ptr<const Value> CaseCache<Value>::get(const std::string& set, std::
     }
   }
   return {entry, &entry->value};
+}
+
+template <class Value>
+void CaseCache<Value>::clear() {
+  const std::lock_guard lock(mutex_);
+  for (const Key& key : oldest_first_) {
+    entries_.erase(key);  // one that is being made is not in the list, and stays
+  }
+  oldest_first_.clear();
+  size_bytes_ = 0;
 }
 
 }  // namespace armwright

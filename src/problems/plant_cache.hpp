@@ -25,6 +25,7 @@ class PlantCache {
 
   // Thread-safe; null where plants of that role are nominal.
   std::shared_ptr<const CasePlant> get(CaseRole role, const std::string& set, std::uint64_t number);
+  void clear() { plants_.clear(); }
 
  private:
   CasePlant make(const std::string& set, std::uint64_t number) const;

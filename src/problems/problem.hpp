@@ -171,6 +171,9 @@ class Problem {
   // any design that works.
   virtual std::vector<double> penalty_objectives() const = 0;
 
+  // Gives back what is kept of cases for the next time, which costs time alone. Thread-safe.
+  virtual void forget_cases() const {}
+
   // Both steps for one candidate on all cases of a block, residuals included.
   Evaluation evaluate(std::span<const double> x, const CaseBlock& block,
                       bool jacobian = false) const;

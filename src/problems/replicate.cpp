@@ -32,6 +32,7 @@ class StartedElsewhere final : public Problem {
     return problem_->calc_lower_bound(x, outcomes, cases);
   }
   std::vector<double> penalty_objectives() const override { return problem_->penalty_objectives(); }
+  void forget_cases() const override { problem_->forget_cases(); }
 
  private:
   std::shared_ptr<const Problem> problem_;

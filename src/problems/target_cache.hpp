@@ -19,6 +19,7 @@ class TargetCache {
     return tables_.get(set.name(), number,
                        [&] { return setup.make_targets(set.make_case(number)); });
   }
+  void clear() { tables_.clear(); }
   std::uint64_t computed() const { return tables_.computed(); }  // tables made so far
 
  private:

@@ -10,7 +10,9 @@
 namespace armwright {
 namespace {
 
-constexpr std::size_t kTargetCache_bytes = std::size_t{512} << 20;
+// Some 4000 cases of the thesis's task: above what a run comes back to, and little enough for many
+// problems in one process.
+constexpr std::size_t kTargetCache_bytes = std::size_t{128} << 20;
 
 }  // namespace
 
@@ -19,6 +21,11 @@ TrackingInputs::TrackingInputs(const TrackingConfig& config)
       setup_(std::make_shared<TrackingSetup>(config.robot, config.task)),
       targets_(kTargetCache_bytes),
       plants_(config.perturbation, config.robot, config.task) {}
+
+void TrackingInputs::forget_cases() const {
+  targets_.clear();
+  plants_.clear();
+}
 
 RobotModel TrackingInputs::make_robot(const ArmDesign& design) const {
   return armwright::make_robot(config_.robot, design, config_.torque_per_mass_n_m_per_kg);

@@ -23,6 +23,7 @@ class TrackingInputs {
 
   const TrackingSetup& setup() const { return *setup_; }  // of the nominal arm and task
   const TargetCache& targets() const { return targets_; }
+  void forget_cases() const;
   RobotModel make_robot(const ArmDesign& design) const;  // without load
   TrackingTask make_task(const ArmDesign& design) const;
   // The problem's own where the design changes nothing.

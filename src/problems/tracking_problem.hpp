@@ -31,6 +31,7 @@ class TrackingProblem final : public Problem {
 
   const ProblemDescription& description() const override { return description_; }
   BatchSize batch_size(CaseRole role) const override;
+  void forget_cases() const override { inputs_.forget_cases(); }
   std::vector<CaseOutcome> simulate(std::span<const CaseJob> jobs) const override;
   Evaluation aggregate(std::span<const double> x,
                        std::span<const CaseOutcome> outcomes) const override;

@@ -11,10 +11,71 @@
 namespace armwright {
 namespace {
 
-// At most `count` of them, the first and the last included, at even distances. The last
-// improvements of a long run lie together, close to a limit, and all exceed it where new cases are
-// a little harder: some from further back are judged as well.
-std::vector<Candidate> spread(const std::vector<Candidate>& candidates, std::size_t count) {
+constexpr std::size_t kMostSpread = 65536;
+
+auto find_same(std::vector<Candidate>& candidates, const Candidate& candidate) {
+  return std::ranges::find_if(
+      candidates, [&](const Candidate& other) { return same_bits(other.x, candidate.x); });
+}
+
+bool is_among(const std::vector<Candidate>& candidates, const Candidate& candidate) {
+  return std::ranges::any_of(
+      candidates, [&](const Candidate& other) { return same_bits(other.x, candidate.x); });
+}
+
+}  // namespace
+
+RememberedCandidates::RememberedCandidates(const Selection& selection, bool keeps_all)
+    : selection_(selection), keeps_all_(keeps_all) {}
+
+void RememberedCandidates::add(const Candidate& candidate) {
+  const auto most = [](int count) { return static_cast<std::size_t>(count); };
+  if (const auto before = find_same(last_, candidate); before != last_.end()) {
+    last_.erase(before);
+  }
+  last_.push_back(candidate);
+  if (last_.size() > most(selection_.last)) {
+    last_.erase(last_.begin());
+  }
+  if (!candidate.recommended) {
+    const auto before = find_same(best_, candidate);
+    const bool is_better =
+        before == best_.end() || candidate.training_objective < before->training_objective;
+    if (before != best_.end() && is_better) {
+      best_.erase(before);
+    }
+    if (is_better) {
+      best_.insert(std::ranges::upper_bound(best_, candidate.training_objective, {},
+                                            &Candidate::training_objective),
+                   candidate);
+    }
+    if (best_.size() > most(selection_.best)) {
+      best_.pop_back();
+    }
+  }
+  if (keeps_all_) {
+    if (count_ % stride_ == 0) {
+      some_.push_back(candidate);
+    }
+    ++count_;
+    newest_ = candidate;
+    if (some_.size() > kMostSpread) {
+      stride_ *= 2;
+      for (std::size_t i = 0; 2 * i < some_.size(); ++i) {
+        some_[i] = std::move(some_[2 * i]);
+      }
+      some_.resize((some_.size() + 1) / 2);
+    }
+  }
+}
+
+// The last improvements of a long run lie together, close to a limit, and all exceed it where new
+// cases are a little harder: some from further back are judged as well.
+std::vector<Candidate> RememberedCandidates::spread(std::size_t count) const {
+  std::vector<Candidate> candidates = some_;
+  if (newest_ && (count_ - 1) % stride_ != 0) {
+    candidates.push_back(*newest_);
+  }
   count = std::min(count, candidates.size());
   std::vector<Candidate> some;
   for (std::size_t i = 0; i < count; ++i) {
@@ -23,21 +84,20 @@ std::vector<Candidate> spread(const std::vector<Candidate>& candidates, std::siz
   return some;
 }
 
-}  // namespace
-
 CandidatePool::CandidatePool(const RunPlan& plan)
     : problem_(plan.problem.problem->description()),
       selection_(plan.selection),
-      fresh_(plan.schedule.changes_cases()) {}
+      fresh_(plan.schedule.changes_cases()),
+      candidates_(selection_, !problem_.constraints.empty()) {}
 
 void CandidatePool::recommend(std::vector<double> x, std::uint64_t generation) {
-  candidates_.push_back({std::move(x), 0, generation, true, 0});
+  candidates_.add({std::move(x), 0, generation, true, 0});
 }
 
 void CandidatePool::end_generation() {
   if (incumbent_) {
     last_best_ = incumbent_->training_objective;
-    candidates_.push_back(*std::exchange(incumbent_, std::nullopt));
+    candidates_.add(*std::exchange(incumbent_, std::nullopt));
   }
 }
 
@@ -59,7 +119,7 @@ void CandidatePool::consider(const EvaluationRecord& record) {
   }
   incumbent_ = Candidate{record.x, record.index, record.generation, false, objective};
   if (!fresh_) {
-    candidates_.push_back(*incumbent_);
+    candidates_.add(*incumbent_);
   }
 }
 
@@ -94,42 +154,23 @@ std::vector<Candidate> CandidatePool::thin_front() const {
 }
 
 std::vector<Candidate> CandidatePool::select() const {
-  std::vector<Candidate> all = candidates_;
+  RememberedCandidates all = candidates_;
   if (fresh_ && incumbent_) {
-    all.push_back(*incumbent_);  // the last generation's best
+    all.add(*incumbent_);  // the last generation's best
   }
+  const auto most = static_cast<std::size_t>(selection_.last);
   const std::vector<Candidate> candidates =
-      problem_.constraints.empty() ? all : spread(all, static_cast<std::size_t>(selection_.last));
-  const auto known = [](const std::vector<Candidate>& chosen, const Candidate& candidate) {
-    return std::any_of(chosen.begin(), chosen.end(),
-                       [&](const Candidate& other) { return same_bits(other.x, candidate.x); });
-  };
+      problem_.constraints.empty() ? all.last() : all.spread(most);
   std::vector<Candidate> chosen =
       problem_.objectives.size() > 1 ? thin_front() : std::vector<Candidate>{};
-  for (auto candidate = candidates.rbegin();
-       candidate != candidates.rend() && std::ssize(chosen) < selection_.last; ++candidate) {
-    if (!known(chosen, *candidate)) {
+  for (auto candidate = candidates.rbegin(); candidate != candidates.rend() && chosen.size() < most;
+       ++candidate) {
+    if (!is_among(chosen, *candidate)) {
       chosen.push_back(*candidate);
     }
   }
-  std::vector<Candidate> by_objective;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(by_objective),
-               [](const Candidate& candidate) { return !candidate.recommended; });
-  std::stable_sort(by_objective.begin(), by_objective.end(),
-                   [](const Candidate& a, const Candidate& b) {
-                     return a.training_objective < b.training_objective;
-                   });
-  std::vector<Candidate> best;
-  for (const Candidate& candidate : by_objective) {
-    if (std::ssize(best) == selection_.best) {
-      break;
-    }
-    if (!known(best, candidate)) {
-      best.push_back(candidate);
-    }
-  }
-  std::copy_if(best.begin(), best.end(), std::back_inserter(chosen),
-               [&](const Candidate& candidate) { return !known(chosen, candidate); });
+  std::ranges::copy_if(all.best(), std::back_inserter(chosen),
+                       [&](const Candidate& candidate) { return !is_among(chosen, candidate); });
   std::stable_sort(chosen.begin(), chosen.end(), [](const Candidate& a, const Candidate& b) {
     return a.generation != b.generation ? a.generation < b.generation : a.evaluation < b.evaluation;
   });

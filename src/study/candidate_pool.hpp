@@ -23,6 +23,31 @@ struct Candidate {
   double training_objective = 0;
 };
 
+// Of any number of candidates, in the order in which they come, those that select() may ask for.
+class RememberedCandidates {
+ public:
+  RememberedCandidates(const Selection& selection, bool keeps_all);
+
+  void add(const Candidate& candidate);
+  // The last different ones, each where it came last; oldest first.
+  const std::vector<Candidate>& last() const { return last_; }
+  // The best different ones with an objective of their own, the earliest of equals.
+  const std::vector<Candidate>& best() const { return best_; }
+  // At most `count` of all, the first and the last included, at even distances; where there are
+  // more than 65536, of every second, fourth, ... one. Only of who keeps all.
+  std::vector<Candidate> spread(std::size_t count) const;
+
+ private:
+  Selection selection_;
+  bool keeps_all_;
+  std::vector<Candidate> last_;
+  std::vector<Candidate> best_;
+  std::vector<Candidate> some_;  // every stride_-th
+  std::uint64_t stride_ = 1;
+  std::uint64_t count_ = 0;
+  std::optional<Candidate> newest_;
+};
+
 class CandidatePool {
  public:
   explicit CandidatePool(const RunPlan& plan);  // which outlives it
@@ -50,8 +75,8 @@ class CandidatePool {
   std::optional<Candidate> incumbent_;  // fixed: best so far; fresh: best of this generation
   // fresh: the best objective of the generation before
   double last_best_ = std::numeric_limits<double>::quiet_NaN();
-  // fixed: all improvements; fresh: bests of generations and recommendations
-  std::vector<Candidate> candidates_;
+  // fixed: of all improvements; fresh: of the bests of generations and of recommendations
+  RememberedCandidates candidates_;
   // Several objectives: the feasible evaluations that no other one is at least as good as in all
   // objectives.
   struct FrontMember {

@@ -126,6 +126,22 @@ TEST_F(TargetCacheTest, ThreadsGetTheRightTablesWhileOthersAreEvicted) {
   EXPECT_THAT(wrong, testing::Each(0));
 }
 
+TEST_F(TargetCacheTest, WhatIsForgottenIsMadeAgainAlikeAndLivesWhileItIsHeld) {
+  const CaseBlock training{CaseRole::training, "train/1", {0, 1}};
+  const std::vector<double> x = problem_->make_vector(problem_->config().start);
+  const Evaluation before = problem_->evaluate(x, training);
+  problem_->forget_cases();
+  EXPECT_EQ(problem_->evaluate(x, training).case_errors, before.case_errors);
+  EXPECT_EQ(problem_->targets().computed(), 4U);
+
+  TargetCache cache(2 * table_bytes_);
+  const auto held = cache.get(setup_, set_, 0);
+  const std::vector<double> angles_rad = held->angles_rad;
+  cache.clear();
+  EXPECT_EQ(held->angles_rad, angles_rad);
+  EXPECT_NE(cache.get(setup_, set_, 0), held);
+}
+
 TEST_F(TargetCacheTest, ProblemSolvesInverseKinematicsOnceACaseNotOnceACandidate) {
   const auto& variables = problem_->description().variables;
   const std::vector<std::uint64_t> numbers = {0, 1, 2};

@@ -279,6 +279,8 @@ std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
     return std::nullopt;
   }
   write_file_atomically(request.folder / "cell.json", to_json(outcome));
+  // Of many problems in one process each would keep its own.
+  request.plan.problem.problem->forget_cases();
   return outcome;
 }
 
