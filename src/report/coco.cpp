@@ -116,14 +116,14 @@ CocoRun make_coco_run(const RunTrace& trace, const CocoScale& scale) {
   LevelTrigger level;
   EvaluationTrigger number(trace.names.variables.size());
   double best = scale.infeasible;
-  for (const TracedEvaluation& evaluation : trace.evaluations) {
-    const bool last = &evaluation == &trace.evaluations.back();
+  trace.evaluations.visit([&](const TracedEvaluation& evaluation) {
+    const bool last = evaluation.number == trace.evaluations.last()->number;
     const double measured = evaluation.feasible ? *evaluation.objective : scale.infeasible;
     best = std::min(best, measured);
     const bool reaches = level.reaches(best - scale.reference);
     const bool matches = number.matches(evaluation.number);
     if (!reaches && !matches && !last) {
-      continue;
+      return;
     }
     std::vector<double> constraints = evaluation.constraint_values;
     constraints.resize(scale.constraints, HUGE_VAL);  // a failed one has none: none is met
@@ -137,8 +137,8 @@ CocoRun make_coco_run(const RunTrace& trace, const CocoScale& scale) {
     row += '\n';
     run.dat += reaches || last ? row : "";
     run.tdat += matches || last ? row : "";
-  }
-  run.summary = fmt::format("{}:{}|{:.1e}", trace.run.replicate, trace.evaluations.back().number,
+  });
+  run.summary = fmt::format("{}:{}|{:.1e}", trace.run.replicate, trace.evaluations.last()->number,
                             best - scale.reference);
   return run;
 }

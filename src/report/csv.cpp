@@ -47,7 +47,7 @@ std::string make_header(const ProblemRuns& problem) {
 
 void write_evaluations(OutputFile& file, const ProblemRuns& problem, const RunTrace& trace) {
   const std::string run = make_run_fields(trace.run);
-  for (const TracedEvaluation& evaluation : trace.evaluations) {
+  trace.evaluations.visit([&](const TracedEvaluation& evaluation) {
     std::string row =
         fmt::format("{},{},{},{},{},{}", run, evaluation.number, evaluation.simulated_cases,
                     to_string(evaluation.status), evaluation.feasible ? 1 : 0,
@@ -57,17 +57,16 @@ void write_evaluations(OutputFile& file, const ProblemRuns& problem, const RunTr
     append_numbers(row, evaluation.metrics, problem.names.metrics.size());
     append_numbers(row, evaluation.x, problem.names.variables.size());
     file.write(row + "\n");
-  }
+  });
 }
 
 std::string make_run_row(const RunTrace& trace, const std::string& design) {
-  const TracedEvaluation& last = trace.evaluations.back();
-  const TracedEvaluation* best = trace.find_best();
+  const TracedEvaluation& last = trace.evaluations.last().value();
+  const auto& best = trace.evaluations.best();
   return fmt::format(
       "{},{},{},{},{},{},{},{},{},{},{}\n", make_run_fields(trace.run), trace.seed, last.number,
       last.simulated_cases, quote_csv(trace.end_reason),
-      best != nullptr ? fmt::format("{}", best->number) : "",
-      best != nullptr ? format_exact(*best->objective) : "",
+      best ? fmt::format("{}", best->number) : "", best ? format_exact(*best->objective) : "",
       trace.tested_on ? quote_csv(trace.tested_on->set) : "", format_optional(trace.test_objective),
       trace.test ? fmt::format("{}", trace.test->failed_cases) : "", quote_csv(design));
 }

@@ -43,13 +43,13 @@ std::string make_row(const TracedEvaluation& evaluation, const TraceNames& names
 }
 
 json make_run(const RunTrace& trace) {
-  const TracedEvaluation* best = trace.find_best();
-  const TracedEvaluation& shown = best != nullptr ? *best : trace.evaluations.front();
+  const auto& best = trace.evaluations.best();
+  const TracedEvaluation& shown = best ? *best : trace.evaluations.first().value();
   return {{"instance", trace.run.replicate},
-          {"evals", trace.evaluations.back().number},
+          {"evals", trace.evaluations.last()->number},
           {"best",
            {{"evals", shown.number},
-            {"y", best != nullptr ? *best->objective : std::numeric_limits<double>::max()},
+            {"y", best ? *best->objective : std::numeric_limits<double>::max()},
             {"x", shown.x}}}};
 }
 
@@ -117,15 +117,15 @@ std::string make_ioh_rows(const RunTrace& trace) {
   }
   rows += '\n';
   double best = std::numeric_limits<double>::infinity();
-  for (const TracedEvaluation& evaluation : trace.evaluations) {
+  trace.evaluations.visit([&](const TracedEvaluation& evaluation) {
     const bool improves = evaluation.feasible && *evaluation.objective < best;
     if (improves) {
       best = *evaluation.objective;
     }
-    if (improves || &evaluation == &trace.evaluations.back()) {
+    if (improves || evaluation.number == trace.evaluations.last()->number) {
       rows += make_row(evaluation, trace.names);
     }
-  }
+  });
   return rows;
 }
 

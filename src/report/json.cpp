@@ -56,14 +56,12 @@ json make_winner(const RunTrace& trace) {
 
 // All but its evaluations, the closing brace included.
 std::string make_run(const RunTrace& trace) {
-  const TracedEvaluation* best = trace.find_best();
-  const json run = {{"label", trace.run.label},
-                    {"optimizer", trace.run.optimizer},
-                    {"replicate", trace.run.replicate},
-                    {"seed", trace.seed},
-                    {"end_reason", trace.end_reason},
-                    {"best", best != nullptr ? to_json(*best) : json(nullptr)},
-                    {"winner", make_winner(trace)}};
+  const auto& best = trace.evaluations.best();
+  const json run = {
+      {"label", trace.run.label},         {"optimizer", trace.run.optimizer},
+      {"replicate", trace.run.replicate}, {"seed", trace.seed},
+      {"end_reason", trace.end_reason},   {"best", best ? to_json(*best) : json(nullptr)},
+      {"winner", make_winner(trace)}};
   return dump(run);
 }
 
@@ -72,10 +70,10 @@ void write_run(OutputFile& file, const RunTrace& trace) {
   head.pop_back();
   file.write(head + ",\"evaluations\":[");
   const char* separator = "\n";
-  for (const TracedEvaluation& evaluation : trace.evaluations) {
+  trace.evaluations.visit([&](const TracedEvaluation& evaluation) {
     file.write(separator + dump(to_json(evaluation)));
     separator = ",\n";
-  }
+  });
   file.write("]}");
 }
 

@@ -104,7 +104,7 @@ std::optional<UsedCases> find_tested(const JournalContent& journal) {
   return used;
 }
 
-TracedEvaluation make_traced(EvaluationRecord record, const std::vector<double>& weights,
+TracedEvaluation make_traced(const EvaluationRecord& record, const std::vector<double>& weights,
                              std::uint64_t simulated_cases) {
   TracedEvaluation traced;
   traced.number = record.index + 1;
@@ -114,23 +114,23 @@ TracedEvaluation make_traced(EvaluationRecord record, const std::vector<double>&
     traced.objective = calc_scalar(weights, record.evaluation.objectives);
   }
   traced.status = record.evaluation.status;
-  traced.reason = std::move(record.evaluation.reason);
-  traced.objectives = std::move(record.evaluation.objectives);
-  traced.constraint_values = std::move(record.evaluation.constraint_values);
-  traced.metrics = std::move(record.evaluation.metrics);
-  traced.x = std::move(record.x);
+  traced.reason = record.evaluation.reason;
+  traced.objectives = record.evaluation.objectives;
+  traced.constraint_values = record.evaluation.constraint_values;
+  traced.metrics = record.evaluation.metrics;
+  traced.x = record.x;
   return traced;
 }
 
 void include_trace(ProblemRuns& problem, const RunTrace& trace) {
-  for (const TracedEvaluation& evaluation : trace.evaluations) {
+  trace.evaluations.visit([&](const TracedEvaluation& evaluation) {
     problem.constraints = std::max(problem.constraints, evaluation.constraint_values.size());
     if (evaluation.feasible) {
       problem.best = std::min(problem.best.value_or(*evaluation.objective), *evaluation.objective);
       problem.worst =
           std::max(problem.worst.value_or(*evaluation.objective), *evaluation.objective);
     }
-  }
+  });
   if (trace.tested_on) {
     if (problem.tested_on && problem.tested_on->set != trace.tested_on->set) {
       throw Error(ErrorKind::bad_data,
@@ -165,14 +165,23 @@ FoundRuns find_runs(const fs::path& folder) {
   return {{{folder, result.problem, result.optimizer, result.optimizer, 1}}, 0};
 }
 
-const TracedEvaluation* RunTrace::find_best() const {
-  const TracedEvaluation* best = nullptr;
-  for (const TracedEvaluation& evaluation : evaluations) {
-    if (evaluation.feasible && (best == nullptr || *evaluation.objective < *best->objective)) {
-      best = &evaluation;
+TracedEvaluations::TracedEvaluations(Source source) : source_(std::move(source)) {
+  visit([this](const TracedEvaluation& evaluation) {
+    ++size_;
+    if (!first_) {
+      first_ = evaluation;
     }
+    if (evaluation.feasible && (!best_ || *evaluation.objective < *best_->objective)) {
+      best_ = evaluation;
+    }
+    last_ = evaluation;
+  });
+}
+
+void TracedEvaluations::visit(const Visitor& visitor) const {
+  if (source_) {
+    source_(visitor);
   }
-  return best;
 }
 
 RunTrace read_trace(const RunEntry& run) {
@@ -196,20 +205,23 @@ RunTrace read_trace(const RunEntry& run) {
     }
     trace.winner = result.judged[*result.winner].candidate.x;
   }
-  std::uint64_t simulated_cases = 0;
-  trace.evaluations.reserve(journal.training.size());
-  for (EvaluationRecord record : journal.training) {
-    if (record.x.size() != trace.names.variables.size()) {
-      throw Error(ErrorKind::bad_data,
-                  fmt::format("{}: evaluation {} has {} variables, but result.json names {}; they "
-                              "belong to different runs",
-                              (run.folder / "journal").string(), record.index + 1, record.x.size(),
-                              trace.names.variables.size()));
+  const auto visit = [file = run.folder / "journal", training = journal.training,
+                      variables = trace.names.variables.size(), weights = result.objective_weights](
+                         const TracedEvaluations::Visitor& visitor) {
+    std::uint64_t simulated_cases = 0;
+    for (const EvaluationRecord& record : training) {
+      if (record.x.size() != variables) {
+        throw Error(
+            ErrorKind::bad_data,
+            fmt::format("{}: evaluation {} has {} variables, but result.json names {}; they "
+                        "belong to different runs",
+                        file.string(), record.index + 1, record.x.size(), variables));
+      }
+      simulated_cases += record.calc_charge();
+      visitor(make_traced(record, weights, simulated_cases));
     }
-    simulated_cases += record.calc_charge();
-    trace.evaluations.push_back(
-        make_traced(std::move(record), result.objective_weights, simulated_cases));
-  }
+  };
+  trace.evaluations = TracedEvaluations(visit);
   return trace;
 }
 

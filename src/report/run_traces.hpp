@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -46,6 +47,32 @@ struct TracedEvaluation {
   std::vector<double> x;
 };
 
+// A run's evaluations in their order. They are read from its journal one by one whenever somebody
+// goes over them: there may be more of them than fit into the memory.
+class TracedEvaluations {
+ public:
+  using Visitor = std::function<void(const TracedEvaluation&)>;
+  using Source = std::function<void(const Visitor&)>;  // calls the visitor with each
+
+  TracedEvaluations() = default;              // none
+  explicit TracedEvaluations(Source source);  // goes over them once
+
+  void visit(const Visitor& visitor) const;
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  // Nothing if there is none.
+  const std::optional<TracedEvaluation>& first() const { return first_; }
+  const std::optional<TracedEvaluation>& last() const { return last_; }
+  const std::optional<TracedEvaluation>& best() const { return best_; }  // feasible, the earliest
+
+ private:
+  Source source_;
+  std::size_t size_ = 0;
+  std::optional<TracedEvaluation> first_;
+  std::optional<TracedEvaluation> last_;
+  std::optional<TracedEvaluation> best_;
+};
+
 struct TraceNames {
   std::vector<std::string> variables;
   std::vector<std::string> objectives;
@@ -65,12 +92,11 @@ struct RunTrace {
   std::string end_reason;
   bool tracking = false;
   TraceNames names;
-  std::vector<TracedEvaluation> evaluations;
-  std::optional<UsedCases> tested_on;         // what the winner was tested on, if there is one
-  std::optional<double> test_objective;       // its objective there, if it has one
-  std::optional<Evaluation> test;             // and how it did there
-  std::vector<double> winner;                 // empty if there is none
-  const TracedEvaluation* find_best() const;  // feasible, the earliest of equals; or null
+  TracedEvaluations evaluations;
+  std::optional<UsedCases> tested_on;    // what the winner was tested on, if there is one
+  std::optional<double> test_objective;  // its objective there, if it has one
+  std::optional<Evaluation> test;        // and how it did there
+  std::vector<double> winner;            // empty if there is none
 };
 
 RunTrace read_trace(const RunEntry& run);

@@ -95,10 +95,12 @@ TEST(CocoRun, HasARowALevelAndARowATrigger) {
 }
 
 TEST(CocoRun, CountsConstraintsAndShowsThemAsDigits) {
-  RunTrace trace = make_trace({5.0, 2.0, std::nullopt});
-  trace.evaluations[0].constraint_values = {0.5, -1};
-  trace.evaluations[0].feasible = false;
-  trace.evaluations[1].constraint_values = {0, -2};
+  const RunTrace trace =
+      make_trace({5.0, 2.0, std::nullopt}, [](std::vector<TracedEvaluation>& evaluations) {
+        evaluations[0].constraint_values = {0.5, -1};
+        evaluations[0].feasible = false;
+        evaluations[1].constraint_values = {0, -2};
+      });
   const CocoRun run = make_coco_run(trace, {.reference = 1.5, .constraints = 2});
   EXPECT_EQ(run.dat,
             "1 1 +9.999999998e+09 +1.000000000e+10 80 +5.0000e-01\n"
@@ -108,15 +110,17 @@ TEST(CocoRun, CountsConstraintsAndShowsThemAsDigits) {
 }
 
 TEST(CocoRun, ShowsUpToSixVariables) {
-  RunTrace trace = make_trace({2.0});
-  trace.names.variables.assign(6, "x");
-  trace.evaluations[0].x.assign(6, -0.25);
-  EXPECT_THAT(make_coco_run(trace, {}).dat,
+  const auto make = [](std::size_t variables) {
+    RunTrace trace = make_trace({2.0}, [&](std::vector<TracedEvaluation>& evaluations) {
+      evaluations[0].x.assign(variables, -0.25);
+    });
+    trace.names.variables.assign(variables, "x");
+    return trace;
+  };
+  EXPECT_THAT(make_coco_run(make(6), {}).dat,
               testing::EndsWith(" +2.000000000e+00 -2.5000e-01 -2.5000e-01 -2.5000e-01 -2.5000e-01 "
                                 "-2.5000e-01 -2.5000e-01\n"));
-  trace.names.variables.assign(7, "x");
-  trace.evaluations[0].x.assign(7, -0.25);
-  EXPECT_THAT(make_coco_run(trace, {}).dat, testing::EndsWith(" +2.000000000e+00\n"));
+  EXPECT_THAT(make_coco_run(make(7), {}).dat, testing::EndsWith(" +2.000000000e+00\n"));
 }
 
 TEST(CocoScale, RefersToTheBestAndKeepsInfeasibleOnesAboveAll) {

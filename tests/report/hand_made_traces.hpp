@@ -1,22 +1,28 @@
 // Traces made by hand, for tests of what the formats make of them.
 #pragma once
 
+#include <algorithm>
+#include <functional>
 #include <initializer_list>
 #include <optional>
+#include <vector>
 
 #include "report/run_traces.hpp"
 
 namespace armwright {
 
 // A run of one variable, x = 0.5, whose evaluations have these objectives, one case each; nothing:
-// the evaluation failed.
-inline RunTrace make_trace(std::initializer_list<std::optional<double>> objectives) {
+// the evaluation failed. `change` has the last word on them.
+inline RunTrace make_trace(
+    std::initializer_list<std::optional<double>> objectives,
+    const std::function<void(std::vector<TracedEvaluation>&)>& change = [](auto&) {}) {
+  std::vector<TracedEvaluation> evaluations;
   RunTrace trace;
   trace.run = {"run", "some problem", "some label", "ga", 3};
   trace.names = {{"width"}, {"error"}, {}};
   for (const auto& objective : objectives) {
     TracedEvaluation evaluation;
-    evaluation.number = trace.evaluations.size() + 1;
+    evaluation.number = evaluations.size() + 1;
     evaluation.simulated_cases = evaluation.number;
     evaluation.x = {0.5};
     evaluation.feasible = objective.has_value();
@@ -26,8 +32,12 @@ inline RunTrace make_trace(std::initializer_list<std::optional<double>> objectiv
     } else {
       evaluation.status = EvaluationStatus::failed;
     }
-    trace.evaluations.push_back(std::move(evaluation));
+    evaluations.push_back(std::move(evaluation));
   }
+  change(evaluations);
+  trace.evaluations = TracedEvaluations([evaluations](const TracedEvaluations::Visitor& visitor) {
+    std::ranges::for_each(evaluations, visitor);
+  });
   return trace;
 }
 

@@ -37,13 +37,14 @@ TEST(IohRows, ShowWhatIsNotFeasibleAsInfinite) {
 }
 
 TEST(IohRows, BearMetricsAndSeveralObjectivesAndSayWhereThereIsNone) {
-  RunTrace trace = make_trace({2.0, std::nullopt});
+  RunTrace trace = make_trace({2.0, std::nullopt}, [](std::vector<TracedEvaluation>& evaluations) {
+    evaluations[0].objectives = {0.5, 3};
+    evaluations[0].metrics = {0.25};
+    evaluations[0].simulated_cases = 5;
+    evaluations[1].simulated_cases = 10;
+  });
   trace.names.objectives = {"error", "torque"};
   trace.names.metrics = {"energy"};
-  trace.evaluations[0].objectives = {0.5, 3};
-  trace.evaluations[0].metrics = {0.25};
-  trace.evaluations[0].simulated_cases = 5;
-  trace.evaluations[1].simulated_cases = 10;
   EXPECT_EQ(make_ioh_rows(trace),
             "evaluations raw_y simulated_cases feasible error torque energy x0\n"
             "1 2 5 1 0.5 3 0.25 0.5\n"

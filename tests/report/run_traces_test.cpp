@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/temporary_folder.hpp"
+#include "report/hand_made_traces.hpp"
 
 namespace armwright {
 namespace {
@@ -80,15 +81,16 @@ TEST_F(FindRuns, RefusesCellsItCannotUseAndNamesTheFile) {
   expect_refused(ErrorKind::bad_data, HasSubstr("replicate is 0; they are counted from 1"));
 }
 
-TEST(RunTrace, FindsTheEarliestOfTheBestFeasibleEvaluations) {
-  RunTrace trace;
-  EXPECT_EQ(trace.find_best(), nullptr);
-  trace.evaluations.resize(4);
-  for (std::size_t i = 0; i < 4; ++i) {
-    trace.evaluations[i].objective = i == 0 ? 1.0 : 2.0;
-    trace.evaluations[i].feasible = i > 1;
-  }
-  EXPECT_EQ(trace.find_best(), &trace.evaluations[2]);
+TEST(TracedEvaluations, HaveAFirstALastAndTheEarliestOfTheBestFeasible) {
+  const TracedEvaluations none;
+  EXPECT_TRUE(none.empty());
+  EXPECT_FALSE(none.first() || none.last() || none.best());
+  const RunTrace trace = make_trace(
+      {1.0, 2.0, 2.0}, [](std::vector<TracedEvaluation>& all) { all[0].feasible = false; });
+  EXPECT_EQ(trace.evaluations.size(), 3u);
+  EXPECT_EQ(trace.evaluations.first()->number, 1u);
+  EXPECT_EQ(trace.evaluations.best()->number, 2u);
+  EXPECT_EQ(trace.evaluations.last()->number, 3u);
 }
 
 }  // namespace

@@ -31,7 +31,8 @@ Held measure() {
           count_entries("/proc/self/task")};
 }
 
-// All of its cells again and again. Sanitizers have an allocator of their own, and find leaks at the end by themselves.
+// All of its cells again and again. Sanitizers have an allocator of their own, and find leaks at
+// the end by themselves.
 TEST_F(StudyTest, AThousandRunsOfTheSmokeStudyInOneProcessLeaveNothingBehind) {
   StudyRequest request;
   request.file = "smoke";
