@@ -5,6 +5,7 @@
 #include <signal.h>
 #include <spawn.h>
 #include <stdlib.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -140,13 +141,15 @@ bool Program::is_running() const {
 
 Outcome Program::wait() {
   int status = 0;
-  while (::waitpid(pid_, &status, 0) < 0) {
+  rusage usage{};
+  while (::wait4(pid_, &status, 0, &usage) < 0) {
     if (errno != EINTR) {
-      check(errno, "waitpid");
+      check(errno, "wait4");
     }
   }
   pid_ = -1;
-  return {decode(status), read_text(files_ / "out"), read_text(files_ / "err")};
+  return {decode(status), read_text(files_ / "out"), read_text(files_ / "err"),
+          1024 * static_cast<std::size_t>(usage.ru_maxrss)};
 }
 
 Outcome run_program(const std::filesystem::path& folder, const std::vector<std::string>& arguments,

@@ -1,6 +1,7 @@
 // Runs the real program as a user would, for end-to-end tests.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -12,6 +13,7 @@ struct Outcome {
   int exit_code = -1;  // -N: ended by signal N
   std::string out;
   std::string err;
+  std::size_t most_memory_bytes = 0;  // that it held at a time
 };
 
 struct Environment {

@@ -117,6 +117,22 @@ TEST(Journal, FileHasTheDocumentedBytes) {
   EXPECT_EQ(read_bytes(folder / "journal"), "AWJRNL01" + framed(evaluation) + framed(end));
 }
 
+// As docs/reliability.md has it.
+TEST(Journal, GrowsByTheBytesThatAreStated) {
+  const TemporaryFolder folder;
+  const auto ends = write_journal(folder / "journal", 3);
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    const EvaluationRecord record = make_record(i);
+    const Evaluation& evaluation = record.evaluation;
+    const std::size_t numbers = record.cases.numbers.size() + record.x.size() +
+                                evaluation.objectives.size() + evaluation.constraint_values.size() +
+                                evaluation.case_errors.size() + evaluation.metrics.size() +
+                                evaluation.residuals.size();
+    EXPECT_EQ(ends[i + 1] - ends[i],
+              68 + record.cases.set.size() + evaluation.reason.size() + 8 * numbers);
+  }
+}
+
 TEST(Journal, GrowsAcrossReopenings) {
   const TemporaryFolder folder;
   for (std::uint64_t i = 0; i < 4; ++i) {
