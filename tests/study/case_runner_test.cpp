@@ -63,7 +63,11 @@ class NotingProblem : public Problem {
   std::vector<double> penalty_objectives() const override { return {1e12}; }
 
   using Pair = std::pair<double, std::uint64_t>;
-  const std::vector<std::vector<Pair>>& calls() const { return calls_; }
+  const std::vector<std::vector<Pair>>& calls() const { return calls_; }  // once all is done
+  std::size_t count_calls() const {
+    const std::lock_guard lock(mutex_);
+    return calls_.size();
+  }
 
   double throw_for = -1;
   bool always_with_residuals = false;
@@ -100,7 +104,7 @@ struct NotedRun {
         .run(spans, block, residuals, [&](std::size_t candidate, Evaluation evaluation) {
           const std::lock_guard lock(mutex);
           order.push_back(candidate);
-          calls_before.push_back(problem.calls().size());
+          calls_before.push_back(problem.count_calls());
           EXPECT_TRUE(done.emplace(candidate, std::move(evaluation)).second) << candidate;
         });
     return done;
