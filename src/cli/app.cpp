@@ -31,6 +31,7 @@ constexpr const char* kFooter = R"(Examples:
   armwright reproduce                              # the thesis's published results beside ours
   armwright report results/q1                      # a page to look at: figures, and the arm's motion in 3D
   armwright export results/q1 --format csv         # its evaluations for other programs: csv, ioh, coco, json
+  armwright doctor results/q1                      # is all that is stored intact? without a folder: is all there?
 
 'armwright COMMAND --help' explains a command, with examples.
 
@@ -176,6 +177,7 @@ const char* describe_stop(StopReason reason) {
 
 int run_app(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);  // a closed pipe shows as an error of write()
+  std::signal(SIGXFSZ, SIG_IGN);  // and so does a file as large as it may become
   Session session;
   try {
     session.command_line.assign(argv, argv + argc);
@@ -202,6 +204,7 @@ int run_app(int argc, char** argv) {
     add_import(app, session);
     add_check_plugin(app, session);
     add_new_plugin(app, session);
+    add_doctor(app, session);
     return parse_and_run(app, session, argc, argv);
   } catch (const BrokenPipe&) {
     return exit_code::kIo;

@@ -52,6 +52,7 @@ void add_export(CLI::App& app, Session& session);
 void add_import(CLI::App& app, Session& session);
 void add_check_plugin(CLI::App& app, Session& session);
 void add_new_plugin(CLI::App& app, Session& session);
+void add_doctor(CLI::App& app, Session& session);
 
 // The exit code of a run or evaluation that was stopped.
 int get_stop_code(StopReason reason);

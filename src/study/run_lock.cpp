@@ -7,9 +7,11 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <string>
 #include <string_view>
+#include <thread>
 
 #include "base/error.hpp"
 #include "base/file.hpp"
@@ -46,6 +48,20 @@ void write_holder(int fd, const std::filesystem::path& file) {
   }
 }
 
+// 0 or an errno.
+int try_lock(int fd, int operation) {
+  while (::flock(fd, operation | LOCK_NB) != 0) {
+    if (errno != EINTR) {
+      return errno;
+    }
+  }
+  return 0;
+}
+
+int open_for_reading(const std::filesystem::path& folder) {
+  return ::open((folder / "lock").c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+}
+
 }  // namespace
 
 RunLock::RunLock(const std::filesystem::path& folder)
@@ -54,17 +70,51 @@ RunLock::RunLock(const std::filesystem::path& folder)
   if (!fd_.is_open()) {
     fail_io(file, "open it", errno);
   }
-  while (::flock(fd_.get(), LOCK_EX | LOCK_NB) != 0) {
-    if (errno == EWOULDBLOCK) {
+  // Whoever asks only who writes here (find_writer) holds it for an instant.
+  constexpr int kTries = 5;
+  constexpr std::chrono::milliseconds kPause{2};
+  for (int tries = 1; true; ++tries) {
+    const int error = try_lock(fd_.get(), LOCK_EX);
+    if (error == 0) {
+      break;
+    }
+    if (error == EWOULDBLOCK && tries < kTries) {
+      std::this_thread::sleep_for(kPause);
+      continue;
+    }
+    if (error == EWOULDBLOCK) {
       throw Error(ErrorKind::busy, fmt::format("{} is in use by {}; wait for it, stop it, or use "
                                                "--out/--new for another folder",
                                                folder.string(), read_holder(fd_.get())));
     }
-    if (errno != EINTR) {
-      fail_io(file, "lock it (a folder on a local disk always can; choose one with --out)", errno);
-    }
+    fail_io(file, "lock it (a folder on a local disk always can; choose one with --out)", error);
   }
   write_holder(fd_.get(), file);
+}
+
+ReadLock::ReadLock(const std::filesystem::path& folder) : fd_(open_for_reading(folder)) {
+  if (!fd_.is_open()) {
+    if (errno != ENOENT) {
+      fail_io(folder / "lock", "open it", errno);
+    }
+    return;
+  }
+  const int error = try_lock(fd_.get(), LOCK_SH);
+  if (error == EWOULDBLOCK) {
+    throw Error(ErrorKind::busy, fmt::format("{} is being written by {}; wait for it, or stop it",
+                                             folder.string(), read_holder(fd_.get())));
+  }
+  if (error != 0) {
+    fail_io(folder / "lock", "lock it", error);
+  }
+}
+
+std::string find_writer(const std::filesystem::path& folder) {
+  const FileDescriptor file(open_for_reading(folder));
+  if (!file.is_open() || try_lock(file.get(), LOCK_SH) != EWOULDBLOCK) {
+    return "";
+  }
+  return read_holder(file.get());
 }
 
 }  // namespace armwright

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "base/file_descriptor.hpp"
 
@@ -18,5 +19,20 @@ class RunLock {
  private:
   FileDescriptor fd_;
 };
+
+// Keeps writers out of a folder while it is read, and leaves no trace in it. Where there is no lock
+// file nobody has written yet, and nothing is held.
+class ReadLock {
+ public:
+  // Error{busy} names the process that writes the folder; Error{io}.
+  explicit ReadLock(const std::filesystem::path& folder);
+
+ private:
+  FileDescriptor fd_;
+};
+
+// Who writes the folder at this moment: "process 12 on HOST"; empty if nobody does, or if it cannot
+// be told. Changes nothing.
+std::string find_writer(const std::filesystem::path& folder);
 
 }  // namespace armwright

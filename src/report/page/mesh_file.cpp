@@ -123,6 +123,10 @@ std::optional<std::filesystem::path> find_mesh(const std::string& name,
 
 #ifdef ARMWRIGHT_WITH_ASSIMP
 
+bool can_read_meshes() {
+  return true;
+}
+
 TriangleMesh read_mesh(const std::filesystem::path& file) {
   const std::string format = find_format(file);
   const std::string content = read_file(file, kFileLimit_bytes);
@@ -154,6 +158,10 @@ TriangleMesh read_mesh(const std::filesystem::path& file) {
 }
 
 #else
+
+bool can_read_meshes() {
+  return false;
+}
 
 TriangleMesh read_mesh(const std::filesystem::path& file) {
   fail(file, "this program was built without Assimp, which reads meshes");

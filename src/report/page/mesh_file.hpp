@@ -22,6 +22,9 @@ struct TriangleMesh {
 std::optional<std::filesystem::path> find_mesh(const std::string& name,
                                                const std::filesystem::path& folder);
 
+// Whether this build can read any.
+bool can_read_meshes();
+
 // All triangles of an STL (binary or text), OBJ or Collada file, in its own axes and in units of it
 // (Collada: in m). No other file is opened, whatever it refers to. Error{bad_data} names the file
 // and says what is wrong with it; Error{io} if it cannot be read.

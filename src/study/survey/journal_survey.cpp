@@ -1,0 +1,246 @@
+#include "study/survey/journal_survey.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <map>
+#include <set>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include "base/error.hpp"
+#include "base/file.hpp"
+#include "base/file_descriptor.hpp"
+#include "study/journal_file.hpp"
+#include "study/journal_format.hpp"
+#include "study/journal_window.hpp"
+
+namespace armwright {
+namespace {
+
+using journal_format::kMagic;
+using journal_format::Record;
+
+struct Place {
+  std::uint64_t offset = 0;
+  std::uint64_t end = 0;
+};
+
+// Goes over a journal: `on_record` gets each intact record and its place, `on_gap` what lies
+// between them, with what is wrong there, `on_end` what lies behind the last.
+template <class OnRecord, class OnGap, class OnEnd>
+void visit_records(JournalWindow& window, OnRecord on_record, OnGap on_gap, OnEnd on_end) {
+  const auto begin_bytes = std::min<std::uint64_t>(window.size(), kMagic.size());
+  std::uint64_t offset = kMagic.size();
+  if (window.view(0, begin_bytes) != kMagic.substr(0, begin_bytes)) {
+    const bool begins_well = window.size() > offset && read_record(window, offset).record;
+    const auto next = begins_well ? std::optional(offset) : find_intact_record(window, 0);
+    if (!next) {
+      throw Error(ErrorKind::bad_data,
+                  fmt::format("{}: holds no intact record and is not an armwright journal (one "
+                              "begins with the bytes {})",
+                              window.file().string(), kMagic));
+    }
+    on_gap(Place{0, *next}, fmt::format("the journal does not begin with the bytes {}", kMagic));
+    offset = *next;
+  } else if (begin_bytes < kMagic.size()) {
+    on_end(Place{0, begin_bytes}, "the first bytes are cut short");
+    return;
+  }
+  while (offset < window.size()) {
+    RecordAttempt attempt = read_record(window, offset);
+    if (attempt.record) {
+      on_record(*attempt.record, Place{offset, attempt.end});
+      offset = attempt.end;
+      continue;
+    }
+    const auto next = find_intact_record(window, offset);
+    if (!next) {
+      on_end(Place{offset, window.size()}, attempt.fault);
+      return;
+    }
+    on_gap(Place{offset, *next}, attempt.fault);
+    offset = *next;
+  }
+}
+
+FileDescriptor open_journal(const std::filesystem::path& file) {
+  // Not blocking, or a named pipe would be waited for.
+  const int fd = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (fd < 0) {
+    fail_io(file, "open it", errno);
+  }
+  return FileDescriptor(fd);
+}
+
+class Surveyor {
+ public:
+  Surveyor(const std::filesystem::path& file,
+           const std::function<void(const EvaluationRecord&)>& look)
+      : file_(open_journal(file)), window_(file_.get(), file), look_(look) {}
+
+  JournalSurvey run() {
+    survey_.bytes = window_.size();
+    visit_records(
+        window_, [&](const Record& record, Place place) { take(record, place); },
+        [&](Place place, std::string fault) {
+          survey_.damage.push_back({.offset = place.offset,
+                                    .bytes = place.end - place.offset,
+                                    .records_before = survey_.records,
+                                    .fault = std::move(fault)});
+        },
+        [&](Place place, std::string fault) {
+          survey_.torn_offset = place.offset;
+          survey_.torn_bytes = place.end - place.offset;
+          survey_.torn_fault = std::move(fault);
+        });
+    compare_repeated();
+    return std::move(survey_);
+  }
+
+ private:
+  void take(const Record& record, Place place) {
+    ++survey_.records;
+    if (!survey_.damage.empty()) {
+      ++survey_.damage.back().records_behind;
+    }
+    if (survey_.end) {
+      ++survey_.records_behind_end;
+    }
+    if (const auto* end = std::get_if<EndRecord>(&record)) {
+      survey_.end = *end;
+      return;
+    }
+    const auto& evaluation = std::get<EvaluationRecord>(record);
+    if (evaluation.cases.role != CaseRole::training) {
+      ++survey_.judgements;
+    } else if (survey_.evaluations.insert(evaluation.index)) {
+      count(evaluation);
+    } else {
+      repeated_[evaluation.index].push_back(place);
+      return;
+    }
+    if (look_) {
+      look_(evaluation);
+    }
+  }
+
+  void count(const EvaluationRecord& record) {
+    const EvaluationStatus status = record.evaluation.status;
+    RecordCounts& counts = survey_.counts;
+    counts.cases += record.calc_charge();
+    counts.clipped += record.clipped ? 1 : 0;
+    counts.abandoned += status == EvaluationStatus::abandoned ? 1 : 0;
+    counts.failed +=
+        status == EvaluationStatus::ok || status == EvaluationStatus::abandoned ? 0 : 1;
+    counts.feasible += is_feasible(record.evaluation) ? 1 : 0;
+  }
+
+  std::string read(Place place) {
+    return std::string(window_.view(place.offset, place.end - place.offset));
+  }
+
+  // The first record of an evaluation that is there again is looked for once more: nothing else of
+  // what was read is kept.
+  void compare_repeated() {
+    if (repeated_.empty()) {
+      return;
+    }
+    std::set<std::uint64_t> differing;
+    std::set<std::uint64_t> seen;
+    visit_records(
+        window_,
+        [&](const Record& record, Place place) {
+          const auto* evaluation = std::get_if<EvaluationRecord>(&record);
+          if (evaluation == nullptr || evaluation->cases.role != CaseRole::training) {
+            return;
+          }
+          const auto again = repeated_.find(evaluation->index);
+          if (again == repeated_.end() || !seen.insert(evaluation->index).second) {
+            return;
+          }
+          const std::string first = read(place);
+          for (const Place other : again->second) {
+            if (read(other) != first) {
+              differing.insert(evaluation->index);
+            }
+          }
+        },
+        [](Place, const std::string&) {}, [](Place, const std::string&) {});
+    survey_.contradictory.assign(differing.begin(), differing.end());
+    survey_.repeated = repeated_.size() - differing.size();
+  }
+
+  FileDescriptor file_;
+  JournalWindow window_;
+  const std::function<void(const EvaluationRecord&)>& look_;
+  JournalSurvey survey_;
+  std::map<std::uint64_t, std::vector<Place>> repeated_;  // evaluations, but for their first record
+};
+
+}  // namespace
+
+std::vector<IndexRange> JournalSurvey::list_lost() const {
+  if (end) {
+    return evaluations.list_missing(end->evaluations);
+  }
+  return damage.empty() ? std::vector<IndexRange>() : evaluations.list_missing(evaluations.end());
+}
+
+std::vector<IndexRange> JournalSurvey::list_gaps() const {
+  return end || !damage.empty() ? std::vector<IndexRange>()
+                                : evaluations.list_missing(evaluations.end());
+}
+
+bool JournalSurvey::is_damaged() const {
+  return !damage.empty() || !contradictory.empty() || records_behind_end > 0 ||
+         (end && !list_lost().empty());
+}
+
+JournalSurvey survey_journal(const std::filesystem::path& file,
+                             const std::function<void(const EvaluationRecord&)>& look) {
+  return Surveyor(file, look).run();
+}
+
+JournalRepair repair_journal(const std::filesystem::path& file, const JournalSurvey& survey,
+                             int target) {
+  constexpr std::size_t kBuffer_bytes = std::size_t{1} << 20;
+  const FileDescriptor source = open_journal(file);
+  JournalWindow window(source.get(), file);
+  JournalRepair repair;
+  std::string buffer(kMagic);
+  const auto write = [&] {
+    if (const int error = write_fully(target, buffer).error; error != 0) {
+      fail_io(file, "write its repaired copy", error);
+    }
+    buffer.clear();
+  };
+  const auto drop = [&](Place place, const std::string&) {
+    repair.bytes_dropped += place.end - place.offset;
+  };
+  visit_records(
+      window,
+      [&](const Record& record, Place place) {
+        const auto* evaluation = std::get_if<EvaluationRecord>(&record);
+        const bool is_kept = evaluation != nullptr &&
+                             (evaluation->cases.role != CaseRole::training ||
+                              !std::ranges::binary_search(survey.contradictory, evaluation->index));
+        if (!is_kept) {
+          ++repair.records_dropped;
+          return;
+        }
+        ++repair.records_kept;
+        buffer += window.view(place.offset, place.end - place.offset);
+        if (buffer.size() >= kBuffer_bytes) {
+          write();
+        }
+      },
+      drop, drop);
+  write();
+  return repair;
+}
+
+}  // namespace armwright

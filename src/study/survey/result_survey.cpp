@@ -1,0 +1,101 @@
+#include "study/survey/result_survey.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/bits.hpp"
+
+namespace armwright {
+namespace {
+
+// JSON knows one NaN.
+bool same_errors(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::ranges::equal(a, b, [](double one, double other) {
+    return one == other || (std::isnan(one) && std::isnan(other));
+  });
+}
+
+bool same_values(const Evaluation& a, const Evaluation& b) {
+  return a.status == b.status && a.failed_cases == b.failed_cases &&
+         same_bits(a.objectives, b.objectives) && same_errors(a.case_errors, b.case_errors);
+}
+
+}  // namespace
+
+ResultSurvey::ResultSurvey(RunResult result) : result_(std::move(result)) {
+  for (std::size_t i = 0; i < result_.judged.size(); ++i) {
+    const Candidate& candidate = result_.judged[i].candidate;
+    if (!candidate.recommended) {
+      by_evaluation_.emplace(candidate.evaluation, i);
+    }
+    trained_.push_back(candidate.recommended);
+  }
+  validated_.resize(result_.judged.size());
+}
+
+void ResultSurvey::look(const EvaluationRecord& record) {
+  if (record.cases.role == CaseRole::training) {
+    const auto [begin, end] = by_evaluation_.equal_range(record.index);
+    for (auto judged = begin; judged != end; ++judged) {
+      const Candidate& candidate = result_.judged[judged->second].candidate;
+      const auto& objectives = record.evaluation.objectives;
+      if (same_bits(candidate.x, record.x) && !objectives.empty() &&
+          calc_scalar(result_.objective_weights, objectives) == candidate.training_objective) {
+        trained_[judged->second] = true;
+      }
+    }
+    return;
+  }
+  for (std::size_t i = 0; i < result_.judged.size(); ++i) {
+    const JudgedCandidate& judged = result_.judged[i];
+    if (!same_bits(judged.candidate.x, record.x)) {
+      continue;
+    }
+    if (record.cases.role == CaseRole::validation) {
+      validated_[i] = validated_[i] || same_values(record.evaluation, judged.validation);
+    } else if (result_.winner == i) {
+      tested_ = tested_ || same_values(record.evaluation, result_.test);
+    }
+  }
+}
+
+std::string ResultSurvey::find_difference(const JournalSurvey& journal) const {
+  // A run that failed and is being tried again has more by now.
+  if (result_.failure.empty()) {
+    const struct {
+      const char* what;
+      std::uint64_t here;
+      std::uint64_t there;
+    } counts[] = {
+        {"evaluations", result_.counts.evaluations, journal.evaluations.size()},
+        {"cases", result_.counts.cases, journal.counts.cases},
+        {"evaluations outside the bounds", result_.counts.clipped, journal.counts.clipped},
+        {"failed evaluations", result_.counts.failed, journal.counts.failed},
+        {"abandoned evaluations", result_.counts.abandoned, journal.counts.abandoned},
+        {"feasible evaluations", result_.counts.feasible, journal.counts.feasible},
+    };
+    for (const auto& [what, here, there] : counts) {
+      if (here != there) {
+        return fmt::format("it counts {} {}, and the journal {}", here, what, there);
+      }
+    }
+  }
+  for (std::size_t i = 0; i < result_.judged.size(); ++i) {
+    const char* who = result_.winner == i ? "the winner" : "a judged design";
+    if (!trained_[i]) {
+      return fmt::format("{} (evaluation {}) is not what the journal records", who,
+                         result_.judged[i].candidate.evaluation);
+    }
+    if (!validated_[i]) {
+      return fmt::format("what it says of {} on the validation set is not in the journal", who);
+    }
+  }
+  if (result_.winner && !tested_) {
+    return "what it says of the winner on the test set is not in the journal";
+  }
+  return "";
+}
+
+}  // namespace armwright

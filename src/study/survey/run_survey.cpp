@@ -1,0 +1,340 @@
+#include "study/survey/run_survey.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "base/error.hpp"
+#include "base/file.hpp"
+#include "base/text.hpp"
+#include "study/compare/cell.hpp"
+#include "study/run_lock.hpp"
+#include "study/survey/derived_survey.hpp"
+#include "study/survey/result_survey.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kManifestLimit_bytes = std::size_t{16} << 20;
+constexpr std::size_t kResultLimit_bytes = std::size_t{256} << 20;
+constexpr int kManifestFormat = 1;
+
+bool is_there(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::exists(std::filesystem::symlink_status(path, ignored));
+}
+
+// What a check says of a file, and what keeps it from saying anything.
+std::string find_fault(const std::filesystem::path& file,
+                       const std::function<std::string()>& check) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) {
+    return error ? fmt::format("it cannot be looked at: {}", error.message())
+                 : "it is not a regular file";
+  }
+  try {
+    return check();
+  } catch (const Error& failure) {
+    return sanitize(failure.what());
+  }
+}
+
+class Surveyor {
+ public:
+  Surveyor(const std::filesystem::path& folder, const std::filesystem::path& name)
+      : folder_(folder) {
+    survey_.name = name;
+    survey_.writer = find_writer(folder);
+  }
+
+  RunSurvey run() {
+    look_at_manifest();
+    load_result();
+    look_at_journal();
+    look_at_leftovers();
+    // While a run is being written, what is derived from it may be of an earlier state.
+    if (survey_.writer.empty()) {
+      compare_result();
+      if (result_) {
+        look_at_tables();
+      }
+      look_at_cell();
+    }
+    return std::move(survey_);
+  }
+
+ private:
+  void add(Finding::Kind kind, const std::string& file, std::string what) {
+    survey_.findings.push_back({kind, file, std::move(what)});
+  }
+
+  void add_damaged_file(const std::string& file, std::string what) {
+    add(Finding::Kind::damage, file, std::move(what));
+    survey_.damaged_files.push_back(file);
+  }
+
+  void look_at_manifest() {
+    const auto file = folder_ / "manifest.json";
+    std::string fault = "it is missing";
+    if (is_there(file)) {
+      fault = find_fault(file, [&] { return read_manifest(file); });
+    }
+    if (!fault.empty()) {
+      survey_.is_manifest_lost = true;
+      add(Finding::Kind::loss, "manifest.json", fault);
+    }
+  }
+
+  std::string read_manifest(const std::filesystem::path& file) {
+    try {
+      const json manifest = json::parse(read_file(file, kManifestLimit_bytes));
+      if (manifest.at("format") != kManifestFormat) {
+        return "its format is not the one that this version reads";
+      }
+      for (const char* key : {"problem", "run"}) {
+        if (!manifest.at("configuration").at(key).is_object()) {
+          return fmt::format("its configuration has no {}", key);
+        }
+      }
+      if (!manifest.at("build").is_object()) {
+        return "it does not say what build began the run";
+      }
+      survey_.command_line = manifest.value("command_line", std::vector<std::string>());
+    } catch (const json::exception& error) {
+      return fmt::format("it is not one that armwright wrote ({})", sanitize(error.what()));
+    }
+    return "";
+  }
+
+  void load_result() {
+    const auto file = folder_ / "result.json";
+    if (!is_there(file)) {
+      return;
+    }
+    const std::string fault = find_fault(file, [&] {
+      result_.emplace(parse_result(read_file(file, kResultLimit_bytes), file));
+      return "";
+    });
+    if (!fault.empty()) {
+      add_damaged_file("result.json", fault);
+      return;
+    }
+    const RunResult& result = result_->result();
+    survey_.state = result.failure.empty() ? RunSurvey::State::finished : RunSurvey::State::failed;
+    const std::vector<std::string> words = {result.problem, "--optimizer", result.optimizer,
+                                            "--seed", std::to_string(result.seed)};
+    survey_.made_by = sanitize(quote_command(words));
+  }
+
+  void look_at_journal() {
+    const auto file = folder_ / "journal";
+    if (!is_there(file)) {
+      if (result_) {
+        survey_.is_journal_unreadable = true;
+        survey_.lost = result_->result().counts.evaluations;
+        add(Finding::Kind::damage, "journal", "it is missing, and with it every evaluation");
+      }
+      return;
+    }
+    const std::string fault = find_fault(file, [&] {
+      survey_.journal = survey_journal(file, [&](const EvaluationRecord& record) {
+        if (result_) {
+          result_->look(record);
+        }
+      });
+      return "";
+    });
+    if (!fault.empty()) {
+      survey_.is_journal_unreadable = true;
+      survey_.lost = result_ ? result_->result().counts.evaluations : 0;
+      add(Finding::Kind::damage, "journal", fault);
+      return;
+    }
+    describe_journal(*survey_.journal);
+  }
+
+  void describe_journal(const JournalSurvey& journal) {
+    const auto damage = [&](std::string what) {
+      add(Finding::Kind::damage, "journal", std::move(what));
+    };
+    for (const DamagedStretch& stretch : journal.damage) {
+      damage(
+          fmt::format("byte {}, {} bytes: record {} (from 0) is damaged: {}; {} intact before "
+                      "it, {} behind it",
+                      stretch.offset, stretch.bytes, stretch.records_before, stretch.fault,
+                      stretch.records_before, stretch.records_behind));
+    }
+    for (const std::uint64_t index : journal.contradictory) {
+      damage(
+          fmt::format("evaluation {} is recorded more than once with different content; none "
+                      "of it can be believed",
+                      index));
+    }
+    if (journal.records_behind_end > 0) {
+      damage(
+          fmt::format("{} records follow the one that ends the run", journal.records_behind_end));
+    }
+    const auto lost = journal.list_lost();
+    survey_.lost = count(lost) + journal.contradictory.size();
+    if (!lost.empty()) {
+      damage(fmt::format("lost: {} of {} evaluations ({})", count(lost),
+                         count(lost) + journal.evaluations.size(), describe(lost)));
+    }
+    if (const auto gaps = journal.list_gaps(); !gaps.empty() && survey_.writer.empty()) {
+      add(Finding::Kind::note, "journal",
+          fmt::format("evaluations {} are not in it: they were under way when the run was "
+                      "interrupted, and are made again",
+                      describe(gaps)));
+    }
+    if (journal.repeated > 0) {
+      add(Finding::Kind::note, "journal",
+          fmt::format("{} evaluations are there more than once, alike", journal.repeated));
+    }
+    if (journal.torn_bytes > 0) {
+      add(Finding::Kind::note, "journal",
+          survey_.writer.empty()
+              ? fmt::format("byte {}, {} bytes at its end are no whole record: what a kill or a "
+                            "power cut leaves; going on with the run cuts them off",
+                            journal.torn_offset, journal.torn_bytes)
+              : fmt::format("byte {}, {} bytes at its end are being written", journal.torn_offset,
+                            journal.torn_bytes));
+    }
+  }
+
+  // Where they differ, the journal is right if it is whole.
+  void compare_result() {
+    if (!result_) {
+      if (survey_.journal && survey_.journal->end) {
+        add(Finding::Kind::note, "result.json",
+            "it is not there, though the run has ended; the same command makes it");
+      }
+      return;
+    }
+    if (!survey_.journal) {
+      return;
+    }
+    const JournalSurvey& journal = *survey_.journal;
+    const std::string difference = result_->find_difference(journal);
+    const std::uint64_t all = result_->result().counts.evaluations;
+    const std::uint64_t there = journal.evaluations.size() - journal.contradictory.size();
+    survey_.lost = std::max(survey_.lost, all - std::min(all, there));
+    const bool must_end = result_->result().failure.empty();
+    if (difference.empty() && (journal.end || !must_end || journal.is_damaged())) {
+      return;
+    }
+    if (journal.end && !journal.is_damaged()) {
+      add_damaged_file("result.json", "it is not what the journal says: " + difference);
+    } else if (!journal.is_damaged()) {
+      add(Finding::Kind::damage, "journal",
+          fmt::format("its end is missing: result.json is of a whole run{}",
+                      difference.empty() ? "" : "; " + difference));
+    }
+  }
+
+  void look_at_tables() {
+    const RunResult& result = result_->result();
+    const auto check = [&](const std::string& name, const auto& find) {
+      const auto file = folder_ / name;
+      if (is_there(file)) {
+        const std::string fault = find_fault(file, [&] { return find(file); });
+        if (!fault.empty()) {
+          add_damaged_file(name, fault);
+        }
+      }
+    };
+    check("winner.toml", find_toml_fault);
+    for (const char* name : {"front.csv", "convergence.csv", "winner-trajectory.csv"}) {
+      check(name, find_csv_fault);
+    }
+    const DatabaseRows rows{.training = result.counts.evaluations,
+                            .validation = result.judged.size(),
+                            .test = result.winner ? std::uint64_t{1} : 0};
+    check("results.sqlite",
+          [&](const std::filesystem::path& file) { return find_database_fault(file, rows); });
+  }
+
+  void look_at_cell() {
+    const auto file = folder_ / "cell.json";
+    if (!is_there(file)) {
+      return;
+    }
+    const std::string fault = find_fault(file, [&]() -> std::string {
+      const CellOutcome cell = parse_cell(read_file(file, kResultLimit_bytes), file);
+      if (result_ && (cell.evaluations != result_->result().counts.evaluations ||
+                      cell.cases != result_->result().counts.cases)) {
+        return fmt::format("it counts {} evaluations on {} cases, and result.json {} on {}",
+                           cell.evaluations, cell.cases, result_->result().counts.evaluations,
+                           result_->result().counts.cases);
+      }
+      return "";
+    });
+    if (!fault.empty()) {
+      add_damaged_file("cell.json", fault);
+    }
+  }
+
+  void look_at_leftovers() {
+    std::set<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+      names.insert(entry.path().filename().string());
+    }
+    for (const std::string& name : names) {
+      if (name.ends_with(".new")) {
+        if (survey_.writer.empty()) {
+          add(Finding::Kind::note, name,
+              "a file that was being written when a process was killed; it may be removed");
+        }
+      } else if (name.starts_with("journal.torn-")) {
+        add(Finding::Kind::note, name, "what was cut off the journal's end; it may be removed");
+      } else if (name.ends_with(".damaged")) {
+        add(Finding::Kind::note, name, "what a repair set aside; it may be removed");
+      }
+    }
+  }
+
+  std::filesystem::path folder_;
+  RunSurvey survey_;
+  std::optional<ResultSurvey> result_;
+};
+
+}  // namespace
+
+const std::vector<std::string>& derived_file_names() {
+  static const std::vector<std::string> names = {
+      "result.json",           "winner.toml",    "front.csv", "convergence.csv",
+      "winner-trajectory.csv", "results.sqlite", "cell.json"};
+  return names;
+}
+
+const char* to_string(RunSurvey::State state) {
+  switch (state) {
+    case RunSurvey::State::begun:
+      return "unfinished";
+    case RunSurvey::State::finished:
+      return "finished";
+    case RunSurvey::State::failed:
+      return "failed";
+  }
+  return "?";
+}
+
+bool RunSurvey::is_damaged() const {
+  return std::ranges::any_of(
+      findings, [](const Finding& finding) { return finding.kind != Finding::Kind::note; });
+}
+
+RunSurvey survey_run(const std::filesystem::path& folder, const std::filesystem::path& name) {
+  return Surveyor(folder, name).run();
+}
+
+bool is_run_folder(const std::filesystem::path& folder) {
+  return is_there(folder / "manifest.json") || is_there(folder / "journal") ||
+         is_there(folder / "cell.json");
+}
+
+}  // namespace armwright

@@ -1,0 +1,201 @@
+#include "study/survey/store_repair.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "study/run_lock.hpp"
+#include "study/survey/folder_copy.hpp"
+
+namespace armwright {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kAside = ".damaged";
+
+// NAME.damaged, or where that is taken NAME.damaged-2, ...
+fs::path choose_aside(const fs::path& folder, const fs::path& name) {
+  const auto is_taken = [&](const fs::path& one) {
+    std::error_code ignored;
+    return fs::exists(fs::symlink_status(folder / one, ignored));
+  };
+  fs::path aside = name.string() + kAside;
+  for (int number = 2; is_taken(aside); ++number) {
+    aside = fmt::format("{}-{}{}", name.string(), number, kAside);
+  }
+  return aside;
+}
+
+// What a process leaves that was killed while it wrote, and what locks: nothing to go on with.
+bool is_left_behind(const fs::path& name) {
+  const std::string text = name.filename().string();
+  return text == "lock" || text.ends_with(".new");
+}
+
+class Repair {
+ public:
+  Repair(const StoreSurvey& survey, FolderCopy& copy) : survey_(survey), copy_(copy) {
+    for (const RunSurvey& run : survey.runs) {
+      if (run.is_damaged()) {
+        damaged_runs_[run.name.lexically_normal()] = &run;
+      }
+    }
+    report_.copy = copy.target();
+  }
+
+  StoreRepair run() {
+    copy_folder(".", ".");
+    return std::move(report_);
+  }
+
+ private:
+  void copy_folder(const fs::path& name, const fs::path& to) {
+    const auto found = damaged_runs_.find(name.lexically_normal());
+    const RunSurvey* run = found != damaged_runs_.end() ? found->second : nullptr;
+    // A run's files are read while nobody writes them, be it a cell's process that outlives a kill.
+    const ReadLock lock(survey_.folder / name);
+    if (run != nullptr && run->is_manifest_lost) {
+      copy_as_it_is(name, choose_aside(survey_.folder, name));
+      report_.runs.push_back(
+          {.name = run->name, .is_set_aside = true, .evaluations_lost = count_recorded(*run)});
+      return;
+    }
+    if (name != ".") {
+      copy_.make_folder(to);
+    }
+    RunRepair done;
+    std::vector<fs::path> entries;
+    for (const auto& entry : fs::directory_iterator(survey_.folder / name)) {
+      entries.push_back(entry.path().filename());
+    }
+    std::ranges::sort(entries);
+    for (const fs::path& entry : entries) {
+      const fs::path from = (name / entry).lexically_normal();
+      if (is_left_behind(entry)) {
+        continue;
+      }
+      if (fs::is_directory(fs::symlink_status(survey_.folder / from))) {
+        copy_folder(from, from);
+      } else if (run != nullptr) {
+        copy_of_run(*run, from, entry.string(), done);
+      } else if (std::ranges::count(survey_.damaged_files, from) > 0) {
+        add(from, choose_aside(survey_.folder, from));
+        report_.kept_aside.push_back(from);
+      } else {
+        add(from, from);
+      }
+    }
+    if (run != nullptr) {
+      done.name = run->name;
+      done.evaluations_kept = run->journal ? run->journal->evaluations.size() : 0;
+      if (run->journal) {
+        done.evaluations_kept -= run->journal->contradictory.size();
+      }
+      done.evaluations_lost = run->lost;
+      report_.runs.push_back(std::move(done));
+    }
+  }
+
+  static std::uint64_t count_recorded(const RunSurvey& run) {
+    return (run.journal ? run.journal->evaluations.size() : 0) + run.lost;
+  }
+
+  void copy_of_run(const RunSurvey& run, const fs::path& from, const std::string& name,
+                   RunRepair& done) {
+    const bool is_derived = std::ranges::count(derived_file_names(), name) > 0;
+    const bool is_damaged = std::ranges::count(run.damaged_files, name) > 0;
+    const bool is_journal = name == "journal" && (run.is_journal_unreadable ||
+                                                  (run.journal && run.journal->is_damaged()));
+    if (is_damaged || is_journal) {
+      add(from, choose_aside(survey_.folder, from));
+      done.kept_aside.push_back(name);
+    }
+    if (is_journal && !run.is_journal_unreadable) {
+      copy_.add_file(from, [&](int fd) {
+        done.journal = repair_journal(survey_.folder / from, *run.journal, fd);
+      });
+      done.has_new_journal = true;
+    } else if (is_derived) {
+      done.made_again.push_back(name);
+    } else if (!is_journal) {
+      add(from, from);
+    }
+  }
+
+  void copy_as_it_is(const fs::path& name, const fs::path& to) {
+    copy_.make_folder(to);
+    for (const auto& entry : fs::directory_iterator(survey_.folder / name)) {
+      const fs::path inside = entry.path().filename();
+      if (is_left_behind(inside)) {
+        continue;
+      }
+      if (fs::is_directory(entry.symlink_status())) {
+        copy_as_it_is(name / inside, to / inside);
+      } else {
+        add(name / inside, to / inside);
+      }
+    }
+  }
+
+  void add(const fs::path& from, const fs::path& to) {
+    if (!copy_.add(survey_.folder / from, to)) {
+      report_.left_out.push_back(from);
+    }
+  }
+
+  const StoreSurvey& survey_;
+  FolderCopy& copy_;
+  std::map<fs::path, const RunSurvey*> damaged_runs_;
+  StoreRepair report_;
+};
+
+// A copy inside its original would be copied along.
+void check_target(const fs::path& folder, const fs::path& target) {
+  const auto inside = fs::weakly_canonical(fs::absolute(target))
+                          .lexically_relative(fs::weakly_canonical(fs::absolute(folder)));
+  if (!inside.empty() && *inside.begin() != "..") {
+    throw Error(ErrorKind::usage,
+                fmt::format("--out is '{}', which lies in the folder itself; name one outside",
+                            sanitize(target.string())));
+  }
+}
+
+[[noreturn]] void refuse_lost(const StoreSurvey& survey) {
+  throw Error(ErrorKind::bad_data, fmt::format("{}: {}", sanitize(survey.folder.string()),
+                                               advise_on_lost_record(survey, "armwright")));
+}
+
+}  // namespace
+
+std::optional<StoreRepair> repair_store(const fs::path& folder, const fs::path& target,
+                                        StopSignal& stop) {
+  // From before it is looked at until the copy is made.
+  std::optional<ReadLock> lock;
+  if (fs::is_directory(folder)) {
+    lock.emplace(folder);
+    check_target(folder, target);
+  }
+  const StoreSurvey survey = survey_store(folder);
+  for (const RunSurvey& run : survey.runs) {
+    if (!run.writer.empty()) {
+      throw Error(ErrorKind::busy, fmt::format("{} is being written by {}; wait for it, or stop it",
+                                               sanitize((folder / run.name).string()), run.writer));
+    }
+  }
+  if (!survey.is_damaged()) {
+    return std::nullopt;
+  }
+  if (survey.is_record_lost) {
+    refuse_lost(survey);
+  }
+  FolderCopy copy(target, stop);
+  StoreRepair report = Repair(survey, copy).run();
+  copy.put_in_place();
+  return report;
+}
+
+}  // namespace armwright

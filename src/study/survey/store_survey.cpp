@@ -1,0 +1,295 @@
+#include "study/survey/store_survey.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "base/config.hpp"
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "study/compare/escape.hpp"
+#include "study/compare/study_plan.hpp"
+#include "study/run_lock.hpp"
+#include "study/survey/derived_survey.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kStudyRecord = "study.toml";
+constexpr const char* kReproductionRecord = "reproduction.json";
+
+bool is_there(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::exists(std::filesystem::symlink_status(path, ignored));
+}
+
+bool is_folder(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::is_directory(path, ignored);
+}
+
+// Folders in it, sorted, without links and without what a repair has set aside.
+std::vector<std::filesystem::path> list_folders(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> folders;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (!entry.is_symlink() && entry.is_directory() &&
+        !entry.path().filename().string().ends_with(".damaged")) {
+      folders.push_back(entry.path());
+    }
+  }
+  std::ranges::sort(folders);
+  return folders;
+}
+
+void find_runs(const std::filesystem::path& folder, int depth,
+               std::vector<std::filesystem::path>& runs) {
+  constexpr int kMostDepth = 6;  // STUDY/reruns/PROBLEM/OPTIMIZER/rNN
+  for (const auto& one : list_folders(folder)) {
+    if (is_run_folder(one)) {
+      runs.push_back(one);
+    } else if (depth < kMostDepth) {
+      find_runs(one, depth + 1, runs);
+    }
+  }
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& folder) {
+  const std::string shown = sanitize(folder.string());
+  if (!is_there(folder)) {
+    throw Error(ErrorKind::usage, fmt::format("there is no folder '{}'", shown));
+  }
+  if (!is_folder(folder)) {
+    throw Error(ErrorKind::usage,
+                fmt::format("'{}' is not a folder; name the folder of a run, a study or a "
+                            "reproduction",
+                            shown));
+  }
+  std::vector<std::string> inside;
+  for (const auto& one : list_folders(folder)) {
+    if (is_run_folder(one) || is_there(one / kStudyRecord) || is_there(one / kReproductionRecord)) {
+      inside.push_back(sanitize(one.filename().string()));
+    }
+  }
+  throw Error(
+      ErrorKind::usage,
+      fmt::format("{}: is not the folder of a run (it has no manifest.json), a study (no {}) or a "
+                  "reproduction (no {}){}",
+                  shown, kStudyRecord, kReproductionRecord,
+                  inside.empty() ? "" : "; name one of those in it: " + join(inside, ", ")));
+}
+
+class StoreSurveyor {
+ public:
+  explicit StoreSurveyor(const std::filesystem::path& folder) { survey_.folder = folder; }
+
+  StoreSurvey run(const std::function<void(std::size_t, std::size_t)>& progress) {
+    const auto& folder = survey_.folder;
+    if (is_there(folder / kStudyRecord) || is_folder(folder / "cells")) {
+      survey_.kind = StoreSurvey::Kind::study;
+    } else if (is_there(folder / kReproductionRecord)) {
+      survey_.kind = StoreSurvey::Kind::reproduction;
+    } else if (!is_run_folder(folder)) {
+      refuse(folder);
+    }
+    std::vector<std::filesystem::path> runs = {folder};
+    if (survey_.kind != StoreSurvey::Kind::run) {
+      survey_.writer = find_writer(folder);
+      runs.clear();
+      find_runs(folder, 0, runs);
+    }
+    for (const auto& one : runs) {
+      if (progress) {
+        progress(survey_.runs.size(), runs.size());
+      }
+      const auto name = survey_.kind == StoreSurvey::Kind::run ? std::filesystem::path(".")
+                                                               : one.lexically_relative(folder);
+      survey_.runs.push_back(survey_run(one, name));
+    }
+    switch (survey_.kind) {
+      case StoreSurvey::Kind::run:
+        survey_.writer = survey_.runs.front().writer;
+        survey_.is_record_lost = survey_.runs.front().is_manifest_lost;
+        break;
+      case StoreSurvey::Kind::study:
+        look_at_study();
+        break;
+      case StoreSurvey::Kind::reproduction:
+        look_at_record(kReproductionRecord, find_json_fault);
+        break;
+    }
+    return std::move(survey_);
+  }
+
+ private:
+  std::string find_fault(const std::filesystem::path& file, auto find) {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(file, ignored)) {
+      return is_there(file) ? "it is not a regular file" : "it is missing";
+    }
+    try {
+      return find(file);
+    } catch (const std::exception& error) {
+      return sanitize(error.what());
+    }
+  }
+
+  void look_at_record(const char* name, auto find) {
+    const std::string fault = find_fault(survey_.folder / name, find);
+    if (!fault.empty()) {
+      survey_.is_record_lost = true;
+      survey_.findings.push_back({Finding::Kind::loss, name, fault});
+    }
+  }
+
+  void look_at_study() {
+    look_at_record(kStudyRecord, [&](const std::filesystem::path& file) {
+      const std::string fault = find_toml_fault(file);
+      if (fault.empty()) {
+        check_plan_hash(file);
+        survey_.planned_cells = count_cells(file);
+      }
+      return fault;
+    });
+    for (const RunSurvey& run : survey_.runs) {
+      const bool is_cell = run.name.string().starts_with("cells/");
+      const bool has_cell = is_there(survey_.folder / run.name / "cell.json") &&
+                            !std::ranges::count(run.damaged_files, "cell.json");
+      survey_.finished_cells += is_cell && has_cell ? 1 : 0;
+    }
+    if (survey_.writer.empty()) {
+      look_at_derived();
+    }
+  }
+
+  static std::size_t count_cells(const std::filesystem::path& file) {
+    const json plan = json::parse(ConfigTable::load(file).to_json());
+    return plan.at("problem").size() * plan.at("optimizer").size() *
+           plan.at("replicates").get<std::size_t>();
+  }
+
+  // Everything of the study's that is made of its plan and cells.
+  void look_at_derived() {
+    const auto check = [&](const std::filesystem::path& name, auto find) {
+      const std::string fault = find_fault(survey_.folder / name, find);
+      if (!fault.empty()) {
+        survey_.findings.push_back({Finding::Kind::damage, name, fault});
+        survey_.damaged_files.push_back(name);
+      }
+    };
+    for (const char* part : {"problems", "tables", "final"}) {
+      if (!is_folder(survey_.folder / part)) {
+        continue;
+      }
+      for (const auto& entry :
+           std::filesystem::recursive_directory_iterator(survey_.folder / part)) {
+        const auto name = entry.path().lexically_relative(survey_.folder);
+        if (name.extension() == ".json") {
+          check(name, find_json_fault);
+        } else if (name.extension() == ".csv") {
+          check(name, find_csv_fault);
+        }
+      }
+    }
+    if (is_there(survey_.folder / "result.json")) {
+      check("result.json", find_json_fault);
+      if (!is_there(survey_.folder / "verdict.txt")) {
+        survey_.findings.push_back(
+            {Finding::Kind::note, "verdict.txt", "it is not there; the same command makes it"});
+      }
+    } else if (survey_.planned_cells > 0 && survey_.finished_cells == survey_.planned_cells) {
+      survey_.findings.push_back(
+          {Finding::Kind::note, "result.json", "it is not there; the same command makes it"});
+    }
+    std::ranges::sort(survey_.findings, {}, &Finding::file);
+  }
+
+  StoreSurvey survey_;
+};
+
+}  // namespace
+
+const char* to_string(StoreSurvey::Kind kind) {
+  switch (kind) {
+    case StoreSurvey::Kind::run:
+      return "run";
+    case StoreSurvey::Kind::study:
+      return "study";
+    case StoreSurvey::Kind::reproduction:
+      return "reproduction";
+  }
+  return "?";
+}
+
+bool StoreSurvey::is_damaged() const {
+  return std::ranges::any_of(
+             findings,
+             [](const Finding& finding) { return finding.kind != Finding::Kind::note; }) ||
+         std::ranges::any_of(runs, &RunSurvey::is_damaged);
+}
+
+StoreSurvey survey_store(const std::filesystem::path& folder,
+                         const std::function<void(std::size_t done, std::size_t all)>& progress) {
+  return StoreSurveyor(folder).run(progress);
+}
+
+std::vector<std::string> make_command(const StoreSurvey& survey, const std::string& program,
+                                      const std::filesystem::path& folder) {
+  switch (survey.kind) {
+    case StoreSurvey::Kind::study:
+      return {program, "compare", (folder / kStudyRecord).string(), "--out", folder.string()};
+    case StoreSurvey::Kind::reproduction:
+      return {program, "reproduce", "--out", folder.string()};
+    case StoreSurvey::Kind::run:
+      break;
+  }
+  const auto& recorded = survey.runs.front().command_line;
+  if (recorded.size() < 2) {
+    return {};
+  }
+  std::vector<std::string> words = {program};
+  for (auto word = recorded.begin() + 1; word != recorded.end(); ++word) {
+    if (*word == "--out") {
+      if (word + 1 != recorded.end()) {
+        ++word;
+      }
+    } else if (*word != "--new" && !word->starts_with("--out=")) {
+      words.push_back(*word);
+    }
+  }
+  words.insert(words.end(), {"--out", folder.string()});
+  return words;
+}
+
+std::string advise_on_lost_record(const StoreSurvey& survey, const std::string& program) {
+  const std::string folder = sanitize(survey.folder.string());
+  if (survey.kind == StoreSurvey::Kind::study) {
+    return fmt::format(
+        "What was compared is recorded in study.toml alone, and no repair brings it back. To keep "
+        "the cells: begin the same comparison in a new folder ({} compare FILE --out NEW, with the "
+        "file or flags of then), stop it with Ctrl-C, copy {}/cells over NEW/cells and give the "
+        "same command again: cells of another plan are refused.",
+        program, folder);
+  }
+  if (survey.kind == StoreSurvey::Kind::reproduction) {
+    return fmt::format(
+        "What was computed of the winners is recorded in reproduction.json alone, and no repair "
+        "brings it back. To keep the runs: begin it in a new folder ({} reproduce --out NEW), stop "
+        "it with Ctrl-C, copy {}/runs to NEW/runs and give the same command again.",
+        program, folder);
+  }
+  const RunSurvey& run = survey.runs.front();
+  return fmt::format(
+      "What the run was begun with is recorded in manifest.json alone, and no repair brings it "
+      "back. To keep its evaluations: begin the same run in a new folder ({} optimize {} --out "
+      "NEW, "
+      "with the options of then{}), stop it with Ctrl-C, copy {}/journal over NEW/journal and give "
+      "the same command again: every evaluation is compared with what the optimizer asks for. "
+      "winner.toml, the tables and results.sqlite can be used as they are.",
+      program, run.made_by.empty() ? "PROBLEM" : run.made_by,
+      run.made_by.empty() ? "" : "; problem, optimizer and seed are those of result.json", folder);
+}
+
+}  // namespace armwright
