@@ -162,7 +162,13 @@ class Surveyor {
     const auto damage = [&](std::string what) {
       add(Finding::Kind::damage, "journal", std::move(what));
     };
-    for (const DamagedStretch& stretch : journal.damage) {
+    constexpr std::size_t kMostNamed = 20;
+    for (std::size_t i = 0; i < journal.damage.size(); ++i) {
+      if (i == kMostNamed) {
+        damage(fmt::format("and {} more damaged stretches", journal.damage.size() - kMostNamed));
+        break;
+      }
+      const DamagedStretch& stretch = journal.damage[i];
       damage(
           fmt::format("byte {}, {} bytes: record {} (from 0) is damaged: {}; {} intact before "
                       "it, {} behind it",
@@ -187,8 +193,8 @@ class Surveyor {
     }
     if (const auto gaps = journal.list_gaps(); !gaps.empty() && survey_.writer.empty()) {
       add(Finding::Kind::note, "journal",
-          fmt::format("evaluations {} are not in it: they were under way when the run was "
-                      "interrupted, and are made again",
+          fmt::format("evaluations {} are not in it, as an interruption or a repair leaves it; "
+                      "they are made again",
                       describe(gaps)));
     }
     if (journal.repeated > 0) {
