@@ -47,6 +47,18 @@ void damage_journal(const std::filesystem::path& run) {
   });
 }
 
+// As if its lines had no end.
+std::string unwrap(const std::string& text) {
+  std::string flat;
+  for (const char c : text) {
+    const bool is_blank = c == ' ' || c == '\n';
+    if (!is_blank || (!flat.empty() && flat.back() != ' ')) {
+      flat += is_blank ? ' ' : c;
+    }
+  }
+  return flat;
+}
+
 class Doctor : public testing::Test {
  protected:
   Outcome run(const std::vector<std::string>& arguments, const Environment& environment = {}) {
@@ -57,11 +69,6 @@ class Doctor : public testing::Test {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run(arguments, environment);
   }
-  // The command that the doctor names, as a shell would take it.
-  Outcome run_words(const std::vector<std::string>& words) {
-    return run({words.begin() + 1, words.end()});
-  }
-
   TemporaryFolder folder_;
 };
 
@@ -79,14 +86,14 @@ TEST_F(Doctor, ARepairedRunGoesOnToTheSameResult) {
     const Outcome found = doctor({hurt});
     EXPECT_EQ(found.exit_code, 4);
     EXPECT_THAT(found.out, HasSubstr("DAMAGED  journal"));
-    EXPECT_THAT(found.out, HasSubstr("its checksum is wrong"));
-    EXPECT_THAT(found.out, HasSubstr("lost: 3 of 700 evaluations"));
+    EXPECT_THAT(unwrap(found.out), HasSubstr("its checksum is wrong"));
+    EXPECT_THAT(unwrap(found.out), HasSubstr("lost: 3 of 700 evaluations"));
     EXPECT_THAT(found.out, HasSubstr("armwright doctor " + hurt + " --repair\n"));
     EXPECT_THAT(found.out, HasSubstr("--quiet --out " + hurt + ".repaired\n"));
 
     const Outcome repaired = doctor({hurt, "--repair"});
     EXPECT_EQ(repaired.exit_code, 0) << repaired.err;
-    EXPECT_THAT(repaired.out, HasSubstr("697 evaluations kept, 3 to be made again"));
+    EXPECT_THAT(unwrap(repaired.out), HasSubstr("697 evaluations kept, 3 to be made again"));
     EXPECT_EQ(read_text(folder_ / hurt / "journal"), bytes);
     EXPECT_EQ(read_text(folder_ / (hurt + ".repaired") / "journal.damaged"), bytes);
     const Outcome again = doctor({hurt, "--repair"});
@@ -166,7 +173,7 @@ TEST_F(Doctor, ALostManifestIsNotRepaired) {
   const Outcome found = doctor({"run"});
   EXPECT_EQ(found.exit_code, 4);
   EXPECT_THAT(found.out, HasSubstr("LOST"));
-  EXPECT_THAT(found.out, HasSubstr("q1-complex --optimizer ga --seed 1"));
+  EXPECT_THAT(unwrap(found.out), HasSubstr("q1-complex --optimizer ga --seed 1"));
   const Outcome refused = doctor({"run", "--repair"});
   EXPECT_EQ(refused.exit_code, 4);
   EXPECT_THAT(refused.err, HasSubstr("no repair brings it back"));
@@ -176,8 +183,8 @@ TEST_F(Doctor, ALostManifestIsNotRepaired) {
 TEST_F(Doctor, ARunInProgressIsReadAndNotRepaired) {
   Program program(folder_.path(), make_run("run", "ga", "400000"));
   const auto journal = folder_ / "run/journal";
-  std::error_code ignored;
-  while (program.is_running() && !(std::filesystem::file_size(journal, ignored) > 20000)) {
+  while (program.is_running() &&
+         !(std::filesystem::exists(journal) && std::filesystem::file_size(journal) > 20000)) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   for (int i = 0; i < 20; ++i) {
@@ -270,7 +277,7 @@ TEST_F(Doctor, TellsWhatTheMachineHas) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.out;
   for (const char* what : {"articulated", "NLopt", "pagmo", "can be loaded", "written, synced",
                            "free space", "processors", "open files", "locale"}) {
-    EXPECT_THAT(outcome.out, HasSubstr(what));
+    EXPECT_THAT(unwrap(outcome.out), HasSubstr(what));
   }
   const json checks = json::parse(doctor({"--json"}).out);
   EXPECT_TRUE(checks["usable"].get<bool>());
@@ -283,7 +290,7 @@ TEST_F(Doctor, TellsWhatTheMachineHas) {
 TEST_F(Doctor, SaysWhatIsMissingAndHowToGetIt) {
   const Outcome programs = doctor({}, {.variables = {{"PATH", "/nowhere"}}, .out_file = ""});
   EXPECT_EQ(programs.exit_code, 0) << programs.out;
-  EXPECT_THAT(programs.out, HasSubstr("apt install cmake"));
+  EXPECT_THAT(unwrap(programs.out), HasSubstr("apt install cmake"));
   const Outcome configuration =
       doctor({}, {.variables = {{"ARMWRIGHT_CONFIGS", "/nowhere"}}, .out_file = ""});
   EXPECT_EQ(configuration.exit_code, 3);

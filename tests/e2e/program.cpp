@@ -9,6 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <fstream>
@@ -30,7 +31,10 @@ std::vector<std::string> make_environment(const Environment& environment) {
   std::vector<std::string> variables;
   for (char** variable = environ; *variable != nullptr; ++variable) {
     const std::string_view text = *variable;
-    if (!text.starts_with("ARMWRIGHT_") && !text.starts_with("NO_COLOR=") &&
+    const bool is_replaced = std::ranges::any_of(environment.variables, [&](const auto& one) {
+      return text.substr(0, text.find('=')) == one.first;
+    });
+    if (!is_replaced && !text.starts_with("ARMWRIGHT_") && !text.starts_with("NO_COLOR=") &&
         !text.starts_with("TERM=")) {
       variables.emplace_back(text);
     }

@@ -85,7 +85,7 @@ class StoreSurveyor {
  public:
   explicit StoreSurveyor(const std::filesystem::path& folder) { survey_.folder = folder; }
 
-  StoreSurvey run(const std::function<void(std::size_t, std::size_t)>& progress) {
+  StoreSurvey run() {
     const auto& folder = survey_.folder;
     if (is_there(folder / kStudyRecord) || is_folder(folder / "cells")) {
       survey_.kind = StoreSurvey::Kind::study;
@@ -101,9 +101,6 @@ class StoreSurveyor {
       find_runs(folder, 0, runs);
     }
     for (const auto& one : runs) {
-      if (progress) {
-        progress(survey_.runs.size(), runs.size());
-      }
       const auto name = survey_.kind == StoreSurvey::Kind::run ? std::filesystem::path(".")
                                                                : one.lexically_relative(folder);
       survey_.runs.push_back(survey_run(one, name));
@@ -230,9 +227,8 @@ bool StoreSurvey::is_damaged() const {
          std::ranges::any_of(runs, &RunSurvey::is_damaged);
 }
 
-StoreSurvey survey_store(const std::filesystem::path& folder,
-                         const std::function<void(std::size_t done, std::size_t all)>& progress) {
-  return StoreSurveyor(folder).run(progress);
+StoreSurvey survey_store(const std::filesystem::path& folder) {
+  return StoreSurveyor(folder).run();
 }
 
 std::vector<std::string> make_command(const StoreSurvey& survey, const std::string& program,

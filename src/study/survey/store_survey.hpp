@@ -3,7 +3,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -28,11 +27,8 @@ struct StoreSurvey {
 };
 const char* to_string(StoreSurvey::Kind kind);  // "run", "study", "reproduction"
 
-// `progress` is told before each run how many are done, of how many. Error{usage} if the folder is
-// none of these; Error{io}.
-StoreSurvey survey_store(
-    const std::filesystem::path& folder,
-    const std::function<void(std::size_t done, std::size_t all)>& progress = {});
+// Error{usage} if the folder is none of these; Error{io}.
+StoreSurvey survey_store(const std::filesystem::path& folder);
 
 // The words that go on with what is in `folder`, having been begun elsewhere perhaps. `program`:
 // how the program is called. Empty if it is not known.

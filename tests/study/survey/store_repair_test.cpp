@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <atomic>
+#include <chrono>
 #include <fstream>
 #include <functional>
 #include <thread>
@@ -223,6 +224,7 @@ TEST_F(StoreRepairTest, AskingWhoWritesKeepsNobodyFromWriting) {
   std::thread asking([&] {
     while (!done) {
       find_writer(temporary_ / "run");
+      std::this_thread::sleep_for(std::chrono::microseconds(200));
     }
   });
   int refused = 0;
@@ -235,7 +237,7 @@ TEST_F(StoreRepairTest, AskingWhoWritesKeepsNobodyFromWriting) {
   }
   done = true;
   asking.join();
-  // Asked without a pause, which nobody does, it can still happen.
+  // Whoever asks may lose the processor in the instant that it holds the lock.
   EXPECT_LE(refused, 30);
 }
 
