@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string_view>
@@ -11,6 +12,7 @@
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
+#include "problems/design_file.hpp"
 
 namespace armwright {
 namespace {
@@ -119,9 +121,11 @@ std::string find_json_fault(const std::filesystem::path& file) {
   return "it is not JSON";
 }
 
-std::string find_toml_fault(const std::filesystem::path& file) {
+namespace {
+
+std::string catch_fault(const std::function<void()>& read) {
   try {
-    ConfigTable::load(file);
+    read();
   } catch (const Error& error) {
     if (error.kind() == ErrorKind::io) {
       throw;
@@ -129,6 +133,17 @@ std::string find_toml_fault(const std::filesystem::path& file) {
     return sanitize(error.what());
   }
   return "";
+}
+
+}  // namespace
+
+std::string find_toml_fault(const std::filesystem::path& file) {
+  return catch_fault([&] { ConfigTable::load(file); });
+}
+
+std::string find_design_fault(const std::filesystem::path& file) {
+  // Absolute, or its name might be taken for that of a shipped one.
+  return catch_fault([&] { load_design(std::filesystem::absolute(file).string()); });
 }
 
 std::string find_database_fault(const std::filesystem::path& file, const DatabaseRows& rows) {

@@ -16,6 +16,7 @@ namespace armwright {
 std::string find_csv_fault(const std::filesystem::path& file);
 std::string find_json_fault(const std::filesystem::path& file);
 std::string find_toml_fault(const std::filesystem::path& file);
+std::string find_design_fault(const std::filesystem::path& file);
 
 // What a run's database must hold.
 struct DatabaseRows {

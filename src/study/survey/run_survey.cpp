@@ -253,7 +253,7 @@ class Surveyor {
         }
       }
     };
-    check("winner.toml", find_toml_fault);
+    check("winner.toml", find_design_fault);
     for (const char* name : {"front.csv", "convergence.csv", "winner-trajectory.csv"}) {
       check(name, find_csv_fault);
     }

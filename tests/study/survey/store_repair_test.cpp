@@ -274,7 +274,10 @@ TEST_F(StudyRepairTest, CellsGoOnToTheSameTables) {
   EXPECT_EQ(repaired->runs.size(), 4u);
   EXPECT_FALSE(survey_store(temporary_ / "copy").is_damaged());
   study(plan, "copy");
-  EXPECT_EQ(read_cells("copy"), read_cells("whole"));
+  auto cells = read_cells("copy");
+  EXPECT_EQ(cells.erase("sphere/cmaes/r03.damaged/cell.json"), 1u);
+  EXPECT_EQ(cells.erase("sphere/cmaes/r03.damaged/result.json"), 1u);
+  EXPECT_TRUE(cells == read_cells("whole"));
   const auto whole = read_tree(temporary_ / "whole");
   auto copy = read_tree(temporary_ / "copy");
   for (const auto& [name, text] : whole) {
