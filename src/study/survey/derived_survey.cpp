@@ -88,7 +88,7 @@ std::uint64_t count_rows(const std::vector<std::vector<std::string>>& rows, cons
 
 }  // namespace
 
-std::string find_csv_fault(const std::filesystem::path& file) {
+std::string find_csv_fault(const std::filesystem::path& file, std::optional<std::uint64_t> last) {
   const std::string text = read_file(file, kLimit_bytes);
   CsvRows rows(text);
   const std::size_t titles = rows.next();
@@ -102,6 +102,13 @@ std::string find_csv_fault(const std::filesystem::path& file) {
     }
     if (fields != titles) {
       return fmt::format("row {} has {} fields, and the titles are {}", line, fields, titles);
+    }
+  }
+  if (last) {
+    const std::string_view rest = std::string_view(text).substr(0, text.size() - 1);
+    const std::string_view row = rest.substr(rest.rfind('\n') + 1);
+    if (row.substr(0, row.find(',')) != std::to_string(*last)) {
+      return fmt::format("its last row is not that of evaluation {}: rows are missing", *last);
     }
   }
   return "";

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,9 @@ namespace armwright {
 // it. The files are not changed.
 
 // Comma-separated, a line of titles, all rows as long as that, the last one whole.
-std::string find_csv_fault(const std::filesystem::path& file);
+// `last`: what the last row must begin with, if it is known.
+std::string find_csv_fault(const std::filesystem::path& file,
+                           std::optional<std::uint64_t> last = std::nullopt);
 std::string find_json_fault(const std::filesystem::path& file);
 std::string find_toml_fault(const std::filesystem::path& file);
 std::string find_design_fault(const std::filesystem::path& file);

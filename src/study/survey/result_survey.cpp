@@ -37,6 +37,16 @@ ResultSurvey::ResultSurvey(RunResult result) : result_(std::move(result)) {
 
 void ResultSurvey::look(const EvaluationRecord& record) {
   if (record.cases.role == CaseRole::training) {
+    if (is_feasible(record.evaluation)) {
+      const std::pair here(calc_scalar(result_.objective_weights, record.evaluation.objectives),
+                           record.index);
+      best_ = best_ ? std::min(*best_, here) : here;
+      if (!last_ || record.index > *last_) {
+        last_ = record.index;
+        last_generation_ = record.generation;
+      }
+      has_generations_ = has_generations_ || record.generation > 0;
+    }
     const auto [begin, end] = by_evaluation_.equal_range(record.index);
     for (auto judged = begin; judged != end; ++judged) {
       const Candidate& candidate = result_.judged[judged->second].candidate;
@@ -59,6 +69,14 @@ void ResultSurvey::look(const EvaluationRecord& record) {
       tested_ = tested_ || same_values(record.evaluation, result_.test);
     }
   }
+}
+
+// A row a generation, or without generations one an improvement.
+std::optional<std::uint64_t> ResultSurvey::calc_last_row() const {
+  if (!last_ || (has_generations_ && last_generation_ == 0)) {
+    return std::nullopt;
+  }
+  return (has_generations_ ? *last_ : best_->second) + 1;
 }
 
 std::string ResultSurvey::find_difference(const JournalSurvey& journal) const {

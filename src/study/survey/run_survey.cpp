@@ -254,9 +254,14 @@ class Surveyor {
       }
     };
     check("winner.toml", find_design_fault);
-    for (const char* name : {"front.csv", "convergence.csv", "winner-trajectory.csv"}) {
-      check(name, find_csv_fault);
-    }
+    const auto find_row_fault = [](const auto& file) { return find_csv_fault(file); };
+    check("front.csv", find_row_fault);
+    check("winner-trajectory.csv", find_row_fault);
+    // A run that failed and is being tried again has more evaluations by now.
+    const bool is_known =
+        survey_.journal && !survey_.journal->is_damaged() && result.failure.empty();
+    const auto last = is_known ? result_->calc_last_row() : std::nullopt;
+    check("convergence.csv", [&](const auto& file) { return find_csv_fault(file, last); });
     const DatabaseRows rows{.training = result.counts.evaluations,
                             .validation = result.judged.size(),
                             .test = result.winner ? std::uint64_t{1} : 0};

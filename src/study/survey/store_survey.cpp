@@ -186,7 +186,7 @@ class StoreSurveyor {
         if (name.extension() == ".json") {
           check(name, find_json_fault);
         } else if (name.extension() == ".csv") {
-          check(name, find_csv_fault);
+          check(name, [](const auto& csv) { return find_csv_fault(csv); });
         }
       }
     }
