@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 #include <poll.h>
-#include <pthread.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -17,6 +15,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "optimizers/fork_support.hpp"
 
 namespace armwright {
 namespace {
@@ -31,21 +30,6 @@ constexpr std::uint64_t kMaxFrameBytes = std::uint64_t{1} << 32;
               fmt::format("cannot {}: {}", doing, std::generic_category().message(error)));
 }
 
-class AllSignalsBlocked {
- public:
-  AllSignalsBlocked() {
-    sigset_t all;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before_);
-  }
-  ~AllSignalsBlocked() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-  AllSignalsBlocked(const AllSignalsBlocked&) = delete;
-  AllSignalsBlocked& operator=(const AllSignalsBlocked&) = delete;
-
- private:
-  sigset_t before_;
-};
-
 }  // namespace
 
 ChildProcess::SocketPair ChildProcess::open_sockets() {
@@ -58,10 +42,7 @@ ChildProcess::SocketPair ChildProcess::open_sockets() {
 
 ChildProcess::ChildProcess(const std::function<void(ParentLink&)>& body,
                            const IsolationLimits& limits, OutputLog* log)
-    : limits_(limits),
-      sockets_(open_sockets()),
-      last_check_(Clock::now()),
-      memory_at_start_(measure_memory("self")) {
+    : limits_(limits), sockets_(open_sockets()), memory_at_start_(measure_memory("self")) {
   if (log != nullptr) {
     output_.emplace(*log);
   }
@@ -73,7 +54,6 @@ ChildProcess::ChildProcess(const std::function<void(ParentLink&)>& body,
     settings.data_bytes_at_start = memory_at_start_->data_bytes;
   }
   {
-    // Until the child has its own, no signal may run this process's handlers in it.
     const AllSignalsBlocked blocked;
     pid_ = fork();
     if (pid_ == 0) {
@@ -111,8 +91,7 @@ bool ChildProcess::end_gently(std::chrono::milliseconds patience) const {
 
 ChildProcess::Event ChildProcess::receive(const std::function<bool()>& must_give_up,
                                           std::string& message) {
-  silence_s_ = 0;
-  last_check_ = Clock::now();
+  silence_.restart();
   while (true) {
     if (must_give_up()) {
       return Event::given_up;
@@ -143,8 +122,7 @@ ChildProcess::Event ChildProcess::receive(const std::function<bool()>& must_give
 std::optional<ChildProcess::Event> ChildProcess::send(std::string_view message,
                                                       const std::function<bool()>& must_give_up) {
   const std::string frame = make_frame(FrameKind::message, message);
-  silence_s_ = 0;
-  last_check_ = Clock::now();
+  silence_.restart();
   for (std::size_t sent = 0; sent < frame.size();) {
     const ssize_t count = ::send(sockets_.parent.get(), frame.data() + sent, frame.size() - sent,
                                  MSG_NOSIGNAL | MSG_DONTWAIT);
@@ -198,17 +176,12 @@ std::optional<ChildProcess::Event> ChildProcess::take_message(std::string& messa
                      "memory_mib");
 }
 
-// Silence is the sum of short waits rather than a difference of times, so that a suspended machine
-// or a stopped program does not count.
 bool ChildProcess::wait_for(short events) {
   std::array<pollfd, 2> waiting{
       pollfd{.fd = events == 0 ? -1 : sockets_.parent.get(), .events = events, .revents = 0},
       pollfd{.fd = output_ ? output_->get() : -1, .events = POLLIN, .revents = 0}};
   poll(waiting.data(), waiting.size(), events == 0 ? kClosedPollMs : kPollMs);
-  const Clock::time_point now = Clock::now();
-  const double waited_s = std::chrono::duration<double>(now - last_check_).count();
-  last_check_ = now;
-  silence_s_ += std::min(waited_s, 4e-3 * kPollMs);
+  silence_.look();
   take_output();
   if (waiting[0].revents != 0) {
     return true;
@@ -218,7 +191,7 @@ bool ChildProcess::wait_for(short events) {
 }
 
 void ChildProcess::check_silence() const {
-  if (silence_s_ > limits_.silence_s) {
+  if (silence_.get_s() > limits_.silence_s) {
     throw ChildFailure(
         fmt::format("was silent for more than {} s and had to be killed", limits_.silence_s),
         "silence_s");

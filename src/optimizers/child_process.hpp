@@ -63,8 +63,7 @@ class ChildProcess {
   std::optional<OutputPipe> output_;
   pid_t pid_ = -1;
   std::string received_;
-  double silence_s_ = 0;
-  Clock::time_point last_check_;
+  WakingTime silence_;
   std::optional<ProcessMemory> memory_at_start_;
 };
 

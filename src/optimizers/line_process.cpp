@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -12,12 +11,14 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdlib>
 #include <system_error>
 #include <utility>
 
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
+#include "optimizers/fork_support.hpp"
 #include "optimizers/process_watch.hpp"
 
 namespace armwright {
@@ -49,31 +50,42 @@ std::string describe_exit(int status) {
   return fmt::format("ended with exit code {}", WEXITSTATUS(status));
 }
 
-// posix_spawn's two descriptions of the child, freed at the end of their scope.
-struct SpawnSettings {
-  posix_spawn_file_actions_t actions;
-  posix_spawnattr_t attributes;
-
-  SpawnSettings() {
-    posix_spawn_file_actions_init(&actions);
-    posix_spawnattr_init(&attributes);
-    sigset_t none;
-    sigset_t all;
-    sigemptyset(&none);
-    sigfillset(&all);
-    posix_spawnattr_setsigmask(&attributes, &none);
-    posix_spawnattr_setsigdefault(&attributes, &all);
-    posix_spawnattr_setpgroup(&attributes, 0);  // Ctrl-C is ours to answer, and kill() takes all
-    posix_spawnattr_setflags(
-        &attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
-  }
-  ~SpawnSettings() {
-    posix_spawn_file_actions_destroy(&actions);
-    posix_spawnattr_destroy(&attributes);
-  }
-  SpawnSettings(const SpawnSettings&) = delete;
-  SpawnSettings& operator=(const SpawnSettings&) = delete;
+// What the child is to become. All of it is there before the fork: after it, nothing may take
+// memory.
+struct ChildPlan {
+  pid_t parent = -1;
+  std::array<int, 3> streams{};  // its standard ones
+  int report = -1;               // where it says why it could not begin: an errno
+  char* const* words = nullptr;
 };
+
+[[noreturn]] void become_program(const ChildPlan& plan) {
+  constexpr int kReport = STDERR_FILENO + 1;
+  lead_own_group();
+  die_with(plan.parent);
+  for (int stream = 0; stream < std::ssize(plan.streams); ++stream) {
+    dup2(plan.streams[static_cast<std::size_t>(stream)], stream);
+  }
+  if (plan.report != kReport) {
+    dup3(plan.report, kReport, O_CLOEXEC);
+  }
+  closefrom(kReport + 1);
+  reset_signals();
+  execvp(plan.words[0], plan.words);
+  const int error = errno;
+  [[maybe_unused]] const ssize_t told = write(kReport, &error, sizeof error);
+  _exit(EXIT_FAILURE);
+}
+
+// 0, or why it could not begin.
+int read_report(int report) {
+  int error = 0;
+  ssize_t count = 0;
+  do {
+    count = read(report, &error, sizeof error);
+  } while (count < 0 && errno == EINTR);
+  return count == sizeof error ? error : 0;
+}
 
 }  // namespace
 
@@ -95,20 +107,36 @@ LineProcess::LineProcess(const std::vector<std::string>& words, OutputLog& log)
   set_nonblocking(input_.get());
   set_nonblocking(output_.get());
 
-  SpawnSettings settings;
-  posix_spawn_file_actions_adddup2(&settings.actions, child_input.get(), STDIN_FILENO);
-  posix_spawn_file_actions_adddup2(&settings.actions, child_output.get(), STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&settings.actions, log_.child_end(), STDERR_FILENO);
-  posix_spawn_file_actions_addclosefrom_np(&settings.actions, STDERR_FILENO + 1);
+  std::array<int, 2> report{};
+  if (pipe2(report.data(), O_CLOEXEC) != 0) {
+    fail_io(words.front(), "connect to the process", errno);
+  }
+  const FileDescriptor our_report(report[0]);
+  FileDescriptor child_report(report[1]);
   std::vector<char*> arguments;
   std::ranges::transform(words, std::back_inserter(arguments),
                          [](const std::string& word) { return const_cast<char*>(word.c_str()); });
   arguments.push_back(nullptr);
-  const int error = posix_spawnp(&pid_, words.front().c_str(), &settings.actions,
-                                 &settings.attributes, arguments.data(), environ);
+  const ChildPlan plan{.parent = getpid(),
+                       .streams = {child_input.get(), child_output.get(), log_.child_end()},
+                       .report = child_report.get(),
+                       .words = arguments.data()};
+  {
+    const AllSignalsBlocked blocked;
+    pid_ = fork();
+    if (pid_ == 0) {
+      become_program(plan);
+    }
+  }
+  if (pid_ < 0) {
+    fail_io(words.front(), "start a process for it", errno);
+  }
+  setpgid(pid_, pid_);  // as the child does: whoever comes first
+  child_report.close();
   log_.close_child_end();
+  const int error = read_report(our_report.get());
   if (error != 0) {
-    pid_ = -1;
+    reap(std::exchange(pid_, -1));
     throw Error(ErrorKind::usage,
                 fmt::format("cannot start '{}': {}; it must be a program on the PATH or the path "
                             "of one",
@@ -189,7 +217,7 @@ std::optional<std::string> LineProcess::take_line() {
 
 void LineProcess::send(const std::string& line, double silence_s) {
   const std::string text = line + '\n';
-  const auto deadline = after(silence_s);
+  WakingTime silence;
   std::size_t sent = 0;
   while (sent < text.size()) {
     const ssize_t count =
@@ -204,7 +232,8 @@ void LineProcess::send(const std::string& line, double silence_s) {
     if (has_ended(pid_)) {
       return;
     }
-    if (Clock::now() > deadline) {
+    silence.look();
+    if (silence.get_s() > silence_s) {
       throw LineProcessSilence(fmt::format("has not read its input for {:g} s", silence_s));
     }
     check_memory();
@@ -220,7 +249,7 @@ void LineProcess::send(const std::string& line, double silence_s) {
 
 std::optional<std::string> LineProcess::receive(double silence_s,
                                                 const std::function<bool()>& is_given_up) {
-  const auto deadline = after(silence_s);
+  WakingTime silence;
   while (true) {
     if (auto line = take_line()) {
       return line;
@@ -241,7 +270,8 @@ std::optional<std::string> LineProcess::receive(double silence_s,
       }
     }
     // Only a whole line breaks the silence: one byte now and then would keep us here for ever.
-    const bool is_late = Clock::now() > deadline;
+    silence.look();
+    const bool is_late = silence.get_s() > silence_s;
     if (has_grown && !is_late) {
       continue;
     }

@@ -160,6 +160,12 @@ const OptimizerRow& find_optimizer(std::string_view name) {
 }
 
 OptimizerRow load_optimizer(std::string_view name) {
+  // It stands in results and reports, which are UTF-8.
+  if (sanitize(name) != name) {
+    throw Error(ErrorKind::usage,
+                fmt::format("optimizer '{}': this name is not printable UTF-8; rename the file",
+                            sanitize(name)));
+  }
   constexpr std::string_view kMultistart = "multistart:";
   if (name.starts_with(kMultistart)) {
     return make_multistart_row(load_optimizer(name.substr(kMultistart.size())));

@@ -2,16 +2,16 @@
 
 #include <fcntl.h>
 #include <stdio_ext.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <new>
+
+#include "optimizers/fork_support.hpp"
 
 namespace armwright {
 namespace {
@@ -19,15 +19,6 @@ namespace {
 constexpr double kMib = 1024.0 * 1024.0;
 constexpr int kChildSocket = 3;
 constexpr std::size_t kMaxTextBytes = 4000;  // of an exception; what is longer is cut
-
-void reset_signals() {
-  for (int signal = 1; signal < NSIG; ++signal) {
-    std::signal(signal, SIG_DFL);  // refused for those that have no handler, and rightly
-  }
-  sigset_t none;
-  sigemptyset(&none);
-  sigprocmask(SIG_SETMASK, &none, nullptr);
-}
 
 void leave_descriptors_behind(int socket, int output) {
   if (output >= 0) {
@@ -105,11 +96,8 @@ std::string ParentLink::ask(std::string_view question) {
 }
 
 void run_child(const ChildSettings& settings, const std::function<void(ParentLink&)>& body) {
-  setpgid(0, 0);
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != settings.parent) {
-    _exit(EXIT_FAILURE);
-  }
+  lead_own_group();
+  die_with(settings.parent);
   leave_descriptors_behind(settings.socket, settings.output);
   // What this process had not yet written is not the child's to write; and exit() in the body ends
   // here, before the handlers registered earlier.

@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -43,6 +44,18 @@ int reap(pid_t child) {
 
 std::string describe_signal(int signal) {
   return fmt::format("was killed by signal {} ({})", signal, strsignal(signal));
+}
+
+void WakingTime::restart() {
+  last_ = Clock::now();
+  passed_s_ = 0;
+}
+
+void WakingTime::look() {
+  constexpr double kLongestWait_s = 0.2;  // twice the longest between two looks
+  const Clock::time_point now = Clock::now();
+  passed_s_ += std::min(std::chrono::duration<double>(now - last_).count(), kLongestWait_s);
+  last_ = now;
 }
 
 std::vector<OptionSpec> make_watch_options() {

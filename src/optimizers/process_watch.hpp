@@ -4,6 +4,7 @@
 
 #include <sys/types.h>
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -33,6 +34,21 @@ int reap(pid_t child);
 
 // "was killed by signal 11 (Segmentation fault)"
 std::string describe_signal(int signal);
+
+// Time that passes while this process is awake: the sum of the times between looks, each of which
+// counts for no more than a wait may last. So a suspended machine or a stopped program does not
+// make a child late.
+class WakingTime {
+ public:
+  void restart();
+  void look();
+  double get_s() const { return passed_s_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point last_ = Clock::now();
+  double passed_s_ = 0;
+};
 
 // silence_s, memory_mib and log. They change no result: a run may be resumed with other values.
 std::vector<OptionSpec> make_watch_options();
