@@ -1,12 +1,14 @@
 #include "cli/app.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
-#include <filesystem>
 #include <new>
+#include <system_error>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -141,6 +143,16 @@ int parse_and_run(CLI::App& app, Session& session, int argc, char** argv) {
   return session.action();
 }
 
+// A closed one would be given to the next file that is opened, perhaps a journal, and what is
+// printed would go there. Not to be written to: whoever prints is told.
+void occupy_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(stream, F_GETFD) < 0 && ::open("/dev/null", O_RDONLY) != stream) {
+      throw Error(ErrorKind::io, "/dev/null: cannot open it in place of a closed standard stream");
+    }
+  }
+}
+
 int get_exit_code(ErrorKind kind) {
   switch (kind) {
     case ErrorKind::usage:
@@ -176,10 +188,12 @@ const char* describe_stop(StopReason reason) {
 }
 
 int run_app(int argc, char** argv) {
-  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe shows as an error of write()
-  std::signal(SIGXFSZ, SIG_IGN);  // and so does a file as large as it may become
+  // A closed pipe and a file beyond the limit of its size show as errors of write().
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
   Session session;
   try {
+    occupy_standard_streams();
     session.command_line.assign(argv, argv + argc);
     CLI::App app(kSummary, "armwright");
     app.set_version_flag("--version", std::string("asked for"),
@@ -211,7 +225,7 @@ int run_app(int argc, char** argv) {
   } catch (const Error& error) {
     write_message(std::string("error: ") + error.what());
     return get_exit_code(error.kind());
-  } catch (const std::filesystem::filesystem_error& error) {
+  } catch (const std::system_error& error) {  // std::filesystem's, and no threads to be had
     write_message(std::string("error: ") + error.what());
     return exit_code::kIo;
   } catch (const std::bad_alloc&) {

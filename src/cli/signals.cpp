@@ -37,7 +37,8 @@ extern "C" void handle_signal(int number) {
 
 void catch_signals(StopSignal& stop) {
   g_stop = &stop;
-  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+  // SIGXCPU: a limit of processor time, which batch systems set; it comes again every second.
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGXCPU}) {
     struct sigaction before {};
     ::sigaction(number, nullptr, &before);
     if (before.sa_handler == SIG_IGN) {
