@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/file.hpp"
+#include "base/text.hpp"
 #include "optimizers/output_log.hpp"
 #include "study/judge.hpp"
 #include "study/run_folder.hpp"
@@ -15,6 +16,18 @@ namespace armwright {
 namespace {
 
 constexpr std::size_t kResultLimit_bytes = std::size_t{256} << 20;
+
+// SQLite opens no file whose whole path is longer, which would be found out when all is done.
+void check_path(const std::filesystem::path& folder) {
+  constexpr std::size_t kLongestPath_bytes = 480;
+  const std::size_t size = std::filesystem::absolute(folder).native().size();
+  if (size > kLongestPath_bytes) {
+    throw Error(ErrorKind::usage,
+                fmt::format("{}... is too long a path for a run: {} bytes, and {} are possible; "
+                            "choose another folder with --out",
+                            sanitize(folder.string().substr(0, 60)), size, kLongestPath_bytes));
+  }
+}
 
 RunResult make_result(const RunPlan& plan) {
   RunResult result;
@@ -62,6 +75,9 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
                                      RunObserver& observer) {
   const RunPlan& plan = request.plan;
   check_plan(plan);
+  if (request.derived == DerivedFiles::all) {
+    check_path(request.folder);
+  }
   const auto optimizer = plan.optimizer.make(plan.options);
   optimizer->check_problem(plan.problem.problem->description());
   const RunFolder folder(request.folder, plan, request.command_line);
@@ -77,6 +93,12 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   Journal journal(folder.journal(), recorded);
   describe_start(folder, recorded, observer);
   ThreadPool pool(request.jobs);
+  if (pool.size() < request.jobs) {
+    observer.on_message(
+        fmt::format("warning: the system grants {} of {} threads; the result is "
+                    "the same, but takes longer",
+                    pool.size(), request.jobs));
+  }
   CaseRunner runner(*plan.problem.problem, pool, stop);
   const bool ended = recorded.ended;
   Judge judge(plan, runner, journal, std::move(recorded.judgements), ended, observer);

@@ -18,6 +18,29 @@ json to_json_value(const OptionValue& value) {
   return std::visit([](const auto& v) { return json(v); }, value);
 }
 
+// Candidates of a generation or batch are held in memory all at once: their variables, and what
+// came of each of their cases.
+void check_size(const RunPlan& plan) {
+  constexpr std::int64_t kMostNumbers = 50'000'000;  // 400 MB, a few times over
+  const auto each =
+      static_cast<std::int64_t>(plan.problem.problem->description().variables.size()) +
+      plan.schedule.cases;
+  for (const char* name : {"population", "batch", "samples"}) {
+    const auto option = plan.options.values().find(name);
+    const auto* size = option == plan.options.values().end()
+                           ? nullptr
+                           : std::get_if<std::int64_t>(&option->second);
+    if (size != nullptr && *size > kMostNumbers / each) {
+      throw Error(
+          ErrorKind::usage,
+          fmt::format("optimizer '{}': option '{}' is {}; with {} variables and {} training "
+                      "cases a candidate it must be at most {}, or memory would not do",
+                      plan.optimizer.name, name, *size, each - plan.schedule.cases,
+                      plan.schedule.cases, kMostNumbers / each));
+    }
+  }
+}
+
 }  // namespace
 
 Schedule choose_schedule(const LoadedProblem& problem, const OptimizerRow& optimizer) {
@@ -103,6 +126,7 @@ void check_plan(const RunPlan& plan) {
                             "{} cannot tell; use racing halving or none",
                             plan.problem.name));
   }
+  check_size(plan);
   if (plan.budget < 0) {
     throw Error(ErrorKind::usage, fmt::format("--budget is {}; it must be >= 0", plan.budget));
   }

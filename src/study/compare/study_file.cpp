@@ -12,6 +12,7 @@
 #include "problems/config_files.hpp"
 #include "sim/simd_level.hpp"
 #include "study/compare/case_sets.hpp"
+#include "study/compare/escape.hpp"
 #include "study/compare/study_methods.hpp"
 #include "study/compare/study_plan.hpp"
 
@@ -155,6 +156,15 @@ void refuse_repeated(std::string_view what, std::span<const std::string> labels)
     if (label->empty() || sanitize(*label) != *label) {
       throw Error(ErrorKind::usage,
                   fmt::format("{} label '{}' is not printable text", what, sanitize(*label)));
+    }
+    // A cell's folder is named after it, and names may have 255 bytes.
+    constexpr std::size_t kLongestName = 250;
+    if (escape_name(*label).size() > kLongestName) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("{} label '{}...' is too long for the name of a folder: {} of {} "
+                              "characters, of which others than letters, digits, _ - . count 3",
+                              what, sanitize(label->substr(0, 40)), escape_name(*label).size(),
+                              kLongestName));
     }
     if (std::find(labels.begin(), label, *label) != label) {
       throw Error(ErrorKind::usage,

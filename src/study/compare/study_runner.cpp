@@ -11,6 +11,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <system_error>
 #include <thread>
 
 #include "base/error.hpp"
@@ -86,6 +87,7 @@ void work(const StudyPlan& plan, std::span<const Cell> cells, const std::filesys
   StopSignal stop;
   g_worker_stop = &stop;
   std::signal(SIGTERM, stop_worker);
+  std::signal(SIGXFSZ, SIG_IGN);  // an error of write()
   while (true) {
     const std::string order = parent.receive();
     const auto number = PacketReader(order).get<std::uint64_t>();
@@ -123,13 +125,15 @@ class Runner {
 
   CellsResult run(unsigned jobs) {
     observer_.on_progress(progress_);
-    std::vector<std::unique_ptr<ChildProcess>> workers;
-    for (unsigned i = 0; i < std::min<std::size_t>(jobs, cells_.size()); ++i) {
-      workers.push_back(start_worker());  // before there are threads
-    }
+    auto workers = start_workers(std::min<std::size_t>(jobs, cells_.size()));
     std::vector<std::thread> threads;
-    for (auto& worker : workers) {
-      threads.emplace_back([this, &worker] { guard([&] { attend(worker); }); });
+    try {
+      for (auto& worker : workers) {
+        threads.emplace_back([this, &worker] { guard([&] { attend(worker); }); });
+      }
+    } catch (const std::system_error&) {
+      warn_of_fewer(threads.size() + 1, workers.size());
+      guard([&] { attend(workers[threads.size()]); });
     }
     for (std::thread& thread : threads) {
       thread.join();
@@ -144,6 +148,33 @@ class Runner {
   }
 
  private:
+  // Before there are threads. As many as the system grants, if it grants any.
+  std::vector<std::unique_ptr<ChildProcess>> start_workers(std::size_t count) {
+    std::vector<std::unique_ptr<ChildProcess>> workers;
+    try {
+      while (workers.size() < count) {
+        workers.push_back(start_worker());
+      }
+    } catch (const Error&) {
+      if (workers.empty()) {
+        throw;
+      }
+      warn_of_fewer(workers.size(), count);
+    }
+    return workers;
+  }
+
+  void warn_of_fewer(std::size_t granted, std::size_t wanted) {
+    if (granted == wanted) {
+      return;
+    }
+    const std::lock_guard lock(mutex_);
+    observer_.on_message(
+        fmt::format("warning: the system grants {} of {} processes; the results "
+                    "are the same, but take longer",
+                    granted, wanted));
+  }
+
   std::unique_ptr<ChildProcess> start_worker() {
     // A cell takes as long and as much as it takes: the optimizers' own processes are watched.
     const IsolationLimits limits{.silence_s = std::numeric_limits<double>::infinity(),
