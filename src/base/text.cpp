@@ -51,6 +51,25 @@ std::size_t utf8_length(std::string_view text) {
   return overlong || not_a_character || c1_control ? 0 : length;
 }
 
+// To a spreadsheet; or with the apostrophe that keeps it from being one.
+bool begins_as_formula(std::string_view text) {
+  return !text.empty() &&
+         std::string_view("=+-@\t\r'").find(text.front()) != std::string_view::npos;
+}
+
+// Marks that turn the direction of what is written, and separators of lines: U+200E, U+200F, U+2028
+// to U+202E, U+2066 to U+2069. A name with one could show itself or its neighbours as something
+// else.
+bool rearranges_text(std::string_view character) {
+  if (character.size() != 3 || character[0] != '\xE2') {
+    return false;
+  }
+  const auto second = static_cast<unsigned char>(character[1]);
+  const auto third = static_cast<unsigned char>(character[2]);
+  return (second == 0x80 && (third == 0x8E || third == 0x8F || (third >= 0xA8 && third <= 0xAE))) ||
+         (second == 0x81 && third >= 0xA6 && third <= 0xA9);
+}
+
 template <typename Number>
 std::optional<Number> parse_whole(std::string_view text) {
   if (text.starts_with('+') && !text.starts_with("+-")) {
@@ -130,7 +149,7 @@ std::string sanitize(std::string_view text) {
   while (!text.empty()) {
     const std::size_t length = utf8_length(text);
     const bool printable =
-        length > 1 ||
+        (length > 1 && !rearranges_text(text.substr(0, length))) ||
         (length == 1 && static_cast<unsigned char>(text[0]) >= 0x20 && text[0] != 0x7F);
     const std::size_t taken = std::max<std::size_t>(length, 1);
     clean += printable ? std::string(text.substr(0, taken)) : "?";
@@ -140,11 +159,13 @@ std::string sanitize(std::string_view text) {
 }
 
 std::string quote_csv(std::string_view text) {
+  const bool marked = begins_as_formula(text) && !parse_finite(text);
+  const std::string harmless = (marked ? "'" : "") + std::string(text);
   if (text.find_first_of(",\"\r\n") == std::string_view::npos) {
-    return std::string(text);
+    return harmless;
   }
   std::string quoted = "\"";
-  for (const char c : text) {
+  for (const char c : harmless) {
     quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
   }
   return quoted + '"';

@@ -3,6 +3,18 @@
 #include "base/error.hpp"
 
 namespace armwright {
+namespace {
+
+// The apostrophe that quote_csv() puts before what a spreadsheet would take for a formula.
+std::string strip_apostrophe(std::string field) {
+  constexpr std::string_view kMarked = "=+-@\t\r'";
+  if (field.size() > 1 && field[0] == '\'' && kMarked.find(field[1]) != std::string_view::npos) {
+    field.erase(0, 1);
+  }
+  return field;
+}
+
+}  // namespace
 
 std::string CsvReader::read_field() {
   if (!rest_.starts_with('"')) {
@@ -40,7 +52,7 @@ bool CsvReader::read_row(std::vector<std::string>& fields) {
   }
   ++row_;
   while (true) {
-    fields.push_back(read_field());
+    fields.push_back(strip_apostrophe(read_field()));
     if (!rest_.starts_with(',')) {
       break;
     }

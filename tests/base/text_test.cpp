@@ -94,6 +94,7 @@ TEST(Text, SanitizesControlCharactersAndInvalidBytes) {
             "\xc5\xbd \xe2\x82\xac \xf0\x9f\xa4\x96");
   EXPECT_EQ(sanitize(std::string_view("a\0b", 3)), "a?b");
   EXPECT_EQ(sanitize("\xff\xfe"), "??");
+  EXPECT_EQ(sanitize("a\u202egpj.exe\u2066\u200f\u2028"), "a?gpj.exe???");
   EXPECT_EQ(sanitize("\xc5"), "?");  // cut off
   EXPECT_EQ(sanitize("\xe2\x82"), "??");
   EXPECT_EQ(sanitize("\xc0\xaf"), "??");  // overlong '/'

@@ -23,13 +23,20 @@ std::vector<std::vector<std::string>> read(std::string_view text) {
 }
 
 TEST(CsvReader, ReadsWhatQuoteCsvWrites) {
-  const std::vector<std::string> nasty = {"a,b", "say \"x\"", "",   "two\r\nlines",
-                                          "'",   " ",         "\"", "ü"};
+  const std::vector<std::string> nasty = {"a,b",  "say \"x\"", "",     "two\r\nlines", "'",  " ",
+                                          "\"",   "ü",         "=1+1", "'=1+1",        "-5", "'-5",
+                                          "@sum", "+",         "''"};
   std::string text;
   for (const std::string& field : nasty) {
     text += (text.empty() ? "" : ",") + quote_csv(field);
   }
   EXPECT_THAT(read(text + "\n1,2\n"), ElementsAre(nasty, ElementsAre("1", "2")));
+}
+
+TEST(CsvReader, NothingThatIsWrittenIsAFormula) {
+  EXPECT_EQ(quote_csv("=cmd|' /C calc'!A0"), "'=cmd|' /C calc'!A0");
+  EXPECT_EQ(quote_csv("@SUM(1,2)"), "\"'@SUM(1,2)\"");
+  EXPECT_EQ(quote_csv("-0.5"), "-0.5");
 }
 
 TEST(CsvReader, TakesEitherLineEndAndNoneAtTheEnd) {
