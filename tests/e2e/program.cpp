@@ -91,14 +91,18 @@ class Spawn {
     sigemptyset(&none);
     check(posix_spawnattr_setsigdefault(&attributes_, &all), "setsigdefault");
     check(posix_spawnattr_setsigmask(&attributes_, &none), "setsigmask");
-    check(posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK),
-          "setflags");
-    std::vector<std::string> words = {"armwright"};
+    int flags = POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK;
+    flags |= environment.own_group ? POSIX_SPAWN_SETPGROUP : 0;  // by default the child's number
+    check(posix_spawnattr_setflags(&attributes_, static_cast<short>(flags)), "setflags");
+    const bool direct = environment.launcher.empty();
+    std::vector<std::string> words = environment.launcher;
+    words.emplace_back(direct ? "armwright" : ARMWRIGHT_BINARY);
     words.insert(words.end(), arguments.begin(), arguments.end());
+    const std::string program = direct ? ARMWRIGHT_BINARY : words.front();
     std::vector<std::string> variables = make_environment(environment);
     int pid = -1;
-    check(posix_spawn(&pid, ARMWRIGHT_BINARY, &actions_, &attributes_, make_pointers(words).data(),
-                      make_pointers(variables).data()),
+    check(posix_spawnp(&pid, program.c_str(), &actions_, &attributes_, make_pointers(words).data(),
+                       make_pointers(variables).data()),
           "posix_spawn");
     return pid;
   }
@@ -133,6 +137,10 @@ Program::~Program() {
 
 void Program::send(int signal) const {
   check(::kill(pid_, signal) == 0 ? 0 : errno, "kill");
+}
+
+void Program::send_group(int signal) const {
+  check(::kill(-pid_, signal) == 0 ? 0 : errno, "kill");
 }
 
 bool Program::is_running() const {

@@ -19,6 +19,10 @@ struct Outcome {
 struct Environment {
   std::vector<std::pair<std::string, std::string>> variables;  // beside the test's own
   std::string out_file;  // where stdout goes instead, "/dev/full"
+  // What starts the program: words before its own, of a program on the PATH. A piece of shell sets
+  // limits or closes streams: {"sh", "-c", "ulimit -v 1000000; exec \"$@\"", "sh"}.
+  std::vector<std::string> launcher = {};
+  bool own_group = false;  // it leads a process group of its own
 };
 
 // One running program. Its stdout and stderr go to files, so that it never waits for us; NO_COLOR,
@@ -32,7 +36,9 @@ class Program {
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
 
+  int pid() const { return pid_; }
   void send(int signal) const;
+  void send_group(int signal) const;  // to all in the group that it leads
   bool is_running() const;
   Outcome wait();
 

@@ -78,6 +78,16 @@ int minimize(const armwright_problem* problem, const armwright_evaluator* evalua
     std::printf("child %d\n", static_cast<int>(child));
     std::abort();
   }
+  if (how == "close") {
+    closefrom(0);
+    evaluate(x);
+  }
+  if (how == "garbage") {
+    for (int fd = 0; fd < 16; ++fd) {
+      [[maybe_unused]] const ssize_t written = write(fd, "\0garbage\xff\xff\xff\xff", 13);
+    }
+    evaluate(x);
+  }
   if (how == "undeclared") {
     options->get_number(options->context, "hwo");
   }

@@ -1,0 +1,42 @@
+"""docs/reliability.md and the tests agree: each test that the table names is there, and each test of faults is in the table."""
+
+import pathlib
+import re
+import subprocess
+import sys
+
+PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs" / "reliability.md"
+ROOMS = "base|cli|contract|e2e|faults|optimizers|page|problems|report|sim|study|fuzz|doctor|memory"
+
+
+def plain(name):
+    """Room.Instantiation/Suite.Test/parameter without what values and types it is tried with."""
+    name = name.split("  #")[0]
+    return re.sub(r"^(\w+)\.(?:\w+/)?([\w]+)(?:/\w+)?\.(\w+)(?:/\w+)?$", r"\1.\2.\3", name)
+
+
+def list_tests(ctest, build):
+    text = subprocess.run([ctest, "-N"], cwd=build, check=True, capture_output=True, text=True).stdout
+    return {plain(line.split(": ", 1)[1].strip()) for line in text.splitlines() if re.match(r"\s*Test\s+#\d+: ", line)}
+
+
+def list_named(text):
+    """What the last column of each row names, as code."""
+    rows = [line for line in text.splitlines() if line.startswith("|")]
+    return {name for row in rows for name in re.findall(r"`((?:%s)\.[\w.]+)`" % ROOMS, row)}
+
+
+def main(ctest, build):
+    tests = list_tests(ctest, build)
+    named = list_named(PAGE.read_text())
+    faults = {test for test in tests if test.startswith("faults.")}
+    problems = [f"{name}: the page names it, and there is no such test" for name in sorted(named - tests)]
+    problems += [f"{name}: a test of faults that the page does not name" for name in sorted(faults - named)]
+    if not faults:
+        problems.append("no tests of faults are built here: build all targets first")
+    print("\n".join(problems) or f"reliability: {len(named)} tests named, all there")
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:3]))

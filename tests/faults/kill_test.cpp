@@ -1,0 +1,193 @@
+// SIGKILL at any moment: resumed, a run or a comparison ends as if nobody had disturbed it, bit by
+// bit.
+#include "base/random.hpp"
+#include "faults/support.hpp"
+
+namespace armwright::faults {
+namespace {
+
+using Fault = FailingFiles::Fault;
+
+class Kill : public testing::Test {
+ protected:
+  Outcome run(const Words& words, const Environment& environment = {}) {
+    return run_program(folder_.path(), words, environment);
+  }
+  TemporaryFolder folder_;
+};
+
+// Everything that is written or put in place, from the manifest to the last derived file; the half
+// of what was to be written is written when the process dies.
+TEST_F(Kill, AtEveryWriteAndEveryRenameOfARun) {
+  std::filesystem::create_directory(folder_ / "runs");
+  ASSERT_EQ(run(make_run("runs/whole")).exit_code, 0);
+  for (const char* call : {"write", "rename"}) {
+    FailingFiles files(folder_ / "runs", call);
+    int kills = 0;
+    for (std::uint64_t at = 1;; ++at) {
+      SCOPED_TRACE(call + std::to_string(at));
+      const std::string out = std::string("runs/") + call + std::to_string(at);
+      const Outcome killed = run(make_run(out), files.make_environment(Fault::kill, at, 0));
+      if (killed.exit_code == 0) {
+        EXPECT_LT(files.count(), at);
+        break;
+      }
+      ASSERT_EQ(killed.exit_code, -SIGKILL) << killed.err;
+      ++kills;
+      const Outcome resumed = run(make_run(out));
+      ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
+      expect_same_run(folder_ / "runs/whole", folder_ / out);
+    }
+    // manifest.json and five derived files, of which SQLite puts its own in place by the same call.
+    EXPECT_GE(kills, 5) << call;
+  }
+}
+
+// An optimizer, and a problem that keeps it busy for longer than a hundred lives.
+struct Setting {
+  const char* name;
+  std::string optimizer;
+  const char* schedule;
+  const char* budget;
+};
+
+void PrintTo(const Setting& setting, std::ostream* out) {
+  *out << setting.name;
+}
+
+Words make_command(const Setting& setting, const std::string& out, int jobs) {
+  return {"optimize",
+          "q1-complex",
+          "--optimizer",
+          setting.optimizer,
+          "--engine",
+          "ode",
+          "--schedule",
+          setting.schedule,
+          "--budget",
+          setting.budget,
+          "--set",
+          "workspace.points=4",
+          "--set",
+          "sets.test_cases=4",
+          "--set",
+          "sets.validation_cases=2",
+          "--out",
+          out,
+          "--quiet",
+          "--jobs",
+          std::to_string(jobs)};
+}
+
+std::size_t count_records(const std::filesystem::path& journal) {
+  if (get_size(journal) == 0) {
+    return 0;
+  }
+  const JournalContent content = read_journal(journal);
+  return content.training.size() + content.judgements.size();
+}
+
+class KillAHundredTimes : public testing::TestWithParam<Setting> {};
+
+// Four lives of five end amid a write, one of the first of the journal; the
+// others at a random time, which may well be before.
+TEST_P(KillAHundredTimes, AndResumeEachTime) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "runs");
+  const Outcome whole = run_program(folder.path(), make_command(GetParam(), "whole", 2));
+  ASSERT_EQ(whole.exit_code, 0) << whole.err;
+  const auto journal = folder / "runs/killed/journal";
+  FailingFiles files(folder / "runs", "write");
+  RandomStream random("test/kill-a-hundred-times", 1);
+  constexpr int kKills = 100;
+  int kills_during_work = 0;
+  for (int kill = 0; kill < kKills; ++kill) {
+    const std::size_t before = count_records(journal);
+    const bool at_a_write = kill % 5 != 4;
+    const auto at = static_cast<std::uint64_t>(random.uniform(2, 9));
+    Program program(folder.path(), make_command(GetParam(), "runs/killed", 1 + kill % 2),
+                    at_a_write ? files.make_environment(Fault::kill, at, 0) : Environment{});
+    if (!at_a_write) {
+      std::this_thread::sleep_for(
+          std::chrono::microseconds(static_cast<long>(random.uniform(0, 60'000))));
+      ASSERT_TRUE(program.is_running()) << "the run ended before its kill " << kill;
+      program.send(SIGKILL);
+    }
+    ASSERT_EQ(program.wait().exit_code, -SIGKILL) << "the run ended before its kill " << kill;
+    const bool during_work = count_records(journal) > before;
+    kills_during_work += during_work ? 1 : 0;
+    // Before are written the lock and the torn end of the life before: the first time the lock, the
+    // manifest and the journal's begin.
+    EXPECT_TRUE(during_work || !at_a_write || at < 5) << "kill " << kill << " at write " << at;
+  }
+  EXPECT_GE(kills_during_work, 45);
+  const Outcome last = run_program(folder.path(), make_command(GetParam(), "runs/killed", 2));
+  ASSERT_EQ(last.exit_code, 0) << last.err;
+  expect_same_run(folder / "whole", folder / "runs/killed");
+}
+
+INSTANTIATE_TEST_SUITE_P(Optimizers, KillAHundredTimes,
+                         testing::Values(Setting{"ga", "ga", "fresh:1", "3000"},
+                                         Setting{"cmaes", "cmaes", "fixed:1", "3000"},
+                                         Setting{"bobyqa", "nlopt:bobyqa", "fixed:1", "3000"},
+                                         Setting{"de", "pagmo:de", "fixed:1", "3000"},
+                                         Setting{"lm", "ceres:lm", "fixed:3", "4500"},
+                                         Setting{"library", get_plugin("good"), "fixed:1", "3000"},
+                                         Setting{"program", "exec:python3 " + get_script("good.py"),
+                                                 "fresh:1", "3000"}),
+                         [](const auto& test) { return test.param.name; });
+
+Words make_comparison(const std::string& out) {
+  return {"compare",
+          "--problems",
+          "q1-complex",
+          "--optimizers",
+          "ga,cmaes",
+          "--replicates",
+          "4",
+          "--budget",
+          "700",
+          "--engine",
+          "articulated",
+          "--set",
+          "sets.test_cases=4",
+          "--set",
+          "sets.validation_cases=2",
+          "--jobs",
+          "2",
+          "--out",
+          out,
+          "--quiet"};
+}
+
+// The whole process group, as a terminal that closes does it, or the parent alone, whose workers
+// must then neither go on writing nor keep the locks.
+TEST_F(Kill, AComparisonWithItsWorkersOrWithoutThem) {
+  ASSERT_EQ(run(make_comparison("whole")).exit_code, 0);
+  RandomStream random("test/kill-a-comparison", 1);
+  int kills = 0;
+  for (int life = 0; life < 12; ++life) {
+    Environment environment;
+    environment.own_group = true;
+    environment.variables = {{"FAULTS_MARK", "comparison"}};
+    Program program(folder_.path(), make_comparison("killed"), environment);
+    std::this_thread::sleep_for(
+        std::chrono::microseconds(static_cast<long>(random.uniform(20'000, 250'000))));
+    kills += program.is_running() ? 1 : 0;
+    if (life % 2 == 0) {
+      program.send_group(SIGKILL);
+    } else {
+      program.send(SIGKILL);
+    }
+    program.wait();
+    ASSERT_TRUE(wait_until([] { return list_processes("comparison").empty(); }))
+        << "workers outlive the comparison";
+  }
+  EXPECT_GE(kills, 4);
+  const Outcome last = run(make_comparison("killed"));
+  EXPECT_EQ(last.exit_code, 0) << last.err;
+  EXPECT_EQ(read_study(folder_ / "whole"), read_study(folder_ / "killed"));
+}
+
+}  // namespace
+}  // namespace armwright::faults

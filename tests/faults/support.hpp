@@ -1,0 +1,110 @@
+// What the tests of faults share: small runs of the real program, disks that fail, processes found
+// by a mark, and the comparison with a run that nobody disturbed.
+#pragma once
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <ostream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "base/temporary_folder.hpp"
+#include "e2e/program.hpp"
+#include "study/journal.hpp"
+
+namespace armwright::faults {
+
+using testing::AllOf;
+using testing::AnyOf;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+using Words = std::vector<std::string>;
+
+inline Words operator+(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+// Calls `condition` until it holds; false if it does not for so long that something hangs.
+inline bool wait_until(const std::function<bool()>& condition,
+                       std::chrono::milliseconds pause = std::chrono::milliseconds(1)) {
+  constexpr auto kPatience = std::chrono::seconds(60);
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > deadline) {
+      return false;
+    }
+    std::this_thread::sleep_for(pause);
+  }
+  return true;
+}
+
+// 0 for a file that is not there.
+std::uintmax_t get_size(const std::filesystem::path& file);
+void write_text(const std::filesystem::path& file, const std::string& text);
+// A copy whose byte at `offset` is another one.
+void flip_byte(const std::filesystem::path& file, std::size_t offset);
+
+std::string get_plugin(const std::string& name);  // "good": the library's file
+std::string get_script(const std::string& name);  // "good.py"
+
+// A shell that does something to itself and becomes the program: "ulimit -n 8".
+inline Environment after_shell(const std::string& commands) {
+  Environment environment;
+  environment.launcher = {"sh", "-c", commands + "; exec \"$@\"", "sh"};
+  return environment;
+}
+
+// Root is exempt from rights and limits: the program becomes somebody else first. Empty for others,
+// who are somebody else already.
+Words become_ordinary_user();
+// So that this somebody may write there.
+void open_to_all(const std::filesystem::path& folder);
+
+// A run of q1-complex that is short and has every kind of derived file.
+Words make_run(const std::string& out, const std::string& budget = "105");
+
+// Calls of one kind on files below a folder; the n-th fails, or kills (failing_files.c).
+class FailingFiles {
+ public:
+  // `folder` must exist.
+  FailingFiles(const std::filesystem::path& folder, std::string call);
+  enum class Fault { none, once, for_ever, kill };
+  Environment make_environment(Fault fault, std::uint64_t at, int error);
+  std::uint64_t count() const;  // of the calls since make_environment()
+
+ private:
+  std::string folder_;
+  std::string call_;
+  TemporaryFolder counter_;
+};
+
+// Processes that were started with the variable FAULTS_MARK=mark, or are children of such.
+std::vector<int> list_processes(const std::string& mark);
+bool is_alive(int pid);  // a zombie is not
+
+// Both journals hold the same evaluations and judgements, and the derived files are the same bytes.
+void expect_same_run(const std::filesystem::path& a, const std::filesystem::path& b);
+// Every record of `part` is one of `whole`, bit by bit.
+void expect_part_of(const JournalContent& part, const JournalContent& whole);
+std::map<std::string, std::string> read_study(const std::filesystem::path& study);
+
+// The beginning of a problem file that tunes the shipped arm for a few short cases.
+inline const std::string kShortProblem =
+    "kind = \"tracking\"\nphysics.engine = \"articulated\"\nworkspace.points = 4\n"
+    "sets.test_cases = 2\nsets.validation_cases = 1\n";
+
+// No number in it is NaN or infinite, however it is written.
+void expect_finite_numbers(const std::filesystem::path& file);
+
+}  // namespace armwright::faults
