@@ -89,19 +89,27 @@ void AtomicFile::write_buffer() {
 
 void AtomicFile::commit() {
   write_buffer();
-  if (::fsync(file_.get()) != 0 && errno != EINVAL && errno != EROFS) {
-    fail_io(new_path_, "sync it to the disk", errno);
-  }
   if (file_.close() != 0) {
     fail_io(new_path_, "close it", errno);
   }
-  if (::rename(new_path_.c_str(), path_.c_str()) != 0) {
-    fail_io(path_, "put it in place", errno);
-  }
+  put_in_place(new_path_, path_);
   new_path_.clear();
-  const auto folder = path_.has_parent_path() ? path_.parent_path() : std::filesystem::path(".");
+}
+
+void put_in_place(const std::filesystem::path& file, const std::filesystem::path& path) {
+  {
+    const FileDescriptor descriptor = open_file(file, O_RDONLY, "open it");
+    // Some file systems cannot sync; what they can do is then all there is to have.
+    if (::fsync(descriptor.get()) != 0 && errno != EINVAL && errno != EROFS) {
+      fail_io(file, "sync it to the disk", errno);
+    }
+  }
+  if (::rename(file.c_str(), path.c_str()) != 0) {
+    fail_io(path, "put it in place", errno);
+  }
+  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
   const FileDescriptor directory = open_file(folder, O_RDONLY | O_DIRECTORY, "open its folder");
-  // Some file systems cannot sync a folder; the rename itself has succeeded.
+  // Here too; and the rename itself has succeeded.
   ::fsync(directory.get());
 }
 

@@ -28,8 +28,7 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   void write(std::string_view content);
-  // Syncs it, renames it over `path` and syncs the folder.
-  void commit();
+  void commit();  // put_in_place()
 
  private:
   void write_buffer();
@@ -39,6 +38,9 @@ class AtomicFile {
   FileDescriptor file_;
   std::string buffer_;
 };
+
+// Syncs the file, renames it over `path` and syncs the folder.
+void put_in_place(const std::filesystem::path& file, const std::filesystem::path& path);
 
 // The whole of an AtomicFile at once.
 void write_file_atomically(const std::filesystem::path& path, std::string_view content);

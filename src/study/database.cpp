@@ -4,10 +4,12 @@
 #include <sqlite3.h>
 
 #include <cmath>
+#include <cstring>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
+#include "base/file.hpp"
 
 namespace armwright {
 namespace {
@@ -37,8 +39,10 @@ class Database {
 
   void check(int code) const {
     if (code != SQLITE_OK && code != SQLITE_DONE && code != SQLITE_ROW) {
-      throw Error(ErrorKind::io, fmt::format("{}: cannot write it: {}", file_.string(),
-                                             sqlite3_errmsg(handle_.get())));
+      const int reason = sqlite3_system_errno(handle_.get());
+      throw Error(ErrorKind::io,
+                  fmt::format("{}: cannot write it: {}", file_.string(),
+                              reason != 0 ? std::strerror(reason) : sqlite3_errmsg(handle_.get())));
     }
   }
 
@@ -127,39 +131,44 @@ void insert_records(Database& database, const ProblemDescription& problem, const
   }
 }
 
+void fill_database(const std::filesystem::path& file, const ProblemDescription& problem,
+                   const JournalContent& journal) {
+  Database database(file);
+  // The whole file is synced at the end: before that nobody looks at it.
+  database.execute("PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF; BEGIN");
+  database.execute(kSchema);
+  {
+    Insert variable(database, "INSERT INTO variable VALUES (?,?,?,?,?,?)");
+    for (std::size_t i = 0; i < problem.variables.size(); ++i) {
+      const DecisionVariable& v = problem.variables[i];
+      variable << std::uint64_t{i} << v.name << v.unit << v.lower << v.upper << v.start;
+      variable.run();
+    }
+    Insert metric(database, "INSERT INTO metric VALUES (?,?,?)");
+    for (std::size_t i = 0; i < problem.metrics.size(); ++i) {
+      metric << std::uint64_t{i} << problem.metrics[i].name << problem.metrics[i].unit;
+      metric.run();
+    }
+    insert_records(database, problem, journal.training);
+    insert_records(database, problem, journal.judgements);
+  }
+  database.execute("COMMIT");
+  database.close();
+}
+
 }  // namespace
 
 void write_database(const std::filesystem::path& file, const ProblemDescription& problem,
                     const JournalContent& journal) {
   const std::filesystem::path temporary = file.string() + ".new";
   std::filesystem::remove(temporary);
-  {
-    Database database(temporary);
-    database.execute("PRAGMA journal_mode=OFF; PRAGMA synchronous=FULL; BEGIN");
-    database.execute(kSchema);
-    {
-      Insert variable(database, "INSERT INTO variable VALUES (?,?,?,?,?,?)");
-      for (std::size_t i = 0; i < problem.variables.size(); ++i) {
-        const DecisionVariable& v = problem.variables[i];
-        variable << std::uint64_t{i} << v.name << v.unit << v.lower << v.upper << v.start;
-        variable.run();
-      }
-      Insert metric(database, "INSERT INTO metric VALUES (?,?,?)");
-      for (std::size_t i = 0; i < problem.metrics.size(); ++i) {
-        metric << std::uint64_t{i} << problem.metrics[i].name << problem.metrics[i].unit;
-        metric.run();
-      }
-      insert_records(database, problem, journal.training);
-      insert_records(database, problem, journal.judgements);
-    }
-    database.execute("COMMIT");
-    database.close();
-  }
-  std::error_code error;
-  std::filesystem::rename(temporary, file, error);
-  if (error) {
-    throw Error(ErrorKind::io,
-                fmt::format("{}: cannot put it in place: {}", file.string(), error.message()));
+  try {
+    fill_database(temporary, problem, journal);
+    put_in_place(temporary, file);
+  } catch (...) {
+    std::error_code ignored;  // there is a better error to tell
+    std::filesystem::remove(temporary, ignored);
+    throw;
   }
 }
 

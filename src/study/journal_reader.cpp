@@ -40,18 +40,17 @@ JournalScan scan_journal(FileDescriptor descriptor, const std::filesystem::path&
         throw Error(ErrorKind::bad_data,
                     fmt::format("{}: record {} (from 0) at byte {} is damaged ({}), yet an intact "
                                 "one follows at byte {}: that is not what a kill or a power cut "
-                                "leaves. The journal was left untouched: restore it from a copy "
-                                "or start a new run with --new",
-                                file.string(), number, offset, attempt.fault, *next));
+                                "leaves. {}",
+                                file.string(), number, offset, attempt.fault, *next,
+                                advise_on_damage(file)));
       }
       break;
     }
     if (scan.content.ended) {
       throw Error(ErrorKind::bad_data,
                   fmt::format("{}: record {} (from 0) at byte {} follows the record that ends the "
-                              "run. The journal was left untouched: restore it from a copy or "
-                              "start a new run with --new",
-                              file.string(), number, offset));
+                              "run. {}",
+                              file.string(), number, offset, advise_on_damage(file)));
     }
     if (auto* const end = std::get_if<EndRecord>(&*attempt.record)) {
       scan.content.ended = true;

@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <cerrno>
 #include <utility>
+#include <vector>
 
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/hash.hpp"
+#include "base/text.hpp"
 
 namespace armwright {
 
@@ -107,6 +109,13 @@ std::optional<std::uint64_t> find_intact_record(JournalWindow& window, std::uint
     }
   }
   return std::nullopt;
+}
+
+std::string advise_on_damage(const std::filesystem::path& journal) {
+  const std::string folder = journal.has_parent_path() ? journal.parent_path().string() : ".";
+  return fmt::format(
+      "It was left untouched: {} saves what is intact, and --new starts a new run",
+      quote_command(std::vector<std::string>{"armwright", "doctor", folder, "--repair"}));
 }
 
 }  // namespace armwright

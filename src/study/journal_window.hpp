@@ -48,4 +48,7 @@ RecordAttempt read_record(JournalWindow& window, std::uint64_t offset);
 // Where the next intact record begins behind `offset`, if anywhere.
 std::optional<std::uint64_t> find_intact_record(JournalWindow& window, std::uint64_t offset);
 
+// What to do about a damaged journal: a whole sentence.
+std::string advise_on_damage(const std::filesystem::path& journal);
+
 }  // namespace armwright

@@ -45,11 +45,11 @@ void sort_places(std::deque<RecordedEvaluations::Place>& places, JournalWindow& 
       return false;
     }
     if (!same_bits(read_evaluation(window, first), read_evaluation(window, second))) {
-      throw Error(ErrorKind::bad_data,
-                  fmt::format("{}: evaluation {} is recorded twice with different content; two "
-                              "processes may have written this journal. It was left untouched: "
-                              "start a new run with --new",
-                              window.file().string(), first.index));
+      throw Error(
+          ErrorKind::bad_data,
+          fmt::format("{}: evaluation {} is recorded twice with different content; two "
+                      "processes may have written this journal. {}",
+                      window.file().string(), first.index, advise_on_damage(window.file())));
     }
     return true;
   };

@@ -75,9 +75,12 @@ std::string make_front_csv(const RunResult& result) {
   };
   std::string csv = "evaluation,on_front,failed_cases";
   for (const Quantity& objective : result.objectives) {
-    csv += fmt::format(",{} [{}]", objective.name, objective.unit);
+    csv += "," + quote_csv(fmt::format("{} [{}]", objective.name, objective.unit));
   }
-  csv += "," + join(result.variable_names, ",") + "\n";
+  for (const std::string& name : result.variable_names) {
+    csv += "," + quote_csv(name);
+  }
+  csv += "\n";
   for (const JudgedCandidate* row : rows) {
     const bool covered = std::ranges::any_of(
         rows, [&](const auto* other) { return covers(other->validation, row->validation); });
@@ -141,7 +144,9 @@ std::vector<EvaluationRecord> select_judgements(const JournalContent& journal,
 std::string make_trajectory_csv(const TrackingProblem& problem, const TrackingResult& result) {
   std::string csv = "time_s";
   for (const Joint& joint : problem.config().robot.joints) {
-    csv += fmt::format(",{0}_q_rad,{0}_target_rad,{0}_effort_n_m", joint.name);
+    for (const char* quantity : {"q_rad", "target_rad", "effort_n_m"}) {
+      csv += "," + quote_csv(fmt::format("{}_{}", joint.name, quantity));
+    }
   }
   csv += ",tip_x_m,tip_y_m,tip_z_m,target_x_m,target_y_m,target_z_m,error_m\n";
   for (const TrajectorySample& sample : result.trajectory) {

@@ -73,8 +73,8 @@ TEST_P(Physics, FailsAsAValueWithAReason) {
   const JournalContent journal = read_journal(folder / "run/journal");
   EXPECT_EQ(journal.training.size(), 70u);
   EXPECT_TRUE(journal.ended);
-  for (const auto* records : {&journal.training, &journal.judgements}) {
-    for (const EvaluationRecord& record : *records) {
+  const auto expect_numbers = [](const auto& records) {
+    for (const EvaluationRecord& record : records) {
       const Evaluation& evaluation = record.evaluation;
       for (const double objective : evaluation.objectives) {
         EXPECT_TRUE(std::isfinite(objective)) << record.index;
@@ -86,7 +86,9 @@ TEST_P(Physics, FailsAsAValueWithAReason) {
         EXPECT_FALSE(evaluation.reason.empty()) << record.index;
       }
     }
-  }
+  };
+  expect_numbers(journal.training);
+  expect_numbers(journal.judgements);
   for (const auto& entry : std::filesystem::directory_iterator(folder / "run")) {
     const auto extension = entry.path().extension();
     if (extension == ".json" || extension == ".csv" || extension == ".toml") {
