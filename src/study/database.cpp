@@ -39,7 +39,9 @@ class Database {
 
   void check(int code) const {
     if (code != SQLITE_OK && code != SQLITE_DONE && code != SQLITE_ROW) {
-      const int reason = sqlite3_system_errno(handle_.get());
+      // Of other failures it is one of something that SQLite tried before.
+      const bool has_reason = (code & 0xff) == SQLITE_IOERR || (code & 0xff) == SQLITE_FULL;
+      const int reason = has_reason ? sqlite3_system_errno(handle_.get()) : 0;
       throw Error(ErrorKind::io,
                   fmt::format("{}: cannot write it: {}", file_.string(),
                               reason != 0 ? std::strerror(reason) : sqlite3_errmsg(handle_.get())));

@@ -114,7 +114,7 @@ std::optional<std::uint64_t> find_intact_record(JournalWindow& window, std::uint
 std::string advise_on_damage(const std::filesystem::path& journal) {
   const std::string folder = journal.has_parent_path() ? journal.parent_path().string() : ".";
   return fmt::format(
-      "It was left untouched: {} saves what is intact, and --new starts a new run",
+      "The journal was left untouched: {} saves what is intact, and --new starts a new run",
       quote_command(std::vector<std::string>{"armwright", "doctor", folder, "--repair"}));
 }
 

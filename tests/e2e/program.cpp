@@ -83,6 +83,8 @@ class Spawn {
   int start(const std::filesystem::path& folder, const std::vector<std::string>& arguments,
             const Environment& environment) {
     check(posix_spawn_file_actions_addchdir_np(&actions_, folder.c_str()), "chdir");
+    // What the test's own starter left open is not the program's.
+    check(posix_spawn_file_actions_addclosefrom_np(&actions_, STDERR_FILENO + 1), "closefrom");
     sigset_t all;
     sigset_t none;
     sigfillset(&all);

@@ -49,6 +49,7 @@ struct Setting {
   std::string optimizer;
   const char* schedule;
   const char* budget;
+  int most_writes = 8;  // that a life gets to; a write of a batch's answers holds more of them
 };
 
 void PrintTo(const Setting& setting, std::ostream* out) {
@@ -104,7 +105,7 @@ TEST_P(KillAHundredTimes, AndResumeEachTime) {
   for (int kill = 0; kill < kKills; ++kill) {
     const std::size_t before = count_records(journal);
     const bool at_a_write = kill % 5 != 4;
-    const auto at = static_cast<std::uint64_t>(random.uniform(2, 9));
+    const auto at = static_cast<std::uint64_t>(random.uniform(2, GetParam().most_writes + 1));
     Program program(folder.path(), make_command(GetParam(), "runs/killed", 1 + kill % 2),
                     at_a_write ? files.make_environment(Fault::kill, at, 0) : Environment{});
     if (!at_a_write) {
@@ -120,7 +121,9 @@ TEST_P(KillAHundredTimes, AndResumeEachTime) {
     // manifest and the journal's begin.
     EXPECT_TRUE(during_work || !at_a_write || at < 5) << "kill " << kill << " at write " << at;
   }
-  EXPECT_GE(kills_during_work, 45);
+  EXPECT_GE(kills_during_work, 40);
+  EXPECT_LT(count_records(journal), count_records(folder / "whole/journal"))
+      << "the last kills came when all work was done";
   const Outcome last = run_program(folder.path(), make_command(GetParam(), "runs/killed", 2));
   ASSERT_EQ(last.exit_code, 0) << last.err;
   expect_same_run(folder / "whole", folder / "runs/killed");
@@ -134,7 +137,7 @@ INSTANTIATE_TEST_SUITE_P(Optimizers, KillAHundredTimes,
                                          Setting{"lm", "ceres:lm", "fixed:3", "4500"},
                                          Setting{"library", get_plugin("good"), "fixed:1", "3000"},
                                          Setting{"program", "exec:python3 " + get_script("good.py"),
-                                                 "fresh:1", "3000"}),
+                                                 "fresh:1", "3000", 5}),
                          [](const auto& test) { return test.param.name; });
 
 Words make_comparison(const std::string& out) {
