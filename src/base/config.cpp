@@ -131,9 +131,22 @@ double read_number(const Value& value, const std::string& path, const Range& ran
 }
 
 struct Unknown {
-  std::size_t line;
-  std::string message;
+  const Value* value;  // where it stands
+  std::string path;
+  std::string key;
+  const Value* table;
 };
+
+std::string describe_unknown_key(const Unknown& unknown) {
+  const std::vector<std::string>& asked = unknown.table->asked;
+  const auto nearest = find_nearest_key(unknown.key, asked);
+  return fmt::format(
+      "{}: unknown key {}{} Valid here: {}", unknown.value->place.describe(),
+      config::join_path(unknown.path, unknown.key),
+      nearest ? fmt::format("; did you mean '{}'?", config::join_path(unknown.path, *nearest))
+              : ".",
+      asked.empty() ? "(none)" : join(asked, ", "));
+}
 
 void collect_unknown(const Value& value, const std::string& path, std::vector<Unknown>& unknown) {
   for (std::size_t i = 0; i < value.items.size(); ++i) {
@@ -147,13 +160,7 @@ void collect_unknown(const Value& value, const std::string& path, std::vector<Un
       collect_unknown(*child, child_path, unknown);
       continue;
     }
-    const auto nearest = find_nearest_key(key, value.asked);
-    unknown.push_back(
-        {child->place.line,
-         fmt::format(
-             "{}: unknown key {}{} Valid here: {}", child->place.describe(), child_path,
-             nearest ? fmt::format("; did you mean '{}'?", config::join_path(path, *nearest)) : ".",
-             value.asked.empty() ? "(none)" : join(value.asked, ", "))});
+    unknown.push_back({child.get(), path, key, &value});
   }
 }
 
@@ -356,11 +363,12 @@ void ConfigTable::refuse_unknown() const {
   if (unknown.empty()) {
     return;
   }
-  std::stable_sort(unknown.begin(), unknown.end(),
-                   [](const Unknown& a, const Unknown& b) { return a.line < b.line; });
+  std::stable_sort(unknown.begin(), unknown.end(), [](const Unknown& a, const Unknown& b) {
+    return a.value->place.line < b.value->place.line;
+  });
   std::string message;
   for (std::size_t i = 0; i < std::min(unknown.size(), kShown); ++i) {
-    message += (i == 0 ? "" : "\n") + unknown[i].message;
+    message += (i == 0 ? "" : "\n") + describe_unknown_key(unknown[i]);
   }
   if (unknown.size() > kShown) {
     message += fmt::format("\nand {} more unknown keys", unknown.size() - kShown);

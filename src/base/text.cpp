@@ -10,22 +10,26 @@
 namespace armwright {
 namespace {
 
+// One piece of memory for the whole table: files with ten thousands of names to compare are read as
+// well.
 std::size_t calc_edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  const std::size_t row = b.size() + 1;
+  std::vector<std::size_t> d((a.size() + 1) * row);
   for (std::size_t i = 0; i <= a.size(); ++i) {
     for (std::size_t j = 0; j <= b.size(); ++j) {
+      std::size_t& here = d[i * row + j];
       if (i == 0 || j == 0) {
-        d[i][j] = i + j;
+        here = i + j;
         continue;
       }
-      const std::size_t substitution = d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
-      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, substitution});
+      const std::size_t substitution = d[(i - 1) * row + j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      here = std::min({d[(i - 1) * row + j] + 1, d[i * row + j - 1] + 1, substitution});
       if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
-        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+        here = std::min(here, d[(i - 2) * row + j - 2] + 1);
       }
     }
   }
-  return d[a.size()][b.size()];
+  return d.back();
 }
 
 // Length of the valid UTF-8 sequence at the start of `text`, 0 if there is none.
@@ -95,10 +99,13 @@ std::optional<std::string> find_nearest(std::string_view name,
   std::optional<std::string> nearest;
   std::size_t best = 0;
   for (const std::string& candidate : candidates) {
-    const std::size_t distance = calc_edit_distance(name, candidate);
     const std::size_t length = std::max(name.size(), candidate.size());
     // A third, or one letter of two; one letter of one would have nothing in common.
     const std::size_t near = length == 2 ? 1 : length / 3;
+    if (length - std::min(name.size(), candidate.size()) > near) {
+      continue;  // so many letters more cannot be near; candidates can be names out of a file, too
+    }
+    const std::size_t distance = calc_edit_distance(name, candidate);
     if (distance <= near && (!nearest || distance < best)) {
       nearest = candidate;
       best = distance;
@@ -109,10 +116,24 @@ std::optional<std::string> find_nearest(std::string_view name,
 
 std::string describe_unknown(std::string_view what, std::string_view name,
                              std::span<const std::string> valid) {
+  // What is valid can stand in the same file: of any length, of any number, and printable or not.
+  constexpr std::size_t kMostListed = 200;
+  const auto show = [](std::string_view text) {
+    constexpr std::size_t kLongest_bytes = 100;
+    return text.size() <= kLongest_bytes ? sanitize(text)
+                                         : sanitize(text.substr(0, kLongest_bytes)) + "...";
+  };
   const auto nearest = find_nearest(name, valid);
-  return fmt::format("unknown {} '{}'{} Valid: {}", what, sanitize(name),
-                     nearest ? fmt::format("; did you mean '{}'?", *nearest) : ".",
-                     valid.empty() ? "(none)" : join(valid, ", "));
+  std::vector<std::string> listed;
+  for (const std::string& one : valid.first(std::min(valid.size(), kMostListed))) {
+    listed.push_back(show(one));
+  }
+  if (valid.size() > kMostListed) {
+    listed.push_back(fmt::format("and {} more", valid.size() - kMostListed));
+  }
+  return fmt::format("unknown {} '{}'{} Valid: {}", what, show(name),
+                     nearest ? fmt::format("; did you mean '{}'?", show(*nearest)) : ".",
+                     listed.empty() ? "(none)" : join(listed, ", "));
 }
 
 std::optional<double> parse_finite(std::string_view text) {
