@@ -14,12 +14,21 @@ constexpr Range kScale{.lower = 0.01, .upper = 100};
 
 std::string quote(std::string_view text) {
   std::string quoted = "\"";
-  for (const char c : text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
     if (c == '"' || c == '\\') {
       quoted += '\\';
     }
     const auto code = static_cast<unsigned char>(c);
-    quoted += code < 0x20 || code == 0x7F ? fmt::format("\\u{:04X}", code) : std::string(1, c);
+    const auto next = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : '\0');
+    if (code < 0x20 || code == 0x7F) {
+      quoted += fmt::format("\\u{:04X}", code);
+    } else if (code == 0xC2 && next >= 0x80 && next < 0xA0) {  // the other control characters
+      quoted += fmt::format("\\u{:04X}", next);
+      ++i;
+    } else {
+      quoted += c;
+    }
   }
   return sanitize(quoted) + '"';
 }
