@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
-#include "base/file.hpp"
+#include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "cli/arguments.hpp"
 #include "cli/format.hpp"
@@ -17,6 +17,7 @@
 #include "study/compare/final_check.hpp"
 #include "study/compare/study_tables.hpp"
 #include "study/journal.hpp"
+#include "study/json_values.hpp"
 #include "study/run.hpp"
 
 namespace armwright {
@@ -49,12 +50,12 @@ UnfinishedRun read_unfinished(const std::filesystem::path& folder) {
   const auto file = folder / "manifest.json";
   UnfinishedRun run;
   try {
-    const json manifest = json::parse(read_file(file, kLimit_bytes));
+    const json manifest = json::parse(read_json_file(file, kLimit_bytes));
     run.command_line = manifest.at("command_line").get<std::vector<std::string>>();
-    run.budget = manifest.at("configuration").at("run").at("budget");
+    run.budget = whole_from_json<std::int64_t>(manifest.at("configuration").at("run").at("budget"));
   } catch (const json::exception& error) {
     throw Error(ErrorKind::bad_data, fmt::format("{}: is not a manifest that armwright wrote ({})",
-                                                 file.string(), error.what()));
+                                                 file.string(), sanitize(error.what())));
   }
   if (std::filesystem::exists(folder / "journal")) {
     const JournalContent journal = read_journal(folder / "journal");

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "problems/problem_tables.hpp"
 #include "problems/replicate.hpp"
@@ -52,6 +53,7 @@ void rename_old_keys(nlohmann::json& resolved) {
 
 LoadedProblem load_recorded_problem(const std::string& resolved_json, const std::string& name,
                                     const std::filesystem::path& beside) {
+  check_json_depth(resolved_json, name);
   nlohmann::json resolved;
   std::string toml;
   std::vector<double> start;
@@ -68,7 +70,7 @@ LoadedProblem load_recorded_problem(const std::string& resolved_json, const std:
   } catch (const nlohmann::json::exception& error) {
     throw Error(ErrorKind::bad_data,
                 fmt::format("the recorded configuration of {} is not what armwright wrote ({})",
-                            sanitize(name), error.what()));
+                            sanitize(name), sanitize(error.what())));
   }
   const auto path = beside / (name + ".toml");
   LoadedProblem loaded = load_problem_tables(

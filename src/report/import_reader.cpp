@@ -10,9 +10,11 @@
 
 #include "base/error.hpp"
 #include "base/file.hpp"
+#include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "report/csv_reader.hpp"
 #include "report/tables.hpp"
+#include "study/json_values.hpp"
 
 namespace armwright {
 namespace {
@@ -146,18 +148,18 @@ void read_json(const fs::path& file, std::vector<ImportedRun>& runs) {
     return event != json::parse_event_t::key || parsed != "evaluations";
   };
   try {
-    const json root = json::parse(read_file(file, kLimit_bytes), skip_evaluations);
+    const json root = json::parse(read_json_file(file, kLimit_bytes), skip_evaluations);
     for (const json& problem : root.at("problems")) {
       for (const json& run : problem.at("runs")) {
         ImportedRun imported;
         imported.point.problem = problem.at("name");
         imported.point.label = run.at("label");
-        imported.point.replicate = run.at("replicate");
+        imported.point.replicate = whole_from_json(run.at("replicate"));
         imported.point.variables = problem.at("variables").get<std::vector<std::string>>();
         const json& best = run.at("best");
         if (!best.is_null()) {
           imported.feasible = true;
-          imported.point.evaluation = best.at("evaluation");
+          imported.point.evaluation = whole_from_json(best.at("evaluation"));
           imported.point.objective = best.at("objective");
           imported.point.x = best.at("x").get<std::vector<double>>();
         }
@@ -166,13 +168,13 @@ void read_json(const fs::path& file, std::vector<ImportedRun>& runs) {
       }
     }
   } catch (const json::exception& error) {
-    refuse(file, error.what());
+    refuse(file, sanitize(error.what()));
   }
 }
 
 void read_ioh(const fs::path& file, std::vector<ImportedRun>& runs) {
   try {
-    const json root = json::parse(read_file(file, kLimit_bytes));
+    const json root = json::parse(read_json_file(file, kLimit_bytes));
     std::vector<std::string> variables;
     for (const json& attribute : root.at("experiment_attributes")) {
       if (attribute.contains("variables")) {
@@ -185,19 +187,19 @@ void read_ioh(const fs::path& file, std::vector<ImportedRun>& runs) {
         ImportedRun imported;
         imported.point.problem = root.at("function_name");
         imported.point.label = root.at("algorithm").at("name");
-        imported.point.replicate = run.at("instance");
+        imported.point.replicate = whole_from_json(run.at("instance"));
         imported.point.variables = variables;
         const json& best = run.at("best");
         imported.point.objective = best.at("y");
         imported.feasible = imported.point.objective < std::numeric_limits<double>::max();
-        imported.point.evaluation = best.at("evals");
+        imported.point.evaluation = whole_from_json(best.at("evals"));
         imported.point.x = best.at("x").get<std::vector<double>>();
         check(imported, file);
         runs.push_back(std::move(imported));
       }
     }
   } catch (const json::exception& error) {
-    refuse(file, error.what());
+    refuse(file, sanitize(error.what()));
   }
 }
 

@@ -8,9 +8,10 @@
 #include <tuple>
 
 #include "base/error.hpp"
-#include "base/file.hpp"
+#include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "study/journal.hpp"
+#include "study/json_values.hpp"
 #include "study/run.hpp"
 
 namespace armwright {
@@ -37,21 +38,21 @@ RunEntry read_cell(const fs::path& folder) {
   RunEntry run;
   run.folder = folder;
   try {
-    const json cell = json::parse(read_file(file, kCellLimit_bytes));
+    const json cell = json::parse(read_json_file(file, kCellLimit_bytes));
     run.problem = cell.at("problem").get<std::string>();
     run.label = cell.at("label").get<std::string>();
     run.optimizer = cell.at("optimizer").get<std::string>();
-    const auto replicate = cell.at("replicate").get<std::int64_t>();
+    const auto replicate = whole_from_json(cell.at("replicate"));
     if (replicate < 1) {
       throw Error(ErrorKind::bad_data, fmt::format("{}: replicate is {}; they are counted from 1",
                                                    file.string(), replicate));
     }
-    run.replicate = static_cast<std::uint64_t>(replicate);
+    run.replicate = replicate;
   } catch (const json::exception& error) {
     throw Error(ErrorKind::bad_data,
                 fmt::format("{}: is no cell that armwright wrote ({}); remove it and start the "
                             "study again to have it rebuilt",
-                            file.string(), error.what()));
+                            file.string(), sanitize(error.what())));
   }
   return run;
 }

@@ -3,7 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
-#include "base/file.hpp"
+#include "base/json_text.hpp"
+#include "base/text.hpp"
 #include "report/export_folder.hpp"
 #include "report/export_names.hpp"
 #include "report/tables.hpp"
@@ -18,7 +19,7 @@ WorkspaceSphere read_workspace(const std::filesystem::path& run) {
   const auto file = run / "manifest.json";
   WorkspaceSphere sphere;
   try {
-    const auto manifest = nlohmann::json::parse(read_file(file, kLimit_bytes));
+    const auto manifest = nlohmann::json::parse(read_json_file(file, kLimit_bytes));
     const auto& problem = manifest.at("configuration").at("problem");
     if (!problem.contains("workspace")) {
       return sphere;
@@ -34,7 +35,7 @@ WorkspaceSphere read_workspace(const std::filesystem::path& run) {
     sphere.points = workspace.value("points", sphere.points);
   } catch (const nlohmann::json::exception& error) {
     throw Error(ErrorKind::bad_data, fmt::format("{}: is not a manifest that armwright wrote ({})",
-                                                 file.string(), error.what()));
+                                                 file.string(), sanitize(error.what())));
   }
   return sphere;
 }

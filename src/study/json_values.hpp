@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 
 #include "study/summary.hpp"
 
@@ -16,6 +18,19 @@ inline nlohmann::json optional_to_json(const std::optional<double>& value) {
 }
 inline std::optional<double> optional_from_json(const nlohmann::json& value) {
   return value.is_null() ? std::nullopt : std::optional(value.get<double>());
+}
+
+// A count or an index. nlohmann's own conversion makes one of any number: of -1 the largest there
+// is, of 1e300 whatever the machine has.
+template <class Number = std::uint64_t>
+Number whole_from_json(const nlohmann::json& value) {
+  if (!value.is_number_unsigned() ||
+      value.get<std::uint64_t>() > std::uint64_t{std::numeric_limits<Number>::max()}) {
+    const std::string found = value.is_number() ? value.dump() : value.type_name();
+    throw nlohmann::json::type_error::create(302, "must be a whole number from 0, but is " + found,
+                                             &value);
+  }
+  return value.get<Number>();
 }
 
 // Of a value to be minimised: null is infinite.
@@ -36,9 +51,9 @@ inline nlohmann::json summary_to_json(const ErrorSummary& summary) {
           {"worst", optional_to_json(summary.worst)}};
 }
 inline ErrorSummary summary_from_json(const nlohmann::json& j) {
-  return {.cases = j.at("cases"),
-          .without_number = j.at("without_number"),
-          .failures = j.at("failures"),
+  return {.cases = whole_from_json<std::size_t>(j.at("cases")),
+          .without_number = whole_from_json<std::size_t>(j.at("without_number")),
+          .failures = whole_from_json<std::size_t>(j.at("failures")),
           .mean = optional_from_json(j.at("mean")),
           .median = optional_from_json(j.at("median")),
           .percentile_95 = optional_from_json(j.at("percentile_95")),

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
 #include "base/file.hpp"
+#include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "sim/simd_level.hpp"
 #include "study/build_info.hpp"
@@ -56,24 +58,24 @@ json make_manifest(const RunPlan& plan, std::span<const std::string> command_lin
 
 json read_manifest(const std::filesystem::path& file) {
   try {
-    json manifest = json::parse(read_file(file, kManifestLimit_bytes));
+    json manifest = json::parse(read_json_file(file, kManifestLimit_bytes));
     if (manifest.at("format") != kFormat) {
       throw std::runtime_error("its format is not the one this version reads");
     }
     manifest.at("configuration");
-    manifest.at("build");
+    manifest.at("build").get<std::map<std::string, std::string>>();
     return manifest;
   } catch (const json::exception& error) {
     throw Error(
         ErrorKind::bad_data,
         fmt::format("{}: is not a manifest that armwright wrote ({}); choose another folder "
                     "with --out, or --new",
-                    file.string(), error.what()));
+                    file.string(), sanitize(error.what())));
   } catch (const std::runtime_error& error) {
     if (dynamic_cast<const Error*>(&error) != nullptr) {
       throw;
     }
-    throw Error(ErrorKind::bad_data, fmt::format("{}: {}", file.string(), error.what()));
+    throw Error(ErrorKind::bad_data, fmt::format("{}: {}", file.string(), sanitize(error.what())));
   }
 }
 

@@ -41,6 +41,12 @@ void check_size(const RunPlan& plan) {
   }
 }
 
+// Fit for a line: a recorded value can be anything.
+std::string cut(std::string_view text) {
+  constexpr std::size_t kLongest_bytes = 200;
+  return sanitize(text.substr(0, kLongest_bytes)) + (text.size() > kLongest_bytes ? "..." : "");
+}
+
 }  // namespace
 
 Schedule choose_schedule(const LoadedProblem& problem, const OptimizerRow& optimizer) {
@@ -160,6 +166,7 @@ std::string to_json(const RunPlan& plan) {
 
 std::vector<std::string> describe_differences(const std::string& recorded_json,
                                               const std::string& now_json) {
+  constexpr std::size_t kMostShown = 50;
   const json recorded = json::parse(recorded_json).flatten();
   const json now = json::parse(now_json).flatten();
   std::vector<std::string> differences;
@@ -168,20 +175,26 @@ std::vector<std::string> describe_differences(const std::string& recorded_json,
     for (char& c : pointer) {
       c = c == '/' ? '.' : c;
     }
-    return sanitize(pointer);
+    return cut(pointer);
   };
+  const auto show = [](const json& value) { return cut(value.dump()); };
   for (const auto& [key, value] : recorded.items()) {
     if (!now.contains(key)) {
-      differences.push_back(fmt::format("{}: recorded {}, now absent", name(key), value.dump()));
+      differences.push_back(fmt::format("{}: recorded {}, now absent", name(key), show(value)));
     } else if (now[key] != value) {
       differences.push_back(
-          fmt::format("{}: recorded {}, now {}", name(key), value.dump(), now[key].dump()));
+          fmt::format("{}: recorded {}, now {}", name(key), show(value), show(now[key])));
     }
   }
   for (const auto& [key, value] : now.items()) {
     if (!recorded.contains(key)) {
-      differences.push_back(fmt::format("{}: recorded absent, now {}", name(key), value.dump()));
+      differences.push_back(fmt::format("{}: recorded absent, now {}", name(key), show(value)));
     }
+  }
+  if (differences.size() > kMostShown) {
+    const std::size_t left = differences.size() - kMostShown;
+    differences.resize(kMostShown);
+    differences.push_back(fmt::format("and {} more", left));
   }
   return differences;
 }

@@ -8,6 +8,8 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "base/json_text.hpp"
+#include "base/text.hpp"
 #include "study/json_values.hpp"
 
 namespace armwright {
@@ -62,7 +64,7 @@ Evaluation evaluation_from_json(const json& j) {
   evaluation.objectives = j.at("objectives").get<std::vector<double>>();
   evaluation.constraint_values = j.at("constraint_values").get<std::vector<double>>();
   evaluation.metrics = j.at("metrics").get<std::vector<double>>();
-  evaluation.failed_cases = j.at("failed_cases");
+  evaluation.failed_cases = whole_from_json<int>(j.at("failed_cases"));
   for (const json& error : j.at("case_errors")) {
     evaluation.case_errors.push_back(error.is_null() ? std::numeric_limits<double>::quiet_NaN()
                                                      : error.get<double>());
@@ -87,14 +89,47 @@ json candidate_to_json(const JudgedCandidate& judged) {
 JudgedCandidate candidate_from_json(const json& j) {
   JudgedCandidate judged;
   judged.candidate.x = j.at("x").get<std::vector<double>>();
-  judged.candidate.generation = j.at("generation");
+  judged.candidate.generation = whole_from_json(j.at("generation"));
   judged.candidate.recommended = j.value("recommended", false);
   if (!judged.candidate.recommended) {
-    judged.candidate.evaluation = j.at("evaluation");
+    judged.candidate.evaluation = whole_from_json(j.at("evaluation"));
     judged.candidate.training_objective = j.at("training_objective");
   }
   judged.validation = evaluation_from_json(j.at("validation"));
   return judged;
+}
+
+// Whoever reads a result goes through its lists side by side.
+void check_sizes(const RunResult& result, const Evaluation& evaluation) {
+  const auto check = [](std::string_view what, std::size_t found, std::size_t named) {
+    if (found != 0 && found != named) {
+      throw std::runtime_error(
+          fmt::format("an evaluation has {} {}, and {} are named", found, what, named));
+    }
+  };
+  check("objectives", evaluation.objectives.size(), result.objectives.size());
+  check("metrics", evaluation.metrics.size(), result.metric_names.size());
+  if (!result.constraints.empty()) {
+    check("constraint values", evaluation.constraint_values.size(), result.constraints.size());
+  }
+}
+
+void check_sizes(const RunResult& result) {
+  if (!result.objective_weights.empty() &&
+      result.objective_weights.size() != result.objectives.size()) {
+    throw std::runtime_error(fmt::format("it has {} objectives and weights for {}",
+                                         result.objectives.size(),
+                                         result.objective_weights.size()));
+  }
+  for (const JudgedCandidate& judged : result.judged) {
+    if (judged.candidate.x.size() != result.variable_names.size()) {
+      throw std::runtime_error(fmt::format("a candidate has {} values for {} variables",
+                                           judged.candidate.x.size(),
+                                           result.variable_names.size()));
+    }
+    check_sizes(result, judged.validation);
+  }
+  check_sizes(result, result.test);
 }
 
 }  // namespace
@@ -174,6 +209,7 @@ std::string to_json(const RunResult& result) {
 }
 
 RunResult parse_result(const std::string& text, const std::filesystem::path& file) {
+  check_json_depth(text, file.string());
   try {
     const json j = json::parse(text);
     if (j.at("format") != kFormat) {
@@ -182,19 +218,19 @@ RunResult parse_result(const std::string& text, const std::filesystem::path& fil
     RunResult result;
     result.problem = j.at("problem");
     result.optimizer = j.at("optimizer");
-    result.seed = j.at("seed");
+    result.seed = whole_from_json(j.at("seed"));
     result.tracking = j.at("tracking");
     result.end_reason = j.at("end_reason");
     result.failure = j.at("failure");
     result.first_failure = j.at("first_failure");
     const json& counts = j.at("counts");
-    result.counts.evaluations = counts.at("evaluations");
-    result.counts.cases = counts.at("cases");
-    result.counts.clipped = counts.at("clipped");
-    result.counts.failed = counts.at("failed");
-    result.counts.abandoned = counts.value("abandoned", std::uint64_t{0});
-    result.counts.feasible = counts.at("feasible");
-    result.counts.generations = counts.at("generations");
+    result.counts.evaluations = whole_from_json(counts.at("evaluations"));
+    result.counts.cases = whole_from_json(counts.at("cases"));
+    result.counts.clipped = whole_from_json(counts.at("clipped"));
+    result.counts.failed = whole_from_json(counts.at("failed"));
+    result.counts.abandoned = whole_from_json(counts.value("abandoned", json(0U)));
+    result.counts.feasible = whole_from_json(counts.at("feasible"));
+    result.counts.generations = whole_from_json(counts.at("generations"));
     result.variable_names = j.at("variables").get<std::vector<std::string>>();
     result.metric_names = j.at("metrics").get<std::vector<std::string>>();
     for (const json& objective : j.at("objectives")) {
@@ -226,20 +262,21 @@ RunResult parse_result(const std::string& text, const std::filesystem::path& fil
     result.published.design = published.at("design");
     result.published.where = published.at("where");
     if (!j.at("winner").is_null()) {
-      result.winner = j.at("winner").at("candidate").get<std::size_t>();
+      result.winner = whole_from_json<std::size_t>(j.at("winner").at("candidate"));
       if (*result.winner >= result.judged.size()) {
         throw std::runtime_error("its winner is not among its candidates");
       }
       result.test = evaluation_from_json(j.at("winner").at("test"));
       result.test_summary = summarize(result.test.case_errors, get_failure_error(result));
     }
+    check_sizes(result);
     return result;
   } catch (const std::exception& error) {
     throw Error(
         ErrorKind::bad_data,
         fmt::format("{}: is not a result that armwright wrote ({}); it can be rebuilt from the "
                     "journal: remove it and start the run again",
-                    file.string(), error.what()));
+                    file.string(), sanitize(error.what())));
   }
 }
 

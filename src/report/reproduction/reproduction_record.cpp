@@ -10,9 +10,11 @@
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/hash.hpp"
+#include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "report/page/page_json.hpp"
 #include "study/build_info.hpp"
+#include "study/json_values.hpp"
 
 namespace armwright {
 namespace {
@@ -89,7 +91,7 @@ PartResult part_from_json(const std::string& label, const json& j) {
   result.test_set = j.at("test_set");
   result.case_errors = numbers_from_json(j.at("case_errors_m"));
   for (const json& failure : j.at("without_number")) {
-    result.failures.push_back({failure.at("case"), failure.at("reason")});
+    result.failures.push_back({whole_from_json(failure.at("case")), failure.at("reason")});
   }
   result.points = {numbers_from_json(j.at("point_mean_m")),
                    numbers_from_json(j.at("point_standard_error_m"))};
@@ -118,7 +120,7 @@ ReproductionRecord record_from_json(const json& j) {
   ReproductionRecord record;
   record.config = j.at("config");
   if (!j.at("cases").is_null()) {
-    record.cases = j.at("cases");
+    record.cases = whole_from_json(j.at("cases"));
   }
   record.overrides = j.at("set").get<std::vector<std::string>>();
   record.build = j.at("build").get<std::map<std::string, std::string>>();
@@ -178,7 +180,7 @@ ReproductionRecord load_reproduction(const std::filesystem::path& folder) {
                                               "{})",
                                               folder.string(), kRecordFile));
   }
-  const std::string text = read_file(file, kRecordLimit_bytes);
+  const std::string text = read_json_file(file, kRecordLimit_bytes);
   const auto refuse = [&](const std::string& why) {
     return Error(ErrorKind::bad_data,
                  fmt::format("{}: is not what armwright wrote ({}); choose another folder with "

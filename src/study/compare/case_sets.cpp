@@ -31,6 +31,41 @@ std::vector<Schedule> list_schedules(const StudyPlan& plan, std::size_t problem)
   return schedules;
 }
 
+// Of a replicate's training set itself: methods share its beginning.
+std::int64_t count_training_cases(const StudyPlan& plan, std::span<const Schedule> schedules) {
+  std::int64_t cases = 0;
+  for (const Schedule& schedule : schedules) {
+    // Of fresh cases no more than the budget pays for.
+    constexpr std::int64_t kMostHashed = 10'000;
+    if (schedule.kind == Schedule::Kind::fresh) {
+      cases = std::max(cases, std::min(plan.budget, kMostHashed));
+    } else if (schedule.kind == Schedule::Kind::fixed) {
+      cases = std::max(cases, std::int64_t{schedule.cases});
+    }
+  }
+  return cases;
+}
+
+// They are all made, and their hashes kept, before anything runs.
+void check_count(const StudyPlan& plan) {
+  constexpr std::int64_t kMostCompared = 1'000'000;
+  std::int64_t count = 0;
+  for (std::size_t p = 0; p < plan.problems.size(); ++p) {
+    const LoadedProblem& problem = plan.problems[p].loaded;
+    if (problem.tracking) {
+      count += std::int64_t{problem.sets.test_cases} + problem.sets.validation_cases +
+               plan.replicates * count_training_cases(plan, list_schedules(plan, p));
+    }
+  }
+  if (count > kMostCompared) {
+    throw Error(ErrorKind::usage,
+                fmt::format("the sets of all problems and replicates have {} test cases; at most "
+                            "{} are possible. Lower replicates, sets.test_cases, "
+                            "sets.validation_cases or the schedule's cases",
+                            count, kMostCompared));
+  }
+}
+
 void visit_sets(const StudyPlan& plan, const Visitor& visit) {
   for (std::size_t p = 0; p < plan.problems.size(); ++p) {
     const StudyProblem& problem = plan.problems[p];
@@ -58,16 +93,7 @@ void visit_sets(const StudyPlan& plan, const Visitor& visit) {
     for (int replicate = 1; replicate <= plan.replicates; ++replicate) {
       const std::string name = make_training_set_name(plan, {p, 0, replicate});
       const auto schedules = list_schedules(plan, p);
-      std::int64_t cases = 0;  // of the set itself: methods share its beginning
-      for (const Schedule& schedule : schedules) {
-        // Of fresh cases no more than the budget pays for.
-        constexpr std::int64_t kMostHashed = 10'000;
-        if (schedule.kind == Schedule::Kind::fresh) {
-          cases = std::max(cases, std::min(plan.budget, kMostHashed));
-        } else if (schedule.kind == Schedule::Kind::fixed) {
-          cases = std::max(cases, std::int64_t{schedule.cases});
-        }
-      }
+      const std::int64_t cases = count_training_cases(plan, schedules);
       if (cases > 0) {
         meet("training", name, static_cast<int>(cases));
       }
@@ -91,6 +117,7 @@ std::vector<UsedSet> list_used_sets(const StudyPlan& plan) {
 }
 
 void check_sets_are_disjoint(const StudyPlan& plan) {
+  check_count(plan);
   std::map<std::pair<std::string, std::string>, std::string> owner;  // (problem, case) -> set
   visit_sets(plan, [&](UsedSet& set, const std::vector<TestCase>& cases) {
     for (const TestCase& one : cases) {

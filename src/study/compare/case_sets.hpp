@@ -20,8 +20,8 @@ struct UsedSet {
 // Problem by problem: test, validation, then every replicate's training set.
 std::vector<UsedSet> list_used_sets(const StudyPlan& plan);
 
-// Error{usage} if a test case is in two sets of a problem: what was learnt would be tested, or two
-// replicates be the same.
+// Error{usage} if there are more than a million test cases to look at, or if one is in two sets of
+// a problem: what was learnt would be tested, or two replicates be the same.
 void check_sets_are_disjoint(const StudyPlan& plan);
 
 }  // namespace armwright

@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "base/file.hpp"
+#include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "study/compare/choices.hpp"
 #include "study/compare/incumbents.hpp"
@@ -130,7 +131,7 @@ json count_to_json(const std::optional<std::uint64_t>& number) {
 }
 
 std::optional<std::uint64_t> count_from_json(const json& j) {
-  return j.is_null() ? std::nullopt : std::optional(j.get<std::uint64_t>());
+  return j.is_null() ? std::nullopt : std::optional(whole_from_json(j));
 }
 
 json points_to_json(std::span<const CurvePoint> points) {
@@ -144,7 +145,7 @@ json points_to_json(std::span<const CurvePoint> points) {
 std::vector<CurvePoint> points_from_json(const json& list) {
   std::vector<CurvePoint> points;
   for (const json& point : list) {
-    points.push_back({point.at(0), value_from_json(point.at(1)),
+    points.push_back({whole_from_json<std::int64_t>(point.at(0)), value_from_json(point.at(1)),
                       point.size() > 2 ? count_from_json(point.at(2)) : std::nullopt});
   }
   return points;
@@ -199,6 +200,7 @@ std::string to_json(const CellOutcome& outcome) {
 }
 
 CellOutcome parse_cell(const std::string& text, const std::filesystem::path& file) {
+  check_json_depth(text, file.string());
   try {
     const json j = json::parse(text);
     if (j.at("format") != kFormat) {
@@ -208,14 +210,14 @@ CellOutcome parse_cell(const std::string& text, const std::filesystem::path& fil
     outcome.problem = j.at("problem");
     outcome.optimizer = j.at("label");
     outcome.optimizer_name = j.at("optimizer");
-    outcome.replicate = j.at("replicate");
+    outcome.replicate = whole_from_json<int>(j.at("replicate"));
     outcome.configuration_sha256 = j.at("configuration_sha256");
     outcome.end_reason = j.at("end_reason");
     outcome.failure = j.at("failure");
-    outcome.evaluations = j.at("evaluations");
-    outcome.cases = j.at("cases");
-    outcome.clipped = j.at("clipped");
-    outcome.failed_evaluations = j.at("failed_evaluations");
+    outcome.evaluations = whole_from_json(j.at("evaluations"));
+    outcome.cases = whole_from_json(j.at("cases"));
+    outcome.clipped = whole_from_json(j.at("clipped"));
+    outcome.failed_evaluations = whole_from_json(j.at("failed_evaluations"));
     outcome.x = j.at("x").get<std::vector<double>>();
     outcome.validation_value = value_from_json(j.at("validation_value"));
     outcome.value = value_from_json(j.at("value"));
@@ -233,7 +235,7 @@ CellOutcome parse_cell(const std::string& text, const std::filesystem::path& fil
     throw Error(ErrorKind::bad_data,
                 fmt::format("{}: is not a cell that armwright wrote ({}); remove it, and the same "
                             "command makes it again from the journal beside it",
-                            file.string(), error.what()));
+                            file.string(), sanitize(error.what())));
   }
 }
 

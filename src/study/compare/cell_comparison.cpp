@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <tuple>
 
 #include "base/bits.hpp"
 #include "base/error.hpp"
 #include "base/file.hpp"
+#include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "study/journal.hpp"
 #include "study/run_plan.hpp"
@@ -208,11 +210,14 @@ void compare_file(const std::filesystem::path& recorded, const std::filesystem::
     return;
   }
   if (file.ends_with(".json")) {
+    check_json_depth(before, (recorded / file).string());
+    check_json_depth(after, (now / file).string());
     try {
       comparison.difference = compare_json(before, after, file);
     } catch (const json::exception& error) {
-      throw Error(ErrorKind::bad_data, fmt::format("{}: is not what armwright wrote ({})",
-                                                   (recorded / file).string(), error.what()));
+      throw Error(ErrorKind::bad_data,
+                  fmt::format("{}: is not what armwright wrote ({})", (recorded / file).string(),
+                              sanitize(error.what())));
     }
   }
   if (!comparison.difference) {
@@ -223,10 +228,14 @@ void compare_file(const std::filesystem::path& recorded, const std::filesystem::
 json read_manifest(const std::filesystem::path& folder) {
   const auto file = folder / "manifest.json";
   try {
-    return json::parse(read_file(file, kFileLimit_bytes));
+    json manifest = json::parse(read_json_file(file, kFileLimit_bytes));
+    for (const char* part : {"configuration", "build"}) {
+      manifest.at(part).get<std::map<std::string, json>>();  // both are objects
+    }
+    return manifest;
   } catch (const json::exception& error) {
     throw Error(ErrorKind::bad_data, fmt::format("{}: is not a manifest that armwright wrote ({})",
-                                                 file.string(), error.what()));
+                                                 file.string(), sanitize(error.what())));
   }
 }
 
@@ -250,12 +259,11 @@ std::vector<std::string> list_likely_causes(const std::filesystem::path& recorde
   const json after = read_manifest(now);
   std::vector<std::string> causes;
   for (const std::string& difference :
-       describe_differences(before.value("configuration", json::object()).dump(),
-                            after.value("configuration", json::object()).dump())) {
+       describe_differences(before["configuration"].dump(), after["configuration"].dump())) {
     causes.push_back("The configuration is another one: " + difference + ".");
   }
-  json build_before = before.value("build", json::object());
-  json build_after = after.value("build", json::object());
+  json build_before = before["build"];
+  json build_after = after["build"];
   for (json* build : {&build_before, &build_after}) {
     build->erase("host");  // computes nothing by itself
   }

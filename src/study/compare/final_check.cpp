@@ -9,6 +9,8 @@
 #include "base/bits.hpp"
 #include "base/error.hpp"
 #include "base/file.hpp"
+#include "base/json_text.hpp"
+#include "base/text.hpp"
 #include "study/case_runner.hpp"
 #include "study/compare/escape.hpp"
 #include "study/json_values.hpp"
@@ -26,7 +28,7 @@ std::optional<FinalCheck> load_check(const std::filesystem::path& file, const St
     return std::nullopt;
   }
   try {
-    const json j = json::parse(read_file(file, kCheckLimit_bytes));
+    const json j = json::parse(read_json_file(file, kCheckLimit_bytes));
     if (j.at("engine") != plan.final_engine ||
         !same_bits(j.at("x").get<std::vector<double>>(), cell.x)) {
       return std::nullopt;  // of an earlier, smaller plan
@@ -37,7 +39,7 @@ std::optional<FinalCheck> load_check(const std::filesystem::path& file, const St
     throw Error(ErrorKind::bad_data,
                 fmt::format("{}: is not what armwright wrote ({}); remove it, and the same command "
                             "makes it again",
-                            file.string(), error.what()));
+                            file.string(), sanitize(error.what())));
   }
 }
 

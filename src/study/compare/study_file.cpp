@@ -23,6 +23,8 @@ constexpr std::int64_t kMostBudget = 1'000'000'000'000;
 constexpr int kMostReplicates = 10'000;
 constexpr int kMostSelected = 10'000;
 constexpr int kMostCheckpoints = 1000;
+constexpr std::size_t kMostNamed = 200;          // problems, and optimizers
+constexpr std::uint64_t kMostCells = 1'000'000;  // problems x optimizers x replicates
 
 struct NamedOptimizer {
   std::string name;
@@ -130,6 +132,27 @@ RawPlan read_file_plan(const ConfigTable& table, StudyPlan& plan) {
   }
   table.refuse_unknown();
   return raw;
+}
+
+// Numbers that are each allowed, but together make a plan that takes hours to check and more memory
+// than there is. Before anything is loaded.
+void check_size(const RawPlan& raw, const StudyPlan& plan) {
+  const auto refuse = [](std::string_view what, std::uint64_t count, std::uint64_t most) {
+    throw Error(ErrorKind::usage, fmt::format("the study has {} {}; at most {} are possible: make "
+                                              "several studies of it",
+                                              count, what, most));
+  };
+  if (raw.problems.size() > kMostNamed) {
+    refuse("problems", raw.problems.size(), kMostNamed);
+  }
+  if (raw.optimizers.size() > kMostNamed) {
+    refuse("optimizers", raw.optimizers.size(), kMostNamed);
+  }
+  const std::uint64_t cells = std::uint64_t{raw.problems.size()} * raw.optimizers.size() *
+                              static_cast<std::uint64_t>(plan.replicates);
+  if (cells > kMostCells) {
+    refuse("cells (problems x optimizers x replicates)", cells, kMostCells);
+  }
 }
 
 std::string make_study_name(const StudyPlan& plan) {
@@ -388,6 +411,7 @@ StudyPlan make_study_plan(const StudyRequest& request) {
   plan.replicates = request.replicates.value_or(plan.replicates);
   plan.budget = request.budget.value_or(plan.budget);
   plan.baselines = plan.baselines && request.baselines;
+  check_size(raw, plan);
   load_problems(raw, plan);
   if (plan.budget == 0) {
     throw Error(ErrorKind::usage,

@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/hash.hpp"
+#include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "study/compare/escape.hpp"
 
@@ -138,12 +139,13 @@ std::vector<std::string> describe_problem_change(const std::filesystem::path& fo
     return {};
   }
   try {
-    return describe_differences(read_file(file, kPlanLimit_bytes), problem.loaded.resolved_json);
+    return describe_differences(read_json_file(file, kPlanLimit_bytes),
+                                problem.loaded.resolved_json);
   } catch (const json::exception& error) {
     throw Error(ErrorKind::bad_data,
                 fmt::format("{}: is not what armwright wrote ({}); choose another folder with "
                             "--out, or --new",
-                            file.string(), error.what()));
+                            file.string(), sanitize(error.what())));
   }
 }
 

@@ -1,0 +1,37 @@
+#include "base/json_text.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/expect_error.hpp"
+
+namespace armwright {
+namespace {
+
+using testing::HasSubstr;
+
+std::string nest(std::size_t levels) {
+  return std::string(levels, '[') + std::string(levels, ']');
+}
+
+TEST(JsonText, MayNestAsDeepAsTheLimit) {
+  check_json_depth(nest(kJsonDepthLimit), "a.json");
+  check_json_depth(nest(kJsonDepthLimit) + "," + nest(kJsonDepthLimit), "a.json");
+}
+
+TEST(JsonText, IsRefusedBeyondItWithTheLine) {
+  EXPECT_EQ(error_of(ErrorKind::bad_data,
+                     [] { check_json_depth("{}\n\n" + nest(kJsonDepthLimit + 1), "a.json"); }),
+            "a.json:3: arrays and objects nest deeper than 64 levels");
+}
+
+TEST(JsonText, MayHaveAnyBracketsInStrings) {
+  const std::string brackets(1000, '[');
+  check_json_depth("[\"" + brackets + "\", \"\\\"" + brackets + "\", \"\\\\\"]", "a.json");
+  EXPECT_THAT(
+      error_of(ErrorKind::bad_data, [&] { check_json_depth("\"\\\\\"" + brackets, "a.json"); }),
+      HasSubstr("nest deeper"));
+}
+
+}  // namespace
+}  // namespace armwright
