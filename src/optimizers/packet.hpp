@@ -43,9 +43,17 @@ class PacketReader {
 
   template <typename Number>
   requires std::is_arithmetic_v<Number> || std::is_enum_v<Number> Number get() {
-    Number value{};
-    std::memcpy(&value, take(sizeof value).data(), sizeof value);
-    return value;
+    if constexpr (std::is_same_v<Number, bool>) {  // of any other byte no bool may be made
+      const auto byte = get<std::uint8_t>();
+      if (byte > 1) {
+        throw PacketError("a message has a truth value that is none");
+      }
+      return byte == 1;
+    } else {
+      Number value{};
+      std::memcpy(&value, take(sizeof value).data(), sizeof value);
+      return value;
+    }
   }
   std::string get_text() {
     const auto size = get<std::uint64_t>();

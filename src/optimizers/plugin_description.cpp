@@ -13,9 +13,6 @@
 namespace armwright {
 namespace {
 
-constexpr std::size_t kMaxOptions = 1000;
-constexpr std::size_t kMaxChoices = 1000;
-
 std::string take_text(const char* text, const std::string& what) {
   if (text == nullptr) {
     throw PluginRefusal(what + " is NULL");

@@ -28,6 +28,10 @@ std::vector<std::string> read_choices(const json& object, const std::string& whe
     throw ProtocolError(
         fmt::format("sent {} whose \"choices\" are {}, not a list of texts", where, quote(*list)));
   }
+  if (list->size() > kMaxChoices) {
+    throw ProtocolError(fmt::format("sent {} with {} choices; at most {} are possible", where,
+                                    list->size(), kMaxChoices));
+  }
   for (const json& choice : *list) {
     if (!choice.is_string()) {
       throw ProtocolError(
@@ -128,6 +132,10 @@ OptimizerRow read_description(const json& message) {
     if (!require(message, list, where).is_array()) {
       throw ProtocolError(fmt::format("sent a description whose \"{}\" is no list", list));
     }
+  }
+  if (message["options"].size() > kMaxOptions) {
+    throw ProtocolError(fmt::format("described {} options; at most {} are possible",
+                                    message["options"].size(), kMaxOptions));
   }
   row.capabilities = read_capabilities(message["capabilities"]);
   for (const json& option : message["options"]) {
