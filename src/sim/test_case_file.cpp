@@ -313,10 +313,7 @@ std::optional<CaseFault> find_fault(const TestCase& test_case) {
   return std::nullopt;
 }
 
-std::vector<TestCase> read_test_cases(const std::filesystem::path& file) {
-  const std::string content = read_file(file, kLargestFile_bytes);
-  const std::string name = sanitize(file.string());
-  std::string_view text = content;
+std::vector<TestCase> parse_test_cases(std::string_view text, const std::string& name) {
   if (text.starts_with("\xEF\xBB\xBF")) {  // spreadsheets write a byte order mark before UTF-8
     text.remove_prefix(3);
   }
@@ -326,6 +323,10 @@ std::vector<TestCase> read_test_cases(const std::filesystem::path& file) {
                      std::string(kHeader));
   }
   return text[first] == '{' || text[first] == '[' ? parse_json(name, text) : parse_csv(name, text);
+}
+
+std::vector<TestCase> read_test_cases(const std::filesystem::path& file) {
+  return parse_test_cases(read_file(file, kLargestFile_bytes), sanitize(file.string()));
 }
 
 }  // namespace armwright

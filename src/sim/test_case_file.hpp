@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sim/test_case.hpp"
@@ -24,5 +25,7 @@ std::optional<CaseFault> find_fault(const TestCase& test_case);
 // Error{bad_data} names file, line (CSV), case and point; Error{io} if the file cannot be read.
 // Top-level keys of the JSON other than "cases" are ignored.
 std::vector<TestCase> read_test_cases(const std::filesystem::path& file);
+// The same of a text; `name` is the file's in messages.
+std::vector<TestCase> parse_test_cases(std::string_view text, const std::string& name);
 
 }  // namespace armwright

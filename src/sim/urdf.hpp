@@ -15,7 +15,8 @@ namespace armwright {
 inline constexpr std::size_t kUrdfLimit_bytes = std::size_t{8} << 20;
 inline constexpr std::size_t kUrdfDepthLimit = 64;
 inline constexpr std::size_t kUrdfElementLimit = 50'000;
-inline constexpr std::size_t kUrdfAttributeLimit = 64;  // of one element
+inline constexpr std::size_t kUrdfAttributeLimit = 64;     // of one element
+inline constexpr std::size_t kUrdfTextLimit_bytes = 4096;  // of a name or the path of a mesh
 inline constexpr std::size_t kUrdfLinkLimit =
     1'000;  // urdfdom frees a chain recursively, link by link
 

@@ -79,6 +79,11 @@ std::string UrdfXml::get_text(const XMLElement& element, const char* attribute) 
   if (value == nullptr || *value == '\0') {
     fail(element, fmt::format("<{}> has no {}; it must have one", element.Name(), attribute));
   }
+  const std::size_t bytes = std::string_view(value).size();
+  if (bytes > kUrdfTextLimit_bytes) {
+    fail(element, fmt::format("<{}>: {} has {} bytes; at most {} are possible", element.Name(),
+                              attribute, bytes, kUrdfTextLimit_bytes));
+  }
   if (sanitize(value) != value) {
     fail(element, fmt::format("<{}>: {} is '{}'; it must be printable UTF-8", element.Name(),
                               attribute, shorten(value)));
