@@ -1,0 +1,31 @@
+// Loading a problem makes its engine but simulates nothing, so that fuzzers need not wait for the
+// SIMD kernels to compile.
+#include <stdexcept>
+
+#include "sim/articulated/articulated_engine.hpp"
+#include "sim/articulated/targets.hpp"
+
+namespace armwright {
+namespace {
+
+class NoEngine final : public PhysicsEngine {
+ public:
+  std::vector<TrackingResult> simulate(const TrackingSetup& /*setup*/,
+                                       std::span<const TrackingJob> /*jobs*/) const override {
+    throw std::logic_error("fuzzers do not simulate");
+  }
+  bool has_derivatives() const override { return true; }
+  BatchSize batch_size() const override { return {}; }
+};
+
+}  // namespace
+
+std::unique_ptr<PhysicsEngine> make_articulated_engine(const EngineOptions& /*options*/) {
+  return std::make_unique<NoEngine>();
+}
+
+targets::SolveMove targets::get_solve_move(SimdLevel /*level*/) {
+  return solve_move_scalar;
+}
+
+}  // namespace armwright

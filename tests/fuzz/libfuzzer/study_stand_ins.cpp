@@ -1,0 +1,13 @@
+// A cell of a study is read but not run.
+#include <stdexcept>
+
+#include "study/run.hpp"
+
+namespace armwright {
+
+std::optional<RunResult> execute_run(const RunRequest& /*request*/, StopSignal& /*stop*/,
+                                     RunObserver& /*observer*/) {
+  throw std::logic_error("fuzzers do not run");
+}
+
+}  // namespace armwright

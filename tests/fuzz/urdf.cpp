@@ -1,0 +1,58 @@
+// Robots: a model has finite numbers only, masses that are positive and axes that are unit vectors.
+#include <cmath>
+
+#include "fuzz/harness.hpp"
+#include "sim/robot_model.hpp"
+
+namespace armwright::fuzz {
+namespace {
+
+bool is_rigid(const Eigen::Isometry3d& pose) {
+  return pose.matrix().allFinite() && (pose.linear() * pose.linear().transpose()).isIdentity(1e-9);
+}
+
+void check_link(const Link& link, bool moves) {
+  const Inertial& body = link.inertial;
+  require(std::isfinite(body.mass_kg) && body.mass_kg >= 0 && (!moves || body.mass_kg > 0),
+          "a mass is " + std::to_string(body.mass_kg));
+  require(body.com_m.allFinite(), "a centre of mass is not finite");
+  require(body.inertia_kg_m2.allFinite(), "an inertia is not finite");
+  require(body.mass_kg == 0 || body.inertia_kg_m2.diagonal().minCoeff() > 0,
+          "an inertia is not positive");
+  for (const VisualShape& shape : link.visuals) {
+    require(is_rigid(shape.pose) && shape.size_m.allFinite() && shape.rgba.allFinite(),
+            "a shape is not finite");
+  }
+}
+
+void check_joint(const Joint& joint) {
+  require(is_rigid(joint.origin), "a joint's pose is none");
+  require(std::abs(joint.axis.norm() - 1) < 1e-9, "an axis is no unit vector");
+  require(joint.lower <= joint.upper, "a joint's limits are the wrong way round");
+  require(joint.speed_limit >= 0 && joint.effort_limit >= 0, "a limit is negative");
+}
+
+}  // namespace
+
+void fuzz_urdf(std::string_view input) {
+  is_read([&] {
+    const RobotModel robot = parse_urdf(input, "robot.urdf");
+    require(!robot.joints.empty() && robot.links.size() == robot.joints.size(),
+            "a chain has another number of links than of joints");
+    check_link(robot.base, false);
+    for (const Link& link : robot.links) {
+      check_link(link, true);
+    }
+    for (const Joint& joint : robot.joints) {
+      check_joint(joint);
+    }
+    require(is_rigid(robot.tip_pose), "the tip's pose is none");
+    is_read([&] {
+      for (const Link& link : add_load(scale_masses(robot, 2), 40).links) {
+        check_link(link, true);
+      }
+    });
+  });
+}
+
+}  // namespace armwright::fuzz
