@@ -159,7 +159,7 @@ TEST_F(Damage, DerivedFilesAreRebuiltOrNamed) {
           continue;  // it does not look at the manifest's whole
         }
         EXPECT_EQ(outcome.exit_code, 4) << outcome.err;
-        EXPECT_THAT(outcome.err, HasSubstr(std::string("error: damaged/") + name + ": "));
+        EXPECT_THAT(outcome.err, HasSubstr(std::string("error: damaged/") + name + ":"));
       }
     }
   }

@@ -53,8 +53,9 @@ TEST_F(StudyTest, AThousandRunsOfTheSmokeStudyInOneProcessLeaveNothingBehind) {
     }
   }
   const Held after = measure();
-  // Of the smallest leak, 16 bytes, there would be a thousand.
-  EXPECT_LT(after.memory_bytes, before.memory_bytes + 4096);
+  // The smallest piece that malloc gives takes 32 bytes: of a leak there would be 28 KiB. What
+  // threads have put by for themselves differs by a few.
+  EXPECT_LT(after.memory_bytes, before.memory_bytes + (std::size_t{14} << 10));
   EXPECT_EQ(after.files, before.files);
   EXPECT_EQ(after.threads, before.threads);
 }
