@@ -58,7 +58,7 @@ class Scanner {
   }
 
   void check_utf8(std::string_view letters) const {
-    if (sanitize(letters) != letters) {
+    if (!is_utf8(letters)) {
       fail({&source_, line_}, "this line is not valid UTF-8 text; save the file as UTF-8");
     }
   }

@@ -165,6 +165,17 @@ std::string format_exact(double value) {
   return fmt::format("{}", value);
 }
 
+bool is_utf8(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    if (length == 0) {
+      return false;
+    }
+    text.remove_prefix(length);
+  }
+  return true;
+}
+
 std::string sanitize(std::string_view text) {
   std::string clean;
   while (!text.empty()) {

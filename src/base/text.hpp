@@ -41,4 +41,7 @@ std::string quote_command(std::span<const std::string> words);
 // become '?'.
 std::string sanitize(std::string_view text);
 
+// Whole UTF-8 sequences, none of which is a control character beyond ASCII.
+bool is_utf8(std::string_view text);
+
 }  // namespace armwright

@@ -87,6 +87,15 @@ TEST(Text, FormatsNumbersSoThatTheyReadBackExactly) {
   }
 }
 
+TEST(Text, IsUtf8OrNot) {
+  for (const char* text : {"", "plain\ttext", "\xc5\xbd", "\xe2\x80\xae turned around"}) {
+    EXPECT_TRUE(is_utf8(text)) << text;
+  }
+  for (const char* text : {"\xff", "a\xc5", "\xed\xa0\x80", "\xc2\x9b"}) {
+    EXPECT_FALSE(is_utf8(text)) << text;
+  }
+}
+
 TEST(Text, SanitizesControlCharactersAndInvalidBytes) {
   EXPECT_EQ(sanitize("plain text"), "plain text");
   EXPECT_EQ(sanitize("a\x1b[31mred\x07\x7f\n\t"), "a?[31mred????");

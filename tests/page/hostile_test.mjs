@@ -49,7 +49,8 @@ test('problems, optimizers and folders with hostile names', async () => {
     `extends = "q1-complex"\ntitle = ${quote(kNames.slice(0, 3).join(' '))}\ndescription = ${quote(kNames.slice(0, 4).join(' '))}\n`,
   );
   const study = join(folder, 'study.toml');
-  const labels = [kScript, kNames[1], kNames[2], 'W'.repeat(200)];
+  // One that turns the text around is refused as a label; as a title it is none of the terminal's business.
+  const labels = [kScript, kNames[1], 'W'.repeat(200)];
   writeFileSync(
     study,
     `title = ${quote(kScript)}\nreplicates = 2\nbudget = 40\nset = ["physics.engine=articulated"]\n` +
