@@ -55,12 +55,6 @@ std::size_t utf8_length(std::string_view text) {
   return overlong || not_a_character || c1_control ? 0 : length;
 }
 
-// To a spreadsheet; or with the apostrophe that keeps it from being one.
-bool begins_as_formula(std::string_view text) {
-  return !text.empty() &&
-         std::string_view("=+-@\t\r'").find(text.front()) != std::string_view::npos;
-}
-
 // Marks that turn the direction of what is written, and separators of lines: U+200E, U+200F, U+2028
 // to U+202E, U+2066 to U+2069. A name with one could show itself or its neighbours as something
 // else.
@@ -188,6 +182,11 @@ std::string sanitize(std::string_view text) {
     text.remove_prefix(taken);
   }
   return clean;
+}
+
+bool begins_as_formula(std::string_view text) {
+  return !text.empty() &&
+         std::string_view("=+-@\t\r'").find(text.front()) != std::string_view::npos;
 }
 
 std::string quote_csv(std::string_view text) {

@@ -31,6 +31,10 @@ std::string join(std::span<const std::string> parts, std::string_view separator)
 // The shortest decimal that reads back as exactly the same double.
 std::string format_exact(double value);
 
+// To a spreadsheet; or with the apostrophe that quote_csv() sets in front to keep it from being
+// one.
+bool begins_as_formula(std::string_view text);
+
 // One field of a CSV file (RFC 4180).
 std::string quote_csv(std::string_view text);
 

@@ -1,14 +1,14 @@
 #include "report/csv_reader.hpp"
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 
 namespace armwright {
 namespace {
 
 // The apostrophe that quote_csv() puts before what a spreadsheet would take for a formula.
 std::string strip_apostrophe(std::string field) {
-  constexpr std::string_view kMarked = "=+-@\t\r'";
-  if (field.size() > 1 && field[0] == '\'' && kMarked.find(field[1]) != std::string_view::npos) {
+  if (field.starts_with('\'') && begins_as_formula(std::string_view(field).substr(1))) {
     field.erase(0, 1);
   }
   return field;

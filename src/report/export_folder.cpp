@@ -11,44 +11,30 @@
 
 namespace armwright {
 
-ExportFolder::ExportFolder(const std::filesystem::path& target)
-    : target_(std::filesystem::absolute(target).lexically_normal()) {
-  // "out/" has no name of its own to put something beside.
-  if (!target_.has_filename()) {
-    target_ = target_.parent_path();
-  }
+namespace {
+
+std::filesystem::path claim(const std::filesystem::path& target) {
+  const auto folder = normalize_folder(std::filesystem::absolute(target));
   std::error_code ignored;
-  if (std::filesystem::exists(std::filesystem::symlink_status(target_, ignored)) &&
-      !(std::filesystem::is_directory(target_) && std::filesystem::is_empty(target_))) {
+  if (std::filesystem::exists(std::filesystem::symlink_status(folder, ignored)) &&
+      !(std::filesystem::is_directory(folder) && std::filesystem::is_empty(folder))) {
     throw Error(ErrorKind::usage,
                 fmt::format("{}: is there already, and nothing is overwritten; choose another "
                             "folder with --out",
                             target.string()));
   }
-  make_folder(target_.parent_path());
-  for (int number = 1; path_.empty(); ++number) {
-    const std::filesystem::path path = fmt::format("{}.partial-{}", target_.string(), number);
-    std::error_code error;
-    if (std::filesystem::create_directory(path, error)) {
-      path_ = path;
-    } else if (error) {
-      fail_io(path, "create this folder", error.value());
-    }
-  }
+  return folder;
 }
 
-ExportFolder::~ExportFolder() {
-  if (!path_.empty()) {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-}
+}  // namespace
+
+ExportFolder::ExportFolder(const std::filesystem::path& target) : folder_(claim(target)) {}
 
 void ExportFolder::put_in_place() {
-  if (::rename(path_.c_str(), target_.c_str()) != 0) {
-    fail_io(target_, "put it in place", errno);
+  if (::rename(folder_.path().c_str(), folder_.target().c_str()) != 0) {
+    fail_io(folder_.target(), "put it in place", errno);
   }
-  path_.clear();
+  folder_.release();
 }
 
 OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {

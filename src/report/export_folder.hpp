@@ -1,5 +1,4 @@
-// The folder that an export is written to: whole or not at all. It is filled under another name
-// beside its own, NAME.partial-N, and renamed at the end; a kill leaves that one behind.
+// The folder that an export is written to: whole or not at all (base/partial_folder.hpp).
 #pragma once
 
 #include <cstdio>
@@ -8,23 +7,21 @@
 #include <string>
 #include <string_view>
 
+#include "base/partial_folder.hpp"
+
 namespace armwright {
 
 class ExportFolder {
  public:
   // Error{usage} if there is anything at `target` but an empty folder; Error{io}.
   explicit ExportFolder(const std::filesystem::path& target);
-  ~ExportFolder();  // removes what was not put in place
-  ExportFolder(const ExportFolder&) = delete;
-  ExportFolder& operator=(const ExportFolder&) = delete;
 
   // Where to write until then.
-  const std::filesystem::path& path() const { return path_; }
+  const std::filesystem::path& path() const { return folder_.path(); }
   void put_in_place();
 
  private:
-  std::filesystem::path target_;
-  std::filesystem::path path_;
+  PartialFolder folder_;
 };
 
 // A new file that is written piece by piece, with the folders it needs. Error{io} names it.

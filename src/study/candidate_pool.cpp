@@ -13,14 +13,13 @@ namespace {
 
 constexpr std::size_t kMostSpread = 65536;
 
-auto find_same(std::vector<Candidate>& candidates, const Candidate& candidate) {
+auto find_same(auto& candidates, const Candidate& candidate) {
   return std::ranges::find_if(
       candidates, [&](const Candidate& other) { return same_bits(other.x, candidate.x); });
 }
 
 bool is_among(const std::vector<Candidate>& candidates, const Candidate& candidate) {
-  return std::ranges::any_of(
-      candidates, [&](const Candidate& other) { return same_bits(other.x, candidate.x); });
+  return find_same(candidates, candidate) != candidates.end();
 }
 
 }  // namespace

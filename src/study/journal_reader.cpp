@@ -1,16 +1,13 @@
 #include "study/journal_reader.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <deque>
 #include <utility>
 #include <variant>
 
 #include "base/error.hpp"
-#include "base/file.hpp"
 #include "study/journal_format.hpp"
 #include "study/journal_window.hpp"
 
@@ -72,12 +69,7 @@ JournalScan scan_journal(FileDescriptor descriptor, const std::filesystem::path&
 }
 
 JournalContent read_journal(const std::filesystem::path& file) {
-  // Not blocking, or a named pipe would be waited for forever before it could be refused.
-  FileDescriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  if (!descriptor.is_open()) {
-    fail_io(file, "open it", errno);
-  }
-  return scan_journal(std::move(descriptor), file).content;
+  return scan_journal(open_journal(file), file).content;
 }
 
 }  // namespace armwright

@@ -1,5 +1,6 @@
 #include "study/journal_window.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -20,6 +21,15 @@ using journal_format::Frame;
 using journal_format::kFrameBytes;
 using journal_format::kMaxPayloadBytes;
 using journal_format::kProbeBytes;
+
+FileDescriptor open_journal(const std::filesystem::path& file) {
+  // Not blocking, or a named pipe would be waited for forever before it could be refused.
+  FileDescriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (!descriptor.is_open()) {
+    fail_io(file, "open it", errno);
+  }
+  return descriptor;
+}
 
 JournalWindow::JournalWindow(int fd, std::filesystem::path file) : fd_(fd), file_(std::move(file)) {
   struct stat status {};

@@ -9,9 +9,13 @@
 #include <string>
 #include <string_view>
 
+#include "base/file_descriptor.hpp"
 #include "study/journal_format.hpp"
 
 namespace armwright {
+
+// For reading. Error{io}.
+FileDescriptor open_journal(const std::filesystem::path& file);
 
 class JournalWindow {
  public:

@@ -16,6 +16,7 @@
 #include "base/text.hpp"
 
 namespace armwright {
+
 RunEvaluator::RunEvaluator(const RunPlan& plan, CaseRunner& runner, StopSignal& stop,
                            Journal& journal, JournalContent recorded, RunObserver& observer)
     : plan_(plan),
@@ -390,17 +391,12 @@ void RunEvaluator::check_race(const std::vector<EvaluationRecord>& records) cons
 
 void RunEvaluator::take(EvaluationRecord record, Score& score) {
   Evaluation& evaluation = record.evaluation;
-  ++counts_.evaluations;
-  counts_.cases += record.calc_charge();
-  counts_.clipped += record.clipped ? 1 : 0;
-  const bool is_abandoned = evaluation.status == EvaluationStatus::abandoned;
-  counts_.abandoned += is_abandoned ? 1 : 0;
-  counts_.failed += evaluation.status == EvaluationStatus::ok || is_abandoned ? 0 : 1;
-  if (breeder_ && !is_abandoned && !evaluation.objectives.empty()) {
+  counts_.add(record);
+  if (breeder_ && evaluation.status != EvaluationStatus::abandoned &&
+      !evaluation.objectives.empty()) {
     breeder_->learn(record, calc_scalar(problem(), evaluation.objectives));
   }
   if (is_feasible(evaluation)) {
-    ++counts_.feasible;
     candidates_.consider(record);
   }
   if (!evaluation.constraint_values.empty()) {

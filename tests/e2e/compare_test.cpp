@@ -40,22 +40,12 @@ std::vector<std::string> make_command(const std::string& out, const std::string&
           "--quiet"};
 }
 
-std::map<std::string, std::string> read_tables(const std::filesystem::path& study) {
-  std::map<std::string, std::string> tables;
-  for (const auto& entry : std::filesystem::directory_iterator(study / "tables")) {
-    tables[entry.path().filename().string()] = read_text(entry.path());
-  }
-  tables["result.json"] = read_text(study / "result.json");
-  tables["verdict.txt"] = read_text(study / "verdict.txt");
-  return tables;
-}
-
 TEST(CliCompare, KillsInTheMiddleAndAnyNumberOfProcessesChangeNoTable) {
   const TemporaryFolder folder;
   const Outcome one = run_program(folder.path(), make_command("one", "1"));
   ASSERT_EQ(one.exit_code, 0) << one.err;
   ASSERT_EQ(run_program(folder.path(), make_command("two", "2")).exit_code, 0);
-  EXPECT_EQ(read_tables(folder / "one"), read_tables(folder / "two"));
+  EXPECT_EQ(read_study(folder / "one"), read_study(folder / "two"));
   int kills = 0;
   for (const int wait_ms : {300, 450, 200}) {
     Program program(folder.path(), make_command("killed", "2"));
@@ -67,7 +57,7 @@ TEST(CliCompare, KillsInTheMiddleAndAnyNumberOfProcessesChangeNoTable) {
   EXPECT_GT(kills, 0);
   const Outcome last = run_program(folder.path(), make_command("killed", "2"));
   EXPECT_EQ(last.exit_code, 0) << last.err;
-  EXPECT_EQ(read_tables(folder / "one"), read_tables(folder / "killed"));
+  EXPECT_EQ(read_study(folder / "one"), read_study(folder / "killed"));
   EXPECT_THAT(one.out, HasSubstr("Verdict"));
 }
 

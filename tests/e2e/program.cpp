@@ -203,4 +203,14 @@ std::string read_text(const std::filesystem::path& file) {
   return text.str();
 }
 
+std::map<std::string, std::string> read_study(const std::filesystem::path& study) {
+  std::map<std::string, std::string> tables;
+  for (const auto& entry : std::filesystem::directory_iterator(study / "tables")) {
+    tables[entry.path().filename().string()] = read_text(entry.path());
+  }
+  tables["result.json"] = read_text(study / "result.json");
+  tables["verdict.txt"] = read_text(study / "verdict.txt");
+  return tables;
+}
+
 }  // namespace armwright

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -56,5 +57,8 @@ std::string run_on_terminal(const std::filesystem::path& folder,
                             const Environment& environment = {}, unsigned short columns = 100);
 
 std::string read_text(const std::filesystem::path& file);
+
+// What a comparison has come to: its tables, result and verdict, by the names of their files.
+std::map<std::string, std::string> read_study(const std::filesystem::path& study);
 
 }  // namespace armwright

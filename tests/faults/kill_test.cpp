@@ -140,40 +140,17 @@ INSTANTIATE_TEST_SUITE_P(Optimizers, KillAHundredTimes,
                                                  "fresh:1", "3000", 5}),
                          [](const auto& test) { return test.param.name; });
 
-Words make_comparison(const std::string& out) {
-  return {"compare",
-          "--problems",
-          "q1-complex",
-          "--optimizers",
-          "ga,cmaes",
-          "--replicates",
-          "4",
-          "--budget",
-          "700",
-          "--engine",
-          "articulated",
-          "--set",
-          "sets.test_cases=4",
-          "--set",
-          "sets.validation_cases=2",
-          "--jobs",
-          "2",
-          "--out",
-          out,
-          "--quiet"};
-}
-
 // The whole process group, as a terminal that closes does it, or the parent alone, whose workers
 // must then neither go on writing nor keep the locks.
 TEST_F(Kill, AComparisonWithItsWorkersOrWithoutThem) {
-  ASSERT_EQ(run(make_comparison("whole")).exit_code, 0);
+  ASSERT_EQ(run(make_arm_comparison("whole")).exit_code, 0);
   RandomStream random("test/kill-a-comparison", 1);
   int kills = 0;
   for (int life = 0; life < 12; ++life) {
     Environment environment;
     environment.own_group = true;
     environment.variables = {{"FAULTS_MARK", "comparison"}};
-    Program program(folder_.path(), make_comparison("killed"), environment);
+    Program program(folder_.path(), make_arm_comparison("killed"), environment);
     std::this_thread::sleep_for(
         std::chrono::microseconds(static_cast<long>(random.uniform(20'000, 250'000))));
     kills += program.is_running() ? 1 : 0;
@@ -187,7 +164,7 @@ TEST_F(Kill, AComparisonWithItsWorkersOrWithoutThem) {
         << "workers outlive the comparison";
   }
   EXPECT_GE(kills, 4);
-  const Outcome last = run(make_comparison("killed"));
+  const Outcome last = run(make_arm_comparison("killed"));
   EXPECT_EQ(last.exit_code, 0) << last.err;
   EXPECT_EQ(read_study(folder_ / "whole"), read_study(folder_ / "killed"));
 }

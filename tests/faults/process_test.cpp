@@ -114,29 +114,6 @@ TEST_F(Processes, NothingOutlivesAKilledComparison) {
   }
 }
 
-Words make_comparison(const std::string& out, const std::string& jobs = "2") {
-  return {"compare",
-          "--problems",
-          "q1-complex",
-          "--optimizers",
-          "ga,cmaes",
-          "--replicates",
-          "4",
-          "--budget",
-          "700",
-          "--engine",
-          "articulated",
-          "--set",
-          "sets.test_cases=4",
-          "--set",
-          "sets.validation_cases=2",
-          "--jobs",
-          jobs,
-          "--out",
-          out,
-          "--quiet"};
-}
-
 std::vector<int> list_children(int parent) {
   std::vector<int> children;
   std::istringstream words(read_text("/proc/" + std::to_string(parent) + "/task/" +
@@ -150,9 +127,9 @@ std::vector<int> list_children(int parent) {
 // A worker that dies takes at most its cell, which is made again; one whose process dies twice is
 // marked as failed, and the same command makes it again.
 TEST_F(Processes, WorkersOfAComparisonThatAreKilledChangeNoTable) {
-  ASSERT_EQ(run(make_comparison("whole")).exit_code, 0);
+  ASSERT_EQ(run(make_arm_comparison("whole")).exit_code, 0);
   RandomStream random("test/kill-workers", 1);
-  Program program(folder_.path(), make_comparison("killed"));
+  Program program(folder_.path(), make_arm_comparison("killed"));
   int kills = 0;
   while (program.is_running() && kills < 6) {
     std::this_thread::sleep_for(
@@ -167,21 +144,21 @@ TEST_F(Processes, WorkersOfAComparisonThatAreKilledChangeNoTable) {
   const Outcome outcome = program.wait();
   EXPECT_GT(kills, 0);
   EXPECT_THAT(outcome.exit_code, AnyOf(0, 3)) << outcome.err;
-  const Outcome again = run(make_comparison("killed"));
+  const Outcome again = run(make_arm_comparison("killed"));
   EXPECT_EQ(again.exit_code, 0) << again.err;
   EXPECT_EQ(read_study(folder_ / "whole"), read_study(folder_ / "killed"));
 }
 
 // A worker that ends well has not thereby done its cell: only cell.json says so.
 TEST_F(Processes, ACellIsDoneOnlyByItsOwnRecord) {
-  ASSERT_EQ(run(make_comparison("study")).exit_code, 0);
+  ASSERT_EQ(run(make_arm_comparison("study")).exit_code, 0);
   const auto tables = read_study(folder_ / "study");
   const auto cell = folder_ / "study/cells/q1-complex/ga/r02";
   for (const char* file : {"cell.json", "result.json", ""}) {  // the last: all of it
     SCOPED_TRACE(file);
     std::filesystem::remove(cell / "cell.json");
     std::filesystem::remove_all(cell / file);
-    const Outcome again = run(make_comparison("study"));
+    const Outcome again = run(make_arm_comparison("study"));
     EXPECT_EQ(again.exit_code, 0) << again.err;
     EXPECT_TRUE(std::filesystem::exists(cell / "cell.json"));
     EXPECT_EQ(read_study(folder_ / "study"), tables);
@@ -190,10 +167,10 @@ TEST_F(Processes, ACellIsDoneOnlyByItsOwnRecord) {
 
 // The same bytes for any number of workers, and for each of them after kills.
 TEST_F(Processes, AComparisonDoesNotDependOnTheNumberOfItsWorkers) {
-  ASSERT_EQ(run(make_comparison("one", "1")).exit_code, 0);
+  ASSERT_EQ(run(make_arm_comparison("one", "1")).exit_code, 0);
   const auto tables = read_study(folder_ / "one");
   for (const std::string jobs : {"2", "8"}) {
-    ASSERT_EQ(run(make_comparison(jobs, jobs)).exit_code, 0);
+    ASSERT_EQ(run(make_arm_comparison(jobs, jobs)).exit_code, 0);
     EXPECT_EQ(read_study(folder_ / jobs), tables) << jobs;
   }
 }

@@ -166,14 +166,27 @@ void expect_same_run(const std::filesystem::path& a, const std::filesystem::path
   }
 }
 
-std::map<std::string, std::string> read_study(const std::filesystem::path& study) {
-  std::map<std::string, std::string> tables;
-  for (const auto& entry : std::filesystem::directory_iterator(study / "tables")) {
-    tables[entry.path().filename().string()] = read_text(entry.path());
-  }
-  tables["result.json"] = read_text(study / "result.json");
-  tables["verdict.txt"] = read_text(study / "verdict.txt");
-  return tables;
+Words make_arm_comparison(const std::string& out, const std::string& jobs) {
+  return {"compare",
+          "--problems",
+          "q1-complex",
+          "--optimizers",
+          "ga,cmaes",
+          "--replicates",
+          "4",
+          "--budget",
+          "700",
+          "--engine",
+          "articulated",
+          "--set",
+          "sets.test_cases=4",
+          "--set",
+          "sets.validation_cases=2",
+          "--jobs",
+          jobs,
+          "--out",
+          out,
+          "--quiet"};
 }
 
 void expect_finite_numbers(const std::filesystem::path& file) {

@@ -97,7 +97,9 @@ bool is_alive(int pid);  // a zombie is not
 void expect_same_run(const std::filesystem::path& a, const std::filesystem::path& b);
 // Every record of `part` is one of `whole`, bit by bit.
 void expect_part_of(const JournalContent& part, const JournalContent& whole);
-std::map<std::string, std::string> read_study(const std::filesystem::path& study);
+
+// Two optimizers on a quick arm, in sixteen cells with the baselines.
+Words make_arm_comparison(const std::string& out, const std::string& jobs = "2");
 
 // The beginning of a problem file that tunes the shipped arm for a few short cases.
 inline const std::string kShortProblem =

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <system_error>
 
 namespace armwright {
 
@@ -16,5 +17,11 @@ struct Finding {
   std::filesystem::path file;  // as seen from the folder that was asked about
   std::string what;
 };
+
+// Something bears this name, were it a link to nothing.
+inline bool is_there(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::exists(std::filesystem::symlink_status(path, ignored));
+}
 
 }  // namespace armwright

@@ -33,37 +33,19 @@ void sync_folder(const std::filesystem::path& folder) {
                           sanitize(target.string())));
 }
 
+std::filesystem::path claim(const std::filesystem::path& target) {
+  const auto folder = normalize_folder(target);
+  std::error_code ignored;
+  if (std::filesystem::exists(std::filesystem::symlink_status(folder, ignored))) {
+    refuse_target(folder);
+  }
+  return folder;
+}
+
 }  // namespace
 
 FolderCopy::FolderCopy(const std::filesystem::path& target, StopSignal& stop)
-    : target_(target.lexically_normal()), stop_(stop) {
-  if (!target_.has_filename()) {
-    target_ = target_.parent_path();  // "results/mine/"
-  }
-  std::error_code ignored;
-  if (std::filesystem::exists(std::filesystem::symlink_status(target_, ignored))) {
-    refuse_target(target_);
-  }
-  if (target_.has_parent_path()) {
-    armwright::make_folder(target_.parent_path());
-  }
-  for (int number = 1; path_.empty(); ++number) {
-    const std::filesystem::path path = fmt::format("{}.partial-{}", target_.string(), number);
-    std::error_code error;
-    if (std::filesystem::create_directory(path, error)) {
-      path_ = path;
-    } else if (error) {
-      fail_io(path, "create this folder", error.value());
-    }
-  }
-}
-
-FolderCopy::~FolderCopy() {
-  if (!path_.empty()) {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-}
+    : folder_(claim(target)), stop_(stop) {}
 
 void FolderCopy::check_stop() {
   if (stop_.requested()) {
@@ -72,14 +54,14 @@ void FolderCopy::check_stop() {
 }
 
 void FolderCopy::make_folder(const std::filesystem::path& name) {
-  armwright::make_folder(path_ / name);
+  armwright::make_folder(folder_.path() / name);
 }
 
 bool FolderCopy::add(const std::filesystem::path& source, const std::filesystem::path& name) {
   check_stop();
   const auto status = std::filesystem::symlink_status(source);
   if (std::filesystem::is_symlink(status)) {
-    std::filesystem::copy_symlink(source, path_ / name);
+    std::filesystem::copy_symlink(source, folder_.path() / name);
     return true;
   }
   if (!std::filesystem::is_regular_file(status)) {
@@ -93,7 +75,7 @@ bool FolderCopy::add(const std::filesystem::path& source, const std::filesystem:
   add_file(name, [&](int fd) {
     copy_bytes(file.get(), 0, static_cast<std::uint64_t>(found.st_size), fd, source);
     if (::fchmod(fd, found.st_mode & 0777) != 0) {
-      fail_io(path_ / name, "set its rights", errno);
+      fail_io(folder_.path() / name, "set its rights", errno);
     }
   });
   return true;
@@ -101,7 +83,7 @@ bool FolderCopy::add(const std::filesystem::path& source, const std::filesystem:
 
 void FolderCopy::add_file(const std::filesystem::path& name,
                           const std::function<void(int fd)>& write) {
-  const auto path = path_ / name;
+  const auto path = folder_.path() / name;
   FileDescriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644));
   if (!file.is_open()) {
     fail_io(path, "write it", errno);
@@ -131,7 +113,7 @@ void FolderCopy::copy_bytes(int source, std::uint64_t offset, std::uint64_t byte
     }
     const auto part = static_cast<std::size_t>(got);
     if (const int error = write_fully(target, {chunk.data(), part}).error; error != 0) {
-      fail_io(target_, "write a file of the copy", error);
+      fail_io(folder_.target(), "write a file of the copy", error);
     }
     offset += part;
     bytes -= part;
@@ -140,24 +122,26 @@ void FolderCopy::copy_bytes(int source, std::uint64_t offset, std::uint64_t byte
 
 void FolderCopy::put_in_place() {
   check_stop();
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(path_)) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_.path())) {
     if (entry.is_directory() && !entry.is_symlink()) {
       sync_folder(entry.path());
     }
   }
-  sync_folder(path_);
-  if (::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, target_.c_str(), RENAME_NOREPLACE) != 0) {
+  sync_folder(folder_.path());
+  if (::renameat2(AT_FDCWD, folder_.path().c_str(), AT_FDCWD, folder_.target().c_str(),
+                  RENAME_NOREPLACE) != 0) {
     const bool is_there = errno == EEXIST;
     // File systems that cannot refuse to replace: at most an empty folder would be.
-    if (is_there || errno != EINVAL || ::rename(path_.c_str(), target_.c_str()) != 0) {
+    if (is_there || errno != EINVAL ||
+        ::rename(folder_.path().c_str(), folder_.target().c_str()) != 0) {
       if (is_there) {
-        refuse_target(target_);
+        refuse_target(folder_.target());
       }
-      fail_io(target_, "put it in place", errno);
+      fail_io(folder_.target(), "put it in place", errno);
     }
   }
-  path_.clear();
-  sync_folder_of(target_);
+  folder_.release();
+  sync_folder_of(folder_.target());
 }
 
 }  // namespace armwright

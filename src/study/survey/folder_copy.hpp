@@ -1,6 +1,5 @@
-// A folder that is made as a copy of another: whole or not there. It is filled under another name
-// beside its own, NAME.partial-N, synced to the disk and renamed at the end; a kill leaves that one
-// behind, which may be removed. The original is only read.
+// A folder that is made as a copy of another: whole or not there (base/partial_folder.hpp), and
+// synced to the disk before it gets its name. The original is only read.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +7,7 @@
 #include <functional>
 
 #include "base/file_descriptor.hpp"
+#include "base/partial_folder.hpp"
 #include "study/stop.hpp"
 
 namespace armwright {
@@ -18,11 +18,8 @@ class FolderCopy {
  public:
   // Error{usage} if there is anything at `target`; Error{io}.
   FolderCopy(const std::filesystem::path& target, StopSignal& stop);
-  ~FolderCopy();  // removes what was not put in place
-  FolderCopy(const FolderCopy&) = delete;
-  FolderCopy& operator=(const FolderCopy&) = delete;
 
-  const std::filesystem::path& target() const { return target_; }
+  const std::filesystem::path& target() const { return folder_.target(); }
   // All below are given names as seen from the new folder. Error{io}; CopyStopped.
   void make_folder(const std::filesystem::path& name);
   // A file, or a symbolic link as such. False for anything else, which is left out.
@@ -39,8 +36,7 @@ class FolderCopy {
  private:
   void check_stop();
 
-  std::filesystem::path target_;
-  std::filesystem::path path_;
+  PartialFolder folder_;
   StopSignal& stop_;
 };
 

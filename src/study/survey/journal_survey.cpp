@@ -1,10 +1,8 @@
 #include "study/survey/journal_survey.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <map>
 #include <set>
 #include <string_view>
@@ -67,15 +65,6 @@ void visit_records(JournalWindow& window, OnRecord on_record, OnGap on_gap, OnEn
   }
 }
 
-FileDescriptor open_journal(const std::filesystem::path& file) {
-  // Not blocking, or a named pipe would be waited for.
-  const int fd = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (fd < 0) {
-    fail_io(file, "open it", errno);
-  }
-  return FileDescriptor(fd);
-}
-
 class Surveyor {
  public:
   Surveyor(const std::filesystem::path& file,
@@ -118,7 +107,7 @@ class Surveyor {
     if (evaluation.cases.role != CaseRole::training) {
       ++survey_.judgements;
     } else if (survey_.evaluations.insert(evaluation.index)) {
-      count(evaluation);
+      survey_.counts.add(evaluation);
     } else {
       repeated_[evaluation.index].push_back(place);
       return;
@@ -126,17 +115,6 @@ class Surveyor {
     if (look_) {
       look_(evaluation);
     }
-  }
-
-  void count(const EvaluationRecord& record) {
-    const EvaluationStatus status = record.evaluation.status;
-    RecordCounts& counts = survey_.counts;
-    counts.cases += record.calc_charge();
-    counts.clipped += record.clipped ? 1 : 0;
-    counts.abandoned += status == EvaluationStatus::abandoned ? 1 : 0;
-    counts.failed +=
-        status == EvaluationStatus::ok || status == EvaluationStatus::abandoned ? 0 : 1;
-    counts.feasible += is_feasible(record.evaluation) ? 1 : 0;
   }
 
   std::string read(Place place) {

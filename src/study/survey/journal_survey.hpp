@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "study/journal.hpp"
+#include "study/run_counts.hpp"
 #include "study/survey/index_set.hpp"
 
 namespace armwright {
@@ -23,15 +24,6 @@ struct DamagedStretch {
   std::string fault;                 // of the first damaged record
 };
 
-// Sums over the training records, each evaluation once.
-struct RecordCounts {
-  std::uint64_t cases = 0;
-  std::uint64_t clipped = 0;
-  std::uint64_t failed = 0;
-  std::uint64_t abandoned = 0;
-  std::uint64_t feasible = 0;
-};
-
 struct JournalSurvey {
   std::uint64_t bytes = 0;
   std::uint64_t records = 0;  // intact, of every kind
@@ -40,7 +32,7 @@ struct JournalSurvey {
   std::uint64_t torn_bytes = 0;  // at the end, with no intact record behind
   std::string torn_fault;
   IndexSet evaluations;  // of the training set
-  RecordCounts counts;
+  RunCounts counts;      // of the training records, each evaluation once
   std::uint64_t judgements = 0;
   std::uint64_t repeated = 0;  // evaluations that are there again, alike
   // Evaluations that are there with different content: none of the records can be believed.

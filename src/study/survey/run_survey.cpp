@@ -24,11 +24,6 @@ constexpr std::size_t kManifestLimit_bytes = std::size_t{16} << 20;
 constexpr std::size_t kResultLimit_bytes = std::size_t{256} << 20;
 constexpr int kManifestFormat = 1;
 
-bool is_there(const std::filesystem::path& path) {
-  std::error_code ignored;
-  return std::filesystem::exists(std::filesystem::symlink_status(path, ignored));
-}
-
 // What a check says of a file, and what keeps it from saying anything.
 std::string find_fault(const std::filesystem::path& file,
                        const std::function<std::string()>& check) {

@@ -21,11 +21,6 @@ using nlohmann::json;
 constexpr const char* kStudyRecord = "study.toml";
 constexpr const char* kReproductionRecord = "reproduction.json";
 
-bool is_there(const std::filesystem::path& path) {
-  std::error_code ignored;
-  return std::filesystem::exists(std::filesystem::symlink_status(path, ignored));
-}
-
 bool is_folder(const std::filesystem::path& path) {
   std::error_code ignored;
   return std::filesystem::is_directory(path, ignored);
