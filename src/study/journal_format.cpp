@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstring>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "base/error.hpp"
@@ -22,7 +23,8 @@ constexpr std::uint8_t kEndType = 2;
 constexpr std::uint8_t kJacobianType = 3;
 constexpr unsigned kStatuses = 1 + static_cast<unsigned>(EvaluationStatus::abandoned);
 
-// The fields are listed once, in visit_fields, and three visitors measure, write and read them.
+// The fields are listed once, in visit_fields, and four visitors measure, write, read and check
+// them.
 
 template <class Fields, class Record>
 void visit_evaluation(Fields& fields, Record& record) {
@@ -135,6 +137,31 @@ struct Read {
   }
 };
 
+// As Read, without taking anything.
+struct Check {
+  Read read;
+
+  template <class T>
+  void choice(const T&, unsigned choices) {
+    T value;
+    read.choice(value, choices);
+  }
+  template <class T>
+  void number(const T&) {
+    T value;
+    read.number(value);
+  }
+  template <class List>
+  void list(const List&) {
+    std::uint32_t count = 0;
+    read.number(count);
+    const std::size_t bytes = std::size_t{count} * sizeof(typename List::value_type);
+    if (read.has(bytes)) {
+      read.rest.remove_prefix(bytes);
+    }
+  }
+};
+
 template <class Record>
 void encode_as(std::uint8_t type, const Record& record, std::string& buffer) {
   Measure measure;
@@ -156,14 +183,26 @@ void encode_as(std::uint8_t type, const Record& record, std::string& buffer) {
   frame.number(calc_crc32({payload, measure.bytes}));
 }
 
-template <class Record>
-std::optional<journal_format::Record> decode_as(std::string_view fields, Record record = {}) {
-  Read read{fields};
-  visit_fields(read, record);
-  if (!read.good || !read.rest.empty()) {
-    return std::nullopt;
+// `on_blank` gets a record of the payload's type, still empty.
+template <class OnBlank>
+auto with_blank_record(std::string_view payload, OnBlank on_blank)
+    -> decltype(on_blank(EvaluationRecord())) {
+  if (payload.empty()) {
+    return {};
   }
-  return record;
+  switch (static_cast<std::uint8_t>(payload.front())) {
+    case kEvaluationType:
+      return on_blank(EvaluationRecord());
+    case kEndType:
+      return on_blank(EndRecord());
+    case kJacobianType: {
+      EvaluationRecord record;
+      record.with_jacobian = true;
+      return on_blank(std::move(record));
+    }
+    default:
+      return {};
+  }
 }
 
 }  // namespace
@@ -216,23 +255,23 @@ bool could_begin_payload(std::string_view probe, std::uint32_t payload_bytes) {
          kProbeBytes + std::uint64_t{reason_bytes} == payload_bytes;
 }
 
+bool is_payload(std::string_view bytes) {
+  return with_blank_record(bytes, [&](const auto& record) {
+    Check check{{bytes.substr(1)}};
+    visit_fields(check, record);
+    return check.read.good && check.read.rest.empty();
+  });
+}
+
 std::optional<Record> decode_payload(std::string_view payload) {
-  if (payload.empty()) {
-    return std::nullopt;
-  }
-  switch (static_cast<std::uint8_t>(payload.front())) {
-    case kEvaluationType:
-      return decode_as<EvaluationRecord>(payload.substr(1));
-    case kEndType:
-      return decode_as<EndRecord>(payload.substr(1));
-    case kJacobianType: {
-      EvaluationRecord record;
-      record.with_jacobian = true;
-      return decode_as(payload.substr(1), std::move(record));
-    }
-    default:
+  return with_blank_record(payload, [&](auto record) -> std::optional<Record> {
+    Read read{payload.substr(1)};
+    visit_fields(read, record);
+    if (!read.good || !read.rest.empty()) {
       return std::nullopt;
-  }
+    }
+    return record;
+  });
 }
 
 }  // namespace armwright::journal_format

@@ -53,8 +53,12 @@ std::size_t count_whole_record_bytes(std::string_view records);
 // payload's first kProbeBytes.
 bool could_begin_payload(std::string_view probe, std::uint32_t payload_bytes);
 
-// Nothing if the bytes are not exactly one payload. Never allocates more than a small multiple of
-// the payload's own size.
+// The bytes are exactly one payload: each list within it has the length that it states, and nothing
+// is left over. Looks at a few places only, however long they are.
+bool is_payload(std::string_view bytes);
+
+// Nothing if the bytes are no payload. Never allocates more than a small multiple of their own
+// size.
 std::optional<Record> decode_payload(std::string_view payload);
 
 }  // namespace armwright::journal_format

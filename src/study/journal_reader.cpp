@@ -41,6 +41,12 @@ JournalScan scan_journal(FileDescriptor descriptor, const std::filesystem::path&
                                 file.string(), number, offset, attempt.fault, *next,
                                 advise_on_damage(file)));
       }
+      if (window.has_given_up()) {
+        throw Error(ErrorKind::bad_data,
+                    fmt::format("{}: record {} (from 0) at byte {} is damaged ({}), and {}. {}",
+                                file.string(), number, offset, attempt.fault, kGivenUp,
+                                advise_on_damage(file)));
+      }
       break;
     }
     if (scan.content.ended) {

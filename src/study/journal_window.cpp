@@ -60,7 +60,9 @@ void JournalWindow::fill(std::uint64_t offset, std::size_t length) {
   // Threads leave records a little out of order: who reads them in order comes back by a few.
   constexpr std::uint64_t kBehindBytes = kChunkBytes / 4;
   begin_ = offset - std::min(offset, kBehindBytes);
-  const std::uint64_t wanted = std::max(offset + length - begin_, kChunkBytes);
+  // A long record is seldom the last: twice its length, or the search at every byte behind it would
+  // read as much again for each.
+  const std::uint64_t wanted = std::max(offset + 2 * std::uint64_t{length} - begin_, kChunkBytes);
   buffer_.resize(std::min(wanted, bytes_from(begin_)));
   std::size_t filled = 0;
   while (filled < buffer_.size()) {
@@ -84,6 +86,12 @@ void JournalWindow::fill(std::uint64_t offset, std::size_t length) {
   }
 }
 
+bool JournalWindow::has_given_up() const {
+  // Damaged records are each read in vain once.
+  constexpr std::uint64_t kReadings = 16;
+  return misread_bytes_ / kReadings > size_;
+}
+
 RecordAttempt read_record(JournalWindow& window, std::uint64_t offset) {
   if (window.bytes_from(offset) < kFrameBytes) {
     return {.fault = "its frame is cut short"};
@@ -102,18 +110,20 @@ RecordAttempt read_record(JournalWindow& window, std::uint64_t offset) {
     return {.fault = "its content makes no sense"};
   }
   const std::string_view payload = window.view(payload_at, frame.payload_bytes);
-  RecordAttempt attempt{.record = journal_format::decode_payload(payload),
-                        .end = payload_at + frame.payload_bytes,
-                        .fault = "its content makes no sense"};
-  if (attempt.record && calc_crc32(payload) != frame.checksum) {
-    attempt.record.reset();
-    attempt.fault = "its checksum is wrong";
+  if (!journal_format::is_payload(payload)) {
+    return {.fault = "its content makes no sense"};
   }
-  return attempt;
+  if (calc_crc32(payload) != frame.checksum) {
+    window.count_misread(frame.payload_bytes);
+    return {.fault = "its checksum is wrong"};
+  }
+  return {.record = journal_format::decode_payload(payload),
+          .end = payload_at + frame.payload_bytes};
 }
 
 std::optional<std::uint64_t> find_intact_record(JournalWindow& window, std::uint64_t offset) {
-  while (++offset < window.size() && window.bytes_from(offset) >= kFrameBytes + kProbeBytes) {
+  while (!window.has_given_up() && ++offset < window.size() &&
+         window.bytes_from(offset) >= kFrameBytes + kProbeBytes) {
     if (read_record(window, offset).record) {
       return offset;
     }

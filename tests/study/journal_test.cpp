@@ -8,6 +8,7 @@
 
 #include "base/hash.hpp"
 #include "journal_test_support.hpp"
+#include "study/survey/journal_survey.hpp"
 
 namespace armwright {
 namespace {
@@ -311,6 +312,43 @@ TEST(Journal, HugeLengthsAreDamage) {
     EXPECT_THAT(error.what(), HasSubstr(field == ends[0] ? "its length is impossible"
                                                          : "its content makes no sense"));
   }
+}
+
+// Every 64 bytes something that could be a record: its last list is as long as the rest of the
+// file, its checksum wrong. Read to its end from each of these places, this would take minutes.
+TEST(Journal, ThatIsMadeToBeReadForEverIsRefused) {
+  const TemporaryFolder folder;
+  const auto file = folder / "journal";
+  write_journal(file, 1);
+  std::string bytes = read_bytes(file);
+  constexpr std::size_t kSize = std::size_t{8} << 20;
+  const auto append = [&](std::uint32_t number) {
+    bytes.append(reinterpret_cast<const char*>(&number), 4);
+  };
+  constexpr std::size_t kEndHead = 8 + 13;  // a frame, and what stands before an end's reason
+  while (bytes.size() + 64 < kSize) {
+    const auto rest = static_cast<std::uint32_t>(kSize - bytes.size() - kEndHead);
+    append(rest + 13);
+    append(0);
+    bytes += '\x02';
+    bytes.append(8, '\0');
+    append(rest);
+    bytes.resize(bytes.size() + 64 - kEndHead);
+  }
+  bytes.resize(kSize);
+  write_bytes(file, bytes);
+  const Error error = catch_error([&] { read_journal(file); });
+  EXPECT_EQ(error.kind(), ErrorKind::bad_data);
+  EXPECT_THAT(error.what(),
+              AllOf(StartsWith(file.string() + ": record 1 (from 0)"),
+                    HasSubstr("the search for intact ones was given up"), HasSubstr("--repair")));
+  const JournalSurvey survey = survey_journal(file, {});
+  EXPECT_EQ(survey.records, 1U);
+  ASSERT_EQ(survey.damage.size(), 1U);
+  EXPECT_EQ(survey.damage[0].offset + survey.damage[0].bytes, kSize);
+  EXPECT_THAT(survey.damage[0].fault, HasSubstr("was given up"));
+  EXPECT_TRUE(survey.is_damaged());
+  EXPECT_EQ(read_bytes(file), bytes);
 }
 
 // A record with a right checksum and bytes left over is not one that this version can have written.

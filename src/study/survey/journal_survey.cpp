@@ -33,6 +33,7 @@ template <class OnRecord, class OnGap, class OnEnd>
 void visit_records(JournalWindow& window, OnRecord on_record, OnGap on_gap, OnEnd on_end) {
   const auto begin_bytes = std::min<std::uint64_t>(window.size(), kMagic.size());
   std::uint64_t offset = kMagic.size();
+  window.begin_search();
   if (window.view(0, begin_bytes) != kMagic.substr(0, begin_bytes)) {
     const bool begins_well = window.size() > offset && read_record(window, offset).record;
     const auto next = begins_well ? std::optional(offset) : find_intact_record(window, 0);
@@ -56,6 +57,10 @@ void visit_records(JournalWindow& window, OnRecord on_record, OnGap on_gap, OnEn
       continue;
     }
     const auto next = find_intact_record(window, offset);
+    if (window.has_given_up()) {
+      on_gap(Place{offset, window.size()}, fmt::format("{}, and {}", attempt.fault, kGivenUp));
+      return;
+    }
     if (!next) {
       on_end(Place{offset, window.size()}, attempt.fault);
       return;
@@ -65,10 +70,10 @@ void visit_records(JournalWindow& window, OnRecord on_record, OnGap on_gap, OnEn
   }
 }
 
-class Surveyor {
+class JournalSurveyor {
  public:
-  Surveyor(const std::filesystem::path& file,
-           const std::function<void(const EvaluationRecord&)>& look)
+  JournalSurveyor(const std::filesystem::path& file,
+                  const std::function<void(const EvaluationRecord&)>& look)
       : file_(open_journal(file)), window_(file_.get(), file), look_(look) {}
 
   JournalSurvey run() {
@@ -180,7 +185,7 @@ bool JournalSurvey::is_damaged() const {
 
 JournalSurvey survey_journal(const std::filesystem::path& file,
                              const std::function<void(const EvaluationRecord&)>& look) {
-  return Surveyor(file, look).run();
+  return JournalSurveyor(file, look).run();
 }
 
 JournalRepair repair_journal(const std::filesystem::path& file, const JournalSurvey& survey,
