@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kCheckPluginExamples = R"(Examples:
   armwright check-plugin ./libmine.so
   armwright check-plugin 'exec:python3 mine.py'
   armwright check-plugin nlopt:sbplx --opt restarts=0
@@ -81,9 +81,9 @@ int run_check_plugin(const CheckPluginOptions& options, Session& session) {
 
 void add_check_plugin(CLI::App& app, Session& session) {
   auto options = std::make_shared<CheckPluginOptions>();
-  CLI::App* command =
-      add_command(app, session, "check-plugin",
-                  "Try whether an optimizer keeps what every optimizer promises", kExamples);
+  CLI::App* command = add_command(app, session, "check-plugin",
+                                  "Try whether an optimizer keeps what every optimizer promises",
+                                  kCheckPluginExamples);
   command
       ->add_option("OPTIMIZER", options->optimizer,
                    "A name, a shared library (./libmine.so) or a process ('exec:COMMAND')")

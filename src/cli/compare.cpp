@@ -25,7 +25,7 @@
 namespace armwright {
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kCompareExamples = R"(Examples:
   armwright compare --preset smoke                 # a small one, in seconds
   armwright compare configs/studies/q1.toml        # what the file says; resumes where it was
   armwright compare q1 --dry-run                   # a shipped study: plan, cost and expected time
@@ -192,9 +192,10 @@ int run_compare(const CompareOptions& options, Session& session) {
 
 void add_compare(CLI::App& app, Session& session) {
   auto options = std::make_shared<CompareOptions>();
-  CLI::App* command = add_command(
-      app, session, "compare",
-      "Settle which optimizer to use: runs on the same footing, statistics, a verdict", kExamples);
+  CLI::App* command =
+      add_command(app, session, "compare",
+                  "Settle which optimizer to use: runs on the same footing, statistics, a verdict",
+                  kCompareExamples);
   command->add_option("STUDY", options->file,
                       "A study file, or the name of a shipped one (armwright list studies)");
   command->add_option("--preset", options->preset, "A shipped study by its name: smoke, q1, ...")

@@ -25,7 +25,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kDoctorExamples = R"(Examples:
   armwright doctor                                 # is everything there that armwright needs?
   armwright doctor results/q1-complex-ga-seed1     # is what this run has stored intact?
   armwright doctor results/q1                      # all cells of a comparison
@@ -157,7 +157,7 @@ void add_doctor(CLI::App& app, Session& session) {
   CLI::App* command = add_command(
       app, session, "doctor",
       "Check what is stored in a folder, and repair it; or this machine and installation",
-      kExamples);
+      kDoctorExamples);
   command->add_option("FOLDER", options->folder,
                       "The folder of a run, a study or a reproduction\n"
                       "(default: none; the machine and the installation are checked)");

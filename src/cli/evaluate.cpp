@@ -27,7 +27,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kEvaluateExamples = R"(Examples:
   armwright evaluate table-a10                     # a published design on the problem it was made for
   armwright evaluate results/q1-complex-ga-seed1/winner.toml --problem q1-complex --cases 100
   armwright evaluate table-a10 --problem q2-e6 --set task.load_kg=20 --json
@@ -232,8 +232,9 @@ int run_evaluate(const EvaluateOptions& options, Session& session) {
 
 void add_evaluate(CLI::App& app, Session& session) {
   auto options = std::make_shared<EvaluateOptions>();
-  CLI::App* command = add_command(
-      app, session, "evaluate", "Evaluate a design on test cases, without optimization", kExamples);
+  CLI::App* command =
+      add_command(app, session, "evaluate", "Evaluate a design on test cases, without optimization",
+                  kEvaluateExamples);
   add_design_argument(*command, options->design);
   command
       ->add_option("--problem,-p", options->problem,

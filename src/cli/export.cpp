@@ -15,7 +15,7 @@
 namespace armwright {
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kExportExamples = R"(Examples:
   armwright export results/q1-complex-ga-seed1 --format csv
   armwright export results/q1 --format ioh --out q1-ioh       # a whole study, for IOHanalyzer
   armwright export results/q1 --format coco                   # for cocopp
@@ -53,7 +53,7 @@ int run_export(const ExportOptions& options) {
 void add_export(CLI::App& app, Session& session) {
   auto options = std::make_shared<ExportOptions>();
   CLI::App* command = add_command(app, session, "export",
-                                  "Write the runs of a folder for other programs", kExamples);
+                                  "Write the runs of a folder for other programs", kExportExamples);
   std::string formats = "How to write them:";
   for (const ExportFormat& format : export_formats()) {
     formats += fmt::format("\n{:<5} {}", format.name, format.title);

@@ -18,7 +18,7 @@
 namespace armwright {
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kImportExamples = R"(Examples:
   armwright import results/q1/export-csv --problem q1-complex --out best.toml
   armwright import q1-ioh --problem q1-complex --optimizer ga --replicate 3 --out best.toml
   armwright evaluate best.toml --problem q1-complex
@@ -88,8 +88,8 @@ int run_import(const ImportOptions& options) {
 
 void add_import(CLI::App& app, Session& session) {
   auto options = std::make_shared<ImportOptions>();
-  CLI::App* command = add_command(app, session, "import",
-                                  "Make a design file of the best point of an export", kExamples);
+  CLI::App* command = add_command(
+      app, session, "import", "Make a design file of the best point of an export", kImportExamples);
   command->add_option("EXPORT", options->folder, "What armwright export wrote as csv, json or ioh")
       ->required();
   command->add_option("--problem,-p", options->problem, "Only runs on this problem")

@@ -21,7 +21,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kListExamples = R"(Examples:
   armwright list problems                          # what can be optimized
   armwright list problems q1-complex               # its variables, bounds and settings (for --set)
   armwright list optimizers ga                     # what it is, can do, and its options (for --opt)
@@ -188,8 +188,9 @@ std::string format_title(const Style& style, const std::string& name, const std:
 
 void add_list(CLI::App& app, Session& session) {
   auto options = std::make_shared<ListOptions>();
-  CLI::App* command = add_command(
-      app, session, "list", "List problems, optimizers, robots, engines, designs, ...", kExamples);
+  CLI::App* command =
+      add_command(app, session, "list", "List problems, optimizers, robots, engines, designs, ...",
+                  kListExamples);
   command
       ->add_option("KIND", options->kind,
                    "problems, optimizers, robots, engines, designs, signals or controllers")

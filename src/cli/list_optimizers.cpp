@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-std::vector<ListItem> list_items() {
+std::vector<ListItem> list_known_optimizers() {
   std::vector<ListItem> items;
   for (const OptimizerRow& row : optimizer_table()) {
     items.push_back({row.name, row.summary, row.unavailable});
@@ -123,7 +123,7 @@ json to_json(const OptimizerRow& row) {
           {"options", options}};
 }
 
-json list_as_json() {
+json list_optimizers_as_json() {
   json list = json::array();
   for (const OptimizerRow& row : optimizer_table()) {
     list.push_back(to_json(row));
@@ -135,10 +135,10 @@ json list_as_json() {
 
 ListKind make_optimizer_kind() {
   return {.name = "optimizers",
-          .list = list_items,
+          .list = list_known_optimizers,
           .explain = explain_optimizer,
           .explain_as_json = [](const std::string& name) { return to_json(get_row(name)); },
-          .list_as_json = list_as_json,
+          .list_as_json = list_optimizers_as_json,
           .explain_as_markdown =
               [](const std::string& name) {
                 return name.empty() ? format_optimizer_index(optimizer_table())

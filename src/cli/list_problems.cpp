@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-std::vector<ListItem> list_items() {
+std::vector<ListItem> list_known_problems() {
   std::vector<ListItem> items;
   for (const ProblemTitle& problem : list_problems()) {
     items.push_back({problem.name, problem.title});
@@ -99,7 +99,7 @@ json explain_problem_as_json(const std::string& name) {
 }  // namespace
 
 ListKind make_problem_kind() {
-  return {"problems", list_items, explain_problem, explain_problem_as_json};
+  return {"problems", list_known_problems, explain_problem, explain_problem_as_json};
 }
 
 }  // namespace armwright

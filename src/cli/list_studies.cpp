@@ -18,7 +18,7 @@ StudyPlan load_study(const std::string& name) {
   return make_study_plan(request);
 }
 
-std::vector<ListItem> list_items() {
+std::vector<ListItem> list_known_studies() {
   std::vector<ListItem> items;
   for (const std::string& name : list_configs("studies")) {
     items.push_back({name, read_study_title(name)});
@@ -54,7 +54,7 @@ json explain_study_as_json(const std::string& name) {
 }  // namespace
 
 ListKind make_study_kind() {
-  return {"studies", list_items, explain_study, explain_study_as_json};
+  return {"studies", list_known_studies, explain_study, explain_study_as_json};
 }
 
 }  // namespace armwright

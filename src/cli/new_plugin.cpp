@@ -19,7 +19,7 @@
 namespace armwright {
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kNewPluginExamples = R"(Examples:
   armwright new-plugin mine                        # in C++
   armwright new-plugin --language python mine
   cd mine && ./test.sh                             # builds it, checks it, runs it
@@ -92,7 +92,7 @@ int run_new_plugin(const NewPluginOptions& options) {
 void add_new_plugin(CLI::App& app, Session& session) {
   auto options = std::make_shared<NewPluginOptions>();
   CLI::App* command =
-      add_command(app, session, "new-plugin", "Begin an optimizer of your own", kExamples);
+      add_command(app, session, "new-plugin", "Begin an optimizer of your own", kNewPluginExamples);
   command->add_option("NAME", options->name, "Of the optimizer and of its folder")->required();
   command
       ->add_option("--language,-l", options->language,

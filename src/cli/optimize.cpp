@@ -21,7 +21,7 @@
 namespace armwright {
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kOptimizeExamples = R"(Examples:
   armwright optimize q1-complex                    # as in the thesis: its genetic algorithm, seed 1
   armwright optimize q2-e6 --optimizer ga --opt population=50 --seed 7 --budget 20000
   armwright optimize q1-complex --schedule fixed:10 --time-limit 10m --out results/robust
@@ -222,7 +222,7 @@ void add_optimize(CLI::App& app, Session& session) {
   auto options = std::make_shared<OptimizeOptions>();
   CLI::App* command =
       add_command(app, session, "optimize",
-                  "Let an optimizer loose on a problem; resumes where it was", kExamples);
+                  "Let an optimizer loose on a problem; resumes where it was", kOptimizeExamples);
   command
       ->add_option("PROBLEM", options->problem,
                    "A problem file, or the name of a shipped one (armwright list problems)")

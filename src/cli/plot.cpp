@@ -19,7 +19,7 @@
 namespace armwright {
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kPlotExamples = R"(Examples:
   armwright plot results/q1-complex-ga-seed1       # every figure, into results/q1-complex-ga-seed1/figures
   armwright plot results/q1/report.html --list     # which figures there are, and what can be chosen of them
   armwright plot results/q1/report.html --figure convergence --out - > convergence.svg
@@ -195,8 +195,8 @@ int run_plot(const PlotOptions& options, Session& session) {
 
 void add_plot(CLI::App& app, Session& session) {
   auto options = std::make_shared<PlotOptions>();
-  CLI::App* command = add_command(app, session, "plot",
-                                  "Write the figures of a run or a comparison as SVG", kExamples);
+  CLI::App* command = add_command(
+      app, session, "plot", "Write the figures of a run or a comparison as SVG", kPlotExamples);
   options->input.add_to(*command);
   command->add_option("--figure", options->figures, "Only this figure or table; repeatable")
       ->type_name("NAME")

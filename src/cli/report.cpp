@@ -17,7 +17,7 @@
 namespace armwright {
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kReportExamples = R"(Examples:
   armwright report results/q1-complex-ga-seed1     # writes results/q1-complex-ga-seed1/report.html
   armwright report results/q1 --out q1.html        # of a comparison
   armwright report results/q1-complex-ga-seed1 --case test/2:17
@@ -74,9 +74,9 @@ int run_report(const ReportOptions& options, Session& session) {
 
 void add_report(CLI::App& app, Session& session) {
   auto options = std::make_shared<ReportOptions>();
-  CLI::App* command =
-      add_command(app, session, "report",
-                  "Write a page that shows a run or a comparison: figures and motion", kExamples);
+  CLI::App* command = add_command(
+      app, session, "report", "Write a page that shows a run or a comparison: figures and motion",
+      kReportExamples);
   options->input.add_to(*command);
   auto* out = command
                   ->add_option("--out", options->out,

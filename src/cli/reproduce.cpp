@@ -23,7 +23,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kReproduceExamples = R"(Examples:
   armwright reproduce                              # all published results, on 500 test cases each
   armwright reproduce --cases 20 --table A.10      # a quick look at one design
   armwright reproduce --csv - > reproduced.csv
@@ -291,9 +291,9 @@ int run_reproduce(const ReproduceOptions& options, Session& session) {
 
 void add_reproduce(CLI::App& app, Session& session) {
   auto options = std::make_shared<ReproduceOptions>();
-  CLI::App* command =
-      add_command(app, session, "reproduce",
-                  "Evaluate every published design beside its published result", kExamples);
+  CLI::App* command = add_command(app, session, "reproduce",
+                                  "Evaluate every published design beside its published result",
+                                  kReproduceExamples);
   command
       ->add_option("--cases", options->cases,
                    "Use the first N test cases (default: as many as each problem says, 500)")

@@ -22,7 +22,7 @@
 namespace armwright {
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kRerunExamples = R"(Examples:
   armwright rerun results/q1 q1-complex/ga/r03
   armwright rerun results/q1 q1-complex/ga/r03 --jobs 1 --json
 
@@ -166,9 +166,9 @@ int run_rerun(const RerunOptions& options, Session& session) {
 
 void add_rerun(CLI::App& app, Session& session) {
   auto options = std::make_shared<RerunOptions>();
-  CLI::App* command =
-      add_command(app, session, "rerun",
-                  "Run one cell of a comparison anew and compare it, to the last bit", kExamples);
+  CLI::App* command = add_command(
+      app, session, "rerun", "Run one cell of a comparison anew and compare it, to the last bit",
+      kRerunExamples);
   command->add_option("STUDY", options->study, "The folder of a study")->required();
   command->add_option("CELL", options->cell, "Which run: PROBLEM/OPTIMIZER/rNN")->required();
   options->jobs.add_to(*command);

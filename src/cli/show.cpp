@@ -25,7 +25,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kShowExamples = R"(Examples:
   armwright show results/q1-complex-ga-seed1
   armwright show results/q1                        # a comparison: its tables and verdict
   armwright show results/q1-complex-ga-seed1 --json | jq .winner.test_summary
@@ -130,7 +130,7 @@ int run_show(const ShowOptions& options, const Session& session) {
 void add_show(CLI::App& app, Session& session) {
   auto options = std::make_shared<ShowOptions>();
   CLI::App* command = add_command(
-      app, session, "show", "Show the result of a run or a study, or how far it is", kExamples);
+      app, session, "show", "Show the result of a run or a study, or how far it is", kShowExamples);
   command->add_option("FOLDER", options->folder, "The folder, as optimize or compare named it")
       ->required();
   command->add_flag("--json", options->json, "Print it as JSON")->group("Output");

@@ -23,7 +23,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kSweepExamples = R"(Examples:
   armwright sweep q4-speed                         # the error of the E6 design over the speed, as the thesis's Q4
   armwright sweep q2-e6 --design table-a10 --parameter task.load_kg --values 0,5,10,20
   armwright sweep q1-complex --design table-a5 --parameter task.signal --values ramp,complex --cases 50 --csv -
@@ -240,7 +240,7 @@ void add_sweep(CLI::App& app, Session& session) {
   auto options = std::make_shared<SweepOptions>();
   CLI::App* command = add_command(
       app, session, "sweep",
-      "Evaluate a design while one setting of the problem takes several values", kExamples);
+      "Evaluate a design while one setting of the problem takes several values", kSweepExamples);
   command
       ->add_option("PROBLEM", options->problem,
                    "A problem file, or the name of a shipped one (armwright list problems)")

@@ -18,7 +18,7 @@
 namespace armwright {
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kTestsetExamples = R"(Examples:
   armwright testset export test/2 --cases 500 --out test-2.json
   armwright testset import mine.csv --out mine.json
   armwright testset hash test/2 --cases 500
@@ -153,8 +153,8 @@ void add_format(CLI::App& command, TestsetOptions& options, const char* out_help
 
 void add_testset(CLI::App& app, Session& session) {
   auto options = std::make_shared<TestsetOptions>();
-  CLI::App* command =
-      add_command(app, session, "testset", "Write, read and compare sets of test cases", kExamples);
+  CLI::App* command = add_command(app, session, "testset",
+                                  "Write, read and compare sets of test cases", kTestsetExamples);
   command->require_subcommand(1);
 
   CLI::App* exporting = add_command(*command, session, "export",

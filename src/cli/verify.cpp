@@ -32,7 +32,7 @@ using nlohmann::json;
 
 constexpr std::uint64_t kUsualCases = 50;
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kVerifyExamples = R"(Examples:
   armwright verify table-a10                       # a published design, on the problem it was made for
   armwright verify results/q1-complex-ga-seed1/winner.toml --problem q1-complex --cases 200
   armwright verify table-a5 --set task.load_kg=5 --json
@@ -329,7 +329,7 @@ void add_verify(CLI::App& app, Session& session) {
       app, session, "verify",
       "Try whether a design holds under other engines, time steps and masses, and on perturbed\n"
       "plants",
-      kExamples);
+      kVerifyExamples);
   add_design_argument(*command, options->design);
   command
       ->add_option("--problem,-p", options->problem,

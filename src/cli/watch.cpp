@@ -16,7 +16,7 @@
 namespace armwright {
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kWatchExamples = R"(Examples:
   armwright compare configs/studies/q1.toml &      # a study that runs
   armwright watch results/q1                       # prints an address; Ctrl-C ends it
   armwright watch results/q1 --port 8642
@@ -64,7 +64,7 @@ void add_watch(CLI::App& app, Session& session) {
   auto options = std::make_shared<WatchOptions>();
   CLI::App* command = add_command(
       app, session, "watch",
-      "Serve the page of a run or a comparison to this machine while it runs", kExamples);
+      "Serve the page of a run or a comparison to this machine while it runs", kWatchExamples);
   command
       ->add_option("FOLDER", options->folder, "The folder of a run, a comparison or a reproduction")
       ->required();

@@ -14,7 +14,7 @@
 namespace armwright {
 namespace {
 
-using json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 
 // Of the format, as IOHexperimenter counts it; readers take anything below 0.3.3 for another one.
 constexpr const char* kVersion = "0.3.5";
@@ -42,7 +42,7 @@ std::string make_row(const TracedEvaluation& evaluation, const TraceNames& names
   return row + "\n";
 }
 
-json make_run(const RunTrace& trace) {
+ordered_json make_run(const RunTrace& trace) {
   const auto& best = trace.evaluations.best();
   const TracedEvaluation& shown = best ? *best : trace.evaluations.first().value();
   return {{"instance", trace.run.replicate},
@@ -63,14 +63,14 @@ void write_function(const ProblemRuns& problem, const LabelRuns& label, const Fu
   const std::string data = fmt::format("data_{}/IOHprofiler_f{}_DIM{}.dat", names.function,
                                        names.id, problem.names.variables.size());
   OutputFile file(root / data);
-  json runs = json::array();
+  ordered_json runs = ordered_json::array();
   for (const RunEntry& run : label.runs) {
     const RunTrace trace = read_trace(run);
     file.write(make_ioh_rows(trace));
     runs.push_back(make_run(trace));
   }
   file.close();
-  const json index = {
+  const ordered_json index = {
       {"version", kVersion},
       {"suite", "armwright"},
       {"function_id", names.id},
@@ -78,12 +78,12 @@ void write_function(const ProblemRuns& problem, const LabelRuns& label, const Fu
       {"maximization", false},
       {"algorithm", {{"name", label.label}, {"info", label.runs.front().optimizer}}},
       {"experiment_attributes",
-       json::array({{{"armwright", get_version()}},
-                    {{"variables", json(problem.names.variables).dump()}}})},
+       ordered_json::array({{{"armwright", get_version()}},
+                            {{"variables", ordered_json(problem.names.variables).dump()}}})},
       {"attributes", make_ioh_columns(problem.names)},
-      {"scenarios", json::array({{{"dimension", problem.names.variables.size()},
-                                  {"path", data},
-                                  {"runs", std::move(runs)}}})},
+      {"scenarios", ordered_json::array({{{"dimension", problem.names.variables.size()},
+                                          {"path", data},
+                                          {"runs", std::move(runs)}}})},
   };
   write_output_file(root / fmt::format("IOHprofiler_{}.json", names.function),
                     index.dump(2) + "\n");

@@ -11,62 +11,64 @@
 namespace armwright {
 namespace {
 
-using json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 
-constexpr int kFormat = 1;
+constexpr int kExportFormat = 1;
 
 // Texts from plugins may hold anything; JSON is UTF-8.
-std::string dump(const json& value) {
-  return value.dump(-1, ' ', false, json::error_handler_t::replace);
+std::string dump(const ordered_json& value) {
+  return value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
-json to_json(const TracedEvaluation& evaluation) {
-  json j = {{"evaluation", evaluation.number},
-            {"simulated_cases", evaluation.simulated_cases},
-            {"status", to_string(evaluation.status)},
-            {"feasible", evaluation.feasible},
-            {"objective", evaluation.objective ? json(*evaluation.objective) : json(nullptr)},
-            {"objectives", evaluation.objectives},
-            {"constraints", evaluation.constraint_values},
-            {"metrics", evaluation.metrics},
-            {"x", evaluation.x}};
+ordered_json to_json(const TracedEvaluation& evaluation) {
+  ordered_json j = {{"evaluation", evaluation.number},
+                    {"simulated_cases", evaluation.simulated_cases},
+                    {"status", to_string(evaluation.status)},
+                    {"feasible", evaluation.feasible},
+                    {"objective", evaluation.objective ? ordered_json(*evaluation.objective)
+                                                       : ordered_json(nullptr)},
+                    {"objectives", evaluation.objectives},
+                    {"constraints", evaluation.constraint_values},
+                    {"metrics", evaluation.metrics},
+                    {"x", evaluation.x}};
   if (!evaluation.reason.empty()) {
     j["reason"] = sanitize(evaluation.reason);
   }
   return j;
 }
 
-json make_winner(const RunTrace& trace) {
+ordered_json make_winner(const RunTrace& trace) {
   if (!trace.test) {
     return nullptr;
   }
-  json errors = json::array();
+  ordered_json errors = ordered_json::array();
   for (const double error : trace.test->case_errors) {
-    errors.push_back(std::isnan(error) ? json(nullptr) : json(error));
+    errors.push_back(std::isnan(error) ? ordered_json(nullptr) : ordered_json(error));
   }
-  return {{"x", trace.winner},
-          {"test_set", trace.tested_on ? json(trace.tested_on->set) : json(nullptr)},
-          {"status", to_string(trace.test->status)},
-          {"objectives", trace.test->objectives},
-          {"constraints", trace.test->constraint_values},
-          {"metrics", trace.test->metrics},
-          {"failed_cases", trace.test->failed_cases},
-          {"case_errors", errors}};
+  return {
+      {"x", trace.winner},
+      {"test_set", trace.tested_on ? ordered_json(trace.tested_on->set) : ordered_json(nullptr)},
+      {"status", to_string(trace.test->status)},
+      {"objectives", trace.test->objectives},
+      {"constraints", trace.test->constraint_values},
+      {"metrics", trace.test->metrics},
+      {"failed_cases", trace.test->failed_cases},
+      {"case_errors", errors}};
 }
 
 // All but its evaluations, the closing brace included.
-std::string make_run(const RunTrace& trace) {
+std::string make_run_head(const RunTrace& trace) {
   const auto& best = trace.evaluations.best();
-  const json run = {
+  const ordered_json run = {
       {"label", trace.run.label},         {"optimizer", trace.run.optimizer},
       {"replicate", trace.run.replicate}, {"seed", trace.seed},
-      {"end_reason", trace.end_reason},   {"best", best ? to_json(*best) : json(nullptr)},
+      {"end_reason", trace.end_reason},   {"best", best ? to_json(*best) : ordered_json(nullptr)},
       {"winner", make_winner(trace)}};
   return dump(run);
 }
 
 void write_run(OutputFile& file, const RunTrace& trace) {
-  std::string head = make_run(trace);
+  std::string head = make_run_head(trace);
   head.pop_back();
   file.write(head + ",\"evaluations\":[");
   const char* separator = "\n";
@@ -100,8 +102,8 @@ void write_problem(OutputFile& file, const ProblemRuns& problem) {
 
 void write_json(const Survey& survey, const std::filesystem::path& folder) {
   OutputFile file(folder / kRunsJson);
-  file.write(fmt::format("{{\"format\":{},\"armwright\":{},\"problems\":[", kFormat,
-                         dump(json(get_version()))));
+  file.write(fmt::format("{{\"format\":{},\"armwright\":{},\"problems\":[", kExportFormat,
+                         dump(ordered_json(get_version()))));
   const char* separator = "\n";
   for (const ProblemRuns& problem : survey.problems) {
     file.write(separator);

@@ -12,6 +12,7 @@
 #include "base/text.hpp"
 #include "study/journal.hpp"
 #include "study/json_values.hpp"
+#include "study/record_files.hpp"
 #include "study/run.hpp"
 
 namespace armwright {
@@ -19,8 +20,6 @@ namespace {
 
 using nlohmann::json;
 namespace fs = std::filesystem;
-
-constexpr std::size_t kCellLimit_bytes = std::size_t{64} << 20;
 
 std::vector<fs::path> list_folders(const fs::path& parent) {
   std::vector<fs::path> folders;

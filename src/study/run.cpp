@@ -9,13 +9,12 @@
 #include "base/text.hpp"
 #include "optimizers/output_log.hpp"
 #include "study/judge.hpp"
+#include "study/record_files.hpp"
 #include "study/run_folder.hpp"
 #include "study/store.hpp"
 
 namespace armwright {
 namespace {
-
-constexpr std::size_t kResultLimit_bytes = std::size_t{256} << 20;
 
 // SQLite opens no file whose whole path is longer, which would be found out when all is done.
 void check_path(const std::filesystem::path& folder) {

@@ -14,14 +14,12 @@
 #include "base/text.hpp"
 #include "sim/simd_level.hpp"
 #include "study/build_info.hpp"
+#include "study/record_files.hpp"
 
 namespace armwright {
 namespace {
 
 using nlohmann::json;
-
-constexpr std::size_t kManifestLimit_bytes = std::size_t{16} << 20;
-constexpr int kFormat = 1;
 
 // Makes the folder, or accepts one that holds a run or nothing: a run's files must not replace
 // somebody else's of the same names.
@@ -49,7 +47,7 @@ json make_manifest(const RunPlan& plan, std::span<const std::string> command_lin
     words.push_back(sanitize(word));
   }
   const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  return {{"format", kFormat},
+  return {{"format", kManifestFormat},
           {"configuration", json::parse(to_json(plan))},
           {"build", describe_build()},
           {"command_line", words},
@@ -59,7 +57,7 @@ json make_manifest(const RunPlan& plan, std::span<const std::string> command_lin
 json read_manifest(const std::filesystem::path& file) {
   try {
     json manifest = json::parse(read_json_file(file, kManifestLimit_bytes));
-    if (manifest.at("format") != kFormat) {
+    if (manifest.at("format") != kManifestFormat) {
       throw std::runtime_error("its format is not the one this version reads");
     }
     manifest.at("configuration");

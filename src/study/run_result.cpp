@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kFormat = 2;
+constexpr int kResultFormat = 2;
 
 json errors_to_json(const std::vector<double>& errors) {
   json list = json::array();
@@ -167,7 +167,7 @@ std::string to_json(const RunResult& result) {
     judged.push_back(candidate_to_json(candidate));
   }
   json j = {
-      {"format", kFormat},
+      {"format", kResultFormat},
       {"problem", result.problem},
       {"optimizer", result.optimizer},
       {"seed", result.seed},
@@ -212,7 +212,7 @@ RunResult parse_result(const std::string& text, const std::filesystem::path& fil
   check_json_depth(text, file.string());
   try {
     const json j = json::parse(text);
-    if (j.at("format") != kFormat) {
+    if (j.at("format") != kResultFormat) {
       throw std::runtime_error("its format is not the one this version reads");
     }
     RunResult result;

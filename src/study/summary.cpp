@@ -11,7 +11,7 @@ namespace armwright {
 namespace {
 
 // Beside an infinity there is no number to interpolate to.
-std::optional<double> find_quantile(std::span<const double> values, double p) {
+std::optional<double> find_finite_quantile(std::span<const double> values, double p) {
   const double value = calc_quantile(values, p);
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
@@ -38,8 +38,8 @@ ErrorSummary summarize(std::span<const double> errors, double failure_error) {
     return summary;
   }
   summary.mean = sum / static_cast<double>(summary.cases - summary.without_number);
-  summary.median = find_quantile(numbers, 0.5);
-  summary.percentile_95 = find_quantile(numbers, 0.95);
+  summary.median = find_finite_quantile(numbers, 0.5);
+  summary.percentile_95 = find_finite_quantile(numbers, 0.95);
   if (summary.without_number == 0) {
     summary.worst = *std::ranges::max_element(numbers);
   }

@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // With the shipped problems beside the one that is read, so that it can extend them.
-const fs::path& get_folder() {
+const fs::path& get_problems_folder() {
   static const fs::path folder = [] {
     const fs::path& made = get_scratch_folder("problem");
     for (const auto& entry : fs::directory_iterator(find_config_folder() / "problems")) {
@@ -48,7 +48,7 @@ void check_description(const ProblemDescription& description) {
 
 void fuzz_problem(std::string_view input) {
   std::vector<std::string> overrides = split(input, '\0');
-  const fs::path file = get_folder() / "fuzzed.toml";
+  const fs::path file = get_problems_folder() / "fuzzed.toml";
   write_scratch(file, overrides.front());
   overrides.erase(overrides.begin());
   is_read([&] {
@@ -56,7 +56,7 @@ void fuzz_problem(std::string_view input) {
     check_description(loaded.problem->description());
     const LoadedProblem again = [&] {
       try {
-        return load_recorded_problem(loaded.resolved_json, loaded.name, get_folder());
+        return load_recorded_problem(loaded.resolved_json, loaded.name, get_problems_folder());
       } catch (const Error& error) {
         throw BrokenPromise(std::string("a problem is not loaded again: ") + error.what());
       }

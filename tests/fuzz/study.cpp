@@ -30,7 +30,7 @@ bool names_plugin(const fs::path& file) {
   return std::ranges::any_of(names, runs_code);
 }
 
-const fs::path& get_folder() {
+const fs::path& get_studies_folder() {
   static const fs::path folder = [] {
     const fs::path& made = get_scratch_folder("study");
     for (const auto& entry : fs::directory_iterator(find_config_folder() / "studies")) {
@@ -46,7 +46,7 @@ const fs::path& get_folder() {
 }  // namespace
 
 void fuzz_study(std::string_view input) {
-  const fs::path file = get_folder() / "fuzzed.toml";
+  const fs::path file = get_studies_folder() / "fuzzed.toml";
   write_scratch(file, input);
   is_read([&] {
     if (names_plugin(file)) {
@@ -59,7 +59,7 @@ void fuzz_study(std::string_view input) {
             "a plan of nothing");
     require(calc_cost(plan).cells > 0, "a plan without cells");
     const std::string text = to_toml(plan);
-    const fs::path resolved = get_folder() / "resolved.toml";
+    const fs::path resolved = get_studies_folder() / "resolved.toml";
     write_scratch(resolved, text);
     request.file = resolved.string();
     try {

@@ -17,7 +17,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using Begin = OutputLog::Begin;
 
-std::string read_text(const std::filesystem::path& path) {
+std::string read_log(const std::filesystem::path& path) {
   std::ostringstream text;
   text << std::ifstream(path).rdbuf();
   return text.str();
@@ -39,15 +39,15 @@ TEST_F(OutputLogTest, WithoutAWordThereIsNoFileAndNoneOfAnEarlierRun) {
 TEST_F(OutputLogTest, WhatIsAddedIsThereAtOnce) {
   OutputLog log(file_, Begin::anew);
   log.add("one\n");
-  EXPECT_EQ(read_text(file_), "one\n");
+  EXPECT_EQ(read_log(file_), "one\n");
   log.add("two");
-  EXPECT_EQ(read_text(file_), "one\ntwo");
+  EXPECT_EQ(read_log(file_), "one\ntwo");
 }
 
 TEST_F(OutputLogTest, BehindWhatIsThere) {
   std::ofstream(file_) << "before;";
   { OutputLog(file_, Begin::behind_what_is_there).add("after"); }
-  EXPECT_EQ(read_text(file_), "before;after");
+  EXPECT_EQ(read_log(file_), "before;after");
 }
 
 TEST_F(OutputLogTest, OfMuchTheBeginningAndTheEndAreKept) {
@@ -61,7 +61,7 @@ TEST_F(OutputLogTest, OfMuchTheBeginningAndTheEndAreKept) {
     log.add("the end");
     EXPECT_EQ(std::filesystem::file_size(file_), kHead);
   }
-  const std::string text = read_text(file_);
+  const std::string text = read_log(file_);
   const std::size_t printed = (kHead + 5 * kTail + 999) / 1000 * 1000 + 7;
   const std::string note =
       "\n[armwright: " + std::to_string(printed - kHead - kTail) + " bytes are left out here]\n";
@@ -73,7 +73,7 @@ TEST_F(OutputLogTest, OfMuchTheBeginningAndTheEndAreKept) {
 TEST_F(OutputLogTest, ALittleOverTheBeginningIsWhole) {
   const std::string printed = std::string(OutputLog::kHeadBytes - 3, 'x') + "abcdefgh";
   { OutputLog(file_, Begin::anew).add(printed); }
-  EXPECT_EQ(read_text(file_), printed);
+  EXPECT_EQ(read_log(file_), printed);
 }
 
 TEST_F(OutputLogTest, LastLinesAreFewShortAndFitForATerminal) {

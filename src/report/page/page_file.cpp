@@ -37,10 +37,10 @@ std::string escape_html(std::string_view text) {
 }
 
 // In JSON a '<' can only stand within a text, where \u003c means the same.
-std::string escape_json(std::string_view json) {
+std::string escape_json(std::string_view text) {
   std::string escaped;
-  escaped.reserve(json.size() + json.size() / 64);
-  for (const char c : json) {
+  escaped.reserve(text.size() + text.size() / 64);
+  for (const char c : text) {
     if (c == '<') {
       escaped += "\\u003c";
     } else {

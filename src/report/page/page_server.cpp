@@ -26,7 +26,7 @@ constexpr const char* kAddress = "127.0.0.1";
 constexpr std::size_t kThreads = 8;
 
 struct TaggedData {
-  std::string json;
+  std::string text;
   std::string tag;
 };
 
@@ -46,8 +46,8 @@ struct PageServer::Server {
     const std::lock_guard lock(mutex);
     const auto now = std::chrono::steady_clock::now();
     if (data.tag.empty() || now - made_at >= kFresh) {
-      data.json = make_data();
-      data.tag = "\"" + calc_sha256_hex(data.json).substr(0, 16) + "\"";
+      data.text = make_data();
+      data.tag = "\"" + calc_sha256_hex(data.text).substr(0, 16) + "\"";
       made_at = std::chrono::steady_clock::now();
     }
     return data;
@@ -61,7 +61,7 @@ struct PageServer::Server {
 
   void answer_page(httplib::Response& response) {
     const TaggedData now = get_data();
-    response.set_content(make_page_html(title, now.json, now.tag), "text/html; charset=utf-8");
+    response.set_content(make_page_html(title, now.text, now.tag), "text/html; charset=utf-8");
   }
 
   void answer_data(const httplib::Request& request, httplib::Response& response) {
@@ -70,7 +70,7 @@ struct PageServer::Server {
     if (request.get_header_value("If-None-Match") == now.tag) {
       response.status = 304;
     } else {
-      response.set_content(std::move(now.json), "application/json");
+      response.set_content(std::move(now.text), "application/json");
     }
   }
 };

@@ -6,12 +6,14 @@
 
 #include "base/error.hpp"
 #include "base/file.hpp"
+#include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "problems/config_files.hpp"
 #include "problems/recorded_problem.hpp"
 #include "sim/simd_level.hpp"
 #include "study/build_info.hpp"
 #include "study/compare/incumbents.hpp"
+#include "study/record_files.hpp"
 #include "study/run.hpp"
 
 namespace armwright {
@@ -19,9 +21,6 @@ namespace {
 
 using nlohmann::json;
 namespace fs = std::filesystem;
-
-constexpr std::size_t kManifestLimit_bytes = std::size_t{16} << 20;
-constexpr std::size_t kCellLimit_bytes = std::size_t{64} << 20;
 
 // A word of the command line that names a problem: its file, where that is still there.
 struct NamedProblem {
@@ -123,7 +122,7 @@ void read_manifest(RecordedRun& run) {
                             sanitize(run.folder.string())));
   }
   try {
-    const json manifest = json::parse(read_file(file, kManifestLimit_bytes));
+    const json manifest = json::parse(read_json_file(file, kManifestLimit_bytes));
     run.configuration = manifest.at("configuration");
     run.build = manifest.at("build").get<std::map<std::string, std::string>>();
     run.command_line = manifest.at("command_line").get<std::vector<std::string>>();
@@ -150,7 +149,7 @@ void read_name(RecordedRun& run) {
   }
   const auto cell = run.folder / "cell.json";
   if (fs::exists(cell)) {
-    const json content = json::parse(read_file(cell, kCellLimit_bytes), nullptr, false);
+    const json content = json::parse(read_json_file(cell, kCellLimit_bytes), nullptr, false);
     if (content.is_object() && content.contains("problem") && content["problem"].is_string()) {
       run.problem_name = content["problem"].get<std::string>();
       return;

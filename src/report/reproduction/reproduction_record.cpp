@@ -23,7 +23,7 @@ using nlohmann::json;
 
 constexpr const char* kRecordFile = "reproduction.json";
 constexpr std::size_t kRecordLimit_bytes = std::size_t{256} << 20;
-constexpr int kFormat = 1;
+constexpr int kRecordFormat = 1;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // In the order of ReproductionPart::Kind.
@@ -104,7 +104,7 @@ json record_to_json(const ReproductionRecord& record) {
   for (const auto& [label, result] : record.results) {
     parts[label] = part_to_json(result);
   }
-  return {{"format", kFormat},
+  return {{"format", kRecordFormat},
           {"config", record.config},
           {"cases", record.cases ? json(*record.cases) : json(nullptr)},
           {"set", record.overrides},
@@ -114,7 +114,7 @@ json record_to_json(const ReproductionRecord& record) {
 }
 
 ReproductionRecord record_from_json(const json& j) {
-  if (j.at("format") != kFormat) {
+  if (j.at("format") != kRecordFormat) {
     throw std::runtime_error("its format is not the one this version reads");
   }
   ReproductionRecord record;

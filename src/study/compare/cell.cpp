@@ -13,15 +13,15 @@
 #include "study/compare/choices.hpp"
 #include "study/compare/incumbents.hpp"
 #include "study/json_values.hpp"
+#include "study/record_files.hpp"
+#include "study/statistics/values.hpp"
 
 namespace armwright {
 namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kCellLimit_bytes = std::size_t{64} << 20;
-constexpr int kFormat = 1;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kCellFormat = 1;
 
 std::vector<double> get_start(const ProblemDescription& problem) {
   std::vector<double> start;
@@ -171,7 +171,7 @@ double calc_test_value(const ProblemDescription& problem, const Evaluation& eval
 
 std::string to_json(const CellOutcome& outcome) {
   const json j = {
-      {"format", kFormat},
+      {"format", kCellFormat},
       {"problem", outcome.problem},
       {"label", outcome.optimizer},
       {"optimizer", outcome.optimizer_name},
@@ -203,7 +203,7 @@ CellOutcome parse_cell(const std::string& text, const std::filesystem::path& fil
   check_json_depth(text, file.string());
   try {
     const json j = json::parse(text);
-    if (j.at("format") != kFormat) {
+    if (j.at("format") != kCellFormat) {
       throw std::runtime_error("its format is not the one this version reads");
     }
     CellOutcome outcome;

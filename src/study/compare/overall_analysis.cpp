@@ -7,11 +7,10 @@
 #include "study/compare/study_result.hpp"
 #include "study/compare/study_values.hpp"
 #include "study/statistics/profiles.hpp"
+#include "study/statistics/values.hpp"
 
 namespace armwright {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::vector<double> make_grid(double first, double last, int steps) {
   std::vector<double> grid;

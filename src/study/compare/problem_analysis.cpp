@@ -12,11 +12,11 @@
 #include "study/statistics/holm.hpp"
 #include "study/statistics/pareto.hpp"
 #include "study/statistics/profiles.hpp"
+#include "study/statistics/values.hpp"
 
 namespace armwright {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kEcdfTargets = 31;
 constexpr double kEcdfDecades = 3;
 

@@ -23,7 +23,7 @@ using nlohmann::json;
 
 // A value that is not there is an empty field; an infinite one, which counts, is "inf".
 std::string number(double value) {
-  return std::isinf(value) ? "inf" : format_exact(value);
+  return format_exact(value);
 }
 std::string number(const std::optional<double>& value) {
   return value ? format_exact(*value) : "";

@@ -7,11 +7,10 @@
 #include <numeric>
 
 #include "study/compare/study_values.hpp"
+#include "study/statistics/values.hpp"
 
 namespace armwright {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 bool meets(const StudyTarget& target, const CurvePoint& point) {
   return (!target.value || point.value <= *target.value) &&

@@ -13,10 +13,6 @@ namespace {
 
 using nlohmann::json;
 
-std::string number(double value) {
-  return std::isinf(value) ? "inf" : format_exact(value);
-}
-
 json interval_to_json(const Interval& interval) {
   return {value_to_json(interval.lower), value_to_json(interval.upper)};
 }
@@ -39,15 +35,16 @@ std::string make_targets_table(const StudyPlan& plan, const StudyResult& result)
       for (std::size_t o = 0; o < problem.optimizers.size(); ++o) {
         const TargetTime& time = problem.optimizers[o].target_times[t];
         csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}", quote_csv(problem.label),
-                           quote_csv(target.label), target.value ? number(*target.value) : "",
+                           quote_csv(target.label), target.value ? format_exact(*target.value) : "",
                            target.failures ? std::to_string(*target.failures) : "",
                            quote_csv(plan.optimizers[o].label), time.reached, time.kept,
-                           time.trials.size(), number(calc_share(time)), number(time.expected),
-                           number(time.interval.lower), number(time.interval.upper),
-                           quote_csv(plan.reference));
+                           time.trials.size(), format_exact(calc_share(time)),
+                           format_exact(time.expected), format_exact(time.interval.lower),
+                           format_exact(time.interval.upper), quote_csv(plan.reference));
         if (const auto& ratio = time.ratio) {
-          csv += fmt::format(",{},{},{}\n", ratio->ratio ? number(*ratio->ratio) : "",
-                             number(ratio->interval.lower), number(ratio->interval.upper));
+          csv +=
+              fmt::format(",{},{},{}\n", ratio->ratio ? format_exact(*ratio->ratio) : "",
+                          format_exact(ratio->interval.lower), format_exact(ratio->interval.upper));
         } else {
           csv += ",,,\n";
         }
@@ -62,7 +59,7 @@ std::string make_choices_table(const StudyResult& result) {
   for (const CellOutcome& cell : result.cells) {
     for (const CurvePoint& point : cell.choices) {
       csv += fmt::format("{},{},{},{},{},{}\n", quote_csv(cell.problem), quote_csv(cell.optimizer),
-                         cell.replicate, point.budget, number(point.value),
+                         cell.replicate, point.budget, format_exact(point.value),
                          point.failures ? std::to_string(*point.failures) : "");
     }
   }
@@ -84,8 +81,9 @@ std::string make_failures_table(const StudyPlan& plan, const StudyResult& result
           "{},{},{},{},{},{},{},{},{}\n", quote_csv(problem.label),
           quote_csv(plan.optimizers[o].label), one.failure_shares.size(),
           plan.problems[p].loaded.sets.test_cases, std::ranges::count(one.failure_shares, 0.0),
-          number(one.mean_failure_share), number(one.failure_spread.median),
-          number(one.failure_spread.lower_quartile), number(one.failure_spread.upper_quartile));
+          format_exact(one.mean_failure_share), format_exact(one.failure_spread.median),
+          format_exact(one.failure_spread.lower_quartile),
+          format_exact(one.failure_spread.upper_quartile));
     }
   }
   return csv;

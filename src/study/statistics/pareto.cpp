@@ -13,8 +13,6 @@ namespace {
 
 using Point = std::vector<double>;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 bool dominates(const Point& a, const Point& b) {
   return a != b && std::ranges::equal(a, b, std::less_equal<>{});
 }

@@ -10,8 +10,6 @@
 namespace armwright {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 std::size_t check_costs(std::span<const std::vector<double>> costs) {
   const std::size_t solvers = check_table(costs, "profile");
   for (const std::vector<double>& row : costs) {

@@ -11,7 +11,6 @@
 namespace armwright {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLargest = std::numeric_limits<double>::max();
 
 int count_successes(std::span<const Trial> trials) {

@@ -3,11 +3,14 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <string_view>
 #include <vector>
 
 namespace armwright {
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Throw std::invalid_argument, `what` naming the numbers, unless each is finite or +infinity;
 void check_values(std::span<const double> values, std::string_view what);

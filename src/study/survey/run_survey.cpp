@@ -9,8 +9,10 @@
 
 #include "base/error.hpp"
 #include "base/file.hpp"
+#include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "study/compare/cell.hpp"
+#include "study/record_files.hpp"
 #include "study/run_lock.hpp"
 #include "study/survey/derived_survey.hpp"
 #include "study/survey/result_survey.hpp"
@@ -19,10 +21,6 @@ namespace armwright {
 namespace {
 
 using nlohmann::json;
-
-constexpr std::size_t kManifestLimit_bytes = std::size_t{16} << 20;
-constexpr std::size_t kResultLimit_bytes = std::size_t{256} << 20;
-constexpr int kManifestFormat = 1;
 
 // What a check says of a file, and what keeps it from saying anything.
 std::string find_fault(const std::filesystem::path& file,
@@ -39,9 +37,9 @@ std::string find_fault(const std::filesystem::path& file,
   }
 }
 
-class Surveyor {
+class RunSurveyor {
  public:
-  Surveyor(const std::filesystem::path& folder, const std::filesystem::path& name)
+  RunSurveyor(const std::filesystem::path& folder, const std::filesystem::path& name)
       : folder_(folder) {
     survey_.name = name;
     survey_.writer = find_writer(folder);
@@ -87,7 +85,7 @@ class Surveyor {
 
   std::string read_manifest(const std::filesystem::path& file) {
     try {
-      const json manifest = json::parse(read_file(file, kManifestLimit_bytes));
+      const json manifest = json::parse(read_json_file(file, kManifestLimit_bytes));
       if (manifest.at("format") != kManifestFormat) {
         return "its format is not the one that this version reads";
       }
@@ -270,7 +268,7 @@ class Surveyor {
       return;
     }
     const std::string fault = find_fault(file, [&]() -> std::string {
-      const CellOutcome cell = parse_cell(read_file(file, kResultLimit_bytes), file);
+      const CellOutcome cell = parse_cell(read_file(file, kCellLimit_bytes), file);
       if (result_ && (cell.evaluations != result_->result().counts.evaluations ||
                       cell.cases != result_->result().counts.cases)) {
         return fmt::format("it counts {} evaluations on {} cases, and result.json {} on {}",
@@ -335,7 +333,7 @@ bool RunSurvey::is_damaged() const {
 }
 
 RunSurvey survey_run(const std::filesystem::path& folder, const std::filesystem::path& name) {
-  return Surveyor(folder, name).run();
+  return RunSurveyor(folder, name).run();
 }
 
 bool is_run_folder(const std::filesystem::path& folder) {

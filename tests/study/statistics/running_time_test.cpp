@@ -15,6 +15,7 @@ namespace {
 using testing::Each;
 using testing::ElementsAre;
 using testing::SizeIs;
+using Table = std::vector<std::vector<double>>;
 
 TEST(CostToTarget, IsTheFirstCostThatReachesIt) {
   const std::vector<TracePoint> trace = {{1, kInf}, {3, 10}, {8, 2}, {20, -1}};
@@ -210,7 +211,6 @@ TEST(Profiles, DataIsInSimplexGradients) {
 }
 
 TEST(Profiles, RefuseWhatIsNoTableOfCosts) {
-  using Table = std::vector<std::vector<double>>;
   const std::vector one = {1.0};
   EXPECT_THAT([&] { calc_performance_profiles({}, one); }, refuses("no numbers"));
   EXPECT_THAT([&] { calc_performance_profiles(Table{{1, 2}, {1}}, one); }, refuses("another 1"));

@@ -15,6 +15,7 @@ namespace {
 using testing::Each;
 using testing::ElementsAre;
 using testing::IsEmpty;
+using Table = std::vector<std::vector<double>>;
 
 std::vector<double> make_steps(int n) {
   std::vector<double> values;
@@ -139,7 +140,6 @@ TEST(Friedman, OfTiesAloneFindsNothing) {
 }
 
 TEST(Friedman, RefusesTablesWithoutQuestion) {
-  using Table = std::vector<std::vector<double>>;
   EXPECT_THAT([] { calc_friedman_test({}); }, refuses("no numbers"));
   EXPECT_THAT([] { calc_friedman_test(Table{{1, 2}}); }, refuses("at least 2 blocks"));
   EXPECT_THAT([] { calc_friedman_test(Table{{1}, {2}}); }, refuses("2 treatments"));
