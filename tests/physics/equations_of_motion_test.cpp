@@ -74,9 +74,9 @@ const Plane kVertical{"vertical", {0, 0, 1}, {1, 0, 0}};
 const Plane kHorizontal{"horizontal", {1, 0, 0}, {0, 1, 0}};
 const Plane kInclined{"inclined", Vector3d(1, 2, 2) / 3, Vector3d(2, 1, -2) / 3};
 
-const VectorXd kTwoAngles = make_vector({0.7, -1.1});
+const VectorXd kTwoPositions = make_vector({0.7, -1.1});
 const VectorXd kTwoEfforts_n_m = make_vector({9, -2.5});
-const VectorXd kThreeAngles = make_vector({0.6, -0.9, 1.3});
+const VectorXd kThreePositions = make_vector({0.6, -0.9, 1.3});
 const VectorXd kThreeEfforts_n_m = make_vector({4, -3, 0.7});
 
 const Plane kPlanes[] = {kVertical, kHorizontal, kInclined};
@@ -95,7 +95,7 @@ TYPED_TEST(TwoLinkArm, FollowsTheTextbookEquations) {
         [&](double t_s, const VectorXd& q, const VectorXd& qd) {
           return textbook.calc_acceleration(q, qd, calc_drive(kTwoEfforts_n_m, t_s));
         },
-        kTwoAngles, kTwoEfforts_n_m);
+        kTwoPositions, kTwoEfforts_n_m);
   }
 }
 
@@ -120,7 +120,7 @@ TEST(TwoLinks, TheJacobianEquationsAgreeWithTheTextbooks) {
 TEST(ThreeLinks, TheJacobianEquationsKeepTheirEnergy) {
   const RobotModel model = make_skew_arm();
   const ChainOracle oracle(model, kGravity_m_per_s2);
-  const State start{kThreeAngles, make_vector({1.1, -0.7, 2.3})};
+  const State start{kThreePositions, make_vector({1.1, -0.7, 2.3})};
   const State end = integrate_rk4(
       [&](double, const VectorXd& q, const VectorXd& qd) {
         return oracle.calc_acceleration(q, qd, VectorXd::Zero(3));
@@ -140,13 +140,13 @@ TYPED_TEST_SUITE(SkewArm, ArmTypes, ArmNames);
 TYPED_TEST(SkewArm, FollowsTheEquationsOfMotion) {
   const RobotModel model = make_skew_arm();
   const ChainOracle oracle(model, kGravity_m_per_s2);
-  expect_solves<TypeParam>(model, make_driven_acceleration(oracle, kThreeEfforts_n_m), kThreeAngles,
-                           kThreeEfforts_n_m);
+  expect_solves<TypeParam>(model, make_driven_acceleration(oracle, kThreeEfforts_n_m),
+                           kThreePositions, kThreeEfforts_n_m);
 }
 
 TYPED_TEST(SkewArm, TheFirstStepHasTheAccelerationsOfTheEquationsOfMotion) {
   for (const VectorXd& tau : {make_vector({0, 0, 0}), make_vector({21, -13, 4.5})}) {
-    expect_first_step<TypeParam>(make_skew_arm(), kThreeAngles, tau, 0.002);
+    expect_first_step<TypeParam>(make_skew_arm(), kThreePositions, tau, 0.002);
   }
 }
 

@@ -100,7 +100,7 @@ TYPED_TEST(Turnstile, TorqueRipplesWithTheAngle) {
 }
 
 // Turns its joints by 1 mrad a step, whatever acts on them.
-struct ScriptedArm {
+struct RecordingArm {
   int steps = 0;
   std::vector<std::vector<double>> torques_n_m;
 
@@ -140,7 +140,7 @@ TEST_F(ScriptedPlant, ControllersSeeLateAndRoundedAngles) {
   variation_.quantisation_rad = 0.007;
   TrackingJob job = make_job(design_, targets_);
   job.variation = &variation_;
-  ScriptedArm arm;
+  RecordingArm arm;
   TrackingLoop(setup_, job).run(arm);
   for (const int period : {0, 1, 2, 9}) {
     for (std::size_t i = 0; i < 4; ++i) {
@@ -161,10 +161,10 @@ TEST_F(ScriptedPlant, EffortsAreMeasuredAsTheyWereAskedFor) {
   variation_.viscous_friction_n_m_s_per_rad.assign(4, 3);
   variation_.coulomb_friction_n_m = {1, 2, 3, 4};
   TrackingJob job = make_job(design_, targets_);
-  ScriptedArm nominal;
+  RecordingArm nominal;
   const TrackingResult expected = TrackingLoop(setup_, job).run(nominal);
   job.variation = &variation_;
-  ScriptedArm arm;
+  RecordingArm arm;
   const TrackingResult result = TrackingLoop(setup_, job).run(arm);
   EXPECT_EQ(result.peak_effort_n_m, expected.peak_effort_n_m);
   EXPECT_EQ(result.energy_j, expected.energy_j);

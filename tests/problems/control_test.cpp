@@ -15,7 +15,7 @@ namespace {
 
 using testing::HasSubstr;
 
-LoadedProblem load(const std::vector<std::string>& overrides) {
+LoadedProblem load_with_gains(const std::vector<std::string>& overrides) {
   std::vector<std::string> all = {R"(variables.optimize=["gains", "effort_min", "effort_max"])"};
   all.insert(all.end(), overrides.begin(), overrides.end());
   return load_problem("q2-e6", all);
@@ -31,7 +31,7 @@ const DecisionVariable& get_variable(const LoadedProblem& loaded, const std::str
 }
 
 TEST(Control, WithoutATableThereIsThePidOfTheStart) {
-  const LoadedProblem loaded = load({});
+  const LoadedProblem loaded = load_with_gains({});
   EXPECT_EQ(loaded.tracking->config().start.controller, "pid");
   EXPECT_EQ(loaded.tracking->config().task.feed_forward, FeedForward::none);
   EXPECT_THAT(loaded.resolved_json, testing::Not(HasSubstr("\"controller\"")));
@@ -40,8 +40,8 @@ TEST(Control, WithoutATableThereIsThePidOfTheStart) {
 class EveryControl : public testing::TestWithParam<std::string> {};
 
 TEST_P(EveryControl, TakesTheStartOver) {
-  const LoadedProblem plain = load({});
-  const LoadedProblem loaded = load({"control.controller=" + GetParam()});
+  const LoadedProblem plain = load_with_gains({});
+  const LoadedProblem loaded = load_with_gains({"control.controller=" + GetParam()});
   const ControllerRow& row = find_controller(GetParam());
   const TrackingConfig& config = loaded.tracking->config();
   EXPECT_EQ(config.start.controller, row.name);
@@ -71,7 +71,7 @@ TEST_P(EveryControl, TakesTheStartOver) {
 TEST_P(EveryControl, CanBeEvaluated) {
   const std::vector<std::string> overrides = {"control.controller=" + GetParam(),
                                               "physics.engine=articulated", "workspace.points=8"};
-  const LoadedProblem loaded = load(overrides);
+  const LoadedProblem loaded = load_with_gains(overrides);
   std::vector<double> start;
   for (const DecisionVariable& variable : loaded.problem->description().variables) {
     start.push_back(variable.start);
@@ -89,7 +89,7 @@ TEST_P(EveryControl, DesignsSurviveTheirFile) {
   file.name = "made";
   file.title = "a start";
   file.source = "converted";
-  file.design = load({"control.controller=" + GetParam()}).tracking->config().start;
+  file.design = load_with_gains({"control.controller=" + GetParam()}).tracking->config().start;
   file.design.joints[1].gains.back() *= 1.0 / 3;
   for (std::size_t k = 0; k < find_controller(GetParam()).gains.size(); ++k) {
     if (find_controller(GetParam()).gains[k].any_sign) {
@@ -107,15 +107,17 @@ TEST_P(EveryControl, DesignsSurviveTheirFile) {
     EXPECT_EQ(read.design.joints[joint].gains, file.design.joints[joint].gains);
   }
   // As a start it is used as it is, by its own controller or without naming it.
-  const LoadedProblem again = load({"control.controller=" + GetParam(), "variables.start=" + path});
+  const LoadedProblem again =
+      load_with_gains({"control.controller=" + GetParam(), "variables.start=" + path});
   EXPECT_EQ(again.tracking->config().start.joints[2].gains, file.design.joints[2].gains);
-  const LoadedProblem unnamed = load({"variables.start=" + path});
+  const LoadedProblem unnamed = load_with_gains({"variables.start=" + path});
   EXPECT_EQ(unnamed.tracking->config().start.controller, GetParam());
   EXPECT_EQ(unnamed.tracking->config().task.feed_forward, find_controller(GetParam()).feed_forward);
   if (GetParam() != "pid") {
     EXPECT_THAT(usage_error_of([&] {
-                  load({"control.controller=" + std::string(GetParam() == "pi2d" ? "pid" : "pi2d"),
-                        "variables.start=" + path});
+                  load_with_gains(
+                      {"control.controller=" + std::string(GetParam() == "pi2d" ? "pid" : "pi2d"),
+                       "variables.start=" + path});
                 }),
                 HasSubstr("the start design is for controller '" + GetParam() +
                           "', and only one for 'pid' can be turned into one for"));
@@ -126,7 +128,7 @@ INSTANTIATE_TEST_SUITE_P(Table, EveryControl, testing::ValuesIn(controller_names
                          [](const auto& test) { return test.param; });
 
 TEST(Control, RangesAreLinearAndStopAtZero) {
-  const LoadedProblem filtered = load({"control.controller=pid_filtered"});
+  const LoadedProblem filtered = load_with_gains({"control.controller=pid_filtered"});
   const DecisionVariable& b = get_variable(filtered, "joint_1.b");
   EXPECT_EQ(b.lower, 0);
   EXPECT_EQ(b.start, 1);
@@ -134,7 +136,7 @@ TEST(Control, RangesAreLinearAndStopAtZero) {
   const DecisionVariable& filter = get_variable(filtered, "joint_1.filter");
   EXPECT_EQ(filter.start, 0.001);
   EXPECT_EQ(filter.scale, Scale::logarithmic);
-  const LoadedProblem neural = load({"control.controller=neural"});
+  const LoadedProblem neural = load_with_gains({"control.controller=neural"});
   const DecisionVariable& weight = get_variable(neural, "joint_3.w1_rate");
   EXPECT_EQ(weight.lower, -2);
   EXPECT_EQ(weight.start, 0);
@@ -142,19 +144,20 @@ TEST(Control, RangesAreLinearAndStopAtZero) {
 }
 
 TEST(Control, GainsStandForAllOfAController) {
-  EXPECT_EQ(load({}).problem->description().variables.size(), 20U);
+  EXPECT_EQ(load_with_gains({}).problem->description().variables.size(), 20U);
   EXPECT_THAT(
       usage_error_of([] {
-        load({"control.controller=cascade", R"(variables.optimize=["p"])"});
+        load_with_gains({"control.controller=cascade", R"(variables.optimize=["p"])"});
       }),
       HasSubstr("unknown design parameter 'p'; did you mean 'kp'? Valid: kp, kv, ki, share, "
                 "effort_min, effort_max"));
-  EXPECT_THAT(usage_error_of([] { load({R"(variables.optimize=["gains", "i"])"}); }),
+  EXPECT_THAT(usage_error_of([] { load_with_gains({R"(variables.optimize=["gains", "i"])"}); }),
               HasSubstr("'i' stands there twice"));
 }
 
 TEST(Control, TheFilterStartsAtATenthOfThePeriod) {
-  const LoadedProblem loaded = load({"control.controller=pid_filtered", "control.period_s=0.004"});
+  const LoadedProblem loaded =
+      load_with_gains({"control.controller=pid_filtered", "control.period_s=0.004"});
   EXPECT_EQ(loaded.tracking->config().task.control_period_s, 0.004);
   EXPECT_DOUBLE_EQ(get_variable(loaded, "joint_1.filter").start, 0.0004);
 }
@@ -172,13 +175,13 @@ TEST(Control, RefusesAStartThatMakesNoController) {
 }
 
 TEST(Control, ADesignNeedsTheTablesOfItsController) {
-  const LoadedProblem plain = load({});
+  const LoadedProblem plain = load_with_gains({});
   const ArmDesign design =
       convert_design(plain.tracking->config().start, "pid_computed_torque", 0.01);
   EXPECT_EQ(usage_error_of([&] { plain.tracking->check_design(design); }),
             "the design is for controller 'pid_computed_torque', whose efforts in advance problem "
             "q2-e6 does not make; set control.controller to 'pid_computed_torque'");
-  load({"control.controller=pid_computed_torque"}).tracking->check_design(design);
+  load_with_gains({"control.controller=pid_computed_torque"}).tracking->check_design(design);
   // Another controller without tables can be judged, but is no vector of this problem.
   const ArmDesign pi2d = convert_design(plain.tracking->config().start, "pi2d", 0.01);
   plain.tracking->check_design(pi2d);
@@ -188,7 +191,7 @@ TEST(Control, ADesignNeedsTheTablesOfItsController) {
 }
 
 TEST(Control, AConvertedStartKeepsItsArmAndItsSpeed) {
-  ArmDesign start = load({}).tracking->config().start;
+  ArmDesign start = load_with_gains({}).tracking->config().start;
   start.joints[1].length_scale = 1.1;
   start.joints[2].section_scale = 0.9;
   start.speed_m_per_s = 1.25;
@@ -201,7 +204,7 @@ TEST(Control, AConvertedStartKeepsItsArmAndItsSpeed) {
 
 // What runs recorded before the control period had a table of its own.
 TEST(Control, RecordsOfOldRunsCanBeRead) {
-  const LoadedProblem now = load({"control.period_s=0.005"});
+  const LoadedProblem now = load_with_gains({"control.period_s=0.005"});
   std::string old = now.resolved_json;
   const std::string entry = "\"control\":{\"period_s\":0.005},";
   ASSERT_NE(old.find(entry), std::string::npos) << old;

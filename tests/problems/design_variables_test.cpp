@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "load_tracking.hpp"
 #include "problems/problem_folder.hpp"
 #include "sim/designed_arm.hpp"
 
@@ -13,11 +14,6 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::SizeIs;
-
-std::shared_ptr<const TrackingProblem> load(const std::string& name,
-                                            const std::vector<std::string>& overrides) {
-  return load_problem(name, overrides).tracking;
-}
 
 std::vector<std::string> with_lanes(std::vector<std::string> overrides) {
   overrides.emplace_back("physics.engine=articulated");
@@ -40,16 +36,12 @@ double get_metric(const TrackingProblem& problem, const Evaluation& evaluation,
   return 0;
 }
 
-std::vector<double> get_start(const TrackingProblem& problem) {
-  return problem.make_vector(problem.config().start);
-}
-
 const CaseBlock kTraining{CaseRole::training, "train/1", {0, 1}};
 
 TEST(DesignVariables, HaveNamesUnitsAndSpansOfTheirOwn) {
   const auto problem =
-      load("q1-complex", {R"(variables.optimize=["p", "section_scale", "length_scale"])", kSpeed,
-                          "variables.length_bounds_factor=1.25"});
+      load_tracking("q1-complex", {R"(variables.optimize=["p", "section_scale", "length_scale"])",
+                                   kSpeed, "variables.length_bounds_factor=1.25"});
   const auto& variables = problem->description().variables;
   ASSERT_THAT(variables, SizeIs(4 * 3 + 1));
   EXPECT_EQ(variables[4].name, "joint_2.length_scale");
@@ -84,7 +76,7 @@ TEST(DesignVariables, HaveNamesUnitsAndSpansOfTheirOwn) {
 
 TEST(DesignVariables, TakeTheDerivativesAwayAndSayWhy) {
   const auto advise = [](const std::vector<std::string>& overrides) {
-    const auto problem = load("q1-complex", with_lanes(overrides));
+    const auto problem = load_tracking("q1-complex", with_lanes(overrides));
     EXPECT_TRUE(problem->description().has_residuals);
     EXPECT_FALSE(problem->description().has_jacobian);
     return problem->description().jacobian_advice;
@@ -92,14 +84,15 @@ TEST(DesignVariables, TakeTheDerivativesAwayAndSayWhy) {
   EXPECT_THAT(advise({kLinks}), HasSubstr("leave length_scale, section_scale and speed out"));
   EXPECT_THAT(advise({kSpeed}), HasSubstr("leave length_scale, section_scale and speed out"));
   EXPECT_THAT(advise({kMotors}), HasSubstr("leave [motors] out"));
-  EXPECT_TRUE(load("q1-complex", with_lanes({kMotors, R"(variables.optimize=["p"])"}))
+  EXPECT_TRUE(load_tracking("q1-complex", with_lanes({kMotors, R"(variables.optimize=["p"])"}))
                   ->description()
                   .has_jacobian);
 }
 
 // Segment k takes ceil((max(ds_k, limit) / v + rest) / h) periods.
 TEST(SpeedVariable, ChangesTheDurationOfACaseAsComputed) {
-  const auto problem = load("q1-complex", with_lanes({R"(variables.optimize=["p"])", kSpeed}));
+  const auto problem =
+      load_tracking("q1-complex", with_lanes({R"(variables.optimize=["p"])", kSpeed}));
   std::vector<double> x = get_start(*problem);
   for (const double speed_m_per_s : {0.9, 1.5, 2.8}) {
     x.back() = speed_m_per_s;
@@ -111,17 +104,17 @@ TEST(SpeedVariable, ChangesTheDurationOfACaseAsComputed) {
     }
     EXPECT_NEAR(get_metric(*problem, evaluation, "duration"), periods * 0.01, 1e-10);
     // What the task's own speed makes of it, to the last bit.
-    const auto fixed =
-        load("q1-complex", with_lanes({"task.speed_m_per_s=" + std::to_string(speed_m_per_s)}));
+    const auto fixed = load_tracking(
+        "q1-complex", with_lanes({"task.speed_m_per_s=" + std::to_string(speed_m_per_s)}));
     EXPECT_EQ(fixed->evaluate(get_start(*fixed), kTraining).case_errors, evaluation.case_errors);
   }
 }
 
 // Neither neighbours in the lanes nor other candidates' targets get into a design's result.
 TEST(DesignVariables, ABatchOfArmsIsEachArmAlone) {
-  const auto problem =
-      load("q1-complex", with_lanes({R"(variables.optimize=["p", "length_scale", "section_scale"])",
-                                     kSpeed, kMotors}));
+  const auto problem = load_tracking(
+      "q1-complex", with_lanes({R"(variables.optimize=["p", "length_scale", "section_scale"])",
+                                kSpeed, kMotors}));
   std::vector<std::vector<double>> candidates(5, get_start(*problem));
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     candidates[i][4] = 1 + 0.02 * static_cast<double>(i);
@@ -159,7 +152,7 @@ TEST(DesignedArm, EnginesAgreeOnIt) {
   std::vector<double> means;
   for (const std::string engine : {"ode", "articulated"}) {
     const auto problem =
-        load("q1-complex", {"physics.engine=" + engine, kMotors, "task.ik_bug=false"});
+        load_tracking("q1-complex", {"physics.engine=" + engine, kMotors, "task.ik_bug=false"});
     double mean = 0;
     for (const TrackingResult& result :
          problem->track(design, problem->get_set("test/2"), 0, 8, {})) {
@@ -174,7 +167,7 @@ TEST(DesignedArm, EnginesAgreeOnIt) {
 
 // A design's file is all that is needed: the problem has none of its fields as variables.
 TEST(DesignedArm, IsTrackedByWhatItsFileSays) {
-  const auto problem = load("q1-complex", with_lanes({}));
+  const auto problem = load_tracking("q1-complex", with_lanes({}));
   const TestSet set = problem->get_set("test/2");
   const ArmDesign plain = load_design("table-a5").design;
   const double plain_m = problem->track(plain, set, 0).mean_error_m;
@@ -198,7 +191,8 @@ TEST(DesignedArm, IsTrackedByWhatItsFileSays) {
 }
 
 TEST(DesignedArm, MovingMassIsThatOfLinksMotorsAndLoad) {
-  const auto problem = load("q1-complex", with_lanes({kLinks, kMotors, "task.load_kg=20"}));
+  const auto problem =
+      load_tracking("q1-complex", with_lanes({kLinks, kMotors, "task.load_kg=20"}));
   std::vector<double> x = get_start(*problem);
   const double links_kg = 112.9 + 266.3 + 545.6 + 13.8;
   const double motors_kg = (45000 + 20000 + 200) / 100.0;
@@ -212,7 +206,7 @@ TEST(DesignedArm, MovingMassIsThatOfLinksMotorsAndLoad) {
 
 // The arm of 1.095 / 1.5 and 1.28 / 1.5 m does not come to 2.139 m from its shoulder.
 TEST(DesignedArm, OutOfReachIsAsBadAsCutOffInTrainingAndNoNumberElsewhere) {
-  const auto problem = load("q1-complex", with_lanes({kLinks}));
+  const auto problem = load_tracking("q1-complex", with_lanes({kLinks}));
   std::vector<double> x = get_start(*problem);
   x[2] = x[4] = 1 / 1.5;
   const Evaluation training = problem->evaluate(x, kTraining);

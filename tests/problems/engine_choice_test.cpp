@@ -18,13 +18,13 @@ using nlohmann::json;
 using testing::AllOf;
 using testing::HasSubstr;
 
-LoadedProblem load(std::vector<std::string> overrides) {
+LoadedProblem load_with_lanes(std::vector<std::string> overrides) {
   overrides.insert(overrides.end(), {"workspace.points=4"});
   return load_problem("q1-complex", overrides, engines_with_lanes());
 }
 
 std::string refusal_of(const std::vector<std::string>& overrides) {
-  return usage_error_of([&] { load(overrides); });
+  return usage_error_of([&] { load_with_lanes(overrides); });
 }
 
 const std::string kLevel = "scalar";  // every machine has it
@@ -41,7 +41,7 @@ double simulate(const TrackingProblem& problem, std::span<const double> x, CaseR
 }
 
 TEST(EngineChoice, OdeAloneUnlessTheProblemSaysOtherwise) {
-  const LoadedProblem loaded = load({});
+  const LoadedProblem loaded = load_with_lanes({});
   const EnginePair& engines = loaded.tracking->config().engines;
   EXPECT_EQ(engines.training_name, "ode");
   EXPECT_EQ(engines.judging_name, "ode");
@@ -61,7 +61,7 @@ TEST(EngineChoice, NothingIsAddedToTheConfigurationOfOde) {
 
 TEST(EngineChoice, TheSimdLevelInUseIsRecorded) {
   const auto get_recorded = [](const std::vector<std::string>& overrides) {
-    return json::parse(load(overrides).resolved_json).at("physics").at("simd");
+    return json::parse(load_with_lanes(overrides).resolved_json).at("physics").at("simd");
   };
   const std::string best = to_string(find_best_simd());
   EXPECT_EQ(get_recorded({"physics.engine=lanes"}), best);
@@ -72,7 +72,8 @@ TEST(EngineChoice, TheSimdLevelInUseIsRecorded) {
 }
 
 TEST(EngineChoice, FloatIsForTrainingOnly) {
-  const auto problem = load({"physics.engine=lanes", "physics.precision=float"}).tracking;
+  const auto problem =
+      load_with_lanes({"physics.engine=lanes", "physics.precision=float"}).tracking;
   const std::vector<double> x = problem->make_vector(problem->config().start);
   for (const auto role : {CaseRole::training, CaseRole::validation, CaseRole::test}) {
     const bool training = role == CaseRole::training;
@@ -88,11 +89,11 @@ TEST(EngineChoice, FloatIsForTrainingOnly) {
 }
 
 TEST(EngineChoice, AnotherEngineJudges) {
-  const auto problem =
-      load({"physics.engine=lanes", "physics.judging_engine=ode", "physics.precision=float"})
-          .tracking;
+  const auto problem = load_with_lanes({"physics.engine=lanes", "physics.judging_engine=ode",
+                                        "physics.precision=float"})
+                           .tracking;
   EXPECT_EQ(problem->config().engines.judging_name, "ode");
-  const auto ode = load({}).tracking;
+  const auto ode = load_with_lanes({}).tracking;
   const std::vector<double> x = problem->make_vector(problem->config().start);
   EXPECT_EQ(simulate(*problem, x, CaseRole::training),
             calc_lanes_error_m(*problem, x, "train/1", 3, Precision::single));
@@ -105,7 +106,8 @@ TEST(EngineChoice, AnotherEngineJudges) {
 }
 
 TEST(EngineChoice, OneCallMayMixWhatDifferentEnginesSimulate) {
-  const auto problem = load({"physics.engine=lanes", "physics.judging_engine=ode"}).tracking;
+  const auto problem =
+      load_with_lanes({"physics.engine=lanes", "physics.judging_engine=ode"}).tracking;
   const std::vector<double> x = problem->make_vector(problem->config().start);
   const CaseBlock train{CaseRole::training, "train/1", {3}};
   const CaseBlock test{CaseRole::test, "test/2", {3}};
@@ -120,7 +122,7 @@ TEST(EngineChoice, OneCallMayMixWhatDifferentEnginesSimulate) {
 }
 
 TEST(EngineChoice, EveryTableOfTargetsIsMadeOnceForAllOfABatch) {
-  const auto problem = load({"physics.engine=lanes"}).tracking;
+  const auto problem = load_with_lanes({"physics.engine=lanes"}).tracking;
   const std::vector<double> x = problem->make_vector(problem->config().start);
   std::vector<double> y = x;
   y[0] *= 2;
@@ -141,7 +143,7 @@ TEST(EngineChoice, EveryTableOfTargetsIsMadeOnceForAllOfABatch) {
 }
 
 TEST(EngineChoice, SeveralCasesOfADesignAreTrackedAsOneByOne) {
-  const auto problem = load({"physics.judging_engine=lanes"}).tracking;
+  const auto problem = load_with_lanes({"physics.judging_engine=lanes"}).tracking;
   const TestSet set = problem->get_set("test/5");
   const auto together = problem->track(problem->config().start, set, 2, 3, {});
   ASSERT_EQ(together.size(), 3U);

@@ -8,13 +8,12 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "load_tracking.hpp"
 #include "problems/design_file.hpp"
 #include "problems/problem_loader.hpp"
 
 namespace armwright {
 namespace {
-
-constexpr const char* kOracle = ARMWRIGHT_TEST_DATA "/tracking-oracle.json";
 
 struct OracleDesign {
   std::string label;    // in the oracle's file

@@ -11,6 +11,7 @@
 
 #include "base/expect_error.hpp"
 #include "base/random.hpp"
+#include "load_tracking.hpp"
 #include "problems/design_file.hpp"
 #include "problems/problem_loader.hpp"
 
@@ -23,21 +24,12 @@ using testing::ElementsAreArray;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-std::shared_ptr<const TrackingProblem> load(const std::string& name,
-                                            std::vector<std::string> overrides = {}) {
-  return load_problem(name, overrides).tracking;
-}
-
 std::vector<std::string> get_names(const TrackingProblem& problem) {
   std::vector<std::string> names;
   for (const DecisionVariable& variable : problem.description().variables) {
     names.push_back(variable.name);
   }
   return names;
-}
-
-std::vector<double> get_start(const TrackingProblem& problem) {
-  return problem.make_vector(problem.config().start);
 }
 
 // A design anywhere in the box, uniform in the logarithms.
@@ -51,7 +43,7 @@ std::vector<double> draw_vector(const TrackingProblem& problem, RandomStream& ra
 }
 
 TEST(TrackingVariables, AreTheGainsAndLimitsOfEveryJoint) {
-  const auto problem = load("q1-complex");
+  const auto problem = load_tracking("q1-complex");
   const std::vector<double> start = {45000,  150000, 7500,  -20000, 20000,  // thesis, Table A.1
                                      270000, 700000, 30000, -45000, 45000,  //
                                      30000,  100000, 5000,  -20000, 20000,  //
@@ -75,7 +67,7 @@ TEST(TrackingVariables, AreTheGainsAndLimitsOfEveryJoint) {
 }
 
 TEST(TrackingVariables, BoundsFollowTheirFactor) {
-  const auto problem = load("q1-complex", {"variables.bounds_factor=2.5"});
+  const auto problem = load_tracking("q1-complex", {"variables.bounds_factor=2.5"});
   const DecisionVariable& p = problem->description().variables.at(0);
   EXPECT_EQ(p.lower, 18000);
   EXPECT_EQ(p.upper, 112500);
@@ -92,7 +84,7 @@ TEST(TrackingVariables, DescriptionNamesWhatIsMeasured) {
     }
     return texts;
   };
-  const auto q1 = load("q1-complex");
+  const auto q1 = load_tracking("q1-complex");
   EXPECT_EQ(q1->description().name, "q1-complex");
   EXPECT_EQ(q1->description().cost_unit, "simulated test case");
   EXPECT_THAT(get_all(q1->description().objectives), ElementsAre("error (m)"));
@@ -105,23 +97,24 @@ TEST(TrackingVariables, DescriptionNamesWhatIsMeasured) {
                   "joint_2.peak_effort (N m)", "joint_2.rms_effort (N m)",
                   "joint_3.peak_effort (N m)", "joint_3.rms_effort (N m)",
                   "joint_4.peak_effort (N m)", "joint_4.rms_effort (N m)"));
-  EXPECT_THAT(get_all(load("q2-e1")->description().objectives),
+  EXPECT_THAT(get_all(load_tracking("q2-e1")->description().objectives),
               ElementsAre("error and torque (1)"));
-  const ProblemDescription torque = load("q2-torque")->description();
+  const ProblemDescription torque = load_tracking("q2-torque")->description();
   EXPECT_THAT(get_all(torque.objectives), ElementsAre("total torque (N m)"));
   EXPECT_THAT(get_all(torque.constraints), ElementsAre("error / limit - 1 (1)"));
   EXPECT_EQ(torque.limits.at(0).quantity.unit, "m");
   EXPECT_EQ(torque.violation_scale, 100000);
-  const ProblemDescription error = load("q2-error")->description();
+  const ProblemDescription error = load_tracking("q2-error")->description();
   EXPECT_THAT(get_all(error.objectives), ElementsAre("error (m)"));
   EXPECT_THAT(get_all(error.constraints), ElementsAre("total torque / limit - 1 (1)"));
   EXPECT_EQ(error.limits.at(0).quantity.unit, "N m");
   EXPECT_EQ(error.violation_scale, 0.0005);
-  EXPECT_EQ(load("q2-error", {"objective.logarithm=true"})->description().violation_scale, 1);
+  EXPECT_EQ(load_tracking("q2-error", {"objective.logarithm=true"})->description().violation_scale,
+            1);
 }
 
 TEST(TrackingVariables, VectorAndDesignAreTheSameThing) {
-  const auto problem = load("q1-complex");
+  const auto problem = load_tracking("q1-complex");
   RandomStream random("variables", 1);
   for (int trial = 0; trial < 100; ++trial) {
     const std::vector<double> x = draw_vector(*problem, random);
@@ -140,9 +133,9 @@ TEST(TrackingVariables, VectorAndDesignAreTheSameThing) {
 TEST(TrackingVariables, WhatIsNoVariableKeepsItsStartValue) {
   // The order is that of the design, whatever the order in the file.
   const auto problem =
-      load("q1-complex", {R"(variables.optimize=["effort_max", "d"])",
-                          R"(variables.joint=[{name="joint_4", optimize=[]}, )"
-                          R"({name="joint_2", optimize=["effort_min", "p", "i"]}])"});
+      load_tracking("q1-complex", {R"(variables.optimize=["effort_max", "d"])",
+                                   R"(variables.joint=[{name="joint_4", optimize=[]}, )"
+                                   R"({name="joint_2", optimize=["effort_min", "p", "i"]}])"});
   EXPECT_THAT(get_names(*problem),
               ElementsAre("joint_1.d", "joint_1.effort_max", "joint_2.p", "joint_2.i",
                           "joint_2.effort_min", "joint_3.d", "joint_3.effort_max"));
@@ -166,14 +159,14 @@ TEST(TrackingVariables, WhatIsNoVariableKeepsItsStartValue) {
 }
 
 TEST(TrackingVariables, OneJointAloneCanBeOptimized) {
-  const auto problem =
-      load("q1-complex",
-           {"variables.optimize=[]", R"(variables.joint=[{name="joint_3", optimize=["i"]}])"});
+  const auto problem = load_tracking(
+      "q1-complex",
+      {"variables.optimize=[]", R"(variables.joint=[{name="joint_3", optimize=["i"]}])"});
   EXPECT_THAT(get_names(*problem), ElementsAre("joint_3.i"));
 }
 
 TEST(TrackingVariables, DesignForAnotherRobotIsRefused) {
-  const auto problem = load("q1-complex");
+  const auto problem = load_tracking("q1-complex");
   ArmDesign design = problem->config().start;
   design.joints.pop_back();
   const std::string message =
@@ -189,7 +182,7 @@ TEST(TrackingVariables, DesignForAnotherRobotIsRefused) {
 }
 
 TEST(TrackingVariables, VariableWithoutUsableBoundsIsRefused) {
-  TrackingConfig config = load("q1-complex")->config();
+  TrackingConfig config = load_tracking("q1-complex")->config();
   config.start.joints[1].gains[0] = 0;
   EXPECT_EQ(usage_error_of([&] { TrackingProblem broken(config); }),
             "joint_2.p starts at 0, but a variable spans a factor around its start value; give it "
@@ -224,7 +217,7 @@ CaseOutcome make_failure(EvaluationStatus status, const std::string& reason) {
 }
 
 TEST(TrackingAggregate, ErrorIsTheMeanOverTheCases) {
-  const auto problem = load("q1-complex");
+  const auto problem = load_tracking("q1-complex");
   const std::vector<CaseOutcome> outcomes = {
       make_outcome(0.25, 1, 0, 1), make_outcome(0.5, 1, 0, 1), make_outcome(0.0625, 1, 0, 1)};
   const Evaluation evaluation = problem->aggregate(get_start(*problem), outcomes);
@@ -237,7 +230,7 @@ TEST(TrackingAggregate, ErrorIsTheMeanOverTheCases) {
 }
 
 TEST(TrackingAggregate, TorqueCountsAsTheFormulaSays) {
-  const auto problem = load("q2-e3");  // w = 5
+  const auto problem = load_tracking("q2-e3");  // w = 5
   const std::vector<CaseOutcome> outcomes = {make_outcome(0.01, 1, 0, 1),
                                              make_outcome(0.03, 1, 0, 1)};
   std::vector<double> x = get_start(*problem);
@@ -250,24 +243,25 @@ TEST(TrackingAggregate, TorqueCountsAsTheFormulaSays) {
               0.02 / 0.0058 + 5 * 155200.0 / 963686, 1e-14);
   EXPECT_EQ(problem->aggregate(x, outcomes).metrics.at(1), 155200);
 
-  const auto scaled = load("q2-e3", {"objective.torque_weight=0.5", "objective.error_scale_m=0.1",
-                                     "objective.torque_scale_n_m=1000"});
+  const auto scaled =
+      load_tracking("q2-e3", {"objective.torque_weight=0.5", "objective.error_scale_m=0.1",
+                              "objective.torque_scale_n_m=1000"});
   EXPECT_NEAR(scaled->aggregate(get_start(*scaled), outcomes).objectives.at(0), 0.2 + 42.6, 1e-13);
   // Where torque does not count it is still a metric.
-  EXPECT_EQ(load("q1-complex")->aggregate(x, outcomes).metrics.at(1), 155200);
+  EXPECT_EQ(load_tracking("q1-complex")->aggregate(x, outcomes).metrics.at(1), 155200);
 }
 
 TEST(TrackingAggregate, ALimitIsAConstraintInSharesOfItself) {
   const std::vector<CaseOutcome> outcomes = {make_outcome(0.01, 1, 0, 1),
                                              make_outcome(0.03, 1, 0, 1)};
-  const auto torque = load("q2-torque", {"objective.error_limit_m=0.025"});
+  const auto torque = load_tracking("q2-torque", {"objective.error_limit_m=0.025"});
   const std::vector<double> x = get_start(*torque);
   const Evaluation least_torque = torque->aggregate(x, outcomes);
   EXPECT_THAT(least_torque.objectives, ElementsAre(85200));
   ASSERT_THAT(least_torque.constraint_values, SizeIs(1));
   EXPECT_NEAR(least_torque.constraint_values[0], 0.02 / 0.025 - 1, 1e-15);  // met
 
-  const auto error = load("q2-error", {"objective.total_torque_limit_n_m=40000"});
+  const auto error = load_tracking("q2-error", {"objective.total_torque_limit_n_m=40000"});
   const Evaluation least_error = error->aggregate(x, outcomes);
   EXPECT_THAT(least_error.objectives, ElementsAre(0.02));
   ASSERT_THAT(least_error.constraint_values, SizeIs(1));
@@ -276,7 +270,7 @@ TEST(TrackingAggregate, ALimitIsAConstraintInSharesOfItself) {
 }
 
 TEST(TrackingAggregate, ALimitCountsCasesAsTheObjectiveDoes) {
-  const auto problem = load("q2-torque", {"objective.error_limit_m=0.5"});
+  const auto problem = load_tracking("q2-torque", {"objective.error_limit_m=0.5"});
   const std::vector<double> x = get_start(*problem);
   CaseOutcome diverged = make_outcome(1, 1, 0, 1);  // with 1 m for every point, as in training
   diverged.status = EvaluationStatus::diverged;
@@ -299,7 +293,7 @@ TEST(TrackingAggregate, WithALimitThereAreNoResiduals) {
   CaseOutcome outcome = make_outcome(0.01, 1, 0, 1);
   outcome.residuals = {0.01, 0.01};
   for (const char* name : {"q2-torque", "q2-error"}) {
-    const auto problem = load(name, {"physics.engine=articulated"});
+    const auto problem = load_tracking(name, {"physics.engine=articulated"});
     EXPECT_FALSE(problem->description().has_residuals);
     EXPECT_FALSE(problem->description().has_jacobian);
     EXPECT_THAT(problem->aggregate(get_start(*problem), std::vector{outcome}).residuals, IsEmpty());
@@ -309,8 +303,8 @@ TEST(TrackingAggregate, WithALimitThereAreNoResiduals) {
 TEST(TrackingAggregate, TheLogarithmIsThatOfTheSameNumber) {
   const std::vector<CaseOutcome> outcomes = {make_outcome(0.01, 1, 0, 1)};
   for (const char* name : {"q1-complex", "q2-e3", "q2-torque", "q2-error"}) {
-    const auto plain = load(name);
-    const auto logarithmic = load(name, {"objective.logarithm=true"});
+    const auto plain = load_tracking(name);
+    const auto logarithmic = load_tracking(name, {"objective.logarithm=true"});
     const std::vector<double> x = get_start(*plain);
     EXPECT_EQ(logarithmic->aggregate(x, outcomes).objectives.at(0),
               std::log(plain->aggregate(x, outcomes).objectives.at(0)));
@@ -332,7 +326,7 @@ TEST(TrackingAggregate, TheSquaresOfTheResidualsAddUpToTheObjective) {
   for (const auto& [name, torques] :
        std::map<std::string, std::size_t>{{"q1-complex", 0}, {"q2-e3", 4}, {"q2-pareto", 4}}) {
     SCOPED_TRACE(name);
-    const auto problem = load(name);
+    const auto problem = load_tracking(name);
     EXPECT_TRUE(problem->description().has_residuals);
     const Evaluation evaluation = problem->aggregate(get_start(*problem), outcomes);
     ASSERT_THAT(evaluation.residuals, SizeIs(5 + torques));
@@ -345,7 +339,7 @@ TEST(TrackingAggregate, TheSquaresOfTheResidualsAddUpToTheObjective) {
 }
 
 TEST(TrackingAggregate, MetricsAreMeansExceptPeaksAndCounts) {
-  const auto problem = load("q1-complex");
+  const auto problem = load_tracking("q1-complex");
   const double above = std::nextafter(kFailureError_m, 1);
   const std::vector<CaseOutcome> outcomes = {
       make_outcome(kFailureError_m, 100, 0.25, 1),  // exactly the limit: no failure
@@ -364,7 +358,7 @@ TEST(TrackingAggregate, MetricsAreMeansExceptPeaksAndCounts) {
 }
 
 TEST(TrackingAggregate, CasesWithoutNumberAreLeftOutAndCounted) {
-  const auto problem = load("q2-e4");
+  const auto problem = load_tracking("q2-e4");
   const std::vector<CaseOutcome> outcomes = {
       make_outcome(0.25, 1, 0, 1), make_failure(EvaluationStatus::unreachable, "too far"),
       make_outcome(0.75, 1, 0, 1), make_failure(EvaluationStatus::diverged, "joint 1 spins")};
@@ -382,7 +376,7 @@ TEST(TrackingAggregate, CasesWithoutNumberAreLeftOutAndCounted) {
 }
 
 TEST(TrackingAggregate, NoNumberAtAllLeavesObjectivesAndMetricsEmpty) {
-  const auto problem = load("q1-complex");
+  const auto problem = load_tracking("q1-complex");
   const std::vector<CaseOutcome> outcomes = {make_failure(EvaluationStatus::diverged, "first"),
                                              make_failure(EvaluationStatus::unreachable, "second")};
   const Evaluation evaluation = problem->aggregate(get_start(*problem), outcomes);
@@ -397,7 +391,7 @@ TEST(TrackingAggregate, NoNumberAtAllLeavesObjectivesAndMetricsEmpty) {
 // A diverged case has its number in training; that of an abandoned one is a bound, and so is all
 // that is made of it.
 TEST(TrackingAggregate, AnAbandonedCaseMakesABoundOfTheWhole) {
-  const auto problem = load("q2-e3");
+  const auto problem = load_tracking("q2-e3");
   CaseOutcome diverged = make_outcome(1, 1, 0, 1);
   diverged.status = EvaluationStatus::diverged;
   diverged.reason = "diverged at 0.10 s";
@@ -419,7 +413,7 @@ TEST(TrackingAggregate, AnAbandonedCaseMakesABoundOfTheWhole) {
 }
 
 TEST(TrackingAggregate, DivergenceWithANumberKeepsItsStatus) {
-  const auto problem = load("q1-complex");
+  const auto problem = load_tracking("q1-complex");
   CaseOutcome cut_off = make_outcome(1, 1, 0, 1);  // training: the cut-off error stands for it
   cut_off.status = EvaluationStatus::diverged;
   cut_off.reason = "diverged at 0.10 s";
@@ -435,7 +429,7 @@ TEST(TrackingPenalty, IsWorseThanAnythingThatTrainingCanGive) {
   for (const std::string name : {"q1-complex", "q2-e1", "q2-e5", "q2-torque", "q2-error"}) {
     for (const std::string cutoff : {"0.1", "1", "50"}) {
       SCOPED_TRACE(name + ", cut-off " + cutoff);
-      const auto problem = load(name, {"training.cutoff_error_m=" + cutoff});
+      const auto problem = load_tracking(name, {"training.cutoff_error_m=" + cutoff});
       const std::vector<double> penalty = problem->penalty_objectives();
       ASSERT_THAT(penalty, SizeIs(1));
       EXPECT_TRUE(std::isfinite(penalty[0]));
@@ -458,13 +452,13 @@ TEST(TrackingPenalty, IsWorseThanAnythingThatTrainingCanGive) {
 }
 
 TEST(TrackingPenalty, HasItsFormula) {
-  EXPECT_THAT(load("q1-complex")->penalty_objectives(), ElementsAre(10));
-  EXPECT_THAT(load("q1-complex", {"training.cutoff_error_m=0.5"})->penalty_objectives(),
+  EXPECT_THAT(load_tracking("q1-complex")->penalty_objectives(), ElementsAre(10));
+  EXPECT_THAT(load_tracking("q1-complex", {"training.cutoff_error_m=0.5"})->penalty_objectives(),
               ElementsAre(5));
-  EXPECT_NEAR(load("q2-e2")->penalty_objectives().at(0), 10 / 0.0058 + 100 * 8520000.0 / 963686,
-              1e-9);
+  EXPECT_NEAR(load_tracking("q2-e2")->penalty_objectives().at(0),
+              10 / 0.0058 + 100 * 8520000.0 / 963686, 1e-9);
   // Limits that are no variables do not grow.
-  EXPECT_NEAR(load("q2-e2", {R"(variables.optimize=["p"])"})->penalty_objectives().at(0),
+  EXPECT_NEAR(load_tracking("q2-e2", {R"(variables.optimize=["p"])"})->penalty_objectives().at(0),
               10 / 0.0058 + 100 * 85200.0 / 963686, 1e-9);
 }
 

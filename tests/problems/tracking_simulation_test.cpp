@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "base/expect_error.hpp"
+#include "load_tracking.hpp"
 #include "problems/design_file.hpp"
 #include "problems/problem_loader.hpp"
 #include "problems/tracking_problem.hpp"
@@ -21,15 +22,9 @@ using testing::IsEmpty;
 using testing::SizeIs;
 using testing::StartsWith;
 
-constexpr const char* kOracle = ARMWRIGHT_TEST_DATA "/tracking-oracle.json";
-
-std::shared_ptr<const TrackingProblem> load(std::vector<std::string> overrides = {},
-                                            const std::string& name = "q1-complex") {
+std::shared_ptr<const TrackingProblem> load_q1(std::vector<std::string> overrides = {},
+                                               const std::string& name = "q1-complex") {
   return load_problem(name, overrides).tracking;
-}
-
-std::vector<double> get_start(const TrackingProblem& problem) {
-  return problem.make_vector(problem.config().start);
 }
 
 // The corner of the box where everything is as small (-1) or as large (+1) as it can be.
@@ -54,7 +49,7 @@ void expect_same(const CaseOutcome& a, const CaseOutcome& b) {
 }
 
 TEST(TrackingSimulation, EvaluationIsWhatTrackingTheDesignGives) {
-  const auto problem = load({}, "q2-e4");
+  const auto problem = load_q1({}, "q2-e4");
   const auto x = get_start(*problem);
   const Evaluation evaluation =
       problem->evaluate(x, make_block(CaseRole::validation, "validation/1", {4, 0}));
@@ -91,7 +86,7 @@ TEST(TrackingSimulation, EvaluationIsWhatTrackingTheDesignGives) {
 }
 
 TEST(TrackingSimulation, TrainingCutsOffAndNothingElseDoes) {
-  const auto problem = load();
+  const auto problem = load_q1();
   const auto weak = get_corner(*problem, -1);  // cannot carry its own arm
   const std::vector<std::uint64_t> numbers = {0, 1};
   for (const CaseRole role : {CaseRole::validation, CaseRole::test}) {
@@ -107,13 +102,13 @@ TEST(TrackingSimulation, TrainingCutsOffAndNothingElseDoes) {
   EXPECT_EQ(cut.failed_cases, 0);
   EXPECT_THAT(cut.case_errors, Each(testing::Le(1)));
   EXPECT_THAT(cut.case_errors, Each(testing::Gt(0.9)));
-  const auto half = load({"training.cutoff_error_m=0.5"});
+  const auto half = load_q1({"training.cutoff_error_m=0.5"});
   EXPECT_THAT(half->evaluate(weak, make_block(CaseRole::training, "train/1", numbers)).case_errors,
               Each(testing::AllOf(testing::Le(0.5), testing::Gt(0.4))));
 }
 
 TEST(TrackingSimulation, CutOffLeavesGoodDesignsAlone) {
-  const auto problem = load();
+  const auto problem = load_q1();
   const auto x = get_start(*problem);
   EXPECT_EQ(problem->evaluate(x, make_block(CaseRole::training, "train/1", {0, 1})).case_errors,
             problem->evaluate(x, make_block(CaseRole::test, "train/1", {0, 1})).case_errors);
@@ -121,7 +116,7 @@ TEST(TrackingSimulation, CutOffLeavesGoodDesignsAlone) {
 
 TEST(TrackingSimulation, DivergenceIsAStatusAndNeverANumberOutsideTraining) {
   // Efforts a hundred thousand times the start's throw the arm out of the world.
-  const auto problem = load({"variables.bounds_factor=1e5"});
+  const auto problem = load_q1({"variables.bounds_factor=1e5"});
   const auto strong = get_corner(*problem, 1);
   const Evaluation test = problem->evaluate(strong, make_block(CaseRole::test, "train/1", {0, 1}));
   EXPECT_EQ(test.status, EvaluationStatus::diverged);
@@ -145,7 +140,7 @@ TEST(TrackingSimulation, DivergenceIsAStatusAndNeverANumberOutsideTraining) {
 
 TEST(TrackingSimulation, UnreachableCasesAreLeftOutInEveryRole) {
   // Some, not all, of the cases in a larger sphere leave the arm's reach.
-  const auto problem = load({"workspace.radius_m=1.1"});
+  const auto problem = load_q1({"workspace.radius_m=1.1"});
   const TestSet set = problem->get_set("train/1");
   std::vector<std::uint64_t> reachable, unreachable;
   std::string first_reason;
@@ -180,7 +175,7 @@ TEST(TrackingSimulation, UnreachableCasesAreLeftOutInEveryRole) {
 // Three designs (a usual, a failing and a diverging one) on mixed sets and roles.
 struct Mixture {
   std::shared_ptr<const TrackingProblem> problem =
-      load({"variables.bounds_factor=1e4", "workspace.points=4"});
+      load_q1({"variables.bounds_factor=1e4", "workspace.points=4"});
   std::vector<std::vector<double>> designs = {get_start(*problem), get_corner(*problem, -1),
                                               get_corner(*problem, 1)};
   std::vector<CaseBlock> blocks = {make_block(CaseRole::training, "train/1", {0, 1}),
@@ -249,12 +244,12 @@ TEST(TrackingSimulation, OutcomesDoNotDependOnThreads) {
 }
 
 TEST(TrackingSimulation, NothingToDoGivesNothing) {
-  EXPECT_THAT(load()->simulate({}), IsEmpty());
+  EXPECT_THAT(load_q1()->simulate({}), IsEmpty());
 }
 
 TEST(TrackingFileSets, AreEvaluatedUnderTheirName) {
   const TestSet set = TestSet::load(kOracle);
-  TrackingProblem problem(load({}, "q2-e6")->config());
+  TrackingProblem problem(load_q1({}, "q2-e6")->config());
   const auto x = problem.make_vector(load_design("table-a10").design);
   EXPECT_EQ(usage_error_of([&] { problem.get_set(set.name()); }),
             fmt::format("problem q2-e6 has no test cases named {}; load the file they came from",
@@ -273,7 +268,7 @@ TEST(TrackingFileSets, AreEvaluatedUnderTheirName) {
 }
 
 TEST(TrackingFileSets, AnyOtherNameGeneratesCasesInTheProblemsWorkspace) {
-  const auto problem = load({"workspace.points=5", "workspace.centre_m=[1.3, 0.1, 1]"});
+  const auto problem = load_q1({"workspace.points=5", "workspace.centre_m=[1.3, 0.1, 1]"});
   WorkspaceSphere sphere;
   sphere.centre_m = {1.3, 0.1, 1};
   sphere.points = 5;
@@ -289,7 +284,7 @@ TEST(TrackingFileSets, CaseOfOneMoveNeedsItsFirstPointCounted) {
       "test set {}: case 0 has 2 points, but the first after the start does not count "
       "(task.count_first_point is false); give it a third one",
       set.name());
-  TrackingProblem strict(load()->config());
+  TrackingProblem strict(load_q1()->config());
   strict.add_set(set);
   const auto x = get_start(strict);
   EXPECT_EQ(error_of(ErrorKind::bad_data, [&] { strict.track(strict.config().start, set, 0); }),
@@ -297,7 +292,7 @@ TEST(TrackingFileSets, CaseOfOneMoveNeedsItsFirstPointCounted) {
   EXPECT_EQ(error_of(ErrorKind::bad_data,
                      [&] { strict.evaluate(x, make_block(CaseRole::test, set.name(), {0})); }),
             message);
-  const auto counting = load({"task.count_first_point=true"});
+  const auto counting = load_q1({"task.count_first_point=true"});
   const TrackingResult result = counting->track(counting->config().start, set, 0);
   ASSERT_THAT(result.point_error_m, SizeIs(1));
   EXPECT_EQ(result.mean_error_m, result.point_error_m[0]);
@@ -306,7 +301,7 @@ TEST(TrackingFileSets, CaseOfOneMoveNeedsItsFirstPointCounted) {
 
 // What a caller who only cares for designs better than a bound gets of a case that is none.
 TEST(TrackingSimulation, AnAbandonedCaseSaysWhatItsErrorIsAtLeast) {
-  const auto problem = load({"workspace.points=6"});
+  const auto problem = load_q1({"workspace.points=6"});
   const auto x = get_corner(*problem, -1);
   const CaseBlock block = make_block(CaseRole::test, "test/2", {0});
   CaseJob job{.x = x, .block = &block, .number = 0, .residuals = true};
@@ -327,7 +322,7 @@ TEST(TrackingSimulation, AnAbandonedCaseSaysWhatItsErrorIsAtLeast) {
 }
 
 TEST(TrackingSimulation, ResidualsAreThereIfAskedFor) {
-  const auto problem = load({"workspace.points=3"});
+  const auto problem = load_q1({"workspace.points=3"});
   const auto x = get_start(*problem);
   const CaseBlock block = make_block(CaseRole::training, "train/1", {0});
   CaseJob job{.x = x, .block = &block, .number = 0};
