@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "base/file.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "problems/config_files.hpp"

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 
 #include "study/compare/study_result.hpp"
 #include "study/compare/study_values.hpp"
