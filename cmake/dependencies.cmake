@@ -52,6 +52,13 @@ if(ARMWRIGHT_WITH_MUJOCO AND NOT mujoco_found)
                       "option OFF")
 endif()
 
+# Evaluations over the ranks of an mpirun. Asked for by pkg-config, since CMake's own module wants the language C for the plain C interface.
+pkg_check_modules(OPENMPI IMPORTED_TARGET ompi-c)
+option(ARMWRIGHT_WITH_MPI "Evaluations shared out by mpirun (OpenMPI)" ${OPENMPI_FOUND})
+if(ARMWRIGHT_WITH_MPI AND NOT OPENMPI_FOUND)
+  message(FATAL_ERROR "ARMWRIGHT_WITH_MPI is ON, but there is no OpenMPI; install the Debian package libopenmpi-dev or leave the option OFF")
+endif()
+
 # Reads the meshes of robots for the page's replay. Without it they are shown in plain shapes, with a note.
 find_library(ASSIMP_LIBRARY assimp)
 find_path(ASSIMP_INCLUDE_DIR assimp/Importer.hpp)

@@ -7,14 +7,17 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
+#include <cstdio>
 #include <new>
 #include <system_error>
 
 #include "base/error.hpp"
+#include "base/file_descriptor.hpp"
 #include "base/text.hpp"
 #include "cli/session.hpp"
 #include "cli/terminal.hpp"
 #include "study/build_info.hpp"
+#include "study/executor/mpi_links.hpp"
 
 namespace armwright {
 namespace {
@@ -140,6 +143,15 @@ int parse_and_run(CLI::App& app, Session& session, int argc, char** argv) {
   if (std::find(choices.begin(), choices.end(), session.color) == choices.end()) {
     throw Error(ErrorKind::usage, describe_unknown("--color", session.color, choices));
   }
+  const auto place = find_rank_place();
+  if (place && !session.shares_work) {
+    if (place->rank > 0) {
+      return exit_code::kDone;
+    }
+    write_message(fmt::format(
+        "note: of {} ranks only the first has work: optimize and compare alone share theirs out",
+        place->size));
+  }
   return session.action();
 }
 
@@ -167,33 +179,20 @@ int get_exit_code(ErrorKind kind) {
   return exit_code::kIo;
 }
 
-}  // namespace
-
-int get_stop_code(StopReason reason) {
-  return reason == StopReason::interrupted ? exit_code::kInterrupted : exit_code::kStopped;
-}
-
-const char* describe_stop(StopReason reason) {
-  switch (reason) {
-    case StopReason::interrupted:
-      return "interrupted";
-    case StopReason::terminated:
-      return "stopped by a signal";
-    case StopReason::time_limit:
-      return "stopped: the time limit is reached";
-    case StopReason::none:
-      break;
+// What rank 0 has to say is said once: the others parse the same words and read the same files.
+void silence_worker_ranks() {
+  const auto place = find_rank_place();
+  if (place && place->rank > 0) {
+    const FileDescriptor nothing(::open("/dev/null", O_WRONLY | O_CLOEXEC));
+    ::dup2(nothing.get(), STDOUT_FILENO);
+    ::dup2(nothing.get(), STDERR_FILENO);
   }
-  return "stopped";
 }
 
-int run_app(int argc, char** argv) {
-  // A closed pipe and a file beyond the limit of its size show as errors of write().
-  std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);
-  Session session;
+int run_command(Session& session, int argc, char** argv) {
   try {
     occupy_standard_streams();
+    silence_worker_ranks();
     session.command_line.assign(argv, argv + argc);
     CLI::App app(kSummary, "armwright");
     app.set_version_flag("--version", std::string("asked for"),
@@ -236,6 +235,41 @@ int run_app(int argc, char** argv) {
                   error.what());
     return exit_code::kInternal;
   }
+}
+
+}  // namespace
+
+int get_stop_code(StopReason reason) {
+  return reason == StopReason::interrupted ? exit_code::kInterrupted : exit_code::kStopped;
+}
+
+const char* describe_stop(StopReason reason) {
+  switch (reason) {
+    case StopReason::interrupted:
+      return "interrupted";
+    case StopReason::terminated:
+      return "stopped by a signal";
+    case StopReason::time_limit:
+      return "stopped: the time limit is reached";
+    case StopReason::none:
+      break;
+  }
+  return "stopped";
+}
+
+int run_app(int argc, char** argv) {
+  // A closed pipe and a file beyond the limit of its size show as errors of write().
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+  Session session;
+  const int code = run_command(session, argc, argv);
+  if (session.must_abort_ranks) {
+    std::fflush(nullptr);
+    abort_mpi(code);
+  }
+  // To mpirun a worker that has no work because the command line is wrong is no second failure.
+  const auto place = find_rank_place();
+  return place && place->rank > 0 ? exit_code::kDone : code;
 }
 
 }  // namespace armwright

@@ -11,6 +11,7 @@
 #include "base/text.hpp"
 #include "cli/session.hpp"
 #include "sim/physics_engine.hpp"
+#include "study/executor/mpi_links.hpp"
 #include "study/run_folder.hpp"
 #include "study/run_plan.hpp"
 
@@ -87,7 +88,8 @@ void JobsOption::add_to(CLI::App& command) {
 
 unsigned JobsOption::get() const {
   if (text.empty()) {
-    return std::max(1U, std::thread::hardware_concurrency());
+    const auto place = find_rank_place();
+    return place ? count_rank_cores(*place) : std::max(1U, std::thread::hardware_concurrency());
   }
   return static_cast<unsigned>(parse_count("--jobs (ARMWRIGHT_JOBS)", text, 1, kMostJobs));
 }

@@ -16,11 +16,13 @@
 #include "cli/session.hpp"
 #include "cli/signals.hpp"
 #include "cli/study_view.hpp"
+#include "cli/team.hpp"
 #include "cli/terminal.hpp"
 #include "study/compare/escape.hpp"
 #include "study/compare/final_check.hpp"
 #include "study/compare/study_runner.hpp"
 #include "study/compare/study_tables.hpp"
+#include "study/locked_observer.hpp"
 
 namespace armwright {
 namespace {
@@ -143,9 +145,20 @@ int run_compare(const CompareOptions& options, Session& session) {
                 "compare what? Give a study file, --preset NAME, or --problems "
                 "and --optimizers. See 'armwright compare --help'");
   }
+  Team team(session);
   const unsigned jobs = options.jobs.get();
+  StudyPlan plan;
+  if (team.is_worker()) {
+    team.serve(
+        [&] {
+          plan = make_study_plan(make_request(options));
+          adopt_recorded(options.folder.choose(escape_name(plan.name)), plan);
+          return list_problems(plan);
+        },
+        jobs);
+  }
   options.time_limit.apply(session.stop);
-  StudyPlan plan = make_study_plan(make_request(options));
+  plan = make_study_plan(make_request(options));
   const auto path = options.folder.choose(escape_name(plan.name));
   adopt_recorded(path, plan);
   if (!options.quiet || options.dry_run) {
@@ -161,7 +174,9 @@ int run_compare(const CompareOptions& options, Session& session) {
   }
   catch_signals(session.stop);
   ProgressBar bar(options.quiet, {});
-  const CellsResult cells = run_cells(plan, path, jobs, session.stop, bar);
+  LockedObserver observer(bar);
+  Coordinator* const coordinator = team.lead(list_problems(plan), jobs, observer);
+  const CellsResult cells = run_cells(plan, path, jobs, session.stop, observer, coordinator);
   const auto stopped = [&] {
     bar.clear();
     write_message(fmt::format("{}; nothing is lost. To go on:\n{}",
@@ -173,7 +188,7 @@ int run_compare(const CompareOptions& options, Session& session) {
     return stopped();
   }
   StudyResult result = analyze_study(plan, path);
-  if (!add_final_checks(plan, path, jobs, session.stop, bar, result)) {
+  if (!add_final_checks(plan, path, jobs, session.stop, observer, result)) {
     return stopped();
   }
   bar.clear();
@@ -242,6 +257,7 @@ void add_compare(CLI::App& app, Session& session) {
   command->add_flag("--json", options->json, "Print the result as JSON")->group("Output");
   command->add_flag("--quiet,-q", options->quiet, "No plan and no progress")->group("Output");
   command->callback([options, &session] {
+    session.shares_work = true;
     session.action = [options, &session] { return run_compare(*options, session); };
   });
 }

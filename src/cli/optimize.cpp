@@ -14,7 +14,9 @@
 #include "cli/result_view.hpp"
 #include "cli/session.hpp"
 #include "cli/signals.hpp"
+#include "cli/team.hpp"
 #include "cli/terminal.hpp"
+#include "study/locked_observer.hpp"
 #include "study/run.hpp"
 #include "study/run_folder.hpp"
 
@@ -110,15 +112,15 @@ std::vector<std::string> make_command(const OptimizeOptions& options, const Sess
   return words;
 }
 
-void announce(const RunRequest& request) {
+void announce(const RunRequest& request, const std::string& ranks) {
   const RunPlan& plan = request.plan;
   const bool known = std::filesystem::exists(request.folder / "manifest.json");
   write_message(fmt::format("{}: {}", plan.problem.name, plan.problem.title));
   write_message(fmt::format(
-      "optimizer {}, seed {}, budget {}, schedule {}{}, {}", plan.optimizer.name, plan.seed,
+      "optimizer {}, seed {}, budget {}, schedule {}{}, {}{}", plan.optimizer.name, plan.seed,
       format_count(static_cast<unsigned long long>(plan.budget), "case"), to_text(plan.schedule),
       plan.racing.kind == Racing::Kind::none ? "" : ", racing " + to_text(plan.racing),
-      format_count(request.jobs, "thread")));
+      format_count(request.jobs, "thread"), ranks.empty() ? "" : " on each of " + ranks));
   if (plan.problem.schedule.changes_cases() && !plan.schedule.changes_cases()) {
     write_message(
         fmt::format("the problem's own schedule is {}, other cases for every "
@@ -182,20 +184,32 @@ std::string describe_next(const OptimizeOptions& options, const std::string& pro
 }
 
 int run_optimize(const OptimizeOptions& options, Session& session) {
+  Team team(session);
   RunRequest request;
   request.jobs = options.jobs.get();
+  if (team.is_worker()) {
+    team.serve(
+        [&]() -> Team::Problems {
+          request.plan = make_plan(options);
+          return {&request.plan.problem};
+        },
+        request.jobs);
+  }
   options.time_limit.apply(session.stop);
   request.plan = make_plan(options);
   request.folder = options.folder.choose(make_run_name(request.plan));
   request.command_line = make_command(options, session, request.folder);
   if (!options.quiet) {
-    announce(request);
+    announce(request, team.describe());
   }
 
   catch_signals(session.stop);
   ProgressBar bar(options.quiet,
                   get_scalar_quantity(request.plan.problem.problem->description().objectives));
-  const auto result = execute_run(request, session.stop, bar);
+  LockedObserver observer(bar);
+  request.executor = team.lead({&request.plan.problem}, request.jobs, observer);
+  const auto result = execute_run(request, session.stop, observer);
+
   bar.clear();
   if (result && !result->failure.empty()) {
     write_message(describe_way_out(options, request));
@@ -266,6 +280,7 @@ void add_optimize(CLI::App& app, Session& session) {
   command->add_flag("--json", options->json, "Print the result as JSON")->group("Output");
   command->add_flag("--quiet,-q", options->quiet, "No progress")->group("Output");
   command->callback([options, &session] {
+    session.shares_work = true;
     session.action = [options, &session] { return run_optimize(*options, session); };
   });
 }

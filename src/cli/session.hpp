@@ -32,7 +32,9 @@ struct Session {
   std::vector<std::string> command_line;  // as typed, the program's name included
   std::string color = "auto";
   StopSignal stop;
-  std::function<int()> action;  // of the chosen subcommand; its result is the exit code
+  std::function<int()> action;    // of the chosen subcommand; its result is the exit code
+  bool shares_work = false;       // the chosen subcommand: out over ranks, if there are any
+  bool must_abort_ranks = false;  // at the end: some are missing (cli/team.hpp)
 };
 
 void add_list(CLI::App& app, Session& session);

@@ -42,7 +42,9 @@ int write_all(int descriptor, std::string_view text) {
 bool is_terminal(Stream stream) {
   const char* term = std::getenv("TERM");
   const bool dumb = term != nullptr && std::string_view(term) == "dumb";
-  return !dumb && ::isatty(static_cast<int>(stream)) == 1;
+  // mpirun shows each rank a terminal, whatever it does with what is written there.
+  const bool by_mpirun = std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr;
+  return !dumb && !by_mpirun && ::isatty(static_cast<int>(stream)) == 1;
 }
 
 int get_width(Stream stream) {

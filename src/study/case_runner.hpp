@@ -1,37 +1,30 @@
-// Fans evaluations out over threads. What is shared out are chunks of (candidate, case) pairs,
-// ordered so that SIMD lanes work side by side on the same case where there are several candidates,
-// so that one candidate on many cases uses all threads and lanes as well as many candidates on one.
-// Results depend neither on the number of threads nor on the chunks.
+// Evaluates candidates on cases, whoever simulates them (executor/case_executor.hpp). What is
+// shared out are pairs of a candidate and a case, so that one candidate on many cases uses all
+// threads and lanes as well as many candidates on one. Results depend neither on threads nor on
+// chunks.
 #pragma once
 
 #include <cstddef>
 #include <functional>
 #include <span>
 
-#include "problems/problem.hpp"
-#include "study/stop.hpp"
-#include "study/thread_pool.hpp"
+#include "study/executor/case_executor.hpp"
 
 namespace armwright {
 
 class CaseRunner {
  public:
-  CaseRunner(const Problem& problem, ThreadPool& pool, StopSignal& stop)
-      : problem_(problem), pool_(pool), stop_(stop) {}
+  CaseRunner(const Problem& problem, CaseExecutor& executor, StopSignal& stop)
+      : problem_(problem), executor_(executor), stop_(stop) {}
 
   // Called once for each finished candidate, from the thread that finished it, as soon as its last
   // case is done.
   using OnDone = std::function<void(std::size_t candidate, Evaluation evaluation)>;
 
-  // What outcomes shall carry, where the problem has it.
-  struct Extras {
-    bool residuals = false;
-    bool jacobian = false;
-  };
   // As OnDone, with the outcomes of all cases, in the block's order, to take.
   using OnOutcomes = std::function<void(std::size_t candidate, std::span<CaseOutcome> outcomes)>;
   void run_cases(std::span<const std::span<const double>> candidates, const CaseBlock& block,
-                 Extras extras, const OnOutcomes& on_outcomes);
+                 CaseExtras extras, const OnOutcomes& on_outcomes);
 
   // Every candidate on every case of the block. A stop counts between chunks; candidates that it
   // leaves unfinished `on_done` never hears of. Evaluations carry residuals only if asked for.
@@ -41,7 +34,7 @@ class CaseRunner {
 
  private:
   const Problem& problem_;
-  ThreadPool& pool_;
+  CaseExecutor& executor_;
   StopSignal& stop_;
 };
 

@@ -68,6 +68,15 @@ void describe_start(const RunFolder& folder, const JournalContent& journal, RunO
   }
 }
 
+void warn_of_fewer_threads(std::size_t granted, std::size_t wanted, RunObserver& observer) {
+  if (granted < wanted) {
+    observer.on_message(
+        fmt::format("warning: the system grants {} of {} threads; the result is "
+                    "the same, but takes longer",
+                    granted, wanted));
+  }
+}
+
 }  // namespace
 
 std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop,
@@ -91,14 +100,13 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   JournalContent recorded;
   Journal journal(folder.journal(), recorded);
   describe_start(folder, recorded, observer);
-  ThreadPool pool(request.jobs);
-  if (pool.size() < request.jobs) {
-    observer.on_message(
-        fmt::format("warning: the system grants {} of {} threads; the result is "
-                    "the same, but takes longer",
-                    pool.size(), request.jobs));
+  std::optional<ThreadExecutor> threads;
+  if (request.executor == nullptr) {
+    threads.emplace(request.jobs);
+    warn_of_fewer_threads(threads->pool().size(), request.jobs, observer);
   }
-  CaseRunner runner(*plan.problem.problem, pool, stop);
+  CaseRunner runner(*plan.problem.problem,
+                    request.executor != nullptr ? *request.executor : *threads, stop);
   const bool ended = recorded.ended;
   Judge judge(plan, runner, journal, std::move(recorded.judgements), ended, observer);
   RunEvaluator evaluator(plan, runner, stop, journal, std::move(recorded), observer);

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 
+#include "study/executor/case_executor.hpp"
 #include "study/run_plan.hpp"
 #include "study/run_result.hpp"
 #include "study/stop.hpp"
@@ -21,6 +22,7 @@ struct RunRequest {
   unsigned jobs = 1;                      // threads
   std::vector<std::string> command_line;  // for the manifest
   DerivedFiles derived = DerivedFiles::all;
+  CaseExecutor* executor = nullptr;  // instead of `jobs` threads of its own
 };
 
 // The result, or nothing if `stop` ended the run early; everything evaluated so far is in the

@@ -136,6 +136,10 @@ std::vector<EvaluationRecord> select_judgements(const JournalContent& journal,
     record.index = is_test ? 0 : place;
     selected.push_back(std::move(record));
   }
+  // Not as they happened to finish: the same tables for any number of threads.
+  std::ranges::stable_sort(selected, {}, [](const EvaluationRecord& record) {
+    return std::pair(record.cases.role, record.index);
+  });
   return selected;
 }
 

@@ -32,8 +32,8 @@ std::vector<Evaluation> evaluate(const Problem& problem,
                                  const std::vector<std::vector<double>>& population,
                                  std::size_t at_once, std::size_t threads, std::size_t cases) {
   StopSignal stop;
-  ThreadPool pool(threads);
-  CaseRunner runner(problem, pool, stop);
+  ThreadExecutor executor(threads);
+  CaseRunner runner(problem, executor, stop);
   CaseBlock block{CaseRole::training, "train/1", std::vector<std::uint64_t>(cases)};
   std::iota(block.numbers.begin(), block.numbers.end(), 0);
   std::vector<Evaluation> evaluations(population.size());

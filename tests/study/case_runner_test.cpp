@@ -82,7 +82,7 @@ class NotingProblem : public Problem {
 };
 
 struct NotedRun {
-  explicit NotedRun(BatchSize size, unsigned threads = 1) : problem(size), pool(threads) {
+  explicit NotedRun(BatchSize size, unsigned threads = 1) : problem(size), executor(threads) {
     problem.stop = &stop;
   }
   // Candidates 0, 1, ... on the cases 7, 8, ...; what on_done is told, by candidate.
@@ -100,7 +100,7 @@ struct NotedRun {
     }
     std::mutex mutex;
     std::map<std::size_t, Evaluation> done;
-    CaseRunner(problem, pool, stop)
+    CaseRunner(problem, executor, stop)
         .run(spans, block, residuals, [&](std::size_t candidate, Evaluation evaluation) {
           const std::lock_guard lock(mutex);
           order.push_back(candidate);
@@ -112,7 +112,7 @@ struct NotedRun {
 
   StopSignal stop;
   NotingProblem problem;
-  ThreadPool pool;
+  ThreadExecutor executor;
   std::vector<std::size_t> order;         // of the candidates, as they were done
   std::vector<std::size_t> calls_before;  // calls of simulate() until then; on one thread
 };

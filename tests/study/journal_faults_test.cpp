@@ -14,6 +14,7 @@
 
 #include "journal_test_support.hpp"
 #include "study/journal.hpp"
+#include "wait_until.hpp"
 
 namespace {
 std::atomic<int> sync_count = 0;
@@ -42,21 +43,6 @@ using namespace journal_testing;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
-
-constexpr auto kPatience =
-    std::chrono::seconds(2);  // generous: only a failing test waits that long
-
-// Calls `condition` until it holds; false if it does not within kPatience.
-bool wait_until(const std::function<bool()>& condition) {
-  const auto deadline = std::chrono::steady_clock::now() + kPatience;
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > deadline) {
-      return false;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  return true;
-}
 
 // While it lives, no file of this process may grow beyond `bytes`: writes end short, then fail with
 // EFBIG. A full disk does the same with ENOSPC.

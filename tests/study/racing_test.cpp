@@ -86,8 +86,8 @@ class RaceTest : public testing::Test {
                        }};
   const CaseBlock block_{CaseRole::training, "train/1", {0, 1, 2, 3}};
   StopSignal stop_;
-  ThreadPool pool_{2};
-  CaseRunner runner_{problem_, pool_, stop_};
+  ThreadExecutor executor_{2};
+  CaseRunner runner_{problem_, executor_, stop_};
   std::vector<std::vector<double>> points_ = {{0}, {1}, {2}, {3}, {4}, {5}};
   std::vector<std::span<const double>> candidates_{points_.begin(), points_.end()};
 };

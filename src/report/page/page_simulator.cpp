@@ -21,13 +21,13 @@ void PageSimulator::run(std::size_t jobs, std::size_t cases_per_job, std::uint64
                         const std::function<void(std::size_t)>& job) {
   // Enough between two looks for no thread to wait long for the others.
   constexpr std::size_t kRoundsAtOnce = 4;
-  const std::size_t at_once = kRoundsAtOnce * pool_.size();
+  const std::size_t at_once = kRoundsAtOnce * executor_.pool().size();
   for (std::size_t first = 0; first < jobs; first += at_once) {
     if (stop_.requested()) {
       throw PageStopped{};
     }
     const std::size_t count = std::min(at_once, jobs - first);
-    pool_.run(count, [&](std::size_t i) {
+    executor_.pool().run(count, [&](std::size_t i) {
       if (!stop_.requested()) {
         job(first + i);
       }
@@ -49,7 +49,8 @@ std::vector<TrackingResult> PageSimulator::evaluate(const TrackingProblem& probl
                                                     std::uint64_t first, std::uint64_t count) {
   problem.check_design(design);
   std::vector<TrackingResult> results(count);
-  const std::size_t chunk = calc_chunk(problem.batch_size(CaseRole::test), count, pool_.size());
+  const std::size_t chunk =
+      calc_chunk(problem.batch_size(CaseRole::test), count, executor_.pool().size());
   run((results.size() + chunk - 1) / chunk, chunk, count, [&](std::size_t number) {
     const std::size_t begin = number * chunk;
     const std::size_t size = std::min(chunk, results.size() - begin);
@@ -62,7 +63,7 @@ std::vector<TrackingResult> PageSimulator::evaluate(const TrackingProblem& probl
 Evaluation PageSimulator::evaluate(const Problem& problem, std::span<const double> x,
                                    const CaseBlock& block) {
   Evaluation evaluation;
-  CaseRunner runner(problem, pool_, stop_);
+  CaseRunner runner(problem, executor_, stop_);
   runner.run(std::span(&x, 1), block, false,
              [&](std::size_t, Evaluation done) { evaluation = std::move(done); });
   if (stop_.requested()) {

@@ -20,7 +20,7 @@ struct PageStopped {};
 class PageSimulator {
  public:
   PageSimulator(unsigned jobs, StopSignal& stop, RunObserver& observer)
-      : pool_(jobs), stop_(stop), observer_(observer) {}
+      : executor_(jobs), stop_(stop), observer_(observer) {}
 
   // More cases will come: announced at the beginning, as far as known, they make an honest bar.
   void expect(std::uint64_t cases) { expected_ += cases; }
@@ -41,7 +41,7 @@ class PageSimulator {
            const std::function<void(std::size_t)>& job);
   void report(std::uint64_t more_cases);
 
-  ThreadPool pool_;
+  ThreadExecutor executor_;
   StopSignal& stop_;
   RunObserver& observer_;
   std::uint64_t expected_ = 0;

@@ -60,6 +60,9 @@ CurvePoint make_point(const RunPlan& run, std::int64_t budget, const Evaluation*
 bool test_progress(const StudyPlan& plan, const Cell& cell, const RunPlan& run,
                    const RunResult& result, const CellRequest& where, StopSignal& stop,
                    CellOutcome& outcome) {
+  std::optional<ThreadExecutor> threads;
+  CaseExecutor& executor =
+      where.executor != nullptr ? *where.executor : threads.emplace(where.jobs);
   const ProblemDescription& problem = run.problem.problem->description();
   const auto journal = read_journal(where.folder / "journal");
   const auto incumbents = find_incumbents(problem, journal.training, run.schedule.changes_cases());
@@ -83,7 +86,7 @@ bool test_progress(const StudyPlan& plan, const Cell& cell, const RunPlan& run,
   }
   std::vector<Choice> choices;
   if (needs_choices(plan)) {
-    auto made = make_choices(run, journal.training, result, checkpoints, where.jobs, stop);
+    auto made = make_choices(run, journal.training, result, checkpoints, executor, stop);
     if (!made) {
       return false;
     }
@@ -94,7 +97,7 @@ bool test_progress(const StudyPlan& plan, const Cell& cell, const RunPlan& run,
       designs.push_back(choice.chosen->candidate.x);
     }
   }
-  DesignBench bench(run.problem, CaseRole::test, where.jobs, stop);
+  DesignBench bench(run.problem, CaseRole::test, executor, stop);
   if (!bench.add(designs)) {
     return false;
   }
@@ -241,8 +244,7 @@ CellOutcome parse_cell(const std::string& text, const std::filesystem::path& fil
 std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
                                     const std::filesystem::path& study, StopSignal& stop,
                                     RunObserver& observer) {
-  const CellRequest where{
-      .folder = study / make_cell_path(plan, cell), .jobs = 1, .command_line = {}};
+  const CellRequest where{.folder = study / make_cell_path(plan, cell)};
   return run_cell(plan, cell, where, stop, observer);
 }
 
@@ -253,6 +255,7 @@ std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
   request.plan = make_run_plan(plan, cell);
   request.folder = where.folder;
   request.jobs = where.jobs;
+  request.executor = where.executor;
   request.command_line = where.command_line;
   request.derived = DerivedFiles::winner;
   const auto result = execute_run(request, stop, observer);

@@ -71,7 +71,8 @@ std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
 struct CellRequest {
   std::filesystem::path folder;
   unsigned jobs = 1;
-  std::vector<std::string> command_line;  // for the manifest
+  std::vector<std::string> command_line = {};  // for the manifest
+  CaseExecutor* executor = nullptr;            // instead of `jobs` threads of its own
 };
 std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
                                     const CellRequest& where, StopSignal& stop,

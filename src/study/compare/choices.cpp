@@ -43,9 +43,9 @@ std::vector<std::vector<Candidate>> select_along(const RunPlan& run,
 
 }  // namespace
 
-DesignBench::DesignBench(const LoadedProblem& problem, CaseRole role, unsigned jobs,
+DesignBench::DesignBench(const LoadedProblem& problem, CaseRole role, CaseExecutor& executor,
                          StopSignal& stop)
-    : pool_(jobs), stop_(stop), runner_(*problem.problem, pool_, stop) {
+    : stop_(stop), runner_(*problem.problem, executor, stop) {
   const bool is_test = role == CaseRole::test;
   block_.role = role;
   block_.set = is_test ? problem.sets.test : problem.sets.validation;
@@ -91,7 +91,7 @@ std::optional<std::vector<Choice>> make_choices(const RunPlan& run,
                                                 const RecordedEvaluations& training,
                                                 const RunResult& result,
                                                 std::span<const std::int64_t> budgets,
-                                                unsigned jobs, StopSignal& stop) {
+                                                CaseExecutor& executor, StopSignal& stop) {
   const auto selections = select_along(run, training, budgets);
   std::vector<std::vector<double>> designs;
   for (const auto& selection : selections) {
@@ -99,7 +99,7 @@ std::optional<std::vector<Choice>> make_choices(const RunPlan& run,
       designs.push_back(candidate.x);
     }
   }
-  DesignBench bench(run.problem, CaseRole::validation, jobs, stop);
+  DesignBench bench(run.problem, CaseRole::validation, executor, stop);
   if (!bench.add(designs)) {
     return std::nullopt;
   }

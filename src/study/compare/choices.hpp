@@ -20,7 +20,8 @@ namespace armwright {
 class DesignBench {
  public:
   // All of these outlive it.
-  DesignBench(const LoadedProblem& problem, CaseRole role, unsigned jobs, StopSignal& stop);
+  DesignBench(const LoadedProblem& problem, CaseRole role, CaseExecutor& executor,
+              StopSignal& stop);
 
   // False if stopped.
   bool add(std::span<const std::vector<double>> designs);
@@ -29,7 +30,6 @@ class DesignBench {
  private:
   const Evaluation* find(std::span<const double> x) const;
 
-  ThreadPool pool_;
   StopSignal& stop_;
   CaseRunner runner_;
   CaseBlock block_;
@@ -53,6 +53,6 @@ std::optional<std::vector<Choice>> make_choices(const RunPlan& run,
                                                 const RecordedEvaluations& training,
                                                 const RunResult& result,
                                                 std::span<const std::int64_t> budgets,
-                                                unsigned jobs, StopSignal& stop);
+                                                CaseExecutor& executor, StopSignal& stop);
 
 }  // namespace armwright

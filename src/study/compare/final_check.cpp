@@ -143,7 +143,7 @@ bool add_final_checks(const StudyPlan& plan, const std::filesystem::path& study,
     progress.total +=
         static_cast<std::uint64_t>(plan.problems[one.cell.problem].loaded.sets.test_cases);
   }
-  ThreadPool pool(jobs);
+  ThreadExecutor executor(jobs);
   for (const Missing& one : missing) {
     observer.on_progress(progress);
     const LoadedProblem judged = load_on_engine(
@@ -153,7 +153,7 @@ bool add_final_checks(const StudyPlan& plan, const std::filesystem::path& study,
     std::iota(block.numbers.begin(), block.numbers.end(), std::uint64_t{0});
     Evaluation evaluation;
     const std::span<const double> x = one.best->x;
-    CaseRunner(*judged.problem, pool, stop)
+    CaseRunner(*judged.problem, executor, stop)
         .run({&x, 1}, block, false,
              [&](std::size_t, Evaluation done) { evaluation = std::move(done); });
     if (stop.requested()) {

@@ -45,7 +45,7 @@ std::vector<std::string> list_options(const StudyOptimizer& optimizer) {
   return all;
 }
 
-std::string format_number(double value) {
+std::string format_toml_number(double value) {
   const std::string digits = format_exact(value);
   return digits.find_first_of(".e") == std::string::npos ? digits + ".0" : digits;
 }
@@ -67,7 +67,7 @@ std::string make_targets(const StudyPlan& plan) {
   for (const StudyTarget& target : plan.targets) {
     text += fmt::format("\n[[target]]\nlabel = {}\nproblems = {}\n", quote(target.label),
                         quote_list(target.problems));
-    text += target.value ? fmt::format("value = {}\n", format_number(*target.value)) : "";
+    text += target.value ? fmt::format("value = {}\n", format_toml_number(*target.value)) : "";
     text += target.failures ? fmt::format("failures = {}\n", *target.failures) : "";
   }
   return text;
@@ -90,7 +90,8 @@ std::string make_body(const StudyPlan& plan) {
       "constraint_tolerance = {}\ncheckpoints = {}\n{}final_engine = {}\nbaselines = "
       "{}\n{}\n[selection]\nlast = {}\nbest = {}\n{}",
       quote(plan.name), quote(plan.title), plan.seed, plan.replicates, plan.budget,
-      format_number(plan.start_spread), format_number(plan.constraint_tolerance), plan.checkpoints,
+      format_toml_number(plan.start_spread), format_toml_number(plan.constraint_tolerance),
+      plan.checkpoints,
       plan.first_checkpoint > 1 ? fmt::format("first_checkpoint = {}\n", plan.first_checkpoint)
                                 : "",
       quote(plan.final_engine), plan.baselines ? "true" : "false", make_questions(plan),

@@ -121,6 +121,19 @@ Selection choose_selection(const StudyPlan& plan, const StudyProblem& problem) {
   return selection;
 }
 
+std::vector<const LoadedProblem*> list_problems(const StudyPlan& plan) {
+  std::vector<const LoadedProblem*> problems;
+  for (const StudyProblem& problem : plan.problems) {
+    problems.push_back(&problem.loaded);
+  }
+  for (const StudyOptimizer& optimizer : plan.optimizers) {
+    for (const auto& [label, problem] : optimizer.loaded) {
+      problems.push_back(&problem);
+    }
+  }
+  return problems;
+}
+
 const LoadedProblem& get_problem(const StudyPlan& plan, const Cell& cell) {
   const StudyProblem& problem = plan.problems[cell.problem];
   const auto& own = plan.optimizers[cell.optimizer].loaded;

@@ -128,6 +128,8 @@ struct Cell {
 // Replicate by replicate, so that an interrupted study has something of everything.
 std::vector<Cell> list_cells(const StudyPlan& plan);
 
+// All that cells train on: the problems, then those of methods, in the plan's order.
+std::vector<const LoadedProblem*> list_problems(const StudyPlan& plan);
 // The problem as the cell's optimizer trains on it.
 const LoadedProblem& get_problem(const StudyPlan& plan, const Cell& cell);
 Schedule get_schedule(const StudyPlan& plan, const Cell& cell);

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <csignal>
 #include <exception>
 #include <limits>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -16,100 +16,23 @@
 
 #include "base/error.hpp"
 #include "optimizers/child_process.hpp"
-#include "optimizers/packet.hpp"
+#include "study/compare/cell_worker.hpp"
+#include "study/executor/case_packets.hpp"
+#include "study/executor/coordinator.hpp"
 
 namespace armwright {
 namespace {
 
-// What a worker tells of its cell.
-enum class Note : std::uint8_t { progress, message, done, broken, io_error };
-
-std::string make_note(Note kind, std::string_view text, std::uint64_t number = 0) {
-  PacketWriter packet;
-  packet.put(kind);
-  packet.put(number);
-  packet.put(text);
-  return packet.bytes();
-}
-
-// In the worker: passes on what the run says, progress at most a few times a second.
-class Reporter final : public RunObserver {
- public:
-  explicit Reporter(ParentLink& parent) : parent_(parent) {}
-
-  void on_progress(const Progress& progress) override {
-    constexpr std::chrono::milliseconds kInterval{200};
-    const auto now = Clock::now();
-    if (progress.phase == Progress::Phase::training && now - last_ >= kInterval) {
-      last_ = now;
-      parent_.send(make_note(Note::progress, "", progress.done));
-    }
-  }
-  void on_message(const std::string& message) override {
-    parent_.send(make_note(Note::message, message));
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  ParentLink& parent_;
-  Clock::time_point last_ = Clock::now();
-};
-
-// A signal handler reaches nothing but globals; a worker is a process of its own, and has but one.
-std::atomic<StopSignal*> g_worker_stop = nullptr;
-
-extern "C" void stop_worker(int /*signal*/) {
-  g_worker_stop.load()->request(StopReason::terminated);
-}
-
-// The study's lock is ours, so whoever holds a cell's is a worker of a process that was killed, and
-// about to die with it.
-void run_when_free(const StudyPlan& plan, const Cell& cell, const std::filesystem::path& study,
-                   StopSignal& stop, RunObserver& observer) {
-  constexpr int kMostTries = 100;
-  constexpr std::chrono::milliseconds kPause{50};
-  for (int tries = 1;; ++tries) {
-    try {
-      run_cell(plan, cell, study, stop, observer);
-      return;
-    } catch (const Error& error) {
-      if (error.kind() != ErrorKind::busy || tries == kMostTries) {
-        throw;
-      }
-    }
-    std::this_thread::sleep_for(kPause);
-  }
-}
-
-// A worker's life: one cell after the other, until it is asked to end.
-void work(const StudyPlan& plan, std::span<const Cell> cells, const std::filesystem::path& study,
-          ParentLink& parent) {
-  StopSignal stop;
-  g_worker_stop = &stop;
-  std::signal(SIGTERM, stop_worker);
-  std::signal(SIGXFSZ, SIG_IGN);  // an error of write()
-  while (true) {
-    const std::string order = parent.receive();
-    const auto number = PacketReader(order).get<std::uint64_t>();
-    Reporter reporter(parent);
-    try {
-      run_when_free(plan, cells[number], study, stop, reporter);
-      if (stop.requested()) {
-        return;
-      }
-      parent.send(make_note(Note::done, ""));
-    } catch (const Error& error) {
-      const bool is_io = error.kind() == ErrorKind::io;
-      parent.send(make_note(is_io ? Note::io_error : Note::broken, error.what()));
-    }
-  }
-}
-
 class Runner {
  public:
   Runner(const StudyPlan& plan, const std::filesystem::path& study, StopSignal& stop,
-         RunObserver& observer)
-      : plan_(plan), study_(study), stop_(stop), observer_(observer) {
+         RunObserver& observer, Coordinator* coordinator)
+      : plan_(plan),
+        study_(study),
+        stop_(stop),
+        observer_(observer),
+        coordinator_(coordinator),
+        problems_(list_problems(plan)) {
     progress_.total = list_cells(plan).size() *
                       static_cast<std::uint64_t>(std::max<std::int64_t>(plan.budget, 1));
     for (const Cell& cell : list_cells(plan)) {
@@ -125,7 +48,7 @@ class Runner {
 
   CellsResult run(unsigned jobs) {
     observer_.on_progress(progress_);
-    auto workers = start_workers(std::min<std::size_t>(jobs, cells_.size()));
+    auto workers = start_workers(std::min(count_at_once(jobs), cells_.size()));
     std::vector<std::thread> threads;
     try {
       for (auto& worker : workers) {
@@ -148,6 +71,15 @@ class Runner {
   }
 
  private:
+  // Their optimizers' processes; who simulates for them is another matter. With ranks a cell waits
+  // for answers most of the time, and one whose optimizer asks for one point after the other
+  // leaves most ranks idle: a few more than there are threads keep all of them at work.
+  std::size_t count_at_once(unsigned jobs) const {
+    constexpr std::size_t kMore = 2, kMost = 64;
+    return coordinator_ == nullptr ? jobs
+                                   : std::min(kMost, coordinator_->estimate_threads() + kMore);
+  }
+
   // Before there are threads. As many as the system grants, if it grants any.
   std::vector<std::unique_ptr<ChildProcess>> start_workers(std::size_t count) {
     std::vector<std::unique_ptr<ChildProcess>> workers;
@@ -180,7 +112,10 @@ class Runner {
     const IsolationLimits limits{.silence_s = std::numeric_limits<double>::infinity(),
                                  .memory_mib = 1e9};
     return std::make_unique<ChildProcess>(
-        [this](ParentLink& parent) { work(plan_, cells_, study_, parent); }, limits);
+        [this](ParentLink& parent) {
+          work_on_cells(plan_, cells_, study_, parent, coordinator_ != nullptr);
+        },
+        limits);
   }
 
   void guard(const std::function<void()>& body) {
@@ -203,6 +138,7 @@ class Runner {
   // is tried once more: what killed it may have had nothing to do with it.
   void attend(std::unique_ptr<ChildProcess>& worker) {
     for (std::size_t number = next_++; number < cells_.size() && !must_end(); number = next_++) {
+      const CasesInUse use(*this, number);
       std::string death;
       if (!hand_over(*worker, number, death)) {
         worker = start_worker();
@@ -240,6 +176,9 @@ class Runner {
       const auto count = packet.get<std::uint64_t>();
       const std::string text = packet.get_text();
       switch (kind) {
+        case Note::batch:
+          simulate(worker, count, text);
+          break;
         case Note::progress:
           report(number, count);
           break;
@@ -258,6 +197,60 @@ class Runner {
     }
     return false;
   }
+
+  // For a cell whose process shares out what it has to simulate.
+  void simulate(ChildProcess& worker, std::uint64_t problem, const std::string& bytes) {
+    ReceivedBatch received;
+    PacketReader packet(bytes);
+    get_batch(packet, received);
+    std::mutex sending;
+    const auto answer = [&](const PacketWriter& message) {
+      const std::lock_guard lock(sending);
+      worker.send(message.bytes(), [this] { return must_end(); });
+    };
+    const auto pass_on = [&](const CaseBatch&, std::size_t first,
+                             const std::vector<CaseOutcome>& outcomes) {
+      PacketWriter message;
+      message.put(Answer::outcomes);
+      message.put(std::uint64_t{first});
+      put_outcomes(message, outcomes);
+      answer(message);
+    };
+    PacketWriter last;
+    try {
+      coordinator_->run(CaseBatch(*problems_.at(problem)->problem, received.candidates,
+                                  received.block, received.extras, pass_on),
+                        stop_);
+      last.put(Answer::end);
+    } catch (const std::exception& error) {
+      last.put(Answer::failure);
+      last.put(std::string_view(error.what()));
+    }
+    answer(last);
+  }
+
+  // While a cell is under way; with the last of a problem its cases are forgotten, here and
+  // elsewhere: of many problems each would keep its own.
+  class CasesInUse {
+   public:
+    CasesInUse(Runner& runner, std::size_t number)
+        : runner_(runner), problem_(*get_problem(runner.plan_, runner.cells_[number]).problem) {
+      const std::lock_guard lock(runner_.mutex_);
+      ++runner_.in_use_[&problem_];
+    }
+    ~CasesInUse() {
+      const std::lock_guard lock(runner_.mutex_);
+      if (--runner_.in_use_[&problem_] == 0 && runner_.coordinator_ != nullptr) {
+        runner_.coordinator_->forget(problem_);
+      }
+    }
+    CasesInUse(const CasesInUse&) = delete;
+    CasesInUse& operator=(const CasesInUse&) = delete;
+
+   private:
+    Runner& runner_;
+    const Problem& problem_;
+  };
 
   void report(std::size_t number, std::uint64_t cases) {
     const std::lock_guard lock(mutex_);
@@ -283,11 +276,14 @@ class Runner {
   const std::filesystem::path study_;
   StopSignal& stop_;
   RunObserver& observer_;
+  Coordinator* const coordinator_;  // who simulates for the cells; null: their processes do
+  const std::vector<const LoadedProblem*> problems_;
   std::vector<Cell> cells_;  // that have not ended
   std::atomic<std::size_t> next_ = 0;
   std::mutex mutex_;  // of all below
   Progress progress_;
-  std::vector<std::uint64_t> under_way_;  // cases counted of each cell
+  std::vector<std::uint64_t> under_way_;          // cases counted of each cell
+  std::map<const Problem*, std::size_t> in_use_;  // by how many cells
   CellsResult result_;
   std::exception_ptr failure_;
 };
@@ -295,8 +291,8 @@ class Runner {
 }  // namespace
 
 CellsResult run_cells(const StudyPlan& plan, const std::filesystem::path& study, unsigned jobs,
-                      StopSignal& stop, RunObserver& observer) {
-  return Runner(plan, study, stop, observer).run(jobs);
+                      StopSignal& stop, RunObserver& observer, Coordinator* coordinator) {
+  return Runner(plan, study, stop, observer, coordinator).run(jobs);
 }
 
 }  // namespace armwright

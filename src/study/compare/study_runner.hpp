@@ -11,6 +11,8 @@
 
 namespace armwright {
 
+class Coordinator;
+
 // A cell that did not come to its end, through no decision of its optimizer's.
 struct BrokenCell {
   Cell cell;
@@ -24,8 +26,9 @@ struct CellsResult {
 
 // Those of the plan's cells that have no cell.json yet. Progress counts training cases of the whole
 // plan. A stop ends the processes at once; their journals have all but the last moments. Error{io}
-// ends the study: what fills one cell's disk fills all.
+// ends the study: what fills one cell's disk fills all. With a coordinator for the plan's problems
+// (list_problems()) it simulates for all cells, of which more are then under way than `jobs`.
 CellsResult run_cells(const StudyPlan& plan, const std::filesystem::path& study, unsigned jobs,
-                      StopSignal& stop, RunObserver& observer);
+                      StopSignal& stop, RunObserver& observer, Coordinator* coordinator = nullptr);
 
 }  // namespace armwright

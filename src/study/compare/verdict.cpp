@@ -30,7 +30,7 @@ std::string join_names(std::vector<std::string> names) {
 
 constexpr double kSmallestP = 1e-6;
 
-std::string format_number(double p) {
+std::string format_p_value(double p) {
   return fmt::format("{:.2g}", std::max(p, kSmallestP));
 }
 
@@ -75,7 +75,7 @@ std::string describe_beaten(const StudyPlan& plan, std::size_t best,
   const bool one = beaten.size() == 1;
   return fmt::format("{} beats {} (A12 {}, p {}{} after Holm)", plan.optimizers[best].label,
                      join_names(names), a12, one ? "" : "at most ",
-                     one ? format_p(worst_p) : format_number(worst_p));
+                     one ? format_p(worst_p) : format_p_value(worst_p));
 }
 
 // "at 5000 simulations": what every optimizer had.
@@ -310,7 +310,7 @@ std::vector<std::string> describe_limits(const StudyPlan& plan, const StudyResul
 }  // namespace
 
 std::string format_p(double p) {
-  return p < kSmallestP ? "< 1e-06" : "= " + format_number(p);
+  return p < kSmallestP ? "< 1e-06" : "= " + format_p_value(p);
 }
 
 std::vector<std::string> describe_verdict(const StudyPlan& plan, const StudyResult& result) {

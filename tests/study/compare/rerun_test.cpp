@@ -99,7 +99,8 @@ class Rerun : public StudyTest {
   }
   void rerun(unsigned jobs) {
     StopSignal stop;
-    ASSERT_TRUE(run_cell(plan_, kCell, CellRequest{now(), jobs, {}}, stop, observer_));
+    ASSERT_TRUE(
+        run_cell(plan_, kCell, CellRequest{.folder = now(), .jobs = jobs}, stop, observer_));
   }
   std::filesystem::path recorded() { return temporary_ / "study" / make_cell_path(plan_, kCell); }
   std::filesystem::path now() { return temporary_ / "rerun"; }

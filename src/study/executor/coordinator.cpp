@@ -1,0 +1,237 @@
+#include "study/executor/coordinator.hpp"
+
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
+namespace armwright {
+
+Coordinator::Coordinator(Links& links, std::vector<const Problem*> problems, std::string identity,
+                         CoordinatorSettings settings, Notify notify)
+    : links_(links),
+      problems_(std::move(problems)),
+      identity_(std::move(identity)),
+      settings_(settings),
+      notify_(std::move(notify)),
+      workers_(links.size()) {
+  communication_ = std::thread([this] { communicate(); });
+  try {
+    while (helpers_.size() + 1 < settings_.threads) {
+      helpers_.emplace_back([this] { help(); });
+    }
+  } catch (const std::system_error&) {
+    // Fewer threads are slower, and nothing else.
+  }
+}
+
+Coordinator::~Coordinator() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  changed_.notify_all();
+  wake_communication_.notify_all();
+  for (std::thread& helper : helpers_) {
+    helper.join();
+  }
+  communication_.join();
+}
+
+void Coordinator::run(const CaseBatch& cases, StopSignal& stop) {
+  constexpr std::chrono::milliseconds kLookForStop{20};
+  if (cases.size() == 0) {
+    return;
+  }
+  const auto batch = std::make_shared<Batch>();
+  batch->cases = &cases;
+  batch->stop = &stop;
+  batch->left = cases.size();
+  const auto known = std::ranges::find(problems_, &cases.problem());
+  if (known != problems_.end()) {
+    batch->problem = static_cast<std::uint64_t>(known - problems_.begin());
+  }
+  Lock lock(mutex_);
+  batch->cost = &costs_[{&cases.problem(), cases.block().role, cases.extras().jacobian}];
+  batches_.push_back(batch);
+  has_news_ = true;
+  wake_communication_.notify_one();
+  if (!helpers_.empty() || batches_.size() > 1) {
+    changed_.notify_all();
+  }
+  while (true) {
+    if (stop.requested()) {
+      batch->closed = true;
+    }
+    if (batch->active == 0 && (batch->closed || batch->left == 0)) {
+      break;
+    }
+    if (busy_threads_ < settings_.threads) {
+      if (const PiecePointer piece = take_here(batch)) {
+        work_on(lock, piece);
+        continue;
+      }
+    }
+    changed_.wait_for(lock, kLookForStop);
+  }
+  batch->closed = true;
+  batches_.remove(batch);
+  if (batch->failure) {
+    std::rethrow_exception(batch->failure);
+  }
+}
+
+void Coordinator::forget(const Problem& problem) {
+  const auto known = std::ranges::find(problems_, &problem);
+  problem.forget_cases();
+  if (known == problems_.end()) {
+    return;
+  }
+  const std::lock_guard lock(mutex_);
+  for (std::size_t rank = 1; rank < workers_.size(); ++rank) {
+    if (workers_[rank].state == State::ready) {
+      PacketWriter packet;
+      packet.put(RankMessage::forget);
+      packet.put(static_cast<std::uint64_t>(known - problems_.begin()));
+      outgoing_.emplace_back(rank, packet.bytes());
+    }
+  }
+}
+
+bool Coordinator::expects_workers() const {
+  const std::lock_guard lock(mutex_);
+  return std::any_of(workers_.begin() + 1, workers_.end(),
+                     [](const Worker& worker) { return worker.state == State::unknown; });
+}
+
+std::size_t Coordinator::count_untaken(const Batch& batch) const {
+  if (batch.closed) {
+    return 0;
+  }
+  std::size_t pairs = batch.cases->size() - batch.next;
+  for (const PiecePointer& piece : batch.again) {
+    pairs += piece->delivered ? 0 : piece->count;
+  }
+  return pairs;
+}
+
+// How long the threads here take for all that nobody has taken yet, as far as costs are known.
+double Coordinator::calc_left_here_s() const {
+  double seconds = 0;
+  for (const auto& batch : batches_) {
+    seconds += static_cast<double>(count_untaken(*batch)) * batch->cost->get_s().value_or(0);
+  }
+  return seconds / static_cast<double>(settings_.threads);
+}
+
+TeamSize Coordinator::calc_team() const {
+  TeamSize team{.here = settings_.threads};
+  for (const Worker& worker : workers_) {
+    team.elsewhere += worker.state == State::ready ? worker.introduction.threads : 0;
+  }
+  return team;
+}
+
+// What a late worker was to do as it was cut, before anything new.
+Coordinator::PiecePointer Coordinator::take_piece(const std::shared_ptr<Batch>& batch,
+                                                  std::size_t count) {
+  while (!batch->again.empty()) {
+    PiecePointer piece = std::move(batch->again.front());
+    batch->again.pop_front();
+    if (!piece->delivered) {
+      return piece;
+    }
+  }
+  count = std::min(count, batch->cases->size() - batch->next);
+  if (count == 0) {
+    return nullptr;
+  }
+  auto piece = std::make_shared<Piece>(Piece{.batch = batch, .first = batch->next, .count = count});
+  batch->next += count;
+  return piece;
+}
+
+Coordinator::PiecePointer Coordinator::take_here(const std::shared_ptr<Batch>& batch) {
+  if (batch->closed) {
+    return nullptr;
+  }
+  return take_piece(batch, plan_local_chunk(batch->cases->batch_size(), count_untaken(*batch),
+                                            calc_team(), batch->cost->get_s()));
+}
+
+void Coordinator::work_on(Lock& lock, const PiecePointer& piece) {
+  Batch& batch = *piece->batch;
+  ++batch.active;
+  ++busy_threads_;
+  lock.unlock();
+  std::vector<CaseOutcome> outcomes;
+  std::exception_ptr failure;
+  const Clock::time_point start = Clock::now();
+  try {
+    const auto jobs = batch.cases->make_jobs(piece->first, piece->count);
+    outcomes = batch.cases->problem().simulate(jobs);
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  const std::chrono::duration<double> taken = Clock::now() - start;
+  lock.lock();
+  if (failure) {
+    batch.failure = batch.failure ? batch.failure : failure;
+    batch.closed = true;
+  } else {
+    batch.cost->learn(taken.count(), piece->count);
+    deliver(lock, piece, std::move(outcomes));
+  }
+  --busy_threads_;
+  --batch.active;
+  // Whoever waits for this batch's end, or, with another batch, for a thread to be free.
+  if (batches_.size() > 1 || (batch.active == 0 && (batch.closed || batch.left == 0))) {
+    changed_.notify_all();
+  }
+}
+
+// Whoever is first: the outcomes are the same.
+void Coordinator::deliver(Lock& lock, const PiecePointer& piece,
+                          std::vector<CaseOutcome> outcomes) {
+  Batch& batch = *piece->batch;
+  if (piece->delivered || batch.closed) {
+    return;
+  }
+  piece->delivered = true;
+  ++batch.active;
+  lock.unlock();
+  std::exception_ptr failure;
+  try {
+    batch.cases->take(piece->first, std::move(outcomes));
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  lock.lock();
+  if (failure) {
+    batch.failure = batch.failure ? batch.failure : failure;
+    batch.closed = true;
+  }
+  batch.left -= piece->count;
+  --batch.active;
+  if (batch.active == 0 && (batch.closed || batch.left == 0)) {
+    changed_.notify_all();
+  }
+}
+
+void Coordinator::help() {
+  Lock lock(mutex_);
+  while (!stopping_) {
+    PiecePointer piece;
+    for (auto batch = batches_.begin(); batch != batches_.end() && !piece; ++batch) {
+      if (busy_threads_ < settings_.threads && !(*batch)->stop->requested()) {
+        piece = take_here(*batch);
+      }
+    }
+    if (piece) {
+      work_on(lock, piece);
+    } else {
+      changed_.wait(lock);
+    }
+  }
+}
+
+}  // namespace armwright

@@ -1,0 +1,281 @@
+// The program started by mpirun: any number of ranks and threads, ranks that die or hang, and the
+// same bytes on disk.
+#include <gmock/gmock.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <thread>
+
+#include "base/hash.hpp"
+#include "base/temporary_folder.hpp"
+#include "e2e/program.hpp"
+
+namespace armwright {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+// Root may start ranks only if it says so, and a machine with few cores needs to be told that more
+// ranks are wanted all the same.
+Environment make_ranks(int count, const std::vector<std::string>& flags = {"--enable-recovery"}) {
+  Environment environment;
+  environment.variables = {{"OMPI_ALLOW_RUN_AS_ROOT", "1"},
+                           {"OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1"}};
+  environment.launcher = {"mpirun.openmpi",     "--oversubscribe", "--bind-to", "none", "-n",
+                          std::to_string(count)};
+  environment.launcher.insert(environment.launcher.end(), flags.begin(), flags.end());
+  environment.own_group = true;
+  return environment;
+}
+
+bool has_mpirun() {
+  return std::system("command -v mpirun.openmpi >/dev/null 2>&1") == 0 &&
+         std::system("ldd " ARMWRIGHT_BINARY " | grep -q libmpi") == 0;
+}
+
+class Mpi : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!has_mpirun()) {
+      GTEST_SKIP() << "there is no mpirun.openmpi, or the program was built without MPI: install "
+                      "openmpi-bin and libopenmpi-dev (scripts/setup) and build again";
+    }
+  }
+
+  // The process of a rank.
+  static std::optional<int> find_rank(int mpirun, int rank) {
+    for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+      const std::string name = entry.path().filename().string();
+      if (name.find_first_not_of("0123456789") != std::string::npos) {
+        continue;
+      }
+      std::ifstream status(entry.path() / "status"), environment(entry.path() / "environ");
+      std::string line;
+      bool is_ours = false;
+      while (std::getline(status, line)) {
+        is_ours = is_ours || line == "PPid:\t" + std::to_string(mpirun);
+      }
+      bool is_rank = false;
+      while (std::getline(environment, line, '\0')) {
+        is_rank = is_rank || line == "OMPI_COMM_WORLD_RANK=" + std::to_string(rank);
+      }
+      if (is_ours && is_rank) {
+        return std::stoi(name);
+      }
+    }
+    return std::nullopt;
+  }
+
+  // A zombie at most, where nobody reaps what mpirun leaves behind.
+  static bool has_ended(int process) {
+    std::ifstream status("/proc/" + std::to_string(process) + "/status");
+    std::string line;
+    while (std::getline(status, line)) {
+      if (line.starts_with("State:")) {
+        return line.find('Z') != std::string::npos;
+      }
+    }
+    return true;
+  }
+
+  // The hash of every file that a run leaves.
+  static std::map<std::string, std::string> read_run(const std::filesystem::path& run) {
+    std::map<std::string, std::string> files;
+    for (const char* name : {"result.json", "winner.toml", "winner-trajectory.csv",
+                             "convergence.csv", "results.sqlite"}) {
+      files[name] = calc_sha256_hex(read_text(run / name));
+    }
+    return files;
+  }
+
+  const TemporaryFolder folder_;
+};
+
+struct Setting {
+  const char* name;
+  std::vector<std::string> words;
+};
+
+class MpiRuns : public Mpi, public testing::WithParamInterface<Setting> {};
+
+INSTANTIATE_TEST_SUITE_P(
+    Settings, MpiRuns,
+    testing::Values(
+        Setting{"Ode", {"--budget", "70"}},
+        Setting{"Lanes", {"--engine", "articulated", "--schedule", "fresh:20", "--budget", "2800"}},
+        Setting{"Races",
+                {"--engine", "articulated", "--optimizer", "cmaes", "--schedule", "fresh:32",
+                 "--racing", "halving:4:2", "--budget", "4000"}},
+        Setting{"Jacobians",
+                {"--engine", "articulated", "--optimizer", "ceres:lm", "--budget", "300"}},
+        Setting{"OneAfterTheOther",
+                {"--engine", "articulated", "--optimizer", "nlopt:bobyqa", "--budget", "100"}}),
+    [](const auto& setting) { return setting.param.name; });
+
+TEST_P(MpiRuns, WriteTheSameOnAnyNumberOfRanksAndThreads) {
+  const auto make_command = [&](const std::string& out, const char* jobs) {
+    std::vector<std::string> words = {"optimize", "q1-complex",
+                                      "--set",    "sets.test_cases=20",
+                                      "--set",    "sets.validation_cases=5",
+                                      "--quiet",  "--jobs",
+                                      jobs,       "--out",
+                                      out};
+    words.insert(words.end(), GetParam().words.begin(), GetParam().words.end());
+    return words;
+  };
+  ASSERT_EQ(run_program(folder_.path(), make_command("one", "1")).exit_code, 0);
+  const auto expected = read_run(folder_ / "one");
+  ASSERT_EQ(run_program(folder_.path(), make_command("two", "2")).exit_code, 0);
+  EXPECT_EQ(read_run(folder_ / "two"), expected);
+  for (const int ranks : {1, 2, 3}) {
+    const std::string out = "ranks" + std::to_string(ranks);
+    const Outcome outcome =
+        run_program(folder_.path(), make_command(out, ranks == 2 ? "2" : "1"), make_ranks(ranks));
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    EXPECT_EQ(read_run(folder_ / out), expected) << ranks;
+  }
+}
+
+// Evaluations of several milliseconds each.
+std::vector<std::string> make_long_command(const std::string& out) {
+  return {"optimize", "q1-complex",
+          "--budget", "420",
+          "--set",    "sets.test_cases=20",
+          "--set",    "sets.validation_cases=5",
+          "--jobs",   "1",
+          "--out",    out};
+}
+
+TEST_F(Mpi, RanksThatDieOrHangChangeNothing) {
+  ASSERT_EQ(run_program(folder_.path(), make_long_command("one")).exit_code, 0);
+  for (const int signal : {SIGKILL, SIGSTOP}) {
+    const std::string out = "signal" + std::to_string(signal);
+    Program program(folder_.path(), make_long_command(out), make_ranks(3));
+    // In the midst of it: some has been evaluated.
+    const auto journal = folder_ / out / "journal";
+    while (program.is_running() &&
+           !(std::filesystem::exists(journal) && std::filesystem::file_size(journal) > 10'000)) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    const auto rank = find_rank(program.pid(), 2);
+    ASSERT_TRUE(rank);
+    ::kill(*rank, signal);
+    const Outcome outcome = program.wait();
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr("rank 2 on"), HasSubstr("others do its work"),
+                                   HasSubstr("MPI cannot end in order")));
+    EXPECT_EQ(read_run(folder_ / out), read_run(folder_ / "one"));
+    EXPECT_TRUE(has_ended(*rank));
+  }
+}
+
+// What mpirun does without --enable-recovery, when it is killed, or when the machine goes down.
+TEST_F(Mpi, AKilledJobGoesOnWithAnyNumberOfRanks) {
+  ASSERT_EQ(run_program(folder_.path(), make_long_command("one")).exit_code, 0);
+  for (const int ranks : {3, 2}) {
+    Program program(folder_.path(), make_long_command("killed"), make_ranks(ranks, {}));
+    const auto journal = folder_ / "killed" / "journal";
+    const auto get_size = [&] {
+      return std::filesystem::exists(journal) ? std::filesystem::file_size(journal) : 0;
+    };
+    const auto before = get_size();
+    while (program.is_running() && get_size() < before + 10'000) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    const auto rank = find_rank(program.pid(), ranks - 1);
+    ASSERT_TRUE(rank);
+    ::kill(*rank, SIGKILL);
+    EXPECT_NE(program.wait().exit_code, 0);
+  }
+  const Outcome last = run_program(folder_.path(), make_long_command("killed"));
+  EXPECT_EQ(last.exit_code, 0) << last.err;
+  EXPECT_THAT(last.err, HasSubstr("resuming"));
+  EXPECT_EQ(read_run(folder_ / "killed"), read_run(folder_ / "one"));
+}
+
+TEST_F(Mpi, AskedToEndItStopsAndGoesOn) {
+  ASSERT_EQ(run_program(folder_.path(), make_long_command("one")).exit_code, 0);
+  Program program(folder_.path(), make_long_command("asked"), make_ranks(2));
+  while (program.is_running() && !std::filesystem::exists(folder_ / "asked" / "journal")) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  program.send(SIGTERM);
+  program.wait();
+  const Outcome last = run_program(folder_.path(), make_long_command("asked"), make_ranks(2));
+  EXPECT_EQ(last.exit_code, 0) << last.err;
+  EXPECT_EQ(read_run(folder_ / "asked"), read_run(folder_ / "one"));
+}
+
+TEST_F(Mpi, ComparisonsHaveTheSameTables) {
+  const auto make_command = [](const std::string& out, const char* jobs) {
+    return std::vector<std::string>{"compare",
+                                    "--problems",
+                                    "q1-complex",
+                                    "--optimizers",
+                                    "ga,ceres:lm",
+                                    "--replicates",
+                                    "3",
+                                    "--budget",
+                                    "400",
+                                    "--engine",
+                                    "articulated",
+                                    "--set",
+                                    "sets.test_cases=20",
+                                    "--set",
+                                    "sets.validation_cases=5",
+                                    "--jobs",
+                                    jobs,
+                                    "--out",
+                                    out,
+                                    "--quiet"};
+  };
+  const Outcome one = run_program(folder_.path(), make_command("one", "1"));
+  ASSERT_EQ(one.exit_code, 0) << one.err;
+  for (const int ranks : {2, 3}) {
+    const std::string out = "ranks" + std::to_string(ranks);
+    const Outcome outcome = run_program(folder_.path(), make_command(out, "1"), make_ranks(ranks));
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    EXPECT_EQ(read_study(folder_ / out), read_study(folder_ / "one")) << ranks;
+  }
+}
+
+TEST_F(Mpi, WhatIsSaidIsSaidOnce) {
+  const auto count = [](const std::string& text, const std::string& words) {
+    std::size_t times = 0;
+    for (std::size_t at = text.find(words); at != std::string::npos;
+         at = text.find(words, at + 1)) {
+      ++times;
+    }
+    return times;
+  };
+  for (const std::vector<std::string>& wrong :
+       {std::vector<std::string>{"optimize", "no-such-problem"},
+        {"optimise", "q1-complex"},
+        {"compare", "--problems", "no-such-problem", "--optimizers", "ga"}}) {
+    const Outcome outcome = run_program(folder_.path(), wrong, make_ranks(3, {}));
+    EXPECT_EQ(outcome.exit_code, 2) << wrong[0] << outcome.err;
+    EXPECT_EQ(count(outcome.err, "armwright: error:"), 1u) << outcome.err;
+  }
+  const Outcome list = run_program(folder_.path(), {"list", "engines"}, make_ranks(3));
+  EXPECT_EQ(list.exit_code, 0);
+  EXPECT_EQ(count(list.out, "Open Dynamics Engine"), 1u);
+  EXPECT_THAT(list.err, HasSubstr("of 3 ranks only the first has work"));
+  const Outcome optimized = run_program(
+      folder_.path(), {"optimize", "sphere", "--budget", "100", "--out", "run"}, make_ranks(2, {}));
+  EXPECT_EQ(optimized.exit_code, 0) << optimized.err;
+  EXPECT_EQ(count(optimized.err, "on each of 2 ranks"), 1u) << optimized.err;
+  EXPECT_THAT(optimized.err, HasSubstr("without --enable-recovery"));
+  EXPECT_THAT(optimized.out, Not(HasSubstr("\033")));  // mpirun's terminal is none
+}
+
+}  // namespace
+}  // namespace armwright
