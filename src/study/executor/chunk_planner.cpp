@@ -8,8 +8,6 @@ namespace {
 
 // Of a thread's work. A message costs 0.1 ms on both sides: a hundredth of it.
 constexpr double kChunk_s = 0.01;
-// A worker has one chunk in work and the next one at hand, so that it need not wait for messages.
-constexpr std::size_t kChunksAhead = 2;
 constexpr double kLatest = 0.3;  // weight of the latest measurement in the mean
 
 std::size_t round_up(std::size_t pairs, std::size_t granularity) {

@@ -34,6 +34,9 @@ struct TeamSize {
 std::size_t plan_local_chunk(BatchSize size, std::size_t left, TeamSize team,
                              std::optional<double> cost_s);
 
+// A worker has one chunk in work and the next one at hand, so that it need not wait for messages.
+inline constexpr std::size_t kChunksAhead = 2;
+
 // A worker as the coordinator sees it.
 struct WorkerLoad {
   std::size_t threads = 1;

@@ -145,6 +145,7 @@ class Coordinator final : public CaseExecutor {
   std::vector<std::string> notices_;
   WakingTime awake_;
   double last_alive_s_ = 0;
+  double last_look_s_ = 0;  // for who is late
 
   std::vector<std::thread> helpers_;
   std::thread communication_;

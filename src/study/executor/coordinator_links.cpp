@@ -67,16 +67,20 @@ microseconds Coordinator::calc_pause() const {
   return pause;
 }
 
-// Round by round a chunk for each worker that is of use, as long as that is worth while.
+// Round by round a chunk for each worker that is of use, as long as that is worth while. Of many
+// ranks most have enough to do at any time: those cost no more than a look.
 void Coordinator::assign() {
-  for (bool has_sent = true; has_sent;) {
-    has_sent = false;
+  const TeamSize team = calc_team();
+  double left_here_s = calc_left_here_s();
+  bool has_sent = std::ranges::any_of(
+      batches_, [this](const auto& batch) { return batch->problem && count_untaken(*batch) > 0; });
+  while (std::exchange(has_sent, false)) {
     for (std::size_t rank = 1; rank < workers_.size(); ++rank) {
       Worker& worker = workers_[rank];
-      const Clock::time_point now = Clock::now();
-      if (worker.state != State::ready) {
+      if (worker.state != State::ready || worker.chunks >= kChunksAhead) {
         continue;
       }
+      const Clock::time_point now = Clock::now();
       worker.free_at = std::max(worker.free_at, now);
       const WorkerLoad load{.threads = worker.introduction.threads,
                             .chunks = worker.chunks,
@@ -87,11 +91,12 @@ void Coordinator::assign() {
           continue;
         }
         const std::size_t pairs =
-            plan_remote_chunk(batch->cases->batch_size(), count_untaken(*batch), calc_team(),
-                              batch->cost->get_s(), calc_left_here_s(), load);
+            plan_remote_chunk(batch->cases->batch_size(), count_untaken(*batch), team,
+                              batch->cost->get_s(), left_here_s, load);
         const PiecePointer piece = pairs > 0 ? take_piece(batch, pairs) : nullptr;
         if (piece) {
           send_chunk(rank, piece);
+          left_here_s = calc_left_here_s();
           has_sent = true;
           break;
         }
@@ -124,8 +129,10 @@ void Coordinator::send_chunk(std::size_t rank, const PiecePointer& piece) {
                        work_s + (worker.chunks == 1 ? worker.latency_s : 0)));
 }
 
+// Not all that there are: whoever has answered waits for something new to do.
 void Coordinator::take_messages(Lock& lock) {
-  while (true) {
+  constexpr int kAtOnce = 256;
+  for (int taken = 0; taken < kAtOnce; ++taken) {
     lock.unlock();
     const auto message = links_.receive();
     lock.lock();
@@ -238,6 +245,12 @@ void Coordinator::reassign(std::size_t rank) {
 
 void Coordinator::look_for_late() {
   constexpr double kTolerance = 4;  // times what was expected
+  // There may be thousands of chunks: not at every turn.
+  constexpr double kLookEvery = 0.05;  // times the patience
+  if (awake_.get_s() - last_look_s_ < kLookEvery * settings_.patience_s) {
+    return;
+  }
+  last_look_s_ = awake_.get_s();
   for (auto& [chunk, sent] : sent_) {
     Worker& worker = workers_[sent.worker];
     const auto cost = sent.piece->batch->cost->get_s();
