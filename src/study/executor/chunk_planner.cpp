@@ -37,6 +37,17 @@ void PairCost::learn(double seconds, std::size_t pairs) {
   seconds_ = seconds_ ? (1 - kLatest) * *seconds_ + kLatest * latest : latest;
 }
 
+void WorkerLatency::learn(double seconds) {
+  constexpr double kMostRise = 4;
+  least_s_ = std::min(least_s_, seconds);
+  seconds_ += kLatest * (std::min(seconds, kMostRise * seconds_) - seconds_);
+}
+
+void WorkerLatency::begin_batch() {
+  constexpr double kReturn = 0.03;
+  seconds_ += kReturn * (least_s_ - seconds_);
+}
+
 std::size_t plan_local_chunk(BatchSize size, std::size_t left, TeamSize team,
                              std::optional<double> cost_s) {
   if (team.all() <= 1) {

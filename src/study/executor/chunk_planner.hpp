@@ -24,6 +24,21 @@ class PairCost {
   std::optional<double> seconds_;  // a pair, a moving mean
 };
 
+// From the sending of a chunk to a worker that has nothing else to do to its outcomes, beside the
+// work itself. It rises slowly, and falls back with every batch: a worker that was slow once, and
+// so gets nothing more, could not show otherwise that it is quick again.
+class WorkerLatency {
+ public:
+  void learn(double seconds);
+  void begin_batch();
+  double get_s() const { return seconds_; }
+
+ private:
+  static constexpr double kGuess_s = 0.001;
+  double seconds_ = kGuess_s;
+  double least_s_ = kGuess_s;
+};
+
 struct TeamSize {
   std::size_t here = 1;       // threads of the coordinator
   std::size_t elsewhere = 0;  // threads of the workers that are there

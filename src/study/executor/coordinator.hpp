@@ -97,7 +97,7 @@ class Coordinator final : public CaseExecutor {
     WorkerIntroduction introduction;
     std::size_t chunks = 0;  // under way
     Clock::time_point free_at;
-    double latency_s = 0.001;
+    WorkerLatency latency;
     double patience = 1;  // doubled whenever it was late and answers after all
   };
 

@@ -85,7 +85,7 @@ void Coordinator::assign() {
       const WorkerLoad load{.threads = worker.introduction.threads,
                             .chunks = worker.chunks,
                             .busy_s = to_seconds(worker.free_at - now),
-                            .latency_s = worker.latency_s};
+                            .latency_s = worker.latency.get_s()};
       for (const auto& batch : batches_) {
         if (!batch->problem || batch->closed) {
           continue;
@@ -126,7 +126,7 @@ void Coordinator::send_chunk(std::size_t rank, const PiecePointer& piece) {
                         static_cast<double>(worker.introduction.threads);
   worker.free_at = std::max(worker.free_at, now) +
                    std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(
-                       work_s + (worker.chunks == 1 ? worker.latency_s : 0)));
+                       work_s + (worker.chunks == 1 ? worker.latency.get_s() : 0)));
 }
 
 // Not all that there are: whoever has answered waits for something new to do.
@@ -213,10 +213,8 @@ void Coordinator::take_outcomes(Lock& lock, std::size_t rank, PacketReader& pack
   }
   const auto pairs = static_cast<double>(sent.piece->count);
   if (sent.was_idle) {
-    constexpr double kLatest = 0.3;
     const double work_s = pair_s * pairs / static_cast<double>(worker.introduction.threads);
-    const double latency_s = std::max(0.0, to_seconds(now - sent.at) - work_s);
-    worker.latency_s = (1 - kLatest) * worker.latency_s + kLatest * latency_s;
+    worker.latency.learn(std::max(0.0, to_seconds(now - sent.at) - work_s));
   }
   if (!sent.piece->batch->closed) {
     sent.piece->batch->cost->learn(pair_s * pairs, sent.piece->count);
