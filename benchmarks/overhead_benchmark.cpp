@@ -73,8 +73,8 @@ struct Run {
   Run(const RunPlan& plan, unsigned jobs)
       : run_folder(folder.path(), plan, {}),
         journal(run_folder.journal(), recorded),
-        pool(jobs),
-        runner(*plan.problem.problem, pool, stop),
+        executor(jobs),
+        runner(*plan.problem.problem, executor, stop),
         evaluator(plan, runner, stop, journal, std::move(recorded), observer) {}
 
   Folder folder;
@@ -82,7 +82,7 @@ struct Run {
   JournalContent recorded;
   Journal journal;
   StopSignal stop;
-  ThreadPool pool;
+  ThreadExecutor executor;
   CaseRunner runner;
   ClockReader observer;
   RunEvaluator evaluator;
