@@ -101,13 +101,13 @@ void run_sharing(benchmark::State& state) {
   const LoadedProblem problem = load_problem("q1-complex", overrides);
   const auto x = problem.tracking->make_vector(load_design("table-a5").design);
   StopSignal stop;
-  ThreadPool one(1);
-  ThreadPool two(2);
-  const auto evaluate = [&](ThreadPool& pool, std::size_t designs, std::size_t cases) {
+  ThreadExecutor one(1);
+  ThreadExecutor two(2);
+  const auto evaluate = [&](ThreadExecutor& executor, std::size_t designs, std::size_t cases) {
     CaseBlock block{CaseRole::training, "train/1", std::vector<std::uint64_t>(cases)};
     std::iota(block.numbers.begin(), block.numbers.end(), 0);
     const std::vector<std::span<const double>> candidates(designs, x);
-    CaseRunner(*problem.problem, pool, stop)
+    CaseRunner(*problem.problem, executor, stop)
         .run(candidates, block, false, [](std::size_t, Evaluation) {});
   };
   std::vector<double> speedup, ratio;

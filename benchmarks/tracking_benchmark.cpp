@@ -118,13 +118,13 @@ void BM_GenerationOnTwoCoresAgainstOne(benchmark::State& state) {
   const LoadedProblem problem = load_problem("q1-complex");
   const auto x = problem.tracking->make_vector(load_design("table-a5").design);
   StopSignal stop;
-  ThreadPool one(1);
-  ThreadPool two(2);
+  ThreadExecutor one(1);
+  ThreadExecutor two(2);
   std::uint64_t number = 0;
-  const auto evaluate_generation = [&](ThreadPool& pool) {
+  const auto evaluate_generation = [&](ThreadExecutor& executor) {
     const CaseBlock block{CaseRole::training, "train/1", {number++}};
     const std::vector<std::span<const double>> candidates(35, x);
-    CaseRunner(*problem.problem, pool, stop)
+    CaseRunner(*problem.problem, executor, stop)
         .run(candidates, block, false, [](std::size_t, Evaluation) {});
   };
   std::vector<double> speedup, serial, parallel;
