@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <thread>
 
 #include "base/error.hpp"
@@ -64,6 +65,15 @@ void wait_for_study(const std::filesystem::path& folder, StopSignal& stop) {
   }
 }
 
+// Attempts that did not end in order.
+std::size_t count_deaths(const std::filesystem::path& attempts) {
+  std::size_t deaths = 0;
+  for (const int token : list_tokens(attempts)) {
+    deaths += read_attempt(attempts, token).silence_s ? 1 : 0;
+  }
+  return deaths;
+}
+
 class CellCommand {
  public:
   CellCommand(const CellOptions& options, Session& session)
@@ -76,9 +86,11 @@ class CellCommand {
     std::vector<Cell> cells = select_cells(study_.plan, options_.cells);
     catch_signals(session_.stop);
     wait_for_study(study_.folder, session_.stop);
-    // What has taken a process with it comes last, so that it costs no others.
-    std::ranges::stable_sort(cells, {}, [&](const Cell& cell) {
-      return list_tokens(make_attempts_path(study_.plan, cell, study_.folder)).size();
+    // What has taken processes with it comes last, so that it costs no others. After one death all
+    // stay in order: a job that is begun again meets what is left of its earlier life at once.
+    constexpr std::size_t kMostDeaths = 1;
+    std::ranges::stable_partition(cells, [&](const Cell& cell) {
+      return count_deaths(make_attempts_path(study_.plan, cell, study_.folder)) <= kMostDeaths;
     });
     for (const Cell& cell : cells) {
       if (session_.stop.requested()) {
@@ -119,10 +131,12 @@ class CellCommand {
                     get_scalar_quantity(description.objectives));
     tell(make_cell_name(study_.plan, cell));
     try {
-      const CellAttempt attempt = attempt_cell(
-          study_.plan, cell,
-          {.study = study_.folder, .jobs = jobs_, .command_line = session_.command_line},
-          session_.stop, bar);
+      const CellAttempt attempt = attempt_cell(study_.plan, cell,
+                                               {.study = study_.folder,
+                                                .jobs = jobs_,
+                                                .command_line = session_.command_line,
+                                                .process_begun_s = begun_s_},
+                                               session_.stop, bar);
       done_ += attempt.end == CellAttempt::End::done ? 1 : 0;
       failed_ += attempt.optimizer_failed ? 1 : 0;
       return attempt;
@@ -157,6 +171,7 @@ class CellCommand {
   Session& session_;
   const RecordedStudy study_;
   const unsigned jobs_;
+  const std::int64_t begun_s_ = std::time(nullptr);
   int done_ = 0;
   int done_before_ = 0;
   int failed_ = 0;

@@ -81,6 +81,10 @@ std::optional<std::uint64_t> parse_sign_of_life(const std::string& text,
   }
 }
 
+std::string describe_successor(int token) {
+  return fmt::format("superseded by attempt {}", token);
+}
+
 }  // namespace
 
 std::filesystem::path make_attempts_path(const StudyPlan& plan, const Cell& cell,
@@ -110,18 +114,16 @@ std::filesystem::path make_token_path(const std::filesystem::path& attempts, int
   return attempts / fmt::format("{:03}", token);
 }
 
-AttemptRecord describe_this_process() {
+AttemptRecord describe_this_process(std::int64_t begun_s) {
   const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
   return {get_host_name(), ::getpid(), find_job(),
-          fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now))};
+          fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now)), begun_s};
 }
 
 std::string to_json(const AttemptRecord& record) {
-  const json j = {{"format", kAttemptFormat},
-                  {"host", record.host},
-                  {"pid", record.pid},
-                  {"job", record.job},
-                  {"started", record.started}};
+  const json j = {{"format", kAttemptFormat},  {"host", record.host},
+                  {"pid", record.pid},         {"job", record.job},
+                  {"started", record.started}, {"process_begun_s", record.process_begun_s}};
   return j.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
@@ -133,14 +135,16 @@ AttemptRecord parse_attempt(const std::string& text, const std::filesystem::path
       throw std::runtime_error("its format is not the one this version reads");
     }
     return {sanitize(j.at("host").get<std::string>()), whole_from_json<std::int64_t>(j.at("pid")),
-            sanitize(j.at("job").get<std::string>()), sanitize(j.at("started").get<std::string>())};
+            sanitize(j.at("job").get<std::string>()), sanitize(j.at("started").get<std::string>()),
+            whole_from_json<std::int64_t>(j.at("process_begun_s"))};
   } catch (const std::exception& error) {
     throw Error(ErrorKind::bad_data, fmt::format("{}: is not what armwright wrote ({})",
                                                  file.string(), sanitize(error.what())));
   }
 }
 
-Attempt::Attempt(const std::filesystem::path& attempts) : attempts_(attempts) {
+Attempt::Attempt(const std::filesystem::path& attempts, std::int64_t process_begun_s)
+    : attempts_(attempts) {
   make_folder(attempts);
   const std::vector<int> tokens = list_tokens(attempts);
   token_ = tokens.empty() ? 1 : tokens.back() + 1;
@@ -155,14 +159,14 @@ Attempt::Attempt(const std::filesystem::path& attempts) : attempts_(attempts) {
     }
     ++token_;
   }
-  write_file_atomically(path_ / kAttemptRecord, to_json(describe_this_process()));
+  write_file_atomically(path_ / kAttemptRecord, to_json(describe_this_process(process_begun_s)));
   tell_alive(0);
 }
 
 std::string Attempt::find_successor() const {
   const std::vector<int> tokens = list_tokens(attempts_);
   if (!tokens.empty() && tokens.back() > token_) {
-    return fmt::format("superseded by attempt {}", tokens.back());
+    return describe_successor(tokens.back());
   }
   return std::ranges::binary_search(tokens, token_)
              ? ""
@@ -209,6 +213,19 @@ AttemptState read_attempt(const std::filesystem::path& attempts, int token) {
     }
   }
   return state;
+}
+
+std::string find_later_life(const std::filesystem::path& attempts, std::int64_t begun_s) {
+  const std::string job = find_job();
+  const std::vector<int> tokens = list_tokens(attempts);
+  if (job.empty() || tokens.empty()) {
+    return "";
+  }
+  // Machines of a cluster agree on the time far better than a job is begun again quickly.
+  const AttemptState last = read_attempt(attempts, tokens.back());
+  const bool is_later =
+      last.record && last.record->job == job && last.record->process_begun_s > begun_s;
+  return is_later ? describe_successor(last.token) : "";
 }
 
 }  // namespace armwright

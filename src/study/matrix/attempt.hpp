@@ -38,10 +38,11 @@ std::filesystem::path make_token_path(const std::filesystem::path& attempts, int
 struct AttemptRecord {
   std::string host;
   std::int64_t pid = 0;
-  std::string job;      // "slurm 12_3", "pbs 7.head"; empty outside of a batch system
-  std::string started;  // UTC
+  std::string job;                   // "slurm 12_3", "pbs 7.head"; empty outside of a batch system
+  std::string started;               // UTC
+  std::int64_t process_begun_s = 0;  // Unix time at which the process began, perhaps at other cells
 };
-AttemptRecord describe_this_process();
+AttemptRecord describe_this_process(std::int64_t begun_s);
 std::string to_json(const AttemptRecord& record);
 // Error{bad_data}.
 AttemptRecord parse_attempt(const std::string& text, const std::filesystem::path& file);
@@ -49,7 +50,7 @@ AttemptRecord parse_attempt(const std::string& text, const std::filesystem::path
 class Attempt {
  public:
   // Takes the next free token and says who it is. Error{io}.
-  explicit Attempt(const std::filesystem::path& attempts);
+  Attempt(const std::filesystem::path& attempts, std::int64_t process_begun_s);
 
   int token() const { return token_; }
   std::filesystem::path run() const { return path_ / "run"; }
@@ -77,6 +78,11 @@ struct AttemptState {
   std::string error;                    // empty unless it broke
 };
 AttemptState read_attempt(const std::filesystem::path& attempts, int token);
+
+// Whether the newest attempt is of the same job of a batch system in a later life: then a process
+// that began at `begun_s` is what a lost node has left of an earlier one, between two cells, and
+// must not begin another. Names the attempt: "superseded by attempt 3"; empty if it is not so.
+std::string find_later_life(const std::filesystem::path& attempts, std::int64_t begun_s);
 
 // Signs of life come every ten seconds, and network file systems may show them late.
 inline constexpr double kLongestSilence_s = 60;

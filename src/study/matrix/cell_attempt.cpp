@@ -8,6 +8,7 @@
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "base/error.hpp"
 #include "study/compare/cell.hpp"
@@ -99,7 +100,12 @@ CellAttempt superseded(const Attempt& attempt) {
 
 CellAttempt attempt_cell(const StudyPlan& plan, const Cell& cell, const CellAttemptRequest& request,
                          StopSignal& stop, RunObserver& observer) {
-  const Attempt attempt(make_attempts_path(plan, cell, request.study));
+  const auto attempts = make_attempts_path(plan, cell, request.study);
+  if (std::string successor = find_later_life(attempts, request.process_begun_s);
+      !successor.empty()) {
+    return {CellAttempt::End::superseded, std::move(successor), false};
+  }
+  const Attempt attempt(attempts, request.process_begun_s);
   try {
     // Whoever was at it may have published before there was anything of ours to see.
     if (load_cell(plan, cell, request.study)) {

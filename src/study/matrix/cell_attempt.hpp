@@ -3,6 +3,7 @@
 // and is published (publication.hpp) if it is still the newest when it is done.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@ struct CellAttemptRequest {
   std::filesystem::path study;
   unsigned jobs = 1;
   std::vector<std::string> command_line;  // for the manifest
+  std::int64_t process_begun_s = 0;       // Unix time
 };
 
 struct CellAttempt {

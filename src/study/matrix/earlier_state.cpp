@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <ctime>
 #include <functional>
 #include <system_error>
 #include <vector>
@@ -111,7 +112,7 @@ void adopt_attempts(const StudyPlan& plan, const std::filesystem::path& study,
     if (list_tokens(attempts).empty() || load_cell(plan, cell, study)) {
       continue;
     }
-    const Attempt attempt(attempts);
+    const Attempt attempt(attempts, std::time(nullptr));
     copy_furthest_state(plan, cell, study, attempt.run(), observer);
     const auto target = study / make_cell_path(plan, cell);
     if (std::filesystem::exists(attempt.run())) {

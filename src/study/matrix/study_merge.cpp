@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <ctime>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -118,7 +119,7 @@ class CellImport {
 // By way of an attempt of its own, which also ends others that are at the cell.
 void copy_cell(const StudyPlan& plan, const FoundCell& found, const std::filesystem::path& study,
                StopSignal& stop) {
-  const Attempt attempt(make_attempts_path(plan, found.cell, study));
+  const Attempt attempt(make_attempts_path(plan, found.cell, study), std::time(nullptr));
   FolderCopy copy(attempt.run(), stop);
   for (const auto& entry : std::filesystem::directory_iterator(found.folder)) {
     const auto name = entry.path().filename();
