@@ -80,6 +80,12 @@ stop() {
     sleep 0.1
   done
   kill "${started[@]}" 2>/dev/null || true
+  # Looking for a node that is gone, the controller takes its time.
+  for ((attempt = 0; attempt < 10; ++attempt)); do
+    kill -0 "${started[@]}" 2>/dev/null || break
+    sleep 0.1
+  done
+  kill -KILL "${started[@]}" 2>/dev/null || true
   wait "${started[@]}" 2>/dev/null || true
 }
 trap stop EXIT

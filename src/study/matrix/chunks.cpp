@@ -6,13 +6,13 @@ namespace armwright {
 namespace {
 
 std::vector<Chunk> cut_chunks(std::span<const Cell> cells, std::span<const double> durations_s,
-                              double least_s, std::size_t least_cells) {
+                              double least_s) {
   std::vector<Chunk> chunks;
   Chunk open;
   for (const Cell& cell : cells) {
     open.cells.push_back(cell);
     open.expected_s += durations_s[cell.problem];
-    if (open.expected_s >= least_s && open.cells.size() >= least_cells) {
+    if (open.expected_s >= least_s) {
       chunks.push_back(std::move(open));
       open = {};
     }
@@ -35,14 +35,8 @@ std::vector<Chunk> plan_chunks(std::span<const Cell> cells, std::span<const doub
   for (const Cell& cell : cells) {
     total_s += durations_s[cell.problem];
   }
-  // Chunks of `most`-ths of the whole can be too many only by how cells fall; cells that take no
-  // time at all are counted instead.
-  double enough_s = std::max(least_s, total_s / static_cast<double>(most));
-  std::vector<Chunk> chunks = cut_chunks(cells, durations_s, enough_s, 1);
-  if (chunks.size() > most) {
-    chunks = cut_chunks(cells, durations_s, enough_s, (cells.size() + most - 1) / most);
-  }
-  return chunks;
+  // Of pieces that are each a `most`-th of the whole, or more, there are never more than that.
+  return cut_chunks(cells, durations_s, std::max(least_s, total_s / static_cast<double>(most)));
 }
 
 }  // namespace armwright

@@ -94,8 +94,10 @@ void copy_furthest_state(const StudyPlan& plan, const Cell& cell,
       if (error.kind() != ErrorKind::bad_data) {
         throw;
       }
-      observer.on_message(fmt::format("warning: what {} holds cannot be gone on with: {}",
-                                      sanitize(earlier.folder.string()), error.what()));
+      observer.on_message(
+          fmt::format("warning: what {} holds cannot be gone on with and is made again: its "
+                      "journal or manifest is damaged (armwright doctor tells where)",
+                      sanitize(earlier.folder.string())));
     }
   }
   std::error_code ignored;

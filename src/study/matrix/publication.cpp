@@ -37,9 +37,17 @@ void move_aside(const std::filesystem::path& target, const std::filesystem::path
   for (int number = 2; std::filesystem::exists(free); ++number) {
     free = fmt::format("{}-{}", aside.string(), number);
   }
-  // Whoever does the same at this moment may have it first.
-  if (::rename(target.c_str(), free.c_str()) != 0 && errno != ENOENT) {
-    fail_io(target, "move it aside to " + free.string(), errno);
+  const bool had_record = std::filesystem::exists(target / "cell.json");
+  if (::rename(target.c_str(), free.c_str()) != 0) {
+    if (errno != ENOENT) {  // whoever does the same at this moment may have it first
+      fail_io(target, "move it aside to " + free.string(), errno);
+    }
+    return;
+  }
+  // And may have put a finished one there, which goes back unless the next has come already.
+  if (!had_record && std::filesystem::exists(free / "cell.json") &&
+      ::rename(free.c_str(), target.c_str()) != 0 && errno != ENOTEMPTY && errno != EEXIST) {
+    fail_io(free, "move it back to " + target.string(), errno);
   }
 }
 
