@@ -129,14 +129,16 @@ class CellCommand {
     const auto& description = study_.plan.problems[cell.problem].loaded.problem->description();
     ProgressBar bar(options_.quiet || !is_terminal(Stream::error),
                     get_scalar_quantity(description.objectives));
-    tell(make_cell_name(study_.plan, cell));
+    const std::string name = make_cell_name(study_.plan, cell);
+    tell(name);
     try {
-      const CellAttempt attempt = attempt_cell(study_.plan, cell,
-                                               {.study = study_.folder,
-                                                .jobs = jobs_,
-                                                .command_line = session_.command_line,
-                                                .process_begun_s = begun_s_},
-                                               session_.stop, bar);
+      const CellAttempt attempt = attempt_cell(
+          study_.plan, cell,
+          {.study = study_.folder,
+           .jobs = jobs_,
+           .command_line = {session_.command_line.front(), "cell", options_.plan, name},
+           .process_begun_s = begun_s_},
+          session_.stop, bar);
       done_ += attempt.end == CellAttempt::End::done ? 1 : 0;
       failed_ += attempt.optimizer_failed ? 1 : 0;
       return attempt;

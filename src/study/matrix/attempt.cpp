@@ -159,7 +159,8 @@ Attempt::Attempt(const std::filesystem::path& attempts, std::int64_t process_beg
     }
     ++token_;
   }
-  write_file_atomically(path_ / kAttemptRecord, to_json(describe_this_process(process_begun_s)));
+  record_ = to_json(describe_this_process(process_begun_s));
+  write_file_atomically(path_ / kAttemptRecord, record_);
   tell_alive(0);
 }
 
@@ -168,9 +169,11 @@ std::string Attempt::find_successor() const {
   if (!tokens.empty() && tokens.back() > token_) {
     return describe_successor(tokens.back());
   }
-  return std::ranges::binary_search(tokens, token_)
-             ? ""
-             : "superseded: its folder is gone, as when the cell was done by another";
+  // Tokens that were cleared away are taken again.
+  const auto record = read_if_there(path_ / kAttemptRecord);
+  const bool is_ours =
+      std::ranges::binary_search(tokens, token_) && (!record || *record == record_);
+  return is_ours ? "" : "superseded: its folder is gone, as when the cell was done by another";
 }
 
 void Attempt::tell_alive(std::uint64_t cases) const {

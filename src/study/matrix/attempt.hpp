@@ -67,6 +67,7 @@ class Attempt {
   std::filesystem::path attempts_;
   int token_ = 0;
   std::filesystem::path path_;
+  std::string record_;  // attempt.json
 };
 
 // What an attempt's folder shows to others, whatever state it is in.

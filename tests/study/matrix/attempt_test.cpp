@@ -64,6 +64,10 @@ TEST_F(AttemptTest, TheNewestIsValid) {
   EXPECT_EQ(Attempt(attempts_, 0).token(), 1001);
   std::filesystem::remove_all(attempts_);
   EXPECT_THAT(second.find_successor(), HasSubstr("its folder is gone"));
+  const Attempt again(attempts_, 5);
+  EXPECT_EQ(again.token(), 1);
+  EXPECT_THAT(first.find_successor(), HasSubstr("its folder is gone"));
+  EXPECT_EQ(again.find_successor(), "");
 }
 
 TEST_F(AttemptTest, AnOrphanBetweenTwoCellsBeginsNone) {
