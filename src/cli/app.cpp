@@ -30,6 +30,7 @@ constexpr const char* kFooter = R"(Examples:
   armwright list optimizers ga                     # one optimizer and its options
   armwright optimize q1-complex --seed 1           # tune the arm as the thesis did; resumes if interrupted
   armwright compare --preset smoke                 # which optimizer is better, and how sure is that?
+  armwright compare q1 --executor slurm            # the same on a cluster; status and merge see to the rest
   armwright rerun results/q1 q1-complex/ga/r03     # one run of a comparison anew: is it the same to the last bit?
   armwright evaluate table-a10 --problem q2-e6     # a published design on 500 test cases
   armwright verify table-a10                       # does it hold under other engines, time steps and masses?
@@ -47,7 +48,7 @@ Exit codes:
   2    wrong use or configuration
   3    done, but something failed (a case without a number, nothing feasible found, a design that does not hold)
   4    an input file cannot be used
-  5    another process writes this folder
+  5    another process writes this folder, or has taken over this cell
   74   reading or writing failed
   75   stopped by a time limit or SIGTERM; the same command resumes
   130  interrupted (Ctrl-C); the same command resumes
@@ -203,6 +204,9 @@ int run_command(Session& session, int argc, char** argv) {
     add_list(app, session);
     add_optimize(app, session);
     add_compare(app, session);
+    add_cell(app, session);
+    add_status(app, session);
+    add_merge(app, session);
     add_rerun(app, session);
     add_evaluate(app, session);
     add_sweep(app, session);

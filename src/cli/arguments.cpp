@@ -77,11 +77,12 @@ CLI::App* add_command(CLI::App& parent, Session& session, const std::string& nam
   return command;
 }
 
-void JobsOption::add_to(CLI::App& command) {
+void JobsOption::add_to(CLI::App& command, const std::string& fallback) {
   command
       .add_option("--jobs,-j", text,
-                  "Threads that simulate; the results do not depend on it\n"
-                  "(default: all cores)")
+                  fmt::format("Threads that simulate; the results do not depend on it\n"
+                              "(default: {})",
+                              fallback))
       ->type_name("N")
       ->envname("ARMWRIGHT_JOBS");
 }

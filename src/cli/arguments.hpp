@@ -34,8 +34,10 @@ CLI::App* add_command(CLI::App& parent, Session& session, const std::string& nam
 // --jobs and $ARMWRIGHT_JOBS.
 struct JobsOption {
   std::string text;
-  void add_to(CLI::App& command);
+  // `fallback`: as help says it.
+  void add_to(CLI::App& command, const std::string& fallback = "all cores");
   unsigned get() const;  // all cores unless told otherwise
+  unsigned get_or(unsigned fallback) const { return text.empty() ? fallback : get(); }
 };
 
 // --time-limit: a run that is stopped by it can be gone on with.

@@ -4,25 +4,24 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <limits>
-#include <numeric>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "cli/arguments.hpp"
-#include "cli/format.hpp"
+#include "cli/executor.hpp"
 #include "cli/progress_bar.hpp"
 #include "cli/session.hpp"
 #include "cli/signals.hpp"
+#include "cli/study_end.hpp"
 #include "cli/study_view.hpp"
 #include "cli/team.hpp"
 #include "cli/terminal.hpp"
 #include "study/compare/escape.hpp"
-#include "study/compare/final_check.hpp"
 #include "study/compare/study_runner.hpp"
-#include "study/compare/study_tables.hpp"
 #include "study/locked_observer.hpp"
+#include "study/matrix/cell_duration.hpp"
+#include "study/matrix/earlier_state.hpp"
 
 namespace armwright {
 namespace {
@@ -34,6 +33,7 @@ constexpr const char* kCompareExamples = R"(Examples:
   armwright compare --problems q1-complex,q2-e6 --optimizers ga,cmaes --replicates 20 --budget 5000 \
       --engine articulated
   armwright compare q1 --replicates 30             # more replicates: only what is new is run
+  armwright compare q1 --executor slurm            # the same on a cluster (docs/clusters.md)
 
 Every optimizer gets the same budget of simulated training cases, and in replicate r the same training cases and the
 same start as all others. Each run's winner is chosen on a validation set and judged on a test set that is the same
@@ -54,6 +54,7 @@ struct CompareOptions {
   JobsOption jobs;
   TimeLimitOption time_limit;
   FolderOptions folder;
+  ExecutorOptions executor;
   bool dry_run = false;
   bool json = false;
   bool quiet = false;
@@ -86,35 +87,11 @@ StudyRequest make_request(const CompareOptions& options) {
   return request;
 }
 
-// How long one process takes for the whole plan, from a few simulations of each problem's start.
+// How long one process takes for the whole plan.
 double measure_duration_s(const StudyPlan& plan) {
-  constexpr int kCases = 32;
   double total_s = 0;
-  for (const StudyProblem& problem : plan.problems) {
-    const auto runs = static_cast<double>(plan.optimizers.size()) * plan.replicates;
-    const auto& description = problem.loaded.problem->description();
-    std::vector<double> x;
-    for (const DecisionVariable& variable : description.variables) {
-      x.push_back(variable.start);
-    }
-    StudyPlan one = plan;
-    one.problems = {problem};
-    const StudyCost cost = calc_cost(one);
-    const auto measure = [&](CaseRole role, const std::string& set) {
-      CaseBlock block{role, set, std::vector<std::uint64_t>(kCases)};
-      std::iota(block.numbers.begin(), block.numbers.end(), std::uint64_t{0});
-      problem.loaded.problem->evaluate(x, block);  // makes the targets, which are kept
-      const auto start = std::chrono::steady_clock::now();
-      problem.loaded.problem->evaluate(x, block);
-      const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-      return taken.count() / kCases;
-    };
-    constexpr double kOverhead_s = 0.03;  // files and a process's own work, a cell
-    total_s += runs * kOverhead_s +
-               static_cast<double>(cost.training) *
-                   measure(CaseRole::training, problem.loaded.sets.training) +
-               static_cast<double>(cost.validation + cost.test) *
-                   measure(CaseRole::test, problem.loaded.sets.test);
+  for (const double cell_s : measure_cell_durations_s(plan)) {
+    total_s += cell_s * static_cast<double>(plan.optimizers.size()) * plan.replicates;
   }
   return total_s;
 }
@@ -145,8 +122,14 @@ int run_compare(const CompareOptions& options, Session& session) {
                 "compare what? Give a study file, --preset NAME, or --problems "
                 "and --optimizers. See 'armwright compare --help'");
   }
+  const bool is_elsewhere = options.executor.is_elsewhere();
+  if (is_elsewhere && (options.json || !options.time_limit.text.empty())) {
+    throw Error(ErrorKind::usage,
+                "--json and --time-limit are not for --executor slurm and script; give --json to "
+                "'armwright merge', and a job's time to the batch system");
+  }
   Team team(session);
-  const unsigned jobs = options.jobs.get();
+  const unsigned jobs = is_elsewhere ? options.jobs.get_or(1) : options.jobs.get();
   StudyPlan plan;
   if (team.is_worker()) {
     team.serve(
@@ -164,6 +147,10 @@ int run_compare(const CompareOptions& options, Session& session) {
   if (!options.quiet || options.dry_run) {
     announce(options, plan, jobs, path);
   }
+  if (is_elsewhere) {
+    return hand_over(options.executor, plan,
+                     {.folder = path, .jobs = jobs, .dry_run = options.dry_run}, session);
+  }
   if (options.dry_run) {
     write_stdout(to_toml(plan));
     return exit_code::kDone;
@@ -175,32 +162,14 @@ int run_compare(const CompareOptions& options, Session& session) {
   catch_signals(session.stop);
   ProgressBar bar(options.quiet, {});
   LockedObserver observer(bar);
+  adopt_attempts(plan, path, observer);
   Coordinator* const coordinator = team.lead(list_problems(plan), jobs, observer);
   const CellsResult cells = run_cells(plan, path, jobs, session.stop, observer, coordinator);
-  const auto stopped = [&] {
-    bar.clear();
-    write_message(fmt::format("{}; nothing is lost. To go on:\n{}",
-                              describe_stop(session.stop.reason()),
-                              quote_command(session.command_line)));
-    return get_stop_code(session.stop.reason());
-  };
+  team.dismiss();
   if (cells.stopped) {
-    return stopped();
+    return end_stopped(session, bar);
   }
-  StudyResult result = analyze_study(plan, path);
-  if (!add_final_checks(plan, path, jobs, session.stop, observer, result)) {
-    return stopped();
-  }
-  bar.clear();
-  write_study_tables(plan, result, path);
-  if (options.json) {
-    write_stdout(to_json(plan, result));
-  } else {
-    write_stdout(describe_study(plan, result, path, make_style(Stream::out, session.color)));
-  }
-  const bool failed = std::ranges::any_of(
-      result.cells, [](const CellOutcome& cell) { return !cell.failure.empty(); });
-  return failed || !result.missing.empty() ? exit_code::kFailed : exit_code::kDone;
+  return end_study(plan, {.folder = path, .jobs = jobs, .json = options.json}, session, bar);
 }
 
 }  // namespace
@@ -251,8 +220,10 @@ void add_compare(CLI::App& app, Session& session) {
   options->overrides.add_to(*command, true);
   options->jobs.add_to(*command);
   options->time_limit.add_to(*command);
+  options->executor.add_to(*command);
   command->add_flag("--dry-run", options->dry_run,
-                    "Print the resolved plan and what it costs, and run nothing");
+                    "Print the resolved plan and what it costs, or with another executor its\n"
+                    "chunks and how they are submitted, and run nothing");
   options->folder.add_to(*command, "study", "results/NAME");
   command->add_flag("--json", options->json, "Print the result as JSON")->group("Output");
   command->add_flag("--quiet,-q", options->quiet, "No plan and no progress")->group("Output");

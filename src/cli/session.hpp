@@ -40,6 +40,9 @@ struct Session {
 void add_list(CLI::App& app, Session& session);
 void add_optimize(CLI::App& app, Session& session);
 void add_compare(CLI::App& app, Session& session);
+void add_cell(CLI::App& app, Session& session);
+void add_status(CLI::App& app, Session& session);
+void add_merge(CLI::App& app, Session& session);
 void add_rerun(CLI::App& app, Session& session);
 void add_evaluate(CLI::App& app, Session& session);
 void add_sweep(CLI::App& app, Session& session);

@@ -28,7 +28,7 @@ Team::Team(Session& session) : session_(session), place_(find_rank_place()) {
   }
 }
 
-Team::~Team() {
+void Team::dismiss() {
   if (!links_) {
     return;
   }
@@ -41,6 +41,7 @@ Team::~Team() {
   coordinator_.reset();
   if (end_workers(*links_, is_asked ? kStopped_s : are_beginning ? kBeginning_s : kPatience_s)) {
     close_mpi();
+    links_.reset();
     return;
   }
   // MPI still has these messages, and what it would do at the end needs all ranks.

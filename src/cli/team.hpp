@@ -18,7 +18,7 @@ class Team {
  public:
   // On every rank, before anything that may fail: MPI begins on all ranks or on none.
   explicit Team(Session& session);
-  ~Team();  // on rank 0: the others are told to end
+  ~Team() { dismiss(); }
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;
 
@@ -30,6 +30,8 @@ class Team {
 
   // On rank 0, once: who simulates, with `threads` of its own. Null without a team.
   Coordinator* lead(const Problems& problems, unsigned threads, RunObserver& observer);
+  // On rank 0, when there is no more work: the others are told to end.
+  void dismiss();
   // How many ranks there are, in words; empty without a team.
   std::string describe() const;
 

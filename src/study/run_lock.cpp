@@ -20,14 +20,6 @@
 namespace armwright {
 namespace {
 
-std::string host_name() {
-  std::array<char, 256> name{};
-  if (::gethostname(name.data(), name.size() - 1) != 0 || name[0] == '\0') {
-    return "an unnamed host";
-  }
-  return name.data();
-}
-
 // What the holder has written, or a stand-in if it has not come to that yet.
 std::string read_holder(int fd) {
   std::array<char, 512> text{};
@@ -38,7 +30,7 @@ std::string read_holder(int fd) {
 }
 
 void write_holder(int fd, const std::filesystem::path& file) {
-  const std::string line = fmt::format("process {} on {}\n", ::getpid(), host_name());
+  const std::string line = fmt::format("process {} on {}\n", ::getpid(), get_host_name());
   if (::ftruncate(fd, 0) != 0) {
     fail_io(file, "empty it", errno);
   }
@@ -63,6 +55,14 @@ int open_for_reading(const std::filesystem::path& folder) {
 }
 
 }  // namespace
+
+std::string get_host_name() {
+  std::array<char, 256> name{};
+  if (::gethostname(name.data(), name.size() - 1) != 0 || name[0] == '\0') {
+    return "an unnamed host";
+  }
+  return name.data();
+}
 
 RunLock::RunLock(const std::filesystem::path& folder)
     : fd_(::open((folder / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644)) {

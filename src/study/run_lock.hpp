@@ -35,4 +35,7 @@ class ReadLock {
 // be told. Changes nothing.
 std::string find_writer(const std::filesystem::path& folder);
 
+// This machine's, as locks name it.
+std::string get_host_name();
+
 }  // namespace armwright

@@ -1,6 +1,7 @@
-// result.json and cell.json: what is read is the same written and read again.
+// result.json, cell.json and attempt.json: what is read is the same written and read again.
 #include "fuzz/harness.hpp"
 #include "study/compare/cell.hpp"
+#include "study/matrix/attempt.hpp"
 #include "study/run_result.hpp"
 
 namespace armwright::fuzz {
@@ -47,6 +48,7 @@ void fuzz_records(std::string_view input) {
   is_read([&] { check_result(parse_result(std::string(input), "result.json")); });
   check(input, "result.json", parse_result);
   check(input, "cell.json", parse_cell);
+  check(input, "attempt.json", parse_attempt);
 }
 
 }  // namespace armwright::fuzz

@@ -1,0 +1,42 @@
+#include "cli/study_end.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/text.hpp"
+#include "cli/study_view.hpp"
+#include "cli/terminal.hpp"
+#include "study/compare/final_check.hpp"
+#include "study/compare/study_tables.hpp"
+
+namespace armwright {
+
+int end_study(const StudyPlan& plan, const StudyEndRequest& request, Session& session,
+              ProgressBar& bar) {
+  StudyResult result = analyze_study(plan, request.folder);
+  if (!add_final_checks(plan, request.folder, request.jobs, session.stop, bar, result)) {
+    return end_stopped(session, bar);
+  }
+  bar.clear();
+  write_study_tables(plan, result, request.folder);
+  if (request.json) {
+    write_stdout(to_json(plan, result));
+  } else {
+    write_stdout(
+        describe_study(plan, result, request.folder, make_style(Stream::out, session.color)));
+  }
+  const bool failed = std::ranges::any_of(
+      result.cells, [](const CellOutcome& cell) { return !cell.failure.empty(); });
+  return failed || !result.missing.empty() ? exit_code::kFailed : exit_code::kDone;
+}
+
+int end_stopped(Session& session, ProgressBar& bar) {
+  bar.clear();
+  write_message(fmt::format("{}; nothing is lost. To go on:\n{}",
+                            describe_stop(session.stop.reason()),
+                            quote_command(session.command_line)));
+  return get_stop_code(session.stop.reason());
+}
+
+}  // namespace armwright

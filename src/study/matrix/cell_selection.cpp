@@ -1,0 +1,64 @@
+#include "study/matrix/cell_selection.hpp"
+
+#include <fmt/format.h>
+
+#include <set>
+#include <string_view>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "study/compare/rerun.hpp"
+
+namespace armwright {
+namespace {
+
+std::size_t parse_cell_number(std::string_view text, std::string_view word, std::size_t count) {
+  const auto number = parse_integer(text);
+  if (!number || *number < 0 || static_cast<std::size_t>(*number) >= count) {
+    throw Error(ErrorKind::usage,
+                fmt::format("'{}' is no cell of the study; its cells have the numbers 0 to {}, or "
+                            "names as PROBLEM/OPTIMIZER/rNN",
+                            sanitize(word), count - 1));
+  }
+  return static_cast<std::size_t>(*number);
+}
+
+}  // namespace
+
+std::vector<Cell> select_cells(const StudyPlan& plan, std::span<const std::string> words) {
+  const std::vector<Cell> all = list_cells(plan);
+  std::vector<Cell> selected;
+  std::set<std::string> names;
+  const auto add = [&](const Cell& cell) {
+    if (names.insert(make_cell_name(plan, cell)).second) {
+      selected.push_back(cell);
+    }
+  };
+  for (const std::string& word : words) {
+    if (word.find_first_not_of("0123456789-") != std::string::npos) {
+      add(find_cell(plan, word));
+      continue;
+    }
+    const std::string_view text = word;
+    const std::size_t dash = text.find('-');
+    const std::size_t first = parse_cell_number(text.substr(0, dash), word, all.size());
+    const std::size_t last = dash == std::string_view::npos
+                                 ? first
+                                 : parse_cell_number(text.substr(dash + 1), word, all.size());
+    if (last < first) {
+      throw Error(ErrorKind::usage, fmt::format("'{}' ends before it begins; a range of cells is "
+                                                "FIRST-LAST",
+                                                sanitize(word)));
+    }
+    for (std::size_t number = first; number <= last; ++number) {
+      add(all[number]);
+    }
+  }
+  return selected;
+}
+
+std::string make_cell_name(const StudyPlan& plan, const Cell& cell) {
+  return make_cell_path(plan, cell).lexically_relative("cells").string();
+}
+
+}  // namespace armwright

@@ -1,0 +1,88 @@
+#include "study/matrix/publication.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <stdio.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <string>
+
+#include "base/error.hpp"
+#include "base/file.hpp"
+#include "base/file_descriptor.hpp"
+#include "base/text.hpp"
+#include "study/compare/cell.hpp"
+#include "study/run_lock.hpp"
+
+namespace armwright {
+namespace {
+
+void sync_parent(const std::filesystem::path& target) {
+  const FileDescriptor folder(
+      ::open(target.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (folder.is_open()) {
+    ::fsync(folder.get());  // some file systems cannot, and the rename itself has succeeded
+  }
+}
+
+void move_aside(const std::filesystem::path& target, const std::filesystem::path& aside) {
+  if (const std::string writer = find_writer(target); !writer.empty()) {
+    throw Error(ErrorKind::busy,
+                fmt::format("{} is being written by {}, which will finish it; what was made here "
+                            "is kept and not needed",
+                            sanitize(target.string()), writer));
+  }
+  std::filesystem::path free = aside;
+  for (int number = 2; std::filesystem::exists(free); ++number) {
+    free = fmt::format("{}-{}", aside.string(), number);
+  }
+  const bool had_record = std::filesystem::exists(target / "cell.json");
+  if (::rename(target.c_str(), free.c_str()) != 0) {
+    if (errno != ENOENT) {  // whoever does the same at this moment may have it first
+      fail_io(target, "move it aside to " + free.string(), errno);
+    }
+    return;
+  }
+  // And may have put a finished one there, which goes back unless the next has come already.
+  if (!had_record && std::filesystem::exists(free / "cell.json") &&
+      ::rename(free.c_str(), target.c_str()) != 0 && errno != ENOTEMPTY && errno != EEXIST) {
+    fail_io(free, "move it back to " + target.string(), errno);
+  }
+}
+
+}  // namespace
+
+Publication publish_cell(const StudyPlan& plan, const Cell& cell,
+                         const std::filesystem::path& study, const std::filesystem::path& run,
+                         const std::filesystem::path& aside) {
+  const auto target = study / make_cell_path(plan, cell);
+  make_folder(target.parent_path());
+  // In each round what lies there is moved aside, by us or another; no more come than there are
+  // processes at this cell.
+  constexpr int kMostRounds = 1000;
+  for (int round = 0; round < kMostRounds; ++round) {
+    if (load_cell(plan, cell, study)) {
+      return Publication::superfluous;
+    }
+    if (::rename(run.c_str(), target.c_str()) == 0) {
+      sync_parent(target);
+      return Publication::published;
+    }
+    const int error = errno;
+    // A network file system may have done it and lost the answer.
+    if (error == ENOENT && load_cell(plan, cell, study)) {
+      return Publication::published;
+    }
+    if (error != ENOTEMPTY && error != EEXIST) {
+      fail_io(target, "put the finished cell in place", error);
+    }
+    if (!load_cell(plan, cell, study)) {
+      move_aside(target, aside);
+    }
+  }
+  throw Error(ErrorKind::busy, fmt::format("{}: others keep putting unfinished cells there",
+                                           sanitize(target.string())));
+}
+
+}  // namespace armwright

@@ -1,0 +1,221 @@
+#include "study/matrix/slurm.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "base/error.hpp"
+#include "base/file.hpp"
+#include "base/json_text.hpp"
+#include "base/text.hpp"
+#include "study/compare/escape.hpp"
+#include "study/compare/study_folder.hpp"
+#include "study/matrix/command_output.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kSubmissionRecord = "submission.json";
+constexpr int kSubmissionFormat = 1;
+constexpr std::size_t kSubmissionLimit_bytes = std::size_t{1} << 20;
+
+bool is_job_number(std::string_view text) {
+  return !text.empty() && text.size() < 20 &&
+         text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+// As sbatch --parsable prints it: NUMBER or NUMBER;CLUSTER, on a line of its own.
+std::string parse_job(const CommandOutput& output) {
+  const std::string line = output.out.substr(0, output.out.find('\n'));
+  const std::string job = line.substr(0, line.find(';'));
+  if (!is_job_number(job)) {
+    throw Error(ErrorKind::usage,
+                fmt::format("sbatch printed '{}' where the number of the job should be; look with "
+                            "squeue whether it was submitted",
+                            sanitize(line)));
+  }
+  return job;
+}
+
+std::string join_streams(const CommandOutput& output) {
+  std::string text = output.err + output.out;
+  while (!text.empty() && text.back() == '\n') {
+    text.pop_back();
+  }
+  std::vector<std::string> lines;
+  for (const std::string& line : split(text, '\n')) {
+    lines.push_back("  " + sanitize(line));
+  }
+  return join(lines, "\n");
+}
+
+std::string read_submitted_job(const std::filesystem::path& file) {
+  const std::string text = read_json_file(file, kSubmissionLimit_bytes);
+  try {
+    const json j = json::parse(text);
+    const std::string job = j.at("job");
+    if (j.at("format") != kSubmissionFormat || !is_job_number(job)) {
+      throw std::runtime_error("format or job is none that this version reads");
+    }
+    return job;
+  } catch (const std::exception& error) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("{}: is not what armwright wrote ({}); remove it once no job of this "
+                            "study is in the queue",
+                            file.string(), sanitize(error.what())));
+  }
+}
+
+std::string to_json(const StudyPlan& plan, const std::string& job, std::size_t chunks,
+                    std::span<const std::string> words) {
+  const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  const json j = {{"format", kSubmissionFormat},
+                  {"job", job},
+                  {"chunks", chunks},
+                  {"plan_sha256", calc_plan_hash(plan)},
+                  {"submitted", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now))},
+                  {"command_line", words}};
+  return j.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+std::filesystem::path get_submissions(const std::filesystem::path& study) {
+  return std::filesystem::absolute(study).lexically_normal() / "submissions";
+}
+
+// Ours alone, though two may be at it.
+std::filesystem::path claim_submission_folder(const std::filesystem::path& study) {
+  make_folder(get_submissions(study));
+  while (true) {
+    const auto folder = choose_submission_folder(study);
+    if (::mkdir(folder.c_str(), 0777) == 0) {
+      return folder;
+    }
+    if (errno != EEXIST) {
+      fail_io(folder, "create this folder", errno);
+    }
+  }
+}
+
+// A job that nobody knows of would be submitted again.
+void record_submission(const std::filesystem::path& folder, const std::string& job,
+                       const std::string& record) {
+  try {
+    write_file_atomically(folder / kSubmissionRecord, record);
+  } catch (const Error&) {
+    run_command(std::vector<std::string>{"scancel", job});
+    throw;
+  }
+}
+
+}  // namespace
+
+std::filesystem::path choose_submission_folder(const std::filesystem::path& study) {
+  const auto submissions = get_submissions(study);
+  for (int number = 1;; ++number) {
+    const auto folder = submissions / fmt::format("{:03}", number);
+    if (!std::filesystem::exists(folder)) {
+      return folder;
+    }
+  }
+}
+
+long calc_time_limit_min(std::span<const Chunk> chunks) {
+  double longest_s = 0;
+  for (const Chunk& chunk : chunks) {
+    longest_s = std::max(longest_s, chunk.expected_s);
+  }
+  constexpr double kReserve = 4;  // slower nodes, optimizers that think
+  constexpr double kStart_min = 10;
+  return std::lround(std::ceil(kReserve * longest_s / 60 + kStart_min));
+}
+
+std::vector<std::string> make_sbatch_words(const StudyPlan& plan, std::span<const Chunk> chunks,
+                                           const SlurmRequest& request,
+                                           const std::filesystem::path& folder) {
+  // In names of files Slurm reads % as the begin of a pattern, and %% as one.
+  std::string log = folder.string();
+  for (std::size_t at = log.find('%'); at != std::string::npos; at = log.find('%', at + 2)) {
+    log.insert(at, 1, '%');
+  }
+  std::vector<std::string> words = {"sbatch",
+                                    "--parsable",
+                                    fmt::format("--array=1-{}", chunks.size()),
+                                    "--requeue",
+                                    "--open-mode=append",
+                                    "--job-name=armwright-" + escape_name(plan.name),
+                                    fmt::format("--output={}/task-%a.log", log),
+                                    fmt::format("--time={}", calc_time_limit_min(chunks)),
+                                    fmt::format("--cpus-per-task={}", request.jobs)};
+  words.insert(words.end(), request.more_words.begin(), request.more_words.end());
+  words.push_back((folder / "run.sh").string());
+  return words;
+}
+
+std::optional<std::string> find_queued_job(const std::filesystem::path& study) {
+  std::error_code error;
+  std::vector<std::filesystem::path> records;
+  for (std::filesystem::directory_iterator entry(get_submissions(study), error), end;
+       !error && entry != end; entry.increment(error)) {
+    if (std::filesystem::exists(entry->path() / kSubmissionRecord)) {
+      records.push_back(entry->path() / kSubmissionRecord);
+    }
+  }
+  std::ranges::sort(records);
+  for (const auto& record : records) {
+    const std::string job = read_submitted_job(record);
+    const CommandOutput queue = run_command(std::vector<std::string>{"squeue", "-h", "-j", job});
+    // Slurm forgets jobs some minutes after their end.
+    const bool is_forgotten = queue.err.find("Invalid job id") != std::string::npos;
+    if (queue.exit_code != 0 && !is_forgotten) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("squeue cannot tell whether job {} of this study is still in the "
+                              "queue (exit code {}):\n{}",
+                              job, queue.exit_code, join_streams(queue)));
+    }
+    if (queue.exit_code == 0 && !queue.out.empty()) {
+      return job;
+    }
+  }
+  return std::nullopt;
+}
+
+Submission submit_to_slurm(const StudyPlan& plan, std::span<const Chunk> chunks,
+                           const SlurmRequest& request, const std::string& script) {
+  make_folder(get_submissions(request.study));
+  const RunLock lock(get_submissions(request.study));
+  if (const auto job = find_queued_job(request.study)) {
+    throw Error(ErrorKind::busy,
+                fmt::format("job {0} of this study is still in the queue (squeue -j {0}); wait for "
+                            "it, or end it with: scancel {0}",
+                            *job));
+  }
+  const auto folder = claim_submission_folder(request.study);
+  const auto words = make_sbatch_words(plan, chunks, request, folder);
+  try {
+    write_file_atomically(folder / "run.sh", script);
+    const CommandOutput output = run_command(words);
+    if (output.exit_code != 0) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("sbatch refuses (exit code {}):\n{}\nIt was:\n{}", output.exit_code,
+                              join_streams(output), sanitize(quote_command(words))));
+    }
+    const std::string job = parse_job(output);
+    record_submission(folder, job, to_json(plan, job, chunks.size(), words));
+    return {job, folder};
+  } catch (const Error&) {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder, ignored);
+    throw;
+  }
+}
+
+}  // namespace armwright

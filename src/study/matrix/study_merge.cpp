@@ -1,0 +1,170 @@
+#include "study/matrix/study_merge.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ctime>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "base/error.hpp"
+#include "base/file.hpp"
+#include "base/json_text.hpp"
+#include "base/text.hpp"
+#include "study/compare/cell.hpp"
+#include "study/compare/study_folder.hpp"
+#include "study/matrix/attempt.hpp"
+#include "study/matrix/cell_selection.hpp"
+#include "study/matrix/publication.hpp"
+#include "study/record_files.hpp"
+#include "study/survey/folder_copy.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+
+// cell.json tells problem, optimizer and configuration, the manifest all of the run.
+std::string find_other_settings(const StudyPlan& plan, const Cell& cell,
+                                const std::filesystem::path& folder) {
+  const auto file = folder / "manifest.json";
+  try {
+    const json manifest = json::parse(read_json_file(file, kManifestLimit_bytes));
+    const auto differences = describe_differences(manifest.at("configuration").dump(),
+                                                  to_json(make_run_plan(plan, cell)));
+    return differences.empty() ? "" : differences.front();
+  } catch (const json::exception& error) {
+    throw Error(ErrorKind::bad_data, fmt::format("{}: is not a manifest that armwright wrote ({})",
+                                                 file.string(), sanitize(error.what())));
+  }
+}
+
+struct FoundCell {
+  Cell cell;
+  std::filesystem::path folder;
+};
+
+class CellImport {
+ public:
+  CellImport(const StudyPlan& plan, const std::filesystem::path& study,
+             std::span<const std::filesystem::path> others)
+      : plan_(plan), study_(study), others_(others) {
+    for (const auto& other : others) {
+      if (!is_study_folder(other)) {
+        throw Error(ErrorKind::usage,
+                    fmt::format("{}: is not the folder of a study (it has no study.toml)",
+                                sanitize(other.string())));
+      }
+    }
+    for (const Cell& cell : list_cells(plan)) {
+      find(cell);
+    }
+    if (!refusals_.empty()) {
+      constexpr std::size_t kMostShown = 20;
+      const std::size_t count = refusals_.size();
+      if (count > kMostShown) {
+        refusals_.resize(kMostShown);
+        refusals_.push_back(fmt::format("and {} more", count - kMostShown));
+      }
+      throw Error(ErrorKind::bad_data,
+                  fmt::format("nothing is merged: the folders hold cells that do not go "
+                              "together:\n  {}\nKeep one of each two, or leave the folder out",
+                              join(refusals_, "\n  ")));
+    }
+  }
+
+  std::span<const FoundCell> found() const { return found_; }
+
+ private:
+  void find(const Cell& cell) {
+    const auto path = make_cell_path(plan_, cell);
+    std::string text;
+    std::filesystem::path first;
+    if (load_cell(plan_, cell, study_)) {
+      first = study_ / path;
+      text = read_file(first / "cell.json", kCellLimit_bytes);
+    }
+    for (const auto& other : others_) {
+      const auto folder = other / path;
+      if (!load_cell(plan_, cell, other)) {
+        continue;
+      }
+      const std::string one = read_file(folder / "cell.json", kCellLimit_bytes);
+      const std::string difference = find_other_settings(plan_, cell, folder);
+      if (!difference.empty()) {
+        refuse(cell,
+               fmt::format("{} was run with other settings: {}", folder.string(), difference));
+      } else if (first.empty()) {
+        first = folder;
+        text = one;
+        found_.push_back({cell, folder});
+      } else if (one != text) {
+        refuse(cell, fmt::format("{} and {} have found different things", first.string(),
+                                 folder.string()));
+      }
+    }
+  }
+
+  void refuse(const Cell& cell, const std::string& why) {
+    refusals_.push_back(sanitize(make_cell_name(plan_, cell) + ": " + why));
+  }
+
+  const StudyPlan& plan_;
+  const std::filesystem::path& study_;
+  std::span<const std::filesystem::path> others_;
+  std::vector<FoundCell> found_;
+  std::vector<std::string> refusals_;
+};
+
+// By way of an attempt of its own, which also ends others that are at the cell.
+void copy_cell(const StudyPlan& plan, const FoundCell& found, const std::filesystem::path& study,
+               StopSignal& stop) {
+  const Attempt attempt(make_attempts_path(plan, found.cell, study), std::time(nullptr));
+  FolderCopy copy(attempt.run(), stop);
+  for (const auto& entry : std::filesystem::directory_iterator(found.folder)) {
+    const auto name = entry.path().filename();
+    if (name != "lock" && name.extension() != ".new") {
+      copy.add(entry.path(), name);
+    }
+  }
+  copy.put_in_place();
+  publish_cell(plan, found.cell, study, attempt.run(), attempt.aside());
+  attempt.end_in_order();
+}
+
+}  // namespace
+
+std::size_t import_cells(const StudyPlan& plan, const std::filesystem::path& study,
+                         std::span<const std::filesystem::path> others, StopSignal& stop) {
+  const CellImport cells(plan, study, others);
+  std::size_t copied = 0;
+  for (const FoundCell& found : cells.found()) {
+    try {
+      copy_cell(plan, found, study, stop);
+    } catch (const CopyStopped&) {
+      break;
+    }
+    ++copied;
+  }
+  return copied;
+}
+
+void remove_spent_attempts(const StudyPlan& plan, const std::filesystem::path& study) {
+  if (!std::filesystem::exists(study / kAttemptsFolder)) {
+    return;
+  }
+  // An orphan may write there still; what it leaves goes next time.
+  std::error_code ignored;
+  for (const Cell& cell : list_cells(plan)) {
+    const auto attempts = make_attempts_path(plan, cell, study);
+    if (std::filesystem::exists(attempts, ignored) && load_cell(plan, cell, study)) {
+      std::filesystem::remove_all(attempts, ignored);
+      // These only if they are empty.
+      std::filesystem::remove(attempts.parent_path(), ignored);
+      std::filesystem::remove(attempts.parent_path().parent_path(), ignored);
+    }
+  }
+  std::filesystem::remove(study / kAttemptsFolder, ignored);
+}
+
+}  // namespace armwright
