@@ -39,13 +39,14 @@ void PairCost::learn(double seconds, std::size_t pairs) {
 
 void WorkerLatency::learn(double seconds) {
   constexpr double kMostRise = 4;
-  least_s_ = std::min(least_s_, seconds);
   seconds_ += kLatest * (std::min(seconds, kMostRise * seconds_) - seconds_);
 }
 
-void WorkerLatency::begin_batch() {
-  constexpr double kReturn = 0.03;
-  seconds_ += kReturn * (least_s_ - seconds_);
+double WorkerLatency::get_s(double unused_s) const {
+  // A worker that is too slow for batches of b seconds is tried every few seconds, and costs less
+  // than b then.
+  constexpr double kForgetting_s = 1;
+  return seconds_ / (1 + unused_s / kForgetting_s);
 }
 
 std::size_t plan_local_chunk(BatchSize size, std::size_t left, TeamSize team,

@@ -25,18 +25,16 @@ class PairCost {
 };
 
 // From the sending of a chunk to a worker that has nothing else to do to its outcomes, beside the
-// work itself. It rises slowly, and falls back with every batch: a worker that was slow once, and
-// so gets nothing more, could not show otherwise that it is quick again.
+// work itself. It rises slowly, and fades while it is not measured: a worker that was slow once,
+// and so gets nothing of small batches, could not show otherwise that it is quick again.
 class WorkerLatency {
  public:
   void learn(double seconds);
-  void begin_batch();
-  double get_s() const { return seconds_; }
+  // So long after it was measured.
+  double get_s(double unused_s) const;
 
  private:
-  static constexpr double kGuess_s = 0.001;
-  double seconds_ = kGuess_s;
-  double least_s_ = kGuess_s;
+  double seconds_ = 0.001;
 };
 
 struct TeamSize {

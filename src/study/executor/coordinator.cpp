@@ -53,9 +53,6 @@ void Coordinator::run(const CaseBatch& cases, StopSignal& stop) {
   Lock lock(mutex_);
   batch->cost = &costs_[{&cases.problem(), cases.block().role, cases.extras().jacobian}];
   batches_.push_back(batch);
-  for (Worker& worker : workers_) {
-    worker.latency.begin_batch();
-  }
   has_news_ = true;
   wake_communication_.notify_one();
   if (!helpers_.empty() || batches_.size() > 1) {

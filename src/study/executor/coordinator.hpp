@@ -98,7 +98,8 @@ class Coordinator final : public CaseExecutor {
     std::size_t chunks = 0;  // under way
     Clock::time_point free_at;
     WorkerLatency latency;
-    double patience = 1;  // doubled whenever it was late and answers after all
+    Clock::time_point heard_at;  // with outcomes
+    double patience = 1;         // doubled whenever it was late and answers after all
   };
 
   // All with the lock held, which those that take it give back for a while.

@@ -82,10 +82,11 @@ void Coordinator::assign() {
       }
       const Clock::time_point now = Clock::now();
       worker.free_at = std::max(worker.free_at, now);
+      const double unused_s = worker.chunks > 0 ? 0 : to_seconds(now - worker.heard_at);
       const WorkerLoad load{.threads = worker.introduction.threads,
                             .chunks = worker.chunks,
                             .busy_s = to_seconds(worker.free_at - now),
-                            .latency_s = worker.latency.get_s()};
+                            .latency_s = worker.latency.get_s(unused_s)};
       for (const auto& batch : batches_) {
         if (!batch->problem || batch->closed) {
           continue;
@@ -126,7 +127,7 @@ void Coordinator::send_chunk(std::size_t rank, const PiecePointer& piece) {
                         static_cast<double>(worker.introduction.threads);
   worker.free_at = std::max(worker.free_at, now) +
                    std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(
-                       work_s + (worker.chunks == 1 ? worker.latency.get_s() : 0)));
+                       work_s + (worker.chunks == 1 ? worker.latency.get_s(0) : 0)));
 }
 
 // Not all that there are: whoever has answered waits for something new to do.
@@ -192,7 +193,7 @@ void Coordinator::welcome(std::size_t rank, WorkerIntroduction introduction) {
     return;
   }
   worker.state = State::ready;
-  worker.free_at = Clock::now();
+  worker.free_at = worker.heard_at = Clock::now();
 }
 
 void Coordinator::take_outcomes(Lock& lock, std::size_t rank, PacketReader& packet) {
@@ -207,6 +208,7 @@ void Coordinator::take_outcomes(Lock& lock, std::size_t rank, PacketReader& pack
   sent_.erase(found);
   Worker& worker = workers_[rank];
   const Clock::time_point now = Clock::now();
+  worker.heard_at = now;
   --worker.chunks;
   if (worker.chunks == 0) {
     worker.free_at = now;
