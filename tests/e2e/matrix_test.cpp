@@ -11,6 +11,7 @@
 
 #include "base/temporary_folder.hpp"
 #include "e2e/program.hpp"
+#include "wait_until.hpp"
 
 namespace armwright {
 namespace {
@@ -115,7 +116,9 @@ TEST_F(CliMatrix, WhatCannotBeIsRefused) {
   expect({"--executor", "slrum"}, 2, "unknown executor 'slrum'; did you mean 'slurm'?");
   expect({"--chunk", "1m"}, 2, "--chunk is for --executor slurm or script");
   expect({"--sbatch=-x", "--executor", "script"}, 2, "--sbatch is for --executor slurm");
-  expect({"--json", "--executor", "script"}, 2, "--json and --time-limit are for --executor local");
+  expect({"--json", "--executor", "script"}, 2,
+         "--json and --time-limit are not for --executor slurm and script");
+  expect({"--executor", "mpi"}, 2, "--executor mpi needs the ranks of an mpirun");
   expect({"--executor", "slurm"}, 2, "there is no program 'sbatch' on this machine's PATH");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "results/mine/submissions/001"));
   std::filesystem::create_directories(folder_ / "results/mine/submissions/001");
@@ -192,13 +195,7 @@ label = "patient"
   const auto attempts = folder_ / "study/attempts/sphere/patient/r01";
   const auto wait_for = [&](const char* token) {
     const auto journal = attempts / token / "run/journal";
-    for (int tries = 0; tries < 1000; ++tries) {
-      if (read_text(journal).size() > 500) {
-        return true;
-      }
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    }
-    return false;
+    return wait_until([&] { return read_text(journal).size() > 500; });
   };
   Program first(folder_.path(), {"cell", "study", "0-1"}, environment);
   ASSERT_TRUE(wait_for("001"));

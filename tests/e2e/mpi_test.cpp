@@ -9,11 +9,14 @@
 #include <fstream>
 #include <map>
 #include <optional>
+#include <ostream>
 #include <thread>
 
 #include "base/hash.hpp"
 #include "base/temporary_folder.hpp"
+#include "e2e/processes.hpp"
 #include "e2e/program.hpp"
+#include "wait_until.hpp"
 
 namespace armwright {
 namespace {
@@ -51,38 +54,18 @@ class Mpi : public testing::Test {
 
   // The process of a rank.
   static std::optional<int> find_rank(int mpirun, int rank) {
-    for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
-      const std::string name = entry.path().filename().string();
-      if (name.find_first_not_of("0123456789") != std::string::npos) {
-        continue;
-      }
-      std::ifstream status(entry.path() / "status"), environment(entry.path() / "environ");
-      std::string line;
-      bool is_ours = false;
-      while (std::getline(status, line)) {
-        is_ours = is_ours || line == "PPid:\t" + std::to_string(mpirun);
-      }
-      bool is_rank = false;
-      while (std::getline(environment, line, '\0')) {
-        is_rank = is_rank || line == "OMPI_COMM_WORLD_RANK=" + std::to_string(rank);
-      }
-      if (is_ours && is_rank) {
-        return std::stoi(name);
+    for (const int pid : list_processes_with("OMPI_COMM_WORLD_RANK=" + std::to_string(rank))) {
+      if (find_parent(pid) == mpirun) {
+        return pid;
       }
     }
     return std::nullopt;
   }
 
-  // A zombie at most, where nobody reaps what mpirun leaves behind.
-  static bool has_ended(int process) {
-    std::ifstream status("/proc/" + std::to_string(process) + "/status");
-    std::string line;
-    while (std::getline(status, line)) {
-      if (line.starts_with("State:")) {
-        return line.find('Z') != std::string::npos;
-      }
-    }
-    return true;
+  // In the midst of a run: some has been evaluated beyond what the journal had.
+  bool wait_for_evaluations(const std::string& run, std::size_t journal_bytes) const {
+    return wait_until(
+        [&] { return read_text(folder_ / run / "journal").size() > journal_bytes + 5'000; });
   }
 
   // The hash of every file that a run leaves.
@@ -98,25 +81,30 @@ class Mpi : public testing::Test {
   const TemporaryFolder folder_;
 };
 
-struct Setting {
+struct RankSetting {
   const char* name;
   std::vector<std::string> words;
 };
 
-class MpiRuns : public Mpi, public testing::WithParamInterface<Setting> {};
+std::ostream& operator<<(std::ostream& out, const RankSetting& setting) {
+  return out << setting.name;
+}
+
+class MpiRuns : public Mpi, public testing::WithParamInterface<RankSetting> {};
 
 INSTANTIATE_TEST_SUITE_P(
     Settings, MpiRuns,
     testing::Values(
-        Setting{"Ode", {"--budget", "70"}},
-        Setting{"Lanes", {"--engine", "articulated", "--schedule", "fresh:20", "--budget", "2800"}},
-        Setting{"Races",
-                {"--engine", "articulated", "--optimizer", "cmaes", "--schedule", "fresh:32",
-                 "--racing", "halving:4:2", "--budget", "4000"}},
-        Setting{"Jacobians",
-                {"--engine", "articulated", "--optimizer", "ceres:lm", "--budget", "300"}},
-        Setting{"OneAfterTheOther",
-                {"--engine", "articulated", "--optimizer", "nlopt:bobyqa", "--budget", "100"}}),
+        RankSetting{"Ode", {"--budget", "70"}},
+        RankSetting{"Lanes",
+                    {"--engine", "articulated", "--schedule", "fresh:20", "--budget", "2800"}},
+        RankSetting{"Races",
+                    {"--engine", "articulated", "--optimizer", "cmaes", "--schedule", "fresh:32",
+                     "--racing", "halving:4:2", "--budget", "4000"}},
+        RankSetting{"Jacobians",
+                    {"--engine", "articulated", "--optimizer", "ceres:lm", "--budget", "300"}},
+        RankSetting{"OneAfterTheOther",
+                    {"--engine", "articulated", "--optimizer", "nlopt:bobyqa", "--budget", "100"}}),
     [](const auto& setting) { return setting.param.name; });
 
 TEST_P(MpiRuns, WriteTheSameOnAnyNumberOfRanksAndThreads) {
@@ -159,12 +147,7 @@ TEST_F(Mpi, RanksThatDieOrHangChangeNothing) {
   for (const int signal : {SIGKILL, SIGSTOP}) {
     const std::string out = "signal" + std::to_string(signal);
     Program program(folder_.path(), make_long_command(out), make_ranks(3));
-    // In the midst of it: some has been evaluated.
-    const auto journal = folder_ / out / "journal";
-    while (program.is_running() &&
-           !(std::filesystem::exists(journal) && std::filesystem::file_size(journal) > 10'000)) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
+    ASSERT_TRUE(wait_for_evaluations(out, 0));
     const auto rank = find_rank(program.pid(), 2);
     ASSERT_TRUE(rank);
     ::kill(*rank, signal);
@@ -173,7 +156,7 @@ TEST_F(Mpi, RanksThatDieOrHangChangeNothing) {
     EXPECT_THAT(outcome.err, AllOf(HasSubstr("rank 2 on"), HasSubstr("others do its work"),
                                    HasSubstr("MPI cannot end in order")));
     EXPECT_EQ(read_run(folder_ / out), read_run(folder_ / "one"));
-    EXPECT_TRUE(has_ended(*rank));
+    EXPECT_FALSE(is_alive(*rank));
   }
 }
 
@@ -181,15 +164,9 @@ TEST_F(Mpi, RanksThatDieOrHangChangeNothing) {
 TEST_F(Mpi, AKilledJobGoesOnWithAnyNumberOfRanks) {
   ASSERT_EQ(run_program(folder_.path(), make_long_command("one")).exit_code, 0);
   for (const int ranks : {3, 2}) {
+    const std::size_t before = read_text(folder_ / "killed/journal").size();
     Program program(folder_.path(), make_long_command("killed"), make_ranks(ranks, {}));
-    const auto journal = folder_ / "killed" / "journal";
-    const auto get_size = [&] {
-      return std::filesystem::exists(journal) ? std::filesystem::file_size(journal) : 0;
-    };
-    const auto before = get_size();
-    while (program.is_running() && get_size() < before + 10'000) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
+    ASSERT_TRUE(wait_for_evaluations("killed", before));
     const auto rank = find_rank(program.pid(), ranks - 1);
     ASSERT_TRUE(rank);
     ::kill(*rank, SIGKILL);
@@ -204,14 +181,39 @@ TEST_F(Mpi, AKilledJobGoesOnWithAnyNumberOfRanks) {
 TEST_F(Mpi, AskedToEndItStopsAndGoesOn) {
   ASSERT_EQ(run_program(folder_.path(), make_long_command("one")).exit_code, 0);
   Program program(folder_.path(), make_long_command("asked"), make_ranks(2));
-  while (program.is_running() && !std::filesystem::exists(folder_ / "asked" / "journal")) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
+  ASSERT_TRUE(wait_for_evaluations("asked", 0));
   program.send(SIGTERM);
   program.wait();
   const Outcome last = run_program(folder_.path(), make_long_command("asked"), make_ranks(2));
   EXPECT_EQ(last.exit_code, 0) << last.err;
+  EXPECT_THAT(last.err, HasSubstr("resuming"));
   EXPECT_EQ(read_run(folder_ / "asked"), read_run(folder_ / "one"));
+}
+
+// While the optimizer thinks, here behind a gate.
+TEST_F(Mpi, RanksWithoutWorkSleep) {
+  const auto gate = folder_ / "gate";
+  std::ofstream(gate) << "closed\n";
+  Environment environment = make_ranks(2);
+  environment.variables.emplace_back("PATIENT_GATE", gate.string());
+  const std::string patient =
+      "exec:python3 " + std::string(ARMWRIGHT_TEST_PLUGINS_SOURCE) + "/patient.py";
+  Program program(folder_.path(),
+                  {"optimize", "sphere", "--optimizer", patient, "--budget", "20", "--jobs", "1",
+                   "--quiet", "--out", "patient"},
+                  environment);
+  ASSERT_TRUE(wait_until([&] { return read_text(folder_ / "patient/journal").size() > 500; }));
+  constexpr std::chrono::seconds kIdle{3};
+  for (const int number : {0, 1}) {
+    const auto rank = find_rank(program.pid(), number);
+    ASSERT_TRUE(rank);
+    const double before_s = measure_cpu_s(*rank);
+    std::this_thread::sleep_for(kIdle);
+    EXPECT_LT(measure_cpu_s(*rank) - before_s, 0.05 * std::chrono::duration<double>(kIdle).count())
+        << "rank " << number;
+  }
+  std::filesystem::remove(gate);
+  EXPECT_EQ(program.wait().exit_code, 0);
 }
 
 TEST_F(Mpi, ComparisonsHaveTheSameTables) {

@@ -17,45 +17,19 @@
 
 #include "base/temporary_folder.hpp"
 #include "base/text.hpp"
+#include "e2e/processes.hpp"
 #include "e2e/program.hpp"
+#include "wait_until.hpp"
 
 namespace armwright {
 namespace {
 
 using testing::HasSubstr;
 
-bool wait_until(const std::function<bool()>& condition) {
-  constexpr std::chrono::seconds kPatience{60};
-  constexpr std::chrono::milliseconds kPause{50};
-  const auto end = std::chrono::steady_clock::now() + kPatience;
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > end) {
-      return false;
-    }
-    std::this_thread::sleep_for(kPause);
-  }
-  return true;
-}
-
 int read_number(const std::filesystem::path& file) {
   int number = 0;
   std::ifstream(file) >> number;
   return number;
-}
-
-// The fourth field of /proc/PID/stat, behind a name in parentheses; 0 if the process is gone or
-// waits only to be reaped.
-int find_parent(int pid) {
-  const std::string stat = read_text("/proc/" + std::to_string(pid) + "/stat");
-  const std::size_t name_end = stat.rfind(')');
-  if (name_end == std::string::npos || stat.at(name_end + 2) == 'Z') {
-    return 0;
-  }
-  return std::stoi(stat.substr(name_end + 4));
-}
-
-bool is_alive(int pid) {
-  return find_parent(pid) != 0;
 }
 
 // What an attempt at a cell says of its process; 0 if there is none.

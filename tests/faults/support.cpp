@@ -34,10 +34,6 @@ void expect_part(const std::vector<EvaluationRecord>& part,
   }
 }
 
-std::string read_environment(int pid) {
-  return read_text("/proc/" + std::to_string(pid) + "/environ");
-}
-
 }  // namespace
 
 std::uintmax_t get_size(const std::filesystem::path& file) {
@@ -112,29 +108,6 @@ std::uint64_t FailingFiles::count() const {
   std::ifstream(counter_ / "count", std::ios::binary)
       .read(reinterpret_cast<char*>(&count), sizeof count);
   return count;
-}
-
-std::vector<int> list_processes(const std::string& mark) {
-  std::vector<int> found;
-  const std::string variable = "FAULTS_MARK=" + mark;
-  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
-    const std::string name = entry.path().filename().string();
-    if (!std::ranges::all_of(name, [](unsigned char c) { return std::isdigit(c) != 0; })) {
-      continue;
-    }
-    const int pid = std::stoi(name);
-    if (is_alive(pid) &&
-        (read_environment(pid) + '\0').find(variable + '\0') != std::string::npos) {
-      found.push_back(pid);
-    }
-  }
-  return found;
-}
-
-bool is_alive(int pid) {
-  const std::string text = read_text("/proc/" + std::to_string(pid) + "/stat");
-  const std::size_t at = text.rfind(") ");
-  return at != std::string::npos && text[at + 2] != 'Z' && text[at + 2] != 'X';
 }
 
 void expect_part_of(const JournalContent& part, const JournalContent& whole) {

@@ -18,8 +18,10 @@
 #include <vector>
 
 #include "base/temporary_folder.hpp"
+#include "e2e/processes.hpp"
 #include "e2e/program.hpp"
 #include "study/journal.hpp"
+#include "wait_until.hpp"
 
 namespace armwright::faults {
 
@@ -33,20 +35,6 @@ using Words = std::vector<std::string>;
 inline Words operator+(Words words, const Words& more) {
   words.insert(words.end(), more.begin(), more.end());
   return words;
-}
-
-// Calls `condition` until it holds; false if it does not for so long that something hangs.
-inline bool wait_until(const std::function<bool()>& condition,
-                       std::chrono::milliseconds pause = std::chrono::milliseconds(1)) {
-  constexpr auto kPatience = std::chrono::seconds(60);
-  const auto deadline = std::chrono::steady_clock::now() + kPatience;
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > deadline) {
-      return false;
-    }
-    std::this_thread::sleep_for(pause);
-  }
-  return true;
 }
 
 // 0 for a file that is not there.
@@ -90,8 +78,9 @@ class FailingFiles {
 };
 
 // Processes that were started with the variable FAULTS_MARK=mark, or are children of such.
-std::vector<int> list_processes(const std::string& mark);
-bool is_alive(int pid);  // a zombie is not
+inline std::vector<int> list_processes(const std::string& mark) {
+  return list_processes_with("FAULTS_MARK=" + mark);
+}
 
 // Both journals hold the same evaluations and judgements, and the derived files are the same bytes.
 void expect_same_run(const std::filesystem::path& a, const std::filesystem::path& b);

@@ -12,7 +12,7 @@
 #include "study/case_runner.hpp"
 #include "study/executor/memory_links.hpp"
 #include "study/executor/worker.hpp"
-#include "study/wait_until.hpp"
+#include "wait_until.hpp"
 
 namespace armwright {
 namespace {
