@@ -1,0 +1,224 @@
+// Batches shared out over ranks beside the same batches on one thread of one process, and what a
+// message takes. Started by mpirun, with one thread a rank:
+//
+//     mpirun.openmpi --enable-recovery -n 2 build/release/bin/mpi_benchmark
+//
+// (--oversubscribe for more ranks than cores.) Rank 0 measures, the others work for it. The figures
+// to hold with as many ranks as cores: an efficiency of 0.9 for batches of 40 pairs and more of 5
+// ms, and a speedup of at least 1 for any batch of pairs of 50 us, less what the machine's noise
+// takes (0.05). docs/scaling.md reads the output.
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "measure.hpp"
+#include "study/executor/coordinator.hpp"
+#include "study/executor/mpi_links.hpp"
+#include "study/executor/worker.hpp"
+#include "synthetic_problem.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr BatchSize kOde{}, kLanes{.granularity = 8, .largest = 64};
+constexpr const char* kIdentity = R"("mpi_benchmark")";
+constexpr char kBegin = '!';  // an end of echoes: now the worker's life begins
+
+// Both sides' problems, in the same order.
+struct Problems {
+  SyntheticProblem ode{kOde}, lanes{kLanes};
+  std::vector<const Problem*> list() const { return {&ode, &lanes}; }
+};
+
+// What ranks above 0 do: they send back whatever comes, without pauses, and then work.
+int serve(Links& links) {
+  while (true) {
+    auto message = links.receive();
+    if (!message) {
+      continue;
+    }
+    if (message->bytes == std::string(1, kBegin)) {
+      break;
+    }
+    links.send(0, std::move(message->bytes));
+  }
+  const Problems problems;
+  bool in_order = false;
+  {
+    Worker worker(links, problems.list(),
+                  {.host = "here", .cpu = "", .threads = 1, .identity = kIdentity, .failure = ""});
+    in_order = worker.serve() == Worker::End::finalize;
+  }
+  if (!in_order) {
+    ::_exit(1);  // MPI could only end with all ranks
+  }
+  close_mpi();
+  return 0;
+}
+
+// Rank 0's side of everything.
+class Leader {
+ public:
+  explicit Leader(Links& links) : links_(links) {}
+  // Whether all ranks have ended in order.
+  bool end() {
+    begin_work();
+    coordinator_.reset();
+    return end_workers(links_, 5);
+  }
+
+  Links& links() { return links_; }
+  bool has_workers() const { return coordinator_ != nullptr; }
+  const Problems& problems() const { return problems_; }
+  double iterations(double seconds) const { return seconds * iterations_per_s_; }
+  std::size_t cores() const {
+    return std::min<std::size_t>(links_.size(), std::thread::hardware_concurrency());
+  }
+  Coordinator& coordinator() {
+    begin_work();
+    return *coordinator_;
+  }
+
+ private:
+  void begin_work() {
+    if (coordinator_) {
+      return;
+    }
+    for (std::size_t rank = 1; rank < links_.size(); ++rank) {
+      links_.send(rank, std::string(1, kBegin));
+    }
+    coordinator_ = std::make_unique<Coordinator>(
+        links_, problems_.list(), kIdentity, CoordinatorSettings{},
+        [](const std::string& message) { fmt::print(stderr, "mpi_benchmark: {}\n", message); });
+    while (coordinator_->expects_workers()) {
+      ::usleep(1000);
+    }
+  }
+
+  Links& links_;
+  const Problems problems_;
+  const double iterations_per_s_ = measure_iterations_per_s();
+  std::unique_ptr<Coordinator> coordinator_;
+};
+
+// A message there and back between two ranks that do nothing but look for messages.
+void round_trip(benchmark::State& state, Leader& leader) {
+  if (leader.has_workers()) {
+    state.SkipWithError("the other ranks are at work already");
+    return;
+  }
+  const std::string message(static_cast<std::size_t>(state.range(0)), 'x');
+  for (auto _ : state) {
+    leader.links().send(1, message);
+    while (!leader.links().receive()) {
+    }
+  }
+}
+
+// Both sides by turns: what disturbs the machine disturbs both.
+void batch(benchmark::State& state, Leader& leader) {
+  constexpr double kTurn_s = 0.04, kAll_s = 1.2;
+  constexpr int kLeastRounds = 3;
+  const bool has_lanes = state.range(2) > 1;
+  const SyntheticBatch batch(has_lanes ? leader.problems().lanes : leader.problems().ode,
+                             static_cast<std::size_t>(state.range(0)),
+                             leader.iterations(1e-6 * static_cast<double>(state.range(1))));
+  StopSignal stop;
+  ThreadExecutor one(1);
+  Coordinator& ranks = leader.coordinator();
+  for (int i = 0; i < 3; ++i) {
+    ranks.run(batch.get(), stop);  // learns the costs
+  }
+  const double first_s = measure_s([&] { one.run(batch.get(), stop); });
+  const int repeats = std::max(1, static_cast<int>(kTurn_s / first_s));
+  const auto measure = [&](CaseExecutor& executor) {
+    return measure_s([&] {
+             for (int i = 0; i < repeats; ++i) {
+               executor.run(batch.get(), stop);
+             }
+           }) /
+           repeats;
+  };
+  std::vector<double> times_one_s, times_ranks_s, ratios;
+  for (auto _ : state) {
+    const double start_s = read_clock_s(CLOCK_MONOTONIC);
+    while (std::ssize(ratios) < kLeastRounds || read_clock_s(CLOCK_MONOTONIC) - start_s < kAll_s) {
+      times_one_s.push_back(measure(one));
+      times_ranks_s.push_back(measure(ranks));
+      ratios.push_back(times_one_s.back() / times_ranks_s.back());
+    }
+    state.SetIterationTime(calc_median(times_ranks_s));
+  }
+  const double speedup = calc_median(ratios);
+  state.counters["one_s"] = calc_median(times_one_s);
+  state.counters["ranks_s"] = calc_median(times_ranks_s);
+  state.counters["speedup"] = speedup;
+  state.counters["efficiency"] = speedup / static_cast<double>(leader.cores());
+  state.counters["rounds"] = static_cast<double>(ratios.size());
+}
+
+void add_benchmarks(Leader& leader) {
+  const auto with_leader = [&leader](auto function) {
+    return [&leader, function](benchmark::State& state) { function(state, leader); };
+  };
+  benchmark::RegisterBenchmark("round_trip", with_leader(round_trip))
+      ->ArgName("bytes")
+      ->Arg(0)
+      ->Arg(1'000)
+      ->Arg(10'000)
+      ->Arg(100'000)
+      ->UseRealTime()
+      ->Unit(benchmark::kMicrosecond);
+  benchmark::RegisterBenchmark("batch", with_leader(batch))
+      ->ArgNames({"pairs", "cost_us", "lanes"})
+      ->ArgsProduct({{1, 8, 40, 200}, {5000}, {1}})
+      ->ArgsProduct({{40, 200}, {5000}, {8}})
+      ->ArgsProduct({{35, 200, 1000}, {50}, {1, 8}})
+      ->ArgsProduct({{35, 1000}, {500}, {1}})
+      ->Iterations(1)
+      ->UseManualTime()
+      ->Unit(benchmark::kMillisecond);
+}
+
+int lead(Links& links, int argc, char** argv) {
+  Leader leader(links);
+  benchmark::AddCustomContext("ranks", std::to_string(links.size()));
+  benchmark::AddCustomContext("cores", std::to_string(std::thread::hardware_concurrency()));
+  add_benchmarks(leader);
+  benchmark::Initialize(&argc, argv);
+  const bool understood = !benchmark::ReportUnrecognizedArguments(argc, argv);
+  if (understood) {
+    benchmark::RunSpecifiedBenchmarks();
+  }
+  std::fflush(nullptr);
+  if (!leader.end()) {
+    ::_exit(1);
+  }
+  close_mpi();
+  return understood ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace armwright
+
+int main(int argc, char** argv) {
+  using namespace armwright;
+  const auto place = find_rank_place();
+  if (!place) {
+    fmt::print(stderr,
+               "mpi_benchmark: start it by mpirun.openmpi --enable-recovery -n 2 {}, as there is "
+               "nothing to measure without other ranks\n",
+               argc > 0 ? argv[0] : "mpi_benchmark");
+    return 1;
+  }
+  const auto links = open_mpi_links();
+  return place->rank == 0 ? lead(*links, argc, argv) : serve(*links);
+}
