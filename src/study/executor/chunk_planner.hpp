@@ -59,8 +59,8 @@ struct WorkerLoad {
 };
 
 // Pairs for a worker, 0 if it is not worth while: it would have them done later than the threads
-// here, which by themselves need `left_here_s` for all that is left. While nothing is known of the
-// cost a worker gets as little as can be.
+// here, which by themselves would have done all that is left in `left_here_s`. While nothing is
+// known of the cost a worker gets as little as can be.
 std::size_t plan_remote_chunk(BatchSize size, std::size_t left, TeamSize team,
                               std::optional<double> cost_s, double left_here_s,
                               const WorkerLoad& worker);

@@ -65,7 +65,7 @@ void Coordinator::run(const CaseBatch& cases, StopSignal& stop) {
     if (batch->active == 0 && (batch->closed || batch->left == 0)) {
       break;
     }
-    if (busy_threads_ < settings_.threads) {
+    if (busy_until_.size() < settings_.threads) {
       if (const PiecePointer piece = take_here(batch)) {
         work_on(lock, piece);
         continue;
@@ -114,13 +114,23 @@ std::size_t Coordinator::count_untaken(const Batch& batch) const {
   return pairs;
 }
 
-// How long the threads here take for all that nobody has taken yet, as far as costs are known.
+// How long the threads here take for all that nobody has taken yet, as far as costs are known: once
+// one of them is free, and no less than for one pair.
 double Coordinator::calc_left_here_s() const {
-  double seconds = 0;
+  double seconds = 0, longest_s = 0;
   for (const auto& batch : batches_) {
-    seconds += static_cast<double>(count_untaken(*batch)) * batch->cost->get_s().value_or(0);
+    if (const std::size_t pairs = count_untaken(*batch); pairs > 0) {
+      const double pair_s = batch->cost->get_s().value_or(0);
+      seconds += static_cast<double>(pairs) * pair_s;
+      longest_s = std::max(longest_s, pair_s);
+    }
   }
-  return seconds / static_cast<double>(settings_.threads);
+  seconds = std::max(seconds / static_cast<double>(settings_.threads), longest_s);
+  if (busy_until_.size() < settings_.threads) {
+    return seconds;
+  }
+  const auto until_free = *std::ranges::min_element(busy_until_) - Clock::now();
+  return seconds + std::max(0.0, std::chrono::duration<double>(until_free).count());
 }
 
 TeamSize Coordinator::calc_team() const {
@@ -161,7 +171,10 @@ Coordinator::PiecePointer Coordinator::take_here(const std::shared_ptr<Batch>& b
 void Coordinator::work_on(Lock& lock, const PiecePointer& piece) {
   Batch& batch = *piece->batch;
   ++batch.active;
-  ++busy_threads_;
+  const std::chrono::duration<double> expected(batch.cost->get_s().value_or(0) *
+                                               static_cast<double>(piece->count));
+  const auto until = busy_until_.insert(
+      busy_until_.end(), Clock::now() + std::chrono::duration_cast<Clock::duration>(expected));
   lock.unlock();
   std::vector<CaseOutcome> outcomes;
   std::exception_ptr failure;
@@ -181,7 +194,7 @@ void Coordinator::work_on(Lock& lock, const PiecePointer& piece) {
     batch.cost->learn(taken.count(), piece->count);
     deliver(lock, piece, std::move(outcomes));
   }
-  --busy_threads_;
+  busy_until_.erase(until);
   --batch.active;
   // Whoever waits for this batch's end, or, with another batch, for a thread to be free.
   if (batches_.size() > 1 || (batch.active == 0 && (batch.closed || batch.left == 0))) {
@@ -222,7 +235,7 @@ void Coordinator::help() {
   while (!stopping_) {
     PiecePointer piece;
     for (auto batch = batches_.begin(); batch != batches_.end() && !piece; ++batch) {
-      if (busy_threads_ < settings_.threads && !(*batch)->stop->requested()) {
+      if (busy_until_.size() < settings_.threads && !(*batch)->stop->requested()) {
         piece = take_here(*batch);
       }
     }

@@ -135,8 +135,8 @@ class Coordinator final : public CaseExecutor {
   std::condition_variable changed_;
   std::condition_variable wake_communication_;
   bool stopping_ = false;
-  bool has_news_ = false;  // for the thread that communicates
-  std::size_t busy_threads_ = 0;
+  bool has_news_ = false;                    // for the thread that communicates
+  std::list<Clock::time_point> busy_until_;  // threads, as far as costs are known
   std::list<std::shared_ptr<Batch>> batches_;
   std::map<CostKey, PairCost> costs_;
   std::vector<Worker> workers_;  // by rank; the first is this process
