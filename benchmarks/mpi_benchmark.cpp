@@ -219,9 +219,9 @@ void add_benchmarks(Leader& leader) {
       ->Unit(benchmark::kMicrosecond);
   benchmark::RegisterBenchmark("batch", with_leader(batch))
       ->ArgNames({"pairs", "cost_us", "lanes"})
-      ->ArgsProduct({{1, 8, 40, 200}, {5000}, {1}})
-      ->ArgsProduct({{35, 200, 1000}, {50}, {1, 8}})
-      ->ArgsProduct({{35, 1000}, {500}, {1}})
+      ->ArgsProduct({{200, 40, 8, 1}, {5000}, {1}})
+      ->ArgsProduct({{1000, 35}, {500}, {1}})
+      ->ArgsProduct({{1000, 200, 35}, {50}, {1, 8}})
       ->Iterations(1)
       ->UseManualTime()
       ->Unit(benchmark::kMillisecond);
