@@ -80,7 +80,7 @@ Coordinator* Team::lead(const Problems& problems, unsigned threads, RunObserver&
   }
   if (!place_->survives) {
     observer.on_message(
-        "note: mpirun was started without --enable-recovery: should a rank die, all end with it "
+        "note: started without mpirun's --enable-recovery: should a rank die, all end with it "
         "(nothing is lost; the same command goes on)");
   }
   coordinator_ = std::make_unique<Coordinator>(

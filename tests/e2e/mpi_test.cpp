@@ -275,7 +275,7 @@ TEST_F(Mpi, WhatIsSaidIsSaidOnce) {
       folder_.path(), {"optimize", "sphere", "--budget", "100", "--out", "run"}, make_ranks(2, {}));
   EXPECT_EQ(optimized.exit_code, 0) << optimized.err;
   EXPECT_EQ(count(optimized.err, "on each of 2 ranks"), 1u) << optimized.err;
-  EXPECT_THAT(optimized.err, HasSubstr("without --enable-recovery"));
+  EXPECT_THAT(optimized.err, HasSubstr("without mpirun's --enable-recovery"));
   EXPECT_THAT(optimized.out, Not(HasSubstr("\033")));  // mpirun's terminal is none
 }
 

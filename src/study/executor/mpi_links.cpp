@@ -23,6 +23,7 @@
 namespace armwright {
 namespace {
 
+// The number that a variable begins with: Slurm says of tasks on nodes "2(x3),1".
 std::optional<std::size_t> read_count(const char* name) {
   const char* text = std::getenv(name);
   if (text == nullptr) {
@@ -31,8 +32,7 @@ std::optional<std::size_t> read_count(const char* name) {
   std::size_t value = 0;
   const std::string_view digits(text);
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  return error == std::errc() && end == digits.data() + digits.size() ? std::optional(value)
-                                                                      : std::nullopt;
+  return error == std::errc() ? std::optional(value) : std::nullopt;
 }
 
 }  // namespace
@@ -44,7 +44,7 @@ std::optional<RankPlace> find_rank_place() {
   if (!size || !rank) {  // srun says it in its own words, and PMIx must be there to speak through
     rank = read_count("PMIX_RANK");
     size = rank ? read_count("SLURM_STEP_NUM_TASKS") : std::nullopt;
-    local = std::nullopt;
+    local = read_count("SLURM_STEP_TASKS_PER_NODE");
   }
   if (!size || !rank || *size <= 1 || *rank >= *size) {
     return std::nullopt;
