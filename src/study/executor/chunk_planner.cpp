@@ -8,6 +8,10 @@ namespace {
 
 // Of a thread's work. A message costs 0.1 ms on both sides: a hundredth of it.
 constexpr double kChunk_s = 0.01;
+// A chunk costs the coordinator 10 us of the thread that communicates. Where there are very many
+// workers, chunks of so many seconds for each of these leave that thread three quarters of its
+// time.
+constexpr double kChunkEach_s = 4e-5;
 constexpr double kLatest = 0.3;  // weight of the latest measurement in the mean
 
 std::size_t round_up(std::size_t pairs, std::size_t granularity) {
@@ -20,8 +24,8 @@ std::size_t calc_share(BatchSize size, std::size_t left, TeamSize team) {
   return std::max(size.granularity, round_up(share, size.granularity));
 }
 
-std::size_t calc_timely(BatchSize size, double cost_s) {
-  const double pairs = kChunk_s / std::max(cost_s, 1e-9);
+std::size_t calc_timely(BatchSize size, double chunk_s, double cost_s) {
+  const double pairs = chunk_s / std::max(cost_s, 1e-9);
   const auto granularity = static_cast<double>(size.granularity);
   return static_cast<std::size_t>(std::max(1.0, std::floor(pairs / granularity))) *
          size.granularity;
@@ -58,7 +62,7 @@ std::size_t plan_local_chunk(BatchSize size, std::size_t left, TeamSize team,
     return std::min(left, size.granularity);
   }
   const std::size_t most =
-      std::min(std::max(size.largest, size.granularity), calc_timely(size, *cost_s));
+      std::min(std::max(size.largest, size.granularity), calc_timely(size, kChunk_s, *cost_s));
   return std::min(left, std::min(calc_share(size, left, team), most));
 }
 
@@ -72,7 +76,9 @@ std::size_t plan_remote_chunk(BatchSize size, std::size_t left, TeamSize team,
     const std::size_t least = size.granularity * worker.threads;
     return worker.chunks == 0 && left > size.granularity * team.here ? std::min(left, least) : 0;
   }
-  const std::size_t most = std::min(calc_share(size, left, team), calc_timely(size, *cost_s));
+  const double chunk_s = std::max(kChunk_s, kChunkEach_s * static_cast<double>(team.workers));
+  const std::size_t most =
+      std::min(calc_share(size, left, team), calc_timely(size, chunk_s, *cost_s));
   const std::size_t pairs = std::min(left, most * worker.threads);
   const std::size_t a_thread = (pairs + worker.threads - 1) / worker.threads;
   const double done_s = worker.busy_s + worker.latency_s + static_cast<double>(a_thread) * *cost_s;

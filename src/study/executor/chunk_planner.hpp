@@ -40,6 +40,7 @@ class WorkerLatency {
 struct TeamSize {
   std::size_t here = 1;       // threads of the coordinator
   std::size_t elsewhere = 0;  // threads of the workers that are there
+  std::size_t workers = 0;
   std::size_t all() const { return here + elsewhere; }
 };
 

@@ -136,7 +136,10 @@ double Coordinator::calc_left_here_s() const {
 TeamSize Coordinator::calc_team() const {
   TeamSize team{.here = settings_.threads};
   for (const Worker& worker : workers_) {
-    team.elsewhere += worker.state == State::ready ? worker.introduction.threads : 0;
+    if (worker.state == State::ready) {
+      team.elsewhere += worker.introduction.threads;
+      ++team.workers;
+    }
   }
   return team;
 }
