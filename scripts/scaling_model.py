@@ -20,9 +20,11 @@ import math
 
 # chunk_planner.cpp
 CHUNK_S = 0.01
+CHUNK_EACH_S = 4e-5
 CHUNKS_AHEAD = 2
 # coordinator.hpp: what a chunk is taken to need beside its work, until it is known better
 FIRST_LATENCY_S = 1e-3
+FORGETTING_S = 1.0
 LATEST = 0.3
 # coordinator_links.cpp: a pause of the thread that communicates; messages that it takes in a row
 SHORTEST_S, LONGEST_S = 50e-6, 1e-3
@@ -70,7 +72,7 @@ class Outcome:
     time_s: float         # of all batches
     chunks: int           # sent to others
     busy_s: float         # of the thread that communicates
-    last_s: float         # of the last batch
+    batches_s: list       # of each batch, in the order in which they ended
 
 
 def round_up(pairs, granularity):
@@ -81,19 +83,19 @@ def calc_share(work, left, threads):
     return max(work.granularity, round_up(-(-left // (2 * threads)), work.granularity))
 
 
-def calc_timely(work, cost_s):
-    return max(1, int(CHUNK_S / max(cost_s, 1e-9) / work.granularity)) * work.granularity
+def calc_timely(work, chunk_s, cost_s):
+    return max(1, int(chunk_s / max(cost_s, 1e-9) / work.granularity)) * work.granularity
 
 
 def plan_local_chunk(work, left, threads, cost_s):
     if threads <= 1:
         return min(left, work.largest)
-    most = min(max(work.largest, work.granularity), calc_timely(work, cost_s))
+    most = min(max(work.largest, work.granularity), calc_timely(work, CHUNK_S, cost_s))
     return min(left, calc_share(work, left, threads), most)
 
 
-def plan_remote_chunk(work, left, threads, cost_s, left_here_s, worker_threads, busy_s, latency_s):
-    most = min(calc_share(work, left, threads), calc_timely(work, cost_s))
+def plan_remote_chunk(work, left, threads, workers, cost_s, left_here_s, worker_threads, busy_s, latency_s):
+    most = min(calc_share(work, left, threads), calc_timely(work, max(CHUNK_S, CHUNK_EACH_S * workers), cost_s))
     pairs = min(left, most * worker_threads)
     a_thread = -(-pairs // worker_threads)
     return pairs if busy_s + latency_s + a_thread * cost_s <= left_here_s else 0
@@ -117,6 +119,7 @@ class Worker:
         self.chunks = 0          # under way, as the coordinator sees it
         self.free_at = 0.0
         self.latency_s = latency_s
+        self.heard_at = 0.0      # with outcomes
         self.idle_threads = 0
         self.inbox = []          # arrived, and not looked at yet
         self.pieces = []         # of chunks that have begun: [chunk, pairs]
@@ -127,7 +130,7 @@ class Simulation:
     """Events are (time, order, function); computing is counted in the time that a thread would need by itself, of which all that
     compute get the same share at any moment, so that the next to end is the one with the least left."""
 
-    def __init__(self, model, team, work):
+    def __init__(self, model, team, work, latency_s=FIRST_LATENCY_S):
         self.model, self.team, self.work = model, team, work
         self.now, self.order = 0.0, itertools.count()
         self.events = []
@@ -135,16 +138,17 @@ class Simulation:
         self.threads = team.ranks * team.threads
         shared = max(1.0, min(self.threads, team.ranks) / team.cores)
         self.cost_s = work.cost_s * shared
-        self.workers = [Worker(FIRST_LATENCY_S) for _ in range(team.ranks - 1)]
+        self.workers = [Worker(latency_s) for _ in range(team.ranks - 1)]
         for worker in self.workers:
             worker.idle_threads = team.threads
         self.hungry = set(range(len(self.workers)))
         self.batches = []
         self.idle_here = team.threads
+        self.busy_until = []     # of threads here
         self.asleep = True       # the thread that communicates
         self.turn_due = False
         self.arrived = collections.deque()  # at the coordinator
-        self.chunks, self.busy_s, self.last_s = 0, 0.0, 0.0
+        self.chunks, self.busy_s, self.batches_s = 0, 0.0, []
         self.left_batches = work.cells * work.batches
 
     # Time.
@@ -178,7 +182,7 @@ class Simulation:
             self.now = event_s
             _, _, function, arguments = heapq.heappop(self.events)
             function(*arguments)
-        return Outcome(self.now, self.chunks, self.busy_s, self.last_s)
+        return Outcome(self.now, self.chunks, self.busy_s, self.batches_s)
 
     # The coordinator's batches and threads.
     def submit(self, cell):
@@ -194,9 +198,12 @@ class Simulation:
                 pairs = plan_local_chunk(self.work, batch.untaken, self.threads, self.cost_s)
                 batch.untaken -= pairs
                 self.idle_here -= 1
-                self.compute(pairs * self.work.cost_s, self.end_here, batch, pairs, self.now)
+                until = self.now + pairs * self.cost_s
+                self.busy_until.append(until)
+                self.compute(pairs * self.work.cost_s, self.end_here, batch, pairs, self.now, until)
 
-    def end_here(self, batch, pairs, start_s):
+    def end_here(self, batch, pairs, start_s, until):
+        self.busy_until.remove(until)
         self.learn((self.now - start_s) / pairs)
         self.idle_here += 1
         self.deliver(batch, pairs, 0)
@@ -213,7 +220,7 @@ class Simulation:
 
     def end_batch(self, batch):
         self.left_batches -= 1
-        self.last_s = self.now - batch.start_s
+        self.batches_s.append(self.now - batch.start_s)
         if self.left_batches >= self.work.cells:
             self.at(self.now + self.work.serial_s, self.submit, batch.cell)
 
@@ -246,7 +253,9 @@ class Simulation:
                 + (self.model.chunk_s + pairs * self.model.pair_s) / 2 + pairs * self.work.pair_s)
 
     def calc_left_here_s(self):
-        return sum(batch.untaken for batch in self.batches) * self.cost_s / self.team.threads
+        until_free_s = 0 if self.idle_here else max(0.0, min(self.busy_until) - self.now)
+        left = sum(batch.untaken for batch in self.batches)
+        return max(left / self.team.threads, 1) * self.cost_s + until_free_s if left else 0.0
 
     def assign(self):
         self.sent_s = 0.0
@@ -257,18 +266,19 @@ class Simulation:
                     return
                 worker = self.workers[rank]
                 worker.free_at = max(worker.free_at, self.now)
-                sent = self.assign_to(rank, worker, left_here_s)
+                unused_s = 0 if worker.chunks else self.now - worker.heard_at
+                sent = self.assign_to(rank, worker, left_here_s, worker.latency_s / (1 + unused_s / FORGETTING_S))
                 if sent:
                     left_here_s = self.calc_left_here_s()
                 elif worker.chunks == 0:
                     break  # not worth while for one that has nothing to do, and so for nobody
 
-    def assign_to(self, rank, worker, left_here_s):
+    def assign_to(self, rank, worker, left_here_s, latency_s):
         for batch in self.batches:
             if batch.untaken == 0:
                 continue
-            pairs = plan_remote_chunk(self.work, batch.untaken, self.threads, self.cost_s, left_here_s, self.team.threads,
-                                      worker.free_at - self.now, worker.latency_s)
+            pairs = plan_remote_chunk(self.work, batch.untaken, self.threads, len(self.workers), self.cost_s, left_here_s,
+                                      self.team.threads, worker.free_at - self.now, latency_s)
             if pairs == 0:
                 continue
             batch.untaken -= pairs
@@ -288,6 +298,7 @@ class Simulation:
         rank, pairs, _, batch, sent_at, was_idle, busy_s = chunk
         worker = self.workers[rank]
         worker.chunks -= 1
+        worker.heard_at = self.now
         self.hungry.add(rank)
         if worker.chunks == 0:
             worker.free_at = self.now
@@ -351,12 +362,25 @@ def simulate(model, team, work):
     return Simulation(model, team, work).run()
 
 
-def predict_batch_s(model, team, work, batches=6):
-    """The mean of some batches in a row, as a benchmark runs them, without the first, from which costs are learned."""
+def predict_batch_s(model, team, work):
+    """The mean time of a batch as mpi_benchmark measures it: after others, from which the workers' delays are known, and beside the same
+    batch on one thread, by turns of at least 40 ms."""
     if team.ranks == 1:
         return work.pairs * work.cost_s
-    first = simulate(model, team, dataclasses.replace(work, batches=2)).time_s
-    return (simulate(model, team, dataclasses.replace(work, batches=2 + batches)).time_s - first) / batches
+    learning = Simulation(model, team, Work(400, 5e-4, batches=3))
+    learning.run()
+    latency_s = sum(worker.latency_s for worker in learning.workers) / len(learning.workers)
+    one_s = work.pairs * work.cost_s
+    in_a_turn = max(1, int(0.04 / one_s))
+    times_s = []
+    # A turn is what begins after a pause; what the workers have learned stays.
+    for _ in range(3 if in_a_turn == 1 else 1):
+        turn = Simulation(model, team, dataclasses.replace(work, batches=in_a_turn), latency_s)
+        for worker in turn.workers:
+            worker.idle_since = -in_a_turn * one_s
+        times_s += turn.run().batches_s
+        latency_s = sum(worker.latency_s for worker in turn.workers) / len(turn.workers)
+    return sum(times_s) / len(times_s)
 
 
 def fit(model, rows, calc_error, names, start, spans):
