@@ -7,6 +7,7 @@ A model has few parameters, all of them times in seconds:
     chunk_s       processor time of the coordinator for a chunk, MPI left out (encode, decode, deliver, plan)
     pair_s        the same for each of its pairs
     wake_s        from the end of a sleep to the thread's being at work: what a pause is longer than was asked for
+    wake_shared_s the same where ranks share cores, and a thread that wakes finds its core at work for another
     crowding      by how much a pair takes longer while all cores of the machine are at work (1: by nothing)
 
 A chunk of m pairs so takes chunk_s + m pair_s + round_trip_s + bytes byte_s of the coordinator's one thread that communicates. Who
@@ -22,10 +23,11 @@ import math
 CHUNK_S = 0.01
 CHUNK_EACH_S = 4e-5
 CHUNKS_AHEAD = 2
-# coordinator.hpp: what a chunk is taken to need beside its work, until it is known better
+LATEST = 0.3
+# The same, WorkerLatency: what a chunk is taken to need beside its work, until it is known better
 FIRST_LATENCY_S = 1e-3
 FORGETTING_S = 1.0
-LATEST = 0.3
+MOST_RISE = 4
 # coordinator_links.cpp: a pause of the thread that communicates; messages that it takes in a row
 SHORTEST_S, LONGEST_S = 50e-6, 1e-3
 AT_ONCE = 256
@@ -45,6 +47,7 @@ class Model:
     chunk_s: float
     pair_s: float
     wake_s: float = 60e-6
+    wake_shared_s: float = 60e-6
     crowding: float = 1.0
 
 
@@ -132,6 +135,7 @@ class Simulation:
 
     def __init__(self, model, team, work, latency_s=FIRST_LATENCY_S):
         self.model, self.team, self.work = model, team, work
+        self.wake_s = model.wake_s if team.ranks <= team.cores else model.wake_shared_s
         self.now, self.order = 0.0, itertools.count()
         self.events = []
         self.computing, self.computed_s = [], 0.0
@@ -190,7 +194,7 @@ class Simulation:
         self.work_here()
         if self.asleep and not self.turn_due:
             self.turn_due = True
-            self.at(self.now + self.model.wake_s, self.turn)
+            self.at(self.now + self.wake_s, self.turn)
 
     def work_here(self):
         for batch in self.batches:
@@ -304,9 +308,9 @@ class Simulation:
             worker.free_at = self.now
         if was_idle:
             latency_s = max(0.0, self.now - sent_at - busy_s / self.team.threads)
-            worker.latency_s = (1 - LATEST) * worker.latency_s + LATEST * latency_s
+            worker.latency_s += LATEST * (min(latency_s, MOST_RISE * worker.latency_s) - worker.latency_s)
         self.learn(busy_s / pairs)
-        self.deliver(batch, pairs, self.model.wake_s)
+        self.deliver(batch, pairs, self.wake_s)
 
     # A worker's: one thread looks for messages, others compute.
     def arrive(self, chunk):
@@ -316,7 +320,7 @@ class Simulation:
             pause_s = BUSY_PAUSE_S
         else:
             pause_s = min(IDLE_LONGEST_S, IDLE_SHORTEST_S + (self.now - worker.idle_since) / IDLE_GROWTH)
-        self.at(self.now + (pause_s + self.model.wake_s) / 2, self.look, worker)
+        self.at(self.now + (pause_s + self.wake_s) / 2, self.look, worker)
 
     def look(self, worker):
         for chunk in worker.inbox:
@@ -325,7 +329,7 @@ class Simulation:
         if worker.inbox:
             worker.inbox = []
             if worker.idle_threads == self.team.threads:
-                self.at(self.now + self.model.wake_s, self.begin, worker)
+                self.at(self.now + self.wake_s, self.begin, worker)
             else:
                 self.begin(worker)
 
@@ -340,7 +344,7 @@ class Simulation:
         chunk[2] -= pairs
         worker.idle_threads += 1
         if chunk[2] == 0:
-            self.at(self.now + self.model.wake_s / 2, self.answer, chunk)
+            self.at(self.now + self.wake_s / 2, self.answer, chunk)
             self.look(worker)
         self.begin(worker)
         worker.idle_since = self.now
@@ -349,7 +353,7 @@ class Simulation:
         self.arrived.append((self.now, chunk))
         if self.asleep and not self.turn_due:
             self.turn_due = True
-            self.at(self.now + (self.calc_pause() + self.model.wake_s) / 2, self.turn)
+            self.at(self.now + (self.calc_pause() + self.wake_s) / 2, self.turn)
 
     def calc_pause(self):
         if len(self.workers) > 16:
