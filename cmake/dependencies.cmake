@@ -53,9 +53,9 @@ if(ARMWRIGHT_WITH_MUJOCO AND NOT mujoco_found)
 endif()
 
 # Evaluations over the ranks of an mpirun. Asked for by pkg-config, since CMake's own module wants the language C for the plain C interface.
-pkg_check_modules(OPENMPI IMPORTED_TARGET ompi-c)
-option(ARMWRIGHT_WITH_MPI "Evaluations shared out by mpirun (OpenMPI)" ${OPENMPI_FOUND})
-if(ARMWRIGHT_WITH_MPI AND NOT OPENMPI_FOUND)
+pkg_check_modules(OMPI_C IMPORTED_TARGET ompi-c)
+option(ARMWRIGHT_WITH_MPI "Evaluations shared out by mpirun (OpenMPI)" ${OMPI_C_FOUND})
+if(ARMWRIGHT_WITH_MPI AND NOT OMPI_C_FOUND)
   message(FATAL_ERROR "ARMWRIGHT_WITH_MPI is ON, but there is no OpenMPI; install the Debian package libopenmpi-dev or leave the option OFF")
 endif()
 

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -163,9 +164,9 @@ int run_compare(const CompareOptions& options, Session& session) {
   ProgressBar bar(options.quiet, {});
   LockedObserver observer(bar);
   adopt_attempts(plan, path, observer);
-  Coordinator* const coordinator = team.lead(list_problems(plan), jobs, observer);
-  const CellsResult cells = run_cells(plan, path, jobs, session.stop, observer, coordinator);
-  team.dismiss();
+  auto coordinator = team.lead(list_problems(plan), jobs, observer);
+  const CellsResult cells = run_cells(plan, path, jobs, session.stop, observer, coordinator.get());
+  team.dismiss(std::move(coordinator));
   if (cells.stopped) {
     return end_stopped(session, bar);
   }

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -207,8 +208,10 @@ int run_optimize(const OptimizeOptions& options, Session& session) {
   ProgressBar bar(options.quiet,
                   get_scalar_quantity(request.plan.problem.problem->description().objectives));
   LockedObserver observer(bar);
-  request.executor = team.lead({&request.plan.problem}, request.jobs, observer);
+  auto coordinator = team.lead({&request.plan.problem}, request.jobs, observer);
+  request.executor = coordinator.get();
   const auto result = execute_run(request, session.stop, observer);
+  team.dismiss(std::move(coordinator));
 
   bar.clear();
   if (result && !result->failure.empty()) {

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+
 #include "cli/format.hpp"
 #include "cli/terminal.hpp"
 #include "study/executor/rank_identity.hpp"
@@ -11,6 +13,9 @@
 
 namespace armwright {
 namespace {
+
+// Of workers that are there, and must only say goodbye.
+constexpr double kPatience_s = 2;
 
 std::vector<const Problem*> get_simulated(const Team::Problems& problems) {
   std::vector<const Problem*> simulated;
@@ -25,21 +30,33 @@ std::vector<const Problem*> get_simulated(const Team::Problems& problems) {
 Team::Team(Session& session) : session_(session), place_(find_rank_place()) {
   if (place_) {
     links_ = open_mpi_links();
+    begun_ = std::chrono::steady_clock::now();
   }
 }
 
-void Team::dismiss() {
+Team::~Team() {
+  // Somebody may still be reading the configuration.
+  constexpr double kBeginning_s = 10;
+  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begun_;
+  end(std::max(kPatience_s, kBeginning_s - passed.count()));
+}
+
+void Team::dismiss(std::unique_ptr<Coordinator> coordinator) {
+  if (coordinator && !coordinator->expects_workers()) {
+    coordinator.reset();
+    end(kPatience_s);
+  }
+}
+
+void Team::end(double patience_s) {
   if (!links_) {
     return;
   }
-  constexpr double kPatience_s = 2;
-  constexpr double kBeginning_s = 10;  // of workers that are still reading their configuration
-  constexpr double kStopped_s = 0.3;   // mpirun kills one second after it has asked
+  constexpr double kStopped_s = 0.3;  // mpirun kills one second after it has asked
   const StopReason stopped = session_.stop.reason();
   const bool is_asked = stopped == StopReason::interrupted || stopped == StopReason::terminated;
-  const bool are_beginning = !coordinator_ || coordinator_->expects_workers();
-  coordinator_.reset();
-  if (end_workers(*links_, is_asked ? kStopped_s : are_beginning ? kBeginning_s : kPatience_s)) {
+  patience_s = is_asked ? kStopped_s : patience_s;
+  if (end_workers(*links_, patience_s)) {
     close_mpi();
     links_.reset();
     return;
@@ -68,13 +85,14 @@ void Team::serve(const std::function<Problems()>& load, unsigned threads) {
     if (worker.serve() == Worker::End::finalize) {
       close_mpi();
     }
+    ::_exit(exit_code::kDone);  // whatever its threads are still at, for ever perhaps
   } catch (const std::exception&) {
     ::_exit(exit_code::kInternal);  // rank 0 does its work and says that it is missing
   }
-  ::_exit(exit_code::kDone);
 }
 
-Coordinator* Team::lead(const Problems& problems, unsigned threads, RunObserver& observer) {
+std::unique_ptr<Coordinator> Team::lead(const Problems& problems, unsigned threads,
+                                        RunObserver& observer) {
   if (!place_) {
     return nullptr;
   }
@@ -83,11 +101,10 @@ Coordinator* Team::lead(const Problems& problems, unsigned threads, RunObserver&
         "note: started without mpirun's --enable-recovery: should a rank die, all end with it "
         "(nothing is lost; the same command goes on)");
   }
-  coordinator_ = std::make_unique<Coordinator>(
+  return std::make_unique<Coordinator>(
       *links_, get_simulated(problems), make_rank_identity(problems),
-      CoordinatorSettings{.threads = threads},
+      CoordinatorSettings{.threads = threads, .cpu = make_introduction(threads).cpu},
       [&observer](const std::string& message) { observer.on_message(message); });
-  return coordinator_.get();
 }
 
 std::string Team::describe() const {

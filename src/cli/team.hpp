@@ -3,8 +3,11 @@
 // this does anything.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "cli/session.hpp"
@@ -18,7 +21,7 @@ class Team {
  public:
   // On every rank, before anything that may fail: MPI begins on all ranks or on none.
   explicit Team(Session& session);
-  ~Team() { dismiss(); }
+  ~Team();  // on rank 0 the others are told to end, if they have not been yet
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;
 
@@ -29,17 +32,21 @@ class Team {
   [[noreturn]] void serve(const std::function<Problems()>& load, unsigned threads);
 
   // On rank 0, once: who simulates, with `threads` of its own. Null without a team.
-  Coordinator* lead(const Problems& problems, unsigned threads, RunObserver& observer);
+  std::unique_ptr<Coordinator> lead(const Problems& problems, unsigned threads,
+                                    RunObserver& observer);
   // On rank 0, when there is no more work: the others are told to end.
-  void dismiss();
+  void dismiss(std::unique_ptr<Coordinator> coordinator);
   // How many ranks there are, in words; empty without a team.
   std::string describe() const;
 
  private:
+  // With what patience for those that have yet to answer.
+  void end(double patience_s);
+
   Session& session_;
   std::optional<RankPlace> place_;
   std::unique_ptr<Links> links_;
-  std::unique_ptr<Coordinator> coordinator_;
+  std::chrono::steady_clock::time_point begun_;
 };
 
 }  // namespace armwright

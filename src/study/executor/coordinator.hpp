@@ -29,6 +29,7 @@ namespace armwright {
 
 struct CoordinatorSettings {
   std::size_t threads = 1;  // of this process, those that call run() included
+  std::string cpu = {};     // this machine's; empty: workers may have what they like
   // A chunk is late when it takes longer than this and several times what is expected of it.
   double patience_s = 1;
 };
@@ -53,7 +54,6 @@ class Coordinator final : public CaseExecutor {
   void forget(const Problem& problem);
   // Whether a worker has not been heard of at all yet.
   bool expects_workers() const;
-  const std::vector<const Problem*>& problems() const { return problems_; }
   // Threads of all ranks, if all have as many as this one.
   std::size_t estimate_threads() const { return links_.size() * settings_.threads; }
 

@@ -194,6 +194,14 @@ void Coordinator::welcome(std::size_t rank, WorkerIntroduction introduction) {
   }
   worker.state = State::ready;
   worker.free_at = worker.heard_at = Clock::now();
+  // The same code everywhere but in the C library, which chooses its own by the processor.
+  if (!settings_.cpu.empty() && worker.introduction.cpu != settings_.cpu) {
+    notices_.push_back(
+        fmt::format("note: {} has another processor ({}; here: {}). The last bits of results may "
+                    "then depend on who computes them; for the same bits every time use machines "
+                    "of one kind",
+                    name_worker(rank), sanitize(worker.introduction.cpu), settings_.cpu));
+  }
 }
 
 void Coordinator::take_outcomes(Lock& lock, std::size_t rank, PacketReader& packet) {

@@ -121,7 +121,7 @@ class Ranks {
     if (!coordinator_) {
       coordinator_ = std::make_unique<Coordinator>(
           links_, std::vector<const Problem*>{problems[0].get()}, kIdentity,
-          CoordinatorSettings{.threads = threads_, .patience_s = patience_s},
+          CoordinatorSettings{.threads = threads_, .cpu = "cpu", .patience_s = patience_s},
           [this](const std::string& message) {
             const std::lock_guard lock(mutex_);
             notices_.push_back(message);
@@ -311,6 +311,17 @@ TEST(Coordinator, DoesWithoutRanksThatWouldComputeSomethingElse) {
               Contains(AllOf(HasSubstr("rank 1 on host is of no use"), HasSubstr("cosine"))));
   EXPECT_THAT(team.notices(), Contains(AllOf(HasSubstr("rank 2"), HasSubstr("q1.toml"))));
   EXPECT_EQ(team.problems[1]->simulated() + team.problems[2]->simulated(), 0u);
+}
+
+TEST(Coordinator, SaysWhenARankHasAnotherProcessor) {
+  Ranks team(2);
+  WorkerIntroduction other = team.introduction();
+  other.cpu = "an older one";
+  team.start_worker(1, other);
+  team.coordinator();
+  EXPECT_TRUE(wait_until([&] { return !team.notices().empty(); }));
+  EXPECT_THAT(team.notices(),
+              ElementsAre(HasSubstr("another processor (an older one; here: cpu)")));
 }
 
 // The pair is tried here; if it fails here as well, it is a fault as without ranks.
