@@ -30,16 +30,10 @@ class CrowdLinks final : public Links {
  public:
   CrowdLinks(std::size_t ranks, std::size_t threads, double pair_s)
       : pair_s_(pair_s), threads_(threads), free_at_s_(ranks + 1, 0) {
-    PacketWriter ready;
-    ready.put(RankMessage::ready);
-    for (const char* text : {"crowd", ""}) {
-      ready.put(std::string_view(text));
-    }
-    ready.put(std::uint64_t{threads});
-    ready.put(std::string_view(kIdentity));
-    ready.put(std::string_view());
+    const std::string ready = make_rank_message(WorkerIntroduction{
+        .host = "crowd", .cpu = "", .threads = threads, .identity = kIdentity, .failure = ""});
     for (std::size_t rank = 1; rank <= ranks; ++rank) {
-      due_.push({.at_s = 0, .from = rank, .bytes = ready.bytes()});
+      due_.push({.at_s = 0, .from = rank, .bytes = ready});
     }
   }
 

@@ -243,6 +243,11 @@ int run_command(Session& session, int argc, char** argv) {
 
 }  // namespace
 
+std::string quote_own_command(const Session& session, std::vector<std::string> words) {
+  words.insert(words.begin(), session.command_line.front());
+  return sanitize(quote_command(words));
+}
+
 int get_stop_code(StopReason reason) {
   return reason == StopReason::interrupted ? exit_code::kInterrupted : exit_code::kStopped;
 }
@@ -259,6 +264,13 @@ const char* describe_stop(StopReason reason) {
       break;
   }
   return "stopped";
+}
+
+int end_stopped(const Session& session, std::span<const std::string> command) {
+  const StopReason reason = session.stop.reason();
+  write_message(fmt::format("{}; nothing is lost. To go on:\n{}", describe_stop(reason),
+                            quote_command(command)));
+  return get_stop_code(reason);
 }
 
 int run_app(int argc, char** argv) {

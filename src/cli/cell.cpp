@@ -17,7 +17,6 @@
 #include "cli/progress_bar.hpp"
 #include "cli/session.hpp"
 #include "cli/signals.hpp"
-#include "cli/study_end.hpp"
 #include "cli/terminal.hpp"
 #include "study/matrix/attempt.hpp"
 #include "study/matrix/cell_attempt.hpp"
@@ -94,7 +93,7 @@ class CellCommand {
     });
     for (const Cell& cell : cells) {
       if (session_.stop.requested()) {
-        return stopped();
+        return end_stopped(session_, session_.command_line);
       }
       if (is_done(cell)) {
         continue;
@@ -105,7 +104,7 @@ class CellCommand {
         return exit_code::kBusy;
       }
       if (attempt.end == CellAttempt::End::stopped) {
-        return stopped();
+        return end_stopped(session_, session_.command_line);
       }
     }
     tell(fmt::format("{} done, {} before; {} failed", format_count(done_, "cell"), done_before_,
@@ -156,11 +155,6 @@ class CellCommand {
     }
     write_message(fmt::format("{}: error: {}", make_cell_name(study_.plan, cell), error.what()));
     ++failed_;
-  }
-
-  int stopped() {
-    ProgressBar none(true, {});
-    return end_stopped(session_, none);
   }
 
   void tell(const std::string& message) const {

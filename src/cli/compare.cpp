@@ -168,7 +168,8 @@ int run_compare(const CompareOptions& options, Session& session) {
   const CellsResult cells = run_cells(plan, path, jobs, session.stop, observer, coordinator.get());
   team.dismiss(std::move(coordinator));
   if (cells.stopped) {
-    return end_stopped(session, bar);
+    bar.clear();
+    return end_stopped(session, session.command_line);
   }
   return end_study(plan, {.folder = path, .jobs = jobs, .json = options.json}, session, bar);
 }

@@ -101,24 +101,19 @@ CellScriptRequest make_script_request(const HandOver& request) {
   return script;
 }
 
-std::string quote_next(const Session& session, const char* command,
-                       const std::filesystem::path& folder) {
-  return sanitize(quote_command(
-      std::vector<std::string>{session.command_line.front(), command, folder.string()}));
-}
-
 int submit(const ExecutorOptions& options, const StudyPlan& plan, const HandOver& request,
            const Work& work, const std::string& script, const Session& session) {
   const Submission submission =
       submit_to_slurm(plan, work.chunks, make_slurm_request(options, request), script);
-  write_stdout(fmt::format(
-      "job {0}: {1} of cells\n"
-      "  squeue -j {0}\n"
-      "  {2}\n"
-      "When all has ended:\n"
-      "  {3}\n",
-      submission.job, format_count(work.chunks.size(), "chunk"),
-      quote_next(session, "status", request.folder), quote_next(session, "merge", request.folder)));
+  write_stdout(
+      fmt::format("job {0}: {1} of cells\n"
+                  "  squeue -j {0}\n"
+                  "  {2}\n"
+                  "When all has ended:\n"
+                  "  {3}\n",
+                  submission.job, format_count(work.chunks.size(), "chunk"),
+                  quote_own_command(session, {"status", request.folder.string()}),
+                  quote_own_command(session, {"merge", request.folder.string()})));
   return exit_code::kDone;
 }
 
@@ -195,7 +190,7 @@ int hand_over(const ExecutorOptions& options, const StudyPlan& plan, const HandO
   const Work work = plan_work(options, plan, request);
   if (work.chunks.empty()) {
     write_message("all cells are done. Tables and verdict:\n" +
-                  quote_next(session, "merge", request.folder));
+                  quote_own_command(session, {"merge", request.folder.string()}));
     return exit_code::kDone;
   }
   const std::string script = make_cell_script(plan, work.chunks, make_script_request(request));

@@ -81,7 +81,7 @@ int run_merge(const MergeOptions& options, Session& session) {
     write_message(format_count(copied, "cell") + " copied");
   }
   if (session.stop.requested()) {
-    return end_stopped(session, bar);
+    return end_stopped(session, session.command_line);
   }
   tell_missing(study, session.command_line.front());
   remove_spent_attempts(study.plan, study.folder);

@@ -218,10 +218,7 @@ int run_optimize(const OptimizeOptions& options, Session& session) {
     write_message(describe_way_out(options, request));
   }
   if (!result) {
-    write_message(fmt::format("{}; nothing is lost. To go on:\n{}",
-                              describe_stop(session.stop.reason()),
-                              quote_command(request.command_line)));
-    return get_stop_code(session.stop.reason());
+    return end_stopped(session, request.command_line);
   }
   if (options.json) {
     write_stdout(to_json(*result));

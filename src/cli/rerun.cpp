@@ -146,10 +146,7 @@ int run_rerun(const RerunOptions& options, Session& session) {
   const auto outcome = run_cell(plan, cell, where, session.stop, bar);
   bar.clear();
   if (!outcome) {
-    write_message(fmt::format("{}; nothing is lost. To go on:\n{}",
-                              describe_stop(session.stop.reason()),
-                              quote_command(session.command_line)));
-    return get_stop_code(session.stop.reason());
+    return end_stopped(session, session.command_line);
   }
   const auto recorded = std::filesystem::path(options.study) / make_cell_path(plan, cell);
   const CellComparison comparison = compare_cells(recorded, folder);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -59,9 +60,15 @@ void add_check_plugin(CLI::App& app, Session& session);
 void add_new_plugin(CLI::App& app, Session& session);
 void add_doctor(CLI::App& app, Session& session);
 
+// A command to try next, with the program named as the user named it.
+std::string quote_own_command(const Session& session, std::vector<std::string> words);
+
 // The exit code of a run or evaluation that was stopped.
 int get_stop_code(StopReason reason);
 // "interrupted", "time limit reached", ...
 const char* describe_stop(StopReason reason);
+// Of a command that was stopped and can be gone on with: says so, with the words that do. The exit
+// code.
+int end_stopped(const Session& session, std::span<const std::string> command);
 
 }  // namespace armwright

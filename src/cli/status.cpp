@@ -82,23 +82,19 @@ std::string describe_notable(const StudyPlan& plan, const StudyStatus& status, C
   return text.empty() ? "" : "\n" + style.bold(to_string(state)) + "\n" + text;
 }
 
-std::string quote_for(const Session& session, std::vector<std::string> words) {
-  words.insert(words.begin(), session.command_line.front());
-  return sanitize(quote_command(words));
-}
-
 std::string describe_next(const RecordedStudy& study, const StudyStatus& status,
                           const Session& session) {
   const std::string folder = study.folder.string();
   const std::size_t ended = status.count(CellState::done) + status.count(CellState::failed);
   if (ended == list_cells(study.plan).size()) {
     return "\nAll cells have ended. Tables and verdict:\n  " +
-           quote_for(session, {"merge", folder}) + "\n";
+           quote_own_command(session, {"merge", folder}) + "\n";
   }
   const std::string plan = (study.folder / "study.toml").string();
   return "\nTo run what is left here, or on a cluster (when nothing is running any more):\n  " +
-         quote_for(session, {"compare", plan, "--out", folder}) + "\n  " +
-         quote_for(session, {"compare", plan, "--out", folder, "--executor", "slurm"}) + "\n";
+         quote_own_command(session, {"compare", plan, "--out", folder}) + "\n  " +
+         quote_own_command(session, {"compare", plan, "--out", folder, "--executor", "slurm"}) +
+         "\n";
 }
 
 std::string to_text(const RecordedStudy& study, const StudyStatus& status, const Session& session) {

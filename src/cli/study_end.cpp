@@ -16,7 +16,8 @@ int end_study(const StudyPlan& plan, const StudyEndRequest& request, Session& se
               ProgressBar& bar) {
   StudyResult result = analyze_study(plan, request.folder);
   if (!add_final_checks(plan, request.folder, request.jobs, session.stop, bar, result)) {
-    return end_stopped(session, bar);
+    bar.clear();
+    return end_stopped(session, session.command_line);
   }
   bar.clear();
   write_study_tables(plan, result, request.folder);
@@ -29,14 +30,6 @@ int end_study(const StudyPlan& plan, const StudyEndRequest& request, Session& se
   const bool failed = std::ranges::any_of(
       result.cells, [](const CellOutcome& cell) { return !cell.failure.empty(); });
   return failed || !result.missing.empty() ? exit_code::kFailed : exit_code::kDone;
-}
-
-int end_stopped(Session& session, ProgressBar& bar) {
-  bar.clear();
-  write_message(fmt::format("{}; nothing is lost. To go on:\n{}",
-                            describe_stop(session.stop.reason()),
-                            quote_command(session.command_line)));
-  return get_stop_code(session.stop.reason());
 }
 
 }  // namespace armwright

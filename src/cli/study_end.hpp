@@ -1,5 +1,4 @@
-// How every command ends that has a study's cells: statistics, tables and verdict, or a word on how
-// to go on.
+// How every command ends that has all of a study's cells: statistics, tables and verdict.
 #pragma once
 
 #include <filesystem>
@@ -19,8 +18,5 @@ struct StudyEndRequest {
 // Of what cells there are; the folder's lock is the caller's. The exit code.
 int end_study(const StudyPlan& plan, const StudyEndRequest& request, Session& session,
               ProgressBar& bar);
-
-// Of a command that was stopped and can be gone on with. The exit code.
-int end_stopped(Session& session, ProgressBar& bar);
 
 }  // namespace armwright

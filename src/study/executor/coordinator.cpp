@@ -62,7 +62,7 @@ void Coordinator::run(const CaseBatch& cases, StopSignal& stop) {
     if (stop.requested()) {
       batch->closed = true;
     }
-    if (batch->active == 0 && (batch->closed || batch->left == 0)) {
+    if (batch->is_over()) {
       break;
     }
     if (busy_until_.size() < settings_.threads) {
@@ -191,8 +191,7 @@ void Coordinator::work_on(Lock& lock, const PiecePointer& piece) {
   const std::chrono::duration<double> taken = Clock::now() - start;
   lock.lock();
   if (failure) {
-    batch.failure = batch.failure ? batch.failure : failure;
-    batch.closed = true;
+    batch.fail(failure);
   } else {
     batch.cost->learn(taken.count(), piece->count);
     deliver(lock, piece, std::move(outcomes));
@@ -200,7 +199,7 @@ void Coordinator::work_on(Lock& lock, const PiecePointer& piece) {
   busy_until_.erase(until);
   --batch.active;
   // Whoever waits for this batch's end, or, with another batch, for a thread to be free.
-  if (batches_.size() > 1 || (batch.active == 0 && (batch.closed || batch.left == 0))) {
+  if (batches_.size() > 1 || batch.is_over()) {
     changed_.notify_all();
   }
 }
@@ -223,12 +222,11 @@ void Coordinator::deliver(Lock& lock, const PiecePointer& piece,
   }
   lock.lock();
   if (failure) {
-    batch.failure = batch.failure ? batch.failure : failure;
-    batch.closed = true;
+    batch.fail(failure);
   }
   batch.left -= piece->count;
   --batch.active;
-  if (batch.active == 0 && (batch.closed || batch.left == 0)) {
+  if (batch.is_over()) {
     changed_.notify_all();
   }
 }

@@ -82,6 +82,12 @@ class Coordinator final : public CaseExecutor {
     std::size_t active = 0;          // threads that work on it or hand outcomes over
     bool closed = false;             // nothing more is taken or handed over
     std::exception_ptr failure;
+
+    bool is_over() const { return active == 0 && (closed || left == 0); }
+    void fail(const std::exception_ptr& reason) {
+      failure = failure ? failure : reason;
+      closed = true;
+    }
   };
   struct Sent {
     PiecePointer piece;

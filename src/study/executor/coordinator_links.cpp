@@ -158,16 +158,9 @@ void Coordinator::take_message(Lock& lock, const Links::Message& message) {
     notices_.push_back(fmt::format("{} answers again", name_worker(message.from)));
   }
   switch (packet.get<RankMessage>()) {
-    case RankMessage::ready: {
-      WorkerIntroduction introduction;
-      introduction.host = packet.get_text();
-      introduction.cpu = packet.get_text();
-      introduction.threads = std::max<std::uint64_t>(1, packet.get<std::uint64_t>());
-      introduction.identity = packet.get_text();
-      introduction.failure = packet.get_text();
-      welcome(message.from, std::move(introduction));
+    case RankMessage::ready:
+      welcome(message.from, get_introduction(packet));
       return;
-    }
     case RankMessage::outcomes:
       take_outcomes(lock, message.from, packet);
       return;

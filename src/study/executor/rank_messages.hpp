@@ -2,8 +2,10 @@
 // kind.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "optimizers/packet.hpp"
 
@@ -33,6 +35,27 @@ struct WorkerIntroduction {
   std::string identity;
   std::string failure;  // why it cannot work at all; empty if it can
 };
+
+inline std::string make_rank_message(const WorkerIntroduction& introduction) {
+  PacketWriter packet;
+  packet.put(RankMessage::ready);
+  packet.put(std::string_view(introduction.host));
+  packet.put(std::string_view(introduction.cpu));
+  packet.put(introduction.threads);
+  packet.put(std::string_view(introduction.identity));
+  packet.put(std::string_view(introduction.failure));
+  return packet.bytes();
+}
+// Behind its kind.
+inline WorkerIntroduction get_introduction(PacketReader& packet) {
+  WorkerIntroduction introduction;
+  introduction.host = packet.get_text();
+  introduction.cpu = packet.get_text();
+  introduction.threads = std::max<std::uint64_t>(1, packet.get<std::uint64_t>());
+  introduction.identity = packet.get_text();
+  introduction.failure = packet.get_text();
+  return introduction;
+}
 
 inline std::string make_rank_message(RankMessage kind) {
   PacketWriter packet;

@@ -42,7 +42,7 @@ Worker::Worker(Links& links, std::vector<const Problem*> problems, WorkerIntrodu
     }
     introduction.threads = threads_.size();
   }
-  introduce(introduction);
+  links_.send(0, make_rank_message(introduction));
 }
 
 Worker::~Worker() {
@@ -54,17 +54,6 @@ Worker::~Worker() {
   for (std::thread& thread : threads_) {
     thread.join();
   }
-}
-
-void Worker::introduce(const WorkerIntroduction& introduction) {
-  PacketWriter packet;
-  packet.put(RankMessage::ready);
-  packet.put(std::string_view(introduction.host));
-  packet.put(std::string_view(introduction.cpu));
-  packet.put(introduction.threads);
-  packet.put(std::string_view(introduction.identity));
-  packet.put(std::string_view(introduction.failure));
-  links_.send(0, packet.bytes());
 }
 
 Worker::End Worker::serve() {

@@ -46,7 +46,6 @@ class Worker {
     std::string failure;
   };
 
-  void introduce(const WorkerIntroduction& introduction);
   bool take_message(const std::string& message, End& end);  // whether it was the last
   void take_chunk(PacketReader& packet);
   void send_results();

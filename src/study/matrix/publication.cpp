@@ -1,30 +1,20 @@
 #include "study/matrix/publication.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <stdio.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <string>
 
 #include "base/error.hpp"
 #include "base/file.hpp"
-#include "base/file_descriptor.hpp"
 #include "base/text.hpp"
 #include "study/compare/cell.hpp"
+#include "study/journal_file.hpp"
 #include "study/run_lock.hpp"
 
 namespace armwright {
 namespace {
-
-void sync_parent(const std::filesystem::path& target) {
-  const FileDescriptor folder(
-      ::open(target.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (folder.is_open()) {
-    ::fsync(folder.get());  // some file systems cannot, and the rename itself has succeeded
-  }
-}
 
 void move_aside(const std::filesystem::path& target, const std::filesystem::path& aside) {
   if (const std::string writer = find_writer(target); !writer.empty()) {
@@ -66,7 +56,7 @@ Publication publish_cell(const StudyPlan& plan, const Cell& cell,
       return Publication::superfluous;
     }
     if (::rename(run.c_str(), target.c_str()) == 0) {
-      sync_parent(target);
+      sync_folder_of(target);
       return Publication::published;
     }
     const int error = errno;

@@ -28,7 +28,9 @@ class MatrixTest : public StudyTest {
     const StudyFolder made(study_, plan_);
   }
 
-  Cell cell(const std::string& name) const { return find_cell_by(name); }
+  Cell cell(const std::string& name) const {
+    return select_cells(plan_, std::vector<std::string>{name}).front();
+  }
   CellAttempt attempt(const Cell& one, StopSignal& stop) {
     return attempt_cell(plan_, one, {.study = study_, .command_line = {}}, stop, observer_);
   }
@@ -39,7 +41,7 @@ class MatrixTest : public StudyTest {
   // A finished cell in any folder.
   void run_in(const Cell& one, const std::filesystem::path& folder) {
     StopSignal stop;
-    run_cell(plan_, one, CellRequest{.folder = folder, .command_line = {}}, stop, observer_);
+    run_cell(plan_, one, CellRequest{.folder = folder}, stop, observer_);
   }
   std::filesystem::path attempts(const Cell& one) const {
     return make_attempts_path(plan_, one, study_);
@@ -48,11 +50,6 @@ class MatrixTest : public StudyTest {
 
   const std::filesystem::path study_ = temporary_ / "study";
   StudyPlan plan_;
-
- private:
-  Cell find_cell_by(const std::string& name) const {
-    return select_cells(plan_, std::vector<std::string>{name}).front();
-  }
 };
 
 }  // namespace armwright
