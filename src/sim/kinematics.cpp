@@ -157,6 +157,15 @@ ElbowUpKinematics::ElbowUpKinematics(const RobotModel& model, bool ik_bug) {
   }
 }
 
+std::optional<ElbowUpKinematics> ElbowUpKinematics::make_if_suited(const RobotModel& model,
+                                                                   bool ik_bug) {
+  try {
+    return ElbowUpKinematics(model, ik_bug);
+  } catch (const Error&) {  // says why, which nobody wants to know here
+    return std::nullopt;
+  }
+}
+
 bool ElbowUpKinematics::solve(const Eigen::Vector3d& target_m, std::span<double, 4> q) const {
   return targets::solve(arm_, target_m.data(), q.data());
 }

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -45,6 +46,9 @@ class ElbowUpKinematics {
   // Reads its dimensions from the model. Error{bad_data} names what the robot lacks where it is not
   // of this kind. `ik_bug` computes f and b from a shoulder moved sideways by kIkBugOffset_m.
   explicit ElbowUpKinematics(const RobotModel& model, bool ik_bug = false);
+
+  // Nothing where the robot is not of this kind.
+  static std::optional<ElbowUpKinematics> make_if_suited(const RobotModel& model, bool ik_bug);
 
   // The four joint angles for a tip at `target_m`; false (and q untouched) if it is out of reach.
   bool solve(const Eigen::Vector3d& target_m, std::span<double, 4> q) const;

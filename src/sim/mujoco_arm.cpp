@@ -175,6 +175,14 @@ struct MujocoArm::World {
     mj_fwdPosition(model.get(), data.get());
     mj_fwdVelocity(model.get(), data.get());
   }
+
+  // A point of the last link's frame in the world.
+  Eigen::Vector3d calc_place(const Eigen::Vector3d& in_last_link) const {
+    const std::size_t body = robot->joint_count();
+    using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+    return Eigen::Map<const Eigen::Vector3d>(data->xpos + 3 * body) +
+           Eigen::Map<const RowMajor>(data->xmat + 9 * body) * in_last_link;
+  }
 };
 
 MujocoArm::MujocoArm(const MujocoModel& model, std::span<const double> q) {
@@ -248,11 +256,11 @@ void MujocoArm::read_rates(std::span<double> qd) const {
 }
 
 Eigen::Vector3d MujocoArm::tip_position_m() const {
-  const World& w = *world_;
-  const std::size_t body = w.robot->joint_count();
-  using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-  return Eigen::Map<const Eigen::Vector3d>(w.data->xpos + 3 * body) +
-         Eigen::Map<const RowMajor>(w.data->xmat + 9 * body) * w.robot->tip_pose.translation();
+  return world_->calc_place(world_->robot->tip_pose.translation());
+}
+
+Eigen::Vector3d MujocoArm::tool_point_m(std::size_t point) const {
+  return world_->calc_place(world_->robot->tool_points_m[point]);
 }
 
 Eigen::Vector3d MujocoArm::com_position_m(std::size_t link) const {

@@ -56,6 +56,7 @@ class MujocoArm {
   void read_angles(std::span<double> q) const;  // in [-pi, pi], or m
   void read_rates(std::span<double> qd) const;
   Eigen::Vector3d tip_position_m() const;
+  Eigen::Vector3d tool_point_m(std::size_t point) const;  // of the model's
   Eigen::Vector3d com_position_m(std::size_t link) const;
   double calc_kinetic_energy_j() const;
   double calc_potential_energy_j() const;  // zero at z = 0

@@ -105,8 +105,19 @@ struct OdeArm::World {
   std::vector<dBodyID> bodies;
   std::vector<dJointID> joints;
   std::vector<double> start;  // joint positions
-  Eigen::Vector3d tip_in_body_m;
 
+  // A point of the last link's frame in the world.
+  Eigen::Vector3d calc_place(const Eigen::Vector3d& in_last_link) const {
+    const Eigen::Vector3d in_body = in_last_link - model->links.back().inertial.com_m;
+    const dReal* p = dBodyGetPosition(bodies.back());
+    const dReal* r = dBodyGetRotation(bodies.back());
+    Eigen::Vector3d place;
+    for (int row = 0; row < 3; ++row) {
+      place[row] = p[row] + r[4 * row] * in_body.x() + r[4 * row + 1] * in_body.y() +
+                   r[4 * row + 2] * in_body.z();
+    }
+    return place;
+  }
   bool is_prismatic(std::size_t i) const { return model->joints[i].kind == JointKind::prismatic; }
 
   // How fast the slider's child moves along the axis, seen from the turning parent:
@@ -186,7 +197,6 @@ OdeArm::OdeArm(const RobotModel& model, std::span<const double> q, const Physics
                                   poses[i].translation(), rotation * model.joints[i].axis));
     w.bodies.push_back(body);
   }
-  w.tip_in_body_m = model.tip_pose.translation() - model.links.back().inertial.com_m;
 }
 
 OdeArm::~OdeArm() = default;
@@ -231,16 +241,11 @@ void OdeArm::read_rates(std::span<double> qd) const {
 }
 
 Eigen::Vector3d OdeArm::tip_position_m() const {
-  const dBodyID body = world_->bodies.back();
-  const dReal* p = dBodyGetPosition(body);
-  const dReal* r = dBodyGetRotation(body);
-  const Eigen::Vector3d& tip = world_->tip_in_body_m;
-  Eigen::Vector3d world;
-  for (int row = 0; row < 3; ++row) {
-    world[row] =
-        p[row] + r[4 * row] * tip.x() + r[4 * row + 1] * tip.y() + r[4 * row + 2] * tip.z();
-  }
-  return world;
+  return world_->calc_place(world_->model->tip_pose.translation());
+}
+
+Eigen::Vector3d OdeArm::tool_point_m(std::size_t point) const {
+  return world_->calc_place(world_->model->tool_points_m[point]);
 }
 
 Eigen::Vector3d OdeArm::com_position_m(std::size_t link) const {

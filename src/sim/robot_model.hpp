@@ -69,6 +69,9 @@ struct RobotModel {
   std::vector<Link> links;    // links[i] is moved by joints[i]
   Eigen::Isometry3d tip_pose =
       Eigen::Isometry3d::Identity();  // tool centre point in the last link's frame
+  // Points of the tool, in the last link's frame, whose distance from their targets is measured;
+  // none: the tool centre point's. At most four (sim/tool_task.hpp makes them).
+  std::vector<Eigen::Vector3d> tool_points_m;
 
   std::size_t joint_count() const { return joints.size(); }
 };

@@ -34,6 +34,10 @@ void check_sphere(const WorkspaceSphere& sphere) {
   if (!std::isfinite(c.x()) || !std::isfinite(c.y()) || !std::isfinite(c.z())) {
     refuse(fmt::format("the centre is ({}, {}, {}) m; it must be finite", c.x(), c.y(), c.z()));
   }
+  if (sphere.normal && !(std::abs(sphere.normal->norm() - 1) < 1e-9)) {
+    refuse(fmt::format("the normal has the length {}; it must be a unit vector",
+                       sphere.normal->norm()));
+  }
   if (!(sphere.radius_m > 0) || !std::isfinite(sphere.radius_m)) {
     refuse(fmt::format("the radius is {} m; it must be finite and > 0", sphere.radius_m));
   }
@@ -66,6 +70,25 @@ Eigen::Vector3d draw_direction(RandomStream& random) {
   }
 }
 
+// A uniformly random direction in the plane across `normal`, likewise: rejection in the disc, and
+// the square root alone.
+Eigen::Vector3d draw_direction(RandomStream& random, const Eigen::Vector3d& normal) {
+  const Eigen::Vector3d first = normal.unitOrthogonal();
+  const Eigen::Vector3d second = normal.cross(first);
+  while (true) {
+    const double u = random.uniform(-1, 1);
+    const double v = random.uniform(-1, 1);
+    const double square = u * u + v * v;
+    if (square < 1 && square > 0) {
+      return (u * first + v * second) / std::sqrt(square);
+    }
+  }
+}
+
+Eigen::Vector3d draw_direction(RandomStream& random, const WorkspaceSphere& sphere) {
+  return sphere.normal ? draw_direction(random, *sphere.normal) : draw_direction(random);
+}
+
 bool lies_inside(const Eigen::Vector3d& point_m, const WorkspaceSphere& sphere) {
   const double x = point_m.x() - sphere.centre_m.x();
   const double y = point_m.y() - sphere.centre_m.y();
@@ -86,7 +109,7 @@ TestCase make_case(const WorkspaceSphere& sphere, const GetStream& get_stream) {
   auto& points_m = made.points_m;
   points_m.reserve(static_cast<std::size_t>(sphere.points) + 1);
   points_m.push_back(sphere.centre_m);
-  const Eigen::Vector3d first_m = sphere.radius_m * draw_direction(get_stream(1));
+  const Eigen::Vector3d first_m = sphere.radius_m * draw_direction(get_stream(1), sphere);
   points_m.push_back(sphere.centre_m + first_m);
   points_m.push_back(sphere.centre_m - first_m);
   for (int k = 3; k <= sphere.points; ++k) {
@@ -94,7 +117,7 @@ TestCase make_case(const WorkspaceSphere& sphere, const GetStream& get_stream) {
     RandomStream& random = get_stream(k);
     Eigen::Vector3d next_m;
     do {
-      next_m = points_m.back() + move_m * draw_direction(random);
+      next_m = points_m.back() + move_m * draw_direction(random, sphere);
     } while (!lies_inside(next_m, sphere));
     points_m.push_back(next_m);
   }
@@ -156,13 +179,23 @@ TestSet TestSet::make_from_cases(std::vector<TestCase> cases) {
   return set;
 }
 
+TestSet TestSet::make_repeated(std::string name, TestCase the_case) {
+  TestSet set(std::move(name), WorkspaceSphere{});
+  set.cases_ = std::make_shared<const std::vector<TestCase>>(1, std::move(the_case));
+  set.repeated_ = true;
+  return set;
+}
+
 std::optional<std::uint64_t> TestSet::size() const {
-  return cases_ ? std::optional<std::uint64_t>(cases_->size()) : std::nullopt;
+  return cases_ && !repeated_ ? std::optional<std::uint64_t>(cases_->size()) : std::nullopt;
 }
 
 TestCase TestSet::make_case(std::uint64_t number) const {
   if (!cases_) {
     return make_test_case(name_, number, sphere_);
+  }
+  if (repeated_) {
+    return cases_->front();
   }
   if (number >= cases_->size()) {
     throw Error(ErrorKind::usage,
@@ -207,6 +240,14 @@ std::string calc_content_hash(std::span<const TestCase> cases) {
       for (const double coordinate_m : point_m) {
         append_little_endian(bytes, std::bit_cast<std::uint64_t>(coordinate_m));
       }
+    }
+    for (const Eigen::Quaterniond& turn : test_case.turns) {
+      for (const double coefficient : turn.coeffs()) {
+        append_little_endian(bytes, std::bit_cast<std::uint64_t>(coefficient));
+      }
+    }
+    if (test_case.continuous) {
+      bytes.push_back('c');
     }
   }
   return calc_sha256_hex(bytes);

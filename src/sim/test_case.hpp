@@ -8,7 +8,7 @@
 // (s_min / 2r)^((k-2)/(n-2)).
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -22,10 +22,16 @@ namespace armwright {
 
 struct TestCase {
   std::vector<Eigen::Vector3d> points_m;  // the first is the start, at rest; at least two
+  // How the tool is turned at each point, its frame in the world; none: as the task says.
+  std::vector<Eigen::Quaterniond> turns;
+  // The points are not stopped at: the target is at point k after k control periods.
+  bool continuous = false;
 };
 
+// With a normal it is the disc across it: for arms that move in a plane.
 struct WorkspaceSphere {
   Eigen::Vector3d centre_m{1.4, 0.0, 0.9};
+  std::optional<Eigen::Vector3d> normal;  // unit vector
   double radius_m = 0.8;
   double shortest_move_m = 0.05;  // s_min
   int points = 25;                // n, the start not counted
@@ -43,6 +49,8 @@ class TestSet {
   // JSON {"cases": [[[x,y,z], ...], ...]} in metres or CSV with the header case,point,x_m,y_m,z_m.
   // The name is "file:" and the content hash. Error{bad_data} names file, case and point.
   static TestSet load(const std::filesystem::path& file);
+  // Endless, and every case is the same.
+  static TestSet make_repeated(std::string name, TestCase the_case);
   static TestSet make_from_cases(std::vector<TestCase> cases);
 
   const std::string& name() const { return name_; }
@@ -54,6 +62,7 @@ class TestSet {
   std::string name_;
   WorkspaceSphere sphere_;
   std::shared_ptr<const std::vector<TestCase>> cases_;  // null: generated
+  bool repeated_ = false;
 };
 
 std::string to_json(std::span<const TestCase> cases);

@@ -21,10 +21,12 @@
 
 #include "sim/controller.hpp"
 #include "sim/kinematics.hpp"
+#include "sim/numeric_kinematics.hpp"
 #include "sim/plant_variation.hpp"
 #include "sim/reference_signal.hpp"
 #include "sim/robot_model.hpp"
 #include "sim/test_case.hpp"
+#include "sim/tool_task.hpp"
 
 namespace armwright {
 
@@ -41,6 +43,17 @@ struct PhysicsSettings {
   double cfm = 0;  // ODE: constraint softness
 };
 
+// Which inverse kinematics: the closed form of a palletiser (kinematics.hpp), damped least squares
+// (numeric_kinematics.hpp), or the first where the robot suits it and any orientation will do.
+enum class KinematicsChoice { automatic, palletiser, numeric };
+const std::vector<std::string>& kinematics_names();  // in the order of the enum
+
+// What joint ranges, joint speeds and singularities mean for the target's path (path_check.hpp):
+// nothing, as in the thesis; joints keep to their ranges; or a case that violates any cannot be
+// simulated.
+enum class LimitPolicy { ignore, warn, enforce };
+const std::vector<std::string>& limit_policy_names();  // in the order of the enum
+
 struct TrackingTask {
   SignalShape signal = SignalShape::complex;
   double speed_m_per_s = 1.5;     // v, nominal average speed
@@ -51,6 +64,10 @@ struct TrackingTask {
   bool count_first_point = false;
   bool ik_bug = false;
   double load_kg = 0;
+  KinematicsChoice kinematics = KinematicsChoice::automatic;
+  LimitPolicy limits = LimitPolicy::ignore;
+  ToolTask tool;
+  std::vector<double> home;  // where numeric kinematics begin; empty: the middle of the ranges
   FeedForward feed_forward = FeedForward::none;  // what target tables hold beside the angles
   PhysicsSettings physics;
 };
@@ -80,6 +97,8 @@ struct Segment {
   int steps = 0;
   int window_start = 0;   // first step (within the segment) whose end lies in the measuring window
   double duration_s = 0;  // t_m
+  // Of a continuous path: a single step at whose end the target is at `to_m`.
+  bool is_sample = false;
 };
 
 // The targets of one test case under one task: the same for every design.
@@ -92,6 +111,9 @@ struct TargetTable {
       angles_rad;  // steps x joints, row-major: target at the end of each control period
   // As many, of the arm of the setup that made the table; empty if the task asks for none.
   std::vector<double> feed_forward_n_m;
+  // Where the robot's tool points are to be at the end of each segment, as many as it has; a row a
+  // segment.
+  std::vector<Eigen::Vector3d> tool_points_m;
   std::string unreachable;  // not empty: no simulation is possible, and why
 
   std::span<const double> angles(int step) const {
@@ -99,6 +121,10 @@ struct TargetTable {
   }
   std::span<const double> feed_forward(int step) const {
     return {feed_forward_n_m.data() + static_cast<std::size_t>(step) * joints, joints};
+  }
+  std::span<const Eigen::Vector3d> tool_points(std::size_t segment) const {
+    const std::size_t points = tool_points_m.size() / segments.size();
+    return std::span(tool_points_m).subspan(segment * points, points);
   }
   std::size_t size_bytes() const;
 };
@@ -113,13 +139,28 @@ class TrackingSetup {
   TargetTable make_targets(const TestCase& test_case) const;
   // Where the target is at the end of a step: for error series and trajectories.
   Eigen::Vector3d calc_target_position(const Segment& segment, int step_in_segment) const;
+  // How the robot's joints make its tool move, whichever kinematics the task has.
+  std::shared_ptr<const NumericKinematics> get_kinematics() const;
+  bool has_closed_form() const { return closed_form_.has_value(); }
 
  private:
   ReferenceSignal make_signal(double distance_m) const;
   targets::Move make_move(const Segment& segment) const;
+  void make_timeline(const TestCase& test_case, TargetTable& table) const;
+  void solve_closed_form(const TestCase& test_case, TargetTable& table) const;
+  void solve_numerically(const TestCase& test_case, TargetTable& table) const;
+  ToolPose make_pose(const TestCase& test_case, std::size_t point) const;
+  // Like calc_target_position(), the turn included.
+  ToolPose calc_target_pose(const TestCase& test_case, const TargetTable& table,
+                            std::size_t segment, int step) const;
+  // Of a segment's steps those before the target has arrived, and the one at whose end it has.
+  int count_distinct_steps(const Segment& segment) const;
+
   RobotModel robot_;
   TrackingTask task_;
-  ElbowUpKinematics kinematics_;
+  std::optional<ElbowUpKinematics> closed_form_;
+  std::shared_ptr<const NumericKinematics> numeric_;  // where there is no closed form
+  std::vector<Eigen::Vector3d> tool_points_m_;        // from the tip, along its frame
   std::shared_ptr<const articulated::ChainModel> chain_;
 };
 

@@ -1,6 +1,6 @@
 // One tracking simulation, written once for every engine that steps a single arm: the timeline, the
-// controllers and the measures. `Arm` needs step(effort, dt), read_angles(q), read_rates(qd) and
-// tip_position_m(), and throws DivergenceError when it cannot go on.
+// controllers and the measures. `Arm` needs step(effort, dt), read_angles(q), read_rates(qd),
+// tip_position_m() and tool_point_m(point), and throws DivergenceError when it cannot go on.
 #pragma once
 
 #include <algorithm>
@@ -27,6 +27,9 @@ class TrackingLoop {
   // A substep of a perturbed plant.
   template <class Arm>
   void step_perturbed(Arm& arm);
+  // At the end of a segment's move: of the tip, or the mean over the tool points.
+  template <class Arm>
+  double calc_squared_error(const Arm& arm, const Segment& segment) const;
   template <class Arm>
   void record(const Arm& arm, const Segment& segment, int step);
 
@@ -79,6 +82,20 @@ void TrackingLoop::step_perturbed(Arm& arm) {
 }
 
 template <class Arm>
+double TrackingLoop::calc_squared_error(const Arm& arm, const Segment& segment) const {
+  const auto targets_m =
+      job_.targets->tool_points(static_cast<std::size_t>(&segment - job_.targets->segments.data()));
+  if (targets_m.empty()) {
+    return (arm.tip_position_m() - segment.to_m).squaredNorm();
+  }
+  double sum = 0;
+  for (std::size_t i = 0; i < targets_m.size(); ++i) {
+    sum += (arm.tool_point_m(i) - targets_m[i]).squaredNorm();
+  }
+  return sum / static_cast<double>(targets_m.size());
+}
+
+template <class Arm>
 void TrackingLoop::record(const Arm& arm, const Segment& segment, int step) {
   const Eigen::Vector3d tip = arm.tip_position_m();
   const Eigen::Vector3d target = setup_.calc_target_position(segment, step);
@@ -108,8 +125,7 @@ TrackingResult TrackingLoop::run(Arm& arm) {
       for (int k = 0; k < segment.steps; ++k) {
         step(arm, segment.first_step + k);
         if (k >= segment.window_start) {
-          worst_squared =
-              std::max(worst_squared, (arm.tip_position_m() - segment.to_m).squaredNorm());
+          worst_squared = std::max(worst_squared, calc_squared_error(arm, segment));
         }
         if (recording) {
           record(arm, segment, k);

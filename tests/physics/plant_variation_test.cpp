@@ -118,6 +118,7 @@ struct RecordingArm {
   }
   void read_rates(std::span<double> qd) const { std::ranges::fill(qd, 0.5); }
   Eigen::Vector3d tip_position_m() const { return {1, 2, 3}; }
+  Eigen::Vector3d tool_point_m(std::size_t /*point*/) const { return tip_position_m(); }
 };
 
 class ScriptedPlant : public testing::Test {

@@ -141,6 +141,12 @@ Vector3d ArticulatedArm::tip_position_m() const {
   return chain_->chain.base_pose() * Vector3d(tip.x.v, tip.y.v, tip.z.v);
 }
 
+Vector3d ArticulatedArm::tool_point_m(std::size_t point) const {
+  const Vec3<Number> place =
+      chain_->make_dynamics().calc_tool_point(chain_->q.data(), static_cast<int>(point));
+  return chain_->chain.base_pose() * Vector3d(place.x.v, place.y.v, place.z.v);
+}
+
 Vector3d ArticulatedArm::com_position_m(std::size_t link) const {
   return chain_->calc_poses()[link] * chain_->model.links[link].inertial.com_m;
 }

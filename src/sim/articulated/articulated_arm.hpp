@@ -37,6 +37,7 @@ class ArticulatedArm {
   void read_angles(std::span<double> q) const;  // of revolute joints in [-pi, pi]
   void read_rates(std::span<double> qd) const;
   Eigen::Vector3d tip_position_m() const;
+  Eigen::Vector3d tool_point_m(std::size_t point) const;  // of the model's
   Eigen::Vector3d com_position_m(std::size_t link) const;
   // Sums over the bodies, independent of M.
   double calc_kinetic_energy_j() const;

@@ -7,6 +7,8 @@
 
 namespace armwright::articulated {
 
+inline constexpr int kMostToolPoints = 4;
+
 // What is constant of one joint and the link behind it; see chain_model.hpp for the meaning.
 enum ModelField : int {
   kAngle,
@@ -27,7 +29,15 @@ enum ModelField : int {
   kModelFields
 };
 // After those, once a chain.
-enum ModelSingle : int { kGravityX, kGravityZ, kTipX, kTipY, kTipZ, kModelSingles };
+enum ModelSingle : int {
+  kGravityX,
+  kGravityZ,
+  kTipX,
+  kTipY,
+  kTipZ,
+  kToolX,  // x, y and z of each tool point (RobotModel::tool_points_m), in the last link's frame
+  kModelSingles = kToolX + 3 * kMostToolPoints
+};
 
 // What a simulation carries of one joint from step to step.
 enum StateField : int {
@@ -49,7 +59,8 @@ enum StateSingle : int {
   kPointY,
   kPointZ,
   kCutoffSquared,
-  kStateSingles
+  kToolTargetX,  // where each tool point is to be then, likewise
+  kStateSingles = kToolTargetX + 3 * kMostToolPoints
 };
 
 // What a perturbed plant has (sim/plant_variation.hpp), for each joint and once.
@@ -117,6 +128,7 @@ struct SegmentCall {
   T* scratch = nullptr;  // calc_scratch_packs() packs, for chains of any length
   int steps = 0;
   int window_start = 0;
+  int tool_points = 0;  // that are measured; 0: the tip is
   int substeps = 1;
   T period_s = 0;
   bool first_step_of_case = false;

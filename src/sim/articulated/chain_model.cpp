@@ -80,11 +80,17 @@ ChainModel::ChainModel(const RobotModel& robot, double gravity_m_per_s2) {
   for (const Joint& joint : robot.joints) {
     last = last * joint.origin;
   }
-  const Vector3d tip = last * robot.tip_pose.translation() - links.back().origin;
   const Vector3d y = links.back().z.cross(links.back().x);
-  singles[kTipX] = tip.dot(links.back().x);
-  singles[kTipY] = snap(tip.dot(y));
-  singles[kTipZ] = tip.dot(links.back().z);
+  const auto set_point = [&](double* out, const Vector3d& in_last_link) {
+    const Vector3d point = last * in_last_link - links.back().origin;
+    out[0] = point.dot(links.back().x);
+    out[1] = snap(point.dot(y));
+    out[2] = point.dot(links.back().z);
+  };
+  set_point(singles + kTipX, robot.tip_pose.translation());
+  for (std::size_t k = 0; k < robot.tool_points_m.size(); ++k) {
+    set_point(singles + kToolX + 3 * k, robot.tool_points_m[k]);
+  }
 }
 
 void ChainModel::place_frames(const RobotModel& robot, std::vector<Link>& links,

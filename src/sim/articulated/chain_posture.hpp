@@ -63,7 +63,19 @@ class ChainPosture {
 
   // Where the tip is in the base's frame; after set_posture(q, true).
   ARMWRIGHT_INLINE Vec3<V> calc_tip(const V* q) const {
-    Vec3<V> p{single(kTipX), single(kTipY), single(kTipZ)};
+    return calc_place(q, {single(kTipX), single(kTipY), single(kTipZ)});
+  }
+  // Likewise a tool point.
+  ARMWRIGHT_INLINE Vec3<V> calc_tool_point(const V* q, int point) const {
+    const V* const p = model_ + kModelFields * joints() + kToolX + 3 * point;
+    return calc_place(q, {p[0], p[1], p[2]});
+  }
+
+ protected:
+  using List = PackList<V, Chain::kJoints>;
+
+  // A point p of the last link's frame in the base's.
+  ARMWRIGHT_INLINE Vec3<V> calc_place(const V* q, Vec3<V> p) const {
     chain_.for_down(
         chain_.end(), [&](auto i) __attribute__((always_inline)) {
           if (chain_.slides(i)) {
@@ -86,9 +98,6 @@ class ChainPosture {
         });
     return p;
   }
-
- protected:
-  using List = PackList<V, Chain::kJoints>;
 
   ARMWRIGHT_INLINE ChainPosture(const Chain& chain, const V* model, V*& scratch)
       : chain_(chain), model_(model) {

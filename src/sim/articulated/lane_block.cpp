@@ -26,7 +26,8 @@ LaneBlock<T>::LaneBlock(const TrackingSetup& setup, const Kernel<T>& kernel,
       jobs_(jobs),
       controller_(find_controller(jobs[chosen.front()].design->controller)),
       results_(results),
-      joints_(setup.robot().joint_count()) {
+      joints_(setup.robot().joint_count()),
+      tool_points_(static_cast<int>(setup.robot().tool_points_m.size())) {
   const int n = static_cast<int>(joints_);
   const std::size_t groups = (chosen.size() + lanes() - 1) / lanes();
   control_packs_ =
@@ -216,8 +217,15 @@ void LaneBlock<T>::run_segment(std::size_t group, std::size_t segment) {
     const Segment& one = jobs_[job].targets->segments[segment];
     const Eigen::Vector3d point = setup_of(job).chain().base_pose().inverse() * one.to_m;
     T* singles = state(first + lane) + kStateFields * joints_ * lanes();
-    for (int axis = 0; axis < 3; ++axis) {
-      singles[static_cast<std::size_t>(kPointX + axis) * lanes()] = static_cast<T>(point[axis]);
+    const auto set_point = [&](int field, const Eigen::Vector3d& at_m) {
+      for (int axis = 0; axis < 3; ++axis) {
+        singles[static_cast<std::size_t>(field + axis) * lanes()] = static_cast<T>(at_m[axis]);
+      }
+    };
+    set_point(kPointX, point);
+    for (int k = 0; k < tool_points_; ++k) {
+      set_point(kToolTargetX + 3 * k, setup_of(job).chain().base_pose().inverse() *
+                                          jobs_[job].targets->tool_points(segment)[k]);
     }
   }
   if (any == kFree) {
@@ -246,6 +254,7 @@ void LaneBlock<T>::run_segment(std::size_t group, std::size_t segment) {
   call.scratch = scratch_.data();
   call.steps = timeline.steps;
   call.window_start = timeline.window_start;
+  call.tool_points = tool_points_;
   call.substeps = setup_.task().physics.substeps;
   call.period_s = static_cast<T>(setup_.task().control_period_s);
   call.first_step_of_case = segment == 0;

@@ -68,6 +68,7 @@ class LaneBlock {
   const ControllerRow& controller_;
   std::vector<TrackingResult>& results_;
   std::size_t joints_;
+  int tool_points_;
   std::vector<std::size_t> slots_;  // the job in each lane, or kFree
   bool own_models_ = false;  // some job has an arm of its own: every pack of lanes has a model
   bool recording_ = false;

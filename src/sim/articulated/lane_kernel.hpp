@@ -44,9 +44,8 @@ class SegmentKernel {
 
   ARMWRIGHT_INLINE int joints() const { return chain_.joints(); }
   ARMWRIGHT_INLINE V* field(StateField field) const { return state_ + field * joints(); }
-  ARMWRIGHT_INLINE V& single(StateSingle field) const {
-    return state_[kStateFields * joints() + field];
-  }
+  ARMWRIGHT_INLINE V* state_singles() const { return state_ + kStateFields * joints(); }
+  ARMWRIGHT_INLINE V& single(StateSingle field) const { return state_singles()[field]; }
   ARMWRIGHT_INLINE void go() {
     V* const q = field(kQ);
     V* const rate = field(kRate);
@@ -133,10 +132,8 @@ class SegmentKernel {
   }
 
   ARMWRIGHT_INLINE bool measure(int step, const Vec3<V>& tip) {
-    const V x = tip.x - single(kPointX);
-    const V y = tip.y - single(kPointY);
-    const V z = tip.z - single(kPointZ);
-    const V squared = x * x + y * y + z * z;
+    const V squared = call_.tool_points == 0 ? calc_squared_distance(tip, state_singles() + kPointX)
+                                             : calc_tool_error();
     single(kWorstSquared) = max(single(kWorstSquared), squared);
     const std::uint32_t beyond =
         call_.alive & find_less(single(kCutoffSquared), single(kWorstSquared));
@@ -144,6 +141,23 @@ class SegmentKernel {
       return true;
     }
     return retire(call_, beyond, LaneEvent::cut_off, step) && refresh();
+  }
+
+  ARMWRIGHT_INLINE static V calc_squared_distance(const Vec3<V>& point, const V* target) {
+    const V x = point.x - target[0];
+    const V y = point.y - target[1];
+    const V z = point.z - target[2];
+    return x * x + y * y + z * z;
+  }
+
+  // The mean over the tool points.
+  ARMWRIGHT_INLINE V calc_tool_error() const {
+    V sum = V(0);
+    for (int point = 0; point < call_.tool_points; ++point) {
+      sum += calc_squared_distance(dynamics_.calc_tool_point(field(kQ), point),
+                                   state_singles() + kToolTargetX + 3 * point);
+    }
+    return sum * V(T{1} / static_cast<T>(call_.tool_points));
   }
 
   ARMWRIGHT_INLINE void record(int step, const Vec3<V>& tip) {

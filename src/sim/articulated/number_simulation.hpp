@@ -55,9 +55,16 @@ std::vector<Number> calc_squared_errors(const TrackingSetup& setup, const Tracki
 
   std::vector<Number> squares;
   for (const Segment& segment : job.targets->segments) {
-    const Eigen::Vector3d point = chain.base_pose().inverse() * segment.to_m;
-    for (int axis = 0; axis < 3; ++axis) {
-      singles[kPointX + axis] = V(point[axis]);
+    const auto set_point = [&](int field, const Eigen::Vector3d& at_m) {
+      const Eigen::Vector3d point = chain.base_pose().inverse() * at_m;
+      for (int axis = 0; axis < 3; ++axis) {
+        singles[field + axis] = V(point[axis]);
+      }
+    };
+    set_point(kPointX, segment.to_m);
+    const auto tool_points = job.targets->tool_points(squares.size());
+    for (std::size_t k = 0; k < tool_points.size(); ++k) {
+      set_point(kToolTargetX + 3 * static_cast<int>(k), tool_points[k]);
     }
     const double* const targets = job.targets->angles(segment.first_step).data();
     const double* const feed_forward = controller.feed_forward == FeedForward::none
@@ -75,6 +82,7 @@ std::vector<Number> calc_squared_errors(const TrackingSetup& setup, const Tracki
     call.scratch = scratch.data();
     call.steps = segment.steps;
     call.window_start = segment.window_start;
+    call.tool_points = static_cast<int>(tool_points.size());
     call.substeps = own.task().physics.substeps;
     call.period_s = V(own.task().control_period_s);
     call.first_step_of_case = &segment == &job.targets->segments.front();

@@ -1,0 +1,367 @@
+#include "sim/arm_proposal.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "base/error.hpp"
+#include "base/random.hpp"
+#include "base/text.hpp"
+#include "sim/articulated/articulated_arm.hpp"
+#include "sim/path_check.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr int kPostures = 400;
+constexpr std::size_t kHomes = 24;  // that a workspace is looked for about
+constexpr int kQuickCases = 3;
+constexpr int kCases = 8;
+// Of the arm's length.
+constexpr double kLargestRadius = 0.35;
+constexpr double kSmallestRadius = 0.01;
+constexpr double kRadiusStep = 0.8;
+constexpr double kKeepOff = 1.15;      // radii between the sphere's centre and the first joint
+constexpr double kStepOfRadius = 0.1;  // how far apart a move is looked at
+constexpr double kSafeDexterity = 3 * kSingularDexterity;
+// The thesis's shape of cases: moves from the diameter down to a sixteenth of the radius.
+constexpr double kShortestOfRadius = 1.0 / 16;
+
+constexpr double kMove_s = 1;
+constexpr double kSpeedShare = 0.7;
+constexpr double kEffortShare = 0.6;
+constexpr double kSlower = 0.8;
+constexpr int kSlowdowns = 20;
+
+constexpr double kBandwidth_rad_per_s = 10;
+constexpr double kDamping = 0.7;
+constexpr double kEffortReserve = 2;
+constexpr double kLeastAcceleration = 5;  // rad/s^2 or m/s^2
+constexpr int kStepsBetween = 20;         // at which the mass matrix is looked at
+
+[[noreturn]] void refuse(const RobotModel& robot, const std::string& what) {
+  throw Error(ErrorKind::bad_data, fmt::format("robot '{}': {}", sanitize(robot.name), what));
+}
+
+double calc_length_m(const RobotModel& robot) {
+  double length_m = robot.tip_pose.translation().norm();
+  for (std::size_t i = 1; i < robot.joint_count(); ++i) {
+    length_m += robot.joints[i].origin.translation().norm();
+  }
+  for (const Joint& joint : robot.joints) {
+    if (joint.kind == JointKind::prismatic && std::isfinite(joint.upper - joint.lower)) {
+      length_m += joint.upper - joint.lower;
+    }
+  }
+  return length_m;
+}
+
+// How far a posture is from singularities and from the ends of the joints' ranges, in [0, 1].
+double calc_ease(const NumericKinematics& kinematics, const RobotModel& robot,
+                 std::span<const double> q) {
+  double margin = 1;
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    if (kinematics.has_middle(i)) {
+      const double half = 0.5 * (robot.joints[i].upper - robot.joints[i].lower);
+      margin = std::min(margin, 1 - std::abs(q[i] - kinematics.get_middle(i)) / half);
+    }
+  }
+  // Ends of ranges hurt only those who come close.
+  return kinematics.calc_dexterity(q) * std::min(1.0, 3 * std::max(0.0, margin));
+}
+
+std::vector<std::vector<double>> choose_homes(const NumericKinematics& kinematics,
+                                              const RobotModel& robot) {
+  std::vector<std::pair<double, std::vector<double>>> postures;
+  postures.emplace_back(0, kinematics.home());
+  RandomStream random("proposal/home", 0);
+  for (int i = 0; i < kPostures; ++i) {
+    postures.emplace_back(0, kinematics.draw_posture(random));
+  }
+  for (auto& [ease, q] : postures) {
+    ease = calc_ease(kinematics, robot, q);
+  }
+  std::ranges::stable_sort(postures, std::greater<>{}, [](const auto& one) { return one.first; });
+  std::vector<std::vector<double>> homes;
+  for (std::size_t i = 0; i < std::min(kHomes, postures.size()); ++i) {
+    if (postures[i].first > 0) {
+      homes.push_back(postures[i].second);
+    }
+  }
+  return homes;
+}
+
+// The normal of the plane that the tip moves in; nothing if it moves in space.
+std::optional<Eigen::Vector3d> find_plane(const NumericKinematics& kinematics,
+                                          const RobotModel& robot, const ToolTask& tool,
+                                          double length_m) {
+  if (tool.orientation != ToolOrientation::free || kinematics.rank() >= 3) {
+    return std::nullopt;
+  }
+  if (kinematics.rank() < 2) {
+    refuse(robot,
+           "its tip moves along a single line; there must be at least two joints that move "
+           "it in different directions");
+  }
+  RandomStream random("proposal/plane", 0);
+  const std::vector<double> first = kinematics.draw_posture(random);
+  const Eigen::Vector3d place_m = kinematics.calc_pose(first).position_m;
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(
+      Eigen::MatrixXd(kinematics.calc_jacobian(first).topRows<3>()), Eigen::ComputeFullU);
+  Eigen::Vector3d normal = svd.matrixU().col(2);
+  // Of both normals the one that points up or, if it does neither, to the left or forwards.
+  const double sign = std::abs(normal.z()) > 1e-9   ? normal.z()
+                      : std::abs(normal.y()) > 1e-9 ? normal.y()
+                                                    : normal.x();
+  normal *= sign < 0 ? -1 : 1;
+  for (int i = 0; i < 20; ++i) {
+    const Eigen::Vector3d other_m =
+        kinematics.calc_pose(kinematics.draw_posture(random)).position_m;
+    if (std::abs(normal.dot(other_m - place_m)) > 1e-6 * length_m) {
+      refuse(robot,
+             "its tip moves on a curved surface, on which there are no straight moves; "
+             "there must be three joints that move it in three directions, or all must "
+             "move it in one plane (robot.tip can name another link)");
+    }
+  }
+  // Axes of a drawing come out as such.
+  for (double& part : normal) {
+    part = std::abs(part) < 1e-9 ? 0 : part;
+  }
+  return normal.normalized();
+}
+
+// Whether straight moves through the case's points can be followed, looked at coarsely.
+bool can_follow(const NumericKinematics& kinematics, const WorkspaceSphere& sphere,
+                const Eigen::Matrix3d& turn, std::vector<double> q, int cases) {
+  const std::size_t n = q.size();
+  if (!kinematics.find({sphere.centre_m, turn}, q)) {
+    return false;
+  }
+  const std::vector<double> start = q;
+  std::vector<double> wish(n);
+  for (int number = 0; number < cases; ++number) {
+    const TestCase its = make_test_case(kProposalSet, static_cast<std::uint64_t>(number), sphere);
+    q = start;
+    for (std::size_t k = 1; k < its.points_m.size(); ++k) {
+      const Eigen::Vector3d way_m = its.points_m[k] - its.points_m[k - 1];
+      const int steps =
+          static_cast<int>(std::ceil(way_m.norm() / (kStepOfRadius * sphere.radius_m)));
+      for (int step = 1; step <= steps; ++step) {
+        for (std::size_t i = 0; i < n; ++i) {
+          wish[i] = kinematics.has_middle(i) ? 0.02 * (kinematics.get_middle(i) - q[i]) : 0;
+        }
+        const Eigen::Vector3d at_m =
+            its.points_m[k - 1] + (static_cast<double>(step) / steps) * way_m;
+        if (!kinematics.follow({at_m, turn}, wish, q) ||
+            kinematics.calc_dexterity(q) < kSafeDexterity) {
+          return false;
+        }
+      }
+    }
+  }
+  return true;
+}
+
+void set_radius(WorkspaceSphere& sphere, double radius_m) {
+  sphere.radius_m = radius_m;
+  sphere.shortest_move_m = kShortestOfRadius * radius_m;
+}
+
+// The largest efforts that inverse dynamics asks for on the path, and the largest M_ii.
+struct Demand {
+  std::vector<double> efforts;
+  std::vector<double> inertia;
+};
+
+Demand calc_demand(const TrackingSetup& setup, const std::vector<TargetTable>& tables) {
+  const std::size_t n = setup.robot().joint_count();
+  Demand demand{std::vector<double>(n, 0), std::vector<double>(n, 0)};
+  ArticulatedArm arm(setup.robot(), tables.front().start_rad, setup.task().physics);
+  const std::vector<double> rest(n, 0);
+  for (const TargetTable& table : tables) {
+    for (int step = 0; step < table.steps; ++step) {
+      const auto efforts = table.feed_forward(step);
+      for (std::size_t i = 0; i < n; ++i) {
+        demand.efforts[i] = std::max(demand.efforts[i], std::abs(efforts[i]));
+      }
+      if (step % kStepsBetween == 0) {
+        arm.set_state(table.angles(step), rest);
+        const Eigen::MatrixXd mass = arm.calc_mass_matrix();
+        for (std::size_t i = 0; i < n; ++i) {
+          const auto at = static_cast<Eigen::Index>(i);
+          demand.inertia[i] = std::max(demand.inertia[i], mass(at, at));
+        }
+      }
+    }
+  }
+  return demand;
+}
+
+std::vector<TargetTable> make_tables(const RobotModel& robot, const TrackingSetup& setup,
+                                     const std::vector<TestCase>& cases) {
+  std::vector<TargetTable> tables;
+  for (const TestCase& its : cases) {
+    tables.push_back(setup.make_targets(its));
+    if (!tables.back().unreachable.empty()) {
+      refuse(robot, fmt::format("nothing can be proposed for a path that it cannot follow: {}",
+                                tables.back().unreachable));
+    }
+  }
+  return tables;
+}
+
+// The joint that is asked for most of what its limit allows, and how much of it.
+template <class GetShare>
+std::pair<std::size_t, double> find_busiest(std::size_t joints, const GetShare& get_share) {
+  std::pair<std::size_t, double> busiest{0, 0};
+  for (std::size_t i = 0; i < joints; ++i) {
+    const double share = get_share(i);
+    if (share > busiest.second) {
+      busiest = {i, share};
+    }
+  }
+  return busiest;
+}
+
+}  // namespace
+
+ToolOrientation propose_orientation(const RobotModel& robot, const ToolTask& tool) {
+  for (const ToolOrientation orientation : {ToolOrientation::pose, ToolOrientation::pointing}) {
+    ToolTask tried = tool;
+    tried.orientation = orientation;
+    try {
+      NumericKinematics(robot, tried, {}, true);
+      return orientation;
+    } catch (const Error&) {  // it cannot; the next asks for less
+    }
+  }
+  return ToolOrientation::free;
+}
+
+WorkspaceProposal propose_workspace(const RobotModel& robot, const ToolTask& tool,
+                                    WorkspaceSphere sphere) {
+  const NumericKinematics kinematics(robot, tool, {}, true);
+  const double length_m = calc_length_m(robot);
+  sphere.normal = find_plane(kinematics, robot, tool, length_m);
+  const Eigen::Vector3d first_m = robot.joints.front().origin.translation();
+  std::optional<WorkspaceProposal> best;
+  const double smallest_m = kSmallestRadius * length_m;
+  double least_m = smallest_m;
+  for (const std::vector<double>& home : choose_homes(kinematics, robot)) {
+    const ToolPose centre = kinematics.calc_pose(home);
+    sphere.centre_m = centre.position_m;
+    const double most_m =
+        std::min(kLargestRadius * length_m, (centre.position_m - first_m).norm() / kKeepOff);
+    const NumericKinematics from_home(robot, tool, home, true);
+    for (double radius_m = most_m; radius_m >= least_m; radius_m *= kRadiusStep) {
+      set_radius(sphere, radius_m);
+      if (can_follow(from_home, sphere, centre.turn, home, kQuickCases)) {
+        best = WorkspaceProposal{home, centre, sphere};
+        least_m = radius_m / kRadiusStep;
+        break;
+      }
+    }
+  }
+  while (best && best->sphere.radius_m >= smallest_m) {
+    const NumericKinematics from_home(robot, tool, best->home, true);
+    if (can_follow(from_home, best->sphere, best->centre.turn, best->home, kCases)) {
+      set_radius(best->sphere, kRadiusStep * best->sphere.radius_m);  // room for unseen cases
+      return *best;
+    }
+    set_radius(best->sphere, kRadiusStep * best->sphere.radius_m);
+  }
+  refuse(robot,
+         fmt::format("no place was found where its tool can move {:.2g} m along straight lines "
+                     "with task.orientation = \"{}\", within all joint ranges and off "
+                     "singularities; set another task.orientation, or workspace.centre_m, "
+                     "workspace.radius_m and task.home yourself",
+                     2 * smallest_m,
+                     tool_orientation_names()[static_cast<std::size_t>(tool.orientation)]));
+}
+
+std::vector<TestCase> make_proposal_cases(const WorkspaceSphere& sphere) {
+  std::vector<TestCase> cases;
+  for (std::uint64_t number = 0; number < kCases; ++number) {
+    cases.push_back(make_test_case(kProposalSet, number, sphere));
+  }
+  return cases;
+}
+
+double propose_speed(const RobotModel& robot, TrackingTask task, const WorkspaceSphere& sphere) {
+  task.limits = LimitPolicy::warn;
+  task.feed_forward = FeedForward::inverse_dynamics;
+  task.distance_limit_m = 2 * sphere.radius_m;
+  task.speed_m_per_s = 2 * sphere.radius_m / kMove_s;
+  const std::vector<TestCase> cases = make_proposal_cases(sphere);
+  const std::size_t n = robot.joint_count();
+  for (int round = 0;; ++round) {
+    const TrackingSetup setup(robot, task);
+    const std::vector<TargetTable> tables = make_tables(robot, setup, cases);
+    std::vector<double> speeds(n, 0);
+    for (const TargetTable& table : tables) {
+      std::span<const double> before = table.start_rad;
+      for (int step = 0; step < table.steps; ++step) {
+        for (std::size_t i = 0; i < n; ++i) {
+          speeds[i] = std::max(speeds[i],
+                               std::abs(table.angles(step)[i] - before[i]) / task.control_period_s);
+        }
+        before = table.angles(step);
+      }
+    }
+    const double fastest = find_busiest(n, [&](std::size_t i) {
+                             return speeds[i] / robot.joints[i].speed_limit;
+                           }).second;
+    if (fastest > kSpeedShare) {
+      task.speed_m_per_s *= std::max(kSpeedShare / fastest, 0.1) * 0.99;
+      if (round < kSlowdowns) {
+        continue;
+      }
+    }
+    const Demand demand = calc_demand(setup, tables);
+    const auto [joint, share] = find_busiest(
+        n, [&](std::size_t i) { return demand.efforts[i] / setup.robot().joints[i].effort_limit; });
+    if (share <= kEffortShare) {
+      return task.speed_m_per_s;
+    }
+    if (round >= kSlowdowns) {
+      if (share < 1) {
+        return task.speed_m_per_s;  // it can be held, but hardly more
+      }
+      refuse(robot,
+             fmt::format("joint {} ('{}') needs {:.4g} {} to hold the arm in its workspace, its "
+                         "effort limit is {:.4g}; correct the limit or the masses in the URDF, "
+                         "carry less, or set another workspace",
+                         joint + 1, sanitize(robot.joints[joint].name), demand.efforts[joint],
+                         robot.joints[joint].kind == JointKind::revolute ? "N m" : "N",
+                         robot.joints[joint].effort_limit));
+    }
+    task.speed_m_per_s *= kSlower;
+  }
+}
+
+ArmDesign propose_design(const RobotModel& robot, TrackingTask task,
+                         const std::vector<TestCase>& cases) {
+  task.feed_forward = FeedForward::inverse_dynamics;
+  const TrackingSetup setup(robot, task);
+  const Demand demand = calc_demand(setup, make_tables(robot, setup, cases));
+  ArmDesign design;
+  for (std::size_t i = 0; i < robot.joint_count(); ++i) {
+    const double w = kBandwidth_rad_per_s;
+    const double p = w * w * demand.inertia[i];
+    JointDrive drive;
+    drive.gains = {p, w * p / 4, 2 * kDamping * w * demand.inertia[i]};
+    const double limit = std::min(
+        std::max(kEffortReserve * demand.efforts[i], kLeastAcceleration * demand.inertia[i]),
+        robot.joints[i].effort_limit);
+    drive.limits = {-limit, limit};
+    design.joints.push_back(drive);
+  }
+  return design;
+}
+
+}  // namespace armwright
