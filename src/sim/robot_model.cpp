@@ -36,11 +36,12 @@ Inertial transform(const Inertial& body, const Eigen::Isometry3d& pose) {
   return {body.mass_kg, pose * body.com_m, rotation * body.inertia_kg_m2 * rotation.transpose()};
 }
 
-RobotModel load_urdf(const std::filesystem::path& file) {
-  return parse_urdf(read_file(file, kUrdfLimit_bytes), file.string());
+RobotModel load_urdf(const std::filesystem::path& file, const RobotOptions& options) {
+  return parse_urdf(read_file(file, kUrdfLimit_bytes), file.string(), options);
 }
 
-RobotModel parse_urdf(std::string_view xml, const std::string& name) {
+RobotModel parse_urdf(std::string_view xml, const std::string& name,
+                      const RobotOptions& /*options*/) {
   return build_model(check_urdf(xml, name), name);
 }
 
