@@ -105,9 +105,9 @@ class RobotOptionError final : public Error {
   std::string option_;
 };
 
-// Reads and validates a URDF. Its links are a tree; the chain runs from the link `options.base` down
-// to the link `options.tip`, and its joints move. All others are held at position 0, or at the end
-// of their range that is nearest to it, and their links lumped into those that carry them: what
+// Reads and validates a URDF. Its links are a tree; the chain runs from the link `options.base`
+// down to the link `options.tip`, and its joints move. All others are held at position 0, or at the
+// end of their range that is nearest to it, and their links lumped into those that carry them: what
 // hangs beside the chain or beyond the tip into a moving link, what is above or beside `base` into
 // the fixed base. The world's frame is the root link's, the tip's frame the tool centre point.
 //
@@ -117,8 +117,8 @@ class RobotOptionError final : public Error {
 // and what is left out (docs/robots.md).
 //
 // Throws RobotOptionError for a base or tip that is no link, a base that is not above the tip, no
-// moving joint between them, several leaves and no tip named, a density that is not finite and >= 0.
-// Throws Error{bad_data} "FILE:LINE: what is wrong, what is allowed" for: a file over 8 MiB or
+// moving joint between them, several leaves and no tip named, a density that is not finite and >=
+// 0. Throws Error{bad_data} "FILE:LINE: what is wrong, what is allowed" for: a file over 8 MiB or
 // nested deeper than 64; document types; anything that is not a finite number where one belongs;
 // misspelt elements and attributes; xacro; names used twice; links that are no tree; a moving link
 // without mass; mass <= 0; an inertia that is not symmetric positive definite or violates the
