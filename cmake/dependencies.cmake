@@ -59,14 +59,15 @@ if(ARMWRIGHT_WITH_MPI AND NOT OMPI_C_FOUND)
   message(FATAL_ERROR "ARMWRIGHT_WITH_MPI is ON, but there is no OpenMPI; install the Debian package libopenmpi-dev or leave the option OFF")
 endif()
 
-# Reads the meshes of robots for the page's replay. Without it they are shown in plain shapes, with a note.
+# Reads the meshes of robots, for the page's replay and for masses at a density. Without it they are shown in plain shapes, with a note,
+# and give no mass.
 find_library(ASSIMP_LIBRARY assimp)
 find_path(ASSIMP_INCLUDE_DIR assimp/Importer.hpp)
 set(assimp_found OFF)
 if(ASSIMP_LIBRARY AND ASSIMP_INCLUDE_DIR)
   set(assimp_found ON)
 endif()
-option(ARMWRIGHT_WITH_ASSIMP "Meshes of robots in reports" ${assimp_found})
+option(ARMWRIGHT_WITH_ASSIMP "Meshes of robots: masses, replays" ${assimp_found})
 if(ARMWRIGHT_WITH_ASSIMP AND NOT assimp_found)
   message(FATAL_ERROR "ARMWRIGHT_WITH_ASSIMP is ON, but there is no Assimp; install the Debian package libassimp-dev or leave the option OFF")
 endif()

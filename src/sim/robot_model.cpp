@@ -36,12 +36,21 @@ Inertial transform(const Inertial& body, const Eigen::Isometry3d& pose) {
   return {body.mass_kg, pose * body.com_m, rotation * body.inertia_kg_m2 * rotation.transpose()};
 }
 
-RobotModel load_urdf(const std::filesystem::path& file) {
-  return parse_urdf(read_file(file, kUrdfLimit_bytes), file.string());
+RobotModel load_urdf(const std::filesystem::path& file, const RobotOptions& options) {
+  if (file.extension() == ".xacro") {
+    throw Error(ErrorKind::bad_data, fmt::format("{}: {}", file.string(), kXacroAdvice));
+  }
+  return parse_urdf(read_file(file, kUrdfLimit_bytes), file.string(), options);
 }
 
-RobotModel parse_urdf(std::string_view xml, const std::string& name) {
-  return build_model(check_urdf(xml, name), name);
+RobotModel parse_urdf(std::string_view xml, const std::string& name, const RobotOptions& options) {
+  if (!std::isfinite(options.density_kg_per_m3) || options.density_kg_per_m3 < 0) {
+    throw RobotOptionError("density_kg_per_m3",
+                           fmt::format("{}: the density is {} kg/m3; it must be finite and > 0, or "
+                                       "0 for none",
+                                       name, options.density_kg_per_m3));
+  }
+  return build_model(check_urdf(xml, name, options), name, options);
 }
 
 RobotModel add_load(RobotModel model, double mass_kg) {

@@ -14,6 +14,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/error.hpp"
+
 namespace armwright {
 
 struct Inertial {
@@ -62,6 +64,12 @@ struct Joint {
   double effort_limit = 0;  // N m or N
 };
 
+// A mesh that a link's mass was taken from.
+struct MassFile {
+  std::string name;  // as written in the URDF
+  std::filesystem::path path;
+};
+
 struct RobotModel {
   std::string name;
   Link base;                  // fixed to the world, its frame is the world's
@@ -72,25 +80,58 @@ struct RobotModel {
   // Points of the tool, in the last link's frame, whose distance from their targets is measured;
   // none: the tool centre point's. At most four (sim/tool_task.hpp makes them).
   std::vector<Eigen::Vector3d> tool_points_m;
+  // What the file says and no simulation does, and what was done on the user's behalf: a whole line
+  // each, fit for a terminal.
+  std::vector<std::string> notes;
+  // The meshes that masses were taken from.
+  std::vector<MassFile> mass_files;
 
   std::size_t joint_count() const { return joints.size(); }
 };
 
-// Reads and validates a URDF. The chain runs from the root link to the only leaf. The leaf's frame
-// is the tool centre point: it is usually a link without mass on a fixed joint; if the leaf is
-// itself the last moving link, the tip is that link's origin. Of a URDF are used: inertial, visual,
-// joint origins, axes and limits; collision shapes and extensions are not read. Throws
-// Error{bad_data} "FILE:LINE: what is wrong, what is allowed" for: a file over 8 MiB or nested
-// deeper than 64; document types; anything that is not a finite number where one belongs; misspelt
-// elements and attributes; xacro; names used twice; a moving link without mass; mass <= 0; an
-// inertia that is not symmetric positive definite or violates the triangle inequality of principal
-// moments; a zero axis; a revolute or
-// prismatic joint without limits; lower > upper; speed or effort limits < 0; joint damping,
-// friction and mimic (they are not simulated); a branching chain; any joint type but revolute,
-// continuous, prismatic and fixed; no moving joint; all that urdfdom itself refuses. load_urdf():
-// Error{io} if the file cannot be read.
-RobotModel load_urdf(const std::filesystem::path& file);
-RobotModel parse_urdf(std::string_view xml, const std::string& name);
+// What of a URDF is simulated, and how.
+struct RobotOptions {
+  std::string base;              // the link that the chain begins at; empty: the root
+  std::string tip;               // the link that it ends at; empty: the only leaf below the base
+  double density_kg_per_m3 = 0;  // of moving links without <inertial>; 0: they have no mass
+};
+
+// An option does not fit the file. `option` is the member's name, or "tip" where it must be given
+// and is not. The message begins with the file's name.
+class RobotOptionError final : public Error {
+ public:
+  RobotOptionError(std::string option, const std::string& message)
+      : Error(ErrorKind::usage, message), option_(std::move(option)) {}
+  const std::string& option() const { return option_; }
+
+ private:
+  std::string option_;
+};
+
+// Reads and validates a URDF. Its links are a tree; the chain runs from the link `options.base`
+// down to the link `options.tip`, and its joints move. All others are held at position 0, or at the
+// end of their range that is nearest to it, and their links lumped into those that carry them: what
+// hangs beside the chain or beyond the tip into a moving link, what is above or beside `base` into
+// the fixed base. The world's frame is the root link's, the tip's frame the tool centre point.
+//
+// Of a URDF are used: inertial, visual, joint origins, axes and limits. A limit of effort or
+// velocity of 0, a placeholder, is none. At a density the moving links without <inertial> get mass,
+// centre of mass and inertia of their visual shapes (shape_mass.hpp). `notes` says what was done
+// and what is left out (docs/robots.md).
+//
+// Throws RobotOptionError for a base or tip that is no link, a base that is not above the tip, no
+// moving joint between them, several leaves and no tip named, a density that is not finite and >=
+// 0. Throws Error{bad_data} "FILE:LINE: what is wrong, what is allowed" for: a file over 8 MiB or
+// nested deeper than 64; document types; anything that is not a finite number where one belongs;
+// misspelt elements and attributes; xacro; names used twice; links that are no tree; a moving link
+// without mass; mass <= 0; an inertia that is not symmetric positive definite or violates the
+// triangle inequality of principal moments (all zero, with mass 0: no mass); a zero axis; on the
+// chain a revolute or prismatic joint without limits, lower > upper, speed or effort limits < 0,
+// mimic, and any type but revolute, continuous, prismatic and fixed; a mesh that gives no mass; all
+// that urdfdom itself refuses. load_urdf(): Error{io} if the file cannot be read.
+RobotModel load_urdf(const std::filesystem::path& file, const RobotOptions& options = {});
+RobotModel parse_urdf(std::string_view xml, const std::string& name,
+                      const RobotOptions& options = {});
 
 // A steel block on the flange: `mass_kg` as a box of 0.16825 x 0.16825 x 0.09 m (the thesis's load,
 // section 6.4) whose short side points along the last link, its centre 45 mm beyond the tip. Other

@@ -2,12 +2,13 @@
 #include <fmt/format.h>
 #include <urdf_parser/urdf_parser.h>
 
-#include <cassert>
 #include <limits>
 #include <mutex>
+#include <optional>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "sim/shape_mass.hpp"
 #include "sim/urdf.hpp"
 
 namespace armwright {
@@ -103,20 +104,14 @@ VisualShape to_shape(const urdf::Visual& visual) {
   return shape;
 }
 
-// Adds a link's mass and looks to the link that carries it, in whose frame it has the pose `pose`.
-void lump(const urdf::Link& from, const Eigen::Isometry3d& pose, Link& carrier) {
-  if (from.inertial) {
-    carrier.inertial = combine(carrier.inertial, transform(to_inertial(*from.inertial), pose));
-  }
-  for (const auto& visual : from.visual_array) {
-    VisualShape shape = to_shape(*visual);
-    shape.pose = pose * shape.pose;
-    carrier.visuals.push_back(std::move(shape));
-  }
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// 0 stands for none.
+double to_limit(double value) {
+  return value == 0 ? kInfinity : value;
 }
 
 Joint to_joint(const urdf::Joint& from, const Eigen::Isometry3d& parent_pose) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const bool continuous = from.type == urdf::Joint::CONTINUOUS;
   Joint joint;
   joint.name = from.name;
@@ -125,39 +120,165 @@ Joint to_joint(const urdf::Joint& from, const Eigen::Isometry3d& parent_pose) {
   joint.axis = to_eigen(from.axis).normalized();
   joint.lower = continuous ? -kInfinity : from.limits->lower;
   joint.upper = continuous ? kInfinity : from.limits->upper;
-  joint.speed_limit = from.limits ? from.limits->velocity : kInfinity;
-  joint.effort_limit = from.limits ? from.limits->effort : kInfinity;
+  joint.speed_limit = from.limits ? to_limit(from.limits->velocity) : kInfinity;
+  joint.effort_limit = from.limits ? to_limit(from.limits->effort) : kInfinity;
   return joint;
 }
 
+// Walks down the tree; what does not move against a link of the chain becomes part of it.
+class Builder {
+ public:
+  Builder(const CheckedUrdf& checked, const std::string& name, const RobotOptions& options)
+      : checked_(checked),
+        name_(name),
+        density_kg_per_m3_(options.density_kg_per_m3),
+        folder_(std::filesystem::path(name).parent_path()) {}
+
+  RobotModel build(const urdf::ModelInterface& from) {
+    model_.name = from.getName();
+    model_.base.name = from.getRoot()->name;
+    add(*from.getRoot(), Eigen::Isometry3d::Identity(), 0, nullptr);
+    check_masses();
+    model_.notes = checked_.notes;
+    for (const Held& held : held_) {
+      model_.notes.push_back(describe(held));
+    }
+    for (std::string& note : mass_notes_) {
+      model_.notes.push_back(std::move(note));
+    }
+    return std::move(model_);
+  }
+
+ private:
+  // A joint that is held, and what hangs on it up to the next such joint.
+  struct Held {
+    std::string joint;
+    std::size_t carrier;
+    double mass_kg = 0;
+  };
+
+  // Body 0 is the base, body i the link that joint i - 1 moves.
+  Link& get_body(std::size_t body) { return body == 0 ? model_.base : model_.links[body - 1]; }
+
+  // `pose` is the link's in its carrier's frame. Joints of the chain are met in its order, as it
+  // has no branches. At most kUrdfLinkLimit deep.
+  void add(const urdf::Link& link, const Eigen::Isometry3d& pose, std::size_t carrier,
+           const std::size_t* held) {
+    lump(link, pose, carrier, held);
+    if (link.name == checked_.chain.tip) {
+      model_.tip_pose = pose;
+    }
+    for (const auto& child : link.child_links) {
+      const urdf::Joint& joint = *child->parent_joint;
+      const auto kept = checked_.held.find(joint.name);
+      if (checked_.chain.joints.contains(joint.name)) {
+        model_.joints.push_back(to_joint(joint, pose));
+        model_.links.emplace_back().name = child->name;
+        add(*child, Eigen::Isometry3d::Identity(), model_.links.size(), nullptr);
+      } else if (kept != checked_.held.end()) {
+        const std::size_t number = held_.size();
+        held_.push_back({joint.name, carrier});
+        add(*child, pose * to_eigen(joint.parent_to_joint_origin_transform) * kept->second.motion,
+            carrier, &number);
+      } else {
+        add(*child, pose * to_eigen(joint.parent_to_joint_origin_transform), carrier, held);
+      }
+    }
+  }
+
+  // Adds a link's mass and looks to the link that carries it.
+  void lump(const urdf::Link& from, const Eigen::Isometry3d& pose, std::size_t carrier,
+            const std::size_t* held) {
+    std::vector<VisualShape> shapes;
+    for (const auto& visual : from.visual_array) {
+      shapes.push_back(to_shape(*visual));
+    }
+    Link& body = get_body(carrier);
+    Inertial inertial;
+    if (from.inertial) {
+      inertial = to_inertial(*from.inertial);
+    } else if (density_kg_per_m3_ > 0 && carrier > 0 && !shapes.empty()) {
+      inertial = calc_inertial(from.name, shapes);
+    }
+    if (inertial.mass_kg > 0) {
+      body.inertial = combine(body.inertial, transform(inertial, pose));
+    }
+    if (held != nullptr) {
+      held_[*held].mass_kg += inertial.mass_kg;
+    }
+    for (VisualShape& shape : shapes) {
+      shape.pose = pose * shape.pose;
+      body.visuals.push_back(std::move(shape));
+    }
+  }
+
+  // At the density, of a link's shapes in its own frame.
+  Inertial calc_inertial(const std::string& link, const std::vector<VisualShape>& shapes) {
+    Inertial sum;
+    for (const VisualShape& shape : shapes) {
+      std::optional<std::filesystem::path> file;
+      try {
+        sum = combine(sum, calc_shape_inertial(shape, density_kg_per_m3_, folder_, file));
+      } catch (const Error& error) {
+        throw Error(error.kind(), fmt::format("{}: link '{}': {}", name_, link, error.what()));
+      }
+      if (file) {
+        model_.mass_files.push_back({shape.mesh_file, *file});
+      }
+    }
+    mass_notes_.push_back(fmt::format(
+        "link '{}' has no <inertial>: {:.4g} kg and their inertia come from its {} at {} kg/m3",
+        link, sum.mass_kg, shapes.size() == 1 ? "shape" : fmt::format("{} shapes", shapes.size()),
+        density_kg_per_m3_));
+    return sum;
+  }
+
+  void check_masses() const {
+    for (std::size_t i = 0; i < model_.links.size(); ++i) {
+      const Link& link = model_.links[i];
+      if (link.inertial.mass_kg > 0) {
+        continue;
+      }
+      const std::string& joint = model_.joints[i].name;
+      fail_urdf(name_, checked_.chain.joints.at(joint),
+                fmt::format("joint '{}' moves link '{}', which has no mass{}; give it an "
+                            "<inertial> element{} (or make the joint fixed)",
+                            joint, link.name,
+                            density_kg_per_m3_ > 0 ? " and no <visual> to take it from" : "",
+                            density_kg_per_m3_ > 0
+                                ? ""
+                                : ", or set robot.density_kg_per_m3 to take it from the shapes of "
+                                  "its <visual> elements"));
+    }
+  }
+
+  std::string describe(const Held& held) {
+    const std::string& place = checked_.held.at(held.joint).place;
+    const std::string carrier = held.carrier == 0
+                                    ? "the fixed base"
+                                    : fmt::format("link '{}'", get_body(held.carrier).name);
+    return fmt::format(
+        "joint '{}' is not between '{}' and '{}': held at {}, {} part of {}", held.joint,
+        checked_.chain.base, checked_.chain.tip, place,
+        held.mass_kg > 0 ? fmt::format("its {:.4g} kg are", held.mass_kg) : "what hangs on it is",
+        carrier);
+  }
+
+  const CheckedUrdf& checked_;
+  const std::string& name_;
+  double density_kg_per_m3_;
+  std::filesystem::path folder_;
+  RobotModel model_;
+  std::vector<Held> held_;
+  std::vector<std::string> mass_notes_;
+};
+
 }  // namespace
 
-RobotModel build_model(const std::string& checked_xml, const std::string& name) {
-  const urdf::ModelInterfaceSharedPtr from = parse_with_urdfdom(checked_xml, name);
-  RobotModel model;
-  model.name = from->getName();
-  model.base.name = from->getRoot()->name;
-  Link* carrier = &model.base;
-  Eigen::Isometry3d pose =
-      Eigen::Isometry3d::Identity();  // of the link at hand in its carrier's frame
-  urdf::LinkConstSharedPtr link = from->getRoot();
-  lump(*link, pose, *carrier);
-  while (!link->child_links.empty()) {
-    assert(link->child_links.size() == 1);
-    link = link->child_links.front();
-    const urdf::Joint& joint = *link->parent_joint;
-    if (joint.type == urdf::Joint::FIXED) {
-      pose = pose * to_eigen(joint.parent_to_joint_origin_transform);
-    } else {
-      model.joints.push_back(to_joint(joint, pose));
-      carrier = &model.links.emplace_back();
-      carrier->name = link->name;
-      pose = Eigen::Isometry3d::Identity();
-    }
-    lump(*link, pose, *carrier);
-  }
-  model.tip_pose = pose;
-  return model;
+RobotModel build_model(const CheckedUrdf& checked, const std::string& name,
+                       const RobotOptions& options) {
+  const urdf::ModelInterfaceSharedPtr from = parse_with_urdfdom(checked.xml, name);
+  return Builder(checked, name, options).build(*from);
 }
 
 }  // namespace armwright

@@ -42,9 +42,7 @@ void UrdfXml::check_names(const XMLElement& element, const std::vector<std::stri
   for (const XMLElement* child = element.FirstChildElement(); child != nullptr;
        child = child->NextSiblingElement()) {
     if (std::string_view(child->Name()).starts_with("xacro:")) {
-      fail(*child, fmt::format("<{}> is an xacro macro; run xacro first (xacro FILE.xacro > "
-                               "FILE.urdf) and use its result",
-                               shorten(child->Name())));
+      fail(*child, fmt::format("<{}> is of xacro; {}", shorten(child->Name()), kXacroAdvice));
     }
     check_spelling(*child, fmt::format("element in <{}>", element.Name()), child->Name(), children);
   }
@@ -74,6 +72,14 @@ const XMLElement& UrdfXml::get_only(const XMLElement& parent, const char* child_
   return *child;
 }
 
+void UrdfXml::refuse_xacro(const XMLElement& element, const char* attribute,
+                           std::string_view text) const {
+  if (text.find("${") != std::string_view::npos || text.find("$(") != std::string_view::npos) {
+    fail(element, fmt::format("<{}>: {} is '{}', an expression of xacro; {}", element.Name(),
+                              attribute, shorten(text), kXacroAdvice));
+  }
+}
+
 std::string UrdfXml::get_text(const XMLElement& element, const char* attribute) const {
   const char* value = element.Attribute(attribute);
   if (value == nullptr || *value == '\0') {
@@ -88,6 +94,7 @@ std::string UrdfXml::get_text(const XMLElement& element, const char* attribute) 
     fail(element, fmt::format("<{}>: {} is '{}'; it must be printable UTF-8", element.Name(),
                               attribute, shorten(value)));
   }
+  refuse_xacro(element, attribute, value);
   return value;
 }
 
@@ -102,11 +109,7 @@ std::vector<double> UrdfXml::read_numbers(const XMLElement& element, const char*
     return fallback;
   }
   const std::string_view rest(text);
-  if (rest.find("${") != std::string_view::npos || rest.find("$(") != std::string_view::npos) {
-    fail(element, fmt::format("<{}>: {} is '{}', an xacro expression; run xacro first (xacro "
-                              "FILE.xacro > FILE.urdf) and use its result",
-                              element.Name(), attribute, shorten(text)));
-  }
+  refuse_xacro(element, attribute, rest);
   std::vector<double> numbers;
   constexpr std::string_view kBlanks = " \t\r\n";
   for (std::size_t at = rest.find_first_not_of(kBlanks); at != std::string_view::npos;) {

@@ -1,5 +1,5 @@
-// Strict reading of XML elements for urdf_check.cpp: every refusal names file, line, link or joint,
-// element and attribute.
+// Strict reading of XML elements for urdf_check*.cpp: every refusal names file, line, link or
+// joint, element and attribute.
 #pragma once
 
 #include <string>
@@ -52,6 +52,8 @@ class UrdfXml {
  private:
   void check_spelling(const tinyxml2::XMLElement& at, const std::string& what,
                       const std::string& found, const std::vector<std::string>& valid) const;
+  void refuse_xacro(const tinyxml2::XMLElement& element, const char* attribute,
+                    std::string_view text) const;
 
   std::string name_;
   std::string where_ = "the file";

@@ -99,7 +99,8 @@ Trap slide(const std::string& name, const std::string& attributes, const std::st
 Trap type(const std::string& type_name) {
   return {"type_" + type_name, "type=\"continuous\"", "type=\"" + type_name + "\"", 34,
           "joint 'second': the type is '" + type_name +
-              "'; only revolute, continuous, prismatic and fixed are supported"};
+              "'; between base 'world' and tip 'tool' only revolute, continuous, prismatic and "
+              "fixed joints are simulated: name a base below it (robot.base or --base)"};
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -190,14 +191,16 @@ INSTANTIATE_TEST_SUITE_P(
                             "<limit>: upper is 'inf'; it must be one finite number"),
                       slide("misspelt", "lower=\"0\" uper=\"1\" velocity=\"3\" effort=\"4\"",
                             "unknown attribute of <limit> 'uper'; did you mean 'upper'?"),
-                      type("planar"), type("floating"), type("revolut"),
+                      type("planar"), type("floating"),
+                      Trap{"type_misspelt", "type=\"continuous\"", "type=\"continous\"", 34,
+                           "joint 'second': unknown type 'continous'; did you mean 'continuous'?"},
                       Trap{"no_type", " type=\"continuous\"", "", 34,
                            "joint 'second': <joint> has no type; it must have one"},
                       Trap{"mimic", "<axis xyz=\"0 1 0\"/>", "<mimic joint=\"first\"/>", 38,
-                           "joint 'second': <mimic> joints are not supported"},
-                      Trap{"damping", "<axis xyz=\"0 1 0\"/>", "<dynamics damping=\"0.5\"/>", 38,
-                           "<dynamics>: damping is 0.5, but joints are simulated without any; set "
-                           "it to 0 or remove it"},
+                           "joint 'second': follows another joint (<mimic>), which is not "
+                           "simulated between base 'world' and tip 'tool'"},
+                      Trap{"damping", "<axis xyz=\"0 1 0\"/>", "<dynamics damping=\"-1\"/>", 38,
+                           "<dynamics>: damping is -1; it must be >= 0"},
                       Trap{"friction", "<axis xyz=\"0 1 0\"/>", "<dynamics friction=\"nan\"/>", 38,
                            "<dynamics>: friction is 'nan'; it must be one finite number"}),
     name_of);
@@ -233,22 +236,15 @@ INSTANTIATE_TEST_SUITE_P(
              "<joint name=\"qp\" type=\"fixed\"><parent link=\"q\"/><child link=\"p\"/></joint>",
              51,
              "the links form a cycle, 'p' -> 'q' -> 'p'; every link must hang on the root 'world'"},
-        Trap{"branch", "<link name=\"tool\"/>",
-             "<link name=\"tool\"/><link name=\"camera\"/>\n<joint name=\"x\" "
-             "type=\"fixed\"><parent "
-             "link=\"arm\"/><child link=\"camera\"/></joint>",
-             52,
-             "link 'arm' carries the joints 'second' and 'x'; the robot must be a single chain "
-             "without branches"},
         Trap{"same_link_twice", "<link name=\"tool\"/>",
              "<link name=\"tool\"/><link name=\"arm\"/>", 51,
              "link 'arm': the name is used by an earlier link; names must be unique"},
         Trap{"same_joint_twice", "name=\"tool_joint\"", "name=\"first\"", 46,
              "joint 'first': the name is used by an earlier joint; names must be unique"},
         Trap{"moving_link_without_mass", kHandInertial, "", 34,
-             "joint 'second' moves link 'hand', which has no mass; give it an <inertial> element "
-             "(or make the joint "
-             "fixed)"}),
+             "joint 'second' moves link 'hand', which has no mass; give it an <inertial> element, "
+             "or set robot.density_kg_per_m3 to take it from the shapes of its <visual> elements "
+             "(or make the joint fixed)"}),
     name_of);
 
 INSTANTIATE_TEST_SUITE_P(
@@ -266,14 +262,20 @@ INSTANTIATE_TEST_SUITE_P(
              "name is 'tool?[2J'; it must be printable UTF-8"},
         Trap{"material", "<material name=\"red\"/>", "<material name=\"rde\"/>", 31,
              "link 'arm': unknown material 'rde'; did you mean 'red'? Valid: red"},
-        Trap{"shape", "<box size=\"0.6 0.1 0.1\"/>", "<capsule radius=\"1\"/>", 30,
-             "link 'arm': unknown shape 'capsule'. Valid: box, cylinder, sphere, mesh"},
+        Trap{
+            "shape", "<box size=\"0.6 0.1 0.1\"/>", "<capsule radius=\"1\"/>", 30,
+            "link 'arm': unknown shape 'capsule'. Valid: box, cylinder, sphere, mesh (a capsule is "
+            "a <visual> with a cylinder and two with a sphere each)"},
         Trap{"no_shape", "<box size=\"0.6 0.1 0.1\"/>", "", 30,
              "<geometry> must hold exactly one of box, cylinder, sphere, mesh"},
         Trap{"xacro_element", "<link name=\"tool\"/>", "<xacro:arm name=\"tool\"/>", 51,
-             "<xacro:arm> is an xacro macro; run xacro first"},
+             "<xacro:arm> is of xacro; xacro is not read: run xacro my.urdf.xacro > my.urdf (ROS), "
+             "or "
+             "python3 -m xacro my.urdf.xacro > my.urdf, and give armwright the result"},
         Trap{"xacro_expression", kMass, "<mass value=\"${2 * m}\"/>", 26,
-             "value is '${2 * m}', an xacro expression; run xacro first"},
+             "value is '${2 * m}', an expression of xacro; xacro is not read"},
+        Trap{"xacro_name", "<link name=\"tool\"/>", "<link name=\"${prefix}tool\"/>", 51,
+             "name is '${prefix}tool', an expression of xacro; xacro is not read"},
         Trap{"robot_without_name", "<robot name=\"two_joints\">", "<robot>", 2,
              "<robot> has no name; it must have one"},
         Trap{"two_robots", "</robot>", "</robot>\n<robot name=\"second\"/>", 53,
@@ -373,15 +375,13 @@ TEST(UrdfText, RefusesSlidersThatCannotBeSimulated) {
   EXPECT_EQ(message_of(replace(xml, axis, "<axis xyz=\"0 0 0\"/>")),
             "robot.urdf:8: joint 'rail': <axis>: xyz is '0 0 0', which has no direction; give one "
             "such as 0 0 1");
-  EXPECT_THAT(message_of(replace(xml, axis, axis + "<dynamics damping=\"3\"/>")),
-              StartsWith("robot.urdf:8: joint 'rail': <dynamics>: damping is 3, but joints are "
-                         "simulated without any"));
   EXPECT_THAT(message_of(replace(xml, axis, axis + "<mimic joint=\"pivot\"/>")),
-              StartsWith("robot.urdf:8: joint 'rail': <mimic> joints are not supported"));
+              StartsWith("robot.urdf:8: joint 'rail': follows another joint (<mimic>)"));
   const std::size_t from = xml.find("    <inertial>"), to = xml.find("</inertial>") + 11;
   EXPECT_EQ(message_of(std::string(xml).erase(from, to - from)),
             "robot.urdf:4: joint 'rail' moves link 'cart', which has no mass; give it an "
-            "<inertial> element (or make the joint fixed)");
+            "<inertial> element, or set robot.density_kg_per_m3 to take it from the shapes of its "
+            "<visual> elements (or make the joint fixed)");
 }
 
 TEST(UrdfText, RefusesRobotsThatCannotMove) {

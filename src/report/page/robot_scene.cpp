@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "base/text.hpp"
-#include "report/page/mesh_file.hpp"
+#include "sim/mesh_file.hpp"
 #include "report/page/packed.hpp"
 #include "report/page/plain_shapes.hpp"
 

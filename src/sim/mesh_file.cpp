@@ -1,4 +1,4 @@
-#include "report/page/mesh_file.hpp"
+#include "sim/mesh_file.hpp"
 
 #include <fmt/format.h>
 
