@@ -5,11 +5,14 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
+#include <iterator>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "cli/session.hpp"
+#include "problems/config_files.hpp"
 #include "sim/physics_engine.hpp"
 #include "study/executor/mpi_links.hpp"
 #include "study/run_folder.hpp"
@@ -19,6 +22,11 @@ namespace armwright {
 namespace {
 
 constexpr std::int64_t kMostJobs = 1024;
+
+// As a TOML string: JSON's is one.
+std::string quote_toml(const std::string& text) {
+  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
 
 [[noreturn]] void refuse(std::string_view flag, std::string_view text, std::string_view allowed) {
   throw Error(ErrorKind::usage,
@@ -202,11 +210,52 @@ void OverrideOptions::add_to(CLI::App& command, bool with_training) {
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   engines.add_to(command, with_training);
+  robot.add_to(command);
+}
+
+std::string OverrideOptions::choose_problem(const std::string& typed) const {
+  return typed.empty() && !robot.robot.empty() ? "robot" : typed;
+}
+
+void RobotFlags::add_to(CLI::App& command) {
+  command
+      .add_option("--robot", robot,
+                  "An arm of your own, a URDF, or a shipped one (armwright list robots); the same\n"
+                  "as --set robot.urdf=FILE, on the problem 'robot' if none is named")
+      ->type_name("FILE");
+  command
+      .add_option("--base", base,
+                  "The link at which the arm begins (default: the robot's root), the same as\n"
+                  "--set robot.base=LINK")
+      ->type_name("LINK");
+  command
+      .add_option("--tip", tip,
+                  "The link whose frame is the tool centre point (default: the only one at the\n"
+                  "end of the chain), the same as --set robot.tip=LINK")
+      ->type_name("LINK");
+}
+
+std::vector<std::string> RobotFlags::get() const {
+  std::vector<std::string> overrides;
+  if (!robot.empty()) {
+    // As it is from everywhere, so that a run's folder can be reported on from another one.
+    const std::filesystem::path file = resolve_config("robots", robot);
+    overrides.push_back("robot.urdf=" + quote_toml(std::filesystem::absolute(file).string()));
+  }
+  if (!base.empty()) {
+    overrides.push_back("robot.base=" + quote_toml(base));
+  }
+  if (!tip.empty()) {
+    overrides.push_back("robot.tip=" + quote_toml(tip));
+  }
+  return overrides;
 }
 
 std::vector<std::string> OverrideOptions::get() const {
   std::vector<std::string> overrides = set;
-  for (std::string& flag : engines.get()) {
+  std::vector<std::string> flags = engines.get();
+  std::ranges::move(robot.get(), std::back_inserter(flags));
+  for (std::string& flag : flags) {
     const std::string_view key = get_override_key(flag);
     const auto same = std::ranges::find(set, key, get_override_key);
     if (same != set.end()) {

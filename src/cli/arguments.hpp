@@ -75,13 +75,27 @@ struct EngineFlags {
   std::vector<std::string> get() const;
 };
 
+// --robot, --base and --tip: the user's own arm, short for settings of the table [robot].
+struct RobotFlags {
+  std::string robot;
+  std::string base;
+  std::string tip;
+
+  void add_to(CLI::App& command);
+  // As KEY=VALUE texts. Error{usage} if there is no such file.
+  std::vector<std::string> get() const;
+};
+
 // --set and the flags above: what is changed about a problem.
 struct OverrideOptions {
   std::vector<std::string> set;
   EngineFlags engines;
+  RobotFlags robot;
   void add_to(CLI::App& command, bool with_training = false);
   // Error{usage} where --set and another flag set the same.
   std::vector<std::string> get() const;
+  // The problem as typed; with --robot the one for any arm, where none is.
+  std::string choose_problem(const std::string& typed) const;
 };
 // The part before the '=' of a KEY=VALUE text, without blanks around it.
 std::string_view get_override_key(std::string_view assignment);

@@ -17,6 +17,7 @@
 #include "cli/signals.hpp"
 #include "cli/team.hpp"
 #include "cli/terminal.hpp"
+#include "problems/path_survey.hpp"
 #include "study/locked_observer.hpp"
 #include "study/run.hpp"
 #include "study/run_folder.hpp"
@@ -29,6 +30,7 @@ constexpr const char* kOptimizeExamples = R"(Examples:
   armwright optimize q2-e6 --optimizer ga --opt population=50 --seed 7 --budget 20000
   armwright optimize q1-complex --schedule fixed:10 --time-limit 10m --out results/robust
   armwright optimize my.toml --set task.load_kg=20 --set sets.test_cases=100 --json
+  armwright optimize --robot my.urdf --base base_link --tip tool0   # an arm of your own
 
 Interrupted by Ctrl-C, a time limit or a crash, the same command goes on where it was; a run that is complete is
 shown and not made again.
@@ -57,7 +59,18 @@ struct OptimizeOptions {
   bool quiet = false;
 
   std::vector<std::string> get_overrides() const;
+  std::string get_problem() const;
 };
+
+std::string OptimizeOptions::get_problem() const {
+  const std::string chosen = overrides.choose_problem(problem);
+  if (chosen.empty()) {
+    throw Error(ErrorKind::usage,
+                "PROBLEM is missing: name one (armwright list problems), or an arm of your own "
+                "with --robot FILE");
+  }
+  return chosen;
+}
 
 std::vector<std::string> OptimizeOptions::get_overrides() const {
   std::vector<std::string> all = overrides.get();
@@ -72,7 +85,7 @@ RunPlan make_plan(const OptimizeOptions& options) {
   RunPlan plan;
   plan.seed = static_cast<std::uint64_t>(parse_count("--seed (ARMWRIGHT_SEED)", options.seed, 0,
                                                      std::numeric_limits<std::int64_t>::max()));
-  plan.problem = load_problem(options.problem, options.get_overrides());
+  plan.problem = load_problem(options.get_problem(), options.get_overrides());
   plan.optimizer =
       load_optimizer(options.optimizer.empty() ? plan.problem.optimizer : options.optimizer);
   plan.options = Options::parse(plan.optimizer.name, plan.optimizer.options, options.opt);
@@ -173,7 +186,7 @@ std::string describe_next(const OptimizeOptions& options, const std::string& pro
   std::string text = "\n" + style.bold("Next") + "\n";
   if (std::filesystem::exists(winner)) {
     std::vector<std::string> words = {program, "evaluate", winner.string(), "--problem",
-                                      options.problem};
+                                      options.get_problem()};
     for (const std::string& change : options.overrides.get()) {
       words.insert(words.end(), {"--set", change});
     }
@@ -198,10 +211,12 @@ int run_optimize(const OptimizeOptions& options, Session& session) {
   }
   options.time_limit.apply(session.stop);
   request.plan = make_plan(options);
+  const std::vector<std::string> notes = check_paths(request.plan.problem);
   request.folder = options.folder.choose(make_run_name(request.plan));
   request.command_line = make_command(options, session, request.folder);
   if (!options.quiet) {
     announce(request, team.describe());
+    std::ranges::for_each(notes, write_message);
   }
 
   catch_signals(session.stop);
@@ -239,8 +254,8 @@ void add_optimize(CLI::App& app, Session& session) {
                   "Let an optimizer loose on a problem; resumes where it was", kOptimizeExamples);
   command
       ->add_option("PROBLEM", options->problem,
-                   "A problem file, or the name of a shipped one (armwright list problems)")
-      ->required();
+                   "A problem file, or the name of a shipped one (armwright list problems); not\n"
+                   "needed with --robot");
   command
       ->add_option("--optimizer,-o", options->optimizer,
                    "Who optimizes (armwright list optimizers; default: the problem's)")

@@ -78,6 +78,26 @@ SweepPlan read_sweep(const ConfigTable& table, const TrackingProblem& problem) {
   return sweep;
 }
 
+// The file's own, unless it gives another; "{robot}" in that stands for the name of the URDF's file.
+std::string read_name(const ConfigTable& table, const std::filesystem::path& path) {
+  constexpr std::string_view kRobot = "{robot}";
+  std::string name = table.get_string("name", path.stem().string());
+  if (const std::size_t at = name.find(kRobot); at != std::string::npos) {
+    const std::filesystem::path urdf = table.get_table("robot").get_string("urdf");
+    name.replace(at, kRobot.size(), urdf.stem().string());
+  }
+  if (sanitize(name) != name) {
+    throw Error(ErrorKind::usage,
+                fmt::format("{}: a problem is named after its file, and this name is not printable "
+                            "UTF-8; rename the file",
+                            sanitize(path.string())));
+  }
+  if (name.empty() || name.find('/') != std::string::npos || name.front() == '.') {
+    table.refuse("name", "it names folders: it must not be empty, begin with '.' or hold '/'");
+  }
+  return name;
+}
+
 void load_analytic(const ConfigTable& table, LoadedProblem& loaded) {
   const ConfigTable function = table.get_table("function");
   const std::string name = function.get_choice("name", analytic_names());
@@ -94,13 +114,7 @@ LoadedProblem load_problem_tables(const std::filesystem::path& path, const ReadT
                                   std::span<const EngineRow> engines) {
   const ConfigTable table = read_table(overrides);
   LoadedProblem loaded;
-  loaded.name = path.stem().string();
-  if (sanitize(loaded.name) != loaded.name) {
-    throw Error(ErrorKind::usage,
-                fmt::format("{}: a problem is named after its file, and this name is not printable "
-                            "UTF-8; rename the file",
-                            sanitize(path.string())));
-  }
+  loaded.name = read_name(table, path);
   loaded.title = table.get_string("title", loaded.name);
   table.get_string("description", "");
   static const std::vector<std::string> kinds = {"tracking", "analytic"};

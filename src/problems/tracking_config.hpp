@@ -1,6 +1,7 @@
 // All that a tracking problem is made of, as a problem's file says it.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,7 @@ struct TrackingConfig {
   double mass_scale = 1;  // what its masses were multiplied by when it was loaded
   TrackingTask task;
   WorkspaceSphere workspace;
+  std::optional<TestCase> path;  // in place of cases generated in the workspace
   EnginePair engines;           // both must be there (choose_engines)
   double cutoff_error_m = 1.0;  // training only
   TrackingObjective objective;
@@ -33,6 +35,7 @@ struct TrackingConfig {
   ArmDesign start;
   std::vector<DesignParameter> parameters;
   double bounds_factor = 100;
+  bool within_effort_limits = false;  // variables end at the limits of the robot's joints
   double length_bounds_factor = 1.5;
   double section_bounds_factor = 2;
   double speed_bounds_factor = 2;

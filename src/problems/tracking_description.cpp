@@ -70,8 +70,21 @@ bool has_duration_metric(const TrackingConfig& config) {
   return config.objective.duration_weight > 0 || changes_speed(config);
 }
 
-double calc_case_duration_s(const TrackingTask& task, const WorkspaceSphere& sphere) {
+double calc_case_duration_s(const TrackingConfig& config, const TrackingTask& task) {
+  const WorkspaceSphere& sphere = config.workspace;
   double duration_s = 0;
+  if (config.path && config.path->continuous) {
+    return static_cast<double>(config.path->points_m.size() - 1) * task.control_period_s;
+  }
+  if (config.path) {
+    const auto& points_m = config.path->points_m;
+    for (std::size_t k = 1; k < points_m.size(); ++k) {
+      duration_s += std::max((points_m[k] - points_m[k - 1]).norm(), task.distance_limit_m) /
+                        task.speed_m_per_s +
+                    task.rest_s;
+    }
+    return duration_s;
+  }
   for (int k = 1; k <= sphere.points; ++k) {
     duration_s +=
         std::max(sphere.calc_move_m(k), task.distance_limit_m) / task.speed_m_per_s + task.rest_s;
@@ -132,6 +145,18 @@ DecisionVariable make_variable(const TrackingConfig& config, const DesignParamet
   const auto [lower, upper] = std::minmax({variable.start / factor, variable.start * factor});
   variable.lower = lower;
   variable.upper = upper;
+  if (config.within_effort_limits && is_effort(parameter)) {
+    const double limit = config.robot.joints[parameter.joint].effort_limit;
+    if (std::abs(variable.start) > limit) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("{} starts at {}, beyond the joint's effort limit of {} in the URDF; "
+                              "give it another value in the design or set "
+                              "variables.within_effort_limits to false",
+                              variable.name, variable.start, limit));
+    }
+    variable.lower = std::max(variable.lower, -limit);
+    variable.upper = std::min(variable.upper, limit);
+  }
   if (!std::isnormal(lower) || !std::isnormal(upper)) {
     throw Error(ErrorKind::usage,
                 fmt::format("{} starts at {} and would span {} to {}, which floating-point numbers "

@@ -11,7 +11,7 @@ namespace armwright {
 double& get_parameter(ArmDesign& design, const DesignParameter& parameter);
 
 // How long a generated case takes (s), up to the rounding of each move to whole control periods.
-double calc_case_duration_s(const TrackingTask& task, const WorkspaceSphere& sphere);
+double calc_case_duration_s(const TrackingConfig& config, const TrackingTask& task);
 
 bool is_effort(const DesignParameter& parameter);  // one of the two limits
 // The parameter's span: from the start value divided by it to the start value times it.

@@ -183,7 +183,8 @@ TestSet TrackingProblem::get_set(const std::string& name) const {
                 fmt::format("problem {} has no test cases named {}; load the file they came from",
                             config_.name, sanitize(name)));
   }
-  return TestSet::make_generated(name, config_.workspace);
+  return config_.path ? TestSet::make_repeated(name, *config_.path)
+                      : TestSet::make_generated(name, config_.workspace);
 }
 
 ArmDesign TrackingProblem::make_design(std::span<const double> x) const {
@@ -434,7 +435,7 @@ std::vector<double> TrackingProblem::penalty_objectives() const {
   }
   terms.torque_n_m = (is_torque ? 10 : 1) * torque_n_m;
   terms.energy_j = torque_n_m * 2 * std::numbers::pi * config_.workspace.points;
-  terms.duration_s = calc_case_duration_s(slowest, config_.workspace);
+  terms.duration_s = calc_case_duration_s(config_, slowest);
   return calc_objectives(objective, terms);
 }
 

@@ -30,6 +30,12 @@ WorkspaceSphere read_workspace(const std::filesystem::path& run) {
       sphere.centre_m = {centre.at(0).get<double>(), centre.at(1).get<double>(),
                          centre.at(2).get<double>()};
     }
+    if (workspace.contains("normal")) {
+      const auto& normal = workspace.at("normal");
+      sphere.normal = Eigen::Vector3d(normal.at(0).get<double>(), normal.at(1).get<double>(),
+                                      normal.at(2).get<double>())
+                          .normalized();
+    }
     sphere.radius_m = workspace.value("radius_m", sphere.radius_m);
     sphere.shortest_move_m = workspace.value("shortest_move_m", sphere.shortest_move_m);
     sphere.points = workspace.value("points", sphere.points);

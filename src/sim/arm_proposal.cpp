@@ -292,12 +292,13 @@ std::vector<TestCase> make_proposal_cases(const WorkspaceSphere& sphere) {
   return cases;
 }
 
-double propose_speed(const RobotModel& robot, TrackingTask task, const WorkspaceSphere& sphere) {
-  task.limits = LimitPolicy::warn;
+double propose_speed(const RobotModel& robot, TrackingTask task,
+                     const std::vector<TestCase>& cases) {
+  if (task.limits == LimitPolicy::enforce) {
+    task.limits = LimitPolicy::warn;  // what it is too quick for is found out here
+  }
   task.feed_forward = FeedForward::inverse_dynamics;
-  task.distance_limit_m = 2 * sphere.radius_m;
-  task.speed_m_per_s = 2 * sphere.radius_m / kMove_s;
-  const std::vector<TestCase> cases = make_proposal_cases(sphere);
+  task.speed_m_per_s = task.distance_limit_m / kMove_s;
   const std::size_t n = robot.joint_count();
   for (int round = 0;; ++round) {
     const TrackingSetup setup(robot, task);
@@ -346,6 +347,9 @@ double propose_speed(const RobotModel& robot, TrackingTask task, const Workspace
 
 ArmDesign propose_design(const RobotModel& robot, TrackingTask task,
                          const std::vector<TestCase>& cases) {
+  if (task.limits == LimitPolicy::enforce) {
+    task.limits = LimitPolicy::warn;
+  }
   task.feed_forward = FeedForward::inverse_dynamics;
   const TrackingSetup setup(robot, task);
   const Demand demand = calc_demand(setup, make_tables(robot, setup, cases));

@@ -23,18 +23,18 @@ namespace armwright {
 struct TestCase {
   std::vector<Eigen::Vector3d> points_m;  // the first is the start, at rest; at least two
   // How the tool is turned at each point, its frame in the world; none: as the task says.
-  std::vector<Eigen::Quaterniond> turns;
+  std::vector<Eigen::Quaterniond> turns = {};
   // The points are not stopped at: the target is at point k after k control periods.
   bool continuous = false;
 };
 
-// With a normal it is the disc across it: for arms that move in a plane.
 struct WorkspaceSphere {
   Eigen::Vector3d centre_m{1.4, 0.0, 0.9};
-  std::optional<Eigen::Vector3d> normal;  // unit vector
   double radius_m = 0.8;
   double shortest_move_m = 0.05;  // s_min
   int points = 25;                // n, the start not counted
+  // Unit vector: the disc across it instead, for arms that move in a plane.
+  std::optional<Eigen::Vector3d> normal = std::nullopt;
 
   double calc_move_m(int k) const;  // ds_k, k = 1..n
 };
