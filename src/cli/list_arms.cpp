@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "base/error.hpp"
 #include "base/text.hpp"
 #include "cli/format.hpp"
 #include "cli/list_views.hpp"
@@ -18,11 +19,48 @@ namespace {
 
 using nlohmann::json;
 
+// A robot as it is without options, or up to the nearest of the tips that can be named.
+struct ListedRobot {
+  RobotModel model;
+  std::vector<std::string> tips;  // where one must be named
+  std::string tip;                // which of them the model ends at
+};
+
+ListedRobot load_listed(const std::filesystem::path& file) {
+  ListedRobot robot;
+  try {
+    robot.model = load_urdf(file);
+  } catch (const RobotOptionError& error) {
+    for (const std::string& leaf : error.leaves()) {
+      try {
+        RobotModel model = load_urdf(file, {.tip = leaf});
+        if (robot.tips.empty() || model.joint_count() < robot.model.joint_count()) {
+          robot.model = std::move(model);
+          robot.tip = leaf;
+        }
+        robot.tips.push_back(leaf);
+      } catch (const Error&) {  // what makes this leaf no tip, a joint that follows another, say
+      }
+    }
+    if (robot.tips.empty()) {
+      throw;
+    }
+  }
+  return robot;
+}
+
+std::string describe_tips(const ListedRobot& robot) {
+  return robot.tips.empty() ? ""
+                            : fmt::format(" up to '{}'; name a tip: {}", sanitize(robot.tip),
+                                          sanitize(join(robot.tips, ", ")));
+}
+
 std::vector<ListItem> list_robots() {
   std::vector<ListItem> items;
   for (const std::string& name : list_configs("robots")) {
-    const RobotModel robot = load_urdf(resolve_config("robots", name));
-    items.push_back({name, fmt::format("{} joints", robot.joint_count())});
+    const ListedRobot robot = load_listed(resolve_config("robots", name));
+    items.push_back(
+        {name, fmt::format("{} joints{}", robot.model.joint_count(), describe_tips(robot))});
   }
   return items;
 }
@@ -40,7 +78,8 @@ std::string format_position_limit(JointKind kind, double value) {
 
 std::string explain_robot(const std::string& name, const Style& style) {
   const auto file = resolve_config("robots", name);
-  const RobotModel robot = load_urdf(file);
+  const ListedRobot listed = load_listed(file);
+  const RobotModel& robot = listed.model;
   Table table({{"joint", false},
                {"moves", false},
                {"mass kg"},
@@ -58,11 +97,19 @@ std::string explain_robot(const std::string& name, const Style& style) {
                    format_limit(joint.speed_limit, slides ? "m/s" : "rad/s"),
                    format_limit(joint.effort_limit, slides ? "N" : "N m")});
   }
-  return format_title(style, robot.name, file.string()) + "\n" + table.format(style);
+  std::string text = format_title(style, robot.name, file.string()) + "\n" + table.format(style);
+  if (!listed.tips.empty()) {
+    text += fmt::format("\n  The joints{}.\n", describe_tips(listed));
+  }
+  for (const std::string& note : robot.notes) {
+    text += fmt::format("  note: {}\n", note);
+  }
+  return text;
 }
 
 json explain_robot_as_json(const std::string& name) {
-  const RobotModel robot = load_urdf(resolve_config("robots", name));
+  const ListedRobot listed = load_listed(resolve_config("robots", name));
+  const RobotModel& robot = listed.model;
   const auto finite = [](double value) {
     return std::isfinite(value) ? json(value) : json(nullptr);
   };
@@ -80,7 +127,15 @@ json explain_robot_as_json(const std::string& name) {
          {slides ? "speed_limit_m_per_s" : "speed_limit_rad_per_s", finite(joint.speed_limit)},
          {slides ? "effort_limit_n" : "effort_limit_n_m", finite(joint.effort_limit)}});
   }
-  return {{"name", sanitize(robot.name)}, {"joints", joints}};
+  json tips = json::array();
+  for (const std::string& tip : listed.tips) {
+    tips.push_back(sanitize(tip));
+  }
+  return {{"name", sanitize(robot.name)},
+          {"joints", joints},
+          {"tip", listed.tips.empty() ? json(nullptr) : json(sanitize(listed.tip))},
+          {"tips", tips},
+          {"notes", robot.notes}};
 }
 
 std::vector<ListItem> list_designs() {

@@ -79,7 +79,9 @@ std::filesystem::path resolve_config(std::string_view kind, std::string_view nam
   const std::string extension = get_extension(kind);
   const std::filesystem::path path(name_or_path);
   const bool has_folder = name_or_path.find('/') != std::string_view::npos;
-  if (has_folder || path.extension() == extension) {
+  const bool is_xacro =
+      kind == "robots" && path.extension() == ".xacro";  // which load_urdf() refuses
+  if (has_folder || path.extension() == extension || is_xacro) {
     for (const auto& candidate : {beside / path, path}) {
       if (is_file(candidate)) {
         return candidate;

@@ -20,6 +20,7 @@
 #include "problems/tracking_description.hpp"
 #include "sim/design_conversion.hpp"
 #include "sim/designed_arm.hpp"
+#include "sim/mesh_file.hpp"
 
 namespace armwright {
 namespace {
@@ -91,6 +92,26 @@ std::vector<std::string> read_path_and_proposal(const ConfigTable& table, Tracki
   return apply_proposal(table, config);
 }
 
+// The arm that [robot] describes, as it is in the file.
+RobotModel load_robot(const ConfigTable& table, const std::filesystem::path& urdf,
+                      LoadedProblem& loaded) {
+  RobotOptions options;
+  options.base = table.get_string("base", "");
+  options.tip = table.get_string("tip", "");
+  options.density_kg_per_m3 =
+      table.get_number_or("density_kg_per_m3", 0, {.lower = 1, .upper = 30'000});
+  try {
+    RobotModel robot = load_urdf(urdf, options);
+    add_input(loaded, urdf);
+    for (const MassFile& mesh : robot.mass_files) {
+      loaded.input_hashes[mesh.name] = calc_sha256_hex(read_file(mesh.path, kMeshFileLimit_bytes));
+    }
+    return robot;
+  } catch (const RobotOptionError& error) {
+    table.refuse(table.has(error.option()) ? error.option() : "urdf", error.what());
+  }
+}
+
 }  // namespace
 
 std::filesystem::path resolve_named(const ConfigTable& table, std::string_view key,
@@ -111,8 +132,7 @@ std::vector<std::string> load_tracking(const ConfigTable& table, std::span<const
   const ConfigTable robot = table.get_table("robot");
   const auto urdf = resolve_named(robot, "urdf", "robots");
   config.mass_scale = robot.get_number_or("mass_scale", 1, {.lower = 0.01, .upper = 100});
-  config.robot = scale_masses(load_urdf(urdf), config.mass_scale);
-  add_input(loaded, urdf);
+  config.robot = scale_masses(load_robot(robot, urdf, loaded), config.mass_scale);
 
   const ConfigTable physics = table.get_table_or_empty("physics");
   ChosenEngines chosen = choose_engines(physics, engines);

@@ -234,10 +234,8 @@ ToolOrientation propose_orientation(const RobotModel& robot, const ToolTask& too
   for (const ToolOrientation orientation : {ToolOrientation::pose, ToolOrientation::pointing}) {
     ToolTask tried = tool;
     tried.orientation = orientation;
-    try {
-      NumericKinematics(robot, tried, {}, true);
+    if (NumericKinematics(robot, tried, {}, true).suits_task()) {
       return orientation;
-    } catch (const Error&) {  // it cannot; the next asks for less
     }
   }
   return ToolOrientation::free;
@@ -246,6 +244,7 @@ ToolOrientation propose_orientation(const RobotModel& robot, const ToolTask& too
 WorkspaceProposal propose_workspace(const RobotModel& robot, const ToolTask& tool,
                                     WorkspaceSphere sphere) {
   const NumericKinematics kinematics(robot, tool, {}, true);
+  kinematics.check_task(robot);
   const double length_m = calc_length_m(robot);
   sphere.normal = find_plane(kinematics, robot, tool, length_m);
   const Eigen::Vector3d first_m = robot.joints.front().origin.translation();

@@ -35,8 +35,6 @@ bool is_file(const std::filesystem::path& path) {
 
 #ifdef ARMWRIGHT_WITH_ASSIMP
 
-constexpr std::size_t kFileLimit_bytes = 64 << 20;
-
 // Materials, textures and parts in other files stay closed: only shapes are wanted, and a mesh from
 // elsewhere must not make us read what it names.
 class NoFiles : public Assimp::IOSystem {
@@ -129,7 +127,7 @@ bool can_read_meshes() {
 
 TriangleMesh read_mesh(const std::filesystem::path& file) {
   const std::string format = find_format(file);
-  const std::string content = read_file(file, kFileLimit_bytes);
+  const std::string content = read_file(file, kMeshFileLimit_bytes);
   Assimp::Importer importer;
   importer.SetIOHandler(new NoFiles);  // the importer deletes it
   // URDF takes a mesh in the file's own axes, whatever Collada calls up.

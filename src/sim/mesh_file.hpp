@@ -2,6 +2,7 @@
 // optional library of the build (ARMWRIGHT_WITH_ASSIMP).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -9,6 +10,8 @@
 #include <vector>
 
 namespace armwright {
+
+inline constexpr std::size_t kMeshFileLimit_bytes = std::size_t{64} << 20;
 
 struct TriangleMesh {
   std::vector<float> positions;        // 3 a vertex
@@ -25,9 +28,9 @@ std::optional<std::filesystem::path> find_mesh(const std::string& name,
 // Whether this build can read any.
 bool can_read_meshes();
 
-// All triangles of an STL (binary or text), OBJ or Collada file, in its own axes and in units of it
-// (Collada: in m). No other file is opened, whatever it refers to. Error{bad_data} names the file
-// and says what is wrong with it; Error{io} if it cannot be read.
+// All triangles of an STL (binary or text), OBJ or Collada file of that size, in its own axes and
+// in units of it (Collada: in m). No other file is opened, whatever it refers to. Error{bad_data}
+// names the file and says what is wrong with it; Error{io} if it cannot be read.
 TriangleMesh read_mesh(const std::filesystem::path& file);
 
 }  // namespace armwright

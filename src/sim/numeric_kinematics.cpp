@@ -37,6 +37,7 @@ constexpr int kRankPostures = 20;
 constexpr double kNoMotion = 1e-6;  // of the largest singular value
 // How far joints without ranges are drawn apart: revolute ones a turn, prismatic ones this.
 constexpr double kSlide_m = 1;
+constexpr double kShortest_m = 1e-3;  // an arm, so that nothing is divided by zero
 
 Matrix3d make_cross(const Vector3d& a) {
   Matrix3d cross;
@@ -97,7 +98,7 @@ NumericKinematics::NumericKinematics(const RobotModel& robot, const ToolTask& to
                 fmt::format("task.home has {} positions for the {} joints of robot '{}'",
                             home_.size(), n, sanitize(robot.name)));
   }
-  double length_m = tip_place_.norm();
+  length_m_ = tip_place_.norm();
   for (const Joint& joint : robot.joints) {
     Part part;
     part.turn = joint.origin.linear();
@@ -110,7 +111,7 @@ NumericKinematics::NumericKinematics(const RobotModel& robot, const ToolTask& to
     part.upper = joint.upper;
     part.has_middle = std::isfinite(joint.lower) && std::isfinite(joint.upper);
     part.middle = part.has_middle ? 0.5 * (joint.lower + joint.upper) : 0;
-    length_m += part.place.norm() + (part.slides && part.has_middle ? part.upper - part.lower : 0);
+    length_m_ += part.place.norm() + (part.slides && part.has_middle ? part.upper - part.lower : 0);
     chain_.push_back(part);
   }
   if (home_.empty()) {
@@ -118,15 +119,14 @@ NumericKinematics::NumericKinematics(const RobotModel& robot, const ToolTask& to
       home_.push_back(chain_[i].middle);
     }
   }
-  tolerance_m_ = kTolerance * std::max(length_m, 1e-3);
-  find_rank(robot);
+  length_m_ = std::max(length_m_, kShortest_m);
+  find_rank();
 }
 
-void NumericKinematics::find_rank(const RobotModel& robot) {
+void NumericKinematics::find_rank() {
   RandomStream random("inverse kinematics/rank", 0);
   for (int i = 0; i < kRankPostures; ++i) {
-    const std::vector<double> q = draw_posture(random);
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd{Eigen::MatrixXd(calc_jacobian(q))};
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(calc_even_jacobian(draw_posture(random)));
     const auto& values = svd.singularValues();
     int rank = 0;
     while (rank < values.size() && values[rank] > kNoMotion * std::max(values[0], 1e-12)) {
@@ -134,10 +134,22 @@ void NumericKinematics::find_rank(const RobotModel& robot) {
     }
     rank_ = std::max(rank_, rank);
   }
-  const int wanted = tool_.orientation == ToolOrientation::pose       ? 6
-                     : tool_.orientation == ToolOrientation::pointing ? 5
-                                                                      : 1;
-  if (rank_ < wanted) {
+}
+
+bool NumericKinematics::suits_task() const {
+  switch (tool_.orientation) {
+    case ToolOrientation::free:
+      return rank_ >= 1;
+    case ToolOrientation::pointing:
+      return rank_ >= 5;
+    case ToolOrientation::pose:
+      return rank_ >= 6;
+  }
+  return false;
+}
+
+void NumericKinematics::check_task(const RobotModel& robot) const {
+  if (!suits_task()) {
     throw Error(
         ErrorKind::bad_data,
         fmt::format("the joints of robot '{}' move its tool in {} independent directions at most, "
@@ -251,10 +263,29 @@ double NumericKinematics::calc_distance(const ToolPose& target, std::span<const 
   return calc_error(target, posture).norm();
 }
 
+Eigen::MatrixXd NumericKinematics::calc_even_jacobian(std::span<const double> q) const {
+  Eigen::MatrixXd jacobian = calc_jacobian(q);
+  jacobian.topRows<3>() /= length_m_;
+  jacobian.bottomRows<3>() /= tool_.arm_m;
+  for (std::size_t i = 0; i < chain_.size(); ++i) {
+    if (chain_[i].slides) {
+      jacobian.col(static_cast<Eigen::Index>(i)) *= length_m_;
+    }
+  }
+  return jacobian;
+}
+
 double NumericKinematics::calc_dexterity(std::span<const double> q) const {
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd{Eigen::MatrixXd(calc_jacobian(q))};
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(calc_even_jacobian(q));
   const auto& values = svd.singularValues();
   return values[0] > 0 ? values[rank_ - 1] / values[0] : 0;
+}
+
+std::size_t NumericKinematics::find_idle_joint(std::span<const double> q) const {
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(calc_even_jacobian(q), Eigen::ComputeThinV);
+  Eigen::Index joint = 0;
+  svd.matrixV().col(rank_ - 1).cwiseAbs().maxCoeff(&joint);
+  return static_cast<std::size_t>(joint);
 }
 
 bool NumericKinematics::improve(const Jacobian& jacobian, const Error6& error, const Vector& wish,
@@ -318,7 +349,7 @@ bool NumericKinematics::solve(const ToolPose& target, const Vector& wish, int it
   for (int i = 0;; ++i) {
     calc_posture(q, posture);
     const Error6 error = calc_error(target, posture);
-    if (i > 0 && error.norm() <= tolerance_m_) {
+    if (i > 0 && error.norm() <= kTolerance * length_m_) {
       return true;
     }
     if (i == iterations ||

@@ -34,8 +34,8 @@ class NumericKinematics {
   using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, kMostJoints>;
 
   // `home`: where searches begin, one position a joint; empty: the middle of the ranges, 0 where
-  // there are none. `within_limits`: joints stay in their ranges. Error{bad_data} if the robot
-  // cannot do what the tool's task asks for anywhere.
+  // there are none. `within_limits`: joints stay in their ranges. Error{bad_data} for more than
+  // kMostJoints, Error{usage} for a home of another length.
   NumericKinematics(const RobotModel& robot, const ToolTask& tool, std::vector<double> home,
                     bool within_limits);
 
@@ -53,8 +53,14 @@ class NumericKinematics {
   Jacobian calc_jacobian(std::span<const double> q) const;
   // In how many directions the tool can move at a posture without singularity, as the task counts.
   int rank() const { return rank_; }
-  // The smallest singular value of J that counts over the largest: 0 in a singular posture.
+  // Whether that is enough for the task; Error{bad_data} if it is not.
+  bool suits_task() const;
+  void check_task(const RobotModel& robot) const;
+  // The smallest singular value of J that counts over the largest, lengths counted in lengths of
+  // the arm and turns in rad: 0 in a singular posture.
   double calc_dexterity(std::span<const double> q) const;
+  // Which joint moves most where the tool moves least.
+  std::size_t find_idle_joint(std::span<const double> q) const;
   // The middle of the joint's range; 0 if it has none.
   double get_middle(std::size_t joint) const { return chain_[joint].middle; }
   bool has_middle(std::size_t joint) const { return chain_[joint].has_middle; }
@@ -84,7 +90,9 @@ class NumericKinematics {
   bool solve(const ToolPose& target, const Vector& wish, int iterations, double longest_step,
              Vector& q) const;
   void relax(const ToolPose& target, Vector& q) const;
-  void find_rank(const RobotModel& robot);
+  // J with rows that can be compared.
+  Eigen::MatrixXd calc_even_jacobian(std::span<const double> q) const;
+  void find_rank();
 
   ToolTask tool_;
   std::vector<Part> chain_;
@@ -92,7 +100,7 @@ class NumericKinematics {
   Eigen::Vector3d tip_place_;
   std::vector<double> home_;
   bool within_limits_;
-  double tolerance_m_ = 0;
+  double length_m_ = 0;
   int rank_ = 0;
 };
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -39,15 +38,6 @@ double calc_excess(const Joint& joint, bool wrapped, double& position) {
     position = middle + wrap_angle(position - middle);
   }
   return std::max(joint.lower - position, position - joint.upper);
-}
-
-// Which joint moves most where the tool moves least.
-std::size_t find_idle_joint(const NumericKinematics& kinematics, std::span<const double> q) {
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(Eigen::MatrixXd(kinematics.calc_jacobian(q)),
-                                              Eigen::ComputeThinV);
-  Eigen::Index joint = 0;
-  svd.matrixV().col(kinematics.rank() - 1).cwiseAbs().maxCoeff(&joint);
-  return static_cast<std::size_t>(joint);
 }
 
 }  // namespace
@@ -89,7 +79,7 @@ std::vector<PathFault> find_path_faults(const TrackingSetup& setup, const Target
         fault.limit = kSingularDexterity;
         if (fault.value < kSingularDexterity &&
             kSingularDexterity - fault.value > singular.excess) {
-          fault.joint = find_idle_joint(*kinematics, q);
+          fault.joint = kinematics->find_idle_joint(q);
           singular.consider(fault, kSingularDexterity - fault.value);
         }
       }

@@ -91,21 +91,25 @@ struct RobotModel {
 
 // What of a URDF is simulated, and how.
 struct RobotOptions {
-  std::string base;              // the link that the chain begins at; empty: the root
-  std::string tip;               // the link that it ends at; empty: the only leaf below the base
+  std::string base = {};         // the link that the chain begins at; empty: the root
+  std::string tip = {};          // the link that it ends at; empty: the only leaf below the base
   double density_kg_per_m3 = 0;  // of moving links without <inertial>; 0: they have no mass
 };
 
-// An option does not fit the file. `option` is the member's name, or "tip" where it must be given
-// and is not. The message begins with the file's name.
+// An option does not fit the file. The message begins with the file's name.
 class RobotOptionError final : public Error {
  public:
-  RobotOptionError(std::string option, const std::string& message)
-      : Error(ErrorKind::usage, message), option_(std::move(option)) {}
+  RobotOptionError(std::string option, const std::string& message,
+                   std::vector<std::string> leaves = {})
+      : Error(ErrorKind::usage, message), option_(std::move(option)), leaves_(std::move(leaves)) {}
+  // The member's name; "tip" also where it must be given and is not. Then leaves() has the ends of
+  // the branches, in the file's order.
   const std::string& option() const { return option_; }
+  const std::vector<std::string>& leaves() const { return leaves_; }
 
  private:
   std::string option_;
+  std::vector<std::string> leaves_;
 };
 
 // Reads and validates a URDF. Its links are a tree; the chain runs from the link `options.base`

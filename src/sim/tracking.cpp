@@ -119,14 +119,22 @@ TrackingSetup::TrackingSetup(const RobotModel& robot, const TrackingTask& task)
   }
   if (!closed_form_) {
     numeric_ = get_kinematics();
+    numeric_->check_task(robot_);
   }
   chain_ = std::make_shared<articulated::ChainModel>(robot_, task.physics.gravity_m_per_s2);
 }
 
 std::shared_ptr<const NumericKinematics> TrackingSetup::get_kinematics() const {
-  return numeric_ ? numeric_
-                  : std::make_shared<NumericKinematics>(robot_, task_.tool, task_.home,
-                                                        task_.limits != LimitPolicy::ignore);
+  if (numeric_) {
+    return numeric_;
+  }
+  ToolTask tool = task_.tool;
+  if (closed_form_) {  // keeps the last link, which ends in the tip, pointing down
+    tool.orientation = ToolOrientation::pointing;
+    tool.axis = robot_.tip_pose.linear().transpose() * robot_.tip_pose.translation().normalized();
+  }
+  return std::make_shared<NumericKinematics>(robot_, tool, task_.home,
+                                             task_.limits != LimitPolicy::ignore);
 }
 
 ReferenceSignal TrackingSetup::make_signal(double distance_m) const {

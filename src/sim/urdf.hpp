@@ -53,6 +53,7 @@ UrdfChain choose_chain(const std::vector<UrdfLink>& links, const std::vector<Urd
 
 // A joint that is not part of the chain and stays where it is.
 struct HeldJoint {
+  int line = 0;
   Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();  // of its child, from its origin
   std::string place;                                         // "0 m", for a note
 };

@@ -179,8 +179,9 @@ class Chooser {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& option, const std::string& what) const {
-    throw RobotOptionError(option, fmt::format("{}: {}", name_, what));
+  [[noreturn]] void fail(const std::string& option, const std::string& what,
+                         const std::vector<std::string>& leaves = {}) const {
+    throw RobotOptionError(option, fmt::format("{}: {}", name_, what), leaves);
   }
 
   std::string find_link(const std::string& option, const std::string& link) const {
@@ -198,9 +199,11 @@ class Chooser {
   std::string find_only_leaf(const std::string& base) const {
     const std::vector<std::string> leaves = tree_.find_leaves(base);
     if (leaves.size() > 1) {
-      fail("tip", fmt::format("the links branch and end in {}; name the one whose frame is the "
-                              "tool centre point (or any other link) with robot.tip or --tip",
-                              list_names(leaves, ", ")));
+      fail("tip",
+           fmt::format("the links branch and end in {}; name the one whose frame is the tool "
+                       "centre point (or any other link) with robot.tip or --tip",
+                       list_names(leaves, ", ")),
+           leaves);
     }
     return leaves.front();
   }

@@ -80,7 +80,7 @@ void JointChecker::write_moving(const XMLElement& element, const UrdfJoint& join
 // stay at their origin.
 HeldJoint JointChecker::hold(const XMLElement& element, const UrdfJoint& joint) const {
   if (joint.type == "floating" || joint.type == "planar") {
-    return {Eigen::Isometry3d::Identity(), "its origin"};
+    return {joint.line, Eigen::Isometry3d::Identity(), "its origin"};
   }
   const bool prismatic = joint.type == "prismatic";
   double position = 0;
@@ -90,6 +90,7 @@ HeldJoint JointChecker::hold(const XMLElement& element, const UrdfJoint& joint) 
     position = std::clamp(0.0, range.lower, range.upper);
   }
   HeldJoint held;
+  held.line = joint.line;
   held.place = fmt::format("{} {}", position, prismatic ? "m" : "rad");
   const std::vector<double> xyz = read_axis(element);
   const Eigen::Vector3d axis = Eigen::Vector3d(xyz[0], xyz[1], xyz[2]).normalized();

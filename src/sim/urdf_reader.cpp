@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <urdf_parser/urdf_parser.h>
 
+#include <algorithm>
 #include <limits>
 #include <mutex>
 #include <optional>
@@ -140,6 +141,9 @@ class Builder {
     add(*from.getRoot(), Eigen::Isometry3d::Identity(), 0, nullptr);
     check_masses();
     model_.notes = checked_.notes;
+    std::ranges::stable_sort(held_, {}, [this](const Held& held) {  // as in the file
+      return checked_.held.at(held.joint).line;
+    });
     for (const Held& held : held_) {
       model_.notes.push_back(describe(held));
     }

@@ -32,8 +32,8 @@ TrackingTask make_six_task(ToolOrientation orientation) {
 // A.10 with drives for the axes 4 and 6, as stiff for their inertia as that of axis 5.
 ArmDesign make_six_design() {
   ArmDesign design = kTableA10;
-  design.joints.insert(design.joints.begin() + 3, {{20000, 20000, 150}, {-3000, 3000}});
-  design.joints.push_back({{60, 100, 0.4}, {-300, 300}});
+  design.joints.insert(design.joints.begin() + 3, {{20000, 20000, 300}, {-3000, 3000}});
+  design.joints.push_back({{8, 20, 0.15}, {-300, 300}});
   return design;
 }
 
@@ -164,7 +164,9 @@ TEST(PoseTracking, TurnsAlongTheShortestWayWithThePath) {
 
 // The thesis's task ignores what ABB's arm can do: most of its cases ask for more speed.
 TEST(PathCheck, TheThesisAsksForMoreThanTheArmsSpeeds) {
-  const TrackingSetup setup(load_irb4600(), make_e6_task());
+  TrackingTask task = make_e6_task();
+  task.distance_limit_m = 0.9;  // of Q1
+  const TrackingSetup setup(load_irb4600(), task);
   int too_fast = 0;
   for (std::uint64_t number = 0; number < 20; ++number) {
     for (const PathFault& fault :
@@ -212,6 +214,7 @@ TEST(PathCheck, NamesPointAndJoint) {
   // A path that may not be violates nothing more than that.
   task.limits = LimitPolicy::enforce;
   robot.joints[0].speed_limit = 0.01;
+  its.points_m.back() = {1.4, -0.6, 0.9};
   const TrackingSetup setup(robot, task);
   EXPECT_THAT(setup.make_targets(its).unreachable, testing::HasSubstr("joint 1 ('joint_1')"));
 }

@@ -165,7 +165,8 @@ TEST(NumericKinematics, RefusesWhatTheJointsCannotDo) {
   const RobotModel three = make_arm(0);
   EXPECT_THAT(error_of(ErrorKind::bad_data,
                        [&] {
-                         NumericKinematics(three, make_tool(ToolOrientation::pose), {}, true);
+                         NumericKinematics(three, make_tool(ToolOrientation::pose), {}, true)
+                             .check_task(three);
                        }),
               testing::HasSubstr(
                   "move its tool in 3 independent directions at most, but task.orientation = "
