@@ -141,8 +141,10 @@ std::filesystem::path FolderOptions::choose(const std::string& name) const {
 
 void add_design_argument(CLI::App& command, std::string& design) {
   command
-      .add_option("DESIGN", design,
-                  "A design file, or the name of a shipped one (armwright list designs)")
+      .add_option(
+          "DESIGN", design,
+          "A design file, the name of a shipped one (armwright list designs), or \"start\":\n"
+          "where the problem's optimization starts")
       ->required();
 }
 

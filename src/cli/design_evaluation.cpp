@@ -52,6 +52,31 @@ LoadedProblem load_its_problem(const DesignFile& design, const std::string& prob
   return load_problem(published.problem, overrides);
 }
 
+DesignAndProblem load_design_and_problem(const std::string& design, const std::string& problem,
+                                         std::vector<std::string> overrides, bool quiet) {
+  constexpr std::string_view kStart = "start";
+  if (design != kStart) {
+    DesignFile file = load_design(design);
+    LoadedProblem loaded = load_its_problem(file, problem, std::move(overrides), quiet);
+    return {std::move(file), std::move(loaded)};
+  }
+  if (problem.empty()) {
+    throw Error(ErrorKind::usage,
+                "design 'start' is where a problem's optimization starts; name the problem with "
+                "--problem, or an arm of your own with --robot");
+  }
+  LoadedProblem loaded = load_problem(problem, overrides);
+  const TrackingConfig& config = require_tracking(loaded).config();
+  DesignFile file;
+  file.name = kStart;
+  file.title = fmt::format("Where {} starts", loaded.name);
+  for (const Joint& joint : config.robot.joints) {
+    file.joint_names.push_back(joint.name);
+  }
+  file.design = config.start;
+  return {std::move(file), std::move(loaded)};
+}
+
 ChosenCases choose_cases(const LoadedProblem& problem, const CaseOptions& options) {
   TestSet set = choose_set(problem, options);
   const auto usual = set.size().value_or(static_cast<std::uint64_t>(problem.sets.test_cases));

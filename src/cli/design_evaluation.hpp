@@ -20,6 +20,15 @@ ChosenCases choose_cases(const LoadedProblem& problem, const CaseOptions& option
 LoadedProblem load_its_problem(const DesignFile& design, const std::string& problem,
                                std::vector<std::string> overrides, bool quiet);
 
+// A design by name or path, and the problem to evaluate it under, as above. The name "start" is
+// where the problem's own optimization starts.
+struct DesignAndProblem {
+  DesignFile design;
+  LoadedProblem problem;
+};
+DesignAndProblem load_design_and_problem(const std::string& design, const std::string& problem,
+                                         std::vector<std::string> overrides, bool quiet);
+
 // Every case without a number, named with its reason on stderr (the first few of them).
 void report_failures(std::span<const CaseFailure> failures, const std::string& what);
 

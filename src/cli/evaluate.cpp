@@ -20,6 +20,7 @@
 #include "cli/table.hpp"
 #include "cli/terminal.hpp"
 #include "problems/design_file.hpp"
+#include "problems/path_survey.hpp"
 #include "study/store.hpp"
 
 namespace armwright {
@@ -31,6 +32,7 @@ constexpr const char* kEvaluateExamples = R"(Examples:
   armwright evaluate table-a10                     # a published design on the problem it was made for
   armwright evaluate results/q1-complex-ga-seed1/winner.toml --problem q1-complex --cases 100
   armwright evaluate table-a10 --problem q2-e6 --set task.load_kg=20 --json
+  armwright evaluate start --robot my.urdf         # what is proposed for an arm of your own, before any tuning
   armwright evaluate table-a5 --problem q1-complex --trajectory arm.csv --case 7
 
 Terms: a test case is a sequence of points the arm's tip has to follow; its error is the mean over the points of
@@ -188,9 +190,9 @@ int run_evaluate(const EvaluateOptions& options, Session& session) {
                 "only one of --json, --csv - and --trajectory - can have standard output");
   }
   const unsigned jobs = options.jobs.get();
-  DesignFile design = load_design(options.design);
-  LoadedProblem problem =
-      load_its_problem(design, options.problem, options.overrides.get(), options.quiet);
+  auto [design, problem] =
+      load_design_and_problem(options.design, options.overrides.choose_problem(options.problem),
+                              options.overrides.get(), options.quiet);
   const TrackingProblem& tracking = require_tracking(problem);
   tracking.check_design(design.design);
   ChosenCases cases = choose_cases(problem, options.cases);
@@ -200,6 +202,10 @@ int run_evaluate(const EvaluateOptions& options, Session& session) {
     traced = static_cast<std::uint64_t>(parse_count("--case", options.trajectory_case, 0, most));
   }
 
+  const std::vector<std::string> notes = check_paths(problem);
+  if (!options.quiet) {
+    std::ranges::for_each(notes, write_message);
+  }
   catch_signals(session.stop);
   ProgressBar bar(options.quiet, {"error", "m"});
   auto evaluation = evaluate_with_progress(tracking, design.design, cases, jobs, session.stop, bar,

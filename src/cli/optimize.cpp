@@ -252,10 +252,10 @@ void add_optimize(CLI::App& app, Session& session) {
   CLI::App* command =
       add_command(app, session, "optimize",
                   "Let an optimizer loose on a problem; resumes where it was", kOptimizeExamples);
-  command
-      ->add_option("PROBLEM", options->problem,
-                   "A problem file, or the name of a shipped one (armwright list problems); not\n"
-                   "needed with --robot");
+  command->add_option(
+      "PROBLEM", options->problem,
+      "A problem file, or the name of a shipped one (armwright list problems); not\n"
+      "needed with --robot");
   command
       ->add_option("--optimizer,-o", options->optimizer,
                    "Who optimizes (armwright list optimizers; default: the problem's)")

@@ -273,9 +273,9 @@ VerifyMatrix choose_matrix(const VerifyOptions& options, const VerifySetting& ow
 
 int run_verify(const VerifyOptions& options, Session& session) {
   const unsigned jobs = options.jobs.get();
-  const DesignFile design = load_design(options.design);
-  const LoadedProblem base =
-      load_its_problem(design, options.problem, options.overrides.get(), options.quiet);
+  const std::string named = options.overrides.choose_problem(options.problem);
+  const auto [design, base] =
+      load_design_and_problem(options.design, named, options.overrides.get(), options.quiet);
   const TrackingProblem& tracking = require_tracking(base);
   tracking.check_design(design.design);
   ChosenCases cases = choose_cases(base, options.cases);
@@ -290,7 +290,7 @@ int run_verify(const VerifyOptions& options, Session& session) {
   std::vector<LoadedProblem> problems;
   for (const VerifySetting& setting : settings) {
     overrides.push_back(list_overrides(options, setting, tracking.config()));
-    problems.push_back(load_its_problem(design, options.problem, overrides.back(), true));
+    problems.push_back(load_its_problem(design, named, overrides.back(), true));
   }
 
   catch_signals(session.stop);

@@ -55,8 +55,8 @@ TestCase make_points(const ConfigTable& table) {
   for (const ConfigTable& point : points) {
     path.points_m.push_back(read_vector(point, "position_m", kAnyPlace, "x, y and z in metres"));
     if (point.has("rpy_rad")) {
-      path.turns.emplace_back(make_turn(read_vector(point, "rpy_rad", {.lower = -7, .upper = 7},
-                                                    "roll, pitch and yaw in rad")));
+      path.turns.emplace_back(make_turn(
+          read_vector(point, "rpy_rad", {.lower = -7, .upper = 7}, "roll, pitch and yaw in rad")));
     }
   }
   if (!path.turns.empty() && path.turns.size() != path.points_m.size()) {
@@ -114,10 +114,9 @@ TestCase make_circle(const ConfigTable& table, const TrackingTask& task) {
   TestCase path;
   path.continuous = true;
   for (int step = 0; step <= static_cast<int>(steps); ++step) {
-    const double angle_rad =
-        signal.calc_distance(step * task.control_period_s) / radius_m;
-    path.points_m.push_back(centre_m + radius_m * (std::cos(angle_rad) * first +
-                                                   std::sin(angle_rad) * second));
+    const double angle_rad = signal.calc_distance(step * task.control_period_s) / radius_m;
+    path.points_m.push_back(
+        centre_m + radius_m * (std::cos(angle_rad) * first + std::sin(angle_rad) * second));
   }
   add_rest(task, path);
   return path;
@@ -185,7 +184,8 @@ Columns read_columns(const std::vector<std::string>& names, const std::string& w
   find_turn({"qw", "qx", "qy", "qz"});
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (!used[i]) {
-      fail(fmt::format("there is an unknown column '{}'", sanitize(std::string_view(names[i]).substr(0, 40))));
+      fail(fmt::format("there is an unknown column '{}'",
+                       sanitize(std::string_view(names[i]).substr(0, 40))));
     }
   }
   return columns;
@@ -197,9 +197,9 @@ std::vector<std::string> split_line(std::string_view line) {
     const std::size_t comma = line.find(',');
     std::string_view field = line.substr(0, comma);
     const std::size_t first = field.find_first_not_of(" \t");
-    field = first == std::string_view::npos ? std::string_view()
-                                            : field.substr(first, field.find_last_not_of(" \t\r") -
-                                                                      first + 1);
+    field = first == std::string_view::npos
+                ? std::string_view()
+                : field.substr(first, field.find_last_not_of(" \t\r") - first + 1);
     fields.emplace_back(field);
     if (comma == std::string_view::npos) {
       return fields;
@@ -215,15 +215,15 @@ Row read_row(const std::vector<double>& numbers, const Columns& columns, const s
     row.place_m[static_cast<Eigen::Index>(i)] = numbers[columns.place[i]];
   }
   if (row.place_m.cwiseAbs().maxCoeff() > kAnyPlace.upper) {
-    throw Error(ErrorKind::bad_data,
-                fmt::format("{}: the place ({:g}, {:g}, {:g}) m is too far away; positions are in "
-                            "metres, at most {:g}",
-                            where, row.place_m.x(), row.place_m.y(), row.place_m.z(),
-                            kAnyPlace.upper));
+    throw Error(
+        ErrorKind::bad_data,
+        fmt::format("{}: the place ({:g}, {:g}, {:g}) m is too far away; positions are in "
+                    "metres, at most {:g}",
+                    where, row.place_m.x(), row.place_m.y(), row.place_m.z(), kAnyPlace.upper));
   }
   if (columns.turn.size() == 3) {
-    row.turn = Eigen::Quaterniond(make_turn({numbers[columns.turn[0]], numbers[columns.turn[1]],
-                                             numbers[columns.turn[2]]}));
+    row.turn = Eigen::Quaterniond(
+        make_turn({numbers[columns.turn[0]], numbers[columns.turn[1]], numbers[columns.turn[2]]}));
   } else if (columns.turn.size() == 4) {
     row.turn = Eigen::Quaterniond(numbers[columns.turn[0]], numbers[columns.turn[1]],
                                   numbers[columns.turn[2]], numbers[columns.turn[3]]);
@@ -264,7 +264,8 @@ std::vector<Row> read_rows(std::string_view text, const std::string& name, Colum
       const auto number = parse_finite(field);
       if (!number) {
         throw Error(ErrorKind::bad_data,
-                    fmt::format("{}: '{}' is not a finite number", where, sanitize(std::string_view(field).substr(0, 40))));
+                    fmt::format("{}: '{}' is not a finite number", where,
+                                sanitize(std::string_view(field).substr(0, 40))));
       }
       numbers.push_back(*number);
     }
@@ -282,7 +283,8 @@ std::vector<Row> read_rows(std::string_view text, const std::string& name, Colum
     }
     rows.push_back(row);
     if (rows.size() > kMostPathPoints) {
-      throw Error(ErrorKind::bad_data, fmt::format("{}: more than {} rows", where, kMostPathPoints));
+      throw Error(ErrorKind::bad_data,
+                  fmt::format("{}: more than {} rows", where, kMostPathPoints));
     }
   }
   if (rows.size() < 2) {

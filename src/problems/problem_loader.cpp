@@ -78,7 +78,8 @@ SweepPlan read_sweep(const ConfigTable& table, const TrackingProblem& problem) {
   return sweep;
 }
 
-// The file's own, unless it gives another; "{robot}" in that stands for the name of the URDF's file.
+// The file's own, unless it gives another; "{robot}" in that stands for the name of the URDF's
+// file.
 std::string read_name(const ConfigTable& table, const std::filesystem::path& path) {
   constexpr std::string_view kRobot = "{robot}";
   std::string name = table.get_string("name", path.stem().string());

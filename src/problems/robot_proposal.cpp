@@ -87,8 +87,9 @@ class Proposer {
     }
     for (const char* key : {"home", "tool_rpy_rad"}) {
       if (task_table_.has(key)) {
-        task_table_.refuse(key, "it belongs to a workspace of your own; give workspace.centre_m "
-                                "and workspace.radius_m, or leave it out");
+        task_table_.refuse(key,
+                           "it belongs to a workspace of your own; give workspace.centre_m "
+                           "and workspace.radius_m, or leave it out");
       }
     }
     TrackingTask& task = config_.task;

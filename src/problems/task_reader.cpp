@@ -13,15 +13,13 @@ namespace {
 template <class Enum>
 Enum read_enum(const ConfigTable& table, std::string_view key,
                const std::vector<std::string>& names, Enum fallback) {
-  const std::string name =
-      table.get_choice(key, names, names[static_cast<std::size_t>(fallback)]);
+  const std::string name = table.get_choice(key, names, names[static_cast<std::size_t>(fallback)]);
   return static_cast<Enum>(std::ranges::find(names, name) - names.begin());
 }
 
 ToolTask read_tool(const ConfigTable& table) {
   ToolTask tool;
-  tool.orientation =
-      read_enum(table, "orientation", tool_orientation_names(), tool.orientation);
+  tool.orientation = read_enum(table, "orientation", tool_orientation_names(), tool.orientation);
   if (table.has("tool_rpy_rad")) {
     tool.turn = make_turn(read_vector(table, "tool_rpy_rad", {.lower = -7, .upper = 7},
                                       "roll, pitch and yaw in rad"));
@@ -29,8 +27,7 @@ ToolTask read_tool(const ConfigTable& table) {
   if (table.has("tool_axis")) {
     tool.axis = read_direction(table, "tool_axis");
   }
-  tool.arm_m =
-      table.get_number_or("orientation_arm_m", tool.arm_m, {.lower = 1e-3, .upper = 100});
+  tool.arm_m = table.get_number_or("orientation_arm_m", tool.arm_m, {.lower = 1e-3, .upper = 100});
   return tool;
 }
 
@@ -116,8 +113,7 @@ WorkspaceSphere read_workspace(const ConfigTable& table) {
 
 void check_length(const ConfigTable& table, const ConfigTable& control,
                   const TrackingConfig& config) {
-  const double periods =
-      calc_case_duration_s(config, config.task) / config.task.control_period_s;
+  const double periods = calc_case_duration_s(config, config.task) / config.task.control_period_s;
   if (periods > kMostPeriods) {
     const std::string must = fmt::format(
         "a test case would take {:.3g} control periods, possible are {:.3g}; raise "

@@ -20,6 +20,7 @@ Eigen::Vector3d read_vector(const ConfigTable& table, std::string_view key, Rang
 Eigen::Vector3d read_direction(const ConfigTable& table, std::string_view key);
 
 // Numbers that are each allowed, but together make a case that no memory holds.
-void check_length(const ConfigTable& table, const ConfigTable& control, const TrackingConfig& config);
+void check_length(const ConfigTable& table, const ConfigTable& control,
+                  const TrackingConfig& config);
 
 }  // namespace armwright

@@ -28,8 +28,8 @@ struct TrackingConfig {
   TrackingTask task;
   WorkspaceSphere workspace;
   std::optional<TestCase> path;  // in place of cases generated in the workspace
-  EnginePair engines;           // both must be there (choose_engines)
-  double cutoff_error_m = 1.0;  // training only
+  EnginePair engines;            // both must be there (choose_engines)
+  double cutoff_error_m = 1.0;   // training only
   TrackingObjective objective;
   Perturbation perturbation;
   ArmDesign start;

@@ -70,24 +70,31 @@ bool has_duration_metric(const TrackingConfig& config) {
   return config.objective.duration_weight > 0 || changes_speed(config);
 }
 
-double calc_case_duration_s(const TrackingConfig& config, const TrackingTask& task) {
-  const WorkspaceSphere& sphere = config.workspace;
-  double duration_s = 0;
+std::vector<double> list_moves_m(const TrackingConfig& config) {
+  std::vector<double> moves_m;
   if (config.path && config.path->continuous) {
-    return static_cast<double>(config.path->points_m.size() - 1) * task.control_period_s;
+    return moves_m;
   }
   if (config.path) {
     const auto& points_m = config.path->points_m;
     for (std::size_t k = 1; k < points_m.size(); ++k) {
-      duration_s += std::max((points_m[k] - points_m[k - 1]).norm(), task.distance_limit_m) /
-                        task.speed_m_per_s +
-                    task.rest_s;
+      moves_m.push_back((points_m[k] - points_m[k - 1]).norm());
     }
-    return duration_s;
+    return moves_m;
   }
-  for (int k = 1; k <= sphere.points; ++k) {
-    duration_s +=
-        std::max(sphere.calc_move_m(k), task.distance_limit_m) / task.speed_m_per_s + task.rest_s;
+  for (int k = 1; k <= config.workspace.points; ++k) {
+    moves_m.push_back(config.workspace.calc_move_m(k));
+  }
+  return moves_m;
+}
+
+double calc_case_duration_s(const TrackingConfig& config, const TrackingTask& task) {
+  double duration_s = 0;
+  if (config.path && config.path->continuous) {
+    return static_cast<double>(config.path->points_m.size() - 1) * task.control_period_s;
+  }
+  for (const double move_m : list_moves_m(config)) {
+    duration_s += std::max(move_m, task.distance_limit_m) / task.speed_m_per_s + task.rest_s;
   }
   return duration_s;
 }

@@ -11,6 +11,8 @@ namespace armwright {
 double& get_parameter(ArmDesign& design, const DesignParameter& parameter);
 
 // How long a generated case takes (s), up to the rounding of each move to whole control periods.
+// How far the tip moves to each point of a case; nothing of a continuous path, which has no moves.
+std::vector<double> list_moves_m(const TrackingConfig& config);
 double calc_case_duration_s(const TrackingConfig& config, const TrackingTask& task);
 
 bool is_effort(const DesignParameter& parameter);  // one of the two limits

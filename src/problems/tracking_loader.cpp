@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/hash.hpp"
+#include "base/text.hpp"
 #include "problems/config_files.hpp"
 #include "problems/design_file.hpp"
 #include "problems/objective_reader.hpp"
@@ -54,14 +55,27 @@ void apply_controller(const ConfigTable& control, TrackingConfig& config) {
   config.task.feed_forward = find_controller(config.start.controller).feed_forward;
 }
 
+// What is wrong with a robot is wrong with its file.
+template <class Call>
+auto name_file(const std::filesystem::path& urdf, const Call& call) {
+  try {
+    return call();
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::bad_data) {
+      throw;
+    }
+    throw Error(ErrorKind::bad_data, fmt::format("{}: {}", sanitize(urdf.string()), error.what()));
+  }
+}
+
 std::shared_ptr<const TrackingProblem> make_tracking(TrackingConfig config,
                                                      const ConfigTable& variables,
                                                      const std::filesystem::path& urdf) {
   try {
-    return std::make_shared<TrackingProblem>(std::move(config));
+    return name_file(urdf, [&] { return std::make_shared<TrackingProblem>(std::move(config)); });
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::usage) {
-      throw Error(error.kind(), fmt::format("{}: {}", urdf.string(), error.what()));
+      throw;
     }
     variables.refuse("start", error.what());
   }
@@ -141,7 +155,8 @@ std::vector<std::string> load_tracking(const ConfigTable& table, std::span<const
   const ConfigTable control = table.get_table_or_empty("control");
   config.task = read_task(task, physics, control);
   config.workspace = read_workspace(table.get_table_or_empty("workspace"));
-  std::vector<std::string> proposed = read_path_and_proposal(table, config, loaded);
+  std::vector<std::string> proposed =
+      name_file(urdf, [&] { return read_path_and_proposal(table, config, loaded); });
   check_length(task, control, config);
   config.objective = read_objective(table.get_table_or_empty("objective"));
   config.cutoff_error_m = table.get_table_or_empty("training")
@@ -150,7 +165,7 @@ std::vector<std::string> load_tracking(const ConfigTable& table, std::span<const
 
   const ConfigTable variables = table.get_table("variables");
   if (variables.get_string("start") == kProposedStart) {
-    config.start = propose_start(config);
+    config.start = name_file(urdf, [&] { return propose_start(config); });
   } else {
     const auto start = resolve_named(variables, "start", "designs");
     config.start = load_design(start.string()).design;

@@ -42,9 +42,10 @@ struct WorkspaceProposal {
 WorkspaceProposal propose_workspace(const RobotModel& robot, const ToolTask& tool,
                                     WorkspaceSphere sphere);
 
-// Of a task in which all but the speed is settled, on moves that rest at their ends. Error{bad_data}
-// names the joint that cannot even hold the arm.
-double propose_speed(const RobotModel& robot, TrackingTask task, const std::vector<TestCase>& cases);
+// Of a task in which all but the speed is settled, on moves that rest at their ends.
+// Error{bad_data} names the joint that cannot even hold the arm.
+double propose_speed(const RobotModel& robot, TrackingTask task,
+                     const std::vector<TestCase>& cases);
 
 // A PID for each joint.
 ArmDesign propose_design(const RobotModel& robot, TrackingTask task,

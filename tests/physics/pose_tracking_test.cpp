@@ -131,9 +131,9 @@ TEST(PoseTracking, TheErrorSeesJointsThatOnlyTurnTheTool) {
     return engine->simulate(setup, std::vector{make_job(design, targets)}).front().mean_error_m;
   };
   const ArmDesign design = make_six_design();
-  EXPECT_NEAR(calc_error(ToolOrientation::pointing, loose) /
-                  calc_error(ToolOrientation::pointing, design),
-              1, 0.1);
+  EXPECT_NEAR(
+      calc_error(ToolOrientation::pointing, loose) / calc_error(ToolOrientation::pointing, design),
+      1, 0.1);
   EXPECT_GT(calc_error(ToolOrientation::pose, loose),
             20 * calc_error(ToolOrientation::pose, design));
 }
@@ -238,8 +238,7 @@ TEST(ContinuousPath, EverySampleCounts) {
     const TargetTable targets = setup.make_targets(its);
     ASSERT_EQ(targets.unreachable, "");
     ASSERT_EQ(targets.steps, 200);
-    const auto result =
-        engine->simulate(setup, std::vector{make_job(kTableA10, targets)}).front();
+    const auto result = engine->simulate(setup, std::vector{make_job(kTableA10, targets)}).front();
     ASSERT_EQ(result.point_error_m.size(), 200U);
     errors.push_back(result.mean_error_m);
     const auto ode =

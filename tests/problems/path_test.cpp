@@ -175,10 +175,10 @@ TEST(PathSurvey, SaysWhatTheJointsCannotDo) {
   const std::string refused = error_of(ErrorKind::bad_data, [&] { check("enforce"); });
   EXPECT_THAT(refused, testing::AllOf(testing::HasSubstr("lower task.speed_m_per_s"),
                                       testing::HasSubstr("joint 1 ('joint_1')")));
-  EXPECT_THAT(check_paths(folder.load(
-                  "p.toml", std::vector<std::string>{"task.limits=enforce",
-                                                     "task.speed_m_per_s=0.3"})),
-              testing::IsEmpty());
+  EXPECT_THAT(
+      check_paths(folder.load(
+          "p.toml", std::vector<std::string>{"task.limits=enforce", "task.speed_m_per_s=0.3"})),
+      testing::IsEmpty());
 }
 
 }  // namespace

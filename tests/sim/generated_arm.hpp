@@ -20,12 +20,11 @@ inline std::string make_arm_urdf(int number) {
   const int joints = 3 + number % 5;
   // Like most arms: a turning base, a shoulder, an elbow, then rolls and bends.
   const std::vector<std::string> axes =
-      joints == 7 ? std::vector<std::string>{"0 0 1", "0 1 0", "0 0 1", "0 1 0",
-                                             "0 0 1", "0 1 0", "0 0 1"}
-                  : std::vector<std::string>{"0 0 1", "0 1 0", "0 1 0", "0 0 1", "0 1 0", "0 0 1"};
+      joints == 7
+          ? std::vector<std::string>{"0 0 1", "0 1 0", "0 0 1", "0 1 0", "0 0 1", "0 1 0", "0 0 1"}
+          : std::vector<std::string>{"0 0 1", "0 1 0", "0 1 0", "0 0 1", "0 1 0", "0 0 1"};
   const double size = random.uniform(0.5, 1.5);
-  std::string urdf =
-      fmt::format("<robot name=\"arm_{}\">\n  <link name=\"base\"/>\n", number);
+  std::string urdf = fmt::format("<robot name=\"arm_{}\">\n  <link name=\"base\"/>\n", number);
   std::string parent = "base";
   double length_m = 0.3 * size;
   for (int i = 0; i < joints; ++i) {

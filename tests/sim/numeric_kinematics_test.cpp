@@ -163,15 +163,18 @@ TEST(NumericKinematics, FarAwayIsOutOfReach) {
 
 TEST(NumericKinematics, RefusesWhatTheJointsCannotDo) {
   const RobotModel three = make_arm(0);
-  EXPECT_THAT(error_of(ErrorKind::bad_data,
-                       [&] {
-                         NumericKinematics(three, make_tool(ToolOrientation::pose), {}, true)
-                             .check_task(three);
-                       }),
-              testing::HasSubstr(
-                  "move its tool in 3 independent directions at most, but task.orientation = "
-                  "\"pose\" is about the position and orientation of the tool, 6 in all"));
-  EXPECT_THAT(usage_error_of([&] { NumericKinematics(three, {}, {0.0, 0.0}, true); }),
+  EXPECT_THAT(
+      error_of(
+          ErrorKind::bad_data,
+          [&] {
+            NumericKinematics(three, make_tool(ToolOrientation::pose), {}, true).check_task(three);
+          }),
+      testing::HasSubstr(
+          "move its tool in 3 independent directions at most, but task.orientation = "
+          "\"pose\" is about the position and orientation of the tool, 6 in all"));
+  EXPECT_THAT(usage_error_of([&] {
+                NumericKinematics(three, {}, {0.0, 0.0}, true);
+              }),
               testing::HasSubstr("task.home has 2 positions for the 3 joints"));
 }
 

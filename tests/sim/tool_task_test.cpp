@@ -64,8 +64,7 @@ TEST(ToolTask, RollPitchYawThereAndBack) {
   const Eigen::Vector3d up(0, -std::numbers::pi / 2, 0.7);
   EXPECT_LT((make_turn(calc_rpy(make_turn(up))) - make_turn(up)).norm(), 1e-9);
   // Rz Ry Rx: roll first, about the fixed x axis.
-  EXPECT_LT((make_turn({std::numbers::pi / 2, 0, std::numbers::pi / 2}) *
-                 Eigen::Vector3d(0, 1, 0) -
+  EXPECT_LT((make_turn({std::numbers::pi / 2, 0, std::numbers::pi / 2}) * Eigen::Vector3d(0, 1, 0) -
              Eigen::Vector3d(0, 0, 1))
                 .norm(),
             1e-15);

@@ -1,5 +1,6 @@
 #include "report/page/distance_response.hpp"
 
+#include "problems/tracking_description.hpp"
 #include "report/page/page_json.hpp"
 
 namespace armwright {
@@ -10,7 +11,7 @@ json make_response_series(const TrackingProblem& problem, const std::string& nam
                           std::span<const TrackingResult> results,
                           const std::optional<double>& published_mean_m,
                           const std::string& command) {
-  const auto points = static_cast<std::size_t>(problem.config().workspace.points);
+  const std::size_t points = list_moves_m(problem.config()).size();
   return make_response_series({name, command}, get_case_errors(results),
                               calc_point_statistics(results, points), published_mean_m);
 }
@@ -31,18 +32,16 @@ json make_response_series(const SeriesText& text, std::span<const double> case_e
 }
 
 json make_distance_response(const TrackingProblem& problem, const ResponseText& text, json series) {
-  const WorkspaceSphere& workspace = problem.config().workspace;
-  json distances = json::array();
+  const std::vector<double> distances = list_moves_m(problem.config());
   json counted = json::array();
-  for (int k = 1; k <= workspace.points; ++k) {
-    distances.push_back(workspace.calc_move_m(k));
-    counted.push_back(k > 1 || problem.config().task.count_first_point);
+  for (std::size_t k = 0; k < distances.size(); ++k) {
+    counted.push_back(k > 0 || problem.config().task.count_first_point);
   }
   return {{"id", text.id},
           {"title", text.title},
           {"thesis", text.thesis},
           {"remark", text.remark},
-          {"distances_m", std::move(distances)},
+          {"distances_m", distances},
           {"counted", std::move(counted)},
           {"series", std::move(series)}};
 }
