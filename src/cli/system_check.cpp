@@ -99,7 +99,7 @@ void check_page(Checks& checks) {
     checks.push_back({"reports", "meshes of robots", CheckState::good, "Assimp is built in"});
   } else {
     checks.push_back({"reports", "meshes of robots", CheckState::lacking,
-                      "not in this build: replays show plain shapes",
+                      "not in this build: replays show plain shapes, meshes give no mass",
                       advise_build("libassimp-dev", "ARMWRIGHT_WITH_ASSIMP")});
   }
 }

@@ -15,7 +15,7 @@ using nlohmann::json;
 
 constexpr std::size_t kMostGenerations = 1000;
 constexpr std::size_t kMostBlocks = 400;
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
 // Of a feasible evaluation the scalar objective, otherwise nothing.
 std::optional<double> get_value(const ProblemDescription& problem, const EvaluationRecord& record) {
@@ -50,7 +50,7 @@ std::vector<EvaluationRecord> read_part(const RecordedRun& run, const HistoryPar
 }
 
 struct PartSummary {
-  double best = kNone, mean = kNone, worst = kNone;
+  double best = kNoValue, mean = kNoValue, worst = kNoValue;
   std::uint64_t failed = 0;
 };
 
@@ -68,7 +68,7 @@ PartSummary summarize_part(const ProblemDescription& problem,
       ++count;
     }
   }
-  summary.mean = count > 0 ? sum / count : kNone;
+  summary.mean = count > 0 ? sum / count : kNoValue;
   return summary;
 }
 

@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMostProblems = 4;
+constexpr std::size_t kMostProblemsShown = 4;
 constexpr std::size_t kMostDesigns = 6;
 constexpr std::size_t kMostGroups = 3;                    // with arms or targets of their own
 constexpr std::size_t kMostBytes = std::size_t{3} << 20;  // of all replays
@@ -127,7 +127,7 @@ json make_study_replays(const StudyPlan& plan, const StudyResult& result,
                         const std::filesystem::path& folder, std::span<const std::string> cases,
                         PageSimulator& simulator, json& robots, std::vector<std::string>& notes) {
   std::vector<std::size_t> shown;
-  for (std::size_t p = 0; p < plan.problems.size() && shown.size() < kMostProblems; ++p) {
+  for (std::size_t p = 0; p < plan.problems.size() && shown.size() < kMostProblemsShown; ++p) {
     if (plan.problems[p].loaded.tracking) {
       shown.push_back(p);
     }

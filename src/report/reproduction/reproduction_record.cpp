@@ -24,7 +24,7 @@ using nlohmann::json;
 constexpr const char* kRecordFile = "reproduction.json";
 constexpr std::size_t kRecordLimit_bytes = std::size_t{256} << 20;
 constexpr int kRecordFormat = 1;
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 // In the order of ReproductionPart::Kind.
 const std::vector<std::string>& kind_names() {
@@ -35,7 +35,7 @@ const std::vector<std::string>& kind_names() {
 std::vector<double> numbers_from_json(const json& list) {
   std::vector<double> numbers;
   for (const json& number : list) {
-    numbers.push_back(number.is_null() ? kNone : number.get<double>());
+    numbers.push_back(number.is_null() ? kNoNumber : number.get<double>());
   }
   return numbers;
 }
