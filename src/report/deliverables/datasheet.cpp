@@ -102,19 +102,20 @@ std::optional<double> find_metric(const RunResult& result, const Evaluation& eva
 }
 
 std::string format_metric(const RunResult& result, const Evaluation& evaluation,
-                          std::string_view name, double factor = 1) {
+                          std::string_view name) {
   const auto value = find_metric(result, evaluation, name);
-  return value ? fmt::format("{:.6g}", factor * *value) : kUnknown;
+  return value ? fmt::format("{:.6g}", *value) : kUnknown;
 }
 
 std::string make_results(const FinishedArm& arm) {
   const RunResult& result = arm.result();
   const std::vector<std::string> heads = {"Errors in mm", "cases",    "mean",     "median",
-                                          "95 % below",   "worst",    "failures", "no number",
+                                          "95 %",         "worst",    "failures", "no number",
                                           "energy J",     "clamped %"};
   std::vector<std::vector<HtmlCell>> rows;
   const auto add = [&](const std::string& name, const Evaluation& evaluation) {
     const ErrorSummary summary = summarize(evaluation.case_errors, get_failure_error(result));
+    const auto clamped = find_metric(result, evaluation, "saturated_share");
     rows.push_back({{name},
                     {fmt::format("{}", summary.cases)},
                     {format_mm(summary.mean)},
@@ -124,13 +125,14 @@ std::string make_results(const FinishedArm& arm) {
                     {fmt::format("{}", summary.failures)},
                     {fmt::format("{}", summary.without_number)},
                     {format_metric(result, evaluation, "energy")},
-                    {format_metric(result, evaluation, "saturated_share", 100)}});
+                    {clamped ? fmt::format("{:.3g}", 100 * *clamped) : kUnknown}});
   };
   add("test: " + sanitize(result.test_set), result.test);
   add("validation: " + sanitize(arm.run.problem->sets.validation), arm.winner().validation);
   std::string html = make_table(heads, rows);
   html += fmt::format(
-      "<p>A case fails with an error above {:.4g} mm or without a number. Energy is the positive "
+      "<p>95 % of the cases are below the error named so; one fails with an error above {:.4g} mm "
+      "or without a number. Energy is the positive "
       "work of all joints, clamped the share of control periods that ask for more effort than the "
       "limits allow: means over the cases. Total torque, the sum of each joint's larger limit: "
       "{:.6g} {}.</p>\n",

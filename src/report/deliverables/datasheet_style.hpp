@@ -19,7 +19,7 @@ dd { margin: 0; overflow: hidden; text-overflow: ellipsis; white-space: nowrap; 
 table { width: 100%; border-collapse: collapse; table-layout: fixed; font-size: 7.6pt; }
 th, td { padding: .25mm .8mm; border-bottom: .1mm solid #bbb; overflow: hidden; text-overflow: ellipsis; white-space: nowrap; }
 th { font-weight: normal; color: #444; text-align: left; }
-tr:first-child th { font-weight: bold; color: #111; border-bottom: .2mm solid #111; text-align: right; }
+tr:first-child th { font-size: 7pt; font-weight: bold; color: #111; border-bottom: .2mm solid #111; text-align: right; }
 tr:first-child th:first-child { text-align: left; }
 th:first-child { width: 34mm; }
 td { text-align: right; font-variant-numeric: tabular-nums; }

@@ -70,13 +70,14 @@ void check_links(const FinishedArm& arm) {
     if (joint.length_scale != 1 || joint.section_scale != 1) {
       throw Error(
           ErrorKind::usage,
-          fmt::format("the winner has other links than the robot's URDF (the one that {} moves: "
-                      "length x {:.6g}, section x {:.6g}), and the export leaves links and meshes "
-                      "as they are: change them in CAD, with winner.toml's scales, and optimize "
-                      "the controllers of the new robot; ros2-control and datasheet can be "
-                      "exported",
-                      sanitize(arm.config().robot.joints[i].name), joint.length_scale,
-                      joint.section_scale));
+          fmt::format(
+              "{}: the winner has other links than the robot's URDF (the one that {} moves: "
+              "length x {:.6g}, section x {:.6g}), and the export leaves links and meshes "
+              "as they are: change them in CAD, with winner.toml's scales, and optimize "
+              "the controllers of the new robot; ros2-control and datasheet can be "
+              "exported",
+              sanitize(arm.run.folder.string()), sanitize(arm.config().robot.joints[i].name),
+              joint.length_scale, joint.section_scale));
     }
   }
 }

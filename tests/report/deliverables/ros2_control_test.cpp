@@ -67,11 +67,12 @@ TEST_F(Ros2Control, HumbleHasOneClampOfTheLargerLimitAndIsToldOfJointsWithoutEnd
                               "        p: 1.0\n        i: 2.0\n        d: 3.0\n"
                               "        i_clamp: 5.0\n        ff_velocity_scale: 0.0\n"
                               "        angle_wraparound: false\n"));
-  EXPECT_THAT(text, HasSubstr("\n      \"turret\":  # turns: p in N m/rad, i in N m/(rad s), d in N "
-                              "m s/rad; effort -7 to 6 N m\n"
-                              "        p: 0.5\n        i: 0.0\n        d: 0.0\n"
-                              "        i_clamp: 7.0\n        ff_velocity_scale: 0.0\n"
-                              "        angle_wraparound: true\n"));
+  EXPECT_THAT(text,
+              HasSubstr("\n      \"turret\":  # turns: p in N m/rad, i in N m/(rad s), d in N "
+                        "m s/rad; effort -7 to 6 N m\n"
+                        "        p: 0.5\n        i: 0.0\n        d: 0.0\n"
+                        "        i_clamp: 7.0\n        ff_velocity_scale: 0.0\n"
+                        "        angle_wraparound: true\n"));
   EXPECT_THAT(text, HasSubstr("        i_clamp: 3.0\n        ff_velocity_scale: 0.0\n"
                               "        angle_wraparound: false\n"));
   EXPECT_THAT(text, AllOf(HasSubstr("does not clamp a command"), Not(HasSubstr("u_clamp_max:")),
@@ -94,9 +95,9 @@ TEST_F(Ros2Control, KiltedHasBothLimitsOfTheIntegral) {
 }
 
 TEST_F(Ros2Control, TheUpdateRateIsThePeriodsInverse) {
-  for (const auto& [period_s, line] : {std::pair{0.01, "    update_rate: 100 "},
-                                       std::pair{0.001, "    update_rate: 1000 "},
-                                       std::pair{1.0 / 3, "    update_rate: 3 "}}) {
+  for (const auto& [period_s, line] :
+       {std::pair{0.01, "    update_rate: 100 "}, std::pair{0.001, "    update_rate: 1000 "},
+        std::pair{1.0 / 3, "    update_rate: 3 "}}) {
     period_s_ = period_s;
     EXPECT_THAT(make(kJazzy), HasSubstr(line));
   }
