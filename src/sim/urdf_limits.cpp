@@ -38,7 +38,7 @@ class Tags {
       } else if (rest.starts_with("<![CDATA[")) {
         at_ = xml_.find("]]>", at_) + 3;
       } else if (rest.starts_with("<?")) {
-        at_ = xml_.find("?>", at_) + 2;
+        at_ = xml_.find("?>", at_ + 2) + 2;
       } else {
         return read();
       }

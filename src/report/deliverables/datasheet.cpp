@@ -18,11 +18,10 @@
 namespace armwright {
 namespace {
 
-constexpr double kMillimetres = 1000;  // in a metre
 constexpr const char* kUnknown = "\u2013";
 
 std::string format_mm(const std::optional<double>& metres) {
-  return metres ? fmt::format("{:.4g}", kMillimetres * *metres) : kUnknown;
+  return metres ? fmt::format("{:.4g}", kMillimetresPerMetre * *metres) : kUnknown;
 }
 
 // ---- Robot, task, optimization -----------------------------------------------------------------
@@ -41,7 +40,7 @@ std::string make_robot_facts(const FinishedArm& arm) {
       {"Load", fmt::format("{:.5g} kg", config.task.load_kg)},
       {"Links", is_stretched(arm.design) ? "other than the URDF's (see winner.toml)" : ""},
       {"URDF", sanitize(arm.run.find_urdf().filename().string())}};
-  return make_facts(facts);
+  return make_fact_list(facts);
 }
 
 std::string make_task_facts(const FinishedArm& arm) {
@@ -63,7 +62,7 @@ std::string make_task_facts(const FinishedArm& arm) {
                       ? config.engines.judging_name
                       : fmt::format("{}, judged by {}", config.engines.training_name,
                                     config.engines.judging_name)}};
-  return make_facts(facts);
+  return make_fact_list(facts);
 }
 
 std::string make_run_facts_of(const FinishedArm& arm) {
@@ -76,7 +75,7 @@ std::string make_run_facts_of(const FinishedArm& arm) {
       {"Designs tried", fmt::format("{}", result.counts.evaluations)},
       {"Cases", to_text(arm.run.schedule)},
       {"Ended by", sanitize(result.end_reason)}};
-  return make_facts(facts);
+  return make_fact_list(facts);
 }
 
 // "N m/rad", or of an arm that has joints of both kinds "N m/rad; slides: N/m".
@@ -136,7 +135,7 @@ std::string make_results(const FinishedArm& arm) {
       "work of all joints, clamped the share of control periods that ask for more effort than the "
       "limits allow: means over the cases. Total torque, the sum of each joint's larger limit: "
       "{:.6g} {}.</p>\n",
-      kMillimetres * get_failure_error(result), calc_total_torque_n_m(arm.design),
+      kMillimetresPerMetre * get_failure_error(result), calc_total_torque_n_m(arm.design),
       escape_html(list_units(arm.config().robot, "N m")));
   return html;
 }

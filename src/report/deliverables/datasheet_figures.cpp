@@ -14,8 +14,6 @@
 namespace armwright {
 namespace {
 
-constexpr double kMillimetresPerMetre = 1000;
-
 // A case is a step of its share; cases without a number are missing at the top.
 LineFigure make_spread(const FinishedArm& arm) {
   LineFigure figure{"of the test cases have an error below", "error in mm", "%", {}};
@@ -49,7 +47,7 @@ std::size_t find_column(const std::vector<std::string>& heads, std::string_view 
 }
 
 // As many points as the eye can tell apart: of each stretch of time its largest error.
-std::vector<FigurePoint> thin_out(const std::vector<FigurePoint>& points) {
+std::vector<FigurePoint> keep_peaks(const std::vector<FigurePoint>& points) {
   constexpr std::size_t kPoints = 400;
   const std::size_t stretch = (points.size() + kPoints - 1) / kPoints;
   std::vector<FigurePoint> thinned;
@@ -89,7 +87,7 @@ LineFigure make_first_case(const FinishedArm& arm) {
     }
     figure.points.push_back({*time_s, kMillimetresPerMetre * *error_m});
   }
-  figure.points = thin_out(figure.points);
+  figure.points = keep_peaks(figure.points);
   return figure;
 }
 

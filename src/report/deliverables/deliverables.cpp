@@ -28,7 +28,8 @@ std::vector<std::string> describe_origin(const FinishedArm& arm) {
                   sanitize(config.robot.name), arm.describe(), sanitize(arm.run.started)),
       fmt::format("Simulated on {} ({} cases): {}, {} failed.", sanitize(arm.result().test_set),
                   test.cases,
-                  test.mean ? fmt::format("mean error {:.4g} mm", 1e3 * *test.mean) : "no mean",
+                  test.mean ? fmt::format("mean error {:.4g} mm", kMillimetresPerMetre * *test.mean)
+                            : "no mean",
                   test.failures)};
   if (config.task.load_kg > 0) {
     lines.push_back(fmt::format(

@@ -23,7 +23,7 @@ struct HtmlFact {
   std::string label;
   std::string text;  // left out if empty
 };
-std::string make_facts(std::span<const HtmlFact> facts);
+std::string make_fact_list(std::span<const HtmlFact> facts);
 
 // `content` is HTML.
 std::string make_section(std::string_view title, std::string_view content);

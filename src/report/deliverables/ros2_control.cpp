@@ -110,8 +110,8 @@ std::string explain(const Ros2Distribution& distribution) {
          "#\n# Try it in a simulator and at low speed first. The numbers come from a model.\n";
 }
 
-std::string make_joint(const Joint& joint, const JointDrive& drive,
-                       const Ros2Distribution& distribution) {
+std::string make_joint_gains(const Joint& joint, const JointDrive& drive,
+                             const Ros2Distribution& distribution) {
   const bool slides = joint.kind == JointKind::prismatic;
   const auto unit = [&](const char* of_turning) { return get_joint_unit(of_turning, joint.kind); };
   const EffortLimits& limits = drive.limits;
@@ -182,7 +182,7 @@ std::string make_ros2_control(const Ros2ControlInput& input, const Ros2Distribut
       "    state_interfaces:\n      - \"position\"\n      - \"velocity\"\n"
       "    gains:\n";
   for (std::size_t i = 0; i < input.robot.joint_count(); ++i) {
-    text += make_joint(input.robot.joints[i], input.design.joints[i], distribution);
+    text += make_joint_gains(input.robot.joints[i], input.design.joints[i], distribution);
   }
   return text;
 }

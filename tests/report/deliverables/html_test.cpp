@@ -24,7 +24,7 @@ TEST(HtmlTable, EscapesEveryTextInElementsAndAttributes) {
 
 TEST(HtmlTable, LeavesOutFactsWithoutText) {
   const std::vector<HtmlFact> facts = {{"a", ""}, {"b<", "c&"}};
-  EXPECT_EQ(make_facts(facts), "<dl>\n<dt>b&lt;</dt><dd>c&amp;</dd>\n</dl>\n");
+  EXPECT_EQ(make_fact_list(facts), "<dl>\n<dt>b&lt;</dt><dd>c&amp;</dd>\n</dl>\n");
 }
 
 TEST(LineFigure, TicksAreRoundNumbersUpToTheLargest) {
