@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <limits>
 #include <map>
@@ -104,16 +103,8 @@ class Export : public testing::Test {
     EXPECT_THAT(outcome.err, message);
   }
 
-  // What a reader prints: what it has read, or why it refuses to.
   static std::string read_text_of(const std::string& reader, const std::string& folder) {
-    const std::string command = std::string("python3 ") + ARMWRIGHT_TEST_DATA + "/../report/" +
-                                reader + " '" + path(folder).string() + "' 2>&1";
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(popen(command.c_str(), "r"), pclose);
-    std::string text;
-    for (int c = std::fgetc(pipe.get()); c != EOF; c = std::fgetc(pipe.get())) {
-      text += static_cast<char>(c);
-    }
-    return text;
+    return read_with(reader, path(folder));
   }
   static json read(const std::string& reader, const std::string& folder) {
     const std::string text = read_text_of(reader, folder);

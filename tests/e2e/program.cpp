@@ -12,7 +12,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <cstdio>
 #include <fstream>
+#include <memory>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
@@ -201,6 +203,17 @@ std::string read_text(const std::filesystem::path& file) {
   std::ostringstream text;
   text << std::ifstream(file, std::ios::binary).rdbuf();
   return text.str();
+}
+
+std::string read_with(const std::string& reader, const std::filesystem::path& folder) {
+  const std::string command = std::string("/usr/bin/python3 ") + ARMWRIGHT_TEST_DATA +
+                              "/../report/" + reader + " '" + folder.string() + "' 2>&1";
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(popen(command.c_str(), "r"), pclose);
+  std::string text;
+  for (int c = std::fgetc(pipe.get()); c != EOF; c = std::fgetc(pipe.get())) {
+    text += static_cast<char>(c);
+  }
+  return text;
 }
 
 std::map<std::string, std::string> read_study(const std::filesystem::path& study) {

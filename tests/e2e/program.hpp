@@ -58,6 +58,10 @@ std::string run_on_terminal(const std::filesystem::path& folder,
 
 std::string read_text(const std::filesystem::path& file);
 
+// What a reader in tests/report prints of an export: what it has read, or why it refuses to.
+// Debian's own Python runs it, which has Debian's packages.
+std::string read_with(const std::string& reader, const std::filesystem::path& folder);
+
 // What a comparison has come to: its tables, result and verdict, by the names of their files.
 std::map<std::string, std::string> read_study(const std::filesystem::path& study);
 

@@ -4,6 +4,7 @@
 
 #include "base/base64.hpp"
 #include "base/hash.hpp"
+#include "report/html_text.hpp"
 #include "report/page/page_assets.hpp"
 
 namespace armwright {
@@ -11,29 +12,6 @@ namespace {
 
 std::string calc_source_hash(std::string_view text) {
   return "'sha256-" + to_base64(calc_sha256(text)) + "'";
-}
-
-std::string escape_html(std::string_view text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += c;
-    }
-  }
-  return escaped;
 }
 
 // In JSON a '<' can only stand within a text, where \u003c means the same.

@@ -125,6 +125,7 @@ void read_manifest(RecordedRun& run) {
     run.configuration = manifest.at("configuration");
     run.build = manifest.at("build").get<std::map<std::string, std::string>>();
     run.command_line = manifest.at("command_line").get<std::vector<std::string>>();
+    run.started = manifest.value("started", "");
     const json& settings = run.configuration.at("run");
     run.budget = settings.at("budget").get<std::int64_t>();
     const auto kind = settings.at("schedule").at("kind").get<std::string>();
@@ -202,10 +203,9 @@ void rebuild_problem(RecordedRun& run) {
     LoadedProblem problem = load_recorded_problem(usable.dump(), run.problem_name, run.beside);
     const auto changed = list_changed_inputs(run, problem);
     if (!changed.empty()) {
-      run.notes.push_back(
-          fmt::format("Files of the problem are not what the run used any more: "
-                      "{}. {}",
-                      join(changed, ", "), kConsequence));
+      run.problem_fault = fmt::format(
+          "Files of the problem are not what the run used any more: {}.", join(changed, ", "));
+      run.notes.push_back(run.problem_fault + " " + kConsequence);
       return;
     }
     if (named) {
@@ -213,10 +213,9 @@ void rebuild_problem(RecordedRun& run) {
     }
     run.problem = std::move(problem);
   } catch (const Error& error) {
-    run.notes.push_back(
-        fmt::format("The problem cannot be made again as the run recorded it ({}). "
-                    "{}",
-                    sanitize(error.what()), kConsequence));
+    run.problem_fault = fmt::format("The problem cannot be made again as the run recorded it ({}).",
+                                    sanitize(error.what()));
+    run.notes.push_back(run.problem_fault + " " + kConsequence);
   }
 }
 
@@ -265,9 +264,9 @@ std::vector<double> RecordedRun::find_best() const {
                             : journal.training.find(incumbents.back().evaluation).value().x;
 }
 
-fs::path RecordedRun::find_urdf_folder() const {
+fs::path RecordedRun::find_urdf() const {
   const auto urdf = configuration.at("problem").at("robot").at("urdf").get<std::string>();
-  return resolve_config("robots", urdf, beside).parent_path();
+  return resolve_config("robots", urdf, beside);
 }
 
 std::string RecordedRun::make_evaluate_command(const std::string& design,

@@ -22,12 +22,14 @@ struct RecordedRun {
   nlohmann::json configuration;              // the manifest's: "problem", "inputs", "run"
   std::map<std::string, std::string> build;  // of the program that made the run
   std::vector<std::string> command_line;
+  std::string started;  // "2026-01-31T12:00:00Z", when the run was begun
   Schedule schedule;
   std::int64_t budget = 0;
   JournalContent journal;
   std::optional<RunResult> result;  // nothing before its end
-  // Nothing if it cannot be made as it was; `notes` say why.
+  // Nothing if it cannot be made as it was; `problem_fault` and `notes` say why.
   std::optional<LoadedProblem> problem;
+  std::string problem_fault;
   std::filesystem::path beside;  // where files with relative names are looked for first
   // "--problem", "q1-complex", "--set", ...: what brings `armwright evaluate` to this problem;
   // empty if nothing does.
@@ -40,8 +42,8 @@ struct RecordedRun {
   ProblemDescription describe() const;
   // The winner's decision vector, or of a run under way the best so far; empty if there is none.
   std::vector<double> find_best() const;
-  // Where the robot's file lies, and relative names of its meshes begin.
-  std::filesystem::path find_urdf_folder() const;
+  // The robot's file; relative names of its meshes begin in its folder.
+  std::filesystem::path find_urdf() const;
   // "armwright evaluate DESIGN --problem ... WORDS"; empty if no command does.
   std::string make_evaluate_command(const std::string& design,
                                     const std::vector<std::string>& words) const;

@@ -1,0 +1,246 @@
+#include "report/deliverables/datasheet.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/text.hpp"
+#include "report/deliverables/datasheet_figures.hpp"
+#include "report/deliverables/datasheet_style.hpp"
+#include "report/deliverables/finished_arm.hpp"
+#include "report/deliverables/html_table.hpp"
+#include "report/html_text.hpp"
+#include "sim/designed_arm.hpp"
+#include "study/build_info.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr const char* kUnknown = "\u2013";
+
+std::string format_mm(const std::optional<double>& metres) {
+  return metres ? fmt::format("{:.4g}", kMillimetresPerMetre * *metres) : kUnknown;
+}
+
+// ---- Robot, task, optimization -----------------------------------------------------------------
+
+std::string make_robot_facts(const FinishedArm& arm) {
+  const TrackingConfig& config = arm.config();
+  const RobotModel robot = arm.run.tracking()->make_robot(arm.design);
+  const auto sliding = std::ranges::count(robot.joints, JointKind::prismatic, &Joint::kind);
+  const auto turning = static_cast<std::ptrdiff_t>(robot.joint_count()) - sliding;
+  const std::vector<HtmlFact> facts = {
+      {"Name", sanitize(robot.name)},
+      {"Chain",
+       fmt::format("{} \u2192 {}", sanitize(robot.base.name), sanitize(robot.links.back().name))},
+      {"Joints", fmt::format("{}: {} turn, {} slide", robot.joint_count(), turning, sliding)},
+      {"Moving mass", fmt::format("{:.5g} kg", calc_moving_mass_kg(robot))},
+      {"Load", fmt::format("{:.5g} kg", config.task.load_kg)},
+      {"Links", is_stretched(arm.design) ? "other than the URDF's (see winner.toml)" : ""},
+      {"URDF", sanitize(arm.run.find_urdf().filename().string())}};
+  return make_fact_list(facts);
+}
+
+std::string make_task_facts(const FinishedArm& arm) {
+  const TrackingConfig& config = arm.config();
+  const TrackingTask task = arm.run.tracking()->make_task(arm.design);
+  const std::vector<HtmlFact> facts = {
+      {"Problem", sanitize(arm.result().problem)},
+      {"Target",
+       fmt::format("{} moves at {:.4g} m/s", signal_names()[static_cast<std::size_t>(task.signal)],
+                   task.speed_m_per_s)},
+      {"Rest", fmt::format("{:.4g} s after each move", task.rest_s)},
+      {"Points", fmt::format("{} a test case", config.workspace.points)},
+      {"Workspace", fmt::format("{:.4g} m about ({:.4g}, {:.4g}, {:.4g}) m",
+                                config.workspace.radius_m, config.workspace.centre_m.x(),
+                                config.workspace.centre_m.y(), config.workspace.centre_m.z())},
+      {"Controller",
+       fmt::format("{}, every {:.4g} s", arm.design.controller, task.control_period_s)},
+      {"Physics", config.engines.training_name == config.engines.judging_name
+                      ? config.engines.judging_name
+                      : fmt::format("{}, judged by {}", config.engines.training_name,
+                                    config.engines.judging_name)}};
+  return make_fact_list(facts);
+}
+
+std::string make_run_facts_of(const FinishedArm& arm) {
+  const RunResult& result = arm.result();
+  const std::vector<HtmlFact> facts = {
+      {"Run of", sanitize(arm.run.started)},
+      {"Optimizer", sanitize(result.optimizer)},
+      {"Seed", fmt::format("{}", result.seed)},
+      {"Budget", fmt::format("{} of {} cases", result.counts.cases, arm.run.budget)},
+      {"Designs tried", fmt::format("{}", result.counts.evaluations)},
+      {"Cases", to_text(arm.run.schedule)},
+      {"Ended by", sanitize(result.end_reason)}};
+  return make_fact_list(facts);
+}
+
+// "N m/rad", or of an arm that has joints of both kinds "N m/rad; slides: N/m".
+std::string list_units(const RobotModel& robot, std::string_view unit) {
+  std::vector<std::string> units;
+  for (const JointKind kind : {JointKind::revolute, JointKind::prismatic}) {
+    const std::string own = get_joint_unit(unit, kind);
+    if (std::ranges::count(robot.joints, kind, &Joint::kind) > 0 &&
+        (units.empty() || units.front() != own)) {
+      units.push_back(units.empty() ? own : "slides: " + own);
+    }
+  }
+  return join(units, "; ");
+}
+
+// ---- Results -----------------------------------------------------------------------------------
+
+std::optional<double> find_metric(const RunResult& result, const Evaluation& evaluation,
+                                  std::string_view name) {
+  const auto found = std::ranges::find(result.metric_names, name);
+  const auto at = static_cast<std::size_t>(found - result.metric_names.begin());
+  return at < evaluation.metrics.size() ? std::optional(evaluation.metrics[at]) : std::nullopt;
+}
+
+std::string format_metric(const RunResult& result, const Evaluation& evaluation,
+                          std::string_view name) {
+  const auto value = find_metric(result, evaluation, name);
+  return value ? fmt::format("{:.6g}", *value) : kUnknown;
+}
+
+std::string make_results(const FinishedArm& arm) {
+  const RunResult& result = arm.result();
+  const std::vector<std::string> heads = {"Errors in mm", "cases",    "mean",     "median",
+                                          "95 %",         "worst",    "failures", "no number",
+                                          "energy J",     "clamped %"};
+  std::vector<std::vector<HtmlCell>> rows;
+  const auto add = [&](const std::string& name, const Evaluation& evaluation) {
+    const ErrorSummary summary = summarize(evaluation.case_errors, get_failure_error(result));
+    const auto clamped = find_metric(result, evaluation, "saturated_share");
+    rows.push_back({{name},
+                    {fmt::format("{}", summary.cases)},
+                    {format_mm(summary.mean)},
+                    {format_mm(summary.median)},
+                    {format_mm(summary.percentile_95)},
+                    {format_mm(summary.worst)},
+                    {fmt::format("{}", summary.failures)},
+                    {fmt::format("{}", summary.without_number)},
+                    {format_metric(result, evaluation, "energy")},
+                    {clamped ? fmt::format("{:.3g}", 100 * *clamped) : kUnknown}});
+  };
+  add("test: " + sanitize(result.test_set), result.test);
+  add("validation: " + sanitize(arm.run.problem->sets.validation), arm.winner().validation);
+  std::string html = make_table(heads, rows);
+  html += fmt::format(
+      "<p>95 % of the cases are below the error named so; one fails with an error above {:.4g} mm "
+      "or without a number. Energy is the positive "
+      "work of all joints, clamped the share of control periods that ask for more effort than the "
+      "limits allow: means over the cases. Total torque, the sum of each joint's larger limit: "
+      "{:.6g} {}.</p>\n",
+      kMillimetresPerMetre * get_failure_error(result), calc_total_torque_n_m(arm.design),
+      escape_html(list_units(arm.config().robot, "N m")));
+  return html;
+}
+
+// ---- Joints ------------------------------------------------------------------------------------
+
+// "p [N m/rad]"
+std::string label_with_unit(const RobotModel& robot, std::string_view name, std::string_view unit) {
+  return fmt::format("{} [{}]", name, list_units(robot, unit));
+}
+
+std::string format_range(const Joint& joint) {
+  if (std::isinf(joint.lower)) {
+    return "no end";
+  }
+  if (joint.kind == JointKind::prismatic) {
+    return fmt::format("{:.4g} to {:.4g} m", joint.lower, joint.upper);
+  }
+  constexpr double kDegrees = 180 / std::numbers::pi;
+  return fmt::format("{:.4g}\u00b0 to {:.4g}\u00b0", kDegrees * joint.lower,
+                     kDegrees * joint.upper);
+}
+
+std::string make_joints(const FinishedArm& arm) {
+  const RobotModel& robot = arm.config().robot;
+  const ControllerRow& controller = find_controller(arm.design.controller);
+  const RunResult& result = arm.result();
+  std::vector<std::string> heads = {"Joint"};
+  for (const Joint& joint : robot.joints) {
+    heads.push_back(sanitize(joint.name));
+  }
+  std::vector<std::vector<HtmlCell>> rows;
+  const auto add = [&](const std::string& label, auto&& make_text) {
+    std::vector<HtmlCell> row = {{label}};
+    for (std::size_t i = 0; i < robot.joint_count(); ++i) {
+      row.push_back({make_text(i)});
+    }
+    rows.push_back(std::move(row));
+  };
+  const auto drive = [&](std::size_t i) -> const JointDrive& { return arm.design.joints[i]; };
+  add("range", [&](std::size_t i) { return format_range(robot.joints[i]); });
+  for (std::size_t k = 0; k < controller.gains.size(); ++k) {
+    add(label_with_unit(robot, controller.gains[k].name, controller.gains[k].unit),
+        [&](std::size_t i) { return fmt::format("{:.6g}", drive(i).gains[k]); });
+  }
+  add(label_with_unit(robot, "lowest effort", "N m"),
+      [&](std::size_t i) { return fmt::format("{:.6g}", drive(i).limits.min_n_m); });
+  add(label_with_unit(robot, "highest effort", "N m"),
+      [&](std::size_t i) { return fmt::format("{:.6g}", drive(i).limits.max_n_m); });
+  for (const auto& [label, metric] :
+       {std::pair{"peak used", "peak_effort"}, std::pair{"RMS used", "rms_effort"}}) {
+    add(label_with_unit(robot, label, "N m"), [&, name = metric](std::size_t i) {
+      return format_metric(result, result.test, robot.joints[i].name + "." + name);
+    });
+  }
+  return make_table(heads, rows) +
+         "<p>Used on the test set: the largest effort, and the mean of the cases' root mean "
+         "squares.</p>\n";
+}
+
+// ---- Origin ------------------------------------------------------------------------------------
+
+std::string make_origin(const FinishedArm& arm) {
+  std::string html = "<div class=\"small\">\n";
+  std::vector<std::string> build;
+  for (const auto& [key, value] : arm.run.build) {
+    if (key != "host") {
+      build.push_back(key + " " + sanitize(value));
+    }
+  }
+  html += fmt::format("<p class=\"clamped\">Made with armwright: {}. Sheet by version {}.</p>\n",
+                      escape_html(join(build, ", ")), escape_html(get_version()));
+  for (const auto& [file, hash] : arm.run.configuration.at("inputs").items()) {
+    html += fmt::format("<p class=\"clamped\">{}: SHA-256 {}</p>\n", escape_html(sanitize(file)),
+                        escape_html(sanitize(hash.get<std::string>())));
+  }
+  const std::string command = arm.run.make_evaluate_command("winner.toml", {});
+  if (!command.empty()) {
+    html += fmt::format("<p class=\"clamped\">To simulate it again: {}</p>\n",
+                        escape_html(sanitize(command)));
+  }
+  return html + "</div>\n";
+}
+
+}  // namespace
+
+std::string make_datasheet(const FinishedArm& arm) {
+  const std::string title = fmt::format("{}: tuned controllers", sanitize(arm.config().robot.name));
+  std::string html = fmt::format(
+      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
+      "'unsafe-inline'\">\n<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n"
+      "<p class=\"lead\">{2}. All numbers are simulated, none is measured.</p>\n",
+      escape_html(title), kDatasheetStyle, escape_html(sanitize(arm.run.problem->title)));
+  html += "<div class=\"columns\">\n" + make_section("Robot", make_robot_facts(arm)) +
+          make_section("Task", make_task_facts(arm)) +
+          make_section("Optimization", make_run_facts_of(arm)) + "</div>\n";
+  html += make_section("Results", make_results(arm));
+  html += make_section(fmt::format("Controller {} and effort limits", arm.design.controller),
+                       make_joints(arm));
+  if (const std::string figures = make_datasheet_figures(arm); !figures.empty()) {
+    html += make_section("Errors", figures);
+  }
+  html += make_section("Origin", make_origin(arm));
+  return html + "</body>\n</html>\n";
+}
+
+}  // namespace armwright

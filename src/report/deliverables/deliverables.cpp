@@ -1,0 +1,122 @@
+#include "report/deliverables/deliverables.hpp"
+
+#include <fmt/format.h>
+
+#include "base/error.hpp"
+#include "base/file.hpp"
+#include "base/hash.hpp"
+#include "base/text.hpp"
+#include "report/deliverables/datasheet.hpp"
+#include "report/deliverables/finished_arm.hpp"
+#include "report/deliverables/ros2_control.hpp"
+#include "report/export_folder.hpp"
+#include "sim/designed_arm.hpp"
+#include "sim/urdf_limits.hpp"
+#include "study/build_info.hpp"
+
+namespace armwright {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Where the design comes from, and what the arm had that was simulated and no file of it says.
+std::vector<std::string> describe_origin(const FinishedArm& arm) {
+  const TrackingConfig& config = arm.config();
+  const ErrorSummary& test = arm.result().test_summary;
+  std::vector<std::string> lines = {
+      fmt::format("Written by armwright {} for the robot {}: {}, a run of {}.", get_version(),
+                  sanitize(config.robot.name), arm.describe(), sanitize(arm.run.started)),
+      fmt::format("Simulated on {} ({} cases): {}, {} failed.", sanitize(arm.result().test_set),
+                  test.cases,
+                  test.mean ? fmt::format("mean error {:.4g} mm", kMillimetresPerMetre * *test.mean)
+                            : "no mean",
+                  test.failures)};
+  if (config.task.load_kg > 0) {
+    lines.push_back(fmt::format(
+        "The arm carried a load of {:.6g} kg, which its URDF does not have.", config.task.load_kg));
+  }
+  if (config.mass_scale != 1) {
+    lines.push_back(
+        fmt::format("Its masses were {:.6g} times those of its URDF.", config.mass_scale));
+  }
+  if (config.torque_per_mass_n_m_per_kg > 0) {
+    lines.push_back(fmt::format("Its motors' masses, {:.6g} N m/kg, came on top of those.",
+                                config.torque_per_mass_n_m_per_kg));
+  }
+  if (is_stretched(arm.design)) {
+    lines.push_back(
+        "The winner's links are other ones than those of the URDF: these numbers belong to them "
+        "(length_scale and section_scale in winner.toml).");
+  }
+  return lines;
+}
+
+std::string read_urdf_of(const FinishedArm& arm, const fs::path& file) {
+  constexpr std::size_t kLimit_bytes = std::size_t{8} << 20;  // as load_urdf()
+  std::string xml = read_file(file, kLimit_bytes);
+  const auto& inputs = arm.run.configuration.at("inputs");
+  const std::string name = file.filename().string();
+  if (!inputs.contains(name) || inputs[name] != calc_sha256_hex(xml)) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("{}: is not the file that the run used; bring it back as it was, or "
+                            "optimize again",
+                            sanitize(file.string())));
+  }
+  return xml;
+}
+
+void check_links(const FinishedArm& arm) {
+  for (std::size_t i = 0; i < arm.design.joints.size(); ++i) {
+    const JointDrive& joint = arm.design.joints[i];
+    if (joint.length_scale != 1 || joint.section_scale != 1) {
+      throw Error(
+          ErrorKind::usage,
+          fmt::format(
+              "{}: the winner has other links than the robot's URDF (the one that {} moves: "
+              "length x {:.6g}, section x {:.6g}), and the export leaves links and meshes "
+              "as they are: change them in CAD, with winner.toml's scales, and optimize "
+              "the controllers of the new robot; ros2-control and datasheet can be "
+              "exported",
+              sanitize(arm.run.folder.string()), sanitize(arm.config().robot.joints[i].name),
+              joint.length_scale, joint.section_scale));
+    }
+  }
+}
+
+}  // namespace
+
+void write_ros2_control(const FinishedArm& arm, const fs::path& folder) {
+  const TrackingConfig& config = arm.config();
+  const Ros2ControlInput input{config.robot, arm.design, config.task.control_period_s,
+                               describe_origin(arm)};
+  for (const Ros2Distribution& distribution : ros2_distributions()) {
+    write_output_file(folder / fmt::format("controllers-{}.yaml", distribution.name),
+                      make_ros2_control(input, distribution));
+  }
+}
+
+void write_urdf(const FinishedArm& arm, const fs::path& folder) {
+  check_links(arm);
+  const fs::path file = arm.run.find_urdf();
+  const std::string xml = read_urdf_of(arm, file);
+  std::string comment = join(describe_origin(arm), "\n");
+  comment +=
+      "\nChanged: the effort of these joints' <limit>, to the larger of the design's two limits.\n";
+  std::vector<JointEffort> efforts;
+  for (std::size_t i = 0; i < arm.design.joints.size(); ++i) {
+    const Joint& joint = arm.config().robot.joints[i];
+    const JointDrive& drive = arm.design.joints[i];
+    efforts.push_back({joint.name, calc_largest_torque_n_m(drive)});
+    comment += fmt::format("  {}: {} to {} {}\n", joint.name, format_exact(drive.limits.min_n_m),
+                           format_exact(drive.limits.max_n_m), get_joint_unit("N m", joint.kind));
+  }
+  comment += "Everything else is as it was; meshes with relative names are looked for beside it.";
+  write_output_file(folder / file.filename(),
+                    set_effort_limits(xml, sanitize(file.string()), efforts, comment));
+}
+
+void write_datasheet(const FinishedArm& arm, const fs::path& folder) {
+  write_output_file(folder / "datasheet.html", make_datasheet(arm));
+}
+
+}  // namespace armwright

@@ -1,0 +1,77 @@
+#include "report/deliverables/finished_arm.hpp"
+
+#include <fmt/format.h>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "report/run_traces.hpp"
+#include "study/run.hpp"
+
+namespace armwright {
+namespace {
+
+[[noreturn]] void refuse_run(const std::filesystem::path& folder, const std::string& what) {
+  throw Error(ErrorKind::usage, fmt::format("{}: {}", sanitize(folder.string()), what));
+}
+
+void refuse_study(const std::filesystem::path& folder, std::string_view format) {
+  if (std::filesystem::exists(folder / "manifest.json") ||
+      !std::filesystem::exists(folder / "cells")) {
+    return;
+  }
+  const FoundRuns found = find_runs(folder);
+  refuse_run(folder, fmt::format("is a study, and {} is made of one run: give the folder of one, "
+                                 "such as {}",
+                                 format, sanitize(found.runs.front().folder.string())));
+}
+
+void replace_all(std::string& text, std::string_view from, std::string_view to) {
+  for (std::size_t at = text.find(from); at != std::string::npos;
+       at = text.find(from, at + to.size())) {
+    text.replace(at, from.size(), to);
+  }
+}
+
+}  // namespace
+
+std::string FinishedArm::describe() const {
+  return fmt::format("the winner of {} (seed {}) on {}", sanitize(result().optimizer),
+                     result().seed, sanitize(result().problem));
+}
+
+FinishedArm load_finished_arm(const std::filesystem::path& folder, std::string_view format) {
+  refuse_study(folder, format);
+  const RunResult result = load_result(folder);
+  if (!result.tracking) {
+    refuse_run(folder, fmt::format("is a run on {}, which is a function and no arm; {} is made of "
+                                   "an arm's run. csv, ioh, coco and json are there for all",
+                                   sanitize(result.problem), format));
+  }
+  if (!result.winner) {
+    refuse_run(folder, fmt::format("this run found no design that could be simulated to its end, "
+                                   "so there is nothing to make {} of; optimize again with a "
+                                   "larger budget or another start",
+                                   format));
+  }
+  FinishedArm arm;
+  arm.run = read_recorded_run(folder);
+  if (arm.run.tracking() == nullptr) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("{}: the arm of this run is not known any more. {} Bring these files "
+                            "back as they were, or optimize again",
+                            sanitize(folder.string()), arm.run.problem_fault));
+  }
+  arm.design = arm.run.tracking()->make_design(arm.run.find_best());
+  return arm;
+}
+
+std::string get_joint_unit(std::string_view unit, JointKind kind) {
+  std::string own(unit);
+  if (kind == JointKind::prismatic) {
+    replace_all(own, "N m", "N");
+    replace_all(own, "rad", "m");
+  }
+  return own;
+}
+
+}  // namespace armwright

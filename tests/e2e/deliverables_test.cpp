@@ -1,0 +1,250 @@
+// What an arm's maker takes home from a run: ROS 2's parameters, read again by a strict reader that
+// knows nothing of ours; the URDF, by our own; the datasheet. tests/page/datasheet_test.mjs prints
+// that.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "base/temporary_folder.hpp"
+#include "e2e/program.hpp"
+#include "problems/design_file.hpp"
+#include "sim/robot_model.hpp"
+#include "sim/urdf_limits.hpp"
+#include "study/run.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::StartsWith;
+
+// What is markup, a comment or an indicator somewhere. The joint turns without end.
+const std::string kJoint = "say \"hi\": #1 --> <b>& é中";
+const std::string kJointXml = "say &quot;hi&quot;: #1 --&gt; &lt;b&gt;&amp; é中";
+
+// The text with `from`, which is there, once replaced.
+std::string replace(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+// A run on an arm of the user's own.
+class Deliverables : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<TemporaryFolder>();
+    const std::string configs = ARMWRIGHT_CONFIGS;
+    std::string xml = read_text(configs + "/robots/irb4600_40_255.urdf");
+    xml = replace(xml, "name=\"joint_1\" type=\"revolute\"",
+                  "name=\"" + kJointXml + "\" type=\"continuous\"");
+    const std::size_t limit = xml.find("<limit");
+    xml.erase(limit, xml.find('\n', limit) - limit);
+    std::ofstream(path("arm.urdf")) << xml;
+    DesignFile start = load_design("table-a1");
+    start.joint_names[0] = kJoint;
+    std::ofstream(path("start.toml")) << to_toml(start);
+    std::ofstream(path("p.toml"))
+        << "kind = \"tracking\"\ntitle = \"</style><script>\"\n[robot]\nurdf = \"arm.urdf\"\n"
+           "[variables]\nstart = \"start.toml\"\n[sets]\nvalidation_cases = 2\ntest_cases = 3\n";
+    optimize("run", {"./p.toml", "--budget", "40"});
+  }
+  static void TearDownTestSuite() { folder_.reset(); }
+
+  static void optimize(const std::string& out, std::vector<std::string> words) {
+    words.insert(words.begin(), "optimize");
+    for (const char* word : {"--optimizer", "ga", "--engine", "articulated", "--simd", "sse2"}) {
+      words.emplace_back(word);
+    }
+    words.insert(words.end(), {"--out", out});
+    const Outcome outcome = run(words);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  }
+  static Outcome run(const std::vector<std::string>& arguments) {
+    return run_program(folder_->path(), arguments);
+  }
+  static std::filesystem::path path(const std::string& name) { return *folder_ / name; }
+  static void export_as(const std::string& format, const std::string& out,
+                        const std::string& of = "run") {
+    const Outcome outcome = run({"export", of, "--format", format, "--out", out});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, AllOf(StartsWith("the winner of ga (seed 1) on p as " + format),
+                                   HasSubstr(out + ": ")));
+  }
+  static void copy(const std::string& from, const std::string& to) {
+    std::filesystem::create_directories(path(to).parent_path());
+    std::filesystem::copy(path(from), path(to), std::filesystem::copy_options::recursive);
+  }
+  static void expect_refused(const std::vector<std::string>& arguments, int exit_code,
+                             const testing::Matcher<std::string>& message) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, exit_code);
+    EXPECT_THAT(outcome.out, IsEmpty());
+    EXPECT_THAT(outcome.err, message);
+  }
+
+  inline static std::unique_ptr<TemporaryFolder> folder_;
+};
+
+TEST_F(Deliverables, Ros2sParametersAreTheWinnersToTheLastDigit) {
+  export_as("ros2-control", "ros2");
+  const std::string text = read_with("read_ros2_control.py", path("ros2"));
+  const json all = json::parse(text, nullptr, false);
+  ASSERT_TRUE(all.is_object()) << text;
+  ASSERT_EQ(all.size(), 3u);
+  const DesignFile winner = load_design(path("run/winner.toml").string());
+  for (const auto& [distribution, file] : all.items()) {
+    EXPECT_EQ(file.at("update_rate"), 100);
+    EXPECT_EQ(file.at("joints"), json(winner.joint_names)) << distribution;
+    for (std::size_t i = 0; i < winner.joint_names.size(); ++i) {
+      const json& gains = file.at("gains").at(winner.joint_names[i]);
+      const JointDrive& drive = winner.design.joints[i];
+      EXPECT_EQ(gains.at("p"), drive.gains[0]);
+      EXPECT_EQ(gains.at("i"), drive.gains[1]);
+      EXPECT_EQ(gains.at("d"), drive.gains[2]);
+      if (distribution != "humble") {
+        EXPECT_EQ(gains.at("u_clamp_max"), drive.limits.max_n_m);
+        EXPECT_EQ(gains.at("u_clamp_min"), drive.limits.min_n_m);
+      } else {
+        EXPECT_EQ(gains.at("angle_wraparound"), i == 0);
+      }
+      if (distribution == "kilted") {
+        EXPECT_EQ(gains.at("i_clamp_max"), drive.limits.max_n_m);
+        EXPECT_EQ(gains.at("i_clamp_min"), drive.limits.min_n_m);
+      } else {
+        EXPECT_EQ(gains.at("i_clamp"), std::max(-drive.limits.min_n_m, drive.limits.max_n_m));
+      }
+    }
+  }
+}
+
+TEST_F(Deliverables, Ros2sParametersAreReadStrictly) {
+  export_as("ros2-control", "strict");
+  const auto file = path("strict/controllers-jazzy.yaml");
+  const std::string good = read_text(file);
+  const auto refusal_of = [&](const std::string& from, const std::string& to) {
+    std::ofstream(file) << replace(good, from, to);
+    return read_with("read_ros2_control.py", path("strict"));
+  };
+  EXPECT_THAT(refusal_of("        p: ", "        d: 1.0\n        p: "), HasSubstr("twice"));
+  EXPECT_THAT(refusal_of("ff_velocity_scale: 0.0", "ff_velocity_scale: 0"), HasSubstr("no float"));
+  EXPECT_THAT(refusal_of("i_clamp:", "i_clamp_max:"), HasSubstr("unknown 'i_clamp_max'"));
+  EXPECT_THAT(refusal_of("\"joint_2\":", "\"joint_5\":"), HasSubstr("no joint_2"));
+  EXPECT_THAT(refusal_of("update_rate: 100", "update_rate: 100.5"), HasSubstr("update_rate"));
+}
+
+TEST_F(Deliverables, TheUrdfIsTheSameRobotWithTheWinnersLimits) {
+  export_as("urdf", "urdf");
+  const RobotModel before = load_urdf(path("arm.urdf"));
+  const RobotModel after = load_urdf(path("urdf/arm.urdf"));
+  const DesignFile winner = load_design(path("run/winner.toml").string());
+  ASSERT_EQ(after.joint_count(), before.joint_count());
+  for (std::size_t i = 0; i < after.joint_count(); ++i) {
+    EXPECT_EQ(after.joints[i].name, before.joints[i].name);
+    EXPECT_EQ(after.joints[i].effort_limit, calc_largest_torque_n_m(winner.design.joints[i]));
+    EXPECT_EQ(after.joints[i].lower, before.joints[i].lower);
+    EXPECT_EQ(after.joints[i].origin.matrix(), before.joints[i].origin.matrix());
+    EXPECT_EQ(after.links[i].inertial.inertia_kg_m2, before.links[i].inertial.inertia_kg_m2);
+    EXPECT_EQ(after.links[i].visuals.size(), before.links[i].visuals.size());
+  }
+  EXPECT_EQ(after.joints[0].speed_limit, kNoVelocityLimit_rad_per_s);
+  EXPECT_EQ(after.joints[1].speed_limit, before.joints[1].speed_limit);
+}
+
+TEST_F(Deliverables, TheDatasheetHasTheResultAndNoMarkupOfOthers) {
+  export_as("datasheet", "sheet");
+  export_as("datasheet", "again");
+  const std::string html = read_text(path("sheet/datasheet.html"));
+  EXPECT_EQ(html, read_text(path("again/datasheet.html")));
+  EXPECT_THAT(html, AllOf(Not(HasSubstr("<script")), Not(HasSubstr("<b>")),
+                          HasSubstr("&lt;/style&gt;&lt;script&gt;"),
+                          HasSubstr("say &quot;hi&quot;: #1 --&gt; &lt;b&gt;&amp; é中"),
+                          Not(HasSubstr("http:")), Not(HasSubstr("src="))));
+  const RunResult result = load_result(path("run"));
+  char mean_mm[32];
+  std::snprintf(mean_mm, sizeof mean_mm, ">%.4g<", 1e3 * result.test_summary.mean.value());
+  EXPECT_THAT(html, AllOf(HasSubstr(mean_mm), HasSubstr("test: test/2"), HasSubstr("p [N m/rad]"),
+                          HasSubstr("no end"), HasSubstr("arm.urdf: SHA-256 "),
+                          HasSubstr("tip error in the first test case")));
+  // Without the recorded motion there is one figure less.
+  copy("run", "bare");
+  std::filesystem::remove(path("bare/winner-trajectory.csv"));
+  export_as("datasheet", "bare-sheet", "bare");
+  EXPECT_THAT(read_text(path("bare-sheet/datasheet.html")),
+              AllOf(HasSubstr("have an error below"), Not(HasSubstr("tip error"))));
+}
+
+TEST_F(Deliverables, OtherControllersHaveADatasheetAndAUrdfAlone) {
+  optimize("gravity", {"./p.toml", "--budget", "35", "--set", "control.controller=pid_gravity"});
+  expect_refused({"export", "gravity", "--format", "ros2-control"}, 2,
+                 AllOf(HasSubstr("'pid_gravity'"), HasSubstr("control.controller=pid")));
+  EXPECT_FALSE(std::filesystem::exists(path("gravity/export-ros2-control")));
+  export_as("urdf", "gravity-urdf", "gravity");
+  export_as("datasheet", "gravity-sheet", "gravity");
+  EXPECT_THAT(read_text(path("gravity-sheet/datasheet.html")), HasSubstr("share [1]"));
+}
+
+TEST_F(Deliverables, SayWhatToGiveInstead) {
+  copy("run", "study/cells/p/ga/r01");
+  std::ofstream(path("study/cells/p/ga/r01/cell.json"))
+      << json{{"problem", "p"}, {"label", "ga"}, {"optimizer", "ga"}, {"replicate", 1}};
+  copy("run", "unfinished");
+  std::filesystem::remove(path("unfinished/result.json"));
+  copy("run", "full/export-urdf");
+  copy("run", "none");
+  json result = json::parse(read_text(path("none/result.json")));
+  result["winner"] = nullptr;
+  std::ofstream(path("none/result.json")) << result;
+  ASSERT_EQ(run({"optimize", "sphere", "--budget", "40", "--out", "function"}).exit_code, 0);
+  for (const std::string format : {"ros2-control", "urdf", "datasheet"}) {
+    expect_refused({"export", "study", "--format", format}, 2,
+                   AllOf(HasSubstr("is a study"), HasSubstr("study/cells/p/ga/r01")));
+    expect_refused({"export", "unfinished", "--format", format}, 2,
+                   HasSubstr("has not come to its end; start it again"));
+    expect_refused({"export", "function", "--format", format}, 2,
+                   AllOf(HasSubstr("sphere, which is a function"), HasSubstr("csv, ioh, coco")));
+    expect_refused({"export", "none", "--format", format}, 2,
+                   AllOf(HasSubstr("found no design"), HasSubstr("larger budget")));
+    expect_refused({"export", "nowhere", "--format", format}, 2,
+                   HasSubstr("is not the folder of a run"));
+    expect_refused({"export", "run", "--format", format, "--out", "full"}, 2,
+                   AllOf(HasSubstr("full: is there already"), HasSubstr("--out")));
+  }
+  const Outcome cell = run({"export", "study/cells/p/ga/r01", "--format", "urdf", "--out", "cell"});
+  EXPECT_EQ(cell.exit_code, 0) << cell.err;
+}
+
+TEST_F(Deliverables, AreNotMadeOfAnotherRobotThanTheRuns) {
+  const std::string xml = read_text(path("arm.urdf"));
+  std::ofstream(path("arm.urdf")) << replace(xml, "mass value=\"112.9\"", "mass value=\"113\"");
+  for (const std::string format : {"ros2-control", "urdf", "datasheet"}) {
+    expect_refused({"export", "run", "--format", format, "--out", "other"}, 4,
+                   AllOf(HasSubstr("not what the run used any more: arm.urdf"),
+                         HasSubstr("Bring these files back"), Not(HasSubstr("page"))));
+  }
+  EXPECT_FALSE(std::filesystem::exists(path("other")));
+  std::ofstream(path("arm.urdf")) << xml;
+}
+
+TEST_F(Deliverables, StretchedLinksAreNoUrdf) {
+  optimize("stretched", {"co-design", "--budget", "35", "--set", "sets.validation_cases=1", "--set",
+                         "sets.test_cases=1", "--set", "task.load_kg=5"});
+  expect_refused({"export", "stretched", "--format", "urdf"}, 2,
+                 AllOf(HasSubstr("other links than the robot's URDF"), HasSubstr("length x")));
+  const Outcome outcome = run({"export", "stretched", "--format", "ros2-control"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(read_text(path("stretched/export-ros2-control/controllers-humble.yaml")),
+              AllOf(HasSubstr("links are other ones"), HasSubstr("a load of 5 kg"),
+                    HasSubstr("motors' masses, 100 N m/kg")));
+}
+
+}  // namespace
+}  // namespace armwright

@@ -1,0 +1,135 @@
+// What the YAML says of robots that no run has here: joints that slide or turn without end, limits
+// that differ. Whether it is YAML, and as ROS 2 wants it, a strict reader tells in
+// tests/e2e/deliverables_test.cpp.
+
+#include "report/deliverables/ros2_control.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "base/error.hpp"
+#include "report/deliverables/finished_arm.hpp"
+
+namespace armwright {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class Ros2Control : public testing::Test {
+ protected:
+  Ros2Control() {
+    Joint rail;
+    rail.name = "rail";
+    rail.kind = JointKind::prismatic;
+    rail.upper = 1.5;
+    Joint turret;
+    turret.name = "turret";
+    turret.lower = -std::numeric_limits<double>::infinity();
+    turret.upper = std::numeric_limits<double>::infinity();
+    Joint elbow;
+    elbow.name = "elbow";
+    elbow.upper = 2;
+    robot_.joints = {rail, turret, elbow};
+    design_.joints = {{{1, 2, 3}, {-4, 5}}, {{0.5, 0, 0}, {-7, 6}}, {{9, 8, 7}, {0, 3}}};
+  }
+
+  std::string make(std::size_t distribution) const {
+    return make_ros2_control({robot_, design_, period_s_, {"Origin of it"}},
+                             ros2_distributions()[distribution]);
+  }
+  void expect_refused(const testing::Matcher<std::string>& message) const {
+    for (std::size_t i = 0; i < ros2_distributions().size(); ++i) {
+      try {
+        make(i);
+        ADD_FAILURE() << "not refused";
+      } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::usage);
+        EXPECT_THAT(std::string(error.what()), message);
+      }
+    }
+  }
+
+  RobotModel robot_;
+  ArmDesign design_;
+  double period_s_ = 0.01;
+};
+
+constexpr std::size_t kHumble = 0, kJazzy = 1, kKilted = 2;
+
+TEST_F(Ros2Control, HumbleHasOneClampOfTheLargerLimitAndIsToldOfJointsWithoutEnd) {
+  const std::string text = make(kHumble);
+  EXPECT_THAT(text, HasSubstr("\n      \"rail\":  # slides: p in N/m, i in N/(m s), d in N s/m; "
+                              "effort -4 to 5 N\n"
+                              "        p: 1.0\n        i: 2.0\n        d: 3.0\n"
+                              "        i_clamp: 5.0\n        ff_velocity_scale: 0.0\n"
+                              "        angle_wraparound: false\n"));
+  EXPECT_THAT(text,
+              HasSubstr("\n      \"turret\":  # turns: p in N m/rad, i in N m/(rad s), d in N "
+                        "m s/rad; effort -7 to 6 N m\n"
+                        "        p: 0.5\n        i: 0.0\n        d: 0.0\n"
+                        "        i_clamp: 7.0\n        ff_velocity_scale: 0.0\n"
+                        "        angle_wraparound: true\n"));
+  EXPECT_THAT(text, HasSubstr("        i_clamp: 3.0\n        ff_velocity_scale: 0.0\n"
+                              "        angle_wraparound: false\n"));
+  EXPECT_THAT(text, AllOf(HasSubstr("does not clamp a command"), Not(HasSubstr("u_clamp_max:")),
+                          Not(HasSubstr("antiwindup_strategy:"))));
+}
+
+TEST_F(Ros2Control, JazzyClampsTheCommandAsWell) {
+  const std::string text = make(kJazzy);
+  EXPECT_THAT(text, HasSubstr("        i_clamp: 7.0\n"
+                              "        u_clamp_max: 6.0\n        u_clamp_min: -7.0\n"
+                              "        antiwindup_strategy: \"conditional_integration\"\n"));
+  EXPECT_THAT(text, AllOf(Not(HasSubstr("angle_wraparound")), Not(HasSubstr("i_clamp_max"))));
+}
+
+TEST_F(Ros2Control, KiltedHasBothLimitsOfTheIntegral) {
+  const std::string text = make(kKilted);
+  EXPECT_THAT(text, HasSubstr("        i_clamp_max: 3.0\n        i_clamp_min: 0.0\n"
+                              "        u_clamp_max: 3.0\n        u_clamp_min: 0.0\n"));
+  EXPECT_THAT(text, Not(HasSubstr("        i_clamp: ")));
+}
+
+TEST_F(Ros2Control, TheUpdateRateIsThePeriodsInverse) {
+  for (const auto& [period_s, line] :
+       {std::pair{0.01, "    update_rate: 100 "}, std::pair{0.001, "    update_rate: 1000 "},
+        std::pair{1.0 / 3, "    update_rate: 3 "}}) {
+    period_s_ = period_s;
+    EXPECT_THAT(make(kJazzy), HasSubstr(line));
+  }
+}
+
+TEST_F(Ros2Control, NoNameEndsAComment) {
+  const std::string text =
+      make_ros2_control({robot_, design_, period_s_, {"a\u2028controller_manager: \nx"}},
+                        ros2_distributions()[kJazzy]);
+  EXPECT_THAT(text, HasSubstr("# a?controller_manager: ?"));
+}
+
+TEST_F(Ros2Control, RefusesWhatItCannotSay) {
+  design_.controller = "pid_gravity";
+  expect_refused(AllOf(HasSubstr("'pid_gravity'"), HasSubstr("--set control.controller=pid")));
+  design_.controller = "pid";
+  period_s_ = 0.003;
+  expect_refused(AllOf(HasSubstr("control.period_s is 0.003"), HasSubstr("333.333"),
+                       HasSubstr("control.period_s=0.003003003003003003")));
+  period_s_ = 3;
+  expect_refused(HasSubstr("control.period_s=1"));
+  period_s_ = 0.01;
+  design_.joints[2].limits = {0, 0};
+  expect_refused(AllOf(HasSubstr("elbow"), HasSubstr("allow no effort")));
+}
+
+TEST(JointUnit, OfAJointThatSlidesIsThatOfAForce) {
+  EXPECT_EQ(get_joint_unit("N m/(rad s^2)", JointKind::prismatic), "N/(m s^2)");
+  EXPECT_EQ(get_joint_unit("N m s/rad", JointKind::prismatic), "N s/m");
+  EXPECT_EQ(get_joint_unit("1/s", JointKind::prismatic), "1/s");
+  EXPECT_EQ(get_joint_unit("N m s/rad", JointKind::revolute), "N m s/rad");
+}
+
+}  // namespace
+}  // namespace armwright
