@@ -7,6 +7,7 @@
 
 #include "base/text.hpp"
 #include "cli/format.hpp"
+#include "cli/requirement_view.hpp"
 #include "cli/session.hpp"
 #include "sim/designed_arm.hpp"
 
@@ -136,6 +137,15 @@ std::string format_constraints(const RunResult& result, const Style& style) {
   return style.bold("Constraints") + "\n" + table.format(style, 2);
 }
 
+// On the test set.
+std::string format_winner_requirements(const RunResult& result, const Style& style) {
+  std::vector<ShownRequirement> shown;
+  for (JudgedRequirement& judged : judge_requirements(result.requirements, result.test)) {
+    shown.push_back({std::move(judged), {}});
+  }
+  return format_requirements(shown, style);
+}
+
 std::string format_published(const RunResult& result, const Style& style) {
   const PublishedWinner& published = result.published;
   Table table({{"", false}, {"published"}, {"ours"}, {"ratio"}});
@@ -245,6 +255,9 @@ std::string describe_result(const RunResult& result, const std::filesystem::path
     text += is_tracking(result) ? format_tracking_test(result, style)
                                 : format_function_test(result, style);
     text += "\n";
+    if (!result.requirements.empty()) {
+      text += format_winner_requirements(result, style) + "\n";
+    }
     if (!result.constraints.empty()) {
       text += format_constraints(result, style) + "\n";
     }
