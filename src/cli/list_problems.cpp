@@ -111,12 +111,9 @@ json explain_problem_as_json(const std::string& name) {
                             {"limit", requirement.limit.value},
                             {"use", requirement.is_constraint ? "constraint" : "report"}});
   }
-  return {{"name", sanitize(loaded.name)},
-          {"title", sanitize(loaded.title)},
-          {"objectives", objectives},
-          {"variables", variables},
-          {"requirements", requirements},
-          {"settings", json::parse(loaded.resolved_json)}};
+  return {{"name", sanitize(loaded.name)}, {"title", sanitize(loaded.title)},
+          {"objectives", objectives},      {"variables", variables},
+          {"requirements", requirements},  {"settings", json::parse(loaded.resolved_json)}};
 }
 
 }  // namespace

@@ -88,7 +88,8 @@ std::string format_requirements(std::span<const ShownRequirement> requirements,
                                 const Style& style) {
   const bool has_places = std::ranges::any_of(
       requirements, [](const ShownRequirement& one) { return one.worst.case_number.has_value(); });
-  std::vector<Column> columns = {{"", false}, {"use", false}, {"at most"}, {"is"}, {"of the limit"}};
+  std::vector<Column> columns = {
+      {"", false}, {"use", false}, {"at most"}, {"is"}, {"of the limit"}};
   if (has_places) {
     columns.push_back({"worst in", false});
   }

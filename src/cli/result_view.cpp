@@ -104,7 +104,7 @@ std::string format_constraint(const RunResult& result, std::size_t i, double g) 
   }
   const Limit& limit = result.limits[i];
   return fmt::format("{} ({} % {})", format_quantity((1 + g) * limit.value, limit.quantity.unit),
-                     100 * std::abs(g), g > 0 ? "above" : "below");
+                     format_significant(100 * std::abs(g), 3), g > 0 ? "above" : "below");
 }
 
 std::string describe_feasibility(const Evaluation& evaluation) {

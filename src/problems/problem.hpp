@@ -43,8 +43,8 @@ struct Limit {
   double value = 0;  // > 0
 };
 
-// A metric that shall not exceed a limit: always shown and judged (requirement_grade.hpp), and where
-// it is a constraint, one of `limits` too.
+// A metric that shall not exceed a limit: always shown and judged (requirement_grade.hpp), and
+// where it is a constraint, one of `limits` too.
 struct RequiredMetric {
   std::size_t metric = 0;  // index into the metrics
   Limit limit;             // its name in words
@@ -64,7 +64,7 @@ struct ProblemDescription {
   // What a violation of 1 is worth in units of calc_scalar(): optimizers that add violations to the
   // objective multiply them by it, whatever unit the objective has.
   double violation_scale = 1;
-  std::vector<Quantity> metrics;      // of an evaluation, beside the objectives
+  std::vector<Quantity> metrics;  // of an evaluation, beside the objectives
   std::vector<RequiredMetric> requirements;
   std::string cost_unit;              // what one case is: "simulated test case"
   std::vector<double> known_optimum;  // analytic functions: a minimiser; empty if unknown

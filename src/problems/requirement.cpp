@@ -31,8 +31,8 @@ const RequirementRow& get_row(RequiredQuantity quantity) {
 Quantity describe_requirement(const Requirement& requirement, const RobotModel& robot) {
   const RequirementRow& row = get_row(requirement.quantity);
   // Without a joint all are of one kind (requirement_reader).
-  const bool slides = row.of_joints &&
-                      robot.joints[requirement.joint.value_or(0)].kind == JointKind::prismatic;
+  const bool slides =
+      row.of_joints && robot.joints[requirement.joint.value_or(0)].kind == JointKind::prismatic;
   Quantity quantity{slides ? row.slider_name : row.name, slides ? row.slider_unit : row.unit};
   if (requirement.joint) {
     quantity.name += " of " + robot.joints[*requirement.joint].name;

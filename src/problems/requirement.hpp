@@ -1,5 +1,5 @@
-// What an engineer requires of an arm's motion: a quantity that shall not exceed a limit on any test
-// case. Over cases the worst one counts, the largest value; docs/requirements.md defines each
+// What an engineer requires of an arm's motion: a quantity that shall not exceed a limit on any
+// test case. Over cases the worst one counts, the largest value; docs/requirements.md defines each
 // quantity for its readers, sim/response.hpp those of the tip's response in equations:
 //   overshoot, rise_time, settling_time  the largest of the case's moves, as far as they count in
 //                                        its error

@@ -43,8 +43,8 @@ double calc_response(const Requirement& requirement, const TipMove& move) {
     case Q::rise_time:
       return calc_rise_time_s(move);
     default:
-      return calc_settling_time_s(
-          move, requirement.band_m.value_or(kSettlingBandShare * move.length_m));
+      return calc_settling_time_s(move,
+                                  requirement.band_m.value_or(kSettlingBandShare * move.length_m));
   }
 }
 
@@ -58,8 +58,8 @@ RequiredValue measure_one(const Requirement& requirement, const TrackingSetup& s
     case Q::rms_torque:
       return choose_joint(requirement, result.rms_effort_n_m);
     case Q::joint_speed:
-      return choose_joint(requirement, calc_joint_speeds(setup.robot(), targets, result,
-                                                         task.control_period_s));
+      return choose_joint(requirement,
+                          calc_joint_speeds(setup.robot(), targets, result, task.control_period_s));
     case Q::energy:
       return {.value = result.energy_j, .joint = {}, .point = {}};
     case Q::tip_error:

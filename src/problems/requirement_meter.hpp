@@ -23,9 +23,9 @@ struct MeasuredCase {
   std::vector<RequiredValue> required;  // one a requirement
 };
 
-// One a job, whatever becomes of it; of a simulation that ended early, up to there. Where the motion
-// must be recorded, the engine gets as many jobs at a time as leave none of its lanes idle: a case of
-// 4000 periods takes some 200 kB until it is measured.
+// One a job, whatever becomes of it; of a simulation that ended early, up to there. Where the
+// motion must be recorded, the engine gets as many jobs at a time as leave none of its lanes idle:
+// a case of 4000 periods takes some 200 kB until it is measured.
 std::vector<MeasuredCase> simulate_measured(const PhysicsEngine& engine, const TrackingSetup& setup,
                                             std::span<const TrackingJob> jobs,
                                             std::span<const Requirement> requirements);

@@ -21,8 +21,8 @@ std::optional<std::size_t> read_joint(const ConfigTable& table, const Requiremen
     return std::nullopt;
   }
   if (!row.of_joints) {
-    table.refuse("joint", fmt::format("{} is not of a joint but of the whole arm; leave it out",
-                                      row.key));
+    table.refuse("joint",
+                 fmt::format("{} is not of a joint but of the whole arm; leave it out", row.key));
   }
   std::vector<std::string> names;
   for (const Joint& joint : robot.joints) {
@@ -62,15 +62,16 @@ double read_limit(const ConfigTable& table, const RequirementRow& row, bool slid
   others.erase("");
   for (const std::string& other : others) {
     if (table.has(other)) {
-      table.refuse(other, fmt::format("the limit of {} is {}; write {} instead", row.key,
-                                      unit == "1" ? "a share of the move's length" : "in " + unit,
-                                      key));
+      table.refuse(other,
+                   fmt::format("the limit of {} is {}; write {} instead", row.key,
+                               unit == "1" ? "a share of the move's length" : "in " + unit, key));
     }
   }
   const double limit = table.get_number(key, kLimit);
   if (row.quantity == RequiredQuantity::overshoot && limit > 1) {
-    table.refuse(key, "it is a share of the move's length and must be at most 1; 0.05 is five "
-                      "percent");
+    table.refuse(key,
+                 "it is a share of the move's length and must be at most 1; 0.05 is five "
+                 "percent");
   }
   return limit;
 }

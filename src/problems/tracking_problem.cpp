@@ -266,9 +266,8 @@ std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     const bool own_targets = tracking[i].targets != case_of_job[i]->targets.get();
     const CaseRole role = jobs[i].block->role;
-    const std::vector<double> required =
-        make_required_metrics(config_.requirements, results[i], *tracking[i].targets,
-                              role == CaseRole::training);
+    const std::vector<double> required = make_required_metrics(
+        config_.requirements, results[i], *tracking[i].targets, role == CaseRole::training);
     outcomes.push_back(make_outcome(std::move(results[i].result), config_.task, role, tracking[i],
                                     own_targets, jobs[i].residuals));
     if (outcomes[i].has_error) {

@@ -84,8 +84,7 @@ double calc_settling_time_s(const TipMove& move, double band_m) {
   }
   const auto k = static_cast<double>(away_m.rend() - outside - 1);
   const double inside_m = *(outside - 1);
-  const double settled_s =
-      (k + (*outside - band_m) / (*outside - inside_m)) * move.period_s;
+  const double settled_s = (k + (*outside - band_m) / (*outside - inside_m)) * move.period_s;
   return std::max(0.0, settled_s - move.arrival_s);
 }
 

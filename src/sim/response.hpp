@@ -6,9 +6,11 @@
 //   s(t) = (p(t) - from) . d    how far the tip has come along the move (m)
 //   a(t) = |p(t) - to|          how far it is from the end, in whatever direction (m)
 //   overshoot                   max over the segment of max(0, s - ds) / ds, without unit
-//   rise time (s)               from the first t where s = 0.1 ds to the first where s = 0.9 ds; the
+//   rise time (s)               from the first t where s = 0.1 ds to the first where s = 0.9 ds;
+//   the
 //                               whole segment's time where the tip does not come so far in it
-//   settling time (s)           from t_m to the time after which a <= band until the segment's end; 0
+//   settling time (s)           from t_m to the time after which a <= band until the segment's end;
+//   0
 //                               if that is before t_m, and the segment's time after t_m where a >
 //                               band at its end
 // A joint's speed between two recorded angles is |dq| / h, h the control period, the short way
@@ -18,8 +20,8 @@
 // (2019), Feedback Control of Dynamic Systems, section 3.4; IEC 60050-351. Ours is what they are
 // measured on: the way of the tip along a straight move instead of one variable after a step, and
 // settling from when the target arrives, since before that nobody can stand still at it.
-// Limits of validity: the tip is known at the ends of control periods. Between two of them times are
-// interpolated linearly; a peak is missed by at most |s''| h^2 / 8.
+// Limits of validity: the tip is known at the ends of control periods. Between two of them times
+// are interpolated linearly; a peak is missed by at most |s''| h^2 / 8.
 //
 // Neither a response nor its measures exist of a segment that is no move: shorter than
 // kShortestMove_m, or over (or measured) within its first control period, as the samples of a
@@ -41,9 +43,9 @@ bool is_move(const Segment& segment);
 
 // The tip on one move, at its beginning and at the ends of its control periods.
 struct TipMove {
-  double length_m = 0;   // ds
-  double arrival_s = 0;  // t_m
-  double period_s = 0;   // h
+  double length_m = 0;          // ds
+  double arrival_s = 0;         // t_m
+  double period_s = 0;          // h
   std::vector<double> along_m;  // s
   std::vector<double> away_m;   // a
 };

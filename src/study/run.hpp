@@ -30,8 +30,8 @@ struct RunRequest {
 std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop,
                                      RunObserver& observer);
 
-// A design on the cases first, ..., first + cases - 1 of a set, fanned out over `jobs` threads, with
-// what the problem requires of each. Nothing if stopped.
+// A design on the cases first, ..., first + cases - 1 of a set, fanned out over `jobs` threads,
+// with what the problem requires of each. Nothing if stopped.
 std::optional<std::vector<MeasuredCase>> evaluate_design(const TrackingProblem& problem,
                                                          const ArmDesign& design,
                                                          const TestSet& set, std::uint64_t first,

@@ -1,5 +1,5 @@
-// What is required of an arm: how files say it, what is measured of simulations, and what becomes of
-// it in evaluations.
+// What is required of an arm: how files say it, what is measured of simulations, and what becomes
+// of it in evaluations.
 #include "problems/requirement.hpp"
 
 #include <gmock/gmock.h>
@@ -36,8 +36,8 @@ std::string refuse_requirement(const std::string& lines) {
 
 TEST(RequirementReader, SaysWhatIsWrong) {
   EXPECT_THAT(refuse_requirement("quantity = 'overshot'\nlimit_relative = 0.1"),
-              AllOf(StartsWith("p.toml:3: requirement[0].quantity is 'overshot'"),
-                    HasSubstr("overshoot"), HasSubstr("joint_speed")));
+              StartsWith("p.toml:3: unknown requirement[0].quantity 'overshot'; did you mean "
+                         "'overshoot'? Valid: overshoot, settling_time, rise_time, tip_error, "));
   EXPECT_THAT(refuse_requirement("quantity = 'overshoot'"), HasSubstr("limit_relative"));
   EXPECT_EQ(refuse_requirement("quantity = 'overshoot'\nlimit = 0.1"),
             "p.toml:4: requirement[0].limit is 0.1; the limit of overshoot is a share of the "
@@ -49,10 +49,11 @@ TEST(RequirementReader, SaysWhatIsWrong) {
             "p.toml:4: requirement[0].limit_relative is 5; it is a share of the move's length and "
             "must be at most 1; 0.05 is five percent");
   EXPECT_THAT(refuse_requirement("quantity = 'energy'\nlimit_j = 0"),
-              StartsWith("p.toml:4: requirement[0].limit_j is 0; it must be above 0"));
-  EXPECT_EQ(refuse_requirement("quantity = 'energy'\nlimit_j = 9\njoint = 'joint_1'"),
-            "p.toml:5: requirement[0].joint is 'joint_1'; energy is not of a joint but of the whole "
-            "arm; leave it out");
+              StartsWith("p.toml:4: requirement[0].limit_j is 0; it must be a finite number > 0"));
+  EXPECT_EQ(
+      refuse_requirement("quantity = 'energy'\nlimit_j = 9\njoint = 'joint_1'"),
+      "p.toml:5: requirement[0].joint is 'joint_1'; energy is not of a joint but of the whole "
+      "arm; leave it out");
   EXPECT_THAT(refuse_requirement("quantity = 'peak_torque'\nlimit_n_m = 9\njoint = 'joint_9'"),
               HasSubstr("joint_1"));
   EXPECT_EQ(refuse_requirement("quantity = 'rise_time'\nlimit_s = 0.3\nband_m = 0.1"),
@@ -135,8 +136,7 @@ const char* const kAll =
 // From the trajectory that is recorded for people, on another way.
 TEST(Requirements, AreWhatTheRecordedTrajectoryShows) {
   for (const std::string engine : {"articulated", "ode"}) {
-    const auto problem =
-        load_requiring(kAll, {"physics.engine=" + engine, "workspace.points=5"});
+    const auto problem = load_requiring(kAll, {"physics.engine=" + engine, "workspace.points=5"});
     const TestSet set = problem->get_set("test/2");
     const ArmDesign design = load_design("table-a5").design;
     const TrackingResult recorded = problem->track(design, set, 3, {.trajectory = true});
@@ -194,8 +194,8 @@ TEST(Requirements, AreWhatTheRecordedTrajectoryShows) {
     EXPECT_NEAR(value(7), speed, 1e-9);
     EXPECT_NEAR(value(8), speed_2, 1e-9);
     EXPECT_EQ(required[8].joint, 1u);
-    EXPECT_EQ(required[4].joint,
-              std::ranges::max_element(recorded.peak_effort_n_m) - recorded.peak_effort_n_m.begin());
+    EXPECT_EQ(required[4].joint, std::ranges::max_element(recorded.peak_effort_n_m) -
+                                     recorded.peak_effort_n_m.begin());
     EXPECT_EQ(recorded.point_error_m.at(required[3].point.value() - 1), value(3));
   }
 }
@@ -220,15 +220,15 @@ TEST(Requirements, OfAnEvaluationAreThoseOfItsWorstCase) {
   EXPECT_TRUE(same_bits(evaluation.objectives, before.objectives));
   EXPECT_TRUE(same_bits(evaluation.case_errors, before.case_errors));
   EXPECT_TRUE(same_bits(evaluation.residuals, before.residuals));
-  EXPECT_TRUE(same_bits(
-      std::vector<double>(evaluation.metrics.begin(), evaluation.metrics.end() - 9),
-      before.metrics));
+  EXPECT_TRUE(
+      same_bits(std::vector<double>(evaluation.metrics.begin(), evaluation.metrics.end() - 9),
+                before.metrics));
 }
 
 TEST(Requirements, ALostTrainingCaseIsWorseThanAnyThatWorksAndLessBadTheFurtherItGot) {
-  const auto problem =
-      load_requiring("{quantity='tip_error', limit_m=1e-6, use='constraint'},"
-                     "{quantity='overshoot', limit_relative=0.05, use='constraint'}");
+  const auto problem = load_requiring(
+      "{quantity='tip_error', limit_m=1e-6, use='constraint'},"
+      "{quantity='overshoot', limit_relative=0.05, use='constraint'}");
   const auto calc_g = [&](double torque_factor, CaseRole role) {
     ArmDesign design = problem->config().start;
     for (JointDrive& joint : design.joints) {
@@ -240,7 +240,7 @@ TEST(Requirements, ALostTrainingCaseIsWorseThanAnyThatWorksAndLessBadTheFurtherI
   const Evaluation works = calc_g(1, CaseRole::training);
   ASSERT_LT(works.case_errors.front(), 0.1);
   // Thousands of micrometres: it counts as a thousand.
-  EXPECT_EQ(works.constraint_values.at(0), kWorstRatio - 1);
+  EXPECT_NEAR(works.constraint_values.at(0), kWorstRatio - 1, 1e-9);
   EXPECT_LT(works.constraint_values.at(1), 20);
   EXPECT_GT(calc_g(1, CaseRole::test).constraint_values.at(0), kWorstRatio);
   const Evaluation lost = calc_g(0.02, CaseRole::training);  // the arm falls
@@ -255,9 +255,9 @@ TEST(Requirements, ALostTrainingCaseIsWorseThanAnyThatWorksAndLessBadTheFurtherI
   double before = 3 * kWorstRatio;
   for (const int steps : {0, 1, 50, 100}) {
     result.steps = steps;
-    const double value = make_required_metrics(problem->config().requirements,
-                                               {result, {{}, {}}}, targets, true)
-                             .at(1);
+    const double value =
+        make_required_metrics(problem->config().requirements, {result, {{}, {}}}, targets, true)
+            .at(1);
     EXPECT_LT(value, before);
     EXPECT_GE(value, 0.05 * kWorstRatio);
     before = value;
@@ -266,8 +266,8 @@ TEST(Requirements, ALostTrainingCaseIsWorseThanAnyThatWorksAndLessBadTheFurtherI
 
 TEST(Requirements, OfMovesAreRefusedWhereACaseHasNone) {
   const auto problem = load_tracking(
-      "q1-complex", {"physics.engine=articulated",
-                     "requirement=[{quantity='overshoot', limit_relative=0.05}]"});
+      "q1-complex",
+      {"physics.engine=articulated", "requirement=[{quantity='overshoot', limit_relative=0.05}]"});
   const Eigen::Vector3d start(1.4, 0, 0.9);
   const Eigen::Vector3d next(1.4, 0.0005, 0.9);
   const TestSet set = TestSet::make_from_cases({{{start, next, start, next}}});

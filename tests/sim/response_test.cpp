@@ -10,8 +10,8 @@
 namespace armwright {
 namespace {
 
-using testing::ElementsAre;
 using Eigen::Vector3d;
+using testing::ElementsAre;
 
 constexpr double kPeriod_s = 0.01;
 const Vector3d kFrom_m(1.2, -0.4, 0.7);
@@ -72,8 +72,7 @@ TEST(Response, OfASecondOrderStepHasTheTextbooksOvershoot) {
 TEST(Response, OfAFirstOrderStepHasTheTextbooksTimes) {
   const double tau_s = 0.15;
   const TargetTable table = make_table(10, 190);
-  const TipMove move =
-      make_motion(table, [&](double t_s) { return 1 - std::exp(-t_s / tau_s); });
+  const TipMove move = make_motion(table, [&](double t_s) { return 1 - std::exp(-t_s / tau_s); });
   // Chords of a curve with |s''| <= 1 / tau^2 s': each crossing is off by less than h^2 / (8 tau).
   const double tolerance_s = 2 * kPeriod_s * kPeriod_s / (8 * tau_s);
   EXPECT_EQ(calc_overshoot(move), 0);
