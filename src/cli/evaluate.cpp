@@ -14,6 +14,7 @@
 #include "cli/format.hpp"
 #include "cli/json.hpp"
 #include "cli/progress_bar.hpp"
+#include "cli/requirement_view.hpp"
 #include "cli/result_view.hpp"
 #include "cli/session.hpp"
 #include "cli/signals.hpp"
@@ -38,7 +39,8 @@ constexpr const char* kEvaluateExamples = R"(Examples:
 Terms: a test case is a sequence of points the arm's tip has to follow; its error is the mean over the points of
 the largest distance between tip and target while it should be there. A failure is a case with an error above
 100 mm or none at all (the simulation diverged, or a target lies out of reach). The total torque is the sum of
-the joints' effort limits.)";
+the joints' effort limits. Where the problem has requirements, the worst case counts, and one with
+use = "constraint" that is missed makes the exit code 3.)";
 
 struct EvaluateOptions {
   std::string design;
@@ -58,6 +60,7 @@ struct EvaluatedDesign {
   LoadedProblem problem;
   ChosenCases cases;
   DesignEvaluation evaluation;
+  std::vector<ShownRequirement> requirements;
 };
 
 std::string format_json(const EvaluatedDesign& evaluated) {
@@ -93,7 +96,11 @@ std::string format_json(const EvaluatedDesign& evaluated) {
       {"total_torque_n_m", evaluation.total_torque_n_m},
       {"mean_energy_j", to_json_value(evaluation.mean_energy_j)},
   };
-  return json{{"cases", cases}, {"summary", summary}}.dump(1) + "\n";
+  json all = {{"cases", cases}, {"summary", summary}};
+  if (!evaluated.requirements.empty()) {
+    all["requirements"] = requirements_to_json(evaluated.requirements);
+  }
+  return all.dump(1) + "\n";
 }
 
 std::string format_csv(const DesignEvaluation& evaluation) {
@@ -175,6 +182,9 @@ std::string format_text(const EvaluatedDesign& evaluated, const Style& style) {
   table.add_row({"mean energy",
                  evaluation.mean_energy_j ? format_quantity(*evaluation.mean_energy_j, "J") : "-"});
   text += table.format(style, 2) + "\n";
+  if (!evaluated.requirements.empty()) {
+    text += format_requirements(evaluated.requirements, style) + "\n";
+  }
   return text + style.bold("Error against the length of the move") + "\n" +
          format_profile(evaluated, style);
 }
@@ -216,8 +226,9 @@ int run_evaluate(const EvaluateOptions& options, Session& session) {
     return get_stop_code(session.stop.reason());
   }
   report_failures(list_failures(evaluation->results), "");
+  auto requirements = judge_evaluation(tracking, *evaluation);
   const EvaluatedDesign evaluated{std::move(design), std::move(problem), std::move(cases),
-                                  std::move(*evaluation)};
+                                  std::move(*evaluation), std::move(requirements)};
   if (!options.csv.empty()) {
     write_output(options.csv, format_csv(evaluated.evaluation));
   }
@@ -231,7 +242,9 @@ int run_evaluate(const EvaluateOptions& options, Session& session) {
   } else if (options.csv != "-" && options.trajectory != "-") {
     write_stdout(format_text(evaluated, make_style(Stream::out, session.color)));
   }
-  return evaluated.evaluation.summary.without_number > 0 ? exit_code::kFailed : exit_code::kDone;
+  const bool failed = evaluated.evaluation.summary.without_number > 0 ||
+                      is_constraint_missed(evaluated.requirements);
+  return failed ? exit_code::kFailed : exit_code::kDone;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "base/text.hpp"
 #include "cli/format.hpp"
 #include "cli/list_views.hpp"
+#include "cli/requirement_view.hpp"
 #include "cli/table.hpp"
 #include "problems/problem_loader.hpp"
 
@@ -43,6 +44,19 @@ void collect_settings(const json& value, const std::string& pointer, Table& tabl
   }
 }
 
+// What is required of a design; nothing of most problems.
+std::string format_required(const ProblemDescription& description, const Style& style) {
+  if (description.requirements.empty()) {
+    return "";
+  }
+  Table table({{"requirement", false}, {"at most"}, {"use", false}});
+  for (const RequiredMetric& requirement : description.requirements) {
+    table.add_row({sanitize(requirement.limit.quantity.name), describe_limit(requirement.limit),
+                   requirement.is_constraint ? "constraint" : "report"});
+  }
+  return table.format(style) + "\n";
+}
+
 std::string explain_problem(const std::string& name, const Style& style) {
   const LoadedProblem loaded = load_problem(name);
   const ProblemDescription& description = loaded.problem->description();
@@ -69,7 +83,8 @@ std::string explain_problem(const std::string& name, const Style& style) {
   }
   Table table({{"setting (for --set)", false}, {"value", false}});
   collect_settings(settings, "", table);
-  return text + variables.format(style) + "\n" + table.format(style);
+  return text + variables.format(style) + "\n" + format_required(description, style) +
+         table.format(style);
 }
 
 json explain_problem_as_json(const std::string& name) {
@@ -89,11 +104,16 @@ json explain_problem_as_json(const std::string& name) {
   for (const Quantity& objective : description.objectives) {
     objectives.push_back({{"name", objective.name}, {"unit", objective.unit}});
   }
-  return {{"name", sanitize(loaded.name)},
-          {"title", sanitize(loaded.title)},
-          {"objectives", objectives},
-          {"variables", variables},
-          {"settings", json::parse(loaded.resolved_json)}};
+  json requirements = json::array();
+  for (const RequiredMetric& requirement : description.requirements) {
+    requirements.push_back({{"name", sanitize(requirement.limit.quantity.name)},
+                            {"unit", requirement.limit.quantity.unit},
+                            {"limit", requirement.limit.value},
+                            {"use", requirement.is_constraint ? "constraint" : "report"}});
+  }
+  return {{"name", sanitize(loaded.name)}, {"title", sanitize(loaded.title)},
+          {"objectives", objectives},      {"variables", variables},
+          {"requirements", requirements},  {"settings", json::parse(loaded.resolved_json)}};
 }
 
 }  // namespace

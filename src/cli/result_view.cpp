@@ -7,6 +7,7 @@
 
 #include "base/text.hpp"
 #include "cli/format.hpp"
+#include "cli/requirement_view.hpp"
 #include "cli/session.hpp"
 #include "sim/designed_arm.hpp"
 
@@ -103,7 +104,7 @@ std::string format_constraint(const RunResult& result, std::size_t i, double g) 
   }
   const Limit& limit = result.limits[i];
   return fmt::format("{} ({} % {})", format_quantity((1 + g) * limit.value, limit.quantity.unit),
-                     100 * std::abs(g), g > 0 ? "above" : "below");
+                     format_significant(100 * std::abs(g), 3), g > 0 ? "above" : "below");
 }
 
 std::string describe_feasibility(const Evaluation& evaluation) {
@@ -134,6 +135,15 @@ std::string format_constraints(const RunResult& result, const Style& style) {
   }
   table.add_row({"all", "", describe_feasibility(validation), describe_feasibility(result.test)});
   return style.bold("Constraints") + "\n" + table.format(style, 2);
+}
+
+// On the test set.
+std::string format_winner_requirements(const RunResult& result, const Style& style) {
+  std::vector<ShownRequirement> shown;
+  for (JudgedRequirement& judged : judge_requirements(result.requirements, result.test)) {
+    shown.push_back({std::move(judged), {}});
+  }
+  return format_requirements(shown, style);
 }
 
 std::string format_published(const RunResult& result, const Style& style) {
@@ -245,6 +255,9 @@ std::string describe_result(const RunResult& result, const std::filesystem::path
     text += is_tracking(result) ? format_tracking_test(result, style)
                                 : format_function_test(result, style);
     text += "\n";
+    if (!result.requirements.empty()) {
+      text += format_winner_requirements(result, style) + "\n";
+    }
     if (!result.constraints.empty()) {
       text += format_constraints(result, style) + "\n";
     }

@@ -43,6 +43,14 @@ struct Limit {
   double value = 0;  // > 0
 };
 
+// A metric that shall not exceed a limit: always shown and judged (requirement_grade.hpp), and
+// where it is a constraint, one of `limits` too.
+struct RequiredMetric {
+  std::size_t metric = 0;  // index into the metrics
+  Limit limit;             // its name in words
+  bool is_constraint = false;
+};
+
 // What is fixed about a problem. Objectives are minimised; a constraint g is met where g <= 0.
 struct ProblemDescription {
   std::string name;
@@ -56,7 +64,8 @@ struct ProblemDescription {
   // What a violation of 1 is worth in units of calc_scalar(): optimizers that add violations to the
   // objective multiply them by it, whatever unit the objective has.
   double violation_scale = 1;
-  std::vector<Quantity> metrics;      // of an evaluation, beside the objectives
+  std::vector<Quantity> metrics;  // of an evaluation, beside the objectives
+  std::vector<RequiredMetric> requirements;
   std::string cost_unit;              // what one case is: "simulated test case"
   std::vector<double> known_optimum;  // analytic functions: a minimiser; empty if unknown
   // Several objectives as one number, where one is needed: the sum of weight times objective. As

@@ -7,6 +7,7 @@
 
 #include "problems/engine_choice.hpp"
 #include "problems/perturbation.hpp"
+#include "problems/requirement.hpp"
 #include "problems/tracking_objective.hpp"
 #include "sim/tracking.hpp"
 
@@ -40,6 +41,7 @@ struct TrackingConfig {
   double section_bounds_factor = 2;
   double speed_bounds_factor = 2;
   double torque_per_mass_n_m_per_kg = 0;  // of the motors; 0: they weigh nothing
+  std::vector<Requirement> requirements;
 };
 
 }  // namespace armwright

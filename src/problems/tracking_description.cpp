@@ -203,14 +203,6 @@ ProblemDescription make_tracking_description(const TrackingConfig& config) {
       description.violation_scale = objective.logarithm ? 1 : objective.error_scale_m;
       break;
   }
-  for (const Limit& limit : description.limits) {
-    description.constraints.push_back({limit.quantity.name + " / limit - 1", "1"});
-  }
-  description.has_residuals = objective.has_residuals();
-  if (!description.has_residuals && description.limits.empty()) {
-    description.residuals_advice =
-        "only objective.statistic = \"mean\" is such a sum; choose it or another optimizer";
-  }
   description.metrics = {{"error", "m"},
                          {"total_torque", "N m"},
                          {"failures", "1"},
@@ -225,6 +217,20 @@ ProblemDescription make_tracking_description(const TrackingConfig& config) {
   for (const Joint& joint : config.robot.joints) {
     description.metrics.push_back({joint.name + ".peak_effort", "N m"});
     description.metrics.push_back({joint.name + ".rms_effort", "N m"});
+  }
+  const bool objective_has_limit = !description.limits.empty();
+  describe_requirements(config.requirements, config.robot, description);
+  if (!description.limits.empty() && !objective_has_limit && !objective.logarithm &&
+      !objective.is_sum()) {
+    description.violation_scale = objective.error_scale_m;
+  }
+  for (const Limit& limit : description.limits) {
+    description.constraints.push_back({limit.quantity.name + " / limit - 1", "1"});
+  }
+  description.has_residuals = objective.has_residuals() && description.limits.empty();
+  if (!description.has_residuals && description.limits.empty()) {
+    description.residuals_advice =
+        "only objective.statistic = \"mean\" is such a sum; choose it or another optimizer";
   }
   return description;
 }

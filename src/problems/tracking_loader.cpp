@@ -18,6 +18,7 @@
 #include "problems/perturbation_reader.hpp"
 #include "problems/robot_proposal.hpp"
 #include "problems/task_reader.hpp"
+#include "problems/requirement_reader.hpp"
 #include "problems/tracking_description.hpp"
 #include "sim/design_conversion.hpp"
 #include "sim/designed_arm.hpp"
@@ -201,6 +202,7 @@ std::vector<std::string> load_tracking(const ConfigTable& table, std::span<const
     add_input(loaded, *perturbation.preset);
   }
   check_limits(table.get_table_or_empty("objective"), config);
+  config.requirements = read_requirements(table.get_tables_or_empty("requirement"), config);
   loaded.tracking = make_tracking(std::move(config), variables, urdf);
   loaded.problem = loaded.tracking;
   std::vector<std::string> settled = std::move(perturbation.settled);

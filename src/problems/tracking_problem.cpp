@@ -250,6 +250,8 @@ std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs
       its_case = cases.back()
                      .emplace(job.number, inputs_.prepare(job.block->role, *set, job.number))
                      .first;
+      check_moves(config_.requirements, config_.task, *its_case->second.targets, set->name(),
+                  job.number);
     }
     case_of_job.push_back(&its_case->second);
     TrackingJob& one =
@@ -264,9 +266,15 @@ std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs
   outcomes.reserve(jobs.size());
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     const bool own_targets = tracking[i].targets != case_of_job[i]->targets.get();
-    outcomes.push_back(make_outcome(std::move(results[i]), config_.task, jobs[i].block->role,
-                                    tracking[i], own_targets, jobs[i].residuals));
-    const PhysicsEngine& engine = config_.engines.get(jobs[i].block->role);
+    const CaseRole role = jobs[i].block->role;
+    const std::vector<double> required = make_required_metrics(
+        config_.requirements, results[i], *tracking[i].targets, role == CaseRole::training);
+    outcomes.push_back(make_outcome(std::move(results[i].result), config_.task, role, tracking[i],
+                                    own_targets, jobs[i].residuals));
+    if (outcomes[i].has_error) {
+      outcomes[i].metrics.insert(outcomes[i].metrics.end(), required.begin(), required.end());
+    }
+    const PhysicsEngine& engine = config_.engines.get(role);
     if (jobs[i].jacobian && engine.has_derivatives() && tracking[i].variation == nullptr &&
         !outcomes[i].residuals.empty()) {
       outcomes[i].jacobian = engine.calc_derivatives(
@@ -279,9 +287,9 @@ std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs
   return outcomes;
 }
 
-std::vector<TrackingResult> TrackingProblem::simulate(std::span<const CaseJob> jobs,
-                                                      std::span<const TrackingJob> tracking) const {
-  std::vector<TrackingResult> results;
+std::vector<MeasuredCase> TrackingProblem::simulate(std::span<const CaseJob> jobs,
+                                                    std::span<const TrackingJob> tracking) const {
+  std::vector<MeasuredCase> results;
   results.reserve(jobs.size());
   for (std::size_t first = 0; first < jobs.size();) {
     const PhysicsEngine& engine = config_.engines.get(jobs[first].block->role);
@@ -289,7 +297,8 @@ std::vector<TrackingResult> TrackingProblem::simulate(std::span<const CaseJob> j
     while (end < jobs.size() && &config_.engines.get(jobs[end].block->role) == &engine) {
       ++end;
     }
-    auto some = engine.simulate(inputs_.setup(), tracking.subspan(first, end - first));
+    auto some = simulate_measured(engine, inputs_.setup(), tracking.subspan(first, end - first),
+                                  config_.requirements);
     std::ranges::move(some, std::back_inserter(results));
     first = end;
   }
@@ -304,6 +313,21 @@ TrackingResult TrackingProblem::track(const ArmDesign& design, const TestSet& se
 std::vector<TrackingResult> TrackingProblem::track(const ArmDesign& design, const TestSet& set,
                                                    std::uint64_t first, std::size_t count,
                                                    RecordingOptions recording) const {
+  std::vector<TrackingResult> results;
+  for (MeasuredCase& one : simulate_judged(design, set, first, count, recording, {})) {
+    results.push_back(std::move(one.result));
+  }
+  return results;
+}
+
+std::vector<MeasuredCase> TrackingProblem::measure(const ArmDesign& design, const TestSet& set,
+                                                   std::uint64_t first, std::size_t count) const {
+  return simulate_judged(design, set, first, count, {}, config_.requirements);
+}
+
+std::vector<MeasuredCase> TrackingProblem::simulate_judged(
+    const ArmDesign& design, const TestSet& set, std::uint64_t first, std::size_t count,
+    RecordingOptions recording, std::span<const Requirement> requirements) const {
   check_design(design);
   const TrackingInputs::OfDesign of_design = inputs_.prepare(design);
   std::deque<TrackingInputs::OfCase> cases;
@@ -314,7 +338,7 @@ std::vector<TrackingResult> TrackingProblem::track(const ArmDesign& design, cons
     jobs.push_back(inputs_.make_job(of_design, cases.back(), kept));
     jobs.back().recording = recording;
   }
-  return config_.engines.judging->simulate(inputs_.setup(), jobs);
+  return simulate_measured(*config_.engines.judging, inputs_.setup(), jobs, requirements);
 }
 
 Evaluation TrackingProblem::aggregate(std::span<const double> x,
@@ -369,6 +393,8 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
   terms.duration_s = sums[kDuration] / numbers;
   evaluation.objectives = calc_objectives(objective, terms);
   evaluation.constraint_values = calc_constraints(objective, terms);
+  const auto required = calc_worst_required(outcomes, config_.requirements.size());
+  append_constraints(config_.requirements, required, evaluation.constraint_values);
   // Asked for and not abandoned: a case with an error has a residual for each point that counts.
   const bool has_residuals =
       description_.has_residuals && std::ranges::all_of(outcomes, [](const CaseOutcome& outcome) {
@@ -391,6 +417,7 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
     evaluation.metrics.push_back(sums[i]);
     evaluation.metrics.push_back(sums[i + 1] / numbers);
   }
+  evaluation.metrics.insert(evaluation.metrics.end(), required.begin(), required.end());
   return evaluation;
 }
 
@@ -403,7 +430,8 @@ std::optional<double> TrackingProblem::calc_lower_bound(std::span<const double> 
   // Errors and what efforts cost are never negative: no objective is smaller with a further case
   // than with one that is perfect and costs nothing.
   CaseOutcome perfect;
-  perfect.metrics.assign(kFirstJointMetric + 2 * config_.robot.joint_count(), 0.0);
+  perfect.metrics.assign(
+      kFirstJointMetric + 2 * config_.robot.joint_count() + config_.requirements.size(), 0.0);
   std::vector<CaseOutcome> all(cases, perfect);
   std::ranges::copy(outcomes, all.begin());
   const Evaluation evaluation = aggregate(x, all);

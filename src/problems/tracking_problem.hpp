@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "problems/problem.hpp"
+#include "problems/requirement_meter.hpp"
 #include "problems/tracking_config.hpp"
 #include "problems/tracking_inputs.hpp"
 
@@ -59,6 +60,9 @@ class TrackingProblem final : public Problem {
   std::vector<TrackingResult> track(const ArmDesign& design, const TestSet& set,
                                     std::uint64_t first, std::size_t count,
                                     RecordingOptions recording) const;
+  // The same with what is required of them.
+  std::vector<MeasuredCase> measure(const ArmDesign& design, const TestSet& set,
+                                    std::uint64_t first, std::size_t count) const;
   void check_design(const ArmDesign& design) const;
   // The arm of a design without its load, its task, and both ready to be simulated; the problem's
   // own where the design changes nothing.
@@ -74,8 +78,13 @@ class TrackingProblem final : public Problem {
 
  private:
   // One result a job of `tracking`, each from the engine of its case's role.
-  std::vector<TrackingResult> simulate(std::span<const CaseJob> jobs,
-                                       std::span<const TrackingJob> tracking) const;
+  std::vector<MeasuredCase> simulate(std::span<const CaseJob> jobs,
+                                     std::span<const TrackingJob> tracking) const;
+  // Cases first, ..., first + count - 1, as they are judged.
+  std::vector<MeasuredCase> simulate_judged(const ArmDesign& design, const TestSet& set,
+                                            std::uint64_t first, std::size_t count,
+                                            RecordingOptions recording,
+                                            std::span<const Requirement> requirements) const;
   void check_bounds() const;  // that every design within them is an arm
   void set_jacobian();
 

@@ -170,6 +170,9 @@ const char* to_string(SimulationStatus status);
 struct RecordingOptions {
   bool error_series = false;  // |tip - target| at the end of every control period
   bool trajectory = false;
+  bool motion = false;  // only what measures of the motion need (sim/response.hpp): much less
+
+  bool any() const { return error_series || trajectory || motion; }
 };
 
 struct TrajectorySample {
@@ -192,6 +195,10 @@ struct TrackingResult {
   double energy_j = 0;
   std::vector<double> error_series_m;        // on request
   std::vector<TrajectorySample> trajectory;  // on request
+  // With `motion`, at the end of every control period: the tip, and the joints' angles (rad or m,
+  // in whole turns as the engine counts them), steps x joints, row-major.
+  std::vector<Eigen::Vector3d> tips_m;
+  std::vector<double> angles_rad;
 };
 
 // One simulation: a design on a test case.

@@ -98,6 +98,13 @@ double TrackingLoop::calc_squared_error(const Arm& arm, const Segment& segment) 
 template <class Arm>
 void TrackingLoop::record(const Arm& arm, const Segment& segment, int step) {
   const Eigen::Vector3d tip = arm.tip_position_m();
+  if (job_.recording.motion) {
+    result_.tips_m.push_back(tip);
+    result_.angles_rad.insert(result_.angles_rad.end(), q_.begin(), q_.end());
+  }
+  if (!job_.recording.error_series && !job_.recording.trajectory) {
+    return;  // the target's position would cost more than the rest
+  }
   const Eigen::Vector3d target = setup_.calc_target_position(segment, step);
   if (job_.recording.error_series) {
     result_.error_series_m.push_back((tip - target).norm());
@@ -112,7 +119,7 @@ void TrackingLoop::record(const Arm& arm, const Segment& segment, int step) {
 
 template <class Arm>
 TrackingResult TrackingLoop::run(Arm& arm) {
-  const bool recording = job_.recording.error_series || job_.recording.trajectory;
+  const bool recording = job_.recording.any();
   try {
     arm.read_angles(q_);
     if (job_.variation != nullptr) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 #include <limits>
 
 #include "base/error.hpp"
@@ -69,8 +68,11 @@ std::optional<DesignEvaluation> evaluate_with_progress(const TrackingProblem& pr
                                                        StopSignal& stop, RunObserver& observer,
                                                        BarShare share) {
   DesignEvaluation evaluation;
-  const auto keep = [&](std::vector<TrackingResult> results) {
-    std::ranges::move(results, std::back_inserter(evaluation.results));
+  const auto keep = [&](std::vector<MeasuredCase> cases_measured) {
+    for (MeasuredCase& one : cases_measured) {
+      evaluation.results.push_back(std::move(one.result));
+      evaluation.required.push_back(std::move(one.required));
+    }
   };
   if (!simulate_all(problem, design, cases, jobs, stop, observer, share, keep)) {
     return std::nullopt;
@@ -99,8 +101,8 @@ std::optional<ErrorSurvey> survey_with_progress(const TrackingProblem& problem,
   ErrorSurvey survey;
   std::vector<double> errors;
   bool failed = false;
-  const auto take = [&](const std::vector<TrackingResult>& results) {
-    for (const TrackingResult& result : results) {
+  const auto take = [&](const std::vector<MeasuredCase>& measured) {
+    for (const auto& [result, required] : measured) {
       const double error = get_number(result);
       if (!failed && !(error <= kFailureError_m)) {
         failed = true;

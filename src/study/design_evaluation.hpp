@@ -25,6 +25,8 @@ const TrackingProblem& require_tracking(const LoadedProblem& problem);
 
 struct DesignEvaluation {
   std::vector<TrackingResult> results;  // one a case
+  // Likewise, of each requirement of the problem.
+  std::vector<std::vector<RequiredValue>> required;
   ErrorSummary summary;
   double total_torque_n_m = 0;
   std::optional<double> mean_energy_j;  // over the cases that ran to their end

@@ -44,6 +44,7 @@ RunResult make_result(const RunPlan& plan) {
   result.objective_weights = description.objective_weights;
   result.constraints = description.constraints;
   result.limits = description.limits;
+  result.requirements = description.requirements;
   result.test_set = plan.problem.sets.test;
   result.tracking = plan.problem.tracking != nullptr;
   result.published = plan.problem.published;
@@ -157,20 +158,20 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   return result;
 }
 
-std::optional<std::vector<TrackingResult>> evaluate_design(const TrackingProblem& problem,
-                                                           const ArmDesign& design,
-                                                           const TestSet& set, std::uint64_t first,
-                                                           std::uint64_t cases, unsigned jobs,
-                                                           StopSignal& stop) {
+std::optional<std::vector<MeasuredCase>> evaluate_design(const TrackingProblem& problem,
+                                                         const ArmDesign& design,
+                                                         const TestSet& set, std::uint64_t first,
+                                                         std::uint64_t cases, unsigned jobs,
+                                                         StopSignal& stop) {
   problem.check_design(design);
-  std::vector<TrackingResult> results(cases);
+  std::vector<MeasuredCase> results(cases);
   ThreadPool pool(jobs);
   const std::size_t chunk = calc_chunk(problem.batch_size(CaseRole::test), cases, pool.size());
   pool.run((results.size() + chunk - 1) / chunk, [&](std::size_t number) {
     if (!stop.requested()) {
       const std::size_t begin = number * chunk;
       const std::size_t count = std::min(chunk, results.size() - begin);
-      std::ranges::move(problem.track(design, set, first + begin, count, {}),
+      std::ranges::move(problem.measure(design, set, first + begin, count),
                         results.begin() + static_cast<std::ptrdiff_t>(begin));
     }
   });

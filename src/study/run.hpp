@@ -30,13 +30,13 @@ struct RunRequest {
 std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop,
                                      RunObserver& observer);
 
-// A design on the cases first, ..., first + cases - 1 of a set, fanned out over `jobs` threads.
-// Nothing if stopped.
-std::optional<std::vector<TrackingResult>> evaluate_design(const TrackingProblem& problem,
-                                                           const ArmDesign& design,
-                                                           const TestSet& set, std::uint64_t first,
-                                                           std::uint64_t cases, unsigned jobs,
-                                                           StopSignal& stop);
+// A design on the cases first, ..., first + cases - 1 of a set, fanned out over `jobs` threads,
+// with what the problem requires of each. Nothing if stopped.
+std::optional<std::vector<MeasuredCase>> evaluate_design(const TrackingProblem& problem,
+                                                         const ArmDesign& design,
+                                                         const TestSet& set, std::uint64_t first,
+                                                         std::uint64_t cases, unsigned jobs,
+                                                         StopSignal& stop);
 
 // The result recorded in a folder. Error{usage} if the folder is no run or its run has not ended,
 // saying how to go on.

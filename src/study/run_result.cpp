@@ -35,6 +35,29 @@ Quantity quantity_from_json(const json& j) {
   return {j.at("name"), j.at("unit")};
 }
 
+json requirement_to_json(const RunResult& result, const RequiredMetric& requirement) {
+  return {{"metric", result.metric_names.at(requirement.metric)},
+          {"name", requirement.limit.quantity.name},
+          {"unit", requirement.limit.quantity.unit},
+          {"limit", requirement.limit.value},
+          {"use", requirement.is_constraint ? "constraint" : "report"}};
+}
+
+RequiredMetric requirement_from_json(const RunResult& result, const json& j) {
+  const auto found = std::ranges::find(result.metric_names, j.at("metric").get<std::string>());
+  if (found == result.metric_names.end()) {
+    throw std::runtime_error("a requirement is of a metric that it does not name");
+  }
+  RequiredMetric requirement;
+  requirement.metric = static_cast<std::size_t>(found - result.metric_names.begin());
+  requirement.limit = {quantity_from_json(j), j.at("limit")};
+  requirement.is_constraint = j.at("use") == "constraint";
+  if (!(requirement.limit.value > 0)) {
+    throw std::runtime_error("a requirement's limit is not above 0");
+  }
+  return requirement;
+}
+
 json evaluation_to_json(const Evaluation& evaluation) {
   return {{"feasible", is_proven_feasible(evaluation)},
           {"status", to_string(evaluation.status)},
@@ -200,6 +223,9 @@ std::string to_json(const RunResult& result) {
   if (result.counts.abandoned > 0) {  // results from before there was racing say nothing
     j["counts"]["abandoned"] = result.counts.abandoned;
   }
+  for (const RequiredMetric& requirement : result.requirements) {  // most problems have none
+    j["requirements"].push_back(requirement_to_json(result, requirement));
+  }
   if (result.winner) {
     j["winner"] = {{"candidate", *result.winner},
                    {"test", evaluation_to_json(result.test)},
@@ -246,6 +272,9 @@ RunResult parse_result(const std::string& text, const std::filesystem::path& fil
     }
     if (!result.limits.empty() && result.limits.size() != result.constraints.size()) {
       throw std::runtime_error("some of its constraints have a limit and others none");
+    }
+    for (const json& requirement : j.value("requirements", json::array())) {
+      result.requirements.push_back(requirement_from_json(result, requirement));
     }
     result.least_violation = optional_from_json(j.value("least_violation", json(nullptr)));
     if (result.objectives.empty()) {

@@ -37,6 +37,7 @@ struct RunResult {
   std::vector<double> objective_weights;  // as in ProblemDescription
   std::vector<Quantity> constraints;      // likewise
   std::vector<Limit> limits;              // likewise
+  std::vector<RequiredMetric> requirements;
   // Of all training evaluations the smallest, where the problem has constraints; nothing if none
   // had a number.
   std::optional<double> least_violation;

@@ -12,7 +12,7 @@ namespace {
 constexpr const char* kTopKeys =
     "title, description, kind, schedule, racing, sets, run, published, robot, physics, task, "
     "control, "
-    "workspace, objective, training, variables, motors, perturbation, sweep";
+    "workspace, objective, training, variables, motors, perturbation, requirement, sweep";
 constexpr const char* kTaskKeys =
     "signal, speed_m_per_s, distance_limit_m, trapezoid_acceleration_m_per_s2, rest_s, "
     "count_first_point, ik_bug, load_kg";

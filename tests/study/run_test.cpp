@@ -97,7 +97,8 @@ TEST(EvaluateDesign, InBatchesItIsWhatCaseByCaseGives) {
     ASSERT_TRUE(results);
     ASSERT_EQ(results->size(), 70u);
     for (std::uint64_t i = 0; i < 70; ++i) {
-      EXPECT_EQ((*results)[i].mean_error_m, problem->track(design, set, 5 + i).mean_error_m) << i;
+      EXPECT_EQ((*results)[i].result.mean_error_m, problem->track(design, set, 5 + i).mean_error_m)
+          << i;
     }
     stop.request(StopReason::interrupted);
     EXPECT_FALSE(evaluate_design(*problem, design, set, 5, 70, jobs, stop));

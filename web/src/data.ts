@@ -215,7 +215,18 @@ export interface RunData extends PageBase {
   variables: VariableHistory[];
   test: TestErrors | null; // nothing before the run has ended
   front: RunFront | null; // of several objectives
+  requirements: RequirementLight[]; // of the winner on the test set; empty before there is one
   arm: ArmEvidence | null; // of an arm's problem
+}
+
+// A quantity that shall not exceed a limit on any test case, and whether it does.
+export interface RequirementLight {
+  quantity: Quantity;
+  limit: number;
+  value: number | null; // of the worst case
+  grade: 'met' | 'tight' | 'missed' | 'unknown'; // tight: met, within 10 % of the limit
+  binds: boolean; // nearest to its limit of all, or furthest above it
+  is_constraint: boolean;
 }
 
 // Generations, or of an optimizer without them blocks of consecutive evaluations.

@@ -18,6 +18,7 @@ export interface Cell {
   value: Value;
   command?: string;
   note?: string;
+  mark?: 'good' | 'near' | 'bad' | 'none'; // a colour beside what the text says as well
 }
 
 export interface DataTable {

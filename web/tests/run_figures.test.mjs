@@ -124,9 +124,24 @@ for (const [kind, make_data] of Object.entries(kPages)) {
 test('a run has all its figures and tables under their names', () => {
   const ids = get_items(make_run_data()).map((item) => item.id);
   const wanted =
-    'facts results-table fitness variables front distance-response speed-sweep test-errors failures test-case signals-distance ' +
+    'facts requirements-table results-table fitness variables front distance-response speed-sweep test-errors failures test-case signals-distance ' +
     'signals-speed signals-acceleration speed-reduction momentary-error joint-angles joint-errors joint-torques saturation design-table replay';
   wanted.split(' ').forEach((id) => assert.ok(ids.includes(id), id));
+});
+
+test('requirements have a sign and words beside their colour, and units that people read', () => {
+  const { table } = find(make_run_data(), 'requirements-table');
+  const states = table.rows.map((row) => [row[row.length - 1].mark, row[row.length - 1].value]);
+  assert.deepEqual(states, [
+    ['good', '✓ met'],
+    ['near', '! met, within 10 % of the limit'],
+    ['bad', '✗ missed; this limit binds'],
+    ['none', '? not shown: a case has no number'],
+  ]);
+  assert.deepEqual(table.rows[0].slice(0, 6), ['overshoot', 'constraint', 5, 2, '%', 40]);
+  assert.deepEqual(table.rows[1].slice(0, 5), ['tip error', 'report', 1, 0.95, 'mm']);
+  assert.deepEqual(table.rows[3].slice(2, 6), [0.2, null, 's', null]);
+  assert.ok(!get_items({ ...make_run_data(), requirements: [] }).some((item) => item.id === 'requirements-table'));
 });
 
 test('the repeated thesis has a counterpart of every figure', () => {
@@ -164,6 +179,7 @@ test('what is missing is left out', () => {
     arm: null,
     test: null,
     front: null,
+    requirements: [],
     replays: [],
     variables: [],
     training: { ...training, ...empty, incumbents: no_incumbents },

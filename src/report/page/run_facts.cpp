@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/text.hpp"
+#include "problems/requirement_grade.hpp"
 #include "report/page/page_json.hpp"
 #include "study/run.hpp"
 
@@ -142,6 +143,24 @@ json make_run_facts(const RecordedRun& run) {
     facts.add(label, found == run.build.end() ? "" : found->second);
   }
   return facts.take();
+}
+
+json make_requirements(const RecordedRun& run) {
+  json list = json::array();
+  if (!run.result || !run.result->winner) {
+    return list;
+  }
+  for (const JudgedRequirement& judged :
+       judge_requirements(run.result->requirements, run.result->test)) {
+    const RequiredMetric& requirement = judged.requirement;
+    list.push_back({{"quantity", make_quantity(requirement.limit.quantity)},
+                    {"limit", requirement.limit.value},
+                    {"value", judged.value ? finite_or_null(*judged.value) : json(nullptr)},
+                    {"grade", to_string(judged.grade)},
+                    {"binds", judged.binds},
+                    {"is_constraint", requirement.is_constraint}});
+  }
+  return list;
 }
 
 }  // namespace armwright

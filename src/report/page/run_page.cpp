@@ -182,6 +182,7 @@ json make_page(const RecordedRun& run, const PageOptions& options, PageSimulator
                {"logarithmic", quantity.name.starts_with("ln(")},
                {"variables", make_variables(run, history)},
                {"front", make_front(run)},
+               {"requirements", make_requirements(run)},
                {"arm", nullptr}};
   if (run.tracking() != nullptr) {
     add_arm(run, options, used, page, notes);

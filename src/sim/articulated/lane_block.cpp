@@ -42,7 +42,7 @@ LaneBlock<T>::LaneBlock(const TrackingSetup& setup, const Kernel<T>& kernel,
   prismatic_ = chain.prismatic();
   for (const std::size_t job : chosen) {
     own_models_ |= jobs[job].setup != nullptr;
-    recording_ |= jobs[job].recording.error_series || jobs[job].recording.trajectory;
+    recording_ |= jobs[job].recording.any();
   }
   states_ = AlignedNumbers<T>(groups * state_size_);
   models_ = AlignedNumbers<T>((own_models_ ? groups : 1) * model_size_);
@@ -264,7 +264,7 @@ void LaneBlock<T>::run_segment(std::size_t group, std::size_t segment) {
   call.final_state = final_state_.data();
   for (std::size_t lane = 0; recording_ && lane < lanes(); ++lane) {
     const std::size_t job = slots_[first + lane];
-    if (job != kFree && (jobs_[job].recording.error_series || jobs_[job].recording.trajectory)) {
+    if (job != kFree && jobs_[job].recording.any()) {
       call.records = records_.data();
     }
   }
@@ -320,7 +320,7 @@ void LaneBlock<T>::read_records(std::size_t slot, const Segment& segment, int st
   const std::size_t job = slots_[slot];
   const RecordingOptions& recording = jobs_[job].recording;
   const TrackingSetup& setup = setup_of(job);
-  if (!recording.error_series && !recording.trajectory) {
+  if (!recording.any()) {
     return;  // only a neighbour's are asked for
   }
   TrackingResult& result = results_[job];
@@ -331,6 +331,15 @@ void LaneBlock<T>::read_records(std::size_t slot, const Segment& segment, int st
     const Eigen::Vector3d tip =
         setup.chain().base_pose() *
         Eigen::Vector3d(get(2 * joints_), get(2 * joints_ + 1), get(2 * joints_ + 2));
+    if (recording.motion) {
+      result.tips_m.push_back(tip);
+      for (std::size_t i = 0; i < joints_; ++i) {
+        result.angles_rad.push_back(get(i));
+      }
+    }
+    if (!recording.error_series && !recording.trajectory) {
+      continue;  // the target's position would cost more than the rest
+    }
     const Eigen::Vector3d target = setup.calc_target_position(segment, step);
     if (recording.error_series) {
       result.error_series_m.push_back((tip - target).norm());

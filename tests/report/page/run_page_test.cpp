@@ -257,6 +257,27 @@ TEST_F(RunPage, OfConstraintsCountsOnlyDesignsThatKeepThem) {
   }
 }
 
+// One that any design meets, and one that none does: from the winner's test, not simulated again.
+TEST_F(RunPage, HasTheLightsOfWhatIsRequired) {
+  make_run(make_plan("q1-complex", "ga", 24,
+                     {"workspace.points=4",
+                      "requirement=[{quantity='tip_error', limit_m=100}, "
+                      "{quantity='peak_torque', joint='joint_2', limit_n_m=1}]"}),
+           "a");
+  const json page = make_page("a", {.simulate = false});
+  const json& lights = page["requirements"];
+  ASSERT_EQ(lights.size(), 2u);
+  expect_interface(lights[0], {"RequirementLight"});
+  EXPECT_EQ(lights[0]["grade"], "met");
+  EXPECT_EQ(lights[0]["quantity"], json({{"name", "tip error"}, {"unit", "m"}}));
+  EXPECT_EQ(lights[1]["grade"], "missed");
+  EXPECT_EQ(lights[1]["binds"], true);
+  EXPECT_EQ(lights[1]["limit"], 1);
+  EXPECT_EQ(lights[1]["is_constraint"], false);
+  const json recorded = json::parse(read_result("a"));
+  EXPECT_EQ(lights[1]["value"], recorded["winner"]["test"]["metrics"].back());
+}
+
 TEST_F(RunPage, OfARunUnderWayReadsOnly) {
   make_run(make_plan("q1-complex", "ga", 24), "a");
   const auto folder = temporary_ / "a";

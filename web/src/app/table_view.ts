@@ -33,6 +33,8 @@ function make_cell(cell: Value | Cell, digits: number, details: HTMLElement): HT
         title: 'Where this comes from',
       }),
     );
+  } else if (cell !== null && typeof cell === 'object' && cell.mark !== undefined) {
+    element.append(make('span', { class: 'mark ' + cell.mark }, text));
   } else {
     element.textContent = text;
   }

@@ -5,6 +5,7 @@ import { make_design_table, make_results_table } from './design_table';
 import { make_response_figure } from './distance_response';
 import { make_joint_figures, make_saturation_table } from './joints';
 import { make_momentary_figure } from './momentary';
+import { make_requirement_table } from './requirement_table';
 import { make_front_figure } from './run_front';
 import { make_reduction_figure, make_signal_figures } from './signals';
 import { make_sweep_figure } from './sweep';
@@ -41,6 +42,7 @@ export function make_run_tabs(data: RunData): Tab[] {
       title: 'Overview',
       items: [
         arm === null ? null : make_results_table(data, arm),
+        make_requirement_table(data.requirements),
         fitness === null ? null : make_half(fitness, 'overview-fitness'),
         response === null ? null : make_half(response, 'overview-response'),
         data.facts.length > 0 ? { kind: 'facts', id: 'facts', title: 'About', facts: data.facts } : null,

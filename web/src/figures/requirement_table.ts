@@ -1,0 +1,55 @@
+// The traffic lights: what is required of the winner, and whether it keeps it. A sign and words say
+// what the colour says.
+import type { RequirementLight } from '../data';
+import type { Cell, TableItem, Value } from '../model';
+import { get_shown, times } from './quantities';
+
+const kStates: { [grade in RequirementLight['grade']]: { text: string; mark: NonNullable<Cell['mark']> } } = {
+  met: { text: '✓ met', mark: 'good' },
+  tight: { text: '! met, within 10 % of the limit', mark: 'near' },
+  missed: { text: '✗ missed', mark: 'bad' },
+  unknown: { text: '? not shown: a case has no number', mark: 'none' },
+};
+
+function make_row(light: RequirementLight): (Value | Cell)[] {
+  const is_share = light.quantity.unit === '1';
+  const shown = get_shown(light.quantity);
+  const factor = is_share ? 100 : shown.factor;
+  const state = kStates[light.grade];
+  return [
+    shown.name,
+    light.is_constraint ? 'constraint' : 'report',
+    light.limit * factor,
+    times(light.value, factor),
+    is_share ? '%' : shown.unit,
+    times(light.value, 100 / light.limit),
+    { value: state.text + (light.binds ? '; this limit binds' : ''), mark: state.mark },
+  ];
+}
+
+export function make_requirement_table(lights: RequirementLight[]): TableItem | null {
+  if (lights.length === 0) {
+    return null;
+  }
+  return {
+    kind: 'table',
+    id: 'requirements-table',
+    title: 'Requirements',
+    caption:
+      'Whether the winner keeps what is required, on the worst case of the test set. ' +
+      'The limit that binds is the one that it is nearest to, or furthest above. ' +
+      'Only constraints were known to the optimizer.',
+    table: {
+      columns: [
+        { label: 'requirement' },
+        { label: 'use' },
+        { label: 'at most', numeric: true },
+        { label: 'worst case', numeric: true },
+        { label: 'unit' },
+        { label: 'of the limit', unit: '%', numeric: true, digits: 3 },
+        { label: 'state' },
+      ],
+      rows: lights.map(make_row),
+    },
+  };
+}
