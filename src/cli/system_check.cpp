@@ -15,8 +15,8 @@
 #include "optimizers/optimizer.hpp"
 #include "problems/config_files.hpp"
 #include "problems/problem_loader.hpp"
-#include "sim/mesh_file.hpp"
 #include "report/page/page_assets.hpp"
+#include "sim/mesh_file.hpp"
 #include "sim/physics_engine.hpp"
 #include "study/build_info.hpp"
 

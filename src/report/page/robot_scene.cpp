@@ -10,9 +10,9 @@
 #include <string_view>
 
 #include "base/text.hpp"
-#include "sim/mesh_file.hpp"
 #include "report/page/packed.hpp"
 #include "report/page/plain_shapes.hpp"
+#include "sim/mesh_file.hpp"
 
 namespace armwright {
 namespace {
