@@ -282,7 +282,9 @@ TEST(BadConfig, EveryUnknownKeyIsNamedAtOnce) {
             std::string("p.toml:2: unknown key colour. Valid here: ") + kTopKeys +
                 "\np.toml:4: unknown key task.speed; did you mean 'task.speed_m_per_s'? Valid "
                 "here: " +
-                kTaskKeys + "\np.toml:7: unknown key robot.url. Valid here: urdf, mass_scale");
+                kTaskKeys +
+                "\np.toml:7: unknown key robot.url. Valid here: urdf, mass_scale, base, "
+                "tip, density_kg_per_m3");
 }
 
 TEST(BadConfig, WhatIsMissingIsNamed) {

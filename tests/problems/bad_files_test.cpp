@@ -72,9 +72,10 @@ TEST(BadPath, SaysWhereItWasLookedFor) {
 
 TEST(BadPath, OfAFileThatAProblemNames) {
   const ProblemFolder folder;
-  EXPECT_EQ(folder.refusal_of_base_with("[robot]\nurdf = 'arm.urdf'"),
-            "p.toml:3: robot.urdf is 'arm.urdf'; there is no file 'arm.urdf' in FOLDER or in the "
-            "current folder, and no shipped robot has that name");
+  EXPECT_EQ(
+      folder.refusal_of_base_with("[robot]\nurdf = 'welder.urdf'"),
+      "p.toml:3: robot.urdf is 'welder.urdf'; there is no file 'welder.urdf' in FOLDER or in the "
+      "current folder, and no shipped robot has that name");
   EXPECT_EQ(folder.refusal_of_base_with("[robot]\nurdf = 'arms/arm.urdf'"),
             "p.toml:3: robot.urdf is 'arms/arm.urdf'; there is no file 'arms/arm.urdf' in FOLDER "
             "or in the current folder");

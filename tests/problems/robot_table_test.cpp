@@ -40,14 +40,14 @@ TEST(RobotTable, RefusalsNameFileAndKey) {
   folder.write("arm.urdf", make_arm_with_jaw());
   const std::string arm = "[robot]\nurdf = 'arm.urdf'\n";
   EXPECT_EQ(folder.refusal_of_base_with(arm),
-            "p.toml:3: robot.urdf is \"arm.urdf\"; arm.urdf: the links branch and end in 'tip', "
+            "p.toml:3: robot.urdf is 'arm.urdf'; arm.urdf: the links branch and end in 'tip', "
             "'jaw'; name the one whose frame is the tool centre point (or any other link) with "
             "robot.tip or --tip");
   EXPECT_THAT(folder.refusal_of_base_with(arm + "tip = 'tp'"),
-              StartsWith("p.toml:4: robot.tip is \"tp\"; arm.urdf: the tip: unknown link 'tp'; did "
+              StartsWith("p.toml:4: robot.tip is 'tp'; arm.urdf: the tip: unknown link 'tp'; did "
                          "you mean 'tip'? Valid: base, "));
   EXPECT_THAT(folder.refusal_of_base_with(arm + "tip = 'link_2'\nbase = 'link_3'"),
-              StartsWith("p.toml:5: robot.base is \"link_3\"; arm.urdf: the base 'link_3' is not "
+              StartsWith("p.toml:5: robot.base is 'link_3'; arm.urdf: the base 'link_3' is not "
                          "above the tip 'link_2'"));
   EXPECT_THAT(folder.refusal_of_base_with(arm + "tip = 'tip'\ndensity_kg_per_m3 = 0.5"),
               HasSubstr("p.toml:5: robot.density_kg_per_m3 is 0.5; it must be "));
