@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "base/text.hpp"
+#include "problems/requirement_grade.hpp"
 #include "report/deliverables/datasheet_figures.hpp"
 #include "report/deliverables/datasheet_style.hpp"
 #include "report/deliverables/finished_arm.hpp"
@@ -43,6 +44,22 @@ std::string make_robot_facts(const FinishedArm& arm) {
   return make_fact_list(facts);
 }
 
+std::string describe_points(const TrackingConfig& config) {
+  if (!config.path) {
+    return fmt::format("{} a test case", config.workspace.points);
+  }
+  return fmt::format("{} of a path, {}", config.path->points_m.size() - 1,
+                     config.path->continuous ? "without a stop" : "with a stop at each");
+}
+
+std::string describe_workspace(const TrackingConfig& config) {
+  const WorkspaceSphere& sphere = config.workspace;
+  return config.path ? ""
+                     : fmt::format("{} of {:.4g} m about ({:.4g}, {:.4g}, {:.4g}) m",
+                                   sphere.normal ? "disc" : "sphere", sphere.radius_m,
+                                   sphere.centre_m.x(), sphere.centre_m.y(), sphere.centre_m.z());
+}
+
 std::string make_task_facts(const FinishedArm& arm) {
   const TrackingConfig& config = arm.config();
   const TrackingTask task = arm.run.tracking()->make_task(arm.design);
@@ -52,10 +69,9 @@ std::string make_task_facts(const FinishedArm& arm) {
        fmt::format("{} moves at {:.4g} m/s", signal_names()[static_cast<std::size_t>(task.signal)],
                    task.speed_m_per_s)},
       {"Rest", fmt::format("{:.4g} s after each move", task.rest_s)},
-      {"Points", fmt::format("{} a test case", config.workspace.points)},
-      {"Workspace", fmt::format("{:.4g} m about ({:.4g}, {:.4g}, {:.4g}) m",
-                                config.workspace.radius_m, config.workspace.centre_m.x(),
-                                config.workspace.centre_m.y(), config.workspace.centre_m.z())},
+      {"Points", describe_points(config)},
+      {"Workspace", describe_workspace(config)},
+      {"Tool", tool_orientation_names()[static_cast<std::size_t>(task.tool.orientation)]},
       {"Controller",
        fmt::format("{}, every {:.4g} s", arm.design.controller, task.control_period_s)},
       {"Physics", config.engines.training_name == config.engines.judging_name
@@ -138,6 +154,33 @@ std::string make_results(const FinishedArm& arm) {
       kMillimetresPerMetre * get_failure_error(result), calc_total_torque_n_m(arm.design),
       escape_html(list_units(arm.config().robot, "N m")));
   return html;
+}
+
+// ---- Requirements ------------------------------------------------------------------------------
+
+// Empty where nothing is required.
+std::string make_requirements(const FinishedArm& arm) {
+  const auto judged =
+      judge_requirements(arm.run.tracking()->description().requirements, arm.result().test);
+  if (judged.empty()) {
+    return "";
+  }
+  std::vector<std::vector<HtmlCell>> rows;
+  for (const JudgedRequirement& one : judged) {
+    const auto number = [](const std::optional<double>& value) {
+      return value ? fmt::format("{:.4g}", *value) : kUnknown;
+    };
+    rows.push_back({{fmt::format("{} [{}]", one.requirement.limit.quantity.name,
+                                 one.requirement.limit.quantity.unit)},
+                    {number(one.value)},
+                    {fmt::format("{:.4g}", one.requirement.limit.value)},
+                    {number(one.ratio)},
+                    {to_string(one.grade), get_light(one.grade)},
+                    {one.binds ? "binds" : ""}});
+  }
+  return make_table(std::vector<std::string>{"Worst of the test cases", "value", "limit",
+                                             "value / limit", "", ""},
+                    rows);
 }
 
 // ---- Joints ------------------------------------------------------------------------------------
@@ -234,6 +277,9 @@ std::string make_datasheet(const FinishedArm& arm) {
           make_section("Task", make_task_facts(arm)) +
           make_section("Optimization", make_run_facts_of(arm)) + "</div>\n";
   html += make_section("Results", make_results(arm));
+  if (const std::string requirements = make_requirements(arm); !requirements.empty()) {
+    html += make_section("Requirements", requirements);
+  }
   html += make_section(fmt::format("Controller {} and effort limits", arm.design.controller),
                        make_joints(arm));
   if (const std::string figures = make_datasheet_figures(arm); !figures.empty()) {

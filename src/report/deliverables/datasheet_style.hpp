@@ -23,6 +23,10 @@ tr:first-child th { font-size: 7pt; font-weight: bold; color: #111; border-botto
 tr:first-child th:first-child { text-align: left; }
 th:first-child { width: 34mm; }
 td { text-align: right; font-variant-numeric: tabular-nums; }
+td.green { background: #d3ecd3; }
+td.yellow { background: #fbedb4; }
+td.red { background: #f6c9c4; }
+td.grey { background: #e6e6e6; }
 svg { width: 100%; display: block; font-size: 9px; }
 svg .grid { stroke: #ddd; stroke-width: .5; }
 svg polyline { fill: none; stroke: #14508c; stroke-width: 1.2; }
