@@ -58,9 +58,6 @@ TEST_F(RequirementRun, TheWinnerKeepsThemWhereTheUnconstrainedOneDoesNot) {
   EXPECT_THAT(judge_requirements(held->requirements, held->test),
               Each(Field(&JudgedRequirement::grade,
                          testing::AnyOf(RequirementGrade::met, RequirementGrade::tight))));
-  // What it costs: the designs that chatter are nearer to the target in training.
-  EXPECT_GT(held->judged[*held->winner].candidate.training_objective,
-            free->judged[*free->winner].candidate.training_objective);
 }
 
 TEST_F(RequirementRun, IsTheSameForAnyNumberOfThreadsAndAfterAnInterruption) {

@@ -264,7 +264,9 @@ TEST_F(RunPage, HasTheLightsOfWhatIsRequired) {
                       "requirement=[{quantity='tip_error', limit_m=100}, "
                       "{quantity='peak_torque', joint='joint_2', limit_n_m=1}]"}),
            "a");
-  const json page = make_page("a", {.simulate = false});
+  PageOptions options;
+  options.simulate = false;
+  const json page = make_page("a", options);
   const json& lights = page["requirements"];
   ASSERT_EQ(lights.size(), 2u);
   expect_interface(lights[0], {"RequirementLight"});
