@@ -40,6 +40,8 @@ constexpr int kSlowdowns = 20;
 constexpr double kBandwidth_rad_per_s = 10;
 constexpr double kDamping = 0.7;
 constexpr double kEffortReserve = 2;
+constexpr double kUsualEffortShare = 0.1;
+constexpr double kMostReserve = 10;
 constexpr double kLeastAcceleration = 5;  // rad/s^2 or m/s^2
 constexpr int kStepsBetween = 20;         // at which the mass matrix is looked at
 
@@ -358,9 +360,13 @@ ArmDesign propose_design(const RobotModel& robot, TrackingTask task,
     const double p = w * w * demand.inertia[i];
     JointDrive drive;
     drive.gains = {p, w * p / 4, 2 * kDamping * w * demand.inertia[i]};
-    const double limit = std::min(
-        std::max(kEffortReserve * demand.efforts[i], kLeastAcceleration * demand.inertia[i]),
-        robot.joints[i].effort_limit);
+    const double own = robot.joints[i].effort_limit;
+    const double needed =
+        std::max(kEffortReserve * demand.efforts[i], kLeastAcceleration * demand.inertia[i]);
+    // A tenth of what the joint can do, where that is not out of all proportion.
+    const double usual =
+        std::isfinite(own) ? std::min(kUsualEffortShare * own, kMostReserve * needed) : 0;
+    const double limit = std::min(std::max(needed, usual), own);
     drive.limits = {-limit, limit};
     design.joints.push_back(drive);
   }

@@ -16,8 +16,9 @@
 //   gains        of joint i with the largest M_ii that occurs on the cases: P = w^2 M_ii, D = 2 z w
 //                M_ii, I = w P / 4 with w = 10 rad/s, z = 0.7: critically slow, but stable at any
 //                sampling that can control the arm at all
-//   efforts      twice what inverse dynamics asks for at most, at least M_ii x 5 rad/s^2, and not
-//                above the joint's limit
+//   efforts      twice what inverse dynamics asks for at most, at least M_ii x 5 rad/s^2; where a
+//                tenth of the joint's limit is more, that, but at most ten times as much; never
+//                above the limit
 #pragma once
 
 #include <string>
