@@ -225,8 +225,9 @@ std::shared_ptr<Node> make_child(const Node& parent, const Value& table, std::st
 ConfigTable::ConfigTable(std::shared_ptr<Node> node) : node_(std::move(node)) {}
 
 ConfigTable ConfigTable::load(const std::filesystem::path& file,
-                              std::span<const std::string> overrides) {
-  return ConfigTable(make_root(config::load_document(file, overrides)));
+                              std::span<const std::string> overrides,
+                              const std::filesystem::path& shipped) {
+  return ConfigTable(make_root(config::load_document(file, overrides, shipped)));
 }
 
 ConfigTable ConfigTable::parse(std::string_view toml, const std::string& name,

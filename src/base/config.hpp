@@ -3,8 +3,9 @@
 // key. Every message reads FILE:LINE: field is VALUE; it must be ALLOWED. Hostile files (size,
 // depth, non-finite numbers; toml++ 3.3.0 crashes on some) are refused beforehand.
 //
-// Inheritance: a top-level `extends = "other"` names a file of the same folder (without .toml) that
-// is read first; tables merge, anything else replaces. Overrides ("task.speed_m_per_s=2") come last
+// Inheritance: a top-level `extends = "other"` names a file (without .toml) of the same folder or,
+// if there is none, of the folder of shipped ones, that is read first; tables merge, anything else
+// replaces. Overrides ("task.speed_m_per_s=2") come last
 // and are named as such in messages.
 #pragma once
 
@@ -29,9 +30,10 @@ struct Range {
 class ConfigTable {
  public:
   // `overrides` are KEY=VALUE texts with dotted keys; VALUE is TOML, or a bare word taken as a
-  // string.
+  // string. `shipped`: where files that are extended are looked for beside the file's own folder.
   static ConfigTable load(const std::filesystem::path& file,
-                          std::span<const std::string> overrides = {});
+                          std::span<const std::string> overrides = {},
+                          const std::filesystem::path& shipped = {});
   // For tests and for text that is not in a file; `name` stands where messages name the file.
   static ConfigTable parse(std::string_view toml, const std::string& name,
                            std::span<const std::string> overrides = {});

@@ -4,6 +4,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <iterator>
 #include <cmath>
 #include <optional>
 
@@ -159,7 +160,8 @@ std::string read_config_file(const std::filesystem::path& file) {
 
 class Loader {
  public:
-  explicit Loader(Document& document) : document_(document) {}
+  Loader(Document& document, const std::filesystem::path& shipped)
+      : document_(document), shipped_(shipped) {}
 
   Value load(const std::filesystem::path& file) {
     const std::string content = read_config_file(file);
@@ -181,7 +183,7 @@ class Loader {
   std::filesystem::path find_extended(const Value& extends,
                                       const std::filesystem::path& file) const {
     constexpr std::string_view kMust =
-        "it must be the name of a file in the same folder, without .toml: letters, digits, _ - .";
+        "it must be the name of a file in the same folder or of a shipped one, without .toml: letters, digits, _ - .";
     const std::string& name = extends.string;
     if (extends.kind != Kind::string) {
       fail(extends.place, fmt::format("extends is {}; {}", extends.describe_with_type(), kMust));
@@ -205,10 +207,17 @@ class Loader {
     }
     const std::filesystem::path folder = file.parent_path();
     std::error_code ignored;  // a file that exists and cannot be read is reported when it is read
-    if (!std::filesystem::exists(folder / file_name, ignored)) {
-      fail(extends.place, describe_unknown("file to extend", name, list_siblings(folder)));
+    if (std::filesystem::exists(folder / file_name, ignored)) {
+      return folder / file_name;
     }
-    return folder / file_name;
+    if (!shipped_.empty() && std::filesystem::exists(shipped_ / file_name, ignored)) {
+      return shipped_ / file_name;
+    }
+    std::vector<std::string> known = list_siblings(folder);
+    if (!shipped_.empty() && !std::filesystem::equivalent(folder, shipped_, ignored)) {
+      std::ranges::copy(list_siblings(shipped_), std::back_inserter(known));
+    }
+    fail(extends.place, describe_unknown("file to extend", name, known));
   }
 
   std::vector<std::string> list_siblings(const std::filesystem::path& folder) const {
@@ -227,6 +236,7 @@ class Loader {
   }
 
   Document& document_;
+  const std::filesystem::path& shipped_;
   std::vector<std::string> chain_;  // the file names on the way here
 };
 
@@ -387,10 +397,11 @@ void fail(const Place& place, std::string_view message) {
 }
 
 std::shared_ptr<const Document> load_document(const std::filesystem::path& file,
-                                              std::span<const std::string> overrides) {
+                                              std::span<const std::string> overrides,
+                                              const std::filesystem::path& shipped) {
   const auto document = std::make_shared<Document>();
   document->file = file;
-  document->root = Loader(*document).load(file);
+  document->root = Loader(*document, shipped).load(file);
   for (const std::string& text : overrides) {
     apply_override(*document, text);
   }

@@ -62,7 +62,8 @@ struct Document {
 };
 
 std::shared_ptr<const Document> load_document(const std::filesystem::path& file,
-                                              std::span<const std::string> overrides);
+                                              std::span<const std::string> overrides,
+                                              const std::filesystem::path& shipped);
 std::shared_ptr<const Document> parse_document(std::string_view toml, const std::string& name,
                                                std::span<const std::string> overrides);
 

@@ -155,7 +155,10 @@ LoadedProblem load_problem(std::string_view name_or_path, std::span<const std::s
                            std::span<const EngineRow> engines) {
   const auto path = resolve_config("problems", name_or_path);
   return load_problem_tables(
-      path, [&](std::span<const std::string> all) { return ConfigTable::load(path, all); },
+      path,
+      [&](std::span<const std::string> all) {
+        return ConfigTable::load(path, all, find_config_folder() / "problems");
+      },
       overrides, engines);
 }
 

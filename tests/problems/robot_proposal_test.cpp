@@ -103,6 +103,22 @@ TEST(RobotProposal, PathsOfTheUsersOwn) {
   EXPECT_THAT(check_paths(problem), testing::IsEmpty());
 }
 
+// A file of the user's own, in whatever folder, goes on from a shipped one.
+TEST(RobotProposal, FilesExtendShippedProblems) {
+  const ProblemFolder folder;
+  folder.write("mine.toml",
+               "extends = \"robot\"\nname = \"mine-{robot}\"\n[robot]\nurdf = \"planar2\"\n"
+               "[task]\nload_kg = 0.5\n");
+  const LoadedProblem problem = folder.load("mine.toml");
+  EXPECT_EQ(problem.name, "mine-planar2");
+  EXPECT_EQ(problem.tracking->config().task.load_kg, 0.5);
+  EXPECT_EQ(problem.tracking->config().task.physics.substeps, 10);
+  EXPECT_THAT(folder.refusal_of("extends = \"robt\"\n"),
+              testing::HasSubstr("unknown file to extend 'robt'; did you mean 'robot'?"));
+  EXPECT_THAT(folder.refusal_of("extends = \"robot\"\nname = \"a/b\"\n"),
+              testing::HasSubstr("name is 'a/b'; it names folders: it must not be empty"));
+}
+
 struct Refusal {
   std::vector<std::string> overrides;
   std::string message;
