@@ -4,8 +4,8 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <iterator>
 #include <cmath>
+#include <iterator>
 #include <optional>
 
 #include "base/error.hpp"
@@ -183,7 +183,8 @@ class Loader {
   std::filesystem::path find_extended(const Value& extends,
                                       const std::filesystem::path& file) const {
     constexpr std::string_view kMust =
-        "it must be the name of a file in the same folder or of a shipped one, without .toml: letters, digits, _ - .";
+        "it must be the name of a file in the same folder or of a shipped one, without .toml: "
+        "letters, digits, _ - .";
     const std::string& name = extends.string;
     if (extends.kind != Kind::string) {
       fail(extends.place, fmt::format("extends is {}; {}", extends.describe_with_type(), kMust));

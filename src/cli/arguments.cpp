@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <chrono>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "base/toml_text.hpp"
 #include "cli/session.hpp"
 #include "problems/config_files.hpp"
 #include "sim/physics_engine.hpp"
@@ -22,11 +22,6 @@ namespace armwright {
 namespace {
 
 constexpr std::int64_t kMostJobs = 1024;
-
-// As a TOML string: JSON's is one.
-std::string quote_toml(const std::string& text) {
-  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
 
 [[noreturn]] void refuse(std::string_view flag, std::string_view text, std::string_view allowed) {
   throw Error(ErrorKind::usage,

@@ -54,8 +54,7 @@ LoadedProblem load_its_problem(const DesignFile& design, const std::string& prob
 
 DesignAndProblem load_design_and_problem(const std::string& design, const std::string& problem,
                                          std::vector<std::string> overrides, bool quiet) {
-  constexpr std::string_view kStart = "start";
-  if (design != kStart) {
+  if (design != kStartDesign) {
     DesignFile file = load_design(design);
     LoadedProblem loaded = load_its_problem(file, problem, std::move(overrides), quiet);
     return {std::move(file), std::move(loaded)};
@@ -68,7 +67,7 @@ DesignAndProblem load_design_and_problem(const std::string& design, const std::s
   LoadedProblem loaded = load_problem(problem, overrides);
   const TrackingConfig& config = require_tracking(loaded).config();
   DesignFile file;
-  file.name = kStart;
+  file.name = kStartDesign;
   file.title = fmt::format("Where {} starts", loaded.name);
   for (const Joint& joint : config.robot.joints) {
     file.joint_names.push_back(joint.name);

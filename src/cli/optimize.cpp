@@ -66,8 +66,8 @@ std::string OptimizeOptions::get_problem() const {
   const std::string chosen = overrides.choose_problem(problem);
   if (chosen.empty()) {
     throw Error(ErrorKind::usage,
-                "PROBLEM is missing: name one (armwright list problems), or an arm of your own "
-                "with --robot FILE");
+                "PROBLEM is required: name one (armwright list problems), or an arm of your own "
+                "with --robot FILE; 'armwright optimize --help' has examples");
   }
   return chosen;
 }

@@ -7,6 +7,7 @@
 #include "base/config.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "base/toml_text.hpp"
 #include "problems/analytic.hpp"
 #include "problems/config_files.hpp"
 #include "problems/design_file.hpp"
@@ -78,14 +79,19 @@ SweepPlan read_sweep(const ConfigTable& table, const TrackingProblem& problem) {
   return sweep;
 }
 
-// The file's own, unless it gives another; "{robot}" in that stands for the name of the URDF's
-// file.
+constexpr std::string_view kRobotInName = "{robot}";
+
+// The file's own, unless it gives another. "{robot}" in that stands for the name of the URDF's
+// file; files that extend such a one are named after themselves.
 std::string read_name(const ConfigTable& table, const std::filesystem::path& path) {
-  constexpr std::string_view kRobot = "{robot}";
   std::string name = table.get_string("name", path.stem().string());
-  if (const std::size_t at = name.find(kRobot); at != std::string::npos) {
-    const std::filesystem::path urdf = table.get_table("robot").get_string("urdf");
-    name.replace(at, kRobot.size(), urdf.stem().string());
+  if (const std::size_t at = name.find(kRobotInName); at != std::string::npos) {
+    if (table.files().size() > 1) {
+      name = path.stem().string();
+    } else {
+      const std::filesystem::path urdf = table.get_table("robot").get_string("urdf");
+      name.replace(at, kRobotInName.size(), urdf.stem().string());
+    }
   }
   if (sanitize(name) != name) {
     throw Error(ErrorKind::usage,
@@ -137,6 +143,9 @@ LoadedProblem load_problem_tables(const std::filesystem::path& path, const ReadT
     load_analytic(table, loaded);
   } else {
     settled = load_tracking(table, engines, loaded);
+    if (table.get_string("name", "").find(kRobotInName) != std::string::npos) {
+      settled.push_back("name=" + quote_toml(loaded.name));
+    }
     if (table.has("sweep")) {
       loaded.sweep = read_sweep(table.get_table("sweep"), *loaded.tracking);
     }

@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
+#include "base/toml_text.hpp"
 #include "problems/problem_tables.hpp"
 #include "problems/replicate.hpp"
 
@@ -16,13 +17,8 @@ namespace {
 
 // JSON as TOML: a line for each key at the top, everything below it inline.
 std::string write_toml(const nlohmann::json& value) {
-  // A JSON string is a TOML string, but for one character that TOML wants escaped.
   const auto write_scalar = [](const nlohmann::json& scalar) {
-    std::string text = scalar.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-    for (std::size_t at = text.find('\x7f'); at != std::string::npos; at = text.find('\x7f', at)) {
-      text.replace(at, 1, "\\u007f");
-    }
-    return text;
+    return scalar.is_string() ? quote_toml(scalar.get<std::string>()) : scalar.dump();
   };
   std::vector<std::string> parts;
   if (value.is_array()) {

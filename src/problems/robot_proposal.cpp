@@ -93,8 +93,7 @@ class Proposer {
       }
     }
     TrackingTask& task = config_.task;
-    const WorkspaceProposal proposal =
-        propose_workspace(config_.robot, task.tool, config_.workspace);
+    const WorkspaceProposal proposal = propose_workspace(config_.robot, task, config_.workspace);
     config_.workspace = proposal.sphere;
     task.home = proposal.home;
     settle("workspace.centre_m", to_text(proposal.sphere.centre_m));

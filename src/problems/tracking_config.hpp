@@ -21,6 +21,11 @@ struct DesignParameter {
   std::size_t gain = 0;  // which one, for a gain
 };
 
+// What variables.start says where the design is to be made from the robot
+// (problems/robot_proposal.hpp), and what commands call a problem's start whatever it is.
+inline constexpr const char* kProposedStart = "proposed";
+inline constexpr const char* kStartDesign = "start";
+
 struct TrackingConfig {
   std::string name;
   std::string summary;

@@ -103,6 +103,7 @@ namespace {
 
 DecisionVariable make_variable(const TrackingConfig& config, const DesignParameter& parameter) {
   const std::string& joint = config.robot.joints[parameter.joint].name;
+  const JointKind kind = config.robot.joints[parameter.joint].kind;
   DecisionVariable variable;
   ArmDesign start = config.start;
   variable.start = get_parameter(start, parameter);
@@ -110,7 +111,7 @@ DecisionVariable make_variable(const TrackingConfig& config, const DesignParamet
     case DesignParameter::Kind::gain: {
       const GainSpec& gain = find_controller(config.start.controller).gains[parameter.gain];
       variable.name = joint + "." + gain.name;
-      variable.unit = gain.unit;
+      variable.unit = get_joint_unit(gain.unit, kind);
       if (gain.range > 0) {
         const double lower = variable.start - gain.range;
         variable.lower = gain.any_sign ? lower : std::max(0.0, lower);
@@ -121,11 +122,11 @@ DecisionVariable make_variable(const TrackingConfig& config, const DesignParamet
     }
     case DesignParameter::Kind::effort_min:
       variable.name = joint + ".effort_min";
-      variable.unit = "N m";
+      variable.unit = get_joint_unit("N m", kind);
       break;
     case DesignParameter::Kind::effort_max:
       variable.name = joint + ".effort_max";
-      variable.unit = "N m";
+      variable.unit = get_joint_unit("N m", kind);
       break;
     case DesignParameter::Kind::length_scale:
       variable.name = joint + ".length_scale";
@@ -215,8 +216,9 @@ ProblemDescription make_tracking_description(const TrackingConfig& config) {
     description.metrics.push_back({"moving_mass", "kg"});
   }
   for (const Joint& joint : config.robot.joints) {
-    description.metrics.push_back({joint.name + ".peak_effort", "N m"});
-    description.metrics.push_back({joint.name + ".rms_effort", "N m"});
+    const std::string unit = get_joint_unit("N m", joint.kind);
+    description.metrics.push_back({joint.name + ".peak_effort", unit});
+    description.metrics.push_back({joint.name + ".rms_effort", unit});
   }
   const bool objective_has_limit = !description.limits.empty();
   describe_requirements(config.requirements, config.robot, description);

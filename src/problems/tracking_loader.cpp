@@ -16,9 +16,9 @@
 #include "problems/parameter_reader.hpp"
 #include "problems/path_reader.hpp"
 #include "problems/perturbation_reader.hpp"
+#include "problems/requirement_reader.hpp"
 #include "problems/robot_proposal.hpp"
 #include "problems/task_reader.hpp"
-#include "problems/requirement_reader.hpp"
 #include "problems/tracking_description.hpp"
 #include "sim/design_conversion.hpp"
 #include "sim/designed_arm.hpp"
@@ -81,8 +81,6 @@ std::shared_ptr<const TrackingProblem> make_tracking(TrackingConfig config,
     variables.refuse("start", error.what());
   }
 }
-
-constexpr const char* kProposedStart = "proposed";
 
 void add_input(LoadedProblem& loaded, const std::filesystem::path& file) {
   loaded.input_hashes[file.filename().string()] =

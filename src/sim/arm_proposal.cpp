@@ -19,8 +19,11 @@ namespace {
 
 constexpr int kPostures = 400;
 constexpr std::size_t kHomes = 24;  // that a workspace is looked for about
-constexpr int kQuickCases = 3;
+constexpr std::size_t kQuickCases = 3;
 constexpr int kCases = 8;
+constexpr int kMostPoints = 25;
+constexpr double kLook_s = 0.01;
+constexpr double kRest_s = 0.1;
 // Of the arm's length.
 constexpr double kLargestRadius = 0.35;
 constexpr double kSmallestRadius = 0.01;
@@ -28,11 +31,12 @@ constexpr double kRadiusStep = 0.8;
 constexpr double kKeepOff = 1.15;      // radii between the sphere's centre and the first joint
 constexpr double kStepOfRadius = 0.1;  // how far apart a move is looked at
 constexpr double kSafeDexterity = 3 * kSingularDexterity;
+constexpr double kKeepOffEnds = 0.02;  // of half a joint's range
 // The thesis's shape of cases: moves from the diameter down to a sixteenth of the radius.
 constexpr double kShortestOfRadius = 1.0 / 16;
 
 constexpr double kMove_s = 1;
-constexpr double kSpeedShare = 0.7;
+constexpr double kSpeedShare = 0.6;
 constexpr double kEffortShare = 0.6;
 constexpr double kSlower = 0.8;
 constexpr int kSlowdowns = 20;
@@ -137,17 +141,30 @@ std::optional<Eigen::Vector3d> find_plane(const NumericKinematics& kinematics,
   return normal.normalized();
 }
 
+bool touches_an_end(const NumericKinematics& kinematics, const RobotModel& robot,
+                    std::span<const double> q) {
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    if (kinematics.has_middle(i)) {
+      const double half = 0.5 * (robot.joints[i].upper - robot.joints[i].lower);
+      if (std::abs(q[i] - kinematics.get_middle(i)) > (1 - kKeepOffEnds) * half) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
 // Whether straight moves through the case's points can be followed, looked at coarsely.
-bool can_follow(const NumericKinematics& kinematics, const WorkspaceSphere& sphere,
-                const Eigen::Matrix3d& turn, std::vector<double> q, int cases) {
+bool can_follow(const NumericKinematics& kinematics, const RobotModel& robot,
+                const WorkspaceSphere& sphere, const Eigen::Matrix3d& turn, std::vector<double> q) {
   const std::size_t n = q.size();
   if (!kinematics.find({sphere.centre_m, turn}, q)) {
     return false;
   }
   const std::vector<double> start = q;
   std::vector<double> wish(n);
-  for (int number = 0; number < cases; ++number) {
-    const TestCase its = make_test_case(kProposalSet, static_cast<std::uint64_t>(number), sphere);
+  const std::vector<TestCase> all = make_proposal_cases(sphere);
+  for (const TestCase& its : std::span(all).first(kQuickCases)) {
     q = start;
     for (std::size_t k = 1; k < its.points_m.size(); ++k) {
       const Eigen::Vector3d way_m = its.points_m[k] - its.points_m[k - 1];
@@ -159,11 +176,47 @@ bool can_follow(const NumericKinematics& kinematics, const WorkspaceSphere& sphe
         }
         const Eigen::Vector3d at_m =
             its.points_m[k - 1] + (static_cast<double>(step) / steps) * way_m;
-        if (!kinematics.follow({at_m, turn}, wish, q) ||
+        if (!kinematics.follow({at_m, turn}, wish, q) || touches_an_end(kinematics, robot, q) ||
             kinematics.calc_dexterity(q) < kSafeDexterity) {
           return false;
         }
       }
+    }
+  }
+  return true;
+}
+
+// However fine the control and however long the rests, a proposal looks at its cases every 10 ms,
+// and at rests no longer than it takes.
+void coarsen(TrackingTask& task) {
+  task.control_period_s = std::max(task.control_period_s, kLook_s);
+  task.rest_s = std::min(task.rest_s, kRest_s);
+}
+
+// The same by the tables of targets themselves, whichever kinematics make them.
+bool has_good_tables(const RobotModel& robot, TrackingTask task, const WorkspaceProposal& place) {
+  coarsen(task);
+  task.limits = LimitPolicy::warn;
+  task.home = place.home;
+  task.tool.turn = place.centre.turn;
+  task.distance_limit_m = 2 * place.sphere.radius_m;
+  task.speed_m_per_s = task.distance_limit_m / kMove_s;
+  const TrackingSetup setup(robot, task);
+  const auto kinematics = setup.get_kinematics();
+  for (const TestCase& its : make_proposal_cases(place.sphere)) {
+    const TargetTable table = setup.make_targets(its);
+    if (!table.unreachable.empty()) {
+      return false;
+    }
+    for (int step = 0; step < table.steps; ++step) {
+      if (touches_an_end(*kinematics, robot, table.angles(step))) {
+        return false;
+      }
+    }
+    if (std::ranges::any_of(find_path_faults(setup, table), [](const PathFault& fault) {
+          return fault.kind != PathFault::Kind::speed;
+        })) {
+      return false;
     }
   }
   return true;
@@ -243,8 +296,9 @@ ToolOrientation propose_orientation(const RobotModel& robot, const ToolTask& too
   return ToolOrientation::free;
 }
 
-WorkspaceProposal propose_workspace(const RobotModel& robot, const ToolTask& tool,
+WorkspaceProposal propose_workspace(const RobotModel& robot, const TrackingTask& task,
                                     WorkspaceSphere sphere) {
+  const ToolTask& tool = task.tool;
   const NumericKinematics kinematics(robot, tool, {}, true);
   kinematics.check_task(robot);
   const double length_m = calc_length_m(robot);
@@ -261,7 +315,7 @@ WorkspaceProposal propose_workspace(const RobotModel& robot, const ToolTask& too
     const NumericKinematics from_home(robot, tool, home, true);
     for (double radius_m = most_m; radius_m >= least_m; radius_m *= kRadiusStep) {
       set_radius(sphere, radius_m);
-      if (can_follow(from_home, sphere, centre.turn, home, kQuickCases)) {
+      if (can_follow(from_home, robot, sphere, centre.turn, home)) {
         best = WorkspaceProposal{home, centre, sphere};
         least_m = radius_m / kRadiusStep;
         break;
@@ -269,12 +323,12 @@ WorkspaceProposal propose_workspace(const RobotModel& robot, const ToolTask& too
     }
   }
   while (best && best->sphere.radius_m >= smallest_m) {
-    const NumericKinematics from_home(robot, tool, best->home, true);
-    if (can_follow(from_home, best->sphere, best->centre.turn, best->home, kCases)) {
-      set_radius(best->sphere, kRadiusStep * best->sphere.radius_m);  // room for unseen cases
+    const bool is_good = has_good_tables(robot, task, *best);
+    // Once more when it is good: room for unseen cases.
+    set_radius(best->sphere, kRadiusStep * best->sphere.radius_m);
+    if (is_good) {
       return *best;
     }
-    set_radius(best->sphere, kRadiusStep * best->sphere.radius_m);
   }
   refuse(robot,
          fmt::format("no place was found where its tool can move {:.2g} m along straight lines "
@@ -286,9 +340,11 @@ WorkspaceProposal propose_workspace(const RobotModel& robot, const ToolTask& too
 }
 
 std::vector<TestCase> make_proposal_cases(const WorkspaceSphere& sphere) {
+  WorkspaceSphere looked_at = sphere;
+  looked_at.points = std::min(looked_at.points, kMostPoints);
   std::vector<TestCase> cases;
   for (std::uint64_t number = 0; number < kCases; ++number) {
-    cases.push_back(make_test_case(kProposalSet, number, sphere));
+    cases.push_back(make_test_case(kProposalSet, number, looked_at));
   }
   return cases;
 }
@@ -298,6 +354,7 @@ double propose_speed(const RobotModel& robot, TrackingTask task,
   if (task.limits == LimitPolicy::enforce) {
     task.limits = LimitPolicy::warn;  // what it is too quick for is found out here
   }
+  coarsen(task);
   task.feed_forward = FeedForward::inverse_dynamics;
   task.speed_m_per_s = task.distance_limit_m / kMove_s;
   const std::size_t n = robot.joint_count();
@@ -350,6 +407,9 @@ ArmDesign propose_design(const RobotModel& robot, TrackingTask task,
                          const std::vector<TestCase>& cases) {
   if (task.limits == LimitPolicy::enforce) {
     task.limits = LimitPolicy::warn;
+  }
+  if (!cases.front().continuous) {
+    coarsen(task);
   }
   task.feed_forward = FeedForward::inverse_dynamics;
   const TrackingSetup setup(robot, task);

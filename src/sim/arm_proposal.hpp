@@ -8,9 +8,10 @@
 //   home         of 400 random postures the one about which the largest sphere can be worked in,
 //                tried for those that are farthest from singularities and ends of ranges
 //   workspace    the sphere about its tip (the disc, for arms that move in a plane), which keeps
-//                off the first joint: straight moves of generated cases stay within all joint
-//                ranges and off singularities. Collisions of links are not looked for.
-//   speed        the longest move takes a second, or as long as it must: joints stay below 70 % of
+//                off the first joint: on straight moves of generated cases joints stay off the ends
+//                of their ranges and the arm off singularities. Collisions of links are not looked
+//                for.
+//   speed        the longest move takes a second, or as long as it must: joints stay below 60 % of
 //                their speed limits, and what inverse dynamics asks of them below 60 % of their
 //                effort limits
 //   gains        of joint i with the largest M_ii that occurs on the cases: P = w^2 M_ii, D = 2 z w
@@ -38,9 +39,9 @@ struct WorkspaceProposal {
   ToolPose centre;           // of the tool at home
   WorkspaceSphere sphere;
 };
-// For a tool's task whose orientation is settled but whose turn is not; sphere.points counts.
+// For a task whose tool.orientation is settled, but not how it is turned; sphere.points counts.
 // Error{bad_data} if the robot can work nowhere, or its tip does not move in space or in a plane.
-WorkspaceProposal propose_workspace(const RobotModel& robot, const ToolTask& tool,
+WorkspaceProposal propose_workspace(const RobotModel& robot, const TrackingTask& task,
                                     WorkspaceSphere sphere);
 
 // Of a task in which all but the speed is settled, on moves that rest at their ends.

@@ -141,6 +141,13 @@ std::vector<ControllerRow> make_table(controllers::LawList<Laws...>) {
   return table;
 }
 
+void replace_all(std::string& text, std::string_view from, std::string_view to) {
+  for (std::size_t at = text.find(from); at != std::string::npos;
+       at = text.find(from, at + to.size())) {
+    text.replace(at, from.size(), to);
+  }
+}
+
 }  // namespace
 
 PidController::PidController(double p_n_m_per_rad, double i_n_m_per_rad_s, double d_n_m_s_per_rad,
@@ -189,6 +196,15 @@ const ControllerRow& find_controller(std::string_view name) {
     }
   }
   throw Error(ErrorKind::usage, describe_unknown("controller", name, controller_names()));
+}
+
+std::string get_joint_unit(std::string_view unit, JointKind kind) {
+  std::string own(unit);
+  if (kind == JointKind::prismatic) {
+    replace_all(own, "N m", "N");
+    replace_all(own, "rad", "m");
+  }
+  return own;
 }
 
 }  // namespace armwright

@@ -85,4 +85,7 @@ const std::vector<ControllerRow>& controller_table();
 std::vector<std::string> controller_names();
 const ControllerRow& find_controller(std::string_view name);  // Error{usage} if there is none
 
+// A unit of a joint that turns, or of the same for one that slides: "N m/rad", "N/m".
+std::string get_joint_unit(std::string_view unit, JointKind kind);
+
 }  // namespace armwright

@@ -110,7 +110,8 @@ TEST_F(ConfigFiles, RefusesMoreThanEightSteps) {
 
 TEST_F(ConfigFiles, ExtendsTakesAPlainNameOnly) {
   const std::string must =
-      "; it must be the name of a file in the same folder or of a shipped one, without .toml: letters, digits, _ - .";
+      "; it must be the name of a file in the same folder or of a shipped one, without .toml: "
+      "letters, digits, _ - .";
   for (const std::string name : {"../x", "/etc/x", "a/b", "", ".hidden", "..", "a b", "a\\u001b"}) {
     const auto path = write("q1.toml", "extends = \"" + name + "\"\n");
     EXPECT_EQ(usage_error_of([&] { ConfigTable::load(path); }),

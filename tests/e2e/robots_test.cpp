@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "base/temporary_folder.hpp"
 #include "e2e/program.hpp"
@@ -43,7 +45,7 @@ class Robots : public testing::Test {
     const Outcome after = run(tune);
     ASSERT_EQ(after.exit_code, 0) << after.err;
     const json proposed = json::parse(before.out).at("summary");
-    const json tuned = json::parse(after.out).at("test");
+    const json tuned = json::parse(after.out).at("winner").at("test_summary");
     EXPECT_EQ(proposed.at("without_number"), 0);
     EXPECT_EQ(tuned.at("failures"), 0) << robot.back();
     EXPECT_LT(5 * tuned.at("mean").get<double>(), proposed.at("mean_error_m").get<double>())
@@ -76,6 +78,56 @@ TEST_P(ShippedRobots, GoFromUrdfToTunedControllersWithOneCommand) {
 INSTANTIATE_TEST_SUITE_P(E2e, ShippedRobots,
                          testing::Values("irb4600_40_255", "irb4600_six", "planar2", "arm7",
                                          "arm7_gripper"));
+
+// The tutorial, command by command as it stands there, with fewer cases and simulations. Its robot
+// is the shipped one with a gripper under another name.
+TEST_F(Robots, TheTutorialWorks) {
+  const std::filesystem::path docs =
+      std::filesystem::path(ARMWRIGHT_SCRIPTS).parent_path() / "docs";
+  std::istringstream lines(read_text(docs / "bring-your-robot.md"));
+  std::filesystem::copy_file(std::filesystem::path(ARMWRIGHT_CONFIGS) / "robots/arm7_gripper.urdf",
+                             folder_.path() / "my_arm.urdf");
+  std::string block;  // a file that the text shows, up to the next line that is not indented
+  std::string file;
+  int commands = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (!file.empty()) {
+      if (line.starts_with("    ") || line.empty()) {
+        block += (line.empty() ? line : line.substr(4)) + "\n";
+        continue;
+      }
+      write(file, block);
+      file.clear();
+      block.clear();
+    }
+    if (const std::size_t at = line.find("Write `"); at != std::string::npos) {
+      file = line.substr(at + 7, line.find('`', at + 7) - at - 7);
+      std::getline(lines, line);  // the empty one before the block
+      continue;
+    }
+    if (!line.starts_with("    armwright ")) {
+      continue;
+    }
+    std::istringstream words(line.substr(0, line.find(" #")));
+    std::vector<std::string> command;
+    for (std::string word; words >> word;) {
+      command.push_back(word);
+    }
+    command.erase(command.begin());
+    SCOPED_TRACE(line);
+    ++commands;
+    const bool simulates = command.front() == "optimize" || command.front() == "evaluate";
+    if (command.front() == "optimize") {
+      command.insert(command.end(), {"--budget", "40"});
+    } else if (command.front() == "verify") {
+      command.insert(command.end(), {"--cases", "1"});
+    }
+    const Outcome outcome = simulates ? run(command) : run_program(folder_.path(), command);
+    // Few simulations need not keep what is required.
+    EXPECT_THAT(outcome.exit_code, testing::AnyOf(0, 3)) << outcome.err;
+  }
+  EXPECT_GT(commands, 8);
+}
 
 }  // namespace
 }  // namespace armwright

@@ -32,8 +32,8 @@ TrackingTask make_six_task(ToolOrientation orientation) {
 // A.10 with drives for the axes 4 and 6, as stiff for their inertia as that of axis 5.
 ArmDesign make_six_design() {
   ArmDesign design = kTableA10;
-  design.joints.insert(design.joints.begin() + 3, {{20000, 20000, 300}, {-3000, 3000}});
-  design.joints.push_back({{8, 20, 0.15}, {-300, 300}});
+  design.joints.insert(design.joints.begin() + 3, {{4000, 10000, 80}, {-3000, 3000}});
+  design.joints.push_back({{2, 5, 0.06}, {-300, 300}});
   return design;
 }
 
@@ -115,6 +115,39 @@ TEST(PoseTracking, EnginesAgreeOnTheErrorOfAPose) {
     for (std::size_t k = 0; k < reference.point_error_m.size(); ++k) {
       EXPECT_NEAR(result.point_error_m[k] / reference.point_error_m[k], 1, 0.05)
           << name << ", point " << k + 1;
+    }
+  }
+}
+
+// The exact derivatives of a pose's error against differences of it.
+TEST(PoseTracking, TheErrorOfAPoseHasDerivatives) {
+  const TrackingSetup setup(load_six(), make_six_task(ToolOrientation::pose));
+  TestCase its = make_number(3);
+  its.points_m.resize(3);
+  const TargetTable targets = setup.make_targets(its);
+  const auto engine = make_engine("articulated");
+  const ArmDesign design = make_six_design();
+  ArmDesign direction = design;
+  for (JointDrive& joint : direction.joints) {
+    joint = {{0, 0, 0}, {0, 0}};
+  }
+  for (const std::size_t joint : {std::size_t{3}, std::size_t{5}}) {
+    ArmDesign one = direction;
+    one.joints[joint].gains[0] = 1;  // p
+    const auto slopes =
+        engine->calc_derivatives(setup, make_job(design, targets), std::vector{one});
+    const double step = 1e-5 * design.joints[joint].gains[0];
+    const auto calc_errors = [&](double by) {
+      ArmDesign changed = design;
+      changed.joints[joint].gains[0] += by;
+      return engine->simulate(setup, std::vector{make_job(changed, targets)}).front().point_error_m;
+    };
+    const std::vector<double> above = calc_errors(step), below = calc_errors(-step);
+    ASSERT_EQ(slopes.size(), 2U);
+    for (std::size_t k = 0; k < slopes.size(); ++k) {
+      const double difference = (above[k] - below[k]) / (2 * step);
+      EXPECT_NEAR(slopes[k], difference, 1e-4 * std::abs(difference)) << "joint " << joint;
+      EXPECT_NE(slopes[k], 0);
     }
   }
 }
@@ -209,7 +242,7 @@ TEST(PathCheck, NamesPointAndJoint) {
                           testing::HasSubstr("its limit is 0.5 rad/s"))));
   robot.joints[0].speed_limit = 10;
   // Nearly stretched out: a point at the end of the arm's reach.
-  its.points_m.back() = {2.64, 0, 1.4};
+  its.points_m.back() = {2.4897, 0, 0.9};
   EXPECT_THAT(find(), testing::Contains(testing::HasSubstr("comes close to a singularity")));
   // A path that may not be violates nothing more than that.
   task.limits = LimitPolicy::enforce;

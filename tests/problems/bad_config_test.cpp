@@ -10,12 +10,13 @@ namespace armwright {
 namespace {
 
 constexpr const char* kTopKeys =
-    "title, description, kind, schedule, racing, sets, run, published, robot, physics, task, "
+    "name, title, description, kind, schedule, racing, sets, run, published, robot, physics, task, "
     "control, "
-    "workspace, objective, training, variables, motors, perturbation, requirement, sweep";
+    "workspace, path, objective, training, variables, motors, perturbation, requirement, sweep";
 constexpr const char* kTaskKeys =
     "signal, speed_m_per_s, distance_limit_m, trapezoid_acceleration_m_per_s2, rest_s, "
-    "count_first_point, ik_bug, load_kg";
+    "count_first_point, ik_bug, load_kg, kinematics, limits, orientation, tool_rpy_rad, tool_axis, "
+    "orientation_arm_m, home";
 
 struct Mistake {
   std::string text;     // behind `extends = "base"`, from line 2 on
@@ -220,7 +221,8 @@ const std::vector<Mistake> kVariables = {
      "3: variables.bounds_factor is 1; it must be a finite number > 1 and <= 1000000000"},
     {"[variables]\nbound_factor = 10",
      "3: unknown key variables.bound_factor; did you mean 'variables.bounds_factor'? Valid here: "
-     "start, bounds_factor, optimize, joint, task, length_bounds_factor, section_bounds_factor, "
+     "start, within_effort_limits, bounds_factor, optimize, joint, task, length_bounds_factor, "
+     "section_bounds_factor, "
      "speed_bounds_factor"},
     {"[[variables.joint]]\nname = 'joint_9'\noptimize = ['p']",
      "3: unknown variables.joint[0].name 'joint_9'; did you mean 'joint_1'? Valid: joint_1, "
@@ -284,7 +286,7 @@ TEST(BadConfig, EveryUnknownKeyIsNamedAtOnce) {
                 "here: " +
                 kTaskKeys +
                 "\np.toml:7: unknown key robot.url. Valid here: urdf, mass_scale, base, "
-                "tip, density_kg_per_m3");
+                "tip, density_kg_per_m3, propose");
 }
 
 TEST(BadConfig, WhatIsMissingIsNamed) {
@@ -331,11 +333,11 @@ TEST(BadConfig, AnalyticFunctionsAreCheckedToo) {
             "ellipsoid, rosenbrock, rastrigin, constrained");
   EXPECT_EQ(folder.refusal_of("kind = 'analytic'\n[function]\nname = 'rosenbrock'\ndimension = 1"),
             "p.toml:4: function.dimension is 1; it must be an integer from 2 to 1000");
-  EXPECT_EQ(
-      folder.refusal_of(
-          "kind = 'analytic'\n[function]\nname = 'sphere'\n[task]\nspeed_m_per_s = 1"),
-      "p.toml:4: unknown key task. Valid here: title, description, kind, schedule, racing, sets, "
-      "run, published, function");
+  EXPECT_EQ(folder.refusal_of(
+                "kind = 'analytic'\n[function]\nname = 'sphere'\n[task]\nspeed_m_per_s = 1"),
+            "p.toml:4: unknown key task. Valid here: name, title, description, kind, schedule, "
+            "racing, sets, "
+            "run, published, function");
 }
 
 struct BadOverride {

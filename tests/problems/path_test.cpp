@@ -161,7 +161,7 @@ TEST(PathSurvey, SaysWhatTheJointsCannotDo) {
   const ProblemFolder folder;
   folder.write("p.toml",
                "extends = \"base\"\n[path]\nkind = 'line'\nfrom_m = [1.4, -0.7, 0.9]\n"
-               "to_m = [1.4, 0.7, 0.9]\n");
+               "to_m = [1.4, 0.7, 0.9]\n[task]\nspeed_m_per_s = 4\n");
   const auto check = [&](const std::string& limits) {
     return check_paths(folder.load("p.toml", std::vector<std::string>{"task.limits=" + limits}));
   };

@@ -107,16 +107,17 @@ TEST(RobotProposal, PathsOfTheUsersOwn) {
 TEST(RobotProposal, FilesExtendShippedProblems) {
   const ProblemFolder folder;
   folder.write("mine.toml",
-               "extends = \"robot\"\nname = \"mine-{robot}\"\n[robot]\nurdf = \"planar2\"\n"
+               "extends = \"robot\"\n[robot]\nurdf = \"planar2\"\n"
                "[task]\nload_kg = 0.5\n");
   const LoadedProblem problem = folder.load("mine.toml");
-  EXPECT_EQ(problem.name, "mine-planar2");
+  EXPECT_EQ(problem.name, "mine");
+  EXPECT_EQ(load_recorded_problem(problem.resolved_json, problem.name, "").name, "mine");
   EXPECT_EQ(problem.tracking->config().task.load_kg, 0.5);
   EXPECT_EQ(problem.tracking->config().task.physics.substeps, 10);
   EXPECT_THAT(folder.refusal_of("extends = \"robt\"\n"),
               testing::HasSubstr("unknown file to extend 'robt'; did you mean 'robot'?"));
   EXPECT_THAT(folder.refusal_of("extends = \"robot\"\nname = \"a/b\"\n"),
-              testing::HasSubstr("name is 'a/b'; it names folders: it must not be empty"));
+              testing::HasSubstr("name is \"a/b\"; it names folders: it must not be empty"));
 }
 
 struct Refusal {

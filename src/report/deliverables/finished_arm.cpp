@@ -25,13 +25,6 @@ void refuse_study(const std::filesystem::path& folder, std::string_view format) 
                                  format, sanitize(found.runs.front().folder.string())));
 }
 
-void replace_all(std::string& text, std::string_view from, std::string_view to) {
-  for (std::size_t at = text.find(from); at != std::string::npos;
-       at = text.find(from, at + to.size())) {
-    text.replace(at, from.size(), to);
-  }
-}
-
 }  // namespace
 
 std::string FinishedArm::describe() const {
@@ -63,15 +56,6 @@ FinishedArm load_finished_arm(const std::filesystem::path& folder, std::string_v
   }
   arm.design = arm.run.tracking()->make_design(arm.run.find_best());
   return arm;
-}
-
-std::string get_joint_unit(std::string_view unit, JointKind kind) {
-  std::string own(unit);
-  if (kind == JointKind::prismatic) {
-    replace_all(own, "N m", "N");
-    replace_all(own, "rad", "m");
-  }
-  return own;
 }
 
 }  // namespace armwright

@@ -28,7 +28,4 @@ FinishedArm load_finished_arm(const std::filesystem::path& folder, std::string_v
 
 inline constexpr double kMillimetresPerMetre = 1000;  // errors are read in mm
 
-// A unit of a joint that turns, or of the same for one that slides: "N m/rad", "N/m".
-std::string get_joint_unit(std::string_view unit, JointKind kind);
-
 }  // namespace armwright

@@ -77,7 +77,11 @@ std::vector<ShownDesign> list_designs(const RecordedRun& run, std::vector<std::s
   }
   const auto& variables = run.configuration.at("problem").at("variables");
   const auto start = variables.at("start").get<std::string>();
-  if (auto base = load_shown(run, start, "base", notes)) {
+  if (start == kProposedStart) {
+    ShownDesign& base = designs.emplace_back();
+    base.named = {"base", "proposed controllers", tracking.config().start};
+    base.word = kStartDesign;
+  } else if (auto base = load_shown(run, start, "base", notes)) {
     base->named.name = "base controllers";
     designs.push_back(std::move(*base));
   }

@@ -119,8 +119,9 @@ json make_result_rows(const std::vector<ShownDesign>& designs) {
 json make_response(const RecordedRun& run, const std::vector<ShownDesign>& designs) {
   const CaseSets& sets = run.problem->sets;
   json series = json::array();
+  const bool has_moves = !list_moves_m(run.tracking()->config()).empty();
   for (const ShownDesign& design : designs) {
-    if (design.results.empty()) {
+    if (design.results.empty() || !has_moves) {
       continue;
     }
     const std::string command =
@@ -158,10 +159,16 @@ SweepRequest make_sweep_request(const RecordedRun& run,
   constexpr double kFirst_m_per_s = 0.5;
   constexpr double kStep_m_per_s = 0.25;
   constexpr int kSpeeds = 11;
+  constexpr double kThesis_m_per_s = 1.5;
+  // Of tasks at quite another speed than the thesis's the same multiples.
+  const double speed_m_per_s = run.tracking()->config().task.speed_m_per_s;
+  const double scale = speed_m_per_s < kFirst_m_per_s || speed_m_per_s > 2 * kThesis_m_per_s
+                           ? speed_m_per_s / kThesis_m_per_s
+                           : 1;
   SweepRequest request;
   std::vector<std::string> values;
   for (int i = 0; i < kSpeeds; ++i) {
-    request.speeds_m_per_s.push_back(kFirst_m_per_s + kStep_m_per_s * i);
+    request.speeds_m_per_s.push_back(scale * (kFirst_m_per_s + kStep_m_per_s * i));
     values.push_back(format_exact(request.speeds_m_per_s.back()));
   }
   const CaseSets& sets = run.problem->sets;
@@ -178,8 +185,19 @@ SweepRequest make_sweep_request(const RecordedRun& run,
   return request;
 }
 
+bool has_own_times(const RecordedRun& run) {
+  const auto& path = run.tracking()->config().path;
+  return path && path->continuous;
+}
+
 json make_sweep(const RecordedRun& run, const std::vector<ShownDesign>& designs,
                 PageSimulator& simulator, std::vector<std::string>& notes) {
+  if (has_own_times(run)) {
+    notes.push_back(
+        "The path is gone through at times of its own: there is no sweep over the "
+        "speed.");
+    return nullptr;
+  }
   const auto swept = choose_swept(designs);
   std::vector<std::string> own_speed;
   for (const ShownDesign& design : designs) {
@@ -241,6 +259,9 @@ json make_test_errors(const RecordedRun& run, const std::vector<ShownDesign>& de
 
 std::uint64_t count_sweep_cases(const RecordedRun& run, const std::vector<ShownDesign>& designs) {
   const auto swept = choose_swept(designs);
+  if (has_own_times(run)) {
+    return 0;
+  }
   const SweepRequest request = make_sweep_request(run, swept);
   return request.speeds_m_per_s.size() * request.cases * swept.size();
 }
