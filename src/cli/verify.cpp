@@ -217,7 +217,7 @@ std::string make_replay(const VerifyOptions& options, std::span<const std::strin
       words.insert(words.end(), {flag, value});
     }
   };
-  add("--problem", options.problem);
+  add("--problem", options.overrides.choose_problem(options.problem));
   add("--test-set", options.cases.test_set);
   add("--test-cases", options.cases.test_cases);
   for (const std::string& assignment : overrides) {
@@ -229,12 +229,26 @@ std::string make_replay(const VerifyOptions& options, std::span<const std::strin
   return quote_command(words);
 }
 
-// Presets that a design should stand: not those that are there to train with.
-std::vector<std::string> list_usual_presets(std::size_t joints) {
-  std::vector<std::string> presets = list_configs("perturbations");
-  std::erase_if(presets, [&](const std::string& name) {
-    return load_perturbation(name, joints).changes_design();
-  });
+// Presets that a design should stand: not those that are there to train with, nor, which is said
+// unless `quiet`, those with numbers for an arm of other joints.
+std::vector<std::string> list_usual_presets(std::size_t joints, bool quiet) {
+  std::vector<std::string> presets;
+  std::vector<std::string> of_others;
+  for (const std::string& name : list_configs("perturbations")) {
+    try {
+      if (!load_perturbation(name, joints).changes_design()) {
+        presets.push_back(name);
+      }
+    } catch (const Error&) {  // a shipped file is wrong in nothing else
+      of_others.push_back(name);
+    }
+  }
+  if (!of_others.empty() && !quiet) {
+    write_message(
+        fmt::format("left out, as their numbers are for an arm of other joints: {}; "
+                    "--perturbations takes files of your own (docs/robust.md)",
+                    join(of_others, ", ")));
+  }
   return presets;
 }
 
@@ -255,7 +269,7 @@ VerifyMatrix choose_matrix(const VerifyOptions& options, const VerifySetting& ow
     }
   }
   if (options.perturbations.empty()) {
-    matrix.own_plants = list_usual_presets(joints);
+    matrix.own_plants = list_usual_presets(joints, options.quiet);
     return matrix;
   }
   std::vector<std::string> known = list_configs("perturbations");

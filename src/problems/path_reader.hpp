@@ -1,6 +1,6 @@
 // The [path] table of a tracking problem: a path of the user's own in place of cases generated in
-// the workspace. It is the one case that designs are trained, validated and tested on; what differs
-// between its repetitions are the plants, where these are perturbed.
+// the workspace. It is the one case that designs are trained, validated and tested on; where plants
+// are perturbed there are as many of it as the sets say, each with a plant of its own.
 //
 //   kind = "points"  [[path.point]] tables with position_m and, in all or none, rpy_rad; the tool
 //                    moves from each to the next by the task's reference signal, and rests

@@ -105,6 +105,22 @@ std::string read_name(const ConfigTable& table, const std::filesystem::path& pat
   return name;
 }
 
+// A path is always the same, and so are its simulations unless plants are perturbed: one of each is
+// enough, whatever the file says of generated cases.
+void settle_path(LoadedProblem& loaded, std::vector<std::string>& settled) {
+  const TrackingConfig& config = loaded.tracking->config();
+  if (!config.path || config.perturbation.changes_anything()) {
+    return;
+  }
+  loaded.sets.validation_cases = 1;
+  loaded.sets.test_cases = 1;
+  loaded.schedule = {Schedule::Kind::fixed, 1};
+  loaded.fixed_cases = 1;
+  settled.insert(settled.end(),
+                 {"sets.validation_cases=1", "sets.test_cases=1", "schedule.kind=fixed",
+                  "schedule.cases=1", "schedule.fixed_cases=1"});
+}
+
 void load_analytic(const ConfigTable& table, LoadedProblem& loaded) {
   const ConfigTable function = table.get_table("function");
   const std::string name = function.get_choice("name", analytic_names());
@@ -146,6 +162,7 @@ LoadedProblem load_problem_tables(const std::filesystem::path& path, const ReadT
     if (table.get_string("name", "").find(kRobotInName) != std::string::npos) {
       settled.push_back("name=" + quote_toml(loaded.name));
     }
+    settle_path(loaded, settled);
     if (table.has("sweep")) {
       loaded.sweep = read_sweep(table.get_table("sweep"), *loaded.tracking);
     }

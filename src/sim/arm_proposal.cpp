@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/LU>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
@@ -43,6 +44,8 @@ constexpr int kSlowdowns = 20;
 
 constexpr double kBandwidth_rad_per_s = 10;
 constexpr double kDamping = 0.7;
+// Of the 2 at which sampled damping diverges.
+constexpr double kMostSampledDamping = 0.7;
 constexpr double kEffortReserve = 2;
 constexpr double kUsualEffortShare = 0.1;
 constexpr double kMostReserve = 10;
@@ -231,11 +234,13 @@ void set_radius(WorkspaceSphere& sphere, double radius_m) {
 struct Demand {
   std::vector<double> efforts;
   std::vector<double> inertia;
+  std::vector<double> mobility;  // the largest (M^-1)_ii
 };
 
 Demand calc_demand(const TrackingSetup& setup, const std::vector<TargetTable>& tables) {
   const std::size_t n = setup.robot().joint_count();
-  Demand demand{std::vector<double>(n, 0), std::vector<double>(n, 0)};
+  const std::vector<double> nothing(n, 0);
+  Demand demand{nothing, nothing, nothing};
   ArticulatedArm arm(setup.robot(), tables.front().start_rad, setup.task().physics);
   const std::vector<double> rest(n, 0);
   for (const TargetTable& table : tables) {
@@ -247,9 +252,11 @@ Demand calc_demand(const TrackingSetup& setup, const std::vector<TargetTable>& t
       if (step % kStepsBetween == 0) {
         arm.set_state(table.angles(step), rest);
         const Eigen::MatrixXd mass = arm.calc_mass_matrix();
+        const Eigen::MatrixXd inverse = mass.inverse();
         for (std::size_t i = 0; i < n; ++i) {
           const auto at = static_cast<Eigen::Index>(i);
           demand.inertia[i] = std::max(demand.inertia[i], mass(at, at));
+          demand.mobility[i] = std::max(demand.mobility[i], inverse(at, at));
         }
       }
     }
@@ -417,9 +424,12 @@ ArmDesign propose_design(const RobotModel& robot, TrackingTask task,
   ArmDesign design;
   for (std::size_t i = 0; i < robot.joint_count(); ++i) {
     const double w = kBandwidth_rad_per_s;
-    const double p = w * w * demand.inertia[i];
+    const double m = demand.inertia[i];
+    const double d = std::min(2 * kDamping * w * m,
+                              kMostSampledDamping / (task.control_period_s * demand.mobility[i]));
+    const double p = std::min(w * w * m, d * d / m);
     JointDrive drive;
-    drive.gains = {p, w * p / 4, 2 * kDamping * w * demand.inertia[i]};
+    drive.gains = {p, p * std::sqrt(p / m) / 4, d};
     const double own = robot.joints[i].effort_limit;
     const double needed =
         std::max(kEffortReserve * demand.efforts[i], kLeastAcceleration * demand.inertia[i]);

@@ -14,9 +14,10 @@
 //   speed        the longest move takes a second, or as long as it must: joints stay below 60 % of
 //                their speed limits, and what inverse dynamics asks of them below 60 % of their
 //                effort limits
-//   gains        of joint i with the largest M_ii that occurs on the cases: P = w^2 M_ii, D = 2 z w
-//                M_ii, I = w P / 4 with w = 10 rad/s, z = 0.7: critically slow, but stable at any
-//                sampling that can control the arm at all
+//   gains        with m the largest M_ii of the mass matrix on the cases, w = 10 rad/s, z = 0.7 and
+//                the control period h: D = 2 z w m, but at most 0.7 / (h max (M^-1)_ii), where
+//                other joints give way (nearly coaxial ones, say); P = w^2 m, but at most D^2 / m;
+//                I = P sqrt(P / m) / 4. Slow, but stable.
 //   efforts      twice what inverse dynamics asks for at most, at least M_ii x 5 rad/s^2; where a
 //                tenth of the joint's limit is more, that, but at most ten times as much; never
 //                above the limit

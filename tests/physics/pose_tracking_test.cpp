@@ -90,7 +90,7 @@ TEST(SixAxes, FollowAsTheReducedArmDoes) {
       sum += worst;
     }
     const double mean_m = sum / static_cast<double>(six_targets.segments.size() - 1);
-    EXPECT_NEAR(mean_m / reduced[0].mean_error_m, 1, 0.05) << "case " << number;
+    EXPECT_NEAR(mean_m / reduced[0].mean_error_m, 1, 0.03) << "case " << number;
   }
 }
 
@@ -136,7 +136,8 @@ TEST(PoseTracking, TheErrorOfAPoseHasDerivatives) {
     one.joints[joint].gains[0] = 1;  // p
     const auto slopes =
         engine->calc_derivatives(setup, make_job(design, targets), std::vector{one});
-    const double step = 1e-5 * design.joints[joint].gains[0];
+    // Errors of 1e-5 m have the rounding of places 1 m away: 1e-16 m.
+    const double step = 1e-3 * design.joints[joint].gains[0];
     const auto calc_errors = [&](double by) {
       ArmDesign changed = design;
       changed.joints[joint].gains[0] += by;
@@ -146,7 +147,7 @@ TEST(PoseTracking, TheErrorOfAPoseHasDerivatives) {
     ASSERT_EQ(slopes.size(), 2U);
     for (std::size_t k = 0; k < slopes.size(); ++k) {
       const double difference = (above[k] - below[k]) / (2 * step);
-      EXPECT_NEAR(slopes[k], difference, 1e-4 * std::abs(difference)) << "joint " << joint;
+      EXPECT_NEAR(slopes[k], difference, 1e-3 * std::abs(difference)) << "joint " << joint;
       EXPECT_NE(slopes[k], 0);
     }
   }
@@ -160,7 +161,13 @@ TEST(PoseTracking, TheErrorSeesJointsThatOnlyTurnTheTool) {
   const auto engine = make_engine("articulated");
   const auto calc_error = [&](ToolOrientation orientation, const ArmDesign& design) {
     const TrackingSetup setup(load_six(), make_six_task(orientation));
-    const TargetTable targets = setup.make_targets(make_number(2));
+    // The tool turns about itself on the way; a flange without a drive stays as it is.
+    TestCase its = make_number(2);
+    its.points_m.resize(4);
+    for (const double roll_rad : {0.0, 0.5, 1.0, 0.3}) {
+      its.turns.emplace_back(make_turn({0, std::numbers::pi / 2, roll_rad}));
+    }
+    const TargetTable targets = setup.make_targets(its);
     return engine->simulate(setup, std::vector{make_job(design, targets)}).front().mean_error_m;
   };
   const ArmDesign design = make_six_design();

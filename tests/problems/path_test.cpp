@@ -31,6 +31,8 @@ kind = "points"
   EXPECT_FALSE(path.continuous);
   EXPECT_EQ(path.points_m, (std::vector<Eigen::Vector3d>{{1.4, 0, 0.9}, {1.4, 0.3, 0.9}}));
   EXPECT_TRUE(problem.tracking->config().task.count_first_point) << "every move was asked for";
+  EXPECT_EQ(problem.sets.test_cases, 1) << "all would be the same";
+  EXPECT_EQ(to_text(problem.schedule), "fixed:1");
   // Whatever the set and the number.
   for (const char* set : {"train/1", "validation/1", "test/2"}) {
     EXPECT_EQ(problem.tracking->get_set(set).make_case(77).points_m, path.points_m);
