@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "base/error.hpp"
 #include "base/json_text.hpp"
@@ -13,14 +14,18 @@
 namespace armwright {
 namespace {
 
-// In which generated cases lie, from the resolved configuration that the run recorded.
-WorkspaceSphere read_workspace(const std::filesystem::path& run) {
+// In which generated cases lie, from the resolved configuration that the run recorded. Nothing
+// where its cases are a path of the user's own, who has it.
+std::optional<WorkspaceSphere> read_workspace(const std::filesystem::path& run) {
   constexpr std::size_t kLimit_bytes = std::size_t{16} << 20;
   const auto file = run / "manifest.json";
   WorkspaceSphere sphere;
   try {
     const auto manifest = nlohmann::json::parse(read_json_file(file, kLimit_bytes));
     const auto& problem = manifest.at("configuration").at("problem");
+    if (problem.contains("path") && problem.at("path").contains("kind")) {
+      return std::nullopt;
+    }
     if (!problem.contains("workspace")) {
       return sphere;
     }
@@ -54,8 +59,11 @@ void write_test_cases(const Survey& survey, const std::filesystem::path& folder)
     if (!problem.tracking || !problem.tested_on || problem.tested_on->set.starts_with("file:")) {
       continue;
     }
-    const TestSet set = TestSet::make_generated(
-        problem.tested_on->set, read_workspace(problem.labels.front().runs.front().folder));
+    const auto workspace = read_workspace(problem.labels.front().runs.front().folder);
+    if (!workspace) {
+      continue;
+    }
+    const TestSet set = TestSet::make_generated(problem.tested_on->set, *workspace);
     std::vector<TestCase> cases;
     for (std::uint64_t i = 0; i < problem.tested_on->count; ++i) {
       cases.push_back(set.make_case(i));

@@ -20,7 +20,7 @@ using testing::HasSubstr;
 
 // What keeps the tests short: few cases, few simulations.
 const std::vector<std::string> kSmall = {
-    "--set", "sets.validation_cases=2", "--set",  "sets.test_cases=6", "--set", "schedule.cases=2",
+    "--set", "sets.validation_cases=4", "--set",  "sets.test_cases=6", "--set", "schedule.cases=4",
     "--set", "physics.substeps=4",      "--quiet"};
 
 class Robots : public testing::Test {
@@ -39,7 +39,7 @@ class Robots : public testing::Test {
     std::vector<std::string> start = {"evaluate", "start", "--json"};
     tune.insert(tune.end(), robot.begin(), robot.end());
     start.insert(start.end(), robot.begin(), robot.end());
-    tune.insert(tune.end(), {"--budget", "1200", "--json", "--out", "tuned/" + robot.back()});
+    tune.insert(tune.end(), {"--budget", "1500", "--json", "--out", "tuned/" + robot.back()});
     const Outcome before = run(start);
     ASSERT_EQ(before.exit_code, 0) << before.err;
     const Outcome after = run(tune);

@@ -47,6 +47,12 @@ void check_description(const ProblemDescription& description) {
 }  // namespace
 
 void fuzz_problem(std::string_view input) {
+  // What is proposed for a robot takes longer than fuzzing allows, whatever the input.
+  for (const std::string_view proposing : {"propose", "\"robot\"", "'robot'"}) {
+    if (input.find(proposing) != std::string_view::npos) {
+      return;
+    }
+  }
   std::vector<std::string> overrides = split(input, '\0');
   const fs::path file = get_problems_folder() / "fuzzed.toml";
   write_scratch(file, overrides.front());

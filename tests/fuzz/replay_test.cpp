@@ -21,12 +21,19 @@ struct HarnessRow {
 };
 
 constexpr HarnessRow kHarnesses[] = {
-    {"problem", fuzz_problem},       {"study", fuzz_study},
-    {"design", fuzz_design},         {"urdf", fuzz_urdf},
-    {"test_cases", fuzz_test_cases}, {"messages", fuzz_messages},
-    {"descriptor", fuzz_descriptor}, {"journal", fuzz_journal},
-    {"records", fuzz_records},       {"manifest", fuzz_manifest},
-    {"export_csv", fuzz_export_csv}, {"export_json", fuzz_export_json},
+    {"problem", fuzz_problem},
+    {"study", fuzz_study},
+    {"design", fuzz_design},
+    {"urdf", fuzz_urdf},
+    {"test_cases", fuzz_test_cases},
+    {"messages", fuzz_messages},
+    {"descriptor", fuzz_descriptor},
+    {"journal", fuzz_journal},
+    {"records", fuzz_records},
+    {"manifest", fuzz_manifest},
+    {"export_csv", fuzz_export_csv},
+    {"export_json", fuzz_export_json},
+    {"path", fuzz_path},
 };
 
 constexpr std::size_t kLargestInput_bytes = std::size_t{16} << 20;
