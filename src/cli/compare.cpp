@@ -18,6 +18,7 @@
 #include "cli/study_view.hpp"
 #include "cli/team.hpp"
 #include "cli/terminal.hpp"
+#include "problems/path_survey.hpp"
 #include "study/compare/escape.hpp"
 #include "study/compare/study_runner.hpp"
 #include "study/locked_observer.hpp"
@@ -145,8 +146,15 @@ int run_compare(const CompareOptions& options, Session& session) {
   plan = make_study_plan(make_request(options));
   const auto path = options.folder.choose(escape_name(plan.name));
   adopt_recorded(path, plan);
+  std::vector<std::string> notes;
+  for (const LoadedProblem* problem : list_problems(plan)) {
+    for (const std::string& note : check_paths(*problem)) {
+      notes.push_back(fmt::format("{}: {}", problem->name, note));
+    }
+  }
   if (!options.quiet || options.dry_run) {
     announce(options, plan, jobs, path);
+    std::ranges::for_each(notes, write_message);
   }
   if (is_elsewhere) {
     return hand_over(options.executor, plan,

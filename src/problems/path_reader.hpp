@@ -33,7 +33,4 @@ struct ReadPath {
 // of a path and its line.
 std::optional<ReadPath> read_path(const ConfigTable& table, const TrackingTask& task);
 
-// The rows of a path's CSV file; `name` is the file's in messages.
-TestCase parse_path(std::string_view text, const std::string& name, const TrackingTask& task);
-
 }  // namespace armwright

@@ -5,7 +5,8 @@
 
 #include <algorithm>
 
-#include "sim/arm_proposal.hpp"
+#include "sim/drive_proposal.hpp"
+#include "sim/workspace_proposal.hpp"
 
 namespace armwright {
 namespace {

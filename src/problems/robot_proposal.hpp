@@ -1,5 +1,6 @@
 // What a problem's file leaves out about a robot of which it says `robot.propose = true`:
-// orientation, home, workspace and speed, as sim/arm_proposal.hpp proposes them. What stands in the
+// orientation, home, workspace and speed, as sim/workspace_proposal.hpp and
+// sim/drive_proposal.hpp propose them. What stands in the
 // file holds.
 #pragma once
 

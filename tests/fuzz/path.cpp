@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "fuzz/harness.hpp"
-#include "problems/path_reader.hpp"
+#include "problems/path_file.hpp"
 #include "sim/test_case_file.hpp"
 
 namespace armwright::fuzz {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "problems/path_reader.hpp"
+#include "problems/path_file.hpp"
 #include "problems/path_survey.hpp"
 #include "problems/problem_folder.hpp"
 
