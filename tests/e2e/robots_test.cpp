@@ -23,6 +23,33 @@ const std::vector<std::string> kSmall = {
     "--set", "sets.validation_cases=4", "--set",  "sets.test_cases=6", "--set", "schedule.cases=4",
     "--set", "physics.substeps=4",      "--quiet"};
 
+// An arm as they stand in assembly lines: two joints that turn in the plane, one that slides, one
+// without end.
+constexpr const char* kScara = R"(<robot name="scara"><link name="base"/>
+<joint name="shoulder" type="revolute"><parent link="base"/><child link="a"/>
+  <origin xyz="0 0 0.4"/><axis xyz="0 0 1"/>
+  <limit lower="-2.3" upper="2.3" velocity="4" effort="100"/></joint>
+<link name="a"><inertial><origin xyz="0.15 0 0"/><mass value="6"/>
+  <inertia ixx="0.02" iyy="0.07" izz="0.07" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="elbow" type="revolute"><parent link="a"/><child link="b"/>
+  <origin xyz="0.3 0 0"/><axis xyz="0 0 1"/>
+  <limit lower="-2.5" upper="2.5" velocity="6" effort="50"/></joint>
+<link name="b"><inertial><origin xyz="0.12 0 0"/><mass value="4"/>
+  <inertia ixx="0.01" iyy="0.04" izz="0.04" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="quill" type="prismatic"><parent link="b"/><child link="c"/>
+  <origin xyz="0.25 0 0"/><axis xyz="0 0 -1"/>
+  <limit lower="0" upper="0.25" velocity="1" effort="150"/></joint>
+<link name="c"><inertial><origin xyz="0 0 -0.1"/><mass value="1"/>
+  <inertia ixx="0.005" iyy="0.005" izz="0.0005" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="roll" type="continuous"><parent link="c"/><child link="d"/>
+  <origin xyz="0 0 -0.2"/><axis xyz="0 0 1"/></joint>
+<link name="d"><inertial><mass value="0.3"/>
+  <inertia ixx="0.0003" iyy="0.0003" izz="0.0003" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="flange" type="fixed"><parent link="d"/><child link="tip"/>
+  <origin xyz="0 0 -0.05"/></joint>
+<link name="tip"/></robot>
+)";
+
 class Robots : public testing::Test {
  protected:
   Outcome run(std::vector<std::string> arguments) const {
@@ -78,6 +105,11 @@ TEST_P(ShippedRobots, GoFromUrdfToTunedControllersWithOneCommand) {
 INSTANTIATE_TEST_SUITE_P(E2e, ShippedRobots,
                          testing::Values("irb4600_40_255", "irb4600_six", "planar2", "arm7",
                                          "arm7_gripper"));
+
+TEST_F(Robots, ThatSlideGoThatWayToo) {
+  write("scara.urdf", kScara);
+  expect_tuned({"--robot", "scara.urdf"});
+}
 
 // The tutorial, command by command as it stands there, with fewer cases and simulations. Its robot
 // is the shipped one with a gripper under another name.
