@@ -152,7 +152,7 @@ TEST_F(Robots, TheTutorialWorks) {
     if (command.front() == "optimize") {
       command.insert(command.end(), {"--budget", "40"});
     } else if (command.front() == "verify") {
-      command.insert(command.end(), {"--cases", "1"});
+      command.insert(command.end(), {"--cases", "1", "--engines", "articulated"});
     }
     const Outcome outcome = simulates ? run(command) : run_program(folder_.path(), command);
     // Few simulations need not keep what is required.
