@@ -32,7 +32,6 @@ class Findings {
       place->second = {fault, set, number};
     }
   }
-  bool empty() const { return worst_.empty(); }
   std::vector<std::string> describe_all(const RobotModel& robot) const {
     std::vector<std::string> lines;
     for (const auto& [key, found] : worst_) {

@@ -8,7 +8,6 @@
 #include <span>
 #include <utility>
 
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "sim/articulated/articulated_arm.hpp"
 #include "sim/workspace_proposal.hpp"
@@ -30,10 +29,6 @@ constexpr double kUsualEffortShare = 0.1;
 constexpr double kMostReserve = 10;
 constexpr double kLeastAcceleration = 5;  // rad/s^2 or m/s^2
 constexpr int kStepsBetween = 20;         // at which the mass matrix is looked at
-
-[[noreturn]] void refuse_arm(const RobotModel& robot, const std::string& what) {
-  throw Error(ErrorKind::bad_data, fmt::format("robot '{}': {}", sanitize(robot.name), what));
-}
 
 // The largest efforts that inverse dynamics asks for on the path, and the largest M_ii.
 struct Demand {
@@ -75,8 +70,9 @@ std::vector<TargetTable> make_tables(const RobotModel& robot, const TrackingSetu
   for (const TestCase& its : cases) {
     tables.push_back(setup.make_targets(its));
     if (!tables.back().unreachable.empty()) {
-      refuse_arm(robot, fmt::format("nothing can be proposed for a path that it cannot follow: {}",
-                                    tables.back().unreachable));
+      refuse_proposal(robot,
+                      fmt::format("nothing can be proposed for a path that it cannot follow: {}",
+                                  tables.back().unreachable));
     }
   }
   return tables;
@@ -114,8 +110,9 @@ double propose_speed(const RobotModel& robot, TrackingTask task,
       std::span<const double> before = table.start_rad;
       for (int step = 0; step < table.steps; ++step) {
         for (std::size_t i = 0; i < n; ++i) {
-          speeds[i] = std::max(speeds[i],
-                               std::abs(table.angles(step)[i] - before[i]) / task.control_period_s);
+          const double way =
+              calc_displacement(robot.joints[i].kind, before[i], table.angles(step)[i]);
+          speeds[i] = std::max(speeds[i], std::abs(way) / task.control_period_s);
         }
         before = table.angles(step);
       }
@@ -139,13 +136,14 @@ double propose_speed(const RobotModel& robot, TrackingTask task,
       if (share < 1) {
         return task.speed_m_per_s;  // it can be held, but hardly more
       }
-      refuse_arm(robot, fmt::format(
-                            "joint {} ('{}') needs {:.4g} {} to hold the arm in its workspace, its "
-                            "effort limit is {:.4g}; correct the limit or the masses in the URDF, "
-                            "carry less, or set another workspace",
-                            joint + 1, sanitize(robot.joints[joint].name), demand.efforts[joint],
-                            robot.joints[joint].kind == JointKind::revolute ? "N m" : "N",
-                            robot.joints[joint].effort_limit));
+      refuse_proposal(
+          robot,
+          fmt::format("joint {} ('{}') needs {:.4g} {} to hold the arm in its workspace, its "
+                      "effort limit is {:.4g}; correct the limit or the masses in the URDF, "
+                      "carry less, or set another workspace",
+                      joint + 1, sanitize(robot.joints[joint].name), demand.efforts[joint],
+                      robot.joints[joint].kind == JointKind::revolute ? "N m" : "N",
+                      robot.joints[joint].effort_limit));
     }
     task.speed_m_per_s *= kSlower;
   }

@@ -34,10 +34,6 @@ constexpr double kKeepOffEnds = 0.02;  // of half a joint's range
 // The thesis's shape of cases: moves from the diameter down to a sixteenth of the radius.
 constexpr double kShortestOfRadius = 1.0 / 16;
 
-[[noreturn]] void refuse(const RobotModel& robot, const std::string& what) {
-  throw Error(ErrorKind::bad_data, fmt::format("robot '{}': {}", sanitize(robot.name), what));
-}
-
 double calc_length_m(const RobotModel& robot) {
   double length_m = robot.tip_pose.translation().norm();
   for (std::size_t i = 1; i < robot.joint_count(); ++i) {
@@ -51,18 +47,25 @@ double calc_length_m(const RobotModel& robot) {
   return length_m;
 }
 
-// How far a posture is from singularities and from the ends of the joints' ranges, in [0, 1].
-double calc_ease(const NumericKinematics& kinematics, const RobotModel& robot,
-                 std::span<const double> q) {
-  double margin = 1;
+// How far the joint that is nearest to an end of its range is from the middle: 1 at the end.
+double calc_excursion(const NumericKinematics& kinematics, const RobotModel& robot,
+                      std::span<const double> q) {
+  double farthest = 0;
   for (std::size_t i = 0; i < q.size(); ++i) {
     if (kinematics.has_middle(i)) {
       const double half = 0.5 * (robot.joints[i].upper - robot.joints[i].lower);
-      margin = std::min(margin, 1 - std::abs(q[i] - kinematics.get_middle(i)) / half);
+      farthest = std::max(farthest, std::abs(q[i] - kinematics.get_middle(i)) / half);
     }
   }
+  return farthest;
+}
+
+// How far a posture is from singularities and from the ends of the joints' ranges, in [0, 1].
+double calc_ease(const NumericKinematics& kinematics, const RobotModel& robot,
+                 std::span<const double> q) {
   // Ends of ranges hurt only those who come close.
-  return kinematics.calc_dexterity(q) * std::min(1.0, 3 * std::max(0.0, margin));
+  const double margin = std::max(0.0, 1 - calc_excursion(kinematics, robot, q));
+  return kinematics.calc_dexterity(q) * std::min(1.0, 3 * margin);
 }
 
 std::vector<std::vector<double>> choose_homes(const NumericKinematics& kinematics,
@@ -94,9 +97,10 @@ std::optional<Eigen::Vector3d> find_plane(const NumericKinematics& kinematics,
     return std::nullopt;
   }
   if (kinematics.rank() < 2) {
-    refuse(robot,
-           "its tip moves along a single line; there must be at least two joints that move "
-           "it in different directions");
+    refuse_proposal(
+        robot,
+        "its tip moves along a single line; there must be at least two joints that move "
+        "it in different directions");
   }
   RandomStream random("proposal/plane", 0);
   const std::vector<double> first = kinematics.draw_posture(random);
@@ -113,10 +117,10 @@ std::optional<Eigen::Vector3d> find_plane(const NumericKinematics& kinematics,
     const Eigen::Vector3d other_m =
         kinematics.calc_pose(kinematics.draw_posture(random)).position_m;
     if (std::abs(normal.dot(other_m - place_m)) > 1e-6 * length_m) {
-      refuse(robot,
-             "its tip moves on a curved surface, on which there are no straight moves; "
-             "there must be three joints that move it in three directions, or all must "
-             "move it in one plane (robot.tip can name another link)");
+      refuse_proposal(robot,
+                      "its tip moves on a curved surface, on which there are no straight moves; "
+                      "there must be three joints that move it in three directions, or all must "
+                      "move it in one plane (robot.tip can name another link)");
     }
   }
   // Axes of a drawing come out as such.
@@ -128,15 +132,7 @@ std::optional<Eigen::Vector3d> find_plane(const NumericKinematics& kinematics,
 
 bool touches_an_end(const NumericKinematics& kinematics, const RobotModel& robot,
                     std::span<const double> q) {
-  for (std::size_t i = 0; i < q.size(); ++i) {
-    if (kinematics.has_middle(i)) {
-      const double half = 0.5 * (robot.joints[i].upper - robot.joints[i].lower);
-      if (std::abs(q[i] - kinematics.get_middle(i)) > (1 - kKeepOffEnds) * half) {
-        return true;
-      }
-    }
-  }
-  return false;
+  return calc_excursion(kinematics, robot, q) > 1 - kKeepOffEnds;
 }
 
 // Whether straight moves through the case's points can be followed, looked at coarsely.
@@ -207,6 +203,10 @@ void set_radius(WorkspaceSphere& sphere, double radius_m) {
 
 }  // namespace
 
+void refuse_proposal(const RobotModel& robot, const std::string& what) {
+  throw Error(ErrorKind::bad_data, fmt::format("robot '{}': {}", sanitize(robot.name), what));
+}
+
 void coarsen(TrackingTask& task) {
   task.control_period_s = std::max(task.control_period_s, kLook_s);
   task.rest_s = std::min(task.rest_s, kRest_s);
@@ -257,13 +257,13 @@ WorkspaceProposal propose_workspace(const RobotModel& robot, const TrackingTask&
       return *best;
     }
   }
-  refuse(robot,
-         fmt::format("no place was found where its tool can move {:.2g} m along straight lines "
-                     "with task.orientation = \"{}\", within all joint ranges and off "
-                     "singularities; set another task.orientation, or workspace.centre_m, "
-                     "workspace.radius_m and task.home yourself",
-                     2 * smallest_m,
-                     tool_orientation_names()[static_cast<std::size_t>(tool.orientation)]));
+  refuse_proposal(
+      robot, fmt::format("no place was found where its tool can move {:.2g} m along straight lines "
+                         "with task.orientation = \"{}\", within all joint ranges and off "
+                         "singularities; set another task.orientation, or workspace.centre_m, "
+                         "workspace.radius_m and task.home yourself",
+                         2 * smallest_m,
+                         tool_orientation_names()[static_cast<std::size_t>(tool.orientation)]));
 }
 
 std::vector<TestCase> make_proposal_cases(const WorkspaceSphere& sphere) {

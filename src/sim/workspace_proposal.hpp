@@ -12,6 +12,7 @@
 //                for.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "sim/tracking.hpp"
@@ -22,6 +23,9 @@ namespace armwright {
 inline constexpr const char* kProposalSet = "proposal/1";
 // What the longest move takes, before anything is known of speeds.
 inline constexpr double kProposedMove_s = 1;
+
+// Throws Error{bad_data}: why nothing can be proposed for the robot.
+[[noreturn]] void refuse_proposal(const RobotModel& robot, const std::string& what);
 
 ToolOrientation propose_orientation(const RobotModel& robot, const ToolTask& tool);
 
