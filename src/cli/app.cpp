@@ -47,7 +47,7 @@ Exit codes:
   0    done
   2    wrong use or configuration
   3    done, but something failed (a case without a number, nothing feasible found, a design that does not hold)
-  4    an input file cannot be used
+  4    an input file (robot, path, test cases, a recorded run) cannot be used
   5    another process writes this folder, or has taken over this cell
   74   reading or writing failed
   75   stopped by a time limit or SIGTERM; the same command resumes

@@ -26,6 +26,7 @@ constexpr const char* kListExamples = R"(Examples:
   armwright list problems q1-complex               # its variables, bounds and settings (for --set)
   armwright list optimizers ga                     # what it is, can do, and its options (for --opt)
   armwright list optimizers ga --markdown          # the same as a page, as under docs/optimizers
+  armwright list settings task.rest_s              # a key of the configuration: unit, range, default, meaning
   armwright list controllers pi2d                  # its formula, and its gains (for variables.optimize)
   armwright list designs --json
   armwright list studies q1                        # a comparison of optimizers: who, on what, at what cost
@@ -83,7 +84,8 @@ std::vector<ListKind> list_kinds() {
           make_design_kind(),
           make_study_kind(),
           make_plain_kind("signals", list_signals),
-          make_controller_kind()};
+          make_controller_kind(),
+          make_setting_kind()};
 }
 
 struct ListOptions {
@@ -165,7 +167,8 @@ int run_list(const ListOptions& options, const Session& session) {
     }
     if (!kind.explain_as_markdown) {
       throw Error(ErrorKind::usage,
-                  fmt::format("--markdown is for optimizers, not for {}; --json is for all kinds",
+                  fmt::format("--markdown is for problems, optimizers and settings, not for {}; "
+                              "--json is for all kinds",
                               kind.name));
     }
     write_stdout(kind.explain_as_markdown(options.name));
@@ -193,13 +196,15 @@ void add_list(CLI::App& app, Session& session) {
                   kListExamples);
   command
       ->add_option("KIND", options->kind,
-                   "problems, optimizers, robots, engines, designs, signals or controllers")
+                   "problems, optimizers, robots, engines, designs, studies, signals,\n"
+                   "controllers or settings")
       ->required();
   command->add_option("NAME", options->name, "Explain this one in full");
   command->add_flag("--json", options->json, "Print it as JSON")->group("Output");
   command
       ->add_flag("--markdown", options->markdown,
-                 "Print it as a page of documentation (optimizers)")
+                 "Print it as a page of documentation (problems,\n"
+                 "optimizers, settings)")
       ->group("Output");
   command->callback([options, &session] {
     session.action = [options, &session] { return run_list(*options, session); };

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "base/config.hpp"
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/hash.hpp"
@@ -246,8 +245,8 @@ void load_problems(const RawPlan& raw, StudyPlan& plan) {
   }
   if (plan.problems.empty()) {
     throw Error(ErrorKind::usage,
-                "the study names no problem; give --problems a,b or a file with "
-                "problems = [...]");
+                "the study names no problem; give --problems A,B, or in its file "
+                "problems = [\"A\", \"B\"] (armwright list problems)");
   }
   refuse_repeated("problem", labels);
 }
@@ -268,8 +267,8 @@ StudyOptimizer load_study_optimizer(const NamedOptimizer& named) {
 void load_optimizers(const RawPlan& raw, StudyPlan& plan) {
   if (raw.optimizers.empty()) {
     throw Error(ErrorKind::usage,
-                "the study names no optimizer; give --optimizers a,b or a file "
-                "with optimizers = [...]");
+                "the study names no optimizer; give --optimizers A,B, or in its file "
+                "optimizers = [\"A\", \"B\"] (armwright list optimizers)");
   }
   bool has_random = false, has_local = false;
   for (const NamedOptimizer& named : raw.optimizers) {
@@ -378,6 +377,12 @@ void keep_baselines(const std::filesystem::path& recorded, StudyPlan& plan) {
 
 std::string read_study_title(const std::string& file) {
   return ConfigTable::load(resolve_config("studies", file)).get_string("title", "");
+}
+
+std::vector<AskedKey> ask_study_keys(const ConfigTable& table) {
+  StudyPlan plan;
+  read_file_plan(table, plan);
+  return table.asked();
 }
 
 StudyPlan make_study_plan(const StudyRequest& request) {

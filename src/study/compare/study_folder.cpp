@@ -174,8 +174,14 @@ bool is_study_folder(const std::filesystem::path& path) {
 
 StudyPlan load_study_plan(const std::filesystem::path& folder) {
   if (!is_study_folder(folder)) {
-    throw Error(ErrorKind::usage, fmt::format("{}: is not the folder of a study (it has no {})",
-                                              folder.string(), kPlanFile));
+    std::error_code ignored;
+    throw Error(ErrorKind::usage,
+                std::filesystem::exists(folder, ignored)
+                    ? fmt::format("{} is not the folder of a study: it has no {}",
+                                  sanitize(folder.string()), kPlanFile)
+                    : fmt::format("there is no folder '{}'; name that of a study, results/NAME "
+                                  "unless --out said otherwise",
+                                  sanitize(folder.string())));
   }
   StudyRequest request;
   request.file = (folder / kPlanFile).string();
