@@ -263,9 +263,12 @@ std::vector<std::string> list_likely_causes(const std::filesystem::path& recorde
     causes.push_back("The configuration is another one: " + difference + ".");
   }
   json build_before = before["build"];
-  json build_after = after["build"];
-  for (json* build : {&build_before, &build_after}) {
-    build->erase("host");  // computes nothing by itself
+  json build_after = json::object();
+  build_before.erase("host");  // computes nothing by itself
+  for (const auto& [key, value] : after["build"].items()) {
+    if (build_before.contains(key)) {  // else an earlier version did not record it
+      build_after[key] = value;
+    }
   }
   for (const std::string& difference :
        describe_differences(build_before.dump(), build_after.dump())) {
