@@ -4,7 +4,6 @@ set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME armwright)
 set(CPACK_PACKAGE_VENDOR "armwright developers")
 set(CPACK_PACKAGE_CONTACT "armwright developers <noreply@armwright.example>")
-set(CPACK_PACKAGE_CHECKSUM "")
 set(CPACK_COMPONENTS_ALL runtime dev)
 if(ARMWRIGHT_WITH_PYTHON)
   list(APPEND CPACK_COMPONENTS_ALL python)
@@ -12,7 +11,9 @@ endif()
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
-set(CPACK_STRIP_FILES ON)
+
+# Each package's description begins with a line of its own, so there is none for all; to cpack that is this text.
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${CMAKE_PROJECT_NAME} built using CMake")
 
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
@@ -28,12 +29,12 @@ set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SUGGESTS "armwright-dev, bash-completion, openmpi-bin, python3-scipy")
 set(CPACK_COMPONENT_RUNTIME_DESCRIPTION
     "tunes robot arms by simulation
- armwright lets interchangeable gradient-free optimizers loose on the
- controllers, effort limits, links and motors of a robot arm (URDF),
- simulated in a physics engine, and judges every winner on test cases that
- no optimizer has seen. It compares optimizers with statistics, resumes
- after any interruption, spreads work over clusters, shows results on a
- page with the arm's motion, and writes the winner's gains for ROS 2.")
+armwright lets interchangeable gradient-free optimizers loose on the
+controllers, effort limits, links and motors of a robot arm (URDF),
+simulated in a physics engine, and judges every winner on test cases that
+no optimizer has seen. It compares optimizers with statistics, resumes
+after any interruption, spreads work over clusters, shows results on a
+page with the arm's motion, and writes the winner's gains for ROS 2.")
 
 # What find_package(armwright) links. The libraries are static.
 set(dev_packages libeigen3-dev libfmt-dev nlohmann-json3-dev libssl-dev zlib1g-dev libsqlite3-dev pkg-config libode-dev liburdfdom-dev
@@ -53,9 +54,9 @@ set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "armwright (${this_version}), ${dev_depends
 set(CPACK_DEBIAN_DEV_PACKAGE_SUGGESTS "cmake, g++")
 set(CPACK_COMPONENT_DEV_DESCRIPTION
     "tunes robot arms by simulation - for optimizers and programs of your own
- The headers against which optimizers in C and C++ are built that armwright
- loads as plugins, and armwright's own libraries with their headers and a
- CMake package: find_package(armwright).")
+The headers against which optimizers in C and C++ are built that armwright
+loads as plugins, and armwright's own libraries with their headers and a
+CMake package: find_package(armwright).")
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-armwright)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
@@ -64,8 +65,8 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "armwright (${this_version}), python3 (>
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-matplotlib, python3-scipy")
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION
     "tunes robot arms by simulation - Python
- Problems, runs and comparisons of armwright from Python 3.11, with arrays
- of NumPy, and optimizers written in Python.")
+Problems, runs and comparisons of armwright from Python 3.11, with arrays
+of NumPy, and optimizers written in Python.")
 
 # Debian's own changelog names the version and its day; what has changed stands in the project's.
 execute_process(COMMAND date --utc --rfc-email "--date=${ARMWRIGHT_RELEASE_DATE}" OUTPUT_VARIABLE release_day OUTPUT_STRIP_TRAILING_WHITESPACE
@@ -78,10 +79,15 @@ file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/debian/changelog @ONLY CONTENT
  -- @CPACK_PACKAGE_CONTACT@  @release_day@
 ")
 configure_file(cmake/debian/copyright.in ${PROJECT_BINARY_DIR}/debian/copyright @ONLY)
-# What of npm's packages the page is made of, and not only built with.
+# What the program carries of others: of npm's packages those that the page is made of, and not only built with; and Ceres, which Debian's
+# CMake package of it links statically.
 set(ARMWRIGHT_PAGE_PACKAGES "")
 if(ARMWRIGHT_WITH_PAGE)
   set(ARMWRIGHT_PAGE_PACKAGES core-js echarts three tslib zrender)
+endif()
+set(ARMWRIGHT_CERES_LICENSE "")
+if(ARMWRIGHT_WITH_CERES)
+  set(ARMWRIGHT_CERES_LICENSE /usr/share/doc/libceres-dev/copyright)
 endif()
 configure_file(cmake/package_finish.cmake.in ${PROJECT_BINARY_DIR}/package_finish.cmake @ONLY)
 set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_BINARY_DIR}/package_finish.cmake)

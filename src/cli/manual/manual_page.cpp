@@ -83,7 +83,7 @@ ManualItem make_argument_item(const ArgumentDefinition& argument) {
   }
   ManualItem item = make_item(std::move(names), argument.description);
   if (argument.is_required && argument.name.empty()) {
-    item.text += " It has to be given.";
+    item.text = "Required. " + item.text;
   }
   if (!argument.excludes.empty()) {
     item.text += fmt::format(" Not together with {}.", join(argument.excludes, ", "));

@@ -61,22 +61,34 @@ class TextWriter {
     }
   }
   void add_item(const ManualItem& item, int name_column, int text_column) {
-    std::vector<std::string> names;
-    std::ranges::transform(item.names, std::back_inserter(names),
-                           [this](const SpanLine& line) { return format(line); });
-    text += indent(join(names, ", "), name_column);
-    if (!item.text.empty()) {
+    std::string names, plain;
+    for (const SpanLine& line : item.names) {
+      const char* comma = names.empty() ? "" : ", ";
+      names += comma + format(line);
+      plain += comma + format(line, Style(false));
+    }
+    // A short name has its text beside it.
+    const int gap = text_column - name_column - static_cast<int>(plain.size());
+    const auto begin = text.size() + static_cast<std::size_t>(name_column);
+    if (gap > 0 && !item.text.empty()) {
       add_wrapped(item.text, text_column);
+      text.replace(begin, plain.size(), names);
+    } else {
+      text += indent(names, name_column);
+      if (!item.text.empty()) {
+        add_wrapped(item.text, text_column);
+      }
     }
     text += "\n";
     for (const ManualItem& below : item.items) {
       add_item(below, text_column, kNestedIndent);
     }
   }
-  std::string format(const SpanLine& line) const {
+  std::string format(const SpanLine& line) const { return format(line, style_); }
+  static std::string format(const SpanLine& line, const Style& style) {
     std::string words;
     for (const Span& span : line) {
-      words += span.emphasis == Emphasis::literal ? style_.bold(span.text) : span.text;
+      words += span.emphasis == Emphasis::literal ? style.bold(span.text) : span.text;
     }
     return words;
   }
