@@ -212,8 +212,9 @@ int run_command(Session& session, int argc, char** argv) {
 void add_all_commands(CLI::App& app, Session& session) {
   app.name("armwright");
   app.description(kSummary);
-  app.set_version_flag("--version", std::string("asked for"),
-                       "Version, compiler, processor and libraries (as JSON: armwright doctor --json)");
+  app.set_version_flag(
+      "--version", std::string("asked for"),
+      "Version, compiler, processor and libraries (as JSON: armwright doctor --json)");
   app.get_formatter()->column_width(30);
   app.footer(kFooter);
   app.require_subcommand(1);

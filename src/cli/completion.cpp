@@ -35,8 +35,8 @@ int run_completion(const CLI::App& app, const std::string& shell) {
 void add_completion(CLI::App& app, Session& session) {
   auto shell = std::make_shared<std::string>();
   CLI::App* command =
-      add_command(app, session, "completion", "Print the script by which a shell completes commands",
-                  kCompletionExamples);
+      add_command(app, session, "completion",
+                  "Print the script by which a shell completes commands", kCompletionExamples);
   command->add_option("SHELL", *shell, "The shell: bash")->required();
   command->callback([shell, &app, &session] {
     session.action = [shell, &app] { return run_completion(app, *shell); };

@@ -216,10 +216,7 @@ void add_list(CLI::App& app, Session& session) {
   CLI::App* command =
       add_command(app, session, "list", "List problems, optimizers, robots, engines, designs, ...",
                   kListExamples);
-  command
-      ->add_option("KIND", options->kind,
-                   join(list_kind_names(), ", "))
-      ->required();
+  command->add_option("KIND", options->kind, join(list_kind_names(), ", "))->required();
   command->add_option("NAME", options->name, "Explain this one in full");
   command->add_flag("--json", options->json, "Print it as JSON")->group("Output");
   command

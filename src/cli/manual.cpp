@@ -108,10 +108,11 @@ std::vector<std::string> manual_format_names() {
 
 void add_manual(CLI::App& app, Session& session) {
   auto options = std::make_shared<ManualOptions>();
-  CLI::App* command = add_command(app, session, "manual", "Print the manual page of a command",
-                                  kManualExamples);
-  command->add_option("COMMAND", options->command,
-                      "The command, as in optimize or testset export (default: the program itself)");
+  CLI::App* command =
+      add_command(app, session, "manual", "Print the manual page of a command", kManualExamples);
+  command->add_option(
+      "COMMAND", options->command,
+      "The command, as in optimize or testset export (default: the program itself)");
   command
       ->add_option("--format", options->format,
                    "text, to read; man, roff for man(1); markdown (default: text)")

@@ -48,12 +48,9 @@ std::vector<LibraryVersion> list_libraries() {
 
 std::map<std::string, std::string> describe_build() {
   std::map<std::string, std::string> build = {
-      {"version", get_version()},
-      {"git", ARMWRIGHT_GIT},
-      {"compiler", ARMWRIGHT_COMPILER},
-      {"build_type", ARMWRIGHT_BUILD_TYPE},
-      {"cpu", read_cpu_name()},
-      {"host", read_host_name()},
+      {"version", get_version()},       {"git", ARMWRIGHT_GIT},
+      {"compiler", ARMWRIGHT_COMPILER}, {"build_type", ARMWRIGHT_BUILD_TYPE},
+      {"cpu", read_cpu_name()},         {"host", read_host_name()},
   };
   for (const LibraryVersion& library : list_libraries()) {
     build[library.name] = library.version.empty() ? kNotInBuild : library.version;

@@ -117,8 +117,8 @@ RunFolder::RunFolder(const std::filesystem::path& path, const RunPlan& plan,
                     path.string(), join(differences, "\n  "),
                     explain_simd(manifest["configuration"], json::parse(to_json(plan)))));
   }
-  warnings_ = describe_build_changes(
-      manifest["build"].get<std::map<std::string, std::string>>(), "run");
+  warnings_ =
+      describe_build_changes(manifest["build"].get<std::map<std::string, std::string>>(), "run");
 }
 
 std::filesystem::path choose_run_folder(const std::filesystem::path& parent,

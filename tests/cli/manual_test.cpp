@@ -110,7 +110,8 @@ TEST_F(Manual, OffersOnlyChoicesThatTheHelpNames) {
 
 TEST(Notes, ReadsListsTitlesAndParagraphs) {
   const CommandNotes notes = read_notes(
-      "Examples:\n  armwright do      # it\n\nTwo lines\nof text.\n\ndone   it is\nleft   it is not\n"
+      "Examples:\n  armwright do      # it\n\nTwo lines\nof text.\n\ndone   it is\nleft   it is "
+      "not\n"
       "\nExit codes:\n  0    done\n  130  interrupted\n\nEnvironment: A stands\nfor b.");
   ASSERT_EQ(notes.text.size(), 3U);
   EXPECT_EQ(std::get<Paragraph>(notes.text[0]).text, "Two lines of text.");
@@ -126,7 +127,8 @@ TEST(Notes, ReadsListsTitlesAndParagraphs) {
 TEST_F(Manual, SetsRoffThatCanBeCopied) {
   const std::string page =
       to_roff(make_manual_page(find("check-plugin"), program_), "1.2.3", "2026-01-02");
-  EXPECT_THAT(page, HasSubstr(".TH ARMWRIGHT\\-CHECK\\-PLUGIN 1 2026\\-01\\-02 \"armwright 1.2.3\""));
+  EXPECT_THAT(page,
+              HasSubstr(".TH ARMWRIGHT\\-CHECK\\-PLUGIN 1 2026\\-01\\-02 \"armwright 1.2.3\""));
   EXPECT_THAT(page, HasSubstr("\narmwright\\-check\\-plugin \\- Try whether"));
   EXPECT_THAT(page, HasSubstr("\\fB\\-\\-opt\\fR \\fIKEY=VALUE\\fR\n"));
   EXPECT_THAT(page, HasSubstr("check\\-plugin \\(aqexec:python3 mine.py\\(aq\n"));
@@ -135,10 +137,13 @@ TEST_F(Manual, SetsRoffThatCanBeCopied) {
 
 TEST_F(Manual, SetsTextAsManDoes) {
   const std::string page = to_text(make_manual_page(find("export"), program_), Style(false), 80);
-  EXPECT_THAT(page, HasSubstr("SYNOPSIS\n       armwright export [OPTIONS] --format FORMAT FOLDER\n"));
-  EXPECT_THAT(page, HasSubstr("       --format FORMAT\n              How to write them:"));
+  EXPECT_THAT(page,
+              HasSubstr("SYNOPSIS\n       armwright export [OPTIONS] --format FORMAT FOLDER\n"));
+  EXPECT_THAT(page,
+              HasSubstr("       --format FORMAT\n              Required. How to write them:"));
   // The formats are a list of their own.
-  EXPECT_THAT(page, HasSubstr("\n              coco\n                     COCO's bbob-new2"));
+  EXPECT_THAT(page, HasSubstr("\n              coco   COCO's bbob-new2"));
+  EXPECT_THAT(page, HasSubstr("\n              ros2-control\n                     one arm:"));
   EXPECT_THAT(page, Not(HasSubstr("\n\n\n")));
 }
 

@@ -107,7 +107,7 @@ def main():
         "/usr/share/bash-completion/completions/armwright", "/usr/share/armwright/plugins/scipy_de/scipy_de.py"])
     check_fields("armwright", packages["armwright"], {
         "Depends": r"libc6 \(>= .*libode8.*libsqlite3-0", "Section": "science", "Priority": "optional",
-        "Description": r"^tunes .*\n .*physics engine", "Maintainer": "armwright developers <.*@.*>", "Suggests": "python3-scipy"})
+        "Description": r"(?s)^tunes .*\n .*physics engine", "Maintainer": "armwright developers <.*@.*>", "Suggests": "python3-scipy"})
     check_contents("armwright-dev", files["armwright-dev"], [
         "/usr/include/armwright/plugin.h", "/usr/include/armwright/base/error.hpp", "/usr/lib/libarmwright_base.a",
         "/usr/lib/cmake/armwright/armwrightConfig.cmake"])

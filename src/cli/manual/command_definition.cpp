@@ -86,10 +86,9 @@ const CommandDefinition& find_command(const CommandDefinition& program,
       throw Error(ErrorKind::usage, "'" + command->get_title() + "' has no commands of its own: '" +
                                         sanitize(word) + "' is one too many");
     }
-    const auto found =
-        std::ranges::find_if(command->commands, [&word](const CommandDefinition& below) {
-          return below.words.back() == word;
-        });
+    const auto found = std::ranges::find_if(
+        command->commands,
+        [&word](const CommandDefinition& below) { return below.words.back() == word; });
     if (found == command->commands.end()) {
       std::vector<std::string> names;
       for (const CommandDefinition& below : command->commands) {

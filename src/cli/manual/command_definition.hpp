@@ -20,9 +20,9 @@ struct ArgumentDefinition {
   bool is_value_optional = false;
   bool is_required = false;
   bool repeats = false;
-  std::string group;        // the heading that --help has it under: "Options", "Output"
-  std::string environment;  // the variable that stands in for it; empty: none does
-  std::string description;  // in lines, as --help has it
+  std::string group;                  // the heading that --help has it under: "Options", "Output"
+  std::string environment;            // the variable that stands in for it; empty: none does
+  std::string description;            // in lines, as --help has it
   std::vector<std::string> excludes;  // flags that it does not go with
 
   // The name of an argument, the long name of a flag.

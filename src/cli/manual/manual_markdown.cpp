@@ -60,9 +60,8 @@ class MarkdownWriter {
  private:
   void add_item(const ManualItem& item, const std::string& indent) {
     std::vector<std::string> names;
-    std::ranges::transform(item.names, std::back_inserter(names), [](const SpanLine& line) {
-      return "`" + join_spans(line) + "`";
-    });
+    std::ranges::transform(item.names, std::back_inserter(names),
+                           [](const SpanLine& line) { return "`" + join_spans(line) + "`"; });
     text += fmt::format("{}- {}{}{}\n", indent, join(names, ", "), item.text.empty() ? "" : ": ",
                         escape_markdown(item.text));
     for (const ManualItem& below : item.items) {
@@ -101,8 +100,8 @@ std::string to_markdown_reference(std::span<const ManualPage> pages) {
       "where the packages are installed, `man armwright-COMMAND` show it. `armwright COMMAND "
       "--help` is the short form.\n\n| command | what it does |\n|---|---|\n";
   for (const ManualPage& page : pages) {
-    text += fmt::format("| [{}](#{}) | {} |\n", page.title, page.name,
-                        escape_markdown(page.summary));
+    text +=
+        fmt::format("| [{}](#{}) | {} |\n", page.title, page.name, escape_markdown(page.summary));
   }
   text += "\n";
   for (const ManualPage& page : pages) {

@@ -22,13 +22,14 @@ std::string end_sentence(const std::string& text) {
 }
 
 Synopsis make_synopsis(const CommandDefinition& command) {
-  SpanLine line = {literal(command.get_title()), {Emphasis::none, " ["}, placeholder("OPTIONS"),
+  SpanLine line = {literal(command.get_title()),
+                   {Emphasis::none, " ["},
+                   placeholder("OPTIONS"),
                    {Emphasis::none, "]"}};
   const auto add = [&line](const std::string& name, bool is_required, bool repeats) {
     line.push_back({Emphasis::none, is_required ? " " : " ["});
     line.push_back(placeholder(name));
-    line.push_back(
-        {Emphasis::none, std::string(repeats ? " ..." : "") + (is_required ? "" : "]")});
+    line.push_back({Emphasis::none, std::string(repeats ? " ..." : "") + (is_required ? "" : "]")});
   };
   // Flags without which the command does nothing are part of how it is called.
   for (const ArgumentDefinition& flag : command.flags) {
@@ -89,7 +90,8 @@ ManualItem make_argument_item(const ArgumentDefinition& argument) {
     item.text += fmt::format(" Not together with {}.", join(argument.excludes, ", "));
   }
   if (!argument.environment.empty()) {
-    item.text += fmt::format(" The environment variable {} stands in for it.", argument.environment);
+    item.text +=
+        fmt::format(" The environment variable {} stands in for it.", argument.environment);
   }
   return item;
 }
@@ -170,7 +172,7 @@ std::string get_manual_name(const CommandDefinition& command) {
 
 ManualPage make_manual_page(const CommandDefinition& command, const CommandDefinition& program) {
   ManualPage page = {get_manual_name(command), command.get_title(), command.summary, {}};
-  if (page.summary.ends_with('.')) {
+  if (page.summary.ends_with('.') && !page.summary.ends_with("...")) {
     page.summary.pop_back();
   }
   page.sections.push_back({"Synopsis", {make_synopsis(command)}});
@@ -185,8 +187,9 @@ ManualPage make_manual_page(const CommandDefinition& command, const CommandDefin
       page.sections.push_back(std::move(*section));
     } else if (&command != &program && title == std::string("Exit status")) {
       page.sections.push_back(
-          {title, {Paragraph{"0 if all is done; armwright(1) has the others, which are the same "
-                             "for all commands."}}});
+          {title,
+           {Paragraph{"0 if all is done; armwright(1) has the others, which are the same "
+                      "for all commands."}}});
     }
   }
   if (&command == &program) {

@@ -137,7 +137,7 @@ std::string to_roff(const ManualPage& page, const std::string& version, const st
   writer.text = fmt::format(
       ".\\\" Written by 'armwright manual --format man': change what the program's --help says.\n"
       ".TH {} 1 {} \"armwright {}\" \"User Commands\"\n"
-      ".nh\n.ad l\n"  // words are not divided: half a flag cannot be copied
+      ".nh\n.nr HY 0\n.ad l\n"  // words are not divided: half a flag cannot be copied
       ".SH NAME\n{} \\- {}\n",
       head, escape_roff(date), escape_roff(version), escape_roff(page.name),
       escape_roff(page.summary));

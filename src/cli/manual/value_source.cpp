@@ -109,8 +109,10 @@ std::vector<SourceRow> make_argument_rows() {
 // By what the value is called, where the argument itself says no more.
 std::vector<SourceRow> make_value_rows() {
   std::vector<SourceRow> rows = {
-      {"", "PROBLEM", choose_or_file("problems")}, {"", "DESIGN", choose_or_file("designs")},
-      {"", "FILE", kFile},                         {"", "FOLDER", kFolder},
+      {"", "PROBLEM", choose_or_file("problems")},
+      {"", "DESIGN", choose_or_file("designs")},
+      {"", "FILE", kFile},
+      {"", "FOLDER", kFolder},
       {"", "DIR", kFolder},
   };
   for (const char* name :

@@ -12,9 +12,9 @@ namespace armwright {
 struct ValueSource {
   std::vector<std::string> choices = {};  // these,
   std::string list = {};                  // what 'armwright list LIST --names' prints,
-  bool files = false;                // and files
-  bool folders = false;              // or folders
-  bool separated = false;            // several, with commas between them
+  bool files = false;                     // and files
+  bool folders = false;                   // or folders
+  bool separated = false;                 // several, with commas between them
 };
 
 // Neither names nor files for what nobody can guess, as a number. Nothing if the tables do not know

@@ -262,11 +262,12 @@ std::vector<std::string> list_likely_causes(const std::filesystem::path& recorde
        describe_differences(before["configuration"].dump(), after["configuration"].dump())) {
     causes.push_back("The configuration is another one: " + difference + ".");
   }
-  json build_before = before["build"];
+  // What both have recorded: another version may know of more or less.
+  json build_before = json::object();
   json build_after = json::object();
-  build_before.erase("host");  // computes nothing by itself
   for (const auto& [key, value] : after["build"].items()) {
-    if (build_before.contains(key)) {  // else an earlier version did not record it
+    if (key != "host" && before["build"].contains(key)) {  // a host computes nothing by itself
+      build_before[key] = before["build"][key];
       build_after[key] = value;
     }
   }
