@@ -23,8 +23,8 @@ TEST(BuildInfo, NamesEveryLibraryThatIsThereOrNot) {
 TEST(BuildInfo, ComparesWhatAnEarlierVersionRecorded) {
   auto recorded = describe_build();
   EXPECT_THAT(describe_build_changes(recorded, "run"), IsEmpty());
-  recorded.erase("fmt");          // it did not record that yet
-  recorded["physx"] = "5.1";      // or something that is not asked for any more
+  recorded.erase("fmt");      // it did not record that yet
+  recorded["physx"] = "5.1";  // or something that is not asked for any more
   recorded["compiler"] = "gcc\n2";
   EXPECT_THAT(describe_build_changes(recorded, "run"),
               ElementsAre("compiler was 'gcc?2' when the run began and is '" +
