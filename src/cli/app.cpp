@@ -16,7 +16,7 @@
 #include "base/text.hpp"
 #include "cli/session.hpp"
 #include "cli/terminal.hpp"
-#include "study/build_info.hpp"
+#include "cli/version.hpp"
 #include "study/executor/mpi_links.hpp"
 
 namespace armwright {
@@ -38,6 +38,7 @@ constexpr const char* kFooter = R"(Examples:
   armwright report results/q1                      # a page to look at: figures, and the arm's motion in 3D
   armwright export results/q1 --format csv         # its evaluations for other programs: csv, ioh, coco, json
   armwright doctor results/q1                      # is all that is stored intact? without a folder: is all there?
+  armwright manual optimize                        # the manual page of a command
 
 'armwright COMMAND --help' explains a command, with examples.
 
@@ -56,16 +57,6 @@ Exit codes:
 
 Environment: ARMWRIGHT_JOBS and ARMWRIGHT_SEED stand in for --jobs and --seed; ARMWRIGHT_CONFIGS names the folder of
 the shipped configuration.)";
-
-std::string describe_version() {
-  std::string text = fmt::format("armwright {}\n", get_version());
-  for (const auto& [what, value] : describe_build()) {
-    if (what != "version") {
-      text += fmt::format("  {:<10} {}\n", what, value);
-    }
-  }
-  return text;
-}
 
 std::vector<std::string> list_commands(const CLI::App& app) {
   std::vector<std::string> names;
@@ -195,33 +186,8 @@ int run_command(Session& session, int argc, char** argv) {
     occupy_standard_streams();
     silence_worker_ranks();
     session.command_line.assign(argv, argv + argc);
-    CLI::App app(kSummary, "armwright");
-    app.set_version_flag("--version", std::string("asked for"),
-                         "Version, compiler, processor and libraries");
-    app.get_formatter()->column_width(30);
-    app.footer(kFooter);
-    app.require_subcommand(1);
-    add_list(app, session);
-    add_optimize(app, session);
-    add_compare(app, session);
-    add_cell(app, session);
-    add_status(app, session);
-    add_merge(app, session);
-    add_rerun(app, session);
-    add_evaluate(app, session);
-    add_sweep(app, session);
-    add_verify(app, session);
-    add_reproduce(app, session);
-    add_testset(app, session);
-    add_show(app, session);
-    add_report(app, session);
-    add_plot(app, session);
-    add_watch(app, session);
-    add_export(app, session);
-    add_import(app, session);
-    add_check_plugin(app, session);
-    add_new_plugin(app, session);
-    add_doctor(app, session);
+    CLI::App app;
+    add_all_commands(app, session);
     return parse_and_run(app, session, argc, argv);
   } catch (const BrokenPipe&) {
     return exit_code::kIo;
@@ -242,6 +208,40 @@ int run_command(Session& session, int argc, char** argv) {
 }
 
 }  // namespace
+
+void add_all_commands(CLI::App& app, Session& session) {
+  app.name("armwright");
+  app.description(kSummary);
+  app.set_version_flag(
+      "--version", std::string("asked for"),
+      "Version, compiler, processor and libraries (as JSON: armwright doctor --json)");
+  app.get_formatter()->column_width(30);
+  app.footer(kFooter);
+  app.require_subcommand(1);
+  add_list(app, session);
+  add_optimize(app, session);
+  add_compare(app, session);
+  add_cell(app, session);
+  add_status(app, session);
+  add_merge(app, session);
+  add_rerun(app, session);
+  add_evaluate(app, session);
+  add_sweep(app, session);
+  add_verify(app, session);
+  add_reproduce(app, session);
+  add_testset(app, session);
+  add_show(app, session);
+  add_report(app, session);
+  add_plot(app, session);
+  add_watch(app, session);
+  add_export(app, session);
+  add_import(app, session);
+  add_check_plugin(app, session);
+  add_new_plugin(app, session);
+  add_doctor(app, session);
+  add_manual(app, session);
+  add_completion(app, session);
+}
 
 std::string quote_own_command(const Session& session, std::vector<std::string> words) {
   words.insert(words.begin(), session.command_line.front());

@@ -29,6 +29,7 @@ constexpr const char* kListExamples = R"(Examples:
   armwright list settings task.rest_s              # a key of the configuration: unit, range, default, meaning
   armwright list controllers pi2d                  # its formula, and its gains (for variables.optimize)
   armwright list designs --json
+  armwright list designs --names | head -1         # names alone, for scripts
   armwright list studies q1                        # a comparison of optimizers: who, on what, at what cost
 
 Terms: a problem is a robot with a task, or a function, to be minimised; an optimizer minimises it; a design is what
@@ -93,17 +94,24 @@ struct ListOptions {
   std::string name;
   bool json = false;
   bool markdown = false;
+  bool names = false;
 };
 
 ListKind find_kind(const std::string& name) {
-  std::vector<std::string> names;
   for (const ListKind& kind : list_kinds()) {
     if (kind.name == name) {
       return kind;
     }
-    names.push_back(kind.name);
   }
-  throw Error(ErrorKind::usage, describe_unknown("kind", name, names));
+  throw Error(ErrorKind::usage, describe_unknown("kind", name, list_kind_names()));
+}
+
+std::string format_names(const ListKind& kind) {
+  std::string text;
+  for (const ListItem& item : kind.list()) {
+    text += item.unavailable.empty() ? sanitize(item.name) + "\n" : "";
+  }
+  return text;
 }
 
 json list_as_json(const ListKind& kind) {
@@ -161,6 +169,15 @@ std::string format_list(const ListKind& kind, const Style& style) {
 int run_list(const ListOptions& options, const Session& session) {
   const ListKind kind = find_kind(options.kind);
   const Style style = make_style(Stream::out, session.color);
+  if (options.names) {
+    if (options.json || options.markdown || !options.name.empty()) {
+      throw Error(ErrorKind::usage,
+                  "--names prints the names of a kind and nothing else; leave out NAME, --json and "
+                  "--markdown, or --names");
+    }
+    write_stdout(format_names(kind));
+    return exit_code::kDone;
+  }
   if (options.markdown) {
     if (options.json) {
       throw Error(ErrorKind::usage, "--json and --markdown are two formats; choose one");
@@ -185,6 +202,14 @@ int run_list(const ListOptions& options, const Session& session) {
 
 }  // namespace
 
+std::vector<std::string> list_kind_names() {
+  std::vector<std::string> names;
+  for (const ListKind& kind : list_kinds()) {
+    names.push_back(kind.name);
+  }
+  return names;
+}
+
 std::string format_title(const Style& style, const std::string& name, const std::string& summary) {
   return style.bold(sanitize(name)) + (summary.empty() ? "" : ": " + sanitize(summary)) + "\n";
 }
@@ -194,13 +219,12 @@ void add_list(CLI::App& app, Session& session) {
   CLI::App* command =
       add_command(app, session, "list", "List problems, optimizers, robots, engines, designs, ...",
                   kListExamples);
-  command
-      ->add_option("KIND", options->kind,
-                   "problems, optimizers, robots, engines, designs, studies, signals,\n"
-                   "controllers or settings")
-      ->required();
+  command->add_option("KIND", options->kind, join(list_kind_names(), ", "))->required();
   command->add_option("NAME", options->name, "Explain this one in full");
   command->add_flag("--json", options->json, "Print it as JSON")->group("Output");
+  command
+      ->add_flag("--names", options->names, "Only the names, one a line, of what can be used here")
+      ->group("Output");
   command
       ->add_flag("--markdown", options->markdown,
                  "Print it as a page of documentation (problems,\n"

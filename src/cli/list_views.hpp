@@ -37,6 +37,7 @@ ListKind make_design_kind();
 ListKind make_study_kind();
 ListKind make_controller_kind();
 ListKind make_setting_kind();
+std::vector<std::string> list_kind_names();  // "problems", "optimizers", ...
 
 // "NAME: SUMMARY" as a first line.
 std::string format_title(const Style& style, const std::string& name, const std::string& summary);

@@ -59,6 +59,11 @@ void add_import(CLI::App& app, Session& session);
 void add_check_plugin(CLI::App& app, Session& session);
 void add_new_plugin(CLI::App& app, Session& session);
 void add_doctor(CLI::App& app, Session& session);
+void add_manual(CLI::App& app, Session& session);
+void add_completion(CLI::App& app, Session& session);
+
+// The program itself: its name, what it says of itself, and all of the above.
+void add_all_commands(CLI::App& app, Session& session);
 
 // A command to try next, with the program named as the user named it.
 std::string quote_own_command(const Session& session, std::vector<std::string> words);

@@ -31,7 +31,8 @@ std::string advise_build(std::string_view packages, std::string_view option) {
 
 void check_build(Checks& checks) {
   for (const auto& [what, value] : describe_build()) {
-    if (what != "cpu" && what != "host") {  // of the machine
+    // The machine has its own checks, and so has what a build can do without.
+    if (what != "cpu" && what != "host" && value != kNotInBuild) {
       checks.push_back({"program", what, CheckState::good, value});
     }
   }

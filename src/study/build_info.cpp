@@ -1,14 +1,13 @@
 #include "study/build_info.hpp"
 
 #include <fmt/format.h>
-#include <sqlite3.h>
 #include <unistd.h>
 
-#include <Eigen/Core>
 #include <fstream>
 
 #include "base/text.hpp"
 #include "git_state.hpp"
+#include "library_versions.hpp"
 
 namespace armwright {
 namespace {
@@ -35,20 +34,41 @@ std::string get_version() {
   return ARMWRIGHT_VERSION;
 }
 
+std::string get_release_date() {
+  return ARMWRIGHT_RELEASE_DATE;
+}
+
+std::vector<LibraryVersion> list_libraries() {
+  std::vector<LibraryVersion> libraries;
+  for (const auto& row : kLibraryVersions) {
+    libraries.push_back({row.name, row.version});
+  }
+  return libraries;
+}
+
 std::map<std::string, std::string> describe_build() {
-  return {
-      {"version", get_version()},
-      {"git", ARMWRIGHT_GIT},
-      {"compiler", ARMWRIGHT_COMPILER},
-      {"build_type", ARMWRIGHT_BUILD_TYPE},
-      {"cpu", read_cpu_name()},
-      {"host", read_host_name()},
-      {"ode", ARMWRIGHT_ODE_VERSION},
-      {"urdfdom", ARMWRIGHT_URDFDOM_VERSION},
-      {"eigen",
-       fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
-      {"sqlite", sqlite3_libversion()},
+  std::map<std::string, std::string> build = {
+      {"version", get_version()},       {"git", ARMWRIGHT_GIT},
+      {"compiler", ARMWRIGHT_COMPILER}, {"build_type", ARMWRIGHT_BUILD_TYPE},
+      {"cpu", read_cpu_name()},         {"host", read_host_name()},
   };
+  for (const LibraryVersion& library : list_libraries()) {
+    build[library.name] = library.version.empty() ? kNotInBuild : library.version;
+  }
+  return build;
+}
+
+std::vector<std::string> describe_build_changes(const std::map<std::string, std::string>& recorded,
+                                                std::string_view what) {
+  std::vector<std::string> changes;
+  for (const auto& [key, now] : describe_build()) {
+    const auto then = recorded.find(key);
+    if (then != recorded.end() && then->second != now) {
+      changes.push_back(fmt::format("{} was '{}' when the {} began and is '{}' now", key,
+                                    sanitize(then->second), what, now));
+    }
+  }
+  return changes;
 }
 
 }  // namespace armwright

@@ -117,13 +117,8 @@ RunFolder::RunFolder(const std::filesystem::path& path, const RunPlan& plan,
                     path.string(), join(differences, "\n  "),
                     explain_simd(manifest["configuration"], json::parse(to_json(plan)))));
   }
-  for (const auto& [key, now] : describe_build()) {
-    const std::string recorded = manifest["build"].value(key, "(not recorded)");
-    if (recorded != now) {
-      warnings_.push_back(fmt::format("{} was '{}' when the run began and is '{}' now", key,
-                                      sanitize(recorded), now));
-    }
-  }
+  warnings_ =
+      describe_build_changes(manifest["build"].get<std::map<std::string, std::string>>(), "run");
 }
 
 std::filesystem::path choose_run_folder(const std::filesystem::path& parent,

@@ -244,9 +244,9 @@ std::string make_joints(const FinishedArm& arm) {
 std::string make_origin(const FinishedArm& arm) {
   std::string html = "<div class=\"small\">\n";
   std::vector<std::string> build;
-  for (const auto& [key, value] : arm.run.build) {
-    if (key != "host") {
-      build.push_back(key + " " + sanitize(value));
+  for (const char* key : {"version", "git", "compiler", "build_type", "cpu", "ode", "eigen"}) {
+    if (const auto fact = arm.run.build.find(key); fact != arm.run.build.end()) {
+      build.push_back(fact->first + " " + sanitize(fact->second));
     }
   }
   html += fmt::format("<p class=\"clamped\">Made with armwright: {}. Sheet by version {}.</p>\n",

@@ -219,14 +219,7 @@ ReproductionFolder::ReproductionFolder(const std::filesystem::path& path,
   if (is_reproduction_folder(path)) {
     record_ = load_reproduction(path);
     check(plan);
-    for (const auto& [key, now] : describe_build()) {
-      const auto recorded = record_.build.find(key);
-      if (recorded == record_.build.end() || recorded->second != now) {
-        warnings_.push_back(fmt::format(
-            "{} was '{}' when the reproduction began and is '{}' now", key,
-            recorded == record_.build.end() ? "(not recorded)" : sanitize(recorded->second), now));
-      }
-    }
+    warnings_ = describe_build_changes(record_.build, "reproduction");
   } else {
     record_.config = plan.request.config;
     record_.cases = plan.request.cases;

@@ -262,10 +262,14 @@ std::vector<std::string> list_likely_causes(const std::filesystem::path& recorde
        describe_differences(before["configuration"].dump(), after["configuration"].dump())) {
     causes.push_back("The configuration is another one: " + difference + ".");
   }
-  json build_before = before["build"];
-  json build_after = after["build"];
-  for (json* build : {&build_before, &build_after}) {
-    build->erase("host");  // computes nothing by itself
+  // What both have recorded: another version may know of more or less.
+  json build_before = json::object();
+  json build_after = json::object();
+  for (const auto& [key, value] : after["build"].items()) {
+    if (key != "host" && before["build"].contains(key)) {  // a host computes nothing by itself
+      build_before[key] = before["build"][key];
+      build_after[key] = value;
+    }
   }
   for (const std::string& difference :
        describe_differences(build_before.dump(), build_after.dump())) {

@@ -14,6 +14,7 @@ namespace {
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 StudyPlan make_plan_with_labels(const TemporaryFolder& folder) {
   std::ofstream(folder / "plan.toml") << R"toml(
@@ -199,6 +200,9 @@ TEST_F(Rerun, LikelyCausesComeFromTheManifests) {
   make_two("random");
   EXPECT_THAT(list_likely_causes(recorded(), now()),
               ElementsAre(HasSubstr("the recorded files were changed after the run")));
+  // An earlier version did not record the libraries.
+  replace(recorded() / "manifest.json", "\"nlopt\": ", "\"a-library-of-then\": ");
+  EXPECT_THAT(list_likely_causes(recorded(), now()), Not(Contains(HasSubstr("nlopt"))));
   replace(recorded() / "manifest.json", "\"compiler\": \"", "\"compiler\": \"old ");
   replace(recorded() / "manifest.json", "\"budget\": 60", "\"budget\": 61");
   const auto causes = list_likely_causes(recorded(), now());

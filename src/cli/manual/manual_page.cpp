@@ -1,0 +1,206 @@
+#include "cli/manual/manual_page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/text.hpp"
+#include "cli/manual/notes.hpp"
+
+namespace armwright {
+namespace {
+
+Span literal(const std::string& text) {
+  return {Emphasis::literal, text};
+}
+Span placeholder(const std::string& text) {
+  return {Emphasis::placeholder, text};
+}
+
+std::string end_sentence(const std::string& text) {
+  return text.empty() || text.ends_with('.') || text.ends_with('?') ? text : text + ".";
+}
+
+Synopsis make_synopsis(const CommandDefinition& command) {
+  SpanLine line = {literal(command.get_title()),
+                   {Emphasis::none, " ["},
+                   placeholder("OPTIONS"),
+                   {Emphasis::none, "]"}};
+  const auto add = [&line](const std::string& name, bool is_required, bool repeats) {
+    line.push_back({Emphasis::none, is_required ? " " : " ["});
+    line.push_back(placeholder(name));
+    line.push_back({Emphasis::none, std::string(repeats ? " ..." : "") + (is_required ? "" : "]")});
+  };
+  // Flags without which the command does nothing are part of how it is called.
+  for (const ArgumentDefinition& flag : command.flags) {
+    if (flag.is_required) {
+      line.push_back(literal(" " + flag.get_key()));
+      line.push_back(placeholder(" " + flag.value));
+    }
+  }
+  for (const ArgumentDefinition& argument : command.arguments) {
+    add(argument.name, argument.is_required, argument.repeats);
+  }
+  if (!command.commands.empty()) {
+    add("COMMAND", true, false);
+  }
+  return {line};
+}
+
+// Lines of a description that are "NAME   what it is" become a list, all others one paragraph.
+ManualItem make_item(std::vector<SpanLine> names, const std::string& description) {
+  ManualItem item = {std::move(names), "", {}};
+  for (const std::string& line : split(description, '\n')) {
+    if (const auto entry = read_list_entry(line)) {
+      item.items.push_back({{{literal(entry->name)}}, end_sentence(entry->text), {}});
+    } else {
+      item.text += (item.text.empty() ? "" : " ") + line;
+    }
+  }
+  if (item.items.empty()) {
+    item.text = end_sentence(item.text);
+  }
+  return item;
+}
+
+ManualItem make_argument_item(const ArgumentDefinition& argument) {
+  std::vector<SpanLine> names;
+  if (!argument.name.empty()) {
+    names.push_back({placeholder(argument.name)});
+  }
+  for (const std::string& flag : argument.short_names) {
+    names.push_back({literal(flag)});
+  }
+  for (const std::string& flag : argument.long_names) {
+    names.push_back({literal(flag)});
+  }
+  if (!argument.value.empty()) {
+    SpanLine& last = names.back();
+    last.push_back({Emphasis::none, argument.is_value_optional ? " [" : " "});
+    last.push_back(placeholder(argument.value));
+    if (argument.is_value_optional) {
+      last.push_back({Emphasis::none, "]"});
+    }
+  }
+  ManualItem item = make_item(std::move(names), argument.description);
+  if (argument.is_required && argument.name.empty()) {
+    item.text = "Required. " + item.text;
+  }
+  if (!argument.excludes.empty()) {
+    item.text += fmt::format(" Not together with {}.", join(argument.excludes, ", "));
+  }
+  if (!argument.environment.empty()) {
+    item.text +=
+        fmt::format(" The environment variable {} stands in for it.", argument.environment);
+  }
+  return item;
+}
+
+std::vector<ManualSection> make_argument_sections(const CommandDefinition& command) {
+  std::vector<ManualSection> sections;
+  const auto add = [&sections](const std::string& title, ManualItem item) {
+    auto section = std::ranges::find(sections, title, &ManualSection::title);
+    if (section == sections.end()) {
+      section = sections.insert(section, ManualSection{title, {}});
+    }
+    section->blocks.push_back(std::move(item));
+  };
+  for (const CommandDefinition& below : command.commands) {
+    add("Commands", make_item({{literal(below.words.back())}}, below.summary));
+  }
+  for (const ArgumentDefinition& argument : command.arguments) {
+    add("Arguments", make_argument_item(argument));
+  }
+  for (const ArgumentDefinition& flag : command.flags) {
+    add(flag.group == "Options" ? "Options" : flag.group + " options", make_argument_item(flag));
+  }
+  return sections;
+}
+
+// Do the notes name it, as 'armwright NAME'?
+bool mentions(const CommandDefinition& command, const CommandDefinition& other) {
+  constexpr std::string_view kEnds = " '\n.,";
+  const std::string& notes = command.notes;
+  const std::string title = other.get_title();
+  for (auto at = notes.find(title); at != notes.npos; at = notes.find(title, at + 1)) {
+    const auto end = at + title.size();
+    if (end == notes.size() || kEnds.find(notes[end]) != kEnds.npos) {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool is_below(const CommandDefinition& above, const CommandDefinition& command) {
+  return command.words.size() == above.words.size() + 1 &&
+         std::ranges::equal(above.words, std::span(command.words).first(above.words.size()));
+}
+
+// The commands below and above it, the program, and those that the notes name.
+PageReferences make_references(const CommandDefinition& command, const CommandDefinition& program) {
+  PageReferences references;
+  for (const CommandDefinition* other : list_all_commands(program)) {
+    if (other != &command && (is_below(command, *other) || is_below(*other, command) ||
+                              other == &program || mentions(command, *other))) {
+      references.pages.push_back({get_manual_name(*other), other->get_title()});
+    }
+  }
+  return references;
+}
+
+ManualSection make_files_section() {
+  return {"Files",
+          {ManualItem{{{literal("results/")}},
+                      "Where runs and comparisons go, below the folder that the program is called "
+                      "in, unless --out names another.",
+                      {}},
+           ManualItem{{{literal("PREFIX/share/armwright/configs/")}},
+                      "The shipped problems, designs, robots, perturbations and studies.",
+                      {}},
+           ManualItem{{{literal("PREFIX/lib/armwright/plugins/")}},
+                      "Where optimizers of your own are looked for by their name.",
+                      {}},
+           Paragraph{"PREFIX is where the program is installed: the folder above that of the "
+                     "program itself, as /usr."}}};
+}
+
+}  // namespace
+
+std::string get_manual_name(const CommandDefinition& command) {
+  return join(command.words, "-");
+}
+
+ManualPage make_manual_page(const CommandDefinition& command, const CommandDefinition& program) {
+  ManualPage page = {get_manual_name(command), command.get_title(), command.summary, {}};
+  if (page.summary.ends_with('.') && !page.summary.ends_with("...")) {
+    page.summary.pop_back();
+  }
+  page.sections.push_back({"Synopsis", {make_synopsis(command)}});
+  CommandNotes notes = read_notes(command.notes);
+  ManualSection description = {"Description", {Paragraph{end_sentence(command.summary)}}};
+  std::ranges::move(notes.text, std::back_inserter(description.blocks));
+  page.sections.push_back(std::move(description));
+  std::ranges::move(make_argument_sections(command), std::back_inserter(page.sections));
+  for (const char* title : {"Exit status", "Environment"}) {
+    const auto section = std::ranges::find(notes.sections, title, &ManualSection::title);
+    if (section != notes.sections.end()) {
+      page.sections.push_back(std::move(*section));
+    } else if (&command != &program && title == std::string("Exit status")) {
+      page.sections.push_back(
+          {title,
+           {Paragraph{"0 if all is done; armwright(1) has the others, which are the same "
+                      "for all commands."}}});
+    }
+  }
+  if (&command == &program) {
+    page.sections.push_back(make_files_section());
+  }
+  const auto examples = std::ranges::find(notes.sections, "Examples", &ManualSection::title);
+  if (examples != notes.sections.end()) {
+    page.sections.push_back(std::move(*examples));
+  }
+  page.sections.push_back({"See also", {make_references(command, program)}});
+  return page;
+}
+
+}  // namespace armwright
