@@ -55,7 +55,7 @@ Exit codes:
   1    a fault of armwright itself, or no memory left
 
 Environment: ARMWRIGHT_JOBS and ARMWRIGHT_SEED stand in for --jobs and --seed; ARMWRIGHT_CONFIGS names the folder of
-the shipped configuration.)";
+the shipped configuration, ARMWRIGHT_SIMD the highest instruction set that is chosen unless --simd names one.)";
 
 std::string describe_version() {
   std::string text = fmt::format("armwright {}\n", get_version());

@@ -1,4 +1,4 @@
-// A plugin from nothing, as docs/adding-an-optimizer.md has it; in Python, which needs no installed
+// A plugin from nothing, as docs/tutorials/add-an-optimizer.md has it; in Python, which needs no installed
 // package to build against.
 
 #include <gmock/gmock.h>
