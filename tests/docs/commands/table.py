@@ -13,7 +13,7 @@ ROW_KEYS = {"page", "match", "add", "instead", "only_parsed", "always", "compare
 class Row:
     """One row: the commands that `match` (a regular expression for all of a command without its comment) finds on the pages `page`.
 
-    add          flags that it gets at its end
+    add          flags that it gets, in the place of the same ones if it has any
     instead      what is run in its place (\\1: the first group of `match`)
     only_parsed  it is not run: it can be read, and the program has its subcommand and flags
     always       the same in the full mode, in which commands otherwise run as they stand
@@ -87,4 +87,12 @@ def apply_row(row, page, command, full):
     plain = markdown.strip_comment(command)
     if row.instead is not None:
         return row.find(page, plain).expand(row.instead)
-    return plain if row.add is None else f"{plain} {row.add}"
+    return plain if row.add is None else add_flags(plain, row.add)
+
+
+def add_flags(command, flags):
+    """A command with these flags (--name value, or --set key=value) instead of those of the same name that it has."""
+    for name, value in re.findall(r"(--[a-z-]+) (\S+)", flags):
+        key = re.escape(value.split("=")[0] + "=") if name == "--set" else ""
+        command = re.sub(rf" {name} {key}\S+", "", command)
+    return f"{command} {flags}"
