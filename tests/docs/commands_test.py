@@ -1,3 +1,4 @@
+#!/usr/bin/python3
 """The documentation does what it says: every command of README.md and docs is run, and prints what stands below it.
 
     commands_test.py PAGE...       runs the commands of these pages, one after the other, each page in a folder of its own
