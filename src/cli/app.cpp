@@ -56,7 +56,7 @@ Exit codes:
   1    a fault of armwright itself, or no memory left
 
 Environment: ARMWRIGHT_JOBS and ARMWRIGHT_SEED stand in for --jobs and --seed; ARMWRIGHT_CONFIGS names the folder of
-the shipped configuration.)";
+the shipped configuration, ARMWRIGHT_SIMD the highest instruction set that is chosen unless --simd names one.)";
 
 std::vector<std::string> list_commands(const CLI::App& app) {
   std::vector<std::string> names;

@@ -139,7 +139,7 @@ std::string format_optimizer_index(std::span<const OptimizerRow> rows) {
       "- `multistart:NAME` runs a *local* one from the start and then from random points, until "
       "the budget ends.\n"
       "- `./libmine.so` and `exec:COMMAND` are [optimizers of your "
-      "own](../adding-an-optimizer.md).\n\n"
+      "own](../plugins.md).\n\n"
       "Every optimizer gets the same budget, the same training cases and the same judging of its "
       "winner. All are repeatable: the same seed gives the same run. Where options speak of a "
       "share of "
