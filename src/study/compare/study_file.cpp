@@ -9,6 +9,7 @@
 #include "base/file.hpp"
 #include "base/hash.hpp"
 #include "base/text.hpp"
+#include "optimizers/foreign_optimizer.hpp"
 #include "problems/config_files.hpp"
 #include "sim/simd_level.hpp"
 #include "study/compare/case_sets.hpp"
@@ -33,6 +34,7 @@ struct NamedOptimizer {
   bool baseline = false;  // a resolved plan says so
   std::optional<Schedule> schedule;
   std::vector<std::string> settings;
+  std::string description = {};  // a resolved plan has it of a foreign optimizer
 };
 
 struct NamedProblem {
@@ -127,7 +129,8 @@ RawPlan read_file_plan(const ConfigTable& table, StudyPlan& plan) {
     raw.optimizers.push_back({optimizer.get_string("name"), optimizer.get_string("label", ""),
                               get_strings_or_none(optimizer, "options"),
                               optimizer.get_bool_or("baseline", false),
-                              read_schedule_key(optimizer), read_method_settings(optimizer)});
+                              read_schedule_key(optimizer), read_method_settings(optimizer),
+                              optimizer.get_string("description", "")});
     get_strings_or_none(optimizer, "inputs");  // of a resolved plan: they follow from the rest
   }
   table.refuse_unknown();
@@ -252,20 +255,30 @@ void load_problems(const RawPlan& raw, StudyPlan& plan) {
   refuse_repeated("problem", labels);
 }
 
-StudyOptimizer load_study_optimizer(const NamedOptimizer& named) {
+OptimizerRow find_row(const NamedOptimizer& named, std::span<const OptimizerRow> rows) {
+  const auto row = std::ranges::find(rows, named.name, &OptimizerRow::name);
+  if (row != rows.end()) {
+    return *row;
+  }
+  return named.description.empty() ? load_optimizer(named.name)
+                                   : read_foreign_row(named.name, named.description);
+}
+
+StudyOptimizer load_study_optimizer(const NamedOptimizer& named,
+                                    std::span<const OptimizerRow> rows = {}) {
   StudyOptimizer optimizer;
   optimizer.name = named.name;
   optimizer.label = named.label.empty() ? named.name : named.label;
   optimizer.options = named.options;
   optimizer.baseline = named.baseline;
-  optimizer.row = load_optimizer(named.name);
+  optimizer.row = find_row(named, rows);
   optimizer.parsed = Options::parse(optimizer.row.name, optimizer.row.options, named.options);
   optimizer.schedule = named.schedule;
   optimizer.settings = named.settings;
   return optimizer;
 }
 
-void load_optimizers(const RawPlan& raw, StudyPlan& plan) {
+void load_optimizers(const RawPlan& raw, std::span<const OptimizerRow> rows, StudyPlan& plan) {
   if (raw.optimizers.empty()) {
     throw Error(ErrorKind::usage,
                 "the study names no optimizer; give --optimizers a,b or a file "
@@ -273,7 +286,7 @@ void load_optimizers(const RawPlan& raw, StudyPlan& plan) {
   }
   bool has_random = false, has_local = false;
   for (const NamedOptimizer& named : raw.optimizers) {
-    plan.optimizers.push_back(load_study_optimizer(named));
+    plan.optimizers.push_back(load_study_optimizer(named, rows));
     const OptimizerRow& row = plan.optimizers.back().row;
     has_random = has_random || row.name == kRandomBaseline;
     has_local = has_local || row.capabilities.local;
@@ -418,7 +431,7 @@ StudyPlan make_study_plan(const StudyRequest& request) {
                 "the study names no budget; give --budget CASES or budget = CASES: how many "
                 "training cases every optimizer may simulate on a problem");
   }
-  load_optimizers(raw, plan);
+  load_optimizers(raw, request.rows, plan);
   load_methods(plan);
   check_targets(plan);
   if (plan.name.empty()) {
