@@ -14,6 +14,7 @@ import numpy.typing as npt
 from .errors import UsageError
 
 FloatArray = npt.NDArray[np.float64]
+MaskedFloats = np.ma.MaskedArray[Any, np.dtype[np.float64]]
 Settings = Union[Mapping[str, Any], Sequence[str]]
 MOST_JOBS = 1024
 
@@ -98,7 +99,21 @@ def to_points(points: npt.ArrayLike, name: str = "X") -> FloatArray:
     return np.ascontiguousarray(array, dtype=np.float64)
 
 
-def to_masked(pair: tuple[FloatArray, npt.NDArray[np.bool_]]) -> np.ma.MaskedArray[Any, np.dtype[np.float64]]:
+def to_masked(pair: tuple[FloatArray, npt.NDArray[np.bool_]]) -> MaskedFloats:
     """Numbers some of which are not there. Below the mask they are infinite, never NaN."""
     values, mask = pair
-    return np.ma.MaskedArray(values, mask=mask)
+    masked: MaskedFloats = np.ma.MaskedArray(values, mask=mask)  # type: ignore[no-untyped-call]
+    return masked
+
+
+def to_masked_matrices(pair: tuple[FloatArray, npt.NDArray[np.bool_]], columns: int) -> MaskedFloats:
+    """The same of rows that each hold a matrix, row after row: (n, rows, columns)."""
+    values, mask = pair
+    shape = (len(values), values.shape[1] // columns, columns)
+    return to_masked((values.reshape(shape), mask.reshape(shape)))
+
+
+def to_list(masked: MaskedFloats) -> list[Any]:
+    """Plain lists, None where there is no number."""
+    plain: list[Any] = masked.tolist()  # type: ignore[no-untyped-call]
+    return plain

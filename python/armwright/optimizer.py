@@ -15,10 +15,10 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _armwright
-from ._values import FloatArray, to_masked, to_points
+from ._values import FloatArray, MaskedFloats, to_masked, to_masked_matrices, to_points
 from .description import Description
 from .errors import UsageError
-from .problem import STATUSES, MaskedFloats
+from .problem import STATUSES
 
 OptionValue = Union[bool, int, float, str]
 CAPABILITIES = ("bounds", "constraints", "multi_objective", "batch", "noisy", "residuals", "stochastic", "generations", "local", "sampling",
@@ -109,9 +109,7 @@ class Scores:
         self.constraints: FloatArray = constraints
         self.clipped: npt.NDArray[np.bool_] = clipped
         self.residuals: Optional[MaskedFloats] = None if residuals is None else to_masked(residuals)
-        self.jacobian: Optional[MaskedFloats] = None
-        if jacobian is not None:
-            self.jacobian = to_masked(jacobian).reshape(len(objectives), -1, len(problem))
+        self.jacobian: Optional[MaskedFloats] = None if jacobian is None else to_masked_matrices(jacobian, len(problem))
         self._status: npt.NDArray[np.uint8] = status
 
     def __len__(self) -> int:
@@ -254,15 +252,29 @@ class PythonOptimizer:
         optimizer.minimize(Evaluator(bridge), seed)
 
 
+class _Copies:
+    """Makes copies of an object, so that no run sees what another has left in it."""
+
+    def __init__(self, original: Optimizer) -> None:
+        self._original = original
+
+    def __call__(self) -> Optimizer:
+        return copy.deepcopy(self._original)
+
+
 def read_optimizer(optimizer: Union[Optimizer, type[Optimizer]]) -> PythonOptimizer:
     """Checks a class or an object of one. UsageError or BadDataError say what does not hold together."""
+    cls: type[Optimizer]
+    state: Optional[dict[str, Any]]
+    make: Callable[[], Optimizer]
     if isinstance(optimizer, type) and issubclass(optimizer, Optimizer):
-        cls: type[Optimizer] = optimizer
-        make: Callable[[], Optimizer] = cls
-        state: Optional[dict[str, Any]] = None
+        cls = optimizer
+        state = None
+        make = cls
     elif isinstance(optimizer, Optimizer):
-        cls, state = type(optimizer), vars(optimizer)
-        make = lambda: copy.deepcopy(optimizer)  # noqa: E731
+        given = optimizer
+        cls, state = type(given), vars(given)
+        make = _Copies(given)
     else:
         raise UsageError(f"the optimizer is {optimizer!r}; it must be a name (optimizers() has them), a class derived from "
                          "armwright.Optimizer, or an object of one")

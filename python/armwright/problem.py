@@ -11,12 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _armwright
-from ._values import FloatArray, Settings, quote_words, to_jobs, to_masked, to_points, to_settings, to_whole
+from ._values import FloatArray, MaskedFloats, Settings, quote_words, to_jobs, to_list, to_masked, to_masked_matrices, to_points, to_settings, to_whole
 from .description import Description
 from .errors import UsageError
 from .progress import Listener, Show
 
-MaskedFloats = np.ma.MaskedArray[Any, np.dtype[np.float64]] if hasattr(np.ma.MaskedArray, "__class_getitem__") else Any
 STATUSES: tuple[str, ...] = _armwright.STATUSES
 _MOST_CASES = 1_000_000
 _ROLES = ("training", "validation", "test")
@@ -101,9 +100,9 @@ class DesignEvaluation:
         """All of it as plain lists and numbers, None where there is none, ready for JSON."""
         return {
             "summary": dict(self.summary),
-            "errors_m": self.errors_m.tolist(),
-            "energies_j": self.energies_j.tolist(),
-            "point_errors_m": self.point_errors_m.tolist(),
+            "errors_m": to_list(self.errors_m),
+            "energies_j": to_list(self.energies_j),
+            "point_errors_m": to_list(self.point_errors_m),
             "status": list(self.status),
             "reasons": list(self.reasons),
             "requirements": list(self.requirements),
@@ -196,9 +195,6 @@ class Problem(Description):
             table, reasons, rest, slopes = self._inner.evaluate(
                 points, role, name, self._list_numbers(cases, role), residuals, jacobian, to_jobs(jobs), listener)
         objectives, constraints, metrics, case_errors, status = table
-        derivatives = None
-        if slopes is not None:
-            derivatives = to_masked(slopes).reshape(len(points), -1, len(self))
         return Evaluations(
             objectives=objectives,
             values=self.calc_values(objectives),
@@ -209,7 +205,7 @@ class Problem(Description):
             status=np.array(STATUSES)[status],
             reasons=reasons,
             residuals=None if rest is None else to_masked(rest),
-            jacobian=derivatives,
+            jacobian=None if slopes is None else to_masked_matrices(slopes, len(self)),
         )
 
     def cases(self, set: str = "test", count: Optional[int] = None, *, first: int = 0) -> FloatArray:
@@ -244,17 +240,18 @@ class Problem(Description):
         jobs, progress : optional
             As in evaluate().
         """
-        count = None if cases is None else cases if isinstance(cases, (int, np.integer)) else 0
-        chosen: Union[str, list[FloatArray]] = self._find_set(set)[1]
-        if count == 0 and not isinstance(cases, (int, np.integer)):
-            chosen = [to_points(one, "cases") for one in cases]  # type: ignore[union-attr]
-            numbers = len(chosen)
+        role, name = self._find_set(set)
+        chosen: Union[str, list[FloatArray]] = name
+        if cases is None or isinstance(cases, (int, np.integer)):
+            count = len(self._list_numbers(None if cases is None else int(cases), role))
         else:
-            numbers = len(self._list_numbers(count, self._find_set(set)[0]))
+            own: Any = cases
+            chosen = [to_points(one, "cases") for one in own]
+            count = len(chosen)
         asked: Union[str, FloatArray] = str(design) if isinstance(design, (str, Path)) else to_points(design, "x")
         with Listener(progress) as listener:
             text, status, reasons, errors, energies, points = _armwright.evaluate_design(
-                self._inner, asked, chosen, numbers, to_jobs(jobs), listener)
+                self._inner, asked, chosen, count, to_jobs(jobs), listener)
         content = json.loads(text)
         return DesignEvaluation(
             summary=content["summary"],
@@ -283,7 +280,7 @@ class Problem(Description):
     def _list_numbers(self, cases: Union[None, int, Sequence[int]], role: str) -> list[int]:
         if cases is None:
             cases = self._count_training_cases() if role == "training" else self.sets[role + "_cases"]
-        if isinstance(cases, (int, np.integer)) and not isinstance(cases, bool):
+        if isinstance(cases, (int, np.integer)):
             if not 1 <= cases <= _MOST_CASES:
                 raise UsageError(f"cases is {cases}; it must be an integer from 1 to {_MOST_CASES}, or a list of numbers of cases")
             return list(range(int(cases)))

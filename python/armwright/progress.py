@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import math
 import sys
 import time
@@ -84,9 +85,7 @@ def _find_screen() -> Optional[_Screen]:
     ipython = sys.modules.get("IPython")
     shell = ipython.get_ipython() if ipython is not None else None
     if shell is not None and getattr(shell, "kernel", None) is not None:
-        from IPython.display import display
-
-        return _Notebook(display)
+        return _Notebook(importlib.import_module("IPython.display").display)
     return _Terminal() if sys.stderr is not None and sys.stderr.isatty() else None
 
 

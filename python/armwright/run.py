@@ -13,10 +13,10 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _armwright
-from ._values import FloatArray, Settings, to_jobs, to_masked, to_options, to_whole
+from ._values import FloatArray, MaskedFloats, Settings, to_jobs, to_masked, to_options, to_whole
 from .errors import BadDataError, UsageError
 from .optimizer import AnyOptimizer, to_row
-from .problem import STATUSES, MaskedFloats, Problem, load_problem
+from .problem import STATUSES, Problem, load_problem
 from .progress import Listener, Show
 
 _LARGEST_SEED = 2**63 - 1
@@ -70,7 +70,7 @@ def _read_history(folder: Path) -> History:
         objectives=to_masked(objectives),
         constraints=to_masked(constraints),
         case_errors=to_masked(errors),
-        case_numbers=np.ma.MaskedArray(np.where(mask, -1, values).astype(np.int64), mask=mask),
+        case_numbers=np.ma.MaskedArray(np.where(mask, -1, values).astype(np.int64), mask=mask),  # type: ignore[no-untyped-call]
         index=index.astype(np.int64),
         generation=generation.astype(np.int64),
         charge=charge.astype(np.int64),

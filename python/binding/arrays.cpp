@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -63,7 +62,7 @@ py::tuple make_ragged(const std::vector<std::vector<double>>& rows) {
   for (const auto& row : rows) {
     for (std::size_t i = 0; i < columns; ++i) {
       const bool is_there = i < row.size() && std::isfinite(row[i]);
-      *value++ = is_there ? row[i] : std::numeric_limits<double>::infinity();
+      *value++ = is_there ? row[i] : kNothing;
       *masked++ = !is_there;
     }
   }

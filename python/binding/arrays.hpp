@@ -4,6 +4,7 @@
 
 #include <pybind11/numpy.h>
 
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,6 +16,9 @@ namespace armwright::python {
 namespace py = pybind11;
 
 using Numbers = py::array_t<double, py::array::c_style>;
+
+// Stands where there is no number: never NaN, and nothing that could be taken for a good one.
+inline constexpr double kNothing = std::numeric_limits<double>::infinity();
 
 // A row of a matrix, which outlives it.
 inline std::span<const double> get_row(const Numbers& matrix, py::ssize_t row) {

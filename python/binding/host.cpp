@@ -31,6 +31,13 @@ py::tuple to_tuple(const Progress& progress) {
 
 }  // namespace
 
+py::object to_exception(const py::error_already_set& error) {
+  if (error.trace()) {
+    PyException_SetTraceback(error.value().ptr(), error.trace().ptr());
+  }
+  return error.value();
+}
+
 Host::Host(py::object listener) : listener_(std::move(listener)) {
   stop_.set_lookout([this] { look_out(); });
 }
@@ -66,7 +73,7 @@ void Host::look_out() {
 
 void Host::look() {
   const py::gil_scoped_acquire gil;
-  if (held_) {
+  if (!held_.is_none()) {
     return;
   }
   try {
@@ -99,15 +106,16 @@ void Host::tell() {
 }
 
 void Host::hold(const py::error_already_set& error) {
-  if (!held_) {
-    held_ = error;
+  if (held_.is_none()) {
+    held_ = to_exception(error);
   }
   stop_.request(StopReason::interrupted);
 }
 
 void Host::raise_held() const {
-  if (held_) {
-    throw py::error_already_set(*held_);
+  if (!held_.is_none()) {
+    PyErr_SetObject(py::type::handle_of(held_).ptr(), held_.ptr());
+    throw py::error_already_set();
   }
 }
 

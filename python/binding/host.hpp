@@ -21,6 +21,9 @@ namespace armwright::python {
 
 namespace py = pybind11;
 
+// The exception itself, with its traceback.
+py::object to_exception(const py::error_already_set& error);
+
 // Made, and ended, with the GIL held.
 class Host final : public RunObserver {
  public:
@@ -59,7 +62,7 @@ class Host final : public RunObserver {
   StopSignal stop_;
   const std::thread::id caller_ = std::this_thread::get_id();
   Clock::time_point last_look_ = Clock::now();
-  std::optional<py::error_already_set> held_;
+  py::object held_ = py::none();  // an exception
   std::mutex mutex_;  // of what waits
   std::deque<std::string> messages_;
   std::optional<Progress> progress_;

@@ -19,8 +19,6 @@
 namespace armwright::python {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 // The evaluator as a class sees it, for as long as minimize() lasts.
 class EvaluatorBridge {
  public:
@@ -109,7 +107,7 @@ class EvaluatorBridge {
       value = std::ranges::copy(score.objectives, value).out;
       // Of a failed evaluation there are none: violated beyond measure.
       violation = score.constraint_values.empty()
-                      ? std::fill_n(violation, constraints, kInfinity)
+                      ? std::fill_n(violation, constraints, kNothing)
                       : std::ranges::copy(score.constraint_values, violation).out;
       status.mutable_at(static_cast<py::ssize_t>(i)) = static_cast<std::uint8_t>(score.status);
       clipped.mutable_at(static_cast<py::ssize_t>(i)) = score.clipped;
@@ -177,7 +175,7 @@ class PythonOptimizer : public Optimizer {
  private:
   [[noreturn]] void fail(const py::error_already_set& error, std::int64_t evaluations) const {
     const py::tuple words =
-        py::module_::import("armwright.optimizer").attr("_explain_failure")(error.value());
+        py::module_::import("armwright.optimizer").attr("_explain_failure")(to_exception(error));
     throw OptimizerFailure(
         fmt::format("optimizer '{}', after {} evaluation{}: {}", name_, evaluations,
                     evaluations == 1 ? "" : "s", sanitize(words[0].cast<std::string>())),

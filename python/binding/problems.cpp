@@ -17,8 +17,6 @@
 namespace armwright::python {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 std::unique_ptr<ProblemHandle> load(const std::string& name,
                                     const std::vector<std::string>& settings) {
   const py::gil_scoped_release released;
@@ -71,7 +69,7 @@ class Table {
   static void copy(std::span<const double> values, double* begin, std::size_t row,
                    std::size_t width) {
     for (std::size_t i = 0; i < width; ++i) {
-      begin[row * width + i] = i < values.size() && !std::isnan(values[i]) ? values[i] : kInfinity;
+      begin[row * width + i] = i < values.size() && !std::isnan(values[i]) ? values[i] : kNothing;
     }
   }
 
