@@ -63,7 +63,7 @@ class Host final : public RunObserver {
   const std::thread::id caller_ = std::this_thread::get_id();
   Clock::time_point last_look_ = Clock::now();
   py::object held_ = py::none();  // an exception
-  std::mutex mutex_;  // of what waits
+  std::mutex mutex_;              // of what waits
   std::deque<std::string> messages_;
   std::optional<Progress> progress_;
 };

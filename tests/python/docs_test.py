@@ -36,7 +36,7 @@ class DocsTest(FolderTest):
                 self.assertEqual(done.returncode, 0, f"{command}\n{done.stderr}")
 
     def test_calls_that_are_named_exist(self):
-        for name in re.findall(r"`(?:problem\.)?(\w+)\(", PAGE.split("## All calls")[1].split("**Numbers.**")[0]):
+        for name in re.findall(r"`(?:problem\.)?(\w+)\(", PAGE.split("| call |")[1].split("**Numbers.**")[0]):
             self.assertTrue(any(hasattr(one, name) for one in (armwright, armwright.Problem, armwright.Study, armwright.Run)), name)
 
 

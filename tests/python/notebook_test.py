@@ -6,17 +6,19 @@ from nbclient import NotebookClient
 from support import FolderTest
 
 CELLS = [
-    """import numpy as np
+    """import time
+import numpy as np
 import armwright
-problem = armwright.load_problem("q1-complex")""",
+problem = armwright.load_problem("sphere")""",
     """class Mine(armwright.Optimizer):
     def minimize(self, evaluator, seed):
         random = np.random.default_rng(seed)
         while not evaluator.stopped:
+            time.sleep(0.1)
             evaluator.evaluate(evaluator.problem.from_unit(random.random((8, len(evaluator.problem)))))
-run = armwright.optimize(problem, Mine, budget=1500, schedule="fixed:1", out="mine")""",
-    """print(run.optimizer, run.counts["cases"], len(run.manifest["configuration"]["inputs"]))""",
-    """run = armwright.optimize(problem, Mine, budget=1500, schedule="fixed:1", out="mine", progress=False)
+run = armwright.optimize(problem, Mine, budget=80, out="mine")""",
+    """print(run.optimizer, run.counts["cases"], *run.manifest["configuration"]["inputs"])""",
+    """run = armwright.optimize(problem, Mine, budget=80, out="mine", progress=False)
 print(run.counts["cases"])""",
 ]
 
@@ -28,8 +30,8 @@ class NotebookTest(FolderTest):
         shown = notebook.cells[1].outputs
         self.assertEqual([one.output_type for one in shown], ["display_data"])
         self.assertEqual(shown[0].data["text/plain"], "")  # taken away at the end
-        self.assertIn("python:Mine 1500", notebook.cells[2].outputs[0].text)
-        self.assertEqual(notebook.cells[3].outputs[0].text, "1500\n")
+        self.assertIn("python:Mine 80 class Mine", notebook.cells[2].outputs[0].text)
+        self.assertEqual(notebook.cells[3].outputs[0].text, "80\n")
 
 
 if __name__ == "__main__":

@@ -51,7 +51,8 @@ class StudyTest(FolderTest):
         self.assertEqual(study.cell("sphere", "python:steps", 2)["value"], study.values[1, 0, 1])
         self.assertEqual(len(study.pairs("sphere")), 6)
         self.assertEqual(set(study.table("sphere")), set(study.optimizers))
-        self.assertTrue(any("python:steps" in line for line in study.verdict))
+        self.assertEqual(set(study.mean_ranks), set(study.optimizers))
+        self.assertEqual("\n".join(study.verdict) + "\n", read_bytes("study/verdict.txt").decode())
         with self.expect_error(armwright.UsageError, "unknown problem of the study 'sphre'"):
             study.curves("sphre", "ga")
         # The program reads it, and makes the same of it.
