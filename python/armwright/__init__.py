@@ -12,7 +12,7 @@ which is better: compare(). docs/python.md goes through all of it. What is run h
 from . import _armwright
 from .description import Description, Quantity, Variable
 from .errors import ArmwrightWarning, BadDataError, BusyError, Error, IoError, UsageError
-from .optimizer import CAPABILITIES, Evaluator, Optimizer, OptimizerInfo, Option, Scores, optimizers
+from .optimizer import CAPABILITIES, Evaluator, Finding, Optimizer, OptimizerInfo, Option, Scores, check_optimizer, optimizers
 from .problem import DesignEvaluation, Evaluations, Problem, list_designs, list_problems, load_problem
 from .progress import Progress
 from .run import History, Run, load_run, optimize
@@ -31,6 +31,7 @@ __all__ = [
     "Error",
     "Evaluations",
     "Evaluator",
+    "Finding",
     "History",
     "IoError",
     "Optimizer",
@@ -44,6 +45,7 @@ __all__ = [
     "Study",
     "UsageError",
     "Variable",
+    "check_optimizer",
     "compare",
     "list_designs",
     "list_problems",

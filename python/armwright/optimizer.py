@@ -9,13 +9,13 @@ import json
 import traceback
 import types
 from dataclasses import dataclass, field
-from typing import Any, Callable, ClassVar, Iterable, Optional, Protocol, Sequence, Union
+from typing import Any, Callable, ClassVar, Iterable, Mapping, Optional, Protocol, Sequence, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _armwright
-from ._values import FloatArray, MaskedFloats, to_masked, to_masked_matrices, to_points
+from ._values import FloatArray, MaskedFloats, to_masked, to_masked_matrices, to_options, to_points
 from .description import Description
 from .errors import UsageError
 from .problem import STATUSES
@@ -304,6 +304,24 @@ def read_optimizer(optimizer: Union[Optimizer, type[Optimizer]]) -> PythonOptimi
 def to_row(optimizer: AnyOptimizer) -> Any:
     """What the library takes: a name as it is."""
     return optimizer if isinstance(optimizer, str) else read_optimizer(optimizer).to_row()
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Whether a promise is "held", "broken" or does not apply ("exempt"); how it is broken, or why it does not apply."""
+
+    check: str
+    promise: str
+    outcome: str
+    detail: str
+
+
+def check_optimizer(optimizer: AnyOptimizer, *, options: Optional[Mapping[str, OptionValue]] = None) -> list[Finding]:
+    """Tries whether an optimizer keeps what every optimizer promises, as `armwright check-plugin` does: in some seconds, on small functions.
+
+    Same seed, same evaluations; nothing kept from one run for the next; content with any budget; failing evaluations survived; and more.
+    """
+    return [Finding(*found) for found in _armwright.check_optimizer(to_row(optimizer), to_options(options))]
 
 
 def _hash(text: str) -> str:

@@ -147,7 +147,7 @@ def load_study(folder: Union[str, Path]) -> Study:
 
 
 def compare(
-    problems: Optional[Sequence[str]] = None,
+    problems: Optional[Sequence[Union[str, Path]]] = None,
     optimizers: Optional[Sequence[AnyOptimizer]] = None,
     *,
     study: Union[None, str, Path] = None,
@@ -173,7 +173,7 @@ def compare(
 
     Parameters
     ----------
-    problems : sequence of str
+    problems : sequence of str or path
         Names or files.
     optimizers : sequence of str, Optimizer, or classes derived from it
     study : str or path, optional
@@ -198,6 +198,9 @@ def compare(
     for name, names in (("problems", problems), ("optimizers", optimizers)):
         if isinstance(names, str):
             raise UsageError(f"{name} is the text {names!r}; it must be a list, such as [{names!r}]")
+    for problem in problems or []:
+        if not isinstance(problem, (str, Path)):
+            raise UsageError(f"problems holds {problem!r}; it must hold names or files, whose settings `set` changes for all")
     rows = [to_row(optimizer) for optimizer in optimizers or []]
     with Listener(progress) as listener:
         try:

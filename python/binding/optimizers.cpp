@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <tuple>
 #include <utility>
 
 #include "arrays.hpp"
@@ -14,7 +15,7 @@
 #include "host.hpp"
 #include "optimizers/foreign_optimizer.hpp"
 #include "parts.hpp"
-#include "study/run_plan.hpp"
+#include "study/contract.hpp"
 
 namespace armwright::python {
 namespace {
@@ -202,6 +203,33 @@ OptimizerRow make_row(const py::tuple& optimizer, Host& host) {
 
 }  // namespace
 
+namespace {
+
+// Name, promise, outcome and detail of every check.
+using Findings = std::vector<std::tuple<std::string, std::string, std::string, std::string>>;
+
+Findings check_optimizer(const py::object& optimizer, const std::vector<std::string>& options) {
+  Host host(py::none());
+  const OptimizerRow row = load_row(optimizer, host);
+  const Options parsed = Options::parse(row.name, row.options, options);
+  Findings findings;
+  host.run([&] {
+    for (const ContractCheck& check : contract_checks()) {
+      if (host.stop().requested()) {
+        return;
+      }
+      const ContractFinding found = run_contract_check(check, row, parsed);
+      const char* outcome = found.outcome == ContractOutcome::held     ? "held"
+                            : found.outcome == ContractOutcome::broken ? "broken"
+                                                                       : "exempt";
+      findings.emplace_back(check.name, check.promise, outcome, sanitize(found.detail));
+    }
+  });
+  return findings;
+}
+
+}  // namespace
+
 OptimizerRow load_row(const py::object& optimizer, Host& host) {
   if (py::isinstance<py::str>(optimizer)) {
     return load_optimizer(optimizer.cast<std::string>());
@@ -217,6 +245,7 @@ void add_optimizers(py::module_& module) {
     }
     return list.dump();
   });
+  module.def("check_optimizer", &check_optimizer);
   // Error{bad_data} for a description of a class that does not hold together.
   module.def("check_description", [](const std::string& name, const std::string& description) {
     return describe(read_foreign_row(name, description)).dump();

@@ -42,13 +42,14 @@ std::string explain_foreign(std::string_view name) {
 
 OptimizerRow read_foreign_row(const std::string& name, const std::string& description) {
   const auto refuse = [&](std::string_view why) {
-    throw Error(ErrorKind::bad_data, fmt::format("optimizer '{}': its description {}",
-                                                 sanitize(name), sanitize(why)));
+    throw Error(ErrorKind::bad_data,
+                fmt::format("optimizer '{}': its description {}", sanitize(name), sanitize(why)));
   };
   if (!is_foreign_name(name)) {
-    refuse(fmt::format("is not needed; only of an optimizer in Python, whose name begins with "
-                       "'{}', one is recorded",
-                       kPythonPrefix));
+    refuse(
+        fmt::format("is not needed; only of an optimizer in Python, whose name begins with "
+                    "'{}', one is recorded",
+                    kPythonPrefix));
   }
   OptimizerRow row;
   try {

@@ -31,7 +31,7 @@ class ExamplesTest(FolderTest):
         self.assertIn("other.png shows results/plot_study", self.run_example("plot_study.py", "results/plot_study", "other.png"))
 
     def test_own_optimizer_and_its_fifteen_lines(self):
-        told = self.run_example("own_optimizer.py", "6", "60")
+        told = self.run_example("own_optimizer.py", "2", "60")
         self.assertIn("python:Hillclimber", told)
         lines = (EXAMPLES / "own_optimizer.py").read_text().split("\n")
         begin = next(i for i, line in enumerate(lines) if line.startswith("class Hillclimber"))

@@ -30,7 +30,7 @@ class Faulty(Steps):
 class Generations(armwright.Optimizer):
     """Draws three points a generation, and recommends the middle."""
 
-    capabilities = ["generations", "residuals"]
+    capabilities = ("generations", "residuals", "stochastic", "sampling", "bounds")
 
     def minimize(self, evaluator, seed):
         random = np.random.default_rng(seed)
@@ -98,6 +98,18 @@ class RunTest(FolderTest):
         self.assertIn("python:steps", self.run_program("show", "mine"))
         with self.expect_error(armwright.UsageError, "option 'batch' is '0'; it must be an integer between 1 and 100"):
             armwright.optimize("q1-complex", Steps, options={"batch": 0})
+
+    def test_keeps_every_promise(self):
+        for cls in (Steps, Generations):
+            found = armwright.check_optimizer(cls)
+            self.assertEqual([one for one in found if one.outcome == "broken"], [])
+            self.assertGreater(sum(one.outcome == "held" for one in found), 8)
+
+        class Forgetful(Steps):
+            def minimize(self, evaluator, seed):
+                super().minimize(evaluator, np.random.SeedSequence().entropy)
+
+        self.assertIn("Repeatable", [one.check for one in armwright.check_optimizer(Forgetful) if one.outcome == "broken"])
 
     def test_generations_residuals_and_recommendations(self):
         run = armwright.optimize("sphere", Generations, budget=30, set=SMALL)

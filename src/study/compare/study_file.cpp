@@ -34,7 +34,9 @@ struct NamedOptimizer {
   bool baseline = false;  // a resolved plan says so
   std::optional<Schedule> schedule;
   std::vector<std::string> settings;
-  std::string description = {};  // a resolved plan has it of a foreign optimizer
+  // A resolved plan has these of a foreign optimizer.
+  std::string description = {};
+  std::vector<std::string> inputs = {};  // "NAME HASH"
 };
 
 struct NamedProblem {
@@ -126,12 +128,11 @@ RawPlan read_file_plan(const ConfigTable& table, StudyPlan& plan) {
   }
   for (const ConfigTable& optimizer : table.get_tables_or_empty("optimizer")) {
     refuse_privileges(optimizer);
-    raw.optimizers.push_back({optimizer.get_string("name"), optimizer.get_string("label", ""),
-                              get_strings_or_none(optimizer, "options"),
-                              optimizer.get_bool_or("baseline", false),
-                              read_schedule_key(optimizer), read_method_settings(optimizer),
-                              optimizer.get_string("description", "")});
-    get_strings_or_none(optimizer, "inputs");  // of a resolved plan: they follow from the rest
+    raw.optimizers.push_back(
+        {optimizer.get_string("name"), optimizer.get_string("label", ""),
+         get_strings_or_none(optimizer, "options"), optimizer.get_bool_or("baseline", false),
+         read_schedule_key(optimizer), read_method_settings(optimizer),
+         optimizer.get_string("description", ""), get_strings_or_none(optimizer, "inputs")});
   }
   table.refuse_unknown();
   return raw;
@@ -260,8 +261,15 @@ OptimizerRow find_row(const NamedOptimizer& named, std::span<const OptimizerRow>
   if (row != rows.end()) {
     return *row;
   }
-  return named.description.empty() ? load_optimizer(named.name)
-                                   : read_foreign_row(named.name, named.description);
+  if (named.description.empty()) {
+    return load_optimizer(named.name);  // what it reads says what its inputs are
+  }
+  OptimizerRow recorded = read_foreign_row(named.name, named.description);
+  for (const std::string& input : named.inputs) {
+    const std::size_t blank = std::min(input.rfind(' '), input.size());
+    recorded.input_hashes[input.substr(0, blank)] = input.substr(std::min(blank + 1, input.size()));
+  }
+  return recorded;
 }
 
 StudyOptimizer load_study_optimizer(const NamedOptimizer& named,

@@ -43,14 +43,14 @@ TEST_F(ForeignOptimizerTest, StandsInAStudyThatIsReadWithoutIt) {
   EXPECT_TRUE(run_all(plan, "mine", 2).broken.empty());
 
   const StudyPlan recorded = load_study_plan(temporary_ / "mine");
-  EXPECT_EQ(to_toml(recorded).find("Something of mine"), to_toml(plan).find("Something of mine"));
+  EXPECT_EQ(to_toml(recorded), to_toml(plan));
   ASSERT_EQ(recorded.optimizers.size(), 3U);
   EXPECT_EQ(recorded.optimizers[0].row.name, "python:mine");
   EXPECT_EQ(recorded.optimizers[0].parsed.get_number("step"), 0.5);
   EXPECT_TRUE(recorded.optimizers[0].row.capabilities.local);
   const StudyResult result = analyze_study(recorded, temporary_ / "mine");
   EXPECT_TRUE(result.missing.empty());
-  EXPECT_EQ(to_json(recorded, result).find("null"), to_json(plan, result).find("null"));
+  EXPECT_EQ(to_json(recorded, result), to_json(plan, analyze_study(plan, temporary_ / "mine")));
 }
 
 TEST_F(ForeignOptimizerTest, RunsNowhereElse) {
