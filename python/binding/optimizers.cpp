@@ -209,7 +209,7 @@ namespace {
 using Findings = std::vector<std::tuple<std::string, std::string, std::string, std::string>>;
 
 Findings check_optimizer(const py::object& optimizer, const std::vector<std::string>& options) {
-  Host host(py::none());
+  Host host{py::none()};
   const OptimizerRow row = load_row(optimizer, host);
   const Options parsed = Options::parse(row.name, row.options, options);
   Findings findings;

@@ -30,7 +30,7 @@ class Faulty(Steps):
 class Generations(armwright.Optimizer):
     """Draws three points a generation, and recommends the middle."""
 
-    capabilities = ("generations", "residuals", "stochastic", "sampling", "bounds")
+    capabilities = ("generations", "residuals", "stochastic", "sampling", "bounds", "batch")
 
     def minimize(self, evaluator, seed):
         random = np.random.default_rng(seed)
