@@ -8,6 +8,7 @@
 #include "base/file.hpp"
 #include "base/hash.hpp"
 #include "base/text.hpp"
+#include "optimizers/foreign_optimizer.hpp"
 #include "problems/config_files.hpp"
 #include "sim/simd_level.hpp"
 #include "study/compare/case_sets.hpp"
@@ -32,6 +33,9 @@ struct NamedOptimizer {
   bool baseline = false;  // a resolved plan says so
   std::optional<Schedule> schedule;
   std::vector<std::string> settings;
+  // A resolved plan has these of a foreign optimizer.
+  std::string description = {};
+  std::vector<std::string> inputs = {};  // "NAME HASH"
 };
 
 struct NamedProblem {
@@ -123,11 +127,11 @@ RawPlan read_file_plan(const ConfigTable& table, StudyPlan& plan) {
   }
   for (const ConfigTable& optimizer : table.get_tables_or_empty("optimizer")) {
     refuse_privileges(optimizer);
-    raw.optimizers.push_back({optimizer.get_string("name"), optimizer.get_string("label", ""),
-                              get_strings_or_none(optimizer, "options"),
-                              optimizer.get_bool_or("baseline", false),
-                              read_schedule_key(optimizer), read_method_settings(optimizer)});
-    get_strings_or_none(optimizer, "inputs");  // of a resolved plan: they follow from the rest
+    raw.optimizers.push_back(
+        {optimizer.get_string("name"), optimizer.get_string("label", ""),
+         get_strings_or_none(optimizer, "options"), optimizer.get_bool_or("baseline", false),
+         read_schedule_key(optimizer), read_method_settings(optimizer),
+         optimizer.get_string("description", ""), get_strings_or_none(optimizer, "inputs")});
   }
   table.refuse_unknown();
   return raw;
@@ -251,20 +255,37 @@ void load_problems(const RawPlan& raw, StudyPlan& plan) {
   refuse_repeated("problem", labels);
 }
 
-StudyOptimizer load_study_optimizer(const NamedOptimizer& named) {
+OptimizerRow find_row(const NamedOptimizer& named, std::span<const OptimizerRow> rows) {
+  const auto row = std::ranges::find(rows, named.name, &OptimizerRow::name);
+  if (row != rows.end()) {
+    return *row;
+  }
+  if (named.description.empty()) {
+    return load_optimizer(named.name);  // what it reads says what its inputs are
+  }
+  OptimizerRow recorded = read_foreign_row(named.name, named.description);
+  for (const std::string& input : named.inputs) {
+    const std::size_t blank = std::min(input.rfind(' '), input.size());
+    recorded.input_hashes[input.substr(0, blank)] = input.substr(std::min(blank + 1, input.size()));
+  }
+  return recorded;
+}
+
+StudyOptimizer load_study_optimizer(const NamedOptimizer& named,
+                                    std::span<const OptimizerRow> rows = {}) {
   StudyOptimizer optimizer;
   optimizer.name = named.name;
   optimizer.label = named.label.empty() ? named.name : named.label;
   optimizer.options = named.options;
   optimizer.baseline = named.baseline;
-  optimizer.row = load_optimizer(named.name);
+  optimizer.row = find_row(named, rows);
   optimizer.parsed = Options::parse(optimizer.row.name, optimizer.row.options, named.options);
   optimizer.schedule = named.schedule;
   optimizer.settings = named.settings;
   return optimizer;
 }
 
-void load_optimizers(const RawPlan& raw, StudyPlan& plan) {
+void load_optimizers(const RawPlan& raw, std::span<const OptimizerRow> rows, StudyPlan& plan) {
   if (raw.optimizers.empty()) {
     throw Error(ErrorKind::usage,
                 "the study names no optimizer; give --optimizers A,B, or in its file "
@@ -272,7 +293,7 @@ void load_optimizers(const RawPlan& raw, StudyPlan& plan) {
   }
   bool has_random = false, has_local = false;
   for (const NamedOptimizer& named : raw.optimizers) {
-    plan.optimizers.push_back(load_study_optimizer(named));
+    plan.optimizers.push_back(load_study_optimizer(named, rows));
     const OptimizerRow& row = plan.optimizers.back().row;
     has_random = has_random || row.name == kRandomBaseline;
     has_local = has_local || row.capabilities.local;
@@ -423,7 +444,7 @@ StudyPlan make_study_plan(const StudyRequest& request) {
                 "the study names no budget; give --budget CASES or budget = CASES: how many "
                 "training cases every optimizer may simulate on a problem");
   }
-  load_optimizers(raw, plan);
+  load_optimizers(raw, request.rows, plan);
   load_methods(plan);
   check_targets(plan);
   if (plan.name.empty()) {

@@ -75,6 +75,9 @@ std::string make_targets(const StudyPlan& plan) {
 
 std::string make_method(const StudyOptimizer& optimizer) {
   std::string text;
+  if (!optimizer.row.description.empty()) {
+    text += fmt::format("description = {}\n", quote(optimizer.row.description));
+  }
   if (optimizer.schedule) {
     text += fmt::format("schedule = {}\n", quote(to_text(*optimizer.schedule)));
   }

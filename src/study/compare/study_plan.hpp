@@ -103,6 +103,8 @@ struct StudyRequest {
   std::optional<Schedule> schedule;
   std::optional<std::uint64_t> seed;
   bool baselines = true;
+  // Optimizers that live in the program that asks, by their names (foreign_optimizer.hpp).
+  std::vector<OptimizerRow> rows = {};
 };
 
 // Reads, completes and checks everything. Error{usage} or Error{bad_data}.
