@@ -71,3 +71,17 @@ option(ARMWRIGHT_WITH_ASSIMP "Meshes of robots: masses, replays" ${assimp_found}
 if(ARMWRIGHT_WITH_ASSIMP AND NOT assimp_found)
   message(FATAL_ERROR "ARMWRIGHT_WITH_ASSIMP is ON, but there is no Assimp; install the Debian package libassimp-dev or leave the option OFF")
 endif()
+
+# The Python package is for Debian's own interpreter, which has Debian's numpy: another one may come first on a PATH.
+set(Python3_EXECUTABLE /usr/bin/python3 CACHE FILEPATH "The Python that the package armwright is built for")
+find_package(Python3 3.9 QUIET COMPONENTS Interpreter Development.Module)
+find_package(pybind11 2.10 QUIET CONFIG)
+set(python_found OFF)
+if(Python3_Development.Module_FOUND AND pybind11_FOUND)
+  set(python_found ON)
+endif()
+option(ARMWRIGHT_WITH_PYTHON "The Python package armwright" ${python_found})
+if(ARMWRIGHT_WITH_PYTHON AND NOT python_found)
+  message(FATAL_ERROR "ARMWRIGHT_WITH_PYTHON is ON, but Python's headers or pybind11 are missing for ${Python3_EXECUTABLE}; install the "
+                      "Debian packages python3-dev and pybind11-dev or leave the option OFF")
+endif()

@@ -26,6 +26,13 @@ namespace {
 
 using Node = ConfigTable::Node;
 
+constexpr const char* kString = "a string";
+constexpr const char* kBoolean = "true or false";
+
+std::string describe_choice(std::span<const std::string> valid) {
+  return fmt::format("one of these strings: {}", join(valid, ", "));
+}
+
 std::string describe_range(const Range& range) {
   std::string text = "a finite number";
   if (std::isfinite(range.lower)) {
@@ -68,6 +75,32 @@ std::optional<std::string> find_nearest_key(std::string_view key,
               : std::nullopt;
 }
 
+// "requirement[3].use" -> "requirement[].use"
+std::string drop_indices(const std::string& path) {
+  std::string text;
+  bool inside = false;
+  for (const char c : path) {
+    inside = inside && c != ']';
+    if (!inside) {
+      text += c;
+    }
+    inside = inside || c == '[';
+  }
+  return text;
+}
+
+// The first that says what is allowed counts.
+void note_asked(const Node& node, std::string_view key, std::string_view allowed,
+                std::string_view fallback = "") {
+  const std::string path = drop_indices(config::join_path(node.path, key));
+  AskedKey& asked = node.document->asked[path];
+  asked.path = path;
+  if (asked.allowed.empty()) {
+    asked.allowed = allowed;
+    asked.fallback = fallback;
+  }
+}
+
 const Value* find(const Node& node, std::string_view key) {
   auto& asked = node.table->asked;
   if (std::find(asked.begin(), asked.end(), key) == asked.end()) {
@@ -78,6 +111,7 @@ const Value* find(const Node& node, std::string_view key) {
 }
 
 const Value& require(const Node& node, std::string_view key, std::string_view must) {
+  note_asked(node, key, must);
   if (const Value* value = find(node, key)) {
     return *value;
   }
@@ -236,17 +270,17 @@ ConfigTable ConfigTable::parse(std::string_view toml, const std::string& name,
 }
 
 bool ConfigTable::has(std::string_view key) const {
+  note_asked(*node_, key, "");
   return find(*node_, key) != nullptr;
 }
 
 std::string ConfigTable::get_string(std::string_view key) const {
-  return require_kind(*node_, key, Kind::string, "a string").string;
+  return require_kind(*node_, key, Kind::string, kString).string;
 }
 
 std::string ConfigTable::get_choice(std::string_view key,
                                     std::span<const std::string> valid) const {
-  const Value& value = require_kind(*node_, key, Kind::string,
-                                    fmt::format("one of these strings: {}", join(valid, ", ")));
+  const Value& value = require_kind(*node_, key, Kind::string, describe_choice(valid));
   if (std::find(valid.begin(), valid.end(), value.string) == valid.end()) {
     config::fail(value.place, describe_unknown(config::join_path(node_->path, key),
                                                config::shorten(value.string), valid));
@@ -272,7 +306,7 @@ std::int64_t ConfigTable::get_integer(std::string_view key, std::int64_t lower,
 }
 
 bool ConfigTable::get_bool(std::string_view key) const {
-  return require_kind(*node_, key, Kind::boolean, "true or false").boolean;
+  return require_kind(*node_, key, Kind::boolean, kBoolean).boolean;
 }
 
 std::vector<double> ConfigTable::get_numbers(std::string_view key, Range range) const {
@@ -322,24 +356,29 @@ std::vector<ConfigTable> ConfigTable::get_tables(std::string_view key) const {
 }
 
 std::string ConfigTable::get_string(std::string_view key, std::string_view fallback) const {
+  note_asked(*node_, key, kString, quote_json(std::string(fallback)));
   return has(key) ? get_string(key) : std::string(fallback);
 }
 
 std::string ConfigTable::get_choice(std::string_view key, std::span<const std::string> valid,
                                     std::string_view fallback) const {
+  note_asked(*node_, key, describe_choice(valid), quote_json(std::string(fallback)));
   return has(key) ? get_choice(key, valid) : std::string(fallback);
 }
 
 double ConfigTable::get_number_or(std::string_view key, double fallback, Range range) const {
+  note_asked(*node_, key, describe_range(range), format_exact(fallback));
   return has(key) ? get_number(key, range) : fallback;
 }
 
 std::int64_t ConfigTable::get_integer_or(std::string_view key, std::int64_t fallback,
                                          std::int64_t lower, std::int64_t upper) const {
+  note_asked(*node_, key, describe_range(lower, upper), fmt::format("{}", fallback));
   return has(key) ? get_integer(key, lower, upper) : fallback;
 }
 
 bool ConfigTable::get_bool_or(std::string_view key, bool fallback) const {
+  note_asked(*node_, key, kBoolean, fallback ? "true" : "false");
   return has(key) ? get_bool(key) : fallback;
 }
 
@@ -383,6 +422,14 @@ void ConfigTable::refuse(std::string_view key, std::string_view must) const {
     config::fail(value->place, fmt::format("{} is {}; {}", path, value->describe(), must));
   }
   config::fail(node_->table->place, fmt::format("{} is missing; {}", path, must));
+}
+
+std::vector<AskedKey> ConfigTable::asked() const {
+  std::vector<AskedKey> all;
+  for (const auto& [path, key] : node_->document->asked) {
+    all.push_back(key);
+  }
+  return all;
 }
 
 const std::filesystem::path& ConfigTable::file() const {

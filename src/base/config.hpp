@@ -27,6 +27,15 @@ struct Range {
   bool lower_open = false;  // true: the value must be strictly above `lower`
 };
 
+// What a reader asked a document for: the rows of a reference of its keys are made of these, and so
+// say what is really read.
+struct AskedKey {
+  std::string path;      // "task.speed_m_per_s"; of the tables of an array "requirement[].use"
+  std::string allowed;   // "a finite number >= 0.01 and <= 100"; empty: it was asked only whether
+                         // the key is there, which it was not
+  std::string fallback;  // as in TOML; empty: the reader has none, or only knows it elsewhere
+};
+
 class ConfigTable {
  public:
   // `overrides` are KEY=VALUE texts with dotted keys; VALUE is TOML, or a bare word taken as a
@@ -70,6 +79,9 @@ class ConfigTable {
   // An Error{usage} at this key: "FILE:LINE: KEY is VALUE; MUST". For checks that need more than a
   // range.
   [[noreturn]] void refuse(std::string_view key, std::string_view must) const;
+
+  // Everything that was asked for so far, of the whole document, by path.
+  std::vector<AskedKey> asked() const;
 
   const std::filesystem::path& file() const;  // the file that was loaded, not the ones it extends
   std::vector<std::filesystem::path> files() const;  // it and all it extends, for hashing

@@ -64,11 +64,17 @@ class Scanner {
   }
 
   void refuse_stray_character() const {
-    std::size_t end = at_;
-    while (end < text_.size() && !is_ascii(text_[end])) {
+    const auto is_of_word = [this](std::size_t i) {
+      return !is_ascii(text_[i]) || is_bare_key(text_.substr(i, 1));
+    };
+    std::size_t first = at_, end = at_;
+    while (first > 0 && is_of_word(first - 1)) {
+      --first;
+    }
+    while (end < text_.size() && is_of_word(end)) {
       ++end;
     }
-    const std::string_view letters = text_.substr(at_, end - at_);
+    const std::string_view letters = text_.substr(first, end - first);
     check_utf8(letters);
     fail({&source_, line_}, "'" + shorten(letters) +
                                 "' stands outside quotes; keys are made of a-z A-Z 0-9 _ -, "

@@ -15,6 +15,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/config.hpp"
+
 namespace armwright::config {
 
 inline constexpr std::size_t kFileLimit_bytes = std::size_t{1} << 20;
@@ -59,6 +61,7 @@ struct Document {
   std::vector<std::filesystem::path> files;
   std::deque<Source> sources;  // a deque, since places point into it
   Value root;
+  mutable std::map<std::string, AskedKey, std::less<>> asked;  // by path
 };
 
 std::shared_ptr<const Document> load_document(const std::filesystem::path& file,

@@ -48,7 +48,7 @@ Exit codes:
   0    done
   2    wrong use or configuration
   3    done, but something failed (a case without a number, nothing feasible found, a design that does not hold)
-  4    an input file cannot be used
+  4    an input file (robot, path, test cases, a recorded run) cannot be used
   5    another process writes this folder, or has taken over this cell
   74   reading or writing failed
   75   stopped by a time limit or SIGTERM; the same command resumes
@@ -56,7 +56,7 @@ Exit codes:
   1    a fault of armwright itself, or no memory left
 
 Environment: ARMWRIGHT_JOBS and ARMWRIGHT_SEED stand in for --jobs and --seed; ARMWRIGHT_CONFIGS names the folder of
-the shipped configuration.)";
+the shipped configuration, ARMWRIGHT_SIMD the highest instruction set that is chosen unless --simd names one.)";
 
 std::vector<std::string> list_commands(const CLI::App& app) {
   std::vector<std::string> names;

@@ -76,7 +76,7 @@ CLI::App* add_command(CLI::App& parent, Session& session, const std::string& nam
   command->add_option("--color", session.color, "When to use colour: auto, always or never")
       ->type_name("WHEN")
       ->group("Output");
-  command->footer(examples);
+  command->footer(examples + "\n\nExit codes and environment: armwright --help");
   return command;
 }
 
@@ -148,7 +148,7 @@ void EngineFlags::add_to(CLI::App& command, bool with_training) {
   command
       .add_option("--engine", engine,
                   trains ? "Physics engine, the same as --set physics.engine=NAME\n"
-                           "(armwright list engines)"
+                           "(armwright list engines; default: the problem's)"
                          : "Physics engine (armwright list engines; default: the one that the\n"
                            "problem is judged with)")
       ->type_name("NAME");
@@ -156,18 +156,18 @@ void EngineFlags::add_to(CLI::App& command, bool with_training) {
     command
         .add_option("--judging-engine", judging_engine,
                     "Another engine for validation and test, the same as\n"
-                    "--set physics.judging_engine=NAME (default: the same)")
+                    "--set physics.judging_engine=NAME (default: that of training)")
         ->type_name("NAME");
     command
         .add_option("--precision", precision,
-                    "double or float, the latter quicker and in training only; for engines with\n"
-                    "SIMD, the same as --set physics.precision=...")
+                    "double (default) or float, the latter quicker and in training only; for\n"
+                    "engines with SIMD, the same as --set physics.precision=NAME")
         ->type_name("NAME");
   }
   command
       .add_option("--simd", simd,
-                  "Instruction set of engines with SIMD, the same as --set physics.simd=LEVEL\n"
-                  "(default: auto, the best of this machine)")
+                  "Instruction set of engines with SIMD, on which the last digits of results\n"
+                  "depend; the same as physics.simd (default: auto, the best of this machine)")
       ->type_name("LEVEL");
 }
 
@@ -203,7 +203,7 @@ void OverrideOptions::add_to(CLI::App& command, bool with_training) {
   command
       .add_option("--set", set,
                   "Change a setting of the problem, as in task.speed_m_per_s=2; repeatable.\n"
-                  "'armwright list problems NAME' shows all settings")
+                  "'armwright list problems NAME' shows its own, 'list settings' what they mean")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   engines.add_to(command, with_training);

@@ -37,10 +37,14 @@ constexpr const char* kCompareExamples = R"(Examples:
   armwright compare q1 --replicates 30             # more replicates: only what is new is run
   armwright compare q1 --executor slurm            # the same on a cluster (docs/clusters.md)
 
+Terms: a case is one path of the moving target; a cell is one run, of an optimizer on a problem in a replicate.
 Every optimizer gets the same budget of simulated training cases, and in replicate r the same training cases and the
 same start as all others. Each run's winner is chosen on a validation set and judged on a test set that is the same
 for all. Random search and a local search take part as baselines. The verdict follows from the statistics: see
-docs/comparing.md. The folder (default: results/NAME) holds the plan, every run with its journal, and tables.)";
+docs/comparing.md. The folder (default: results/NAME, NAME as the study's file, or study-PROBLEMS) holds the plan
+(study.toml), every run with its journal (cells/), tables, result.json and verdict.txt. The same command goes on where it
+was; replicates, problems and optimizers can be added to it. What would not compare with what is there, another budget
+say, is refused; --new begins another folder.)";
 
 struct CompareOptions {
   std::string file;
@@ -212,12 +216,13 @@ void add_compare(CLI::App& app, Session& session) {
       ->type_name("N");
   command
       ->add_option("--budget", options->budget,
-                   "Training cases to simulate in every run, the same for all")
+                   "Training cases to simulate in every run, the same for all (default: the\n"
+                   "file's; required without one)")
       ->type_name("CASES");
   command
       ->add_option("--schedule", options->schedule,
-                   "Which training cases: fixed:K; fresh:K or coevolution:K where all have\n"
-                   "generations (default: fixed, K as the problem has it)")
+                   "Which training cases: fixed:K; fresh:K or coevolution:K where all\n"
+                   "optimizers have generations (default: fixed, K as the problem has it)")
       ->type_name("KIND:K");
   command
       ->add_option("--seed", options->seed,

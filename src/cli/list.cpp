@@ -26,6 +26,7 @@ constexpr const char* kListExamples = R"(Examples:
   armwright list problems q1-complex               # its variables, bounds and settings (for --set)
   armwright list optimizers ga                     # what it is, can do, and its options (for --opt)
   armwright list optimizers ga --markdown          # the same as a page, as under docs/optimizers
+  armwright list settings task.rest_s              # a key of the configuration: unit, range, default, meaning
   armwright list controllers pi2d                  # its formula, and its gains (for variables.optimize)
   armwright list designs --json
   armwright list designs --names | head -1         # names alone, for scripts
@@ -84,7 +85,8 @@ std::vector<ListKind> list_kinds() {
           make_design_kind(),
           make_study_kind(),
           make_plain_kind("signals", list_signals),
-          make_controller_kind()};
+          make_controller_kind(),
+          make_setting_kind()};
 }
 
 struct ListOptions {
@@ -182,7 +184,8 @@ int run_list(const ListOptions& options, const Session& session) {
     }
     if (!kind.explain_as_markdown) {
       throw Error(ErrorKind::usage,
-                  fmt::format("--markdown is for optimizers, not for {}; --json is for all kinds",
+                  fmt::format("--markdown is for problems, optimizers and settings, not for {}; "
+                              "--json is for all kinds",
                               kind.name));
     }
     write_stdout(kind.explain_as_markdown(options.name));
@@ -224,7 +227,8 @@ void add_list(CLI::App& app, Session& session) {
       ->group("Output");
   command
       ->add_flag("--markdown", options->markdown,
-                 "Print it as a page of documentation (optimizers)")
+                 "Print it as a page of documentation (problems,\n"
+                 "optimizers, settings)")
       ->group("Output");
   command->callback([options, &session] {
     session.action = [options, &session] { return run_list(*options, session); };

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "base/error.hpp"
 #include "base/text.hpp"
 #include "cli/format.hpp"
 #include "cli/list_views.hpp"
+#include "cli/problem_page.hpp"
 #include "cli/requirement_view.hpp"
 #include "cli/table.hpp"
 #include "problems/problem_loader.hpp"
@@ -119,7 +121,17 @@ json explain_problem_as_json(const std::string& name) {
 }  // namespace
 
 ListKind make_problem_kind() {
-  return {"problems", list_known_problems, explain_problem, explain_problem_as_json};
+  return {.name = "problems",
+          .list = list_known_problems,
+          .explain = explain_problem,
+          .explain_as_json = explain_problem_as_json,
+          .explain_as_markdown = [](const std::string& name) {
+            if (!name.empty()) {
+              throw Error(ErrorKind::usage,
+                          "the page of problems has all of them; leave out the name");
+            }
+            return format_problem_page();
+          }};
 }
 
 }  // namespace armwright

@@ -36,6 +36,7 @@ ListKind make_engine_kind(std::span<const EngineRow> table = engine_table());
 ListKind make_design_kind();
 ListKind make_study_kind();
 ListKind make_controller_kind();
+ListKind make_setting_kind();
 std::vector<std::string> list_kind_names();  // "problems", "optimizers", ...
 
 // "NAME: SUMMARY" as a first line.

@@ -33,14 +33,18 @@ constexpr const char* kOptimizeExamples = R"(Examples:
   armwright optimize --robot my.urdf --base base_link --tip tool0   # an arm of your own
 
 Interrupted by Ctrl-C, a time limit or a crash, the same command goes on where it was; a run that is complete is
-shown and not made again.
+shown and not made again. A command that would change what is recorded in the folder is refused, and says what
+differs; --new begins another folder. The folder holds the winner (winner.toml), all numbers (result.json,
+results.sqlite, convergence.csv) and the journal of every evaluation.
 
-Terms: the budget counts simulated test cases of training (one design on one case is 1). The schedule says on
-which cases a design is trained: fresh:K takes the next K of the training set for every generation, fixed:K always
-the first K, coevolution:K breeds K that are hard for the designs. Racing spends fewer cases on designs that do badly
-(docs/racing.md). At the end the best designs are judged on the validation set, and the winner on the test set, neither
-charged to the budget. The seed feeds the optimizer's random choices; the same seed gives the same result on any
-number of threads.)";
+Terms: a design is the gains and effort limits of all joints; a case is one path of the moving target. The budget
+counts simulated training cases (one design on one case is 1). The schedule says on which cases a design is trained:
+fresh:K takes the next K of the training set for every generation, fixed:K always the first K, coevolution:K breeds
+K that are hard for the designs. Racing spends fewer cases on designs that do badly (docs/racing.md): halving:4:2
+gives all designs of a generation 4 cases, the better half of them twice as many, and so on; abandonment:1:4 gives a
+design up when it is certain to be worse than 1 times the best, and looks every 4 cases. At the end the best designs
+are judged on the validation set, and the winner on the test set, neither charged to the budget. The seed feeds the
+optimizer's random choices; the same seed gives the same result on any number of threads.)";
 
 struct OptimizeOptions {
   std::string problem;
@@ -280,7 +284,7 @@ void add_optimize(CLI::App& app, Session& session) {
       ->type_name("KIND:K");
   command
       ->add_option("--racing", options->racing,
-                   "Who need not have all cases: none, halving:FIRST_CASES:ETA or\n"
+                   "Fewer cases for designs that do badly: none, halving:FIRST_CASES:ETA or\n"
                    "abandonment:MARGIN:CHUNK_CASES (default: the problem's)")
       ->type_name("KIND");
   options->overrides.add_to(*command, true);

@@ -3,34 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 
 #include "base/text.hpp"
 #include "cli/format.hpp"
+#include "cli/markdown.hpp"
 #include "cli/optimizer_words.hpp"
 
 namespace armwright {
 namespace {
-
-constexpr const char* kOrigin =
-    "<!-- Written by scripts/docs from the table in the program: change the row there, not this "
-    "file. -->\n";
-
-// In a cell of a table: a bar ends the cell even between backticks.
-std::string format_code(const std::string& text) {
-  if (text.empty()) {
-    return "(empty)";
-  }
-  if (text.find('`') != text.npos) {
-    return escape_markdown(text);
-  }
-  std::string code;
-  for (const char c : sanitize(text)) {
-    code += c == '|' ? "\\|" : std::string(1, c);
-  }
-  return "`" + code + "`";
-}
 
 std::string format_sentence(const std::string& text) {
   return escape_markdown(text) + (text.ends_with('.') ? "" : ".");
@@ -144,24 +124,6 @@ std::string format_source(const OptimizerRow& row) {
 
 }  // namespace
 
-std::string escape_markdown(std::string_view text) {
-  constexpr std::string_view kSpecial = "\\`*[]<>|~&$";
-  const std::string clean = sanitize(text);
-  const auto is_word = [&](std::size_t i) {
-    return i < clean.size() && std::isalnum(static_cast<unsigned char>(clean[i])) != 0;
-  };
-  std::string escaped;
-  for (std::size_t i = 0; i < clean.size(); ++i) {
-    // Within a word an underscore means nothing.
-    const bool is_bare_underscore = clean[i] == '_' && !(i > 0 && is_word(i - 1) && is_word(i + 1));
-    if (kSpecial.find(clean[i]) != kSpecial.npos || is_bare_underscore) {
-      escaped += '\\';
-    }
-    escaped += clean[i];
-  }
-  return escaped;
-}
-
 std::string get_page_name(const std::string& optimizer) {
   std::string name = optimizer + ".md";
   std::ranges::replace(name, ':', '-');
@@ -177,7 +139,7 @@ std::string format_optimizer_index(std::span<const OptimizerRow> rows) {
       "- `multistart:NAME` runs a *local* one from the start and then from random points, until "
       "the budget ends.\n"
       "- `./libmine.so` and `exec:COMMAND` are [optimizers of your "
-      "own](../adding-an-optimizer.md).\n\n"
+      "own](../plugins.md).\n\n"
       "Every optimizer gets the same budget, the same training cases and the same judging of its "
       "winner. All are repeatable: the same seed gives the same run. Where options speak of a "
       "share of "
@@ -185,7 +147,7 @@ std::string format_optimizer_index(std::span<const OptimizerRow> rows) {
       "where "
       "the variable is logarithmic.\n\n"
       "| optimizer | what it is | capabilities | needs |\n|---|---|---|---|\n",
-      kOrigin);
+      kGeneratedPage);
   for (const OptimizerRow& row : rows) {
     text += format_index_row(row);
   }
@@ -203,7 +165,7 @@ std::string format_optimizer_index(std::span<const OptimizerRow> rows) {
 }
 
 std::string format_optimizer_page(const OptimizerRow& row) {
-  return fmt::format("{}# {}\n\n{}\n\n", kOrigin, format_code(row.name),
+  return fmt::format("{}# {}\n\n{}\n\n", kGeneratedPage, format_code(row.name),
                      format_sentence(row.summary)) +
          format_facts(row) + "\n" + format_calls(row) + format_capabilities(row) +
          format_options(row) + format_source(row) + "\n[All optimizers](README.md)\n";

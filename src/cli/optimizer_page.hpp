@@ -19,7 +19,4 @@ std::string format_optimizer_index(std::span<const OptimizerRow> rows);
 
 std::string format_optimizer_page(const OptimizerRow& row);
 
-// Plain text that Markdown shows as it is, also in a cell of a table.
-std::string escape_markdown(std::string_view text);
-
 }  // namespace armwright

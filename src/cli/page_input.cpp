@@ -31,7 +31,8 @@ std::optional<std::string> PageInput::make_data(Session& session) const {
   if (std::filesystem::is_regular_file(source)) {
     if (!cases.empty()) {
       throw Error(ErrorKind::usage,
-                  "--case needs the folder: a page's file holds only what was simulated for it");
+                  "--case simulates, for which the folder is needed that the page was made of; the "
+                  "page itself holds only the cases that were simulated for it");
     }
     return read_page_data(source);
   }

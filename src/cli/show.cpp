@@ -30,7 +30,8 @@ constexpr const char* kShowExamples = R"(Examples:
   armwright show results/q1                        # a comparison: its tables and verdict
   armwright show results/q1-complex-ga-seed1 --json | jq .winner.test_summary
 
-Of a run that has not come to its end it says how far it is, and how to go on.)";
+Of a run or a study that has not come to its end it says how far it is, and how to go on. It changes nothing.
+'armwright status' has more on the cells of a comparison that many processes or machines work on.)";
 
 struct ShowOptions {
   std::string folder;

@@ -25,13 +25,16 @@ constexpr const char* kStatusExamples = R"(Examples:
   armwright status results/q1                         # from any machine that sees the folder
   armwright status results/q1 --json
 
-done     the cell has its result; failed: in it the optimizer has failed
-broken   its last attempt ended with the error that is shown; the same cell may be run again
-running  somebody is at it, and gave a sign of life within a minute
-silent   somebody was at it and gives none any more: a later attempt goes on where that one was
-left     not begun, or stopped in order
+A cell is one run of a comparison: an optimizer on a problem in a replicate.
 
-Only reads. See docs/clusters.md.)";
+done     the cell has its result; of these, failed: the optimizer itself has failed in it, which counts as its result
+broken   its last attempt ended with the error that is shown
+running  somebody is at it, and gave a sign of life within a minute
+silent   somebody was at it and gives none any more
+left     not begun, or stopped cleanly
+
+What is broken, silent or left is gone on with by the same command as before: compare, or the batch system's script
+(docs/clusters.md). Status changes nothing; 'armwright show' has the results of a study that is complete.)";
 
 struct StatusOptions {
   std::string study;

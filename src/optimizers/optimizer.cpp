@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "optimizers/ceres.hpp"
 #include "optimizers/cmaes.hpp"
+#include "optimizers/foreign_optimizer.hpp"
 #include "optimizers/ga.hpp"
 #include "optimizers/latin_hypercube.hpp"
 #include "optimizers/multistart.hpp"
@@ -173,6 +174,9 @@ OptimizerRow load_optimizer(std::string_view name) {
   constexpr std::string_view kProcess = "exec:";
   if (name.starts_with(kProcess)) {
     return load_process_plugin(name.substr(kProcess.size()));
+  }
+  if (is_foreign_name(name)) {
+    throw Error(ErrorKind::usage, explain_foreign(name));
   }
   if (is_library_name(name)) {
     return load_library_plugin(name);

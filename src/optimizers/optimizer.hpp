@@ -121,6 +121,9 @@ struct OptimizerRow {
   std::string unavailable = {};  // why it cannot be used here, whatever the reason; empty if it can
   std::map<std::string, std::string> input_hashes =
       {};  // of a plugin: file -> SHA-256, so that a resumed run knows it again
+  // Of an optimizer that lives in a program that uses this library: what it says of itself, so that
+  // what is recorded of it can be read without that program (foreign_optimizer.hpp).
+  std::string description = {};
 };
 
 // Why the optimizer cannot work on the problem; empty if it can.

@@ -1,6 +1,8 @@
 #include "problems/config_files.hpp"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
+#include <link.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -50,6 +52,30 @@ std::string describe_missing(std::string_view kind, const std::filesystem::path&
                             : text;
 }
 
+// The shared object that this code is part of; empty if that is the program itself.
+std::filesystem::path find_own_library() {
+  static const char place = 0;
+  Dl_info info;
+  link_map* object = nullptr;
+  const bool known =
+      dladdr1(&place, &info, reinterpret_cast<void**>(&object), RTLD_DL_LINKMAP) != 0;
+  return known && object != nullptr ? object->l_name : "";  // the program's has no name
+}
+
+// Where the configuration lies beside a library: PREFIX/lib/python3/dist-packages/armwright/*.so
+// is five folders below its PREFIX. If nowhere, where it should be in the highest of them.
+std::filesystem::path find_beside(const std::filesystem::path& library) {
+  constexpr int kMostLevels = 5;
+  std::filesystem::path folder = std::filesystem::absolute(library).parent_path();
+  for (int level = 1;; ++level) {
+    folder = folder.parent_path();
+    const auto configs = folder / "share" / "armwright" / "configs";
+    if (level == kMostLevels || std::filesystem::is_directory(configs / "problems")) {
+      return configs;
+    }
+  }
+}
+
 }  // namespace
 
 std::filesystem::path find_config_folder() {
@@ -63,8 +89,11 @@ std::filesystem::path find_config_folder() {
                             sanitize(folder)));
   }
   std::error_code ignored;
+  const auto library = find_own_library();
   const auto program = std::filesystem::read_symlink("/proc/self/exe", ignored);
-  const auto folder = program.parent_path().parent_path() / "share" / "armwright" / "configs";
+  const auto folder = library.empty()
+                          ? program.parent_path().parent_path() / "share" / "armwright" / "configs"
+                          : find_beside(library);
   if (!std::filesystem::is_directory(folder / "problems")) {
     throw Error(ErrorKind::usage,
                 fmt::format("the shipped configuration was not found in {}; reinstall armwright or "

@@ -10,7 +10,9 @@ namespace armwright {
 
 // The folder with robots/, problems/ and designs/: $ARMWRIGHT_CONFIGS if set, else
 // ../share/armwright/configs seen from the running program (the build tree and an installation look
-// alike). Error{usage} says where it was looked for.
+// alike). Where this code is part of a shared object, as in Python's module, the running program is
+// somebody else's: then share/armwright/configs in the nearest folder above that object that has
+// it. Error{usage} says where it was looked for.
 std::filesystem::path find_config_folder();
 
 // What a user typed for a file of `kind` ("problems", "designs", "robots", "studies"): a path if it

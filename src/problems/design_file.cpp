@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "base/config.hpp"
 #include "base/text.hpp"
 #include "problems/config_files.hpp"
 
@@ -55,9 +54,12 @@ PublishedResult read_published(const ConfigTable& table) {
 
 DesignFile load_design(std::string_view name_or_path) {
   const auto path = resolve_config("designs", name_or_path);
-  const ConfigTable table = ConfigTable::load(path);
+  return read_design(ConfigTable::load(path), path.stem().string());
+}
+
+DesignFile read_design(const ConfigTable& table, const std::string& name) {
   DesignFile file;
-  file.name = table.get_string("name", path.stem().string());
+  file.name = table.get_string("name", name);
   file.title = table.get_string("title", "");
   file.source = table.get_string("source", "");
   file.design.controller = table.get_choice("controller", controller_names(), "pid");

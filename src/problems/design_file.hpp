@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/config.hpp"
 #include "sim/tracking.hpp"
 
 namespace armwright {
@@ -36,6 +37,9 @@ struct DesignFile {
 // Reads a shipped design by name or a file by path. Error{usage} names file, line, field, value and
 // what is allowed.
 DesignFile load_design(std::string_view name_or_path);
+
+// Of a table that was read already; `name` is what the design is called unless it says so itself.
+DesignFile read_design(const ConfigTable& table, const std::string& name);
 
 // The design as a file that load_design reads back bit for bit; without what was published of it.
 std::string to_toml(const DesignFile& file);

@@ -167,9 +167,9 @@ DecisionVariable make_variable(const TrackingConfig& config, const DesignParamet
   }
   if (!std::isnormal(lower) || !std::isnormal(upper)) {
     throw Error(ErrorKind::usage,
-                fmt::format("{} starts at {} and would span {} to {}, which floating-point numbers "
-                            "cannot hold; give it another value in the design or lower "
-                            "bounds_factor",
+                fmt::format("{} starts at {} and would span {} to {} (the start / and x "
+                            "variables.bounds_factor), which floating-point numbers cannot hold; "
+                            "give it another value in the design or lower the factor",
                             variable.name, variable.start, lower, upper));
   }
   return variable;

@@ -153,6 +153,10 @@ std::vector<std::string> load_tracking(const ConfigTable& table, std::span<const
   const ConfigTable task = table.get_table_or_empty("task");
   const ConfigTable control = table.get_table_or_empty("control");
   config.task = read_task(task, physics, control);
+  if (!config.task.home.empty() && config.task.home.size() != config.robot.joint_count()) {
+    task.refuse("home", fmt::format("it must hold {} numbers, one a joint of the robot",
+                                    config.robot.joint_count()));
+  }
   config.workspace = read_workspace(table.get_table_or_empty("workspace"));
   std::vector<std::string> proposed =
       name_file(urdf, [&] { return read_path_and_proposal(table, config, loaded); });
@@ -175,9 +179,11 @@ std::vector<std::string> load_tracking(const ConfigTable& table, std::span<const
                                                  {.lower = 1, .upper = 1e9, .lower_open = true});
   if (config.start.joints.size() != config.robot.joint_count()) {
     variables.refuse("start",
-                     fmt::format("the design has {} joints and the robot {}; name a design "
-                                 "made for this robot",
-                                 config.start.joints.size(), config.robot.joint_count()));
+                     fmt::format("that design has {} joints and robot '{}' has {}; change "
+                                 "robot.urdf, name a design made for this robot, or let one be "
+                                 "made: variables.start=proposed",
+                                 config.start.joints.size(), sanitize(config.robot.name),
+                                 config.robot.joint_count()));
   }
   apply_controller(control, config);
   config.parameters = read_parameters(variables, config);

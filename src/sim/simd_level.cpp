@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -11,6 +12,15 @@ namespace {
 
 constexpr std::array kLevels = {SimdLevel::scalar, SimdLevel::sse2, SimdLevel::avx2,
                                 SimdLevel::avx512};
+
+SimdLevel find_level(std::string_view what, std::string_view name) {
+  const auto found =
+      std::ranges::find_if(kLevels, [&](SimdLevel level) { return to_string(level) == name; });
+  if (found == kLevels.end()) {
+    throw Error(ErrorKind::usage, describe_unknown(what, name, simd_names()));
+  }
+  return *found;
+}
 
 }  // namespace
 
@@ -37,12 +47,7 @@ std::vector<std::string> simd_names() {
 }
 
 SimdLevel parse_simd(std::string_view name) {
-  const auto found =
-      std::ranges::find_if(kLevels, [&](SimdLevel level) { return to_string(level) == name; });
-  if (found == kLevels.end()) {
-    throw Error(ErrorKind::usage, describe_unknown("SIMD level", name, simd_names()));
-  }
-  return *found;
+  return find_level("SIMD level", name);
 }
 
 bool is_supported(SimdLevel level) {
@@ -73,7 +78,12 @@ std::vector<std::string> supported_simd_names() {
 }
 
 SimdLevel find_best_simd() {
-  return *std::find_if(kLevels.rbegin(), kLevels.rend(), is_supported);
+  const char* const most = std::getenv("ARMWRIGHT_SIMD");
+  const SimdLevel highest = most == nullptr || *most == '\0'
+                                ? kLevels.back()
+                                : find_level("SIMD level in ARMWRIGHT_SIMD", most);
+  return *std::find_if(kLevels.rbegin(), kLevels.rend(),
+                       [&](SimdLevel level) { return level <= highest && is_supported(level); });
 }
 
 }  // namespace armwright

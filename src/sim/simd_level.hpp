@@ -16,6 +16,6 @@ std::vector<std::string> simd_names();            // all, in ascending order
 SimdLevel parse_simd(std::string_view name);      // Error{usage} if there is none of that name
 bool is_supported(SimdLevel level);               // by the CPU this runs on; scalar always is
 std::vector<std::string> supported_simd_names();  // those, in ascending order
-SimdLevel find_best_simd();                       // the highest supported
+SimdLevel find_best_simd();  // the highest supported, and not above $ARMWRIGHT_SIMD if that is set
 
 }  // namespace armwright

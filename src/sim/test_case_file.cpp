@@ -158,7 +158,9 @@ class JsonCases final : public nlohmann::json_sax<nlohmann::json> {
     }
     switch (depth_) {
       case 1:
-        refuse(name_, fmt::format("\"cases\" is {}; it must be an array of cases", found));
+        refuse(name_, fmt::format("\"cases\" is {}; it must be an array of cases, each an array "
+                                  "of points [x, y, z] in metres, the start first",
+                                  found));
       case 2:
         refuse(name_,
                fmt::format("case {} is {}; it must be an array of points", cases_.size(), found));

@@ -180,10 +180,12 @@ void LinkChecker::check_shape(const XMLElement& shape, const std::vector<std::st
     out_.write("filename", xml_.get_text(shape, "filename"));
     out_.write("scale", xml_.read_numbers(shape, "scale", 3, {1, 1, 1}));
   } else {
-    xml_.fail(shape, describe_unknown("shape", kind, shapes) +
-                         (kind == "capsule" ? " (a capsule is a <visual> with a cylinder and two "
-                                              "with a sphere each)"
-                                            : ""));
+    xml_.fail(shape,
+              describe_unknown("shape", kind, shapes) +
+                  (kind == "capsule" ? " (write a capsule as three <visual>, a cylinder and "
+                                       "a sphere at each end, or leave it out: visuals count "
+                                       "for looks, and for mass at a density)"
+                                     : ""));
   }
   out_.close();
 }

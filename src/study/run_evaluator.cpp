@@ -42,7 +42,7 @@ const ProblemDescription& RunEvaluator::problem() const {
 }
 
 bool RunEvaluator::stopped() const {
-  return stopped_ || budget_spent_ || stop_.reason() != StopReason::none;
+  return stopped_ || budget_spent_ || stop_.requested();
 }
 
 std::int64_t RunEvaluator::remaining() const {

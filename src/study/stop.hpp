@@ -4,7 +4,9 @@
 
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <optional>
+#include <utility>
 
 namespace armwright {
 
@@ -20,9 +22,16 @@ class StopSignal {
     reason_.compare_exchange_strong(none, reason);
   }
   void set_deadline(Clock::time_point deadline) { deadline_ = deadline; }  // before the run starts
+  // Called whenever somebody asks whether to stop, from any thread: for hosts that learn of
+  // interruptions otherwise than by signal handlers of ours, and then request() one. Before the run
+  // starts.
+  void set_lookout(std::function<void()> lookout) { lookout_ = std::move(lookout); }
 
   StopReason reason() const { return reason_; }
   bool requested() {
+    if (lookout_) {
+      lookout_();
+    }
     if (deadline_ && Clock::now() >= *deadline_) {
       request(StopReason::time_limit);
     }
@@ -33,6 +42,7 @@ class StopSignal {
   std::atomic<StopReason> reason_ = StopReason::none;
   static_assert(std::atomic<StopReason>::is_always_lock_free);
   std::optional<Clock::time_point> deadline_;
+  std::function<void()> lookout_;
 };
 
 }  // namespace armwright

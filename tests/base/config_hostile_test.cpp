@@ -97,9 +97,10 @@ TEST(HostileConfig, KeysBeyondAsciiNeedQuotes) {
   EXPECT_EQ(refusal_of("x = 1\nŭ = 1\n"),
             "q1.toml:2: 'ŭ' stands outside quotes; keys are made of a-z A-Z 0-9 _ -, anything else "
             "needs quotes");
-  EXPECT_EQ(refusal_of("[délka]\n"),
-            "q1.toml:1: 'é' stands outside quotes; keys are made of a-z A-Z 0-9 _ -, anything else "
-            "needs quotes");
+  EXPECT_EQ(
+      refusal_of("[délka]\n"),
+      "q1.toml:1: 'délka' stands outside quotes; keys are made of a-z A-Z 0-9 _ -, anything else "
+      "needs quotes");
   EXPECT_EQ(ConfigTable::parse("\"ŭ\" = 'é' # ž\n", "q1.toml").get_string("ŭ"), "é");
 }
 

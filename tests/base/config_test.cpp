@@ -1,7 +1,7 @@
 #include "base/config.hpp"
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <algorithm>
 #include <clocale>
@@ -330,6 +330,24 @@ TEST(Config, IgnoresTheLocaleOfTheCLibrary) {
   ASSERT_STREQ(std::localeconv()->decimal_point, ",");
   expect_numbers_read_and_written_with_a_point();
   std::setlocale(LC_ALL, "C");
+}
+
+TEST(Config, RemembersWhatWasAskedForAndWhatIsAllowed) {
+  const ConfigTable table = ConfigTable::parse("a = 1\n[[list]]\nb = 2\n[[list]]\nb = 3\n", "f");
+  table.get_integer_or("a", 7, 0, 9);
+  for (const ConfigTable& one : table.get_tables("list")) {
+    one.get_number("b", {.lower = 0});
+    one.has("c");
+  }
+  table.get_table_or_empty("absent").get_bool_or("flag", true);
+  std::vector<std::string> rows;
+  for (const AskedKey& key : table.asked()) {
+    rows.push_back(key.path + "|" + key.allowed + "|" + key.fallback);
+  }
+  EXPECT_THAT(rows, testing::ElementsAre("a|an integer from 0 to 9|7", "absent||",
+                                         "absent.flag|true or false|true",
+                                         "list|an array of tables, [[list]]|",
+                                         "list[].b|a finite number >= 0|", "list[].c||"));
 }
 
 }  // namespace

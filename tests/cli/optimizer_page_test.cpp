@@ -28,13 +28,6 @@ OptimizerRow make_row() {
   return row;
 }
 
-TEST(Markdown, IsShownAsItIs) {
-  EXPECT_EQ(escape_markdown("a|b"), "a\\|b");
-  EXPECT_EQ(escape_markdown("f < *g* [1] `x` \\"), "f \\< \\*g\\* \\[1\\] \\`x\\` \\\\");
-  EXPECT_EQ(escape_markdown("direct_l_rand, _x, y_"), "direct_l_rand, \\_x, y\\_");
-  EXPECT_EQ(escape_markdown("one\ntwo\x1b"), "one?two?");
-}
-
 TEST(OptimizerPage, HoldsWhatTheRowSays) {
   const std::string page = format_optimizer_page(make_row());
   EXPECT_THAT(page, AllOf(HasSubstr("\n# `lib:demo`\n\nDemo: a\\|b \\*stars\\*.\n"),

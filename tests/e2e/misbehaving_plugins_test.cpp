@@ -147,7 +147,7 @@ TEST_F(CliMisbehavingPlugins, WhoLiesAboutItsInterfaceIsRefusedBeforeAnythingRun
   EXPECT_FALSE(std::filesystem::exists(folder_ / "run"));
 }
 
-// As docs/adding-an-optimizer.md has it: one row an optimizer, and a bad one spoils its own only.
+// As docs/plugins.md has it: one run an optimizer, and a bad one spoils its own only.
 TEST_F(CliMisbehavingPlugins, AComparisonGoesOnWithTheNext) {
   std::ofstream(folder_ / "compare.sh")
       << "for optimizer in random " << library("misbehaving") << " 'exec:python3 " << script()

@@ -1,5 +1,5 @@
-// A plugin from nothing, as docs/adding-an-optimizer.md has it; in Python, which needs no installed
-// package to build against.
+// A plugin from nothing, as docs/tutorials/add-an-optimizer.md has it; in Python, which needs no
+// installed package to build against.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -84,8 +84,7 @@ TEST_F(CliRerun, RefusesWhatTheStudyHasNot) {
     EXPECT_EQ(outcome.exit_code, 2);
     EXPECT_THAT(outcome.err, HasSubstr(message));
   };
-  expect("q1-complx/ga/r01",
-         "unknown problem of the study 'q1-complx'; did you mean 'q1-complex'?");
+  expect("q1-complx/ga/r01", "unknown problem 'q1-complx'; did you mean 'q1-complex'?");
   expect("q1-complex/cmaess/r01", "did you mean 'cmaes'?");
   expect("q1-complex/ga/r03", "it has r01 to r02");
   expect("ga", "a cell is PROBLEM/OPTIMIZER/rNN");
@@ -94,7 +93,7 @@ TEST_F(CliRerun, RefusesWhatTheStudyHasNot) {
   expect("q1-complex/ga/r02", "compare study/study.toml --out study");
   const Outcome no_study = run_program(folder_.path(), {"rerun", "nowhere", "q1-complex/ga/r01"});
   EXPECT_EQ(no_study.exit_code, 2);
-  EXPECT_THAT(no_study.err, HasSubstr("is not the folder of a study"));
+  EXPECT_THAT(no_study.err, HasSubstr("there is no folder 'nowhere'"));
 }
 
 TEST_F(CliRerun, InterruptedItGoesOnWithTheSameCommand) {

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "base/temporary_folder.hpp"
 #include "e2e/program.hpp"
@@ -109,56 +108,6 @@ INSTANTIATE_TEST_SUITE_P(E2e, ShippedRobots,
 TEST_F(Robots, ThatSlideGoThatWayToo) {
   write("scara.urdf", kScara);
   expect_tuned({"--robot", "scara.urdf"});
-}
-
-// The tutorial, command by command as it stands there, with fewer cases and simulations. Its robot
-// is the shipped one with a gripper under another name.
-TEST_F(Robots, TheTutorialWorks) {
-  const std::filesystem::path docs =
-      std::filesystem::path(ARMWRIGHT_SCRIPTS).parent_path() / "docs";
-  std::istringstream lines(read_text(docs / "bring-your-robot.md"));
-  std::filesystem::copy_file(std::filesystem::path(ARMWRIGHT_CONFIGS) / "robots/arm7_gripper.urdf",
-                             folder_.path() / "my_arm.urdf");
-  std::string block;  // a file that the text shows, up to the next line that is not indented
-  std::string file;
-  int commands = 0;
-  for (std::string line; std::getline(lines, line);) {
-    if (!file.empty()) {
-      if (line.starts_with("    ") || line.empty()) {
-        block += (line.empty() ? line : line.substr(4)) + "\n";
-        continue;
-      }
-      write(file, block);
-      file.clear();
-      block.clear();
-    }
-    if (const std::size_t at = line.find("Write `"); at != std::string::npos) {
-      file = line.substr(at + 7, line.find('`', at + 7) - at - 7);
-      std::getline(lines, line);  // the empty one before the block
-      continue;
-    }
-    if (!line.starts_with("    armwright ")) {
-      continue;
-    }
-    std::istringstream words(line.substr(0, line.find(" #")));
-    std::vector<std::string> command;
-    for (std::string word; words >> word;) {
-      command.push_back(word);
-    }
-    command.erase(command.begin());
-    SCOPED_TRACE(line);
-    ++commands;
-    const bool simulates = command.front() == "optimize" || command.front() == "evaluate";
-    if (command.front() == "optimize") {
-      command.insert(command.end(), {"--budget", "40"});
-    } else if (command.front() == "verify") {
-      command.insert(command.end(), {"--cases", "1", "--engines", "articulated"});
-    }
-    const Outcome outcome = simulates ? run(command) : run_program(folder_.path(), command);
-    // Few simulations need not keep what is required.
-    EXPECT_THAT(outcome.exit_code, testing::AnyOf(0, 3)) << outcome.err;
-  }
-  EXPECT_GT(commands, 8);
 }
 
 }  // namespace

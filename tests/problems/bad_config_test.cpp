@@ -56,6 +56,8 @@ const std::vector<Mistake> kTask = {
     {"[task]\ntrapezoid_acceleration_m_per_s2 = 0",
      "3: task.trapezoid_acceleration_m_per_s2 is 0; it must be a finite number > 0 and <= "
      "1000000"},
+    {"[task]\nhome = [0, 1]",
+     "3: task.home is [0, 1]; it must hold 4 numbers, one a joint of the robot"},
     {"[task]\nrest_s = -0.5", "3: task.rest_s is -0.5; it must be a finite number >= 0 and <= 60"},
     {"[task]\ncount_first_point = 1",
      "3: task.count_first_point is 1, an integer; it must be true or false"},

@@ -160,9 +160,11 @@ TEST(BadRobot, ThatDoesNotSuitTheTaskIsNamedWithItsFile) {
 TEST(BadDesign, DoesNotFitTheRobot) {
   const ProblemFolder folder;
   folder.write("three.toml", make_joint() + make_joint() + make_joint());
-  EXPECT_EQ(folder.refusal_of_base_with("[variables]\nstart = 'three.toml'"),
-            "p.toml:3: variables.start is 'three.toml'; the design has 3 joints and the robot 4; "
-            "name a design made for this robot");
+  EXPECT_EQ(
+      folder.refusal_of_base_with("[variables]\nstart = 'three.toml'"),
+      "p.toml:3: variables.start is 'three.toml'; that design has 3 joints and robot "
+      "'irb4600_40_255' has 4; change robot.urdf, name a design made for this robot, or let one "
+      "be made: variables.start=proposed");
   EXPECT_EQ(folder.refusal_of_base_with(
                 "[sweep]\nparameter = 'task.load_kg'\nvalues = [1]\ndesign = 'three.toml'"),
             "p.toml:5: sweep.design is 'three.toml'; the design has 3 joints, the robot "

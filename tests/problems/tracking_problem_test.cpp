@@ -189,8 +189,9 @@ TEST(TrackingVariables, VariableWithoutUsableBoundsIsRefused) {
             "another value in the design or leave it out of 'optimize'");
   config.start.joints[1].gains[0] = 1e307;
   EXPECT_EQ(usage_error_of([&] { TrackingProblem broken(config); }),
-            "joint_2.p starts at 1e+307 and would span 1e+305 to inf, which floating-point numbers "
-            "cannot hold; give it another value in the design or lower bounds_factor");
+            "joint_2.p starts at 1e+307 and would span 1e+305 to inf (the start / and x "
+            "variables.bounds_factor), which floating-point numbers cannot hold; give it another "
+            "value in the design or lower the factor");
   config.start.joints[1].gains[0] = 1e-307;  // a hundredth of it has lost digits
   EXPECT_THAT(usage_error_of([&] { TrackingProblem broken(config); }),
               testing::StartsWith("joint_2.p starts at 1e-307 and would span "));

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "base/expect_error.hpp"
 #include "sim/simd_level.hpp"
@@ -39,6 +40,19 @@ TEST(SimdLevel, TheBestIsTheLastOfThoseThatAreSupported) {
 #else
   EXPECT_EQ(supported, std::vector<std::string>{"scalar"});
 #endif
+}
+
+TEST(SimdLevel, TheEnvironmentMayAskForLess) {
+  ::setenv("ARMWRIGHT_SIMD", "scalar", 1);
+  EXPECT_EQ(find_best_simd(), SimdLevel::scalar);
+  ::setenv("ARMWRIGHT_SIMD", "avx512", 1);  // not for more than there is
+  EXPECT_TRUE(is_supported(find_best_simd()));
+  ::setenv("ARMWRIGHT_SIMD", "avx", 1);
+  EXPECT_THAT(usage_error_of([] { find_best_simd(); }),
+              testing::HasSubstr("unknown SIMD level in ARMWRIGHT_SIMD 'avx'; did you mean"));
+  ::setenv("ARMWRIGHT_SIMD", "", 1);
+  EXPECT_EQ(to_string(find_best_simd()), supported_simd_names().back());
+  ::unsetenv("ARMWRIGHT_SIMD");
 }
 
 TEST(EngineOptions, PrecisionsReadBack) {

@@ -238,8 +238,14 @@ TEST_F(TestCaseFile, MalformedJsonIsRefusedByCaseAndPoint) {
       {R"([[[1,2,3],[1,2,4]]])",
        " is an array; it must be an object: {\"cases\": [[[x, y, z], ...], ...]}"},
       {R"({"cases": []})", " \"cases\" is empty; it must hold at least one case"},
-      {R"({"cases": {}})", " \"cases\" is an object; it must be an array of cases"},
-      {R"({"cases": 12})", " \"cases\" is 12; it must be an array of cases"},
+      {R"({"cases": {}})",
+       " \"cases\" is an object; it must be an array of cases, each an array of points [x, y, z] "
+       "in "
+       "metres, the start first"},
+      {R"({"cases": 12})",
+       " \"cases\" is 12; it must be an array of cases, each an array of points [x, y, z] in "
+       "metres, "
+       "the start first"},
       {first + "[[1,2,3]]], \"cases\": []}",
        " case 1, point 0 is its only one; a case must have at least 2 points: the start and where "
        "to go"},

@@ -335,7 +335,9 @@ INSTANTIATE_TEST_SUITE_P(
             "capsule_to_be_seen", "<box size=\"0.1 0.2 0.2\"/>",
             "<capsule radius=\"0.1\" length=\"1\"/>", "tool0",
             "cell.urdf:90: link 'hand': unknown shape 'capsule'. Valid: box, cylinder, sphere, "
-            "mesh (a capsule is a <visual> with a cylinder and two with a sphere each)"},
+            "mesh (write a capsule as three <visual>, a cylinder and a sphere at each end, or "
+            "leave it "
+            "out: visuals count for looks, and for mass at a density)"},
         CellTrap{"no_mass_but_inertia", "<mass value=\"0\"/><inertia ixx=\"0\"",
                  "<mass value=\"0\"/><inertia ixx=\"1\"", "tool0",
                  "cell.urdf:126: link 'tool0': <mass>: value is 0; it must be > 0 (a frame without "

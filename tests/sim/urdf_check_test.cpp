@@ -262,10 +262,11 @@ INSTANTIATE_TEST_SUITE_P(
              "name is 'tool?[2J'; it must be printable UTF-8"},
         Trap{"material", "<material name=\"red\"/>", "<material name=\"rde\"/>", 31,
              "link 'arm': unknown material 'rde'; did you mean 'red'? Valid: red"},
-        Trap{
-            "shape", "<box size=\"0.6 0.1 0.1\"/>", "<capsule radius=\"1\"/>", 30,
-            "link 'arm': unknown shape 'capsule'. Valid: box, cylinder, sphere, mesh (a capsule is "
-            "a <visual> with a cylinder and two with a sphere each)"},
+        Trap{"shape", "<box size=\"0.6 0.1 0.1\"/>", "<capsule radius=\"1\"/>", 30,
+             "link 'arm': unknown shape 'capsule'. Valid: box, cylinder, sphere, mesh (write a "
+             "capsule as three <visual>, a cylinder and a sphere at each end, or leave it out: "
+             "visuals "
+             "count for looks, and for mass at a density)"},
         Trap{"no_shape", "<box size=\"0.6 0.1 0.1\"/>", "", 30,
              "<geometry> must hold exactly one of box, cylinder, sphere, mesh"},
         Trap{"xacro_element", "<link name=\"tool\"/>", "<xacro:arm name=\"tool\"/>", 51,

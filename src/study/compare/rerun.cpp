@@ -66,15 +66,13 @@ std::vector<Cell> find_readings(const StudyPlan& plan, std::string_view head) {
   for (const StudyProblem& problem : plan.problems) {
     for (const std::string& form : list_forms(problem.label)) {
       if (head.starts_with(form + "/")) {
-        throw Error(ErrorKind::usage,
-                    describe_unknown("optimizer of the study", head.substr(form.size() + 1),
-                                     list_optimizer_labels(plan)));
+        throw Error(ErrorKind::usage, describe_unknown("optimizer", head.substr(form.size() + 1),
+                                                       list_optimizer_labels(plan)));
       }
     }
   }
-  throw Error(ErrorKind::usage,
-              describe_unknown("problem of the study", head.substr(0, head.find('/')),
-                               list_problem_labels(plan)));
+  throw Error(ErrorKind::usage, describe_unknown("problem", head.substr(0, head.find('/')),
+                                                 list_problem_labels(plan)));
 }
 
 }  // namespace

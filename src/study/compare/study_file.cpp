@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <limits>
 
-#include "base/config.hpp"
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/hash.hpp"
 #include "base/text.hpp"
+#include "optimizers/foreign_optimizer.hpp"
 #include "problems/config_files.hpp"
 #include "sim/simd_level.hpp"
 #include "study/compare/case_sets.hpp"
@@ -33,6 +33,9 @@ struct NamedOptimizer {
   bool baseline = false;  // a resolved plan says so
   std::optional<Schedule> schedule;
   std::vector<std::string> settings;
+  // A resolved plan has these of a foreign optimizer.
+  std::string description = {};
+  std::vector<std::string> inputs = {};  // "NAME HASH"
 };
 
 struct NamedProblem {
@@ -124,11 +127,11 @@ RawPlan read_file_plan(const ConfigTable& table, StudyPlan& plan) {
   }
   for (const ConfigTable& optimizer : table.get_tables_or_empty("optimizer")) {
     refuse_privileges(optimizer);
-    raw.optimizers.push_back({optimizer.get_string("name"), optimizer.get_string("label", ""),
-                              get_strings_or_none(optimizer, "options"),
-                              optimizer.get_bool_or("baseline", false),
-                              read_schedule_key(optimizer), read_method_settings(optimizer)});
-    get_strings_or_none(optimizer, "inputs");  // of a resolved plan: they follow from the rest
+    raw.optimizers.push_back(
+        {optimizer.get_string("name"), optimizer.get_string("label", ""),
+         get_strings_or_none(optimizer, "options"), optimizer.get_bool_or("baseline", false),
+         read_schedule_key(optimizer), read_method_settings(optimizer),
+         optimizer.get_string("description", ""), get_strings_or_none(optimizer, "inputs")});
   }
   table.refuse_unknown();
   return raw;
@@ -246,34 +249,51 @@ void load_problems(const RawPlan& raw, StudyPlan& plan) {
   }
   if (plan.problems.empty()) {
     throw Error(ErrorKind::usage,
-                "the study names no problem; give --problems a,b or a file with "
-                "problems = [...]");
+                "the study names no problem; give --problems A,B, or in its file "
+                "problems = [\"A\", \"B\"] (armwright list problems)");
   }
   refuse_repeated("problem", labels);
 }
 
-StudyOptimizer load_study_optimizer(const NamedOptimizer& named) {
+OptimizerRow find_row(const NamedOptimizer& named, std::span<const OptimizerRow> rows) {
+  const auto row = std::ranges::find(rows, named.name, &OptimizerRow::name);
+  if (row != rows.end()) {
+    return *row;
+  }
+  if (named.description.empty()) {
+    return load_optimizer(named.name);  // what it reads says what its inputs are
+  }
+  OptimizerRow recorded = read_foreign_row(named.name, named.description);
+  for (const std::string& input : named.inputs) {
+    const std::size_t blank = std::min(input.rfind(' '), input.size());
+    recorded.input_hashes[input.substr(0, blank)] = input.substr(std::min(blank + 1, input.size()));
+  }
+  return recorded;
+}
+
+StudyOptimizer load_study_optimizer(const NamedOptimizer& named,
+                                    std::span<const OptimizerRow> rows = {}) {
   StudyOptimizer optimizer;
   optimizer.name = named.name;
   optimizer.label = named.label.empty() ? named.name : named.label;
   optimizer.options = named.options;
   optimizer.baseline = named.baseline;
-  optimizer.row = load_optimizer(named.name);
+  optimizer.row = find_row(named, rows);
   optimizer.parsed = Options::parse(optimizer.row.name, optimizer.row.options, named.options);
   optimizer.schedule = named.schedule;
   optimizer.settings = named.settings;
   return optimizer;
 }
 
-void load_optimizers(const RawPlan& raw, StudyPlan& plan) {
+void load_optimizers(const RawPlan& raw, std::span<const OptimizerRow> rows, StudyPlan& plan) {
   if (raw.optimizers.empty()) {
     throw Error(ErrorKind::usage,
-                "the study names no optimizer; give --optimizers a,b or a file "
-                "with optimizers = [...]");
+                "the study names no optimizer; give --optimizers A,B, or in its file "
+                "optimizers = [\"A\", \"B\"] (armwright list optimizers)");
   }
   bool has_random = false, has_local = false;
   for (const NamedOptimizer& named : raw.optimizers) {
-    plan.optimizers.push_back(load_study_optimizer(named));
+    plan.optimizers.push_back(load_study_optimizer(named, rows));
     const OptimizerRow& row = plan.optimizers.back().row;
     has_random = has_random || row.name == kRandomBaseline;
     has_local = has_local || row.capabilities.local;
@@ -380,6 +400,12 @@ std::string read_study_title(const std::string& file) {
   return ConfigTable::load(resolve_config("studies", file)).get_string("title", "");
 }
 
+std::vector<AskedKey> ask_study_keys(const ConfigTable& table) {
+  StudyPlan plan;
+  read_file_plan(table, plan);
+  return table.asked();
+}
+
 StudyPlan make_study_plan(const StudyRequest& request) {
   StudyPlan plan;
   RawPlan raw;
@@ -418,7 +444,7 @@ StudyPlan make_study_plan(const StudyRequest& request) {
                 "the study names no budget; give --budget CASES or budget = CASES: how many "
                 "training cases every optimizer may simulate on a problem");
   }
-  load_optimizers(raw, plan);
+  load_optimizers(raw, request.rows, plan);
   load_methods(plan);
   check_targets(plan);
   if (plan.name.empty()) {

@@ -75,6 +75,9 @@ std::string make_targets(const StudyPlan& plan) {
 
 std::string make_method(const StudyOptimizer& optimizer) {
   std::string text;
+  if (!optimizer.row.description.empty()) {
+    text += fmt::format("description = {}\n", quote(optimizer.row.description));
+  }
   if (optimizer.schedule) {
     text += fmt::format("schedule = {}\n", quote(to_text(*optimizer.schedule)));
   }
@@ -172,11 +175,22 @@ bool is_study_folder(const std::filesystem::path& path) {
   return std::filesystem::is_regular_file(path / kPlanFile, ignored);
 }
 
-StudyPlan load_study_plan(const std::filesystem::path& folder) {
-  if (!is_study_folder(folder)) {
-    throw Error(ErrorKind::usage, fmt::format("{}: is not the folder of a study (it has no {})",
-                                              folder.string(), kPlanFile));
+void check_study_folder(const std::filesystem::path& folder) {
+  if (is_study_folder(folder)) {
+    return;
   }
+  std::error_code ignored;
+  throw Error(ErrorKind::usage,
+              std::filesystem::exists(folder, ignored)
+                  ? fmt::format("{} is not the folder of a study: it has no {}",
+                                sanitize(folder.string()), kPlanFile)
+                  : fmt::format("there is no folder '{}'; name that of a study, results/NAME "
+                                "unless --out said otherwise",
+                                sanitize(folder.string())));
+}
+
+StudyPlan load_study_plan(const std::filesystem::path& folder) {
+  check_study_folder(folder);
   StudyRequest request;
   request.file = (folder / kPlanFile).string();
   return make_study_plan(request);

@@ -42,6 +42,8 @@ std::string calc_plan_hash(const StudyPlan& plan);
 
 // Whether a folder is a study's.
 bool is_study_folder(const std::filesystem::path& path);
+// Error{usage} if it is none, or not there.
+void check_study_folder(const std::filesystem::path& folder);
 // The plan with what a folder's plan has beside it by itself: baselines. Before StudyFolder.
 void adopt_recorded(const std::filesystem::path& folder, StudyPlan& plan);
 // The plan that a study's folder records.

@@ -167,9 +167,8 @@ void check_targets(StudyPlan& plan) {
     for (const std::string& problem : target.problems) {
       const auto found = std::ranges::find(plan.problems, problem, &StudyProblem::label);
       if (found == plan.problems.end()) {
-        throw Error(ErrorKind::usage,
-                    fmt::format("target '{}': {}", target.label,
-                                describe_unknown("problem of the study", problem, problems)));
+        throw Error(ErrorKind::usage, fmt::format("target '{}': {}", target.label,
+                                                  describe_unknown("problem", problem, problems)));
       }
       if (target.failures && !found->loaded.tracking) {
         throw Error(ErrorKind::usage,
@@ -198,9 +197,9 @@ void check_targets(StudyPlan& plan) {
     optimizers.push_back(optimizer.label);
   }
   if (std::ranges::find(optimizers, plan.reference) == optimizers.end()) {
-    throw Error(ErrorKind::usage,
-                fmt::format("reference: {}", describe_unknown("optimizer of the study",
-                                                              plan.reference, optimizers)));
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("reference: {}", describe_unknown("optimizer", plan.reference, optimizers)));
   }
   if (plan.targets.empty()) {
     throw Error(ErrorKind::usage,

@@ -22,6 +22,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/config.hpp"
 #include "study/run_plan.hpp"
 
 namespace armwright {
@@ -102,6 +103,8 @@ struct StudyRequest {
   std::optional<Schedule> schedule;
   std::optional<std::uint64_t> seed;
   bool baselines = true;
+  // Optimizers that live in the program that asks, by their names (foreign_optimizer.hpp).
+  std::vector<OptimizerRow> rows = {};
 };
 
 // Reads, completes and checks everything. Error{usage} or Error{bad_data}.
@@ -119,6 +122,9 @@ void keep_baselines(const std::filesystem::path& recorded, StudyPlan& plan);
 
 // Of a study's file alone, without loading what it names.
 std::string read_study_title(const std::string& file);
+
+// What is asked of a study's file as far as its table goes, without loading what it names.
+std::vector<AskedKey> ask_study_keys(const ConfigTable& table);
 
 struct Cell {
   std::size_t problem = 0;

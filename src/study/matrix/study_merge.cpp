@@ -49,13 +49,7 @@ class CellImport {
   CellImport(const StudyPlan& plan, const std::filesystem::path& study,
              std::span<const std::filesystem::path> others)
       : plan_(plan), study_(study), others_(others) {
-    for (const auto& other : others) {
-      if (!is_study_folder(other)) {
-        throw Error(ErrorKind::usage,
-                    fmt::format("{}: is not the folder of a study (it has no study.toml)",
-                                sanitize(other.string())));
-      }
-    }
+    std::ranges::for_each(others, check_study_folder);
     for (const Cell& cell : list_cells(plan)) {
       find(cell);
     }

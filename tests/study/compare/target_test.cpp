@@ -188,12 +188,12 @@ TEST(StudyTargets, MistakesAreNamed) {
   expect("", "[[target]]\nlabel = 'a'\nvalue = 1\n[[target]]\nlabel = 'a'\nvalue = 2\n",
          "two targets of the study are called 'a'");
   expect("", "[[target]]\nlabel = 'a'\nvalue = 1\nproblems = ['spere']\n",
-         "target 'a': unknown problem of the study 'spere'");
+         "target 'a': unknown problem 'spere'");
   expect("", "[[target]]\nlabel = 'a'\nfailures = 0\n",
          "target 'a' counts failing test cases, and sphere is a function");
   expect("", "[[target]]\nlabel = 'a'\nfailures = -1\n", "target[0].failures is -1");
   expect("reference = 'gaa'\n", "[[target]]\nlabel = 'a'\nvalue = 1\n",
-         "reference: unknown optimizer of the study 'gaa'");
+         "reference: unknown optimizer 'gaa'");
   expect("reference = 'ga'\n", "", "and the study has no [[target]]");
   expect("value = 'failures'\n", "", "and sphere is a function");
   expect("value = 'failure'\n", "",

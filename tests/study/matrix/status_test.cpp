@@ -131,7 +131,7 @@ TEST_F(MergeTest, RefusesCellsOfOtherSettings) {
   EXPECT_THAT(error_of(ErrorKind::bad_data, [&] { merge({other}); }),
               HasSubstr("was run with other settings: run.budget: recorded 70, now 60"));
   EXPECT_THAT(usage_error_of([&] { merge({temporary_ / "nothing"}); }),
-              HasSubstr("is not the folder of a study"));
+              HasSubstr("there is no folder '"));
 }
 
 }  // namespace

@@ -1,0 +1,340 @@
+"""Problems: what they are, and evaluating points and designs on them."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Optional, Sequence, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _armwright
+from ._values import FloatArray, MaskedFloats, Settings, quote_words, to_jobs, to_list, to_masked, to_masked_matrices, to_points, to_settings, to_whole
+from .description import Description
+from .errors import UsageError
+from .progress import Listener, Show
+
+STATUSES: tuple[str, ...] = _armwright.STATUSES
+_MOST_CASES = 1_000_000
+_ROLES = ("training", "validation", "test")
+
+
+@dataclass(frozen=True)
+class Evaluations:
+    """What came of n points. No number in it is ever NaN.
+
+    An evaluation that failed has a status, and takes for objectives what optimizers are told of it: the problem's penalty, finite and worse
+    than any design that works. Its constraints are infinite (violated beyond measure), and what else has no number is masked.
+
+    Attributes
+    ----------
+    objectives : array (n, m)
+        To be minimised, in their units.
+    values : array (n,)
+        Their weighted sum; of one objective that itself.
+    constraints : array (n, c)
+        g, met where at most 0.
+    metrics : dict of str to masked array (n,)
+        By name, in their units.
+    case_errors : masked array (n, cases)
+        Of every test case (in metres for arms).
+    ok : array of bool (n,)
+        Whether the evaluation succeeded.
+    status : array of str (n,)
+        "ok", "diverged", "unreachable", "timed_out" or "failed".
+    reasons : dict of int to str
+        By row, of the evaluations that failed.
+    residuals : masked array (n, r) or None
+        If asked for: the sum of their squares is the objective, or its exponential.
+    jacobian : masked array (n, r, d) or None
+        If asked for: their exact derivatives.
+    """
+
+    objectives: FloatArray
+    values: FloatArray
+    constraints: FloatArray
+    metrics: dict[str, MaskedFloats]
+    case_errors: MaskedFloats
+    ok: npt.NDArray[np.bool_]
+    status: npt.NDArray[np.str_]
+    reasons: dict[int, str]
+    residuals: Optional[MaskedFloats] = None
+    jacobian: Optional[MaskedFloats] = None
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+
+@dataclass(frozen=True)
+class DesignEvaluation:
+    """A design of an arm on test cases, with the numbers of `armwright evaluate --json`.
+
+    Attributes
+    ----------
+    summary : dict
+        mean_error_m, median_error_m, percentile_95_error_m, worst_error_m, failures, without_number, total_torque_n_m, mean_energy_j, cases,
+        design, problem, test_set. None where there is no number.
+    errors_m : masked array (cases,)
+        A case without a number is masked.
+    energies_j : masked array (cases,)
+    point_errors_m : masked array (cases, points)
+    status : list of str
+        "ok", "diverged" or "unreachable", one a case.
+    reasons : list of str
+        Why a case has no number; "" if it has.
+    requirements : list of dict
+        Of problems that have some: name, unit, limit, value, grade ("met", "tight", "missed", "unknown").
+    """
+
+    summary: dict[str, Any]
+    errors_m: MaskedFloats
+    energies_j: MaskedFloats
+    point_errors_m: MaskedFloats
+    status: list[str]
+    reasons: list[str]
+    requirements: list[dict[str, Any]] = field(default_factory=list)
+
+    def to_dict(self) -> dict[str, Any]:
+        """All of it as plain lists and numbers, None where there is none, ready for JSON."""
+        return {
+            "summary": dict(self.summary),
+            "errors_m": to_list(self.errors_m),
+            "energies_j": to_list(self.energies_j),
+            "point_errors_m": to_list(self.point_errors_m),
+            "status": list(self.status),
+            "reasons": list(self.reasons),
+            "requirements": list(self.requirements),
+        }
+
+
+class Problem(Description):
+    """A problem, ready to be evaluated; load_problem() makes one. What a Description has, and:
+
+    Attributes
+    ----------
+    title : str
+    is_arm : bool
+        Whether a design is an arm's; otherwise the problem is a function.
+    sets : dict
+        Names of the sets "training", "validation" and "test", and how many cases the last two have.
+    budget : int
+        Training cases that a run simulates unless told otherwise.
+    optimizer : str
+        Who optimizes unless told otherwise.
+    schedule : str
+        Which cases a run trains on unless told otherwise.
+    published : dict
+        What the problem's source reports of its own winner.
+    configuration : dict
+        All settings, after inheritance and `set`.
+    """
+
+    def __init__(self, inner: _armwright.Problem) -> None:
+        super().__init__(json.loads(inner.describe()))
+        self._inner = inner
+        content = self._content
+        self.title: str = content["title"]
+        self.is_arm: bool = content["is_arm"]
+        self.sets: dict[str, Any] = content["sets"]
+        self.budget: int = content["budget"]
+        self.optimizer: str = content["optimizer"]
+        self.schedule: str = content["schedule"]
+        self.published: dict[str, Any] = content["published"]
+        self.configuration: dict[str, Any] = content["configuration"]
+
+    def __repr__(self) -> str:
+        return f"<armwright.Problem {self.name}: {len(self.variables)} variables, {self.title}>"
+
+    def to_dict(self) -> dict[str, Any]:
+        """All that is known of the problem, as plain lists and numbers."""
+        copy: dict[str, Any] = json.loads(json.dumps(self._content))
+        return copy
+
+    def evaluate(
+        self,
+        X: npt.ArrayLike,
+        *,
+        cases: Union[None, int, Sequence[int]] = None,
+        set: str = "training",
+        residuals: bool = False,
+        jacobian: bool = False,
+        jobs: Optional[int] = None,
+        progress: Show = None,
+    ) -> Evaluations:
+        """Evaluates points on test cases, on all cores. Nothing is counted, recorded or chosen.
+
+        Parameters
+        ----------
+        X : array (n, d) or (d,)
+            Points within the bounds, in the variables' units. An array of doubles in C order is not copied.
+        cases : int or sequence of int, optional
+            The first so many of the set, or these. Default: as many as the problem trains on with fixed cases, validates or tests on.
+        set : str
+            "training", "validation" or "test" for the problem's own, or a name such as "train/7" or "test/3": any name generates cases.
+            In training a case is cut off at an error of 1 m, in others never.
+        residuals, jacobian : bool
+            Whether they are wanted.
+        jobs : int, optional
+            Threads; results do not depend on it. Default: $ARMWRIGHT_JOBS or all cores.
+        progress : optional
+            As of optimize().
+
+        Raises
+        ------
+        UsageError
+            For a wrong shape, what is no number, a point out of bounds (clip() moves it), or derivatives that the problem has not.
+        """
+        points = to_points(X)
+        role, name = self._find_set(set)
+        for wanted, has, what in ((residuals, self.has_residuals, "residuals"), (jacobian, self.has_jacobian, "jacobian")):
+            if wanted and not has:
+                raise UsageError(f"problem {self.name} has no {what}: {self._content[what + '_advice'] or 'it offers none'}")
+        with Listener(progress) as listener:
+            table, reasons, rest, slopes = self._inner.evaluate(
+                points, role, name, self._list_numbers(cases, role), residuals, jacobian, to_jobs(jobs), listener)
+        objectives, constraints, metrics, case_errors, status = table
+        return Evaluations(
+            objectives=objectives,
+            values=self.calc_values(objectives),
+            constraints=constraints,
+            metrics={one.name: to_masked((metrics[:, i], np.isinf(metrics[:, i]))) for i, one in enumerate(self.metrics)},
+            case_errors=to_masked((case_errors, np.isinf(case_errors))),
+            ok=status == 0,
+            status=np.array(STATUSES)[status],
+            reasons=reasons,
+            residuals=None if rest is None else to_masked(rest),
+            jacobian=None if slopes is None else to_masked_matrices(slopes, len(self)),
+        )
+
+    def cases(self, set: str = "test", count: Optional[int] = None, *, first: int = 0) -> FloatArray:
+        """Test cases of a set: (cases, points, 3), x, y, z in metres in the robot's base frame; the first point is the start.
+
+        The same as `armwright testset export`. `set` as in evaluate(); `count` is by default as many as the problem has there.
+        """
+        role, name = self._find_set(set)
+        numbers = self._list_numbers(count, role)
+        return self._inner.cases(name, to_whole("first", first, 2**53), len(numbers))
+
+    def evaluate_design(
+        self,
+        design: Union[str, Path, npt.ArrayLike],
+        *,
+        cases: Union[None, int, npt.ArrayLike, Sequence[npt.ArrayLike]] = None,
+        set: str = "test",
+        jobs: Optional[int] = None,
+        progress: Show = None,
+    ) -> DesignEvaluation:
+        """Judges one design of an arm, case by case and without any cut-off, as `armwright evaluate` does.
+
+        Parameters
+        ----------
+        design : str, path or array (d,)
+            A shipped design ("table-a10"), a design file, "start", or a point.
+        cases : int or array (cases, points, 3), optional
+            The first so many of the set (default: as many as the problem tests on), or cases of your own in metres, the first point being the
+            start; a list of arrays where they are of different lengths.
+        set : str
+            As in evaluate().
+        jobs, progress : optional
+            As in evaluate().
+        """
+        role, name = self._find_set(set)
+        chosen: Union[str, list[FloatArray]] = name
+        if cases is None or isinstance(cases, (int, np.integer)):
+            count = len(self._list_numbers(None if cases is None else int(cases), role))
+        else:
+            own: Any = cases
+            chosen = [to_points(one, "cases") for one in own]
+            count = len(chosen)
+        asked: Union[str, FloatArray] = str(design) if isinstance(design, (str, Path)) else to_points(design, "x")
+        with Listener(progress) as listener:
+            text, status, reasons, errors, energies, points = _armwright.evaluate_design(
+                self._inner, asked, chosen, count, to_jobs(jobs), listener)
+        content = json.loads(text)
+        return DesignEvaluation(
+            summary=content["summary"],
+            errors_m=to_masked(errors)[0],
+            energies_j=to_masked(energies)[0],
+            point_errors_m=to_masked(points),
+            status=status,
+            reasons=reasons,
+            requirements=content["requirements"],
+        )
+
+    def write_design(self, x: npt.ArrayLike, path: Union[str, Path], *, name: Optional[str] = None) -> Path:
+        """Writes a point (d,) as a design file, for `armwright evaluate PATH` and whoever else reads designs."""
+        file = Path(path)
+        file.write_text(_armwright.design_toml(self._inner, to_points(x, "x"), name or file.stem), encoding="utf-8")
+        return file
+
+    def _find_set(self, name: str) -> tuple[str, str]:
+        """Role and name of a set."""
+        if name in _ROLES:
+            return name, self.sets[name]
+        if "/" not in name:
+            raise UsageError(f"set is {name!r}; it must be training, validation, test, or a name with a slash such as test/3")
+        return {"train": "training", "validation": "validation"}.get(name.split("/")[0], "test"), name
+
+    def _list_numbers(self, cases: Union[None, int, Sequence[int]], role: str) -> list[int]:
+        if cases is None:
+            cases = self._count_training_cases() if role == "training" else self.sets[role + "_cases"]
+        if isinstance(cases, (int, np.integer)):
+            if not 1 <= cases <= _MOST_CASES:
+                raise UsageError(f"cases is {cases}; it must be an integer from 1 to {_MOST_CASES}, or a list of numbers of cases")
+            return list(range(int(cases)))
+        numbers = [to_whole("a case's number", one, 2**53) for one in cases]
+        if not numbers:
+            raise UsageError("cases is empty; it must name at least one")
+        return numbers
+
+    def _count_training_cases(self) -> int:
+        kind, count = self.schedule.split(":")
+        return int(count) if kind == "fixed" else int(self._content["fixed_cases"])
+
+
+def load_problem(
+    name: Union[None, str, Path] = None,
+    *,
+    set: Optional[Settings] = None,
+    robot: Union[None, str, Path] = None,
+    base: Optional[str] = None,
+    tip: Optional[str] = None,
+) -> Problem:
+    """Loads a problem.
+
+    Parameters
+    ----------
+    name : str or path, optional
+        A shipped problem (list_problems()) or a TOML file. Not needed with `robot`: then it is the one for any arm, "robot".
+    set : mapping or list of str, optional
+        Settings to change, as the program's --set: {"physics.engine": "articulated", "task.load_kg": 20}, or KEY=VALUE texts.
+    robot, base, tip : str, optional
+        An arm of your own: its URDF (or a shipped robot's name), and the links at which it begins and ends.
+
+    Examples
+    --------
+    >>> problem = armwright.load_problem("q1-complex", set={"physics.engine": "articulated"})
+    >>> problem.evaluate(problem.start, cases=5).values.shape
+    (1,)
+    """
+    settings = to_settings(set)
+    if robot is not None:
+        settings.append(f"robot.urdf={quote_words(str(Path(_armwright.resolve_config('robots', str(robot))).absolute()))}")
+    for key, link in (("base", base), ("tip", tip)):
+        if link is not None:
+            settings.append(f"robot.{key}={quote_words(link)}")
+    if name is None and robot is None:
+        raise UsageError("a problem's name is missing; list_problems() has the shipped ones, or give an arm of your own: robot=FILE")
+    return Problem(_armwright.Problem(str(name) if name is not None else "robot", settings))
+
+
+def list_problems() -> dict[str, str]:
+    """The shipped problems: titles by name."""
+    return dict(_armwright.list_problems())
+
+
+def list_designs() -> list[str]:
+    """Names of the shipped designs, published ones and ours."""
+    return list(_armwright.list_configs("designs"))

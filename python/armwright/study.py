@@ -1,0 +1,214 @@
+"""Comparisons: optimizers on the same footing, with statistics and a verdict, in a folder that the program reads, too."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any, Optional, Sequence, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _armwright
+from ._values import FloatArray, Settings, to_jobs, to_settings, to_whole
+from .errors import UsageError
+from .optimizer import AnyOptimizer, to_row
+from .progress import Listener, Show
+from .run import Run, load_run
+
+
+class Study:
+    """What a comparison has found. Values are to be minimised; one that is infinite is of a run without a winner that works.
+
+    Attributes
+    ----------
+    folder : Path
+        `armwright show`, `report` and `export` read it.
+    finished : bool
+        False: some cells have not come to their end (`missing` names them); the same call goes on.
+    name, title : str
+    problems, optimizers : tuple of str
+        Labels, in the order of all arrays below.
+    baselines : frozenset of str
+        Optimizers that take part by themselves.
+    replicates, budget : int
+    values : array (optimizers, problems, replicates)
+        Of every run its winner's on the test set.
+    start_values : array (optimizers, problems, replicates)
+        Where it started from.
+    verdict : list of str
+        Sentences that follow from the statistics and nothing else.
+    """
+
+    def __init__(self, folder: Path, content: dict[str, Any]) -> None:
+        self.folder = folder
+        self._content = content
+        self._result: dict[str, Any] = content["result"]
+        plan = content["plan"]
+        self.name: str = plan["name"]
+        self.title: str = plan["title"]
+        self.seed: int = plan["seed"]
+        self.replicates: int = plan["replicates"]
+        self.budget: int = plan["budget"]
+        self.missing: list[str] = content["missing"]
+        self.finished = not self.missing
+        self.problems: tuple[str, ...] = tuple(one["label"] for one in plan["problems"])
+        self.optimizers: tuple[str, ...] = tuple(one["label"] for one in plan["optimizers"])
+        self.baselines = frozenset(one["label"] for one in plan["optimizers"] if one["baseline"])
+        self.verdict: list[str] = self._result["verdict"]
+        self._checkpoints = {one["label"]: np.array(one["checkpoints"], dtype=np.int64) for one in plan["problems"]}
+        shape = (len(self.optimizers), len(self.problems), self.replicates)
+        self.values: FloatArray = np.full(shape, np.inf)
+        self.start_values: FloatArray = np.full(shape, np.inf)
+        self._cells = {(cell["label"], cell["problem"], cell["replicate"]): cell for cell in content["cells"]}
+        for (optimizer, problem, replicate), cell in self._cells.items():
+            place = (self.optimizers.index(optimizer), self.problems.index(problem), replicate - 1)
+            self.values[place] = _to_value(cell["value"])
+            self.start_values[place] = _to_value(cell["start_value"])
+
+    def __repr__(self) -> str:
+        state = "" if self.finished else f", {len(self.missing)} cells missing"
+        return f"<armwright.Study {self.folder}: {len(self.optimizers)} optimizers, {len(self.problems)} problems, {self.replicates} replicates{state}>"
+
+    def checkpoints(self, problem: str) -> npt.NDArray[np.int64]:
+        """Budgets, in cases, at which incumbents were tested."""
+        return self._checkpoints[self._check("problem", problem, self.problems)]
+
+    def curves(self, problem: str, optimizer: str) -> FloatArray:
+        """(replicates, checkpoints): what the incumbents at the checkpoints are worth on the test set; infinite before there is one."""
+        budgets = self.checkpoints(problem)
+        curves = np.full((self.replicates, len(budgets)), np.inf)
+        for replicate in range(1, self.replicates + 1):
+            for budget, value, *_ in self.cell(problem, optimizer, replicate)["curve"]:
+                curves[replicate - 1, np.searchsorted(budgets, budget)] = _to_value(value)
+        return curves
+
+    def cell(self, problem: str, optimizer: str, replicate: int) -> dict[str, Any]:
+        """All that is recorded of one run: x, value, validation_value, objectives, metrics, test, curve, cases, failure, ..."""
+        self._check("problem", problem, self.problems)
+        self._check("optimizer", optimizer, self.optimizers)
+        if not 1 <= replicate <= self.replicates:
+            raise UsageError(f"replicate is {replicate}; it must be an integer from 1 to {self.replicates}")
+        found: dict[str, Any] = self._cells[optimizer, problem, replicate]
+        return found
+
+    def run(self, problem: str, optimizer: str, replicate: int) -> Run:
+        """The cell as a run, with its history."""
+        self.cell(problem, optimizer, replicate)
+        return load_run(self.folder / "cells" / _escape(problem) / _escape(optimizer) / f"r{replicate:02}")
+
+    def pairs(self, problem: Optional[str] = None) -> list[dict[str, Any]]:
+        """Every two optimizers compared: a, b, p, p_holm, a12 (that a run of a is better), wins (of a, ties, of b), significant.
+
+        On a problem, or over all of them.
+        """
+        found: list[dict[str, Any]] = self._find(problem)["pairs"] if problem is not None else self._result["over_problems"]["pairs"]
+        return found
+
+    def table(self, problem: str) -> dict[str, dict[str, Any]]:
+        """By optimizer, best first: values, quartiles, median_interval, mean_rank, failed, running_times, ..."""
+        found = self._find(problem)
+        return {label: found["optimizers"][label] for label in found["order"]}
+
+    @property
+    def mean_ranks(self) -> dict[str, float]:
+        """Over problems, by optimizer; 1 is best."""
+        found: dict[str, float] = self._result["over_problems"]["mean_ranks"]
+        return found
+
+    def to_dict(self) -> dict[str, Any]:
+        """The content of result.json."""
+        copy: dict[str, Any] = json.loads(json.dumps(self._result))
+        return copy
+
+    def _find(self, problem: str) -> dict[str, Any]:
+        self._check("problem", problem, self.problems)
+        found: dict[str, Any] = next(one for one in self._result["problems"] if one["problem"] == problem)
+        return found
+
+    @staticmethod
+    def _check(what: str, name: str, valid: Sequence[str]) -> str:
+        if name not in valid:
+            raise UsageError(f"unknown {what} of the study {name!r}; valid: {', '.join(valid)}")
+        return name
+
+
+def _to_value(value: Optional[float]) -> float:
+    return np.inf if value is None else value
+
+
+def _escape(label: str) -> str:
+    return _armwright.escape_name(label)
+
+
+def load_study(folder: Union[str, Path]) -> Study:
+    """Reads a comparison's folder, made here or by the program, finished or not. Of cells that are missing the values are infinite."""
+    return Study(Path(folder), json.loads(_armwright.load_study(str(folder))))
+
+
+def compare(
+    problems: Optional[Sequence[Union[str, Path]]] = None,
+    optimizers: Optional[Sequence[AnyOptimizer]] = None,
+    *,
+    study: Union[None, str, Path] = None,
+    replicates: Optional[int] = None,
+    budget: Optional[int] = None,
+    set: Optional[Settings] = None,
+    schedule: Optional[str] = None,
+    seed: Optional[int] = None,
+    baselines: bool = True,
+    out: Union[None, str, Path] = None,
+    new: bool = False,
+    jobs: Optional[int] = None,
+    time_limit_s: Optional[float] = None,
+    progress: Show = None,
+) -> Study:
+    """Compares optimizers on the same footing, as `armwright compare` does: the same folder, cells, statistics and verdict, bit for bit.
+
+    Every optimizer gets the same budget, and in a replicate the same training cases and start. Random search and a local search take part
+    as baselines. Interrupted, the same call goes on where it was; with more replicates, problems or optimizers only what is new is run.
+
+    Runs of classes go first, one after the other in this process on `jobs` threads; those of all others run `jobs` at a time in processes
+    of their own.
+
+    Parameters
+    ----------
+    problems : sequence of str or path
+        Names or files.
+    optimizers : sequence of str, Optimizer, or classes derived from it
+    study : str or path, optional
+        A study file, or a shipped one's name; what is given besides replaces what stands there.
+    replicates : int, optional
+        Runs of every optimizer on every problem (default: 15).
+    budget : int
+        Training cases a run.
+    set : mapping or list of str, optional
+        Settings of every problem.
+    schedule : str, optional
+        Which training cases: "fixed:K"; "fresh:K" or "coevolution:K" where all have generations.
+    seed : int, optional
+        Of the study: draws starts, training cases and the optimizers' seeds (default: 1).
+    baselines : bool
+        Whether they take part; the verdict says if not.
+    out, new, jobs, time_limit_s, progress : optional
+        As of optimize(); the default folder is results/NAME.
+    """
+    if problems is None and study is None:
+        raise UsageError("compare what? Give problems and optimizers, or study=FILE")
+    for name, names in (("problems", problems), ("optimizers", optimizers)):
+        if isinstance(names, str):
+            raise UsageError(f"{name} is the text {names!r}; it must be a list, such as [{names!r}]")
+    for problem in problems or []:
+        if not isinstance(problem, (str, Path)):
+            raise UsageError(f"problems holds {problem!r}; it must hold names or files, whose settings `set` changes for all")
+    rows = [to_row(optimizer) for optimizer in optimizers or []]
+    with Listener(progress) as listener:
+        try:
+            folder, text = _armwright.compare(
+                "" if study is None else str(study), [str(problem) for problem in problems or []], rows, to_settings(set), replicates, budget,
+                schedule, None if seed is None else to_whole("seed", seed, 2**63 - 1), baselines, None if out is None else str(out), new,
+                to_jobs(jobs), time_limit_s, listener)
+        except KeyboardInterrupt:
+            raise KeyboardInterrupt("interrupted; what was evaluated is recorded, and the same call of armwright.compare() goes on from "
+                                    "there" + (" (without new=True, and out= its folder)" if new else "")) from None
+    return Study(Path(folder), json.loads(text)) if text is not None else load_study(folder)

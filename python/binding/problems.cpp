@@ -1,0 +1,214 @@
+// Problems, their test cases, and evaluations of points.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "arrays.hpp"
+#include "base/error.hpp"
+#include "description.hpp"
+#include "host.hpp"
+#include "parts.hpp"
+#include "problems/path_survey.hpp"
+#include "study/case_runner.hpp"
+
+namespace armwright::python {
+namespace {
+
+std::unique_ptr<ProblemHandle> load(const std::string& name,
+                                    const std::vector<std::string>& settings) {
+  const py::gil_scoped_release released;
+  return std::make_unique<ProblemHandle>(
+      ProblemHandle{name, settings, load_problem(name, settings)});
+}
+
+CaseRole read_role(const std::string& role) {
+  return role == "training"     ? CaseRole::training
+         : role == "validation" ? CaseRole::validation
+                                : CaseRole::test;
+}
+
+// What comes of points, row by row. The rows are written by whoever has evaluated them, without the
+// GIL.
+class Table {
+ public:
+  Table(const ProblemDescription& problem, std::size_t points, std::size_t cases)
+      : objectives_(make_matrix(points, problem.objectives.size())),
+        constraints_(make_matrix(points, problem.constraints.size())),
+        metrics_(make_matrix(points, problem.metrics.size())),
+        case_errors_(make_matrix(points, cases)),
+        status_(static_cast<py::ssize_t>(points)),
+        objectives_begin_(objectives_.mutable_data()),
+        constraints_begin_(constraints_.mutable_data()),
+        metrics_begin_(metrics_.mutable_data()),
+        errors_begin_(case_errors_.mutable_data()),
+        status_begin_(status_.mutable_data()),
+        widths_{problem.objectives.size(), problem.constraints.size(), problem.metrics.size(),
+                cases} {}
+
+  // What an evaluation has no number for is infinite: objectives take the penalty that optimizers
+  // see.
+  void put(std::size_t row, const Evaluation& evaluation, std::span<const double> penalty) {
+    const bool failed = evaluation.objectives.empty();
+    copy(failed ? penalty : std::span<const double>(evaluation.objectives), objectives_begin_, row,
+         widths_[0]);
+    copy(failed ? std::span<const double>() : evaluation.constraint_values, constraints_begin_, row,
+         widths_[1]);
+    copy(failed ? std::span<const double>() : evaluation.metrics, metrics_begin_, row, widths_[2]);
+    copy(evaluation.case_errors, errors_begin_, row, widths_[3]);
+    status_begin_[row] = static_cast<std::uint8_t>(evaluation.status);
+  }
+
+  py::tuple take() {
+    return py::make_tuple(objectives_, constraints_, metrics_, case_errors_, status_);
+  }
+
+ private:
+  static void copy(std::span<const double> values, double* begin, std::size_t row,
+                   std::size_t width) {
+    for (std::size_t i = 0; i < width; ++i) {
+      begin[row * width + i] = i < values.size() && !std::isnan(values[i]) ? values[i] : kNothing;
+    }
+  }
+
+  Numbers objectives_, constraints_, metrics_, case_errors_;
+  py::array_t<std::uint8_t> status_;
+  double* objectives_begin_;
+  double* constraints_begin_;
+  double* metrics_begin_;
+  double* errors_begin_;
+  std::uint8_t* status_begin_;
+  std::array<std::size_t, 4> widths_;
+};
+
+struct EvaluateRequest {
+  std::string role;
+  std::string set;
+  std::vector<std::uint64_t> numbers;
+  bool residuals = false;
+  bool jacobian = false;
+  unsigned jobs = 1;
+};
+
+// As many points at a time as outcomes fit into some 100 MB.
+std::size_t count_at_once(std::size_t cases) {
+  constexpr std::size_t kMostPairs = 1 << 18;
+  return std::max<std::size_t>(1, kMostPairs / std::max<std::size_t>(cases, 1));
+}
+
+// (objectives, constraints, metrics, case errors, status), reasons by row, residuals and Jacobians,
+// each a list of rows.
+py::tuple evaluate(const ProblemHandle& handle, const Numbers& points,
+                   const EvaluateRequest& request, const py::object& listener) {
+  const Problem& problem = *handle.loaded.problem;
+  check_points(points, problem.description().variables, "X", true);
+  const auto count = static_cast<std::size_t>(points.shape(0));
+  const CaseBlock block{read_role(request.role), request.set, request.numbers};
+  Table table(problem.description(), count, block.numbers.size());
+  const std::vector<double> penalty = problem.penalty_objectives();
+  const std::size_t kept = request.residuals || request.jacobian ? count : 0;
+  std::vector<std::vector<double>> residuals(kept), jacobians(kept);
+  std::map<std::size_t, std::string> reasons;
+  std::vector<std::span<const double>> rows;
+  for (std::size_t row = 0; row < count; ++row) {
+    rows.push_back(get_row(points, static_cast<py::ssize_t>(row)));
+  }
+  Host host(listener);
+  host.run([&] {
+    ThreadExecutor executor(std::min<std::size_t>(
+        request.jobs, std::max<std::size_t>(1, count * block.numbers.size())));
+    CaseRunner runner(problem, executor, host.stop());
+    std::mutex mutex;  // of reasons and progress
+    Progress progress;
+    progress.phase = block.role == CaseRole::training     ? Progress::Phase::training
+                     : block.role == CaseRole::validation ? Progress::Phase::validation
+                                                          : Progress::Phase::test;
+    progress.total = std::uint64_t{count} * block.numbers.size();
+    const std::size_t at_once = count_at_once(block.numbers.size());
+    for (std::size_t first = 0; first < count && !host.stop().requested(); first += at_once) {
+      const auto some = std::span(rows).subspan(first, std::min(at_once, count - first));
+      runner.run(
+          some, block, request.residuals || request.jacobian,
+          [&](std::size_t candidate, Evaluation evaluation) {
+            const std::size_t row = first + candidate;
+            table.put(row, evaluation, penalty);
+            if (kept > 0) {
+              residuals[row] = std::move(evaluation.residuals);
+              jacobians[row] = std::move(evaluation.jacobian);
+            }
+            const std::lock_guard lock(mutex);
+            if (evaluation.status != EvaluationStatus::ok) {
+              reasons[row] = std::move(evaluation.reason);
+            }
+            progress.done += block.numbers.size();
+            host.on_progress(progress);
+          },
+          request.jacobian);
+    }
+  });
+  const py::object none = py::none();
+  return py::make_tuple(table.take(), reasons,
+                        request.residuals ? py::object(make_ragged(residuals)) : none,
+                        request.jacobian ? py::object(make_ragged(jacobians)) : none);
+}
+
+// (cases, points, 3), in metres.
+py::array_t<double> list_cases(const ProblemHandle& handle, const std::string& set_name,
+                               std::uint64_t first, std::uint64_t count) {
+  if (handle.loaded.tracking == nullptr) {
+    throw Error(ErrorKind::usage, fmt::format("problem '{}' is a function, which has no test cases",
+                                              handle.loaded.name));
+  }
+  const TestSet set = handle.loaded.tracking->get_set(set_name);
+  const std::size_t points = count > 0 ? set.make_case(first).points_m.size() : 0;
+  py::array_t<double> cases(
+      {static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(points), py::ssize_t{3}});
+  double* value = cases.mutable_data();
+  const py::gil_scoped_release released;
+  for (std::uint64_t number = first; number < first + count; ++number) {
+    for (const Eigen::Vector3d& point_m : set.make_case(number).points_m) {
+      value = std::copy_n(point_m.data(), 3, value);
+    }
+  }
+  return cases;
+}
+
+}  // namespace
+
+void add_problems(py::module_& module) {
+  module.def("list_problems", [] {
+    std::vector<std::pair<std::string, std::string>> titles;
+    for (const ProblemTitle& problem : list_problems()) {
+      titles.emplace_back(problem.name, problem.title);
+    }
+    return titles;
+  });
+  py::list statuses;
+  for (const auto status :
+       {EvaluationStatus::ok, EvaluationStatus::diverged, EvaluationStatus::unreachable,
+        EvaluationStatus::timed_out, EvaluationStatus::failed, EvaluationStatus::abandoned}) {
+    statuses.append(to_string(status));  // in the order of their numbers
+  }
+  module.attr("STATUSES") = py::tuple(statuses);
+  py::class_<ProblemHandle>(module, "Problem")
+      .def(py::init(&load))
+      .def_readonly("asked_name", &ProblemHandle::name)
+      .def_readonly("settings", &ProblemHandle::settings)
+      .def("describe", [](const ProblemHandle& handle) { return describe(handle.loaded).dump(); })
+      .def("penalty",
+           [](const ProblemHandle& handle) { return handle.loaded.problem->penalty_objectives(); })
+      .def("check_paths", [](const ProblemHandle& handle) { return check_paths(handle.loaded); })
+      .def("cases", &list_cases)
+      .def("evaluate",
+           [](const ProblemHandle& handle, const Numbers& points, const std::string& role,
+              const std::string& set, std::vector<std::uint64_t> numbers, bool residuals,
+              bool jacobian, unsigned jobs, const py::object& listener) {
+             return evaluate(handle, points,
+                             {role, set, std::move(numbers), residuals, jacobian, jobs}, listener);
+           });
+  add_designs(module);
+}
+
+}  // namespace armwright::python

@@ -1,0 +1,118 @@
+// Runs: made or gone on with as `armwright optimize` does, and read back.
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "arrays.hpp"
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "host.hpp"
+#include "parts.hpp"
+#include "places.hpp"
+#include "study/journal.hpp"
+#include "study/run.hpp"
+#include "study/run_folder.hpp"
+
+namespace armwright::python {
+namespace {
+
+// What is asked for; nothing where the problem's own holds.
+struct RunQuestion {
+  std::vector<std::string> options;  // KEY=VALUE
+  std::uint64_t seed = 1;
+  std::optional<std::int64_t> budget;
+  std::optional<std::string> schedule;
+  std::optional<std::string> racing;
+};
+
+RunPlan make_plan(const LoadedProblem& problem, OptimizerRow row, const RunQuestion& question) {
+  RunPlan plan;
+  plan.problem = problem;
+  plan.optimizer = std::move(row);
+  plan.options = Options::parse(plan.optimizer.name, plan.optimizer.options, question.options);
+  plan.seed = question.seed;
+  plan.budget = check_number("budget", question.budget.value_or(problem.budget), 0, kMostBudget);
+  plan.schedule = question.schedule ? parse_schedule(*question.schedule)
+                                    : choose_schedule(problem, plan.optimizer);
+  plan.racing = problem.racing;
+  if (question.racing) {
+    const auto racing = read_racing(*question.racing);
+    if (!racing) {
+      throw Error(ErrorKind::usage, fmt::format("racing is '{}'; it must be {}",
+                                                sanitize(*question.racing), kRacingForms));
+    }
+    plan.racing = *racing;
+  }
+  check_plan(plan);
+  return plan;
+}
+
+// The run's folder, and its result as JSON; None if the time was up before its end.
+py::tuple optimize(const ProblemHandle& problem, const py::object& optimizer,
+                   const RunQuestion& question, const Place& place,
+                   const std::vector<std::string>& command, const py::object& listener) {
+  Host host(listener);
+  RunRequest request;
+  request.plan = make_plan(problem.loaded, load_row(optimizer, host), question);
+  request.folder = place.choose(make_run_name(request.plan));
+  request.jobs = place.jobs;
+  request.command_line = command;
+  request.command_line.insert(request.command_line.end(), {"--out", request.folder.string()});
+  host.limit_time(place.time_limit_s);
+  std::optional<RunResult> result;
+  host.run([&] { result = execute_run(request, host.stop(), host); });
+  return py::make_tuple(request.folder.string(),
+                        result ? py::object(py::str(to_json(*result))) : py::none());
+}
+
+template <class Number>
+py::array_t<Number> copy_array(const std::vector<Number>& values) {
+  return py::array_t<Number>(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
+// Every recorded training evaluation: the points; status, generation, whether it was clipped,
+// charge; and ragged objectives, constraint values, errors and numbers of the cases.
+py::tuple read_history(const std::filesystem::path& folder) {
+  std::vector<std::vector<double>> points, objectives, constraints, case_errors, case_numbers;
+  std::vector<std::uint64_t> indices, generations, charges;
+  std::vector<std::uint8_t> statuses, clipped;
+  {
+    const py::gil_scoped_release released;
+    const JournalContent journal = read_journal(folder / "journal");
+    for (const EvaluationRecord& record : journal.training) {
+      points.push_back(record.x);
+      objectives.push_back(record.evaluation.objectives);
+      constraints.push_back(record.evaluation.constraint_values);
+      case_errors.push_back(record.evaluation.case_errors);
+      case_numbers.emplace_back(record.cases.numbers.begin(), record.cases.numbers.end());
+      indices.push_back(record.index);
+      generations.push_back(record.generation);
+      charges.push_back(record.calc_charge());
+      statuses.push_back(static_cast<std::uint8_t>(record.evaluation.status));
+      clipped.push_back(record.clipped);
+    }
+  }
+  return py::make_tuple(make_ragged(points), make_ragged(objectives), make_ragged(constraints),
+                        make_ragged(case_errors), make_ragged(case_numbers), copy_array(indices),
+                        copy_array(generations), copy_array(charges), copy_array(statuses),
+                        copy_array(clipped));
+}
+
+}  // namespace
+
+void add_runs(py::module_& module) {
+  module.def("optimize", [](const ProblemHandle& problem, const py::object& optimizer,
+                            std::vector<std::string> options, std::uint64_t seed,
+                            std::optional<std::int64_t> budget, std::optional<std::string> schedule,
+                            std::optional<std::string> racing, std::optional<std::string> out,
+                            bool another, unsigned jobs, std::optional<double> time_limit_s,
+                            const std::vector<std::string>& command, const py::object& listener) {
+    return optimize(problem, optimizer,
+                    {std::move(options), seed, budget, std::move(schedule), std::move(racing)},
+                    {std::move(out), another, jobs, time_limit_s}, command, listener);
+  });
+  module.def("load_result", [](const std::string& folder) { return to_json(load_result(folder)); });
+  module.def("read_history", [](const std::string& folder) { return read_history(folder); });
+}
+
+}  // namespace armwright::python

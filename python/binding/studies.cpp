@@ -1,0 +1,189 @@
+// Comparisons: made or gone on with as `armwright compare` does, and read back.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "base/error.hpp"
+#include "host.hpp"
+#include "parts.hpp"
+#include "places.hpp"
+#include "study/compare/escape.hpp"
+#include "study/compare/final_check.hpp"
+#include "study/compare/study_folder.hpp"
+#include "study/compare/study_runner.hpp"
+#include "study/compare/study_tables.hpp"
+#include "study/matrix/earlier_state.hpp"
+
+namespace armwright::python {
+namespace {
+
+using nlohmann::json;
+
+bool is_of_python(const StudyPlan& plan, const Cell& cell) {
+  return !plan.optimizers[cell.optimizer].row.description.empty();
+}
+
+// Shows a cell's progress as one of the whole study's.
+class CellObserver final : public RunObserver {
+ public:
+  CellObserver(RunObserver& study, Progress done) : study_(study), done_(done) {}
+  void on_progress(const Progress& progress) override {
+    if (progress.phase == Progress::Phase::training) {
+      Progress all = done_;
+      all.done += progress.done;
+      all.replayed += progress.replayed;
+      study_.on_progress(all);
+    }
+  }
+  void on_message(const std::string& message) override { study_.on_message(message); }
+
+ private:
+  RunObserver& study_;
+  Progress done_;
+};
+
+// Those whose optimizer is a class: in this process, one after the other, since no Python may run
+// in processes that were forked.
+void run_python_cells(const StudyPlan& plan, const std::filesystem::path& folder, unsigned jobs,
+                      StopSignal& stop, RunObserver& observer) {
+  const auto cells = list_cells(plan);
+  Progress progress;
+  progress.total = cells.size() * static_cast<std::uint64_t>(plan.budget);
+  for (const Cell& cell : cells) {
+    if (!is_of_python(plan, cell)) {
+      continue;
+    }
+    if (!load_cell(plan, cell, folder)) {
+      if (stop.requested()) {
+        return;
+      }
+      CellObserver its(observer, progress);
+      run_cell(plan, cell, {.folder = folder / make_cell_path(plan, cell), .jobs = jobs}, stop,
+               its);
+    }
+    progress.done += static_cast<std::uint64_t>(plan.budget);
+  }
+}
+
+json list_outcomes(const StudyResult& result) {
+  json cells = json::array();
+  for (const CellOutcome& cell : result.cells) {
+    cells.push_back(json::parse(to_json(cell)));
+  }
+  return cells;
+}
+
+// What is in result.json, every cell, and what of the plan these do not say.
+std::string describe(const StudyPlan& plan, const StudyResult& result) {
+  json problems = json::array(), optimizers = json::array(), missing = json::array();
+  for (std::size_t p = 0; p < plan.problems.size(); ++p) {
+    problems.push_back({{"label", plan.problems[p].label},
+                        {"name", plan.problems[p].name},
+                        {"settings", plan.problems[p].settings},
+                        {"schedule", to_text(plan.problems[p].schedule)},
+                        {"checkpoints", list_checkpoints(plan, p)}});
+  }
+  for (const StudyOptimizer& optimizer : plan.optimizers) {
+    optimizers.push_back(
+        {{"label", optimizer.label}, {"name", optimizer.name}, {"baseline", optimizer.baseline}});
+  }
+  for (const Cell& cell : result.missing) {
+    missing.push_back(make_cell_path(plan, cell).string());
+  }
+  return json{{"result", json::parse(to_json(plan, result))},
+              {"cells", list_outcomes(result)},
+              {"missing", missing},
+              {"plan",
+               {{"name", plan.name},
+                {"title", plan.title},
+                {"seed", plan.seed},
+                {"replicates", plan.replicates},
+                {"budget", plan.budget},
+                {"problems", problems},
+                {"optimizers", optimizers}}}}
+      .dump();
+}
+
+// The study's folder, and what it has found; None if the time was up before its end.
+py::tuple compare(StudyRequest request, const py::list& optimizers, const Place& place,
+                  const py::object& listener) {
+  Host host(listener);
+  for (const py::handle optimizer : optimizers) {
+    if (py::isinstance<py::str>(optimizer)) {
+      request.optimizers.push_back(optimizer.cast<std::string>());
+    } else {
+      request.rows.push_back(load_row(py::reinterpret_borrow<py::object>(optimizer), host));
+      request.optimizers.push_back(request.rows.back().name);
+    }
+  }
+  StudyPlan plan = make_study_plan(request);
+  const auto path = place.choose(escape_name(plan.name));
+  adopt_recorded(path, plan);
+  const StudyFolder folder(path, plan);
+  for (const std::string& addition : folder.additions()) {
+    host.on_message("new in the plan: " + addition);
+  }
+  host.limit_time(place.time_limit_s);
+  adopt_attempts(plan, path, host);
+  host.run([&] { run_python_cells(plan, path, place.jobs, host.stop(), host); });
+  std::optional<StudyResult> result;
+  host.run_aside([&] {
+    if (run_cells(plan, path, place.jobs, host.stop(), host).stopped) {
+      return;
+    }
+    StudyResult found = analyze_study(plan, path);
+    if (add_final_checks(plan, path, place.jobs, host.stop(), host, found)) {
+      write_study_tables(plan, found, path);
+      result = std::move(found);
+    }
+  });
+  return py::make_tuple(path.string(),
+                        result ? py::object(py::str(describe(plan, *result))) : py::none());
+}
+
+std::string load_study(const std::filesystem::path& folder) {
+  const StudyPlan plan = load_study_plan(folder);
+  StudyResult result = analyze_study(plan, folder);
+  load_final_checks(plan, folder, result);
+  return describe(plan, result);
+}
+
+}  // namespace
+
+void add_studies(py::module_& module) {
+  module.def("compare",
+             [](const std::string& file, std::vector<std::string> problems,
+                const py::list& optimizers, std::vector<std::string> settings,
+                std::optional<std::int64_t> replicates, std::optional<std::int64_t> budget,
+                const std::optional<std::string>& schedule, std::optional<std::uint64_t> seed,
+                bool baselines, std::optional<std::string> out, bool another, unsigned jobs,
+                std::optional<double> time_limit_s, const py::object& listener) {
+               StudyRequest request;
+               request.file = file;
+               request.problems = std::move(problems);
+               request.settings = std::move(settings);
+               constexpr std::int64_t kMostReplicates = 10'000;
+               if (replicates) {
+                 request.replicates =
+                     static_cast<int>(check_number("replicates", *replicates, 1, kMostReplicates));
+               }
+               if (budget) {
+                 request.budget = check_number("budget", *budget, 1, kMostBudget);
+               }
+               if (schedule) {
+                 request.schedule = parse_schedule(*schedule);
+               }
+               request.seed = seed;
+               request.baselines = baselines;
+               return compare(std::move(request), optimizers,
+                              {std::move(out), another, jobs, time_limit_s}, listener);
+             });
+  module.def("escape_name", [](const std::string& label) { return escape_name(label); });
+  module.def("load_study", [](const std::string& folder) {
+    const py::gil_scoped_release released;
+    return load_study(folder);
+  });
+}
+
+}  // namespace armwright::python

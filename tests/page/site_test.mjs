@@ -1,0 +1,132 @@
+// The documentation's site as a reader has it: from disk, in Chromium, with nothing asked of the network.
+import assert from 'node:assert/strict';
+import { mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { pathToFileURL } from 'node:url';
+import { build_site } from '../../web/site/build.mjs';
+import { open_browser } from './browser.mjs';
+
+const kRoot = new URL('../..', import.meta.url).pathname;
+const kPhone = { width: 360, height: 740 };
+const kDesktop = { width: 1280, height: 900 };
+const folder = mkdtempSync(join(tmpdir(), 'armwright-site-'));
+const faults = [];
+let browser;
+let page;
+
+function address(place) {
+  return pathToFileURL(join(folder, place)).href;
+}
+
+before(async () => {
+  await build_site(kRoot, folder);
+  browser = await open_browser();
+  page = await browser.context.newPage();
+  page.on('console', (message) => ['error', 'warning'].includes(message.type()) && faults.push(message.text()));
+  page.on('pageerror', (error) => faults.push(error.message));
+  page.on('request', (request) => !/^(file|data):/.test(request.url()) && faults.push(`network: ${request.url()}`));
+});
+after(async () => {
+  await browser.close();
+  rmSync(folder, { recursive: true, force: true });
+});
+
+async function expect_fits(place) {
+  const [wide, window_width] = await page.evaluate(() => [document.documentElement.scrollWidth, innerWidth]);
+  assert.ok(wide <= window_width, `${place}: ${wide} px wide in a window of ${window_width}`);
+}
+
+test('from the first page through the tutorials to the next page', async () => {
+  await page.goto(address('index.html'));
+  assert.ok(await page.locator('article img').evaluate((image) => image.complete && image.naturalWidth > 300));
+  await page.click('article a:has-text("Tune an arm")');
+  assert.match(await page.locator('h1').textContent(), /^Tune an arm in five minutes/);
+  assert.equal(await page.locator('#pages [aria-current]').textContent(), 'Tune an arm');
+  await page.click('.neighbours .after');
+  assert.match(await page.title(), /^Compare optimizers/);
+  await page.click('aside a:has-text("Ask for more")');
+  assert.match(page.url(), /compare\.html#5-ask-for-more/);
+  assert.deepEqual(faults, []);
+});
+
+test('the search finds a part of a page and goes there, with the keyboard alone', async () => {
+  await page.goto(address('tutorials/tune.html'));
+  await page.keyboard.press('/');
+  await page.keyboard.type('coevolution');
+  await page.waitForSelector('#found a');
+  await page.keyboard.press('ArrowDown');
+  await page.keyboard.press('Enter');
+  await page.waitForURL(/(racing|architecture|engines|findings|comparing)\.html|changelog\.html/);
+  assert.match(await page.locator('article').textContent(), /coevolution/i);
+  await page.fill('#search', 'zzzzqqqq');
+  await page.waitForSelector('#found p');
+  assert.match(await page.locator('#found').textContent(), /Nothing about "zzzzqqqq"/);
+  await page.keyboard.press('Escape');
+  assert.ok(await page.locator('#found').isHidden());
+  assert.deepEqual(faults, []);
+});
+
+test('light and dark: the system decides, then the reader', async () => {
+  const colour = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+  await page.goto(address('index.html'));
+  assert.equal(await colour(), 'rgb(255, 255, 255)');
+  await page.emulateMedia({ colorScheme: 'dark' });
+  const dark = await colour();
+  assert.notEqual(dark, 'rgb(255, 255, 255)');
+  await page.click('#theme');
+  assert.equal(await colour(), 'rgb(255, 255, 255)');
+  await page.emulateMedia({ colorScheme: 'light' });
+  await page.click('#theme');
+  assert.equal(await colour(), dark);
+  await page.goto(address('verify.html'));
+  assert.equal(await colour(), dark, 'the choice holds on the next page');
+  await page.click('#theme');
+  assert.deepEqual(faults, []);
+});
+
+test('what is copied of a session is what is typed', async () => {
+  await browser.context.grantPermissions(['clipboard-read', 'clipboard-write']);
+  await page.goto(address('tutorials/tune.html'));
+  await page.locator('figure.console').first().hover();
+  await page.locator('.copy').first().click();
+  await page.waitForSelector('.copy:has-text("Copied")');
+  assert.equal(await page.evaluate(() => navigator.clipboard.readText()), 'armwright list problems q1-complex\n');
+  assert.deepEqual(faults, []);
+});
+
+test('on a phone nothing has to be scrolled sideways, and the menu opens', async () => {
+  await page.setViewportSize(kPhone);
+  // Long tables, long lines, long words.
+  for (const place of [
+    'index.html',
+    'tutorials/add-an-optimizer.html',
+    'reliability.html',
+    'findings.html',
+    'plugin-protocol.html',
+    'exporting.html',
+    'readme.html',
+    'optimizers/index.html',
+  ]) {
+    await page.goto(address(place));
+    await expect_fits(place);
+  }
+  assert.ok(await page.locator('#pages').isHidden());
+  await page.click('#menu');
+  await page.click('#pages a:has-text("Compare optimizers")');
+  assert.match(page.url(), /tutorials\/compare\.html$/);
+  await page.setViewportSize(kDesktop);
+  assert.deepEqual(faults, []);
+});
+
+test('on paper there is the text alone', async () => {
+  await page.goto(address('verify.html'));
+  await page.emulateMedia({ media: 'print' });
+  for (const part of ['header', '#pages', 'aside', '.neighbours']) {
+    assert.ok(await page.locator(part).first().isHidden(), part);
+  }
+  assert.ok(await page.locator('article').isVisible());
+  await page.emulateMedia({ media: 'screen' });
+  assert.deepEqual(faults, []);
+});

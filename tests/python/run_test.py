@@ -1,0 +1,255 @@
+"""Runs from Python: the program's results bit for bit, and classes of Python's as optimizers like any other."""
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+import unittest
+import warnings
+
+import numpy as np
+from support import FAST, FolderTest, Steps, read_bytes, run_script
+
+import armwright
+
+SMALL = {"function.dimension": 3}
+
+
+class Faulty(Steps):
+    name = "faulty"
+    breaks = True
+
+    def minimize(self, evaluator, seed):
+        evaluator.evaluate(evaluator.problem.start)
+        if self.breaks:
+            raise ZeroDivisionError("my mistake")
+
+
+class Generations(armwright.Optimizer):
+    """Draws three points a generation, and recommends the middle."""
+
+    capabilities = ("generations", "residuals", "stochastic", "sampling", "bounds", "batch")
+
+    def minimize(self, evaluator, seed):
+        random = np.random.default_rng(seed)
+        while not evaluator.stopped:
+            evaluator.begin_generation()
+            shares = random.random((3, len(evaluator.problem)))
+            scores = evaluator.evaluate(evaluator.problem.from_unit(shares))
+            assert scores.residuals is None or scores.residuals.shape[0] == len(scores)
+            evaluator.recommend(evaluator.problem.from_unit(shares.mean(axis=0))[0])
+
+
+class RunTest(FolderTest):
+    def test_same_bytes_as_the_program(self):
+        for problem, optimizer, settings, flags in (("q1-complex", "cmaes", FAST, ["--engine", "articulated"]), ("q2-pareto", "pagmo:nsga2", FAST, ["--engine", "articulated"]),
+                                                    ("sphere", "nlopt:cobyla", SMALL, ["--set", "function.dimension=3"])):
+            with self.subTest(optimizer):
+                mine = armwright.optimize(problem, optimizer, seed=5, budget=120, set=settings, out="mine-" + optimizer)
+                self.run_program("optimize", problem, *flags, "--optimizer", optimizer, "--seed", "5", "--budget", "120", "--out", "its-" + optimizer, "--quiet")
+                self.assertEqual(read_bytes(mine.folder, "result.json"), read_bytes("its-" + optimizer, "result.json"))
+                self.assertEqual(mine.to_dict(), armwright.load_run("its-" + optimizer).to_dict())
+                # The same command goes on with the run, and finds it complete.
+                words = mine.manifest["command_line"]
+                self.run_program(*words[1:], "--quiet")
+
+    def test_options_schedule_and_default_folder(self):
+        run = armwright.optimize("q1-complex", "ga", seed=2, budget=70, set=FAST, options={"population": 7, "mutation_probability": 0.25}, schedule="fresh:2", jobs=1)
+        self.assertEqual(run.folder, pathlib.Path("results/q1-complex-ga-seed2"))
+        self.assertEqual(run.manifest["configuration"]["run"]["options"]["population"], 7)
+        self.run_program("optimize", "q1-complex", "--engine", "articulated", "--optimizer", "ga", "--seed", "2", "--budget", "70", "--opt", "population=7", "--opt",
+                         "mutation_probability=0.25", "--schedule", "fresh:2", "--out", "its", "--quiet")
+        self.assertEqual(read_bytes(run.folder, "result.json"), read_bytes("its", "result.json"))
+        history = run.history
+        self.assertEqual(history.generation.tolist(), [1] * 7 + [2] * 7 + [3] * 7 + [4] * 7 + [5] * 7)
+        self.assertEqual(history.case_numbers[7].tolist(), [2, 3])
+        self.assertEqual(int(history.charge.sum()), run.counts["cases"])
+        self.assertIn(run.x.tolist(), [one["x"] for one in run.candidates])
+        another = armwright.optimize("q1-complex", "ga", seed=2, budget=70, set=FAST, new=True)
+        self.assertEqual(another.folder.name, "q1-complex-ga-seed2-002")
+
+    def test_refusals_are_the_programs(self):
+        for kind, pieces, call in (
+                (armwright.UsageError, ["unknown optimizer 'cmae'", "cmaes"], lambda: armwright.optimize("sphere", "cmae")),
+                (armwright.UsageError, ["option 'populaton'", "population"], lambda: armwright.optimize("sphere", "ga", options={"populaton": 3})),
+                (armwright.UsageError, ["seed is -1"], lambda: armwright.optimize("sphere", "ga", seed=-1)),
+                (armwright.UsageError, ["budget is -5"], lambda: armwright.optimize("sphere", "ga", budget=-5)),
+                (armwright.UsageError, ["schedule is 'some'", "fixed:K"], lambda: armwright.optimize("sphere", "ga", schedule="some")),
+                (armwright.UsageError, ["the optimizer is 3"], lambda: armwright.optimize("sphere", 3)),
+                (armwright.UsageError, ["runs only there", "armwright.serve"], lambda: armwright.optimize("sphere", "python:steps")),
+                (armwright.UsageError, ["is not the folder of a run"], lambda: armwright.load_run("nowhere")),
+                (armwright.UsageError, ["progress is 3"], lambda: armwright.optimize("sphere", "ga", progress=3))):
+            with self.subTest(pieces), self.expect_error(kind, *pieces):
+                call()
+        armwright.optimize("sphere", "ga", budget=10, out="there")
+        with self.expect_error(armwright.UsageError, "run.seed: recorded 1, now 2"):
+            armwright.optimize("sphere", "ga", budget=10, seed=2, out="there")
+
+    def test_a_class_runs_resumes_and_is_read_by_the_program(self):
+        run = armwright.optimize("q1-complex", Steps, seed=3, budget=100, set=FAST, options={"batch": 6}, out="mine", jobs=2)
+        self.assertEqual((run.optimizer, run.end_reason, run.counts["cases"]), ("python:steps", "budget", 100))
+        alone = armwright.optimize("q1-complex", Steps, seed=3, budget=100, set=FAST, options={"batch": 6}, out="alone", jobs=1)
+        self.assertEqual(read_bytes("mine", "result.json"), read_bytes("alone", "result.json"))
+        self.assertEqual(run.manifest["configuration"]["run"]["options"], {"batch": 6, "spread": 0.2})
+        self.assertEqual(json.loads(self.run_program("show", "mine", "--json")), run.to_dict())
+        self.run_program("export", "mine", "--format", "csv", "--out", "csv")
+        self.assertIn("python:steps", self.run_program("show", "mine"))
+        with self.expect_error(armwright.UsageError, "option 'batch' is '0'; it must be an integer between 1 and 100"):
+            armwright.optimize("q1-complex", Steps, options={"batch": 0})
+
+    def test_keeps_every_promise(self):
+        for cls in (Steps, Generations):
+            found = armwright.check_optimizer(cls)
+            self.assertEqual([one for one in found if one.outcome == "broken"], [])
+            self.assertGreater(sum(one.outcome == "held" for one in found), 8)
+
+        class Forgetful(Steps):
+            def minimize(self, evaluator, seed):
+                super().minimize(evaluator, np.random.SeedSequence().entropy)
+
+        self.assertIn("Repeatable", [one.check for one in armwright.check_optimizer(Forgetful) if one.outcome == "broken"])
+
+    def test_generations_residuals_and_recommendations(self):
+        run = armwright.optimize("sphere", Generations, budget=30, set=SMALL)
+        self.assertEqual(run.counts["generations"], 10)
+        self.assertTrue(any(one.get("recommended") for one in run.candidates))
+        fresh = armwright.optimize("q1-complex", Generations, budget=30, set=FAST, schedule="fresh:1", out="fresh")
+        self.assertEqual(fresh.history.case_numbers[:, 0].tolist(), [number for number in range(10) for _ in range(3)])
+
+    def test_stopped_by_time_and_gone_on_with(self):
+        class Slow(Steps):
+            name = "slow"
+
+            def minimize(self, evaluator, seed):
+                while not evaluator.stopped:
+                    time.sleep(0.02)
+                    evaluator.evaluate(evaluator.problem.start)
+
+        begun = armwright.optimize("sphere", Slow, budget=30, set=SMALL, out="slow", time_limit_s=0.1)
+        self.assertFalse(begun.finished)
+        self.assertIsNone(begun.x)
+        self.assertLess(len(begun.history), 30)
+        done = armwright.optimize("sphere", Slow, budget=30, set=SMALL, out="slow")
+        self.assertEqual(len(done.history), 30)
+        Slow.pause_s = 0.03
+        with self.expect_error(armwright.UsageError, "inputs.class", "recorded", "Slow"):
+            armwright.optimize("sphere", Slow, budget=30, set=SMALL, out="slow")
+
+    def test_objects_are_copied_and_their_attributes_recorded(self):
+        mine = Steps()
+        mine.note = np.array([1.0, 2.0])
+        first = armwright.optimize("sphere", mine, budget=20, set=SMALL, out="object")
+        self.assertFalse(hasattr(mine, "settings"))
+        mine.note = np.array([1.0, 3.0])
+        with self.expect_error(armwright.UsageError, "inputs.attributes of the Steps"):
+            armwright.optimize("sphere", mine, budget=20, set=SMALL, out="object")
+        mine.note = np.random.default_rng(1)
+        with self.expect_error(armwright.UsageError, "an attribute of the Steps is a Generator"):
+            armwright.optimize("sphere", mine, budget=20, set=SMALL, out="object")
+        self.assertEqual(first.counts["cases"], 20)
+
+    def test_classes_that_do_not_hold_together(self):
+        class Nothing(armwright.Optimizer):
+            pass
+
+        class Wrong(Steps):
+            capabilities = ["bound"]
+
+        class Blank(Steps):
+            name = "a b"
+
+        class Range(Steps):
+            options = [armwright.Option("batch", 4, lower=5, upper=6)]
+
+        for cls, kind, piece in ((Nothing, armwright.UsageError, "has no minimize"), (Wrong, armwright.UsageError, "capability 'bound'"),
+                                 (Blank, armwright.BadDataError, "named 'a b'"), (Range, armwright.BadDataError, "outside its range")):
+            with self.subTest(piece), self.expect_error(kind, piece):
+                armwright.optimize("sphere", cls)
+
+    def test_an_exception_is_a_failure_and_is_tried_again(self):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            run = armwright.optimize("sphere", Faulty, budget=10, set=SMALL, out="faulty")
+        self.assertEqual(run.end_reason, "optimizer failed")
+        self.assertIn("optimizer 'python:faulty', after 1 evaluation: it raised ZeroDivisionError: my mistake (run_test.py, line ", run.failure)
+        self.assertEqual(caught[0].category, armwright.ArmwrightWarning)
+        self.assertIn('raise ZeroDivisionError("my mistake")', str(caught[0].message))
+        self.assertEqual(len(run.history), 1)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            again = armwright.optimize("sphere", Faulty, budget=10, set=SMALL, out="faulty")
+        self.assertEqual(again.to_dict(), run.to_dict())
+
+    def test_points_that_are_none_are_its_failure(self):
+        class Crooked(Steps):
+            def minimize(self, evaluator, seed):
+                evaluator.evaluate(np.full((1, len(evaluator.problem)), np.inf))
+
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            self.assertIn("X[0, 0] (x_1) is inf; it must be a finite number", armwright.optimize("sphere", Crooked, set=SMALL).failure)
+
+    def test_what_the_evaluator_throws_is_no_failure_of_the_optimizer(self):
+        class Stubborn(Steps):
+            name = "stubborn"
+
+            def minimize(self, evaluator, seed):
+                try:
+                    evaluator.evaluate(evaluator.problem.start + self.settings["spread"])
+                except Exception:  # whoever swallows it does not get away with it
+                    pass
+
+        armwright.optimize("sphere", Stubborn, budget=5, set=SMALL, out="stubborn")
+        # The same name, class and options, but other points: what is recorded no longer fits.
+        Stubborn.minimize.__code__ = (lambda self, evaluator, seed: evaluator.evaluate(evaluator.problem.start)).__code__
+        manifest = json.loads((self.folder / "stubborn/manifest.json").read_text())
+        from armwright.optimizer import read_optimizer
+        manifest["configuration"]["inputs"].update(read_optimizer(Stubborn).hashes)
+        (self.folder / "stubborn/manifest.json").write_text(json.dumps(manifest))
+        (self.folder / "stubborn/result.json").unlink()
+        with self.expect_error(armwright.BadDataError, "evaluation 0 of the journal is not what optimizer 'python:stubborn' asks for now"):
+            armwright.optimize("sphere", Stubborn, budget=5, set=SMALL, out="stubborn")
+
+    def test_an_evaluator_is_of_no_use_after_its_run(self):
+        kept = []
+
+        class Keeper(Steps):
+            def minimize(self, evaluator, seed):
+                kept.append(evaluator)
+
+        armwright.optimize("sphere", Keeper, budget=5, set=SMALL)
+        with self.expect_error(armwright.UsageError, "the run of this evaluator is over"):
+            kept[0].evaluate([0.0, 0.0, 0.0])
+
+    def test_what_a_callable_raises_stops_the_run_resumably(self):
+        def refuse(state):
+            raise RuntimeError("seen enough")
+
+        with self.assertRaisesRegex(RuntimeError, "seen enough"):
+            armwright.optimize("q1-complex", "cmaes", budget=3000, set=FAST, out="refused", progress=refuse)
+        self.assertEqual(armwright.optimize("q1-complex", "cmaes", budget=100, set=FAST, out="other").counts["cases"], 100)
+
+    def test_interrupted_and_gone_on_with(self):
+        for optimizer in ("Steps", "'cmaes'", "'nlopt:cobyla'"):
+            with self.subTest(optimizer):
+                script = ("import armwright\nfrom support import Steps\n"
+                          f"def go(): return armwright.optimize('q1-complex', {optimizer}, budget=BUDGET, out=OUT, jobs=2)\n")
+                out = "interrupted-" + optimizer.strip("'")
+                text = script + "print('begun', flush=True)\ntry: go()\nexcept KeyboardInterrupt as stop: print(stop)\n"
+                child = subprocess.Popen([sys.executable, "-c", text.replace("BUDGET", "60000").replace("OUT", repr(out))], stdout=subprocess.PIPE, text=True)
+                child.stdout.readline()
+                journal = pathlib.Path(out, "journal")
+                while not journal.is_file() or journal.stat().st_size < 5000:
+                    time.sleep(0.02)
+                child.send_signal(signal.SIGINT)
+                self.assertIn("the same call of armwright.optimize() goes on", child.communicate(timeout=60)[0])
+                begun = armwright.load_run(out)
+                self.assertFalse(begun.finished)
+                self.assertGreater(len(begun.history), 0)
+                self.assertIn("has not come to its end", self.run_program("show", out))
+
+
+if __name__ == "__main__":
+    unittest.main()
