@@ -95,8 +95,10 @@ include(CPack)
 
 # Only what is packed is built for it: neither tests nor benchmarks.
 set(packed armwright)
-if(TARGET _armwright)
-  list(APPEND packed _armwright)
-endif()
+foreach(target IN ITEMS _armwright site) # what this build leaves out is left out
+  if(TARGET ${target})
+    list(APPEND packed ${target})
+  endif()
+endforeach()
 add_custom_target(packages COMMAND ${CMAKE_CPACK_COMMAND} -B ${PROJECT_BINARY_DIR}/packages DEPENDS ${packed} USES_TERMINAL
                   COMMENT "Making the Debian packages")
