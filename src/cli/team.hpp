@@ -14,6 +14,7 @@
 #include "problems/problem_loader.hpp"
 #include "study/executor/coordinator.hpp"
 #include "study/executor/mpi_links.hpp"
+#include "study/run_evaluator.hpp"
 
 namespace armwright {
 
