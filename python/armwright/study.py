@@ -177,6 +177,7 @@ def compare(
     problems : sequence of str or path
         Names or files.
     optimizers : sequence of str, Optimizer, or classes derived from it
+        With their default options; others, and schedules of their own, a study file gives them.
     study : str or path, optional
         A study file, or a shipped one's name; what is given besides replaces what stands there.
     replicates : int, optional
