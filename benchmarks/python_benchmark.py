@@ -52,14 +52,15 @@ def measure(name, settings, evaluations, jobs):
     words = [f"--set={key}={value}" for key, value in settings.items()]
     with tempfile.TemporaryDirectory() as folder:
         def run_program(budget):
-            subprocess.run([PROGRAM, "optimize", name, *words, "--optimizer", "random", "--schedule", "fixed:1", "--budget", str(budget), "--jobs", str(jobs),
-                            "--quiet", "--out", f"{folder}/program-{budget}"], check=True, capture_output=True)
+            subprocess.run([PROGRAM, "optimize", name, *words, *"--optimizer random --schedule fixed:1 --quiet".split(), "--budget", str(budget),
+                            "--jobs", str(jobs), "--out", f"{folder}/program-{budget}"], check=True, capture_output=True)
 
-        def run_here(optimizer, budget):
-            armwright.optimize(problem, optimizer, schedule="fixed:1", budget=budget, jobs=jobs, out=f"{folder}/{optimizer}-{budget}", progress=False)
+        def run_here(kind, optimizer):
+            return lambda budget: armwright.optimize(problem, optimizer, schedule="fixed:1", budget=budget, jobs=jobs,
+                                                     out=f"{folder}/{kind}-{budget}", progress=False)
 
         times = {}
-        for kind, call in (("program", run_program), ("optimize", lambda budget: run_here("random", budget)), ("class", lambda budget: run_here(RandomSearch, budget))):
+        for kind, call in (("program", run_program), ("optimize", run_here("optimize", "random")), ("class", run_here("class", RandomSearch))):
             start_s = measure_s(lambda: call(1))
             times[kind] = measure_s(lambda: call(evaluations)) - start_s
         times["evaluate"] = measure_s(lambda: problem.evaluate(points, cases=1, jobs=jobs))

@@ -53,7 +53,7 @@ def make_page(header):
         "<!-- Written by scripts/docs from include/armwright/plugin.h: change that, not this file. -->\n"
         f"# The C interface of plugins, version {version}\n\n"
         f"{read_comment(introduction.strip()[2:-2])}\n\n"
-        "The header is `armwright/plugin.h`; [add an optimizer](../adding-an-optimizer.md) begins from nothing, and `plugins/hooke_jeeves` is a complete "
+        "The header is `armwright/plugin.h`; [plugins](../plugins.md) begins from nothing, and `plugins/hooke_jeeves` is a complete "
         "one in C. The same for programs of their own is [the plugin protocol](../plugin-protocol.md).\n"
     )
     for comment, declaration in split_declarations(rest):

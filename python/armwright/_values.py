@@ -52,7 +52,8 @@ def to_settings(settings: Optional[Settings]) -> list[str]:
     if isinstance(settings, Mapping):
         return [f"{key}={to_toml(value)}" for key, value in settings.items()]
     if isinstance(settings, str):
-        raise UsageError(f"set is the text {settings!r}; it must be a mapping such as {{'physics.engine': 'articulated'}}, or a list of KEY=VALUE texts")
+        raise UsageError(f"set is the text {settings!r}; it must be a mapping such as {{'physics.engine': 'articulated'}}, or a list of "
+                         "KEY=VALUE texts")
     return [str(one) for one in settings]
 
 

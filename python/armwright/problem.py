@@ -11,7 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _armwright
-from ._values import FloatArray, MaskedFloats, Settings, quote_words, to_jobs, to_list, to_masked, to_masked_matrices, to_points, to_settings, to_whole
+from ._values import (FloatArray, MaskedFloats, Settings, quote_words, to_jobs, to_list, to_masked, to_masked_matrices, to_points,
+                      to_settings, to_whole)
 from .description import Description
 from .errors import UsageError
 from .progress import Listener, Show

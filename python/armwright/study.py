@@ -68,7 +68,8 @@ class Study:
 
     def __repr__(self) -> str:
         state = "" if self.finished else f", {len(self.missing)} cells missing"
-        return f"<armwright.Study {self.folder}: {len(self.optimizers)} optimizers, {len(self.problems)} problems, {self.replicates} replicates{state}>"
+        size = f"{len(self.optimizers)} optimizers, {len(self.problems)} problems, {self.replicates} replicates"
+        return f"<armwright.Study {self.folder}: {size}{state}>"
 
     def checkpoints(self, problem: str) -> npt.NDArray[np.int64]:
         """Budgets, in cases, at which incumbents were tested."""

@@ -53,10 +53,10 @@ std::string describe_limits(const ProblemDescription& description) {
   return join(texts, "; ");
 }
 
-std::string format_problem(const LoadedProblem& loaded) {
+std::string format_problem(const std::string& name, const LoadedProblem& loaded) {
   const ProblemDescription& description = loaded.problem->description();
   const auto settings = nlohmann::json::parse(loaded.resolved_json);
-  std::string text = fmt::format("\n## `{}`\n\n{}.\n", loaded.name, escape_markdown(loaded.title));
+  std::string text = fmt::format("\n## `{}`\n\n{}.\n", name, escape_markdown(loaded.title));
   if (settings.contains("description")) {
     text += "\n";
     for (const std::string& line : split(settings["description"].get<std::string>(), '\n')) {
@@ -93,7 +93,7 @@ std::string format_problem_page() {
   std::string sections;
   for (const ProblemTitle& problem : list_problems()) {
     text += fmt::format("| [`{0}`](#{0}) | {1} |\n", problem.name, escape_markdown(problem.title));
-    sections += format_problem(load_problem(problem.name));
+    sections += format_problem(problem.name, load_problem(problem.name));
   }
   return text + sections;
 }

@@ -62,10 +62,10 @@ std::filesystem::path find_own_library() {
   return known && object != nullptr ? object->l_name : "";  // the program's has no name
 }
 
-// Where the configuration lies beside a library: PREFIX/lib/python3/dist-packages/armwright/*.so
-// is five folders below its PREFIX. If nowhere, where it should be in the highest of them.
+// Where the configuration lies beside a library: of PREFIX/lib/python3/dist-packages/armwright/*.so
+// PREFIX is four folders above its own. If nowhere, where it should be in the highest of them.
 std::filesystem::path find_beside(const std::filesystem::path& library) {
-  constexpr int kMostLevels = 5;
+  constexpr int kMostLevels = 4;
   std::filesystem::path folder = std::filesystem::absolute(library).parent_path();
   for (int level = 1;; ++level) {
     folder = folder.parent_path();

@@ -61,7 +61,7 @@ def try_command(command, row, page, run, program, full):
     # Progress and messages go to standard error; a page that shows one of these shows them all.
     printed = outcome.errors + outcome.output if re.search(r"^armwright: ", command.output, re.M) else outcome.output
     shown = command.output
-    if not as_it_stands:
+    if not as_it_stands or not session.has_avx2():
         shown, printed = markdown.loosen(shown), markdown.loosen(printed)
     difference = markdown.find_difference(shown, printed)
     return difference and f"{difference}\nof all that it prints:\n{printed}"

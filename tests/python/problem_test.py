@@ -1,8 +1,11 @@
 """Problems from Python: evaluating points and designs gives what the program gives, whatever the threads, and never NaN."""
 import json
+import os
+import pty
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 import unittest
 
@@ -42,7 +45,7 @@ class ProblemTest(FolderTest):
         self.assertTrue(np.allclose(alone.case_errors.mean(axis=1), alone.values))
 
     def test_agrees_with_a_run_of_the_programs(self):
-        self.run_program("optimize", "q1-complex", "--engine", "articulated", "--optimizer", "random", "--schedule", "fixed:2", "--budget", "60", "--quiet")
+        self.run_program(*"optimize q1-complex --engine articulated --optimizer random --schedule fixed:2 --budget 60 --quiet".split())
         history = armwright.load_run("results/q1-complex-random-seed1").history
         mine = self.problem.evaluate(history.x, cases=2)
         self.assertEqual(history.objectives.data.tobytes(), mine.objectives.tobytes())
@@ -59,7 +62,8 @@ class ProblemTest(FolderTest):
         bad[3, 2] = np.nan
         outside = self.points.copy()
         outside[1, 0] = self.problem.upper[0] * 2
-        for points, pieces in ((np.zeros((2, 19)), ["(2, 19)", "(n, 20)"]), (np.zeros((2, 2, 20)), ["(2, 2, 20)"]), (bad, ["X[3, 2] (joint_1.d) is nan"]),
+        for points, pieces in ((np.zeros((2, 19)), ["(2, 19)", "(n, 20)"]), (np.zeros((2, 2, 20)), ["(2, 2, 20)"]),
+                               (bad, ["X[3, 2] (joint_1.d) is nan"]),
                                (outside, ["X[1, 0] (joint_1.p)", "between", "clip()"]), (np.zeros((1, 20), complex), ["complex128"]),
                                (np.array([["a"] * 20]), ["must hold real numbers"])):
             with self.subTest(pieces), self.expect_error(armwright.UsageError, *pieces):
@@ -162,6 +166,22 @@ class ProblemTest(FolderTest):
         child.send_signal(signal.SIGINT)
         self.assertEqual(child.communicate(timeout=60)[0], "interrupted\n")
         self.assertLess(time.monotonic() - begin, 30)  # of minutes
+
+    def test_progress_is_a_line_on_a_terminal_and_nothing_elsewhere(self):
+        text = "import armwright, time\np = armwright.load_problem('sphere')\n" \
+               "class Slow(armwright.Optimizer):\n    def minimize(self, evaluator, seed):\n        while not evaluator.stopped:\n" \
+               "            time.sleep(0.1)\n            evaluator.evaluate(p.start)\n" \
+               "armwright.optimize(p, Slow, budget=8, progress=SHOW)\n"
+        for show, is_seen in (("None", True), ("False", False)):
+            own, other = pty.openpty()
+            subprocess.run([sys.executable, "-c", text.replace("SHOW", show)], stderr=other, check=True, cwd=tempfile.mkdtemp(dir=self.folder))
+            os.set_blocking(own, False)
+            try:
+                seen = os.read(own, 100_000)
+            except BlockingIOError:
+                seen = b""
+            self.assertEqual(b"training [" in seen, is_seen)
+        self.assertEqual(subprocess.run([sys.executable, "-c", text.replace("SHOW", "None")], capture_output=True).stderr, b"")
 
     def test_progress_comes_on_the_thread_that_called(self):
         import threading

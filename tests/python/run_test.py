@@ -1,6 +1,5 @@
 """Runs from Python: the program's results bit for bit, and classes of Python's as optimizers like any other."""
 import json
-import os
 import pathlib
 import signal
 import subprocess
@@ -10,7 +9,7 @@ import unittest
 import warnings
 
 import numpy as np
-from support import FAST, FolderTest, Steps, read_bytes, run_script
+from support import FAST, FolderTest, Steps, read_bytes
 
 import armwright
 
@@ -44,11 +43,13 @@ class Generations(armwright.Optimizer):
 
 class RunTest(FolderTest):
     def test_same_bytes_as_the_program(self):
-        for problem, optimizer, settings, flags in (("q1-complex", "cmaes", FAST, ["--engine", "articulated"]), ("q2-pareto", "pagmo:nsga2", FAST, ["--engine", "articulated"]),
+        for problem, optimizer, settings, flags in (("q1-complex", "cmaes", FAST, ["--engine", "articulated"]),
+                                                    ("q2-pareto", "pagmo:nsga2", FAST, ["--engine", "articulated"]),
                                                     ("sphere", "nlopt:cobyla", SMALL, ["--set", "function.dimension=3"])):
             with self.subTest(optimizer):
                 mine = armwright.optimize(problem, optimizer, seed=5, budget=120, set=settings, out="mine-" + optimizer)
-                self.run_program("optimize", problem, *flags, "--optimizer", optimizer, "--seed", "5", "--budget", "120", "--out", "its-" + optimizer, "--quiet")
+                self.run_program("optimize", problem, *flags, "--optimizer", optimizer, "--out", "its-" + optimizer,
+                                 *"--seed 5 --budget 120 --quiet".split())
                 self.assertEqual(read_bytes(mine.folder, "result.json"), read_bytes("its-" + optimizer, "result.json"))
                 self.assertEqual(mine.to_dict(), armwright.load_run("its-" + optimizer).to_dict())
                 # The same command goes on with the run, and finds it complete.
@@ -56,11 +57,12 @@ class RunTest(FolderTest):
                 self.run_program(*words[1:], "--quiet")
 
     def test_options_schedule_and_default_folder(self):
-        run = armwright.optimize("q1-complex", "ga", seed=2, budget=70, set=FAST, options={"population": 7, "mutation_probability": 0.25}, schedule="fresh:2", jobs=1)
+        run = armwright.optimize("q1-complex", "ga", seed=2, budget=70, set=FAST, options={"population": 7, "mutation_probability": 0.25},
+                                 schedule="fresh:2", jobs=1)
         self.assertEqual(run.folder, pathlib.Path("results/q1-complex-ga-seed2"))
         self.assertEqual(run.manifest["configuration"]["run"]["options"]["population"], 7)
-        self.run_program("optimize", "q1-complex", "--engine", "articulated", "--optimizer", "ga", "--seed", "2", "--budget", "70", "--opt", "population=7", "--opt",
-                         "mutation_probability=0.25", "--schedule", "fresh:2", "--out", "its", "--quiet")
+        self.run_program(*"optimize q1-complex --engine articulated --optimizer ga --seed 2 --budget 70 --opt population=7".split(),
+                         *"--opt mutation_probability=0.25 --schedule fresh:2 --out its --quiet".split())
         self.assertEqual(read_bytes(run.folder, "result.json"), read_bytes("its", "result.json"))
         history = run.history
         self.assertEqual(history.generation.tolist(), [1] * 7 + [2] * 7 + [3] * 7 + [4] * 7 + [5] * 7)
@@ -238,7 +240,8 @@ class RunTest(FolderTest):
                           f"def go(): return armwright.optimize('q1-complex', {optimizer}, budget=BUDGET, out=OUT, jobs=2)\n")
                 out = "interrupted-" + optimizer.strip("'")
                 text = script + "print('begun', flush=True)\ntry: go()\nexcept KeyboardInterrupt as stop: print(stop)\n"
-                child = subprocess.Popen([sys.executable, "-c", text.replace("BUDGET", "60000").replace("OUT", repr(out))], stdout=subprocess.PIPE, text=True)
+                text = text.replace("BUDGET", "60000").replace("OUT", repr(out))
+                child = subprocess.Popen([sys.executable, "-c", text], stdout=subprocess.PIPE, text=True)
                 child.stdout.readline()
                 journal = pathlib.Path(out, "journal")
                 while not journal.is_file() or journal.stat().st_size < 5000:

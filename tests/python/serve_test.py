@@ -8,7 +8,7 @@ import pathlib
 import sys
 import unittest
 
-from support import FolderTest, Steps
+from support import FAST, FolderTest, Steps
 
 import armwright
 
@@ -54,9 +54,10 @@ class ServeTest(FolderTest):
         self.plugin = f"exec:{sys.executable} mine.py"
 
     def test_asks_for_the_same_points(self):
-        self.run_program("optimize", "q1-complex", "--engine", "articulated", "--optimizer", self.plugin, "--budget", "60", "--opt", "batch=7", "--seed", "4", "--out", "its", "--quiet")
+        self.run_program("optimize", "q1-complex", "--optimizer", self.plugin,
+                         *"--engine articulated --budget 60 --opt batch=7 --seed 4 --out its --quiet".split())
         its = armwright.load_run("its").history
-        mine = armwright.optimize("q1-complex", Steps, set={"physics.engine": "articulated"}, budget=60, options={"batch": 7}, seed=4, out="mine").history
+        mine = armwright.optimize("q1-complex", Steps, set=FAST, budget=60, options={"batch": 7}, seed=4, out="mine").history
         self.assertEqual(its.x.tobytes(), mine.x.tobytes())
         self.assertIn("hello from the optimizer", pathlib.Path("its/optimizer.log").read_text())
 

@@ -8,7 +8,7 @@ import time
 import unittest
 
 import numpy as np
-from support import FolderTest, Steps, read_bytes
+from support import FolderTest, PROGRAM, Steps, read_bytes
 
 import armwright
 
@@ -28,8 +28,8 @@ def compare(**changes):
 class StudyTest(FolderTest):
     def test_same_bytes_as_the_program(self):
         mine = compare(optimizers=["ga", "cmaes"])
-        self.run_program("compare", "--problems", "sphere,rosenbrock", "--optimizers", "ga,cmaes", "--replicates", "6", "--budget", "60", "--set", "function.dimension=3",
-                         "--out", "its", "--quiet")
+        self.run_program(*"compare --problems sphere,rosenbrock --optimizers ga,cmaes --replicates 6 --budget 60 --out its --quiet".split(),
+                         "--set", "function.dimension=3")
         for file in ("study.toml", "result.json", "verdict.txt", "tables/curves.csv"):
             self.assertEqual(read_bytes(mine.folder, file), read_bytes("its", file), file)
         its = armwright.load_study("its")
@@ -61,7 +61,7 @@ class StudyTest(FolderTest):
         self.run_program("report", "study", "--out", "page.html")
         self.run_program("doctor", "study")
         # And says where the class lives, when asked to run it.
-        told = subprocess.run([__import__("support").PROGRAM, "rerun", "study", "sphere/python:steps/r01"], capture_output=True, text=True)
+        told = subprocess.run([PROGRAM, "rerun", "study", "sphere/python:steps/r01"], capture_output=True, text=True)
         self.assertIn("is a class in somebody's Python program, and runs only there", told.stderr)
         self.assertNotEqual(told.returncode, 0)
         # Threads change nothing.
@@ -82,7 +82,8 @@ class StudyTest(FolderTest):
             compare(replicates=7, problems=["sphere"], optimizers=[Changed, "cmaes"])
 
     def test_study_files_and_refusals(self):
-        pathlib.Path("mine.toml").write_text('problems = ["sphere"]\noptimizers = ["ga"]\nreplicates = 2\nbudget = 30\nset = ["function.dimension=2"]\n')
+        pathlib.Path("mine.toml").write_text('problems = ["sphere"]\noptimizers = ["ga"]\nreplicates = 2\nbudget = 30\n'
+                                             'set = ["function.dimension=2"]\n')
         study = armwright.compare(study="mine.toml")
         self.assertEqual((study.folder, study.replicates), (pathlib.Path("results/mine"), 2))
         self.assertEqual(armwright.compare(study="mine.toml", replicates=3).values.shape, (3, 1, 3))
@@ -100,7 +101,8 @@ class StudyTest(FolderTest):
         whole = compare(problems=["sphere"], optimizers=[Steps, "ga"], out="whole", budget=400)
         text = ("import armwright, time\nfrom support import Steps\nprint('begun', flush=True)\n"
                 "def show(state): time.sleep(0.1)\n"
-                "try: armwright.compare(['sphere'], [Steps, 'ga'], replicates=6, budget=400, set={'function.dimension': 3}, out='broken', progress=show, jobs=1)\n"
+                "try: armwright.compare(['sphere'], [Steps, 'ga'], replicates=6, budget=400, set={'function.dimension': 3}, out='broken',\n"
+                "                       progress=show, jobs=1)\n"
                 "except KeyboardInterrupt as stop: print(stop)\n")
         child = subprocess.Popen([sys.executable, "-c", text], stdout=subprocess.PIPE, text=True)
         child.stdout.readline()

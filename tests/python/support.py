@@ -1,10 +1,8 @@
 """What the tests of the Python package share. Each file is a program: ctest runs it with Debian's Python and the build tree's package."""
-import json
 import os
 import pathlib
 import shutil
 import subprocess
-import sys
 import tempfile
 import unittest
 
@@ -23,14 +21,6 @@ def run_program(*words, cwd, expect=0):
     if done.returncode != expect:
         raise AssertionError(f"{words} ended with {done.returncode}, not {expect}:\n{done.stdout}\n{done.stderr}")
     return done.stdout
-
-
-def run_script(text, cwd, *, expect=0):
-    """A Python program of its own, with the same package."""
-    done = subprocess.run([sys.executable, "-c", text], cwd=cwd, capture_output=True, text=True)
-    if done.returncode != expect:
-        raise AssertionError(f"the script ended with {done.returncode}, not {expect}:\n{done.stdout}\n{done.stderr}")
-    return done
 
 
 class FolderTest(unittest.TestCase):

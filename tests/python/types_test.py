@@ -16,8 +16,9 @@ PACKAGE = ROOT / "python/armwright"
 class TypesTest(FolderTest):
     def test_mypy_finds_nothing(self):
         examples = sorted((ROOT / "python/examples").glob("*.py"))
-        done = subprocess.run(["/usr/bin/mypy", "--config-file", str(ROOT / "python/mypy.ini"), "--no-error-summary", "--cache-dir", str(self.folder / "cache"),
-                               str(PACKAGE), *map(str, examples)], capture_output=True, text=True, env={**os.environ, "PYTHONPATH": ""})
+        words = ["--config-file", str(ROOT / "python/mypy.ini"), "--no-error-summary", "--cache-dir", str(self.folder / "cache")]
+        done = subprocess.run(["/usr/bin/mypy", *words, str(PACKAGE), *map(str, examples)], capture_output=True, text=True,
+                              env={**os.environ, "PYTHONPATH": ""})
         self.assertEqual((done.stdout, done.returncode), ("", 0), done.stderr)
 
     def test_stubs_name_what_is_there(self):

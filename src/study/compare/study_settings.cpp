@@ -81,6 +81,7 @@ const std::vector<SettingWords>& get_words() {
        "KEY=VALUE of [racing], [schedule], [perturbation] or control.controller, "
        "likewise"},
       {"optimizer[].baseline", "of a resolved plan: it was not asked for"},
+      {"optimizer[].description", "of a resolved plan: what an optimizer in Python says of itself"},
       {"optimizer[].inputs", "of a resolved plan: hashes of a plugin's files"},
       {"target[].label", "a fixed target, by which tables name it"},
       {"target[].problems", "labels of the problems that it is asked of (default: all)"},

@@ -169,6 +169,11 @@ class Session:
             self.python.stderr.close()
 
 
+def has_avx2():
+    """Whether this machine can print the very digits of the pages."""
+    return bool(re.search(r"^flags\s*:.*\bavx2\b", pathlib.Path("/proc/cpuinfo").read_text(), re.M))
+
+
 class Program:
     """What the program says of its own subcommands and flags."""
 
