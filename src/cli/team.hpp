@@ -18,6 +18,8 @@
 
 namespace armwright {
 
+class RunObserver;
+
 class Team {
  public:
   // On every rank, before anything that may fail: MPI begins on all ranks or on none.
