@@ -76,7 +76,7 @@ CLI::App* add_command(CLI::App& parent, Session& session, const std::string& nam
   command->add_option("--color", session.color, "When to use colour: auto, always or never")
       ->type_name("WHEN")
       ->group("Output");
-  command->footer(examples + "\n\nExit codes and environment: armwright --help");
+  command->footer(examples + std::string(kSeeExitCodes));
   return command;
 }
 

@@ -27,6 +27,10 @@ double parse_duration_s(std::string_view flag, std::string_view text);
 Schedule parse_schedule(std::string_view text);
 Racing parse_racing(std::string_view text);
 
+// Behind every command's examples; manual pages have a section of their own instead.
+inline constexpr std::string_view kSeeExitCodes =
+    "\n\nExit codes and environment: armwright --help";
+
 // A new subcommand with what all have: --color, and examples below its help.
 CLI::App* add_command(CLI::App& parent, Session& session, const std::string& name,
                       const std::string& description, const std::string& examples);

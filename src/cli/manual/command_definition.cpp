@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "cli/arguments.hpp"
 
 namespace armwright {
 namespace {
@@ -50,6 +51,9 @@ CommandDefinition describe_below(const CLI::App& app, std::vector<std::string> w
   command.words = words;
   command.summary = app.get_description();
   command.notes = app.get_footer();
+  if (command.notes.ends_with(kSeeExitCodes)) {
+    command.notes.resize(command.notes.size() - kSeeExitCodes.size());
+  }
   for (const CLI::Option* option : app.get_options({})) {
     ArgumentDefinition argument = describe_argument(*option);
     if (!argument.group.empty()) {  // else hidden
