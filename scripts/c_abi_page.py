@@ -30,9 +30,9 @@ def split_declarations(code):
                 break
             depth += line.count("{") - line.count("}")
             lines.append(line)
-        declaration = "\n".join(line for line in lines if not line.startswith("#pragma"))
+        declaration = "\n".join(lines)
         parts.append((read_comment(match.group(1)), declaration))
-        position = end + len("\n".join(lines))
+        position = end + len(declaration)
     return parts
 
 
@@ -48,6 +48,7 @@ def make_title(declaration):
 def make_page(header):
     introduction, rest = header.split("#ifndef ARMWRIGHT_PLUGIN_H", 1)
     rest = re.sub(r'#ifdef __cplusplus\n(extern "C" \{|\})\n#endif\n', "", rest)
+    rest = re.sub(r"#if defined\(__cplusplus\).*\n(#pragma.*\n)+#endif\n", "", rest)  # how compilers are to take it
     version = re.search(r"#define ARMWRIGHT_PLUGIN_ABI (\d+)u", rest).group(1)
     text = (
         "<!-- Written by scripts/docs from include/armwright/plugin.h: change that, not this file. -->\n"
@@ -59,7 +60,7 @@ def make_page(header):
     for comment, declaration in split_declarations(rest):
         if not declaration.strip():
             continue
-        text += f"\n## {make_title(declaration)}\n\n{comment}\n\n```c\n{declaration}\n```\n"
+        text += f"\n## {make_title(declaration)}\n\n{comment}\n\n```c header\n{declaration}\n```\n"
     return text
 
 

@@ -5,7 +5,7 @@
  * its name, what it can do, its options, and a function minimize(). armwright opens the library in
  * a process of its own, so a crash costs the run and not the program.
  *
- *     armwright optimize --optimizer ./libmine.so
+ *     armwright optimize q1-complex --optimizer ./libmine.so
  *
  * Everything that crosses the border is a plain struct that begins with its size. Later versions of
  * armwright may append fields; they never change or remove any without a new ARMWRIGHT_PLUGIN_ABI.
@@ -155,8 +155,9 @@ struct armwright_plugin {
 
 /* What every plugin defines:
  *
- *     ARMWRIGHT_PLUGIN_EXPORT const struct armwright_plugin* armwright_plugin(void) { return &mine;
- * }
+ *     ARMWRIGHT_PLUGIN_EXPORT const struct armwright_plugin* armwright_plugin(void) {
+ *       return &mine;
+ *     }
  */
 #define ARMWRIGHT_PLUGIN_SYMBOL "armwright_plugin"
 #if defined(__cplusplus) && defined(__GNUC__)

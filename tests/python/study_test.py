@@ -93,7 +93,7 @@ class StudyTest(FolderTest):
                              (["two optimizers of the study are called 'python:steps'"], lambda: compare(optimizers=[Steps, Steps])),
                              (["names no budget"], lambda: armwright.compare(["sphere"], ["ga"])),
                              (["replicates is 0"], lambda: compare(replicates=0)),
-                             (["is not the folder of a study"], lambda: armwright.load_study("nowhere"))):
+                             (["there is no folder 'nowhere'"], lambda: armwright.load_study("nowhere"))):
             with self.subTest(pieces), self.expect_error(armwright.UsageError, *pieces):
                 call()
 

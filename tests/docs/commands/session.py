@@ -133,6 +133,10 @@ class Session:
         return self.compile_only("c++", ["-std=c++20"], CLASS.format(block.text) if block.argument == "class" else block.text)
 
     def try_c(self, block):
+        if block.argument == "header":
+            lines = (self.sources / "include/armwright/plugin.h").read_text().split("\n")
+            unknown = [line for line in block.text.strip("\n").split("\n") if line not in lines]
+            return f"not in armwright/plugin.h: {unknown[0]}" if unknown else None
         return self.compile_only("c", ["-std=c99"], block.text)
 
     def compile_only(self, language, flags, text):
