@@ -63,6 +63,8 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "armwright (${this_version}), python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-matplotlib, python3-scipy")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/cmake/debian/python/postinst
+                                              ${PROJECT_SOURCE_DIR}/cmake/debian/python/prerm)
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION
     "tunes robot arms by simulation - Python
 Problems, runs and comparisons of armwright from Python 3.11, with arrays
@@ -83,7 +85,7 @@ configure_file(cmake/debian/copyright.in ${PROJECT_BINARY_DIR}/debian/copyright 
 # CMake package of it links statically.
 set(ARMWRIGHT_PAGE_PACKAGES "")
 if(ARMWRIGHT_WITH_PAGE)
-  set(ARMWRIGHT_PAGE_PACKAGES core-js echarts three tslib zrender)
+  set(ARMWRIGHT_PAGE_PACKAGES core-js echarts three tslib zrender minisearch) # the last in the documentation's search
 endif()
 set(ARMWRIGHT_CERES_LICENSE "")
 if(ARMWRIGHT_WITH_CERES)

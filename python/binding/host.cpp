@@ -10,21 +10,9 @@ namespace {
 
 constexpr std::chrono::milliseconds kLookInterval{50};  // quick enough for a person
 
-const char* get_name(Progress::Phase phase) {
-  switch (phase) {
-    case Progress::Phase::training:
-      return "training";
-    case Progress::Phase::validation:
-      return "validation";
-    case Progress::Phase::test:
-      break;
-  }
-  return "test";
-}
-
 py::tuple to_tuple(const Progress& progress) {
   const bool has_best = std::isfinite(progress.best_objective);
-  return py::make_tuple(get_name(progress.phase), progress.done, progress.total, progress.replayed,
+  return py::make_tuple(to_string(progress.phase), progress.done, progress.total, progress.replayed,
                         progress.generation,
                         has_best ? py::object(py::float_(progress.best_objective)) : py::none());
 }

@@ -37,10 +37,11 @@ constexpr const char* kEvaluateExamples = R"(Examples:
   armwright evaluate table-a5 --problem q1-complex --trajectory arm.csv --case 7
 
 Terms: a test case is a sequence of points the arm's tip has to follow; its error is the mean over the points of
-the largest distance between tip and target while it should be there. A failure is a case with an error above
+the largest distance between tip and target from the target's arrival there until it leaves. Points are in the frame of
+the robot's base. A failure is a case with an error above
 100 mm or none at all (the simulation diverged, or a target lies out of reach). The total torque is the sum of
-the joints' effort limits. Where the problem has requirements, the worst case counts, and one with
-use = "constraint" that is missed makes the exit code 3.)";
+the joints' effort limits. Where the problem has requirements (docs/requirements.md), each is judged by its worst case. The
+exit code is 3 if a case has no number, or a requirement with use = "constraint" is missed.)";
 
 struct EvaluateOptions {
   std::string design;
@@ -258,7 +259,7 @@ void add_evaluate(CLI::App& app, Session& session) {
   command
       ->add_option("--problem,-p", options->problem,
                    "Robot, task and physics to evaluate it under (default: what the design was\n"
-                   "published for)")
+                   "published for; with --robot the problem 'robot'; of others it is required)")
       ->type_name("PROBLEM");
   options->overrides.add_to(*command);
   options->cases.add_to(*command);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -122,6 +123,63 @@ json list_settings_as_json() {
   return all;
 }
 
+// In few words, for a narrow column of a table.
+std::string shorten_allowed(const Setting& setting) {
+  constexpr std::pair<std::string_view, std::string_view> kShorter[] = {
+      {"an array, each element of it a finite number", "numbers, each"},
+      {"one of these strings: ", ""},
+      {"an array of strings", "list of texts"},
+      {"a finite number", "number"},
+      {"an integer", "integer"},
+      {"a string", "text"},
+  };
+  std::vector<std::string> texts;
+  for (std::string text : setting.allowed) {
+    for (const auto& [longer, shorter] : kShorter) {
+      if (text.starts_with(longer)) {
+        text.replace(0, longer.size(), shorter);
+        break;
+      }
+    }
+    texts.push_back(std::move(text));
+  }
+  return join(texts, "; or ");
+}
+
+// "task.speed_m_per_s" -> "[task]"; "requirement[].use" -> "[[requirement]]"; "" at the top.
+std::string get_table_heading(const std::string& path) {
+  const std::size_t dot = path.rfind('.');
+  if (dot == std::string::npos) {
+    return "";
+  }
+  const std::string table = path.substr(0, dot);
+  return table.ends_with("[]") ? "[[" + table.substr(0, table.size() - 2) + "]]"
+                               : "[" + table + "]";
+}
+
+std::string format_row(const Setting& setting) {
+  std::vector<std::string> defaults;
+  std::ranges::transform(list_defaults(setting), std::back_inserter(defaults), format_code);
+  return fmt::format("| {} | {} | {} | {} | {} |\n",
+                     format_code(setting.path.substr(setting.path.rfind('.') + 1)),
+                     escape_markdown(setting.meaning), escape_markdown(shorten_allowed(setting)),
+                     escape_markdown(setting.unit), join(defaults, " or "));
+}
+
+// A table of Markdown for each of the file's tables.
+std::string format_tables(const std::vector<Setting>& settings) {
+  std::string text, heading = "none yet";
+  for (const Setting& setting : settings) {
+    if (const std::string own = get_table_heading(setting.path); own != heading) {
+      heading = own;
+      text += (heading.empty() ? "\n" : fmt::format("\n### `{}`\n\n", heading)) +
+              "| key | meaning | allowed | unit | default |\n|---|---|---|---|---|\n";
+    }
+    text += format_row(setting);
+  }
+  return text;
+}
+
 std::string format_page(const std::string& name) {
   if (!name.empty()) {
     throw Error(ErrorKind::usage, "the page of settings has all of them; leave out the name");
@@ -129,23 +187,12 @@ std::string format_page(const std::string& name) {
   std::string text = fmt::format(
       "{}# Settings\n\n"
       "Every key of the configuration files, as `armwright list settings` prints them. Units are "
-      "SI, and a "
-      "key's name ends with its unit. Without a default a key is required, or what its absence "
-      "means stands beside it. Unknown "
-      "keys are refused, with the nearest valid one.\n",
+      "SI, and a key's name ends with its unit. Without a default a key is required, or what its "
+      "absence means stands beside it. Unknown keys are refused, with the nearest valid one. In "
+      "`--set` a key is named with its table: `task.speed_m_per_s`.\n",
       kGeneratedPage);
   for (const SettingFile& file : list_setting_files()) {
-    text += fmt::format(
-        "\n## {}\n\n{}\n\n| key | unit | default | allowed | meaning |\n|---|---|---|---|---|\n",
-        file.title, file.words);
-    for (const Setting& setting : file.settings) {
-      std::vector<std::string> defaults;
-      std::ranges::transform(list_defaults(setting), std::back_inserter(defaults), format_code);
-      text +=
-          fmt::format("| {} | {} | {} | {} | {} |\n", format_code(setting.path),
-                      escape_markdown(setting.unit), join(defaults, " or "),
-                      escape_markdown(describe_allowed(setting)), escape_markdown(setting.meaning));
-    }
+    text += fmt::format("\n## {}\n\n{}\n", file.title, file.words) + format_tables(file.settings);
   }
   return text;
 }

@@ -112,16 +112,17 @@ void add_manual(CLI::App& app, Session& session) {
       add_command(app, session, "manual", "Print the manual page of a command", kManualExamples);
   command->add_option(
       "COMMAND", options->command,
-      "The command, as in optimize or testset export (default: the program itself)");
+      "The command, as in optimize or testset export (default: the program itself; as\n"
+      "markdown all commands on one page)");
   command
       ->add_option("--format", options->format,
-                   "text, to read; man, roff for man(1); markdown (default: text)")
+                   "text: to read (default); man: roff, for the program man; markdown")
       ->type_name("FORMAT")
       ->group("Output");
   command
       ->add_option("--out", options->out,
-                   "Write the pages of all commands into this folder, where files of their names\n"
-                   "are replaced")
+                   "Write the pages of all commands into this folder, a file each (markdown: one\n"
+                   "for all); files of these names are replaced")
       ->type_name("DIR")
       ->group("Output");
   command->callback([options, &app, &session] {

@@ -23,18 +23,6 @@ constexpr milliseconds kShortestLineInterval{500};  // however fast the tenths p
 constexpr int kLongestBar = 30;
 constexpr int kShortestBar = 5;
 
-const char* to_string(Progress::Phase phase) {
-  switch (phase) {
-    case Progress::Phase::training:
-      return "training";
-    case Progress::Phase::validation:
-      return "validation";
-    case Progress::Phase::test:
-      break;
-  }
-  return "test";
-}
-
 std::uint64_t count_simulated(const Progress& progress) {
   return progress.done - std::min(progress.done, progress.replayed);
 }

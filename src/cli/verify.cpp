@@ -41,16 +41,17 @@ constexpr const char* kVerifyExamples = R"(Examples:
 
 The design is simulated in every engine that is built in, with 1, 2, 5 and 10 substeps of the physics in a control
 period (physics.substeps), and with all masses and inertias of the arm at -10 %, 0 and +10 % (robot.mass_scale), in
-all combinations; and under its own engine and time step on perturbed plants, one for each case, of every shipped kind
-but those that weaken motors or change gains. --engines, --substeps and --perturbations choose others: then all of
-these are combined. Each is compared with the design's own setting, the problem as it is:
+all combinations; and under its own engine and time step on perturbed plants (arms that differ from the nominal one),
+another for each case, of every shipped kind but those that weaken motors or change gains. Who gives --perturbations
+gets all combinations of them with the engines and substeps; a list that is not given keeps its default. The error of a
+case is the mean distance of the tip from its target. Each setting is compared with the design's own setting, the problem as it is:
 
   holds   no more cases fail, and the median error is at most 1.1 times its own
   worse   no more cases fail, but the median error is larger than that
   fails   more cases fail, or the median error is more than 10 times its own or does not exist
 
 A failure is a case with an error above 100 mm or none at all; the first one of each setting is named with the command
-that simulates it again and writes down its motion. The exit code is 3 if something does not hold.)";
+that simulates it again and writes down its motion. The exit code is 3 if any setting is worse or fails.)";
 
 struct VerifyOptions {
   std::string design;
@@ -348,7 +349,7 @@ void add_verify(CLI::App& app, Session& session) {
   command
       ->add_option("--problem,-p", options->problem,
                    "Robot, task and physics that are its own setting (default: what the design\n"
-                   "was published for)")
+                   "was published for; with --robot the problem 'robot'; of others it is required)")
       ->type_name("PROBLEM");
   options->overrides.add_to(*command);
   options->cases.add_to(*command);
@@ -363,9 +364,12 @@ void add_verify(CLI::App& app, Session& session) {
       ->delimiter(',')
       ->type_name("NUMBERS");
   command
-      ->add_option("--perturbations", options->perturbations,
-                   "Plants to try: none, lighter and heavier (all masses -10 and +10 %), shipped\n"
-                   "perturbations (configs/perturbations) and paths of such files")
+      ->add_option(
+          "--perturbations", options->perturbations,
+          "Plants to try: none, lighter and heavier (all masses -10 and +10 %), a shipped\n"
+          "perturbation (docs/robust.md: masses-10, load-0-40, friction, sensor, ripple,\n"
+          "all of these together: all, weak), paths of such files (default: none, lighter,\n"
+          "heavier, and all shipped ones but weak)")
       ->delimiter(',')
       ->type_name("NAMES");
   options->jobs.add_to(*command);

@@ -35,6 +35,7 @@ class Proposer {
   Proposer(const ConfigTable& table, TrackingConfig& config)
       : task_table_(table.get_table_or_empty("task")),
         workspace_table_(table.get_table_or_empty("workspace")),
+        path_table_(table.get_table_or_empty("path")),
         config_(config) {}
 
   std::vector<std::string> apply() {
@@ -45,7 +46,16 @@ class Proposer {
     } else {
       propose_place();
     }
-    propose_pace();
+    try {
+      propose_pace();
+    } catch (const Error& error) {
+      if (!config_.path) {
+        throw;
+      }
+      path_table_.refuse("kind", fmt::format("{}; move the path, or ask less of the tool "
+                                             "(task.orientation)",
+                                             error.what()));
+    }
     return std::move(settled_);
   }
 
@@ -127,6 +137,7 @@ class Proposer {
 
   ConfigTable task_table_;
   ConfigTable workspace_table_;
+  ConfigTable path_table_;
   TrackingConfig& config_;
   std::vector<std::string> settled_;
 };

@@ -61,10 +61,6 @@ const std::vector<SettingWords>& problem_setting_words() {
       {"workspace.points", "of a test case, beside the place where it begins"},
 
       {"path.kind", "a path of your own instead of generated cases"},
-      {"path.point[].position_m",
-       "of kind points: where to, three numbers; the first is the start"},
-      {"path.point[].rpy_rad",
-       "the tool's turn there, roll, pitch and yaw; for all points or none"},
       {"path.from_m", "of kind line: one end, three numbers"},
       {"path.to_m", "of kind line: the other end, three numbers"},
       {"path.centre_m", "of kind circle, three numbers"},
@@ -74,6 +70,10 @@ const std::vector<SettingWords>& problem_setting_words() {
       {"path.start", "of kind circle: direction from its centre to where it begins, three numbers"},
       {"path.repeats", "how often a line is gone there and back, or a circle round"},
       {"path.file", "of kind file: CSV beside this file (docs/tasks.md)"},
+      {"path.point[].position_m",
+       "of kind points: where to, three numbers; the first is the start"},
+      {"path.point[].rpy_rad",
+       "the tool's turn there, roll, pitch and yaw; for all points or none"},
 
       {"physics.engine",
        "simulates, and judges unless judging_engine says otherwise (armwright "
@@ -140,9 +140,6 @@ const std::vector<SettingWords>& problem_setting_words() {
        "what is optimized of every joint: gains, or single ones of the "
        "controller, effort_min, effort_max, length_scale, section_scale "
        "(default: gains and effort limits)"},
-      {"variables.joint[].name",
-       "a joint of the arm (here: of the shipped one) that has an own list"},
-      {"variables.joint[].optimize", "its list, instead of variables.optimize"},
       {"variables.task", "[\"speed\"]: the nominal speed is optimized too"},
       {"variables.bounds_factor",
        "gains and limits may be the start's divided by this to times this"},
@@ -150,6 +147,9 @@ const std::vector<SettingWords>& problem_setting_words() {
       {"variables.section_bounds_factor", "likewise of section_scale"},
       {"variables.speed_bounds_factor", "likewise of the speed"},
       {"variables.within_effort_limits", "effort limits stay within the URDF's"},
+      {"variables.joint[].name",
+       "a joint of the arm (here: of the shipped one) that has an own list"},
+      {"variables.joint[].optimize", "its list, instead of variables.optimize"},
       {"motors.torque_per_mass_n_m_per_kg",
        "gives every joint a motor with the mass of its effort "
        "limit divided by this; 0: without mass"},

@@ -179,9 +179,9 @@ std::vector<std::string> load_tracking(const ConfigTable& table, std::span<const
                                                  {.lower = 1, .upper = 1e9, .lower_open = true});
   if (config.start.joints.size() != config.robot.joint_count()) {
     variables.refuse("start",
-                     fmt::format("that design has {} joints and robot '{}' has {}; change "
-                                 "robot.urdf, name a design made for this robot, or let one be "
-                                 "made: variables.start=proposed",
+                     fmt::format("that design has {} joints and robot '{}' has {}; designs are "
+                                 "made for one robot: take another robot.urdf, or start from a "
+                                 "design made for this one (variables.start=proposed makes one)",
                                  config.start.joints.size(), sanitize(config.robot.name),
                                  config.robot.joint_count()));
   }

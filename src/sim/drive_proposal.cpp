@@ -21,7 +21,7 @@ constexpr double kSlower = 0.8;
 constexpr int kSlowdowns = 20;
 
 constexpr double kBandwidth_rad_per_s = 10;
-constexpr double kDamping = 0.7;
+constexpr double kDampingRatio = 0.7;
 // Of the 2 at which sampled damping diverges.
 constexpr double kMostSampledDamping = 0.7;
 constexpr double kEffortReserve = 2;
@@ -71,8 +71,7 @@ std::vector<TargetTable> make_tables(const RobotModel& robot, const TrackingSetu
     tables.push_back(setup.make_targets(its));
     if (!tables.back().unreachable.empty()) {
       refuse_proposal(robot,
-                      fmt::format("nothing can be proposed for a path that it cannot follow: {}",
-                                  tables.back().unreachable));
+                      fmt::format("it cannot follow the path: {}", tables.back().unreachable));
     }
   }
   return tables;
@@ -164,7 +163,7 @@ ArmDesign propose_design(const RobotModel& robot, TrackingTask task,
   for (std::size_t i = 0; i < robot.joint_count(); ++i) {
     const double w = kBandwidth_rad_per_s;
     const double m = demand.inertia[i];
-    const double d = std::min(2 * kDamping * w * m,
+    const double d = std::min(2 * kDampingRatio * w * m,
                               kMostSampledDamping / (task.control_period_s * demand.mobility[i]));
     const double p = std::min(w * w * m, d * d / m);
     JointDrive drive;

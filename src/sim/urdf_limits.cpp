@@ -71,12 +71,13 @@ class Tags {
   std::size_t at_ = 0;
 };
 
-struct Range {
+struct TextRange {
   std::size_t begin = 0, end = 0;
 };
 
 // Where an attribute's value stands, without its quotes.
-std::optional<Range> find_attribute(std::string_view xml, const Tag& tag, std::string_view wanted) {
+std::optional<TextRange> find_attribute(std::string_view xml, const Tag& tag,
+                                        std::string_view wanted) {
   std::size_t at = tag.begin + 1 + tag.name.size();
   while (true) {
     at = xml.find_first_not_of(kXmlBlanks, at);
@@ -87,7 +88,7 @@ std::optional<Range> find_attribute(std::string_view xml, const Tag& tag, std::s
     const std::size_t open = xml.find_first_of("\"'", name_end);
     const std::size_t close = xml.find(xml[open], open + 1);
     if (xml.substr(at, name_end - at) == wanted) {
-      return Range{open + 1, close};
+      return TextRange{open + 1, close};
     }
     at = close + 1;
   }
@@ -137,7 +138,7 @@ std::string decode(std::string_view raw) {
 }
 
 struct Edit {
-  Range place;
+  TextRange place;
   std::string text;
 };
 

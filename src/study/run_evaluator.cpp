@@ -17,6 +17,18 @@
 
 namespace armwright {
 
+const char* to_string(Progress::Phase phase) {
+  switch (phase) {
+    case Progress::Phase::training:
+      return "training";
+    case Progress::Phase::validation:
+      return "validation";
+    case Progress::Phase::test:
+      break;
+  }
+  return "test";
+}
+
 RunEvaluator::RunEvaluator(const RunPlan& plan, CaseRunner& runner, StopSignal& stop,
                            Journal& journal, JournalContent recorded, RunObserver& observer)
     : plan_(plan),

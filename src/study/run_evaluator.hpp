@@ -33,6 +33,8 @@ struct Progress {
                                                  // generation's best
 };
 
+const char* to_string(Progress::Phase phase);
+
 // What a run tells while it goes on. Calls come from any thread, one at a time.
 class RunObserver {
  public:

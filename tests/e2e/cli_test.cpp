@@ -79,7 +79,7 @@ TEST_F(Cli, TellsItsVersionAndWhatItWasBuiltFrom) {
   const Outcome outcome = run({"--version"});
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_THAT(outcome.out,
-              AllOf(StartsWith("armwright 0."), HasSubstr("compiler"), HasSubstr("ode")));
+              AllOf(StartsWith("armwright 1."), HasSubstr("compiler"), HasSubstr("ode")));
 }
 
 TEST_F(Cli, NamesTheNearestOfWhatItDoesNotKnow) {

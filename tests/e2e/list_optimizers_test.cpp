@@ -105,10 +105,16 @@ TEST_F(ListOptimizers, TellsWhatRunsInAProcessOfItsOwn) {
   EXPECT_THAT(run({"ga"}).out, HasSubstr("in armwright's own process"));
 }
 
-TEST_F(ListOptimizers, MarkdownIsForOptimizersAlone) {
-  const Outcome problems = run_program(folder_.path(), {"list", "problems", "--markdown"});
-  EXPECT_EQ(problems.exit_code, 2);
-  EXPECT_THAT(problems.err, HasSubstr("--markdown is for optimizers, not for problems"));
+TEST_F(ListOptimizers, MarkdownIsForKindsThatHavePages) {
+  const auto refusal_of = [&](const std::vector<std::string>& words) {
+    const Outcome outcome = run_program(folder_.path(), words);
+    EXPECT_EQ(outcome.exit_code, 2);
+    return outcome.err;
+  };
+  EXPECT_THAT(refusal_of({"list", "robots", "--markdown"}),
+              HasSubstr("--markdown is for problems, optimizers and settings, not for robots"));
+  EXPECT_THAT(refusal_of({"list", "settings", "task.rest_s", "--markdown"}),
+              HasSubstr("the page of settings has all of them; leave out the name"));
   const Outcome both = run({"--markdown", "--json"});
   EXPECT_EQ(both.exit_code, 2);
   EXPECT_THAT(both.err, HasSubstr("choose one"));
@@ -120,7 +126,12 @@ class Docs : public ListOptimizers {
  protected:
   Docs() {
     std::filesystem::create_directories(folder_ / "scripts");
-    std::filesystem::copy_file(ARMWRIGHT_SCRIPTS "/docs", folder_ / "scripts/docs");
+    std::filesystem::create_directories(folder_ / "include/armwright");
+    for (const char* file :
+         {"scripts/docs", "scripts/c_abi_page.py", "include/armwright/plugin.h"}) {
+      std::filesystem::copy_file(std::filesystem::path(ARMWRIGHT_SCRIPTS "/..") / file,
+                                 folder_ / file);
+    }
     const auto program = folder_ / "program";
     std::ofstream(program) << R"(#!/bin/sh
 case "$3" in
@@ -151,6 +162,9 @@ TEST_F(Docs, WritesAPageForEveryRow) {
   const auto count = std::distance(std::filesystem::directory_iterator(folder_ / "docs/optimizers"),
                                    std::filesystem::directory_iterator());
   EXPECT_EQ(count, std::ssize(optimizer_table()) + 1);
+  EXPECT_THAT(read_text(folder_ / "docs/reference/plugin-c-abi.md"),
+              HasSubstr("\nstruct armwright_evaluator {\n"));
+  EXPECT_THAT(read_text(folder_ / "docs/reference/configuration.md"), HasSubstr("### `[task]`\n"));
 }
 
 TEST_F(Docs, FindsPagesThatAreStaleMissingOrChanged) {
@@ -163,6 +177,10 @@ TEST_F(Docs, FindsPagesThatAreStaleMissingOrChanged) {
   std::ofstream(page, std::ios::app) << "changed\n";
   expect_refused();
   std::filesystem::remove(page);
+  expect_refused();
+  ASSERT_EQ(run_docs(""), 0);
+  const auto reference = folder_ / "docs/reference/problems.md";
+  std::ofstream(reference, std::ios::app) << "changed\n";
   expect_refused();
   ASSERT_EQ(run_docs(""), 0);
   std::ofstream(stale) << "of an optimizer that is no more\n";

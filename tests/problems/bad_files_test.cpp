@@ -163,8 +163,8 @@ TEST(BadDesign, DoesNotFitTheRobot) {
   EXPECT_EQ(
       folder.refusal_of_base_with("[variables]\nstart = 'three.toml'"),
       "p.toml:3: variables.start is 'three.toml'; that design has 3 joints and robot "
-      "'irb4600_40_255' has 4; change robot.urdf, name a design made for this robot, or let one "
-      "be made: variables.start=proposed");
+      "'irb4600_40_255' has 4; designs are made for one robot: take another robot.urdf, or start "
+      "from a design made for this one (variables.start=proposed makes one)");
   EXPECT_EQ(folder.refusal_of_base_with(
                 "[sweep]\nparameter = 'task.load_kg'\nvalues = [1]\ndesign = 'three.toml'"),
             "p.toml:5: sweep.design is 'three.toml'; the design has 3 joints, the robot "

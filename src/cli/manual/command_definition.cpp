@@ -50,6 +50,7 @@ CommandDefinition describe_below(const CLI::App& app, std::vector<std::string> w
   words.push_back(app.get_name());
   command.words = words;
   command.summary = app.get_description();
+  std::ranges::replace(command.summary, '\n', ' ');  // long ones are broken for --help
   command.notes = app.get_footer();
   if (command.notes.ends_with(kSeeExitCodes)) {
     command.notes.resize(command.notes.size() - kSeeExitCodes.size());

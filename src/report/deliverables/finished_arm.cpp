@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "report/run_traces.hpp"
@@ -20,9 +22,14 @@ void refuse_study(const std::filesystem::path& folder, std::string_view format) 
     return;
   }
   const FoundRuns found = find_runs(folder);
-  refuse_run(folder, fmt::format("is a study, and {} is made of one run: give the folder of one, "
-                                 "such as {}",
-                                 format, sanitize(found.runs.front().folder.string())));
+  const auto run = std::ranges::find_if(
+      found.runs, [](const RunEntry& one) { return load_result(one.folder).tracking; });
+  refuse_run(folder,
+             run == found.runs.end()
+                 ? fmt::format("this is a study of functions; {} is made of an arm's run", format)
+                 : fmt::format("this is a study; {} is made of one run: give the folder of "
+                               "one, such as {}",
+                               format, sanitize(run->folder.string())));
 }
 
 }  // namespace

@@ -59,6 +59,7 @@ const std::vector<SettingWords>& get_words() {
       {"reference",
        "label of the optimizer that running times to targets are divided by; empty: "
        "none"},
+      {"plan_sha256", "of a resolved plan: hash of all that follows"},
       {"selection.last", "the last N incumbents are judged on the validation set"},
       {"selection.best", "and the N with the best training objective"},
       {"selection.along",
@@ -87,7 +88,6 @@ const std::vector<SettingWords>& get_words() {
       {"target[].problems", "labels of the problems that it is asked of (default: all)"},
       {"target[].value", "the objective on the test set at most"},
       {"target[].failures", "this many failing test cases at most"},
-      {"plan_sha256", "of a resolved plan: hash of all that follows"},
   };
   return words;
 }
