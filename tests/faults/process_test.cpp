@@ -107,7 +107,9 @@ TEST_F(Processes, NothingOutlivesAKilledComparison) {
   for (int kill = 0; kill < 3; ++kill) {
     Program program(folder_.path(), command, mark("study-orphan"));
     // The parent, two workers and the processes of their optimizers.
-    ASSERT_TRUE(wait_until([] { return list_processes("study-orphan").size() == 5; }));
+    ASSERT_TRUE(wait_until([] { return list_processes("study-orphan").size() == 5; }))
+        << list_processes("study-orphan").size() << " processes at start " << kill
+        << (program.is_running() ? "" : ", and the comparison has ended");
     program.send(SIGKILL);
     program.wait();
     EXPECT_TRUE(wait_until([] { return list_processes("study-orphan").empty(); }));
