@@ -102,11 +102,11 @@ TEST_F(Processes, NothingOutlivesAKilledRun) {
 }
 
 TEST_F(Processes, NothingOutlivesAKilledComparison) {
-  const Words command = make_slow_comparison(
-      "study", "nlopt:bobyqa," + get_plugin("good") + ",exec:python3 " + get_script("good.py"));
+  const Words command = make_slow_comparison("study", "nlopt:newuoa_bound," + get_plugin("good") +
+                                                          ",exec:python3 " + get_script("good.py"));
   for (int kill = 0; kill < 3; ++kill) {
     Program program(folder_.path(), command, mark("study-orphan"));
-    // The parent, two workers and the processes of their optimizers.
+    // The parent, two workers and the processes of their optimizers, both of which need one.
     ASSERT_TRUE(wait_until([] { return list_processes("study-orphan").size() == 5; }))
         << list_processes("study-orphan").size() << " processes at start " << kill
         << (program.is_running() ? "" : ", and the comparison has ended");

@@ -68,21 +68,35 @@ test('the search finds a part of a page and goes there, with the keyboard alone'
   assert.deepEqual(faults, []);
 });
 
+// A click, a change of the system's theme and what another page has stored arrive when the browser gets to them: the colour is
+// awaited, and the message says which one the page kept instead.
+async function expect_ground(place, expected, tab = page) {
+  const read = () => tab.evaluate(() => getComputedStyle(document.body).backgroundColor);
+  await tab
+    .waitForFunction((colour) => getComputedStyle(document.body).backgroundColor === colour, expected)
+    .catch(async () => assert.equal(await read(), expected, place));
+}
+
 test('light and dark: the system decides, then the reader', async () => {
-  const colour = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+  const white = 'rgb(255, 255, 255)';
+  const dark = 'rgb(18, 22, 27)';
   await page.goto(address('index.html'));
-  assert.equal(await colour(), 'rgb(255, 255, 255)');
+  await expect_ground('the system is light', white);
   await page.emulateMedia({ colorScheme: 'dark' });
-  const dark = await colour();
-  assert.notEqual(dark, 'rgb(255, 255, 255)');
+  await expect_ground('the system is dark', dark);
   await page.click('#theme');
-  assert.equal(await colour(), 'rgb(255, 255, 255)');
+  await expect_ground('the reader prefers light', white);
   await page.emulateMedia({ colorScheme: 'light' });
   await page.click('#theme');
-  assert.equal(await colour(), dark);
+  await expect_ground('the reader prefers dark', dark);
   await page.goto(address('verify.html'));
-  assert.equal(await colour(), dark, 'the choice holds on the next page');
-  await page.click('#theme');
+  await expect_ground('the choice holds on the next page', dark);
+  const other = await browser.context.newPage();
+  await other.goto(address('index.html'));
+  await expect_ground('the choice holds in another tab', dark, other);
+  await other.click('#theme');
+  await expect_ground('the choice made in another tab holds here too', white);
+  await other.close();
   assert.deepEqual(faults, []);
 });
 

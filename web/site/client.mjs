@@ -9,15 +9,21 @@ function find(id) {
   return document.getElementById(id);
 }
 
-// ---- Theme ----
+// ---- Theme: the page's head has set what is stored; a choice made in another tab comes by itself ----
+const kStored = 'armwright-theme';
 find('theme').addEventListener('click', () => {
   const element = document.documentElement;
   const dark = element.dataset.theme ? element.dataset.theme === 'dark' : matchMedia('(prefers-color-scheme: dark)').matches;
   element.dataset.theme = dark ? 'light' : 'dark';
   try {
-    localStorage.setItem('armwright-theme', element.dataset.theme);
+    localStorage.setItem(kStored, element.dataset.theme);
   } catch {
     // Some browsers keep nothing for files; the next page then has the system's theme.
+  }
+});
+addEventListener('storage', ({ key, newValue }) => {
+  if (key === kStored && newValue) {
+    document.documentElement.dataset.theme = newValue;
   }
 });
 
