@@ -47,7 +47,7 @@ std::string read_design_name(const ConfigTable& table, std::string_view key) {
   return path.stem() == name ? name : path.string();
 }
 
-PublishedWinner read_published(const ConfigTable& table) {
+PublishedWinner read_published_winner(const ConfigTable& table) {
   PublishedWinner published;
   if (table.has("error_m")) {
     published.error_m = table.get_number("error_m", {.lower = 0, .lower_open = true});
@@ -153,7 +153,7 @@ LoadedProblem load_problem_tables(const std::filesystem::path& path, const ReadT
   const ConfigTable run = table.get_table_or_empty("run");
   loaded.optimizer = run.get_string("optimizer", "ga");
   loaded.budget = run.get_integer_or("budget", 10000, 0, 1'000'000'000'000);
-  loaded.published = read_published(table.get_table_or_empty("published"));
+  loaded.published = read_published_winner(table.get_table_or_empty("published"));
   std::vector<std::string> settled;
   if (analytic) {
     load_analytic(table, loaded);

@@ -10,14 +10,14 @@ namespace {
 
 using testing::ElementsAre;
 
-const std::vector<DecisionVariable> kVariables = {
+const std::vector<DecisionVariable> kSpace = {
     {"linear", "", -3, 5, 0.1, Scale::linear},
     {"gain", "", 0.3, 7000, 11, Scale::logarithmic},
     {"negative", "", -2.1e6, -190, -2e4, Scale::logarithmic},
 };
 
 TEST(SearchSpace, CoordinatesAreTheValueOrTheLogarithmOfItsMagnitude) {
-  const SearchSpace space(kVariables);
+  const SearchSpace space(kSpace);
   EXPECT_EQ(space.dimension(), 3u);
   EXPECT_THAT(space.lower(), ElementsAre(-3, std::log(0.3), std::log(190)));
   EXPECT_THAT(space.upper(), ElementsAre(5, std::log(7000), std::log(2.1e6)));
@@ -28,21 +28,21 @@ TEST(SearchSpace, CoordinatesAreTheValueOrTheLogarithmOfItsMagnitude) {
 
 // exp(log(x)) is not x: these come out to the bit all the same.
 TEST(SearchSpace, StartAndBoundsComeBackExactly) {
-  const SearchSpace space(kVariables);
+  const SearchSpace space(kSpace);
   EXPECT_THAT(space.to_point(space.start()), ElementsAre(0.1, 11, -2e4));
   const std::vector<double> lower = space.to_point(space.lower());
   const std::vector<double> upper = space.to_point(space.upper());
-  for (std::size_t i = 0; i < kVariables.size(); ++i) {
+  for (std::size_t i = 0; i < kSpace.size(); ++i) {
     for (const std::vector<double>& x : {lower, upper}) {
-      EXPECT_GE(x[i], kVariables[i].lower);
-      EXPECT_LE(x[i], kVariables[i].upper);
+      EXPECT_GE(x[i], kSpace[i].lower);
+      EXPECT_LE(x[i], kSpace[i].upper);
     }
   }
   EXPECT_NEAR(upper[2] / -2.1e6, 1, 1e-14);  // the larger magnitude
 }
 
 TEST(SearchSpace, ThereAndBackIsTheSamePoint) {
-  const SearchSpace space(kVariables);
+  const SearchSpace space(kSpace);
   const std::vector<double> x = {-2.7, 0.47, -333};
   const std::vector<double> back = space.to_point(space.to_coordinates(x));
   EXPECT_EQ(back[0], x[0]);
@@ -51,7 +51,7 @@ TEST(SearchSpace, ThereAndBackIsTheSamePoint) {
 }
 
 TEST(SearchSpace, WhatLiesOutsideComesOutOutside) {
-  const SearchSpace space(kVariables);
+  const SearchSpace space(kSpace);
   const std::vector<double> above =
       space.to_point(std::vector<double>{5.5, std::log(7001.0), std::log(2.2e6)});
   EXPECT_EQ(above[0], 5.5);
@@ -65,7 +65,7 @@ TEST(SearchSpace, WhatLiesOutsideComesOutOutside) {
 }
 
 TEST(SearchSpace, ANumberThatIsNoneStaysOne) {
-  const SearchSpace space(kVariables);
+  const SearchSpace space(kSpace);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const double value : space.to_point(std::vector<double>(3, nan))) {
     EXPECT_TRUE(std::isnan(value));
@@ -78,7 +78,7 @@ TEST(SearchSpace, AStartOutsideTheBoundsBecomesTheNearestInside) {
 }
 
 TEST(SearchSpace, DrawsOneNumberACoordinateBetweenTheGivenOnes) {
-  const SearchSpace space(kVariables);
+  const SearchSpace space(kSpace);
   RandomStream random("test/draw");
   RandomStream same("test/draw");
   const std::vector<double> lower = {-1, 0.5, 6};
@@ -95,7 +95,7 @@ TEST(SearchSpace, DrawsOneNumberACoordinateBetweenTheGivenOnes) {
 }
 
 TEST(SearchSpace, WhatIsDrawnLiesInTheBox) {
-  const SearchSpace space(kVariables);
+  const SearchSpace space(kSpace);
   RandomStream random("test/draw");
   const std::vector<double> lower = {-9, -9, 0};  // far beyond the bounds
   const std::vector<double> upper = {-8, 20, 40};

@@ -1,5 +1,5 @@
-// What holds for every page: each tab opens, each chart is drawn, each table has rows, in both
-// themes and at both widths.
+// What holds for every page: each tab opens, each chart is drawn, each table has rows, at both
+// widths and in both themes, or in one where colours are not the point.
 import assert from 'node:assert/strict';
 import { list_tabs, open_tab } from './browser.mjs';
 
@@ -29,11 +29,11 @@ async function check_tab(page, tab) {
 }
 
 // The names of all figures and tables.
-export async function check_every_tab(page) {
+export async function check_every_tab(page, themes = 2) {
   const found = [];
   for (const width of [1280, 1920]) {
     await page.setViewportSize({ width, height: 900 });
-    for (let theme = 0; theme < 2; ++theme) {
+    for (let theme = 0; theme < themes; ++theme) {
       const names = [];
       for (const tab of await list_tabs(page)) {
         names.push(...(await check_tab(page, tab)));

@@ -26,7 +26,7 @@ after(() => browser.close());
 
 async function expect_inert(file) {
   const { page, expect_no_faults } = await open_page(browser, file);
-  await check_every_tab(page);
+  await check_every_tab(page, 1);
   for (const tab of await list_tabs(page)) {
     await open_tab(page, tab);
     assert.equal(await page.locator('img').count(), 0, `markup came alive in tab ${tab}`);

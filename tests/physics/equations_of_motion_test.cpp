@@ -5,21 +5,12 @@
 #include <vector>
 
 #include "chain_oracle.hpp"
+#include "planes.hpp"
 #include "solving.hpp"
 #include "test_arms.hpp"
 
 namespace armwright::physics_test {
 namespace {
-
-using Eigen::Matrix2d;
-using Eigen::Vector2d;
-
-Vector2d turn(double angle_rad, const Vector2d& v) {
-  return Eigen::Rotation2Dd(angle_rad) * v;
-}
-Vector2d turn_left(const Vector2d& v) {
-  return {-v.y(), v.x()};
-}
 
 // The textbook's planar two-link manipulator (e.g. Spong, Hutchinson, Vidyasagar, Robot Modeling
 // and Control, 2006, section 7.3), with centres of mass anywhere. Plane coordinates (u, v) with
@@ -66,20 +57,10 @@ class PlanarManipulator {
   Vector2d c1_, c2_, d_, gravity_;
 };
 
-struct Plane {
-  const char* name;
-  Vector3d u, v;  // u x v: the joints' axis
-};
-const Plane kVertical{"vertical", {0, 0, 1}, {1, 0, 0}};
-const Plane kHorizontal{"horizontal", {1, 0, 0}, {0, 1, 0}};
-const Plane kInclined{"inclined", Vector3d(1, 2, 2) / 3, Vector3d(2, 1, -2) / 3};
-
 const VectorXd kTwoPositions = make_vector({0.7, -1.1});
 const VectorXd kTwoEfforts_n_m = make_vector({9, -2.5});
 const VectorXd kThreePositions = make_vector({0.6, -0.9, 1.3});
 const VectorXd kThreeEfforts_n_m = make_vector({4, -3, 0.7});
-
-const Plane kPlanes[] = {kVertical, kHorizontal, kInclined};
 
 template <class Arm>
 class TwoLinkArm : public testing::Test {};

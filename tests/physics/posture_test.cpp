@@ -85,15 +85,15 @@ TYPED_TEST(Irb4600, MovesUnderAnyOtherEffort) {
   }
 }
 
-struct SomeArm {
+struct PosedArm {
   const char* name;
   RobotModel model;
 };
-const std::vector<SomeArm> kArms{{"planar", make_planar_arm({0, 1, 0})},
-                                 {"skew", make_skew_arm()},
-                                 {"irb4600", load_irb4600()},
-                                 {"rpr", make_mixed_arm("rpr")},
-                                 {"prp", make_mixed_arm("prp")}};
+const std::vector<PosedArm> kPosedArms{{"planar", make_planar_arm({0, 1, 0})},
+                                       {"skew", make_skew_arm()},
+                                       {"irb4600", load_irb4600()},
+                                       {"rpr", make_mixed_arm("rpr")},
+                                       {"prp", make_mixed_arm("prp")}};
 
 template <class Arm>
 class AnyArm : public testing::Test {};
@@ -106,7 +106,7 @@ VectorXd take(const VectorXd& values, const RobotModel& model) {
 // M is positive definite, so is its inverse: an effort in a joint accelerates that joint its own
 // way.
 TYPED_TEST(AnyArm, APositiveEffortMovesItsJointPositively) {
-  for (const auto& [name, model] : kArms) {
+  for (const auto& [name, model] : kPosedArms) {
     const std::size_t joints = model.joint_count();
     PhysicsSettings physics;
     physics.gravity_m_per_s2 = 0;
@@ -132,7 +132,7 @@ TYPED_TEST(AnyArm, APositiveEffortMovesItsJointPositively) {
 
 // Positions of size pi, their trigonometric functions and a few products: 1e-14.
 TYPED_TEST(AnyArm, StartsAtRestInThePostureAskedFor) {
-  for (const auto& [name, model] : kArms) {
+  for (const auto& [name, model] : kPosedArms) {
     SCOPED_TRACE(name);
     const ChainOracle oracle(model, kGravity_m_per_s2);
     const VectorXd rest = take(VectorXd::Zero(4), model);
@@ -186,7 +186,7 @@ TYPED_TEST(AnyArm, AnglesWrapAtPi) {
 
 // The tip is where the joint positions put it, but for what the arm lets its joints gape.
 TYPED_TEST(AnyArm, ItsJointsHoldOverAThousandStepsOfFreeMotion) {
-  for (const auto& [name, model] : kArms) {
+  for (const auto& [name, model] : kPosedArms) {
     const std::size_t joints = model.joint_count();
     const ChainOracle oracle(model, kGravity_m_per_s2);
     const VectorXd start = take(make_vector({0.4, -0.8, 1.2, -0.3}), model);

@@ -6,21 +6,12 @@
 #include <vector>
 
 #include "chain_oracle.hpp"
+#include "planes.hpp"
 #include "solving.hpp"
 #include "test_arms.hpp"
 
 namespace armwright::physics_test {
 namespace {
-
-using Eigen::Matrix2d;
-using Eigen::Vector2d;
-
-Vector2d turn(double angle_rad, const Vector2d& v) {
-  return Eigen::Rotation2Dd(angle_rad) * v;
-}
-Vector2d turn_left(const Vector2d& v) {
-  return {-v.y(), v.x()};
-}
 
 const std::vector<Vector3d> kRails{{0, 0, 1}, {-0.6, 0.8, 0.3}, {0.5, 0.8, -0.4}};
 
@@ -69,17 +60,9 @@ TYPED_TEST(Slider, GoesOnPastPi) {
   }
 }
 
-// Plane coordinates (u, v), u x v along the hinge's axis. A slider on a hinge (a polar manipulator)
+// In coordinates of a plane: a slider on a hinge (a polar manipulator)
 // and a hinge on a slider (a cart with a pole), centres of mass anywhere. Both derived from
 // Lagrange's equations with c, d: centres of mass and the joint between, a: the slider's axis.
-struct Plane {
-  const char* name;
-  Vector3d u, v;
-};
-const std::vector<Plane> kPlanes{{"vertical", {0, 0, 1}, {1, 0, 0}},
-                                 {"horizontal", {1, 0, 0}, {0, 1, 0}},
-                                 {"inclined", Vector3d(1, 2, 2) / 3, Vector3d(2, 1, -2) / 3}};
-
 struct PlanarBodies {
   PlanarBodies(const RobotModel& model, const Plane& plane, std::size_t slider) {
     const auto project = [&](const Vector3d& p) {

@@ -13,7 +13,7 @@
 namespace armwright {
 namespace {
 
-constexpr std::uint64_t kCases = 500;
+constexpr std::uint64_t kComparedCases = 500;
 
 struct Published {
   const char* problem;
@@ -30,7 +30,7 @@ class EnginesAgree : public testing::TestWithParam<Published> {
     const ArmDesign design = load_design(GetParam().design).design;
     std::vector<double> errors_m;
     for (const TrackingResult& result :
-         problem.track(design, problem.get_set("test/2"), 0, kCases, {})) {
+         problem.track(design, problem.get_set("test/2"), 0, kComparedCases, {})) {
       EXPECT_EQ(result.status, SimulationStatus::ok) << result.reason;
       errors_m.push_back(result.mean_error_m);
     }
@@ -49,7 +49,7 @@ class EnginesAgree : public testing::TestWithParam<Published> {
 TEST_P(EnginesAgree, ArticulatedWithOdeToAPercent) {
   const auto articulated = simulate("articulated");
   const auto ode = simulate("ode");
-  ASSERT_EQ(articulated.size(), kCases);
+  ASSERT_EQ(articulated.size(), kComparedCases);
   EXPECT_NEAR(calc_mean(articulated) / calc_mean(ode), 1, 0.01);
   EXPECT_NE(articulated, ode);  // or it would be the same engine
 }
@@ -63,7 +63,7 @@ TEST_P(EnginesAgree, ArticulatedWithMujocoToAMillionth) {
   const auto mujoco = simulate("mujoco");
   std::vector<std::size_t> apart;
   double worst_of_others = 0;
-  for (std::size_t i = 0; i < kCases; ++i) {
+  for (std::size_t i = 0; i < kComparedCases; ++i) {
     const double difference = std::abs(articulated[i] / mujoco[i] - 1);
     if (difference > 1e-6) {
       apart.push_back(i);

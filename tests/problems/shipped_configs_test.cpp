@@ -178,11 +178,11 @@ TEST_P(ShippedExperiment, MovesTheArmOfTheThesis) {
 
 TEST_P(ShippedExperiment, RecordsItsConfigurationAndWhatItWasMadeFrom) {
   const LoadedProblem loaded = load_problem(GetParam().name);
-  const auto json = nlohmann::json::parse(loaded.resolved_json);
-  EXPECT_EQ(json.at("kind"), "tracking");
-  EXPECT_EQ(json.at("task").at("distance_limit_m"), GetParam().distance_limit_m);
-  EXPECT_EQ(json.at("sets").at("training"), GetParam().training);
-  EXPECT_FALSE(json.contains("extends"));
+  const auto resolved = nlohmann::json::parse(loaded.resolved_json);
+  EXPECT_EQ(resolved.at("kind"), "tracking");
+  EXPECT_EQ(resolved.at("task").at("distance_limit_m"), GetParam().distance_limit_m);
+  EXPECT_EQ(resolved.at("sets").at("training"), GetParam().training);
+  EXPECT_FALSE(resolved.contains("extends"));
   ASSERT_THAT(loaded.input_hashes, SizeIs(2));
   for (const std::string name : {"robots/irb4600_40_255.urdf", "designs/table-a1.toml"}) {
     const std::filesystem::path path = find_config_folder() / name;

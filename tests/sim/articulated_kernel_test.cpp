@@ -84,7 +84,7 @@ LaneCase draw_lane(const RobotModel& kind, int lane, const Timeline& time) {
   return one;
 }
 
-Outcome simulate_alone(const LaneCase& one, const Timeline& time) {
+Outcome simulate_one_arm(const LaneCase& one, const Timeline& time) {
   const std::size_t n = one.model.joint_count();
   const auto size = static_cast<Eigen::Index>(n);
   auto arm = make_arm<ArticulatedArm>(one.model, one.start);
@@ -249,7 +249,7 @@ void expect_lanes_as_alone(const RobotModel& kind, const Timeline& time) {
     const auto outcomes = simulate_lanes<double>(level, cases, time);
     for (std::size_t lane = 0; lane < cases.size(); ++lane) {
       SCOPED_TRACE(testing::Message() << to_string(level) << ", lane " << lane);
-      const Outcome expected = simulate_alone(cases[lane], time);
+      const Outcome expected = simulate_one_arm(cases[lane], time);
       ASSERT_GT((expected.q - cases[lane].start).norm(), 0.05) << "hardly moves";
       expect_same(kind, outcomes[lane], expected, kTolerance);
     }
@@ -333,7 +333,7 @@ TEST(Kernels, OfThePalletiserDoAsThoseOfAnyShape) {
     }
     for (std::size_t lane = 0; lane < cases.size(); ++lane) {
       SCOPED_TRACE(testing::Message() << to_string(level) << ", lane " << lane);
-      expect_same(cases[lane].model, known[lane], simulate_alone(cases[lane], time), kTolerance);
+      expect_same(cases[lane].model, known[lane], simulate_one_arm(cases[lane], time), kTolerance);
     }
   }
 }
@@ -349,7 +349,7 @@ TEST(Kernels, InSinglePrecisionFollowTheArmAlone) {
       const auto outcomes = simulate_lanes<float>(level, cases, time);
       for (std::size_t lane = 0; lane < cases.size(); ++lane) {
         SCOPED_TRACE(testing::Message() << to_string(level) << ", lane " << lane);
-        expect_same(kind, outcomes[lane], simulate_alone(cases[lane], time), 2e-4);
+        expect_same(kind, outcomes[lane], simulate_one_arm(cases[lane], time), 2e-4);
       }
     }
   }

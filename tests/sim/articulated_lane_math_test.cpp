@@ -17,7 +17,7 @@ namespace {
 
 struct TestLevel;
 
-constexpr long double kPi = std::numbers::pi_v<long double>;
+constexpr long double kLongPi = std::numbers::pi_v<long double>;
 
 template <class V>
 struct Lanes : testing::Test {
@@ -51,7 +51,7 @@ struct Lanes : testing::Test {
       angles.push_back(static_cast<Number>(std::pow(10, random.uniform(-12, 0))));
       const auto most = static_cast<double>(kFarthest) / (std::numbers::pi / 4) - 1;
       const double eighth = std::floor(random.uniform(-most, most));
-      const auto near = static_cast<Number>(static_cast<long double>(eighth) * (kPi / 4));
+      const auto near = static_cast<Number>(static_cast<long double>(eighth) * (kLongPi / 4));
       angles.push_back(near);
       angles.push_back(std::nextafter(near, kFarthest));
       angles.push_back(std::nextafter(near, -kFarthest));
@@ -142,10 +142,10 @@ TYPED_TEST(Lanes, WrappingTakesTheNearestTurnAway) {
     const std::vector<T> wrapped = TestFixture::store(lanes::wrap(angles));
     for (std::size_t i = 0; i < each.size(); ++i) {
       const long double x = each[i];
-      const long double tolerance = 2 * kEpsilon * (std::abs(x) + kPi);
-      ASSERT_LE(std::abs(wrapped[i]), kPi + tolerance) << each[i];
-      ASSERT_LE(std::abs(std::remainder(wrapped[i] - x, 2 * kPi)), tolerance) << each[i];
-      if (std::abs(x) < kPi - 1e-6L) {
+      const long double tolerance = 2 * kEpsilon * (std::abs(x) + kLongPi);
+      ASSERT_LE(std::abs(wrapped[i]), kLongPi + tolerance) << each[i];
+      ASSERT_LE(std::abs(std::remainder(wrapped[i] - x, 2 * kLongPi)), tolerance) << each[i];
+      if (std::abs(x) < kLongPi - 1e-6L) {
         ASSERT_EQ(wrapped[i], each[i]);
       }
     }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <set>
 #include <string>
 #include <vector>
@@ -16,26 +15,26 @@
 #include "sim/articulated/lane_block.hpp"
 #include "sim/controller.hpp"
 #include "sim/controllers/tanh.hpp"
+#include "sim/support.hpp"
 
 namespace armwright {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 // Numbers of size 100 computed with errors of 2^-53, magnified by gains over h.
-constexpr double kTolerance = 1e-11;
+constexpr double kLawTolerance = 1e-11;
 
-struct Step {
+struct LawStep {
   double setpoint, measurement, effort;
   double feed_forward = 0;
 };
 
 void expect_steps(const std::string& name, const std::vector<double>& gains, EffortLimits limits,
-                  const std::vector<Step>& steps) {
+                  const std::vector<LawStep>& steps) {
   const auto controller = find_controller(name).make(gains, limits, JointKind::revolute);
   for (std::size_t i = 0; i < steps.size(); ++i) {
-    const Step& step = steps[i];
+    const LawStep& step = steps[i];
     EXPECT_NEAR(controller->step(step.setpoint, step.measurement, 0.1, step.feed_forward),
-                step.effort, kTolerance)
+                step.effort, kLawTolerance)
         << name << ", step " << i;
   }
 }
@@ -68,7 +67,7 @@ TEST(ControlLaws, PidFilteredIsThePidWithoutFilterAndWeights) {
     const double setpoint = random.uniform(-3, 3);
     const double measurement = setpoint + random.uniform(-0.3, 0.3);
     EXPECT_NEAR(filtered->step(setpoint, measurement, 0.1), pid.step(setpoint, measurement, 0.1),
-                kTolerance);
+                kLawTolerance);
   }
 }
 

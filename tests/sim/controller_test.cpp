@@ -4,36 +4,20 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <functional>
-#include <limits>
-#include <numbers>
 #include <string>
 #include <vector>
 
 #include "base/error.hpp"
+#include "sim/support.hpp"
 
 namespace armwright {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 // An error of angles of size 1 is rounded to 2^-53; the gains below magnify that at most by P + I h
 // + 2 D / h = 145.
-constexpr double kTolerance = 1e-12;
+constexpr double kPidTolerance = 1e-12;
 
-std::string usage_message(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::usage);
-    return error.what();
-  }
-  return "(no error)";
-}
-
-struct Step {
+struct PidStep {
   double setpoint_rad, measurement_rad;
   double effort_n_m;
   bool saturated;
@@ -41,7 +25,7 @@ struct Step {
 
 // P = 100 N m/rad, I = 50 N m/(rad s), D = 2 N m s/rad, h = 0.1 s, -30 to 40 N m; u = 100 e + 50 S
 // + 2 (e - e') / 0.1.
-const std::vector<Step> kByHand = {
+const std::vector<PidStep> kByHand = {
     {0.5, 0.30, 21.0, false},   // e  0.20, S 0.020, rate  0.0: 20 + 1.00 + 0
     {0.5, 0.25, 28.25, false},  // e  0.25, S 0.045, rate  0.5: 25 + 2.25 + 1
     {0.6, 0.20, 40.0, true},    // e  0.40, S 0.085, rate  1.5: 40 + 4.25 + 3 = 47.25
@@ -57,8 +41,9 @@ TEST(PidController, FollowsASequenceComputedByHand) {
   PidController pid(100, 50, 2, {-30, 40});
   EXPECT_FALSE(pid.saturated());
   for (std::size_t i = 0; i < kByHand.size(); ++i) {
-    const Step& step = kByHand[i];
-    EXPECT_NEAR(pid.step(step.setpoint_rad, step.measurement_rad, 0.1), step.effort_n_m, kTolerance)
+    const PidStep& step = kByHand[i];
+    EXPECT_NEAR(pid.step(step.setpoint_rad, step.measurement_rad, 0.1), step.effort_n_m,
+                kPidTolerance)
         << "step " << i;
     EXPECT_EQ(pid.saturated(), step.saturated) << "step " << i;
   }
@@ -98,11 +83,11 @@ TEST(PidController, TheFirstStepHasNoDerivative) {
 
 TEST(PidController, TurnsTheShortWayRound) {
   PidController pid(10, 0, 0, {-100, 100});
-  EXPECT_NEAR(pid.step(3.1, -3.1, 0.01), 10 * (6.2 - 2 * kPi), kTolerance);
-  EXPECT_NEAR(pid.step(-3.1, 3.1, 0.01), 10 * (2 * kPi - 6.2), kTolerance);
-  EXPECT_NEAR(pid.step(kPi - 0.01, 0, 0.01), 10 * (kPi - 0.01), kTolerance);
-  EXPECT_NEAR(pid.step(kPi + 0.01, 0, 0.01), 10 * (0.01 - kPi), kTolerance);
-  EXPECT_NEAR(pid.step(0.5, 0.2 + 6 * kPi, 0.01), 10 * 0.3, kTolerance);
+  EXPECT_NEAR(pid.step(3.1, -3.1, 0.01), 10 * (6.2 - 2 * kPi), kPidTolerance);
+  EXPECT_NEAR(pid.step(-3.1, 3.1, 0.01), 10 * (2 * kPi - 6.2), kPidTolerance);
+  EXPECT_NEAR(pid.step(kPi - 0.01, 0, 0.01), 10 * (kPi - 0.01), kPidTolerance);
+  EXPECT_NEAR(pid.step(kPi + 0.01, 0, 0.01), 10 * (0.01 - kPi), kPidTolerance);
+  EXPECT_NEAR(pid.step(0.5, 0.2 + 6 * kPi, 0.01), 10 * 0.3, kPidTolerance);
 }
 
 // Metres know no turns. Every number is exact in binary.
@@ -119,7 +104,8 @@ TEST(PidController, GoesTheWholeWayOfAPrismaticJoint) {
 TEST(PidController, TheDerivativeDoesNotSeeTheWrap) {
   PidController pid(0, 0, 1, {-1000, 1000});
   pid.step(3.13, 3.10, 0.01);
-  EXPECT_NEAR(pid.step(3.13 + 0.04 - 2 * kPi, 3.12, 0.01), 2, kTolerance);  // (0.05 - 0.03) / 0.01
+  EXPECT_NEAR(pid.step(3.13 + 0.04 - 2 * kPi, 3.12, 0.01), 2,
+              kPidTolerance);  // (0.05 - 0.03) / 0.01
 }
 
 TEST(PidController, ResetForgetsEverything) {
@@ -130,7 +116,7 @@ TEST(PidController, ResetForgetsEverything) {
   pid.reset();
   EXPECT_FALSE(pid.saturated());
   PidController fresh(100, 50, 2, {-30, 40});
-  for (const Step& step : kByHand) {
+  for (const PidStep& step : kByHand) {
     EXPECT_EQ(pid.step(step.setpoint_rad, step.measurement_rad, 0.1),
               fresh.step(step.setpoint_rad, step.measurement_rad, 0.1));
   }
@@ -183,9 +169,9 @@ TEST(ControllerTable, HasThePidWithItsGains) {
 TEST(ControllerTable, MakesTheControllerItNames) {
   const std::array<double, 3> gains = {100, 50, 2};
   const auto controller = find_controller("pid").make(gains, {-30, 40}, JointKind::revolute);
-  for (const Step& step : kByHand) {
+  for (const PidStep& step : kByHand) {
     EXPECT_NEAR(controller->step(step.setpoint_rad, step.measurement_rad, 0.1), step.effort_n_m,
-                kTolerance);
+                kPidTolerance);
   }
 }
 
@@ -195,7 +181,7 @@ TEST(ControllerTable, MakesItForTheKindOfJoint) {
   const EffortLimits limits{-1000, 1000};
   EXPECT_EQ(row.make(gains, limits, JointKind::prismatic)->step(5, -5, 0.01), 100);
   EXPECT_NEAR(row.make(gains, limits, JointKind::revolute)->step(5, -5, 0.01), 10 * (10 - 4 * kPi),
-              kTolerance);
+              kPidTolerance);
 }
 
 TEST(ControllerTable, NamesWhatItDoesNotKnow) {

@@ -4,25 +4,18 @@
 
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <functional>
 #include <limits>
-#include <numbers>
 #include <string>
 
 #include "base/error.hpp"
 #include "base/random.hpp"
+#include "sim/support.hpp"
 
 namespace armwright {
 namespace {
 
 using ::testing::HasSubstr;
-
-constexpr double kPi = std::numbers::pi;
-
-RobotModel load_arm() {
-  return load_urdf(std::filesystem::path(ARMWRIGHT_CONFIGS) / "robots/irb4600_40_255.urdf");
-}
 
 // A uniformly random point of the task's sphere.
 Eigen::Vector3d draw_target(RandomStream& random) {
@@ -45,7 +38,7 @@ TEST(WrapAngle, StaysWithinHalfATurn) {
 
 TEST(ForwardKinematics, PutsTheJointsWhereAbbsZeroPoseHasThem) {
   const std::array<double, 4> zero{};
-  const auto poses = calc_link_poses(load_arm(), zero);
+  const auto poses = calc_link_poses(load_irb4600(), zero);
   const Eigen::Vector3d expected[] = {
       {0, 0, 0.495}, {0.175, 0, 0.495}, {0.175, 0, 1.590}, {1.445, 0, 1.765}};
   ASSERT_EQ(poses.size(), 4u);
@@ -54,7 +47,8 @@ TEST(ForwardKinematics, PutsTheJointsWhereAbbsZeroPoseHasThem) {
         << i;  // a few roundings of numbers below 2
     EXPECT_EQ(poses[i].linear(), Eigen::Matrix3d::Identity()) << i;
   }
-  EXPECT_LT((calc_tip_position(load_arm(), zero) - Eigen::Vector3d(1.580, 0, 1.765)).norm(), 1e-15);
+  EXPECT_LT((calc_tip_position(load_irb4600(), zero) - Eigen::Vector3d(1.580, 0, 1.765)).norm(),
+            1e-15);
 }
 
 TEST(ForwardKinematics, AgreesWithExplicitRotationsInAGeneralPose) {
@@ -73,7 +67,7 @@ TEST(ForwardKinematics, AgreesWithExplicitRotationsInAGeneralPose) {
   const Eigen::Vector3d tip = wrist + turn_y(q[1] + q[2] + q[3]) * Eigen::Vector3d(0.135, 0, 0);
   const Eigen::Vector3d base(0, 0, 0.495);
 
-  const RobotModel arm = load_arm();
+  const RobotModel arm = load_irb4600();
   const auto poses = calc_link_poses(arm, q);
   EXPECT_LT((poses[2].translation() - base - turn_z * elbow).norm(), 2e-15);
   EXPECT_LT((poses[3].translation() - base - turn_z * wrist).norm(), 2e-15);
@@ -133,7 +127,7 @@ TEST(Displacement, IsTheShortWayRoundForRevoluteJointsOnly) {
 }
 
 TEST(ElbowUp, ForwardUndoesInverseEverywhereInTheSphere) {
-  const RobotModel arm = load_arm();
+  const RobotModel arm = load_irb4600();
   const ElbowUpKinematics kinematics(arm);
   RandomStream random("test/kinematics/sphere");
   for (int i = 0; i < 10'000; ++i) {
@@ -156,7 +150,7 @@ TEST(ElbowUp, ForwardUndoesInverseEverywhereInTheSphere) {
 
 // Behind the robot and at any heading, where the angles are less tame.
 TEST(ElbowUp, ReachesTargetsAllAround) {
-  const RobotModel arm = load_arm();
+  const RobotModel arm = load_irb4600();
   const ElbowUpKinematics kinematics(arm);
   RandomStream random("test/kinematics/around");
   for (int i = 0; i < 1000; ++i) {
@@ -173,7 +167,7 @@ TEST(ElbowUp, ReachesTargetsAllAround) {
 // the shoulder, at a right angle to the arm's plane: sqrt(f^2 + 0.1225^2) instead of f. The heading
 // is right, so the tip lands too far out by just that.
 TEST(ElbowUp, TheThesissErrorLandsTooFarOut) {
-  const RobotModel arm = load_arm();
+  const RobotModel arm = load_irb4600();
   const ElbowUpKinematics kinematics(arm, true);
   RandomStream random("test/kinematics/bug");
   for (int i = 0; i < 1000; ++i) {
@@ -194,7 +188,7 @@ TEST(ElbowUp, TheThesissErrorLandsTooFarOut) {
 }
 
 TEST(ElbowUp, SaysHowFarAnUnreachableTargetIs) {
-  const ElbowUpKinematics kinematics(load_arm());
+  const ElbowUpKinematics kinematics(load_irb4600());
   std::array<double, 4> q{9, 9, 9, 9};
   // The wrist is 0.135 m above the target: f = 5 - 0.175, e = 0.36 - 0.495 + 0.135 = 0. Forearm:
   // hypot(1.27, 0.175) = 1.282.
@@ -215,7 +209,7 @@ TEST(ElbowUp, SaysHowFarAnUnreachableTargetIs) {
 
 // Either end of the reach, just inside and just outside.
 TEST(ElbowUp, ReachesExactlyAsFarAsItSays) {
-  const ElbowUpKinematics kinematics(load_arm());
+  const ElbowUpKinematics kinematics(load_irb4600());
   const double a = std::hypot(1.270, 0.175), c = 1.095;
   std::array<double, 4> q{};
   for (const double off : {1e-9, -1e-9}) {
@@ -227,7 +221,7 @@ TEST(ElbowUp, ReachesExactlyAsFarAsItSays) {
 // Another arm of the same kind: other lengths, bent at angle zero, two axes the other way round,
 // links beside the plane.
 TEST(ElbowUp, TakesItsDimensionsAndSignsFromTheModel) {
-  RobotModel robot = load_arm();
+  RobotModel robot = load_irb4600();
   robot.joints[0].origin.translation() << 0, 0, 0.61;
   robot.joints[0].axis = -Eigen::Vector3d::UnitZ();
   robot.joints[1].origin.translation() << 0.31, -0.12, 0.05;
@@ -254,7 +248,7 @@ TEST(ElbowUp, TakesItsDimensionsAndSignsFromTheModel) {
 }
 
 std::string refusal(const std::function<void(RobotModel&)>& change) {
-  RobotModel robot = load_arm();
+  RobotModel robot = load_irb4600();
   change(robot);
   try {
     const ElbowUpKinematics kinematics(robot);

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <numbers>
 #include <vector>
 
 #include "base/random.hpp"
+#include "sim/support.hpp"
 
 namespace armwright {
 namespace {
@@ -20,8 +20,6 @@ using One = lanes::Single<double, TestLevel>;
 // These need no instruction set of their own; the wider ones are compared by targets_test.cpp.
 using Two = lanes::Pack<double, 2, TestLevel>;
 using Four = lanes::Pair<Two>;
-
-constexpr double kPi = std::numbers::pi;
 
 double calc_angle(double y, double x) {
   return calc_atan2(One(y), One(x)).v;

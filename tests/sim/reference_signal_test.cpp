@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <string>
 
 #include "base/error.hpp"
+#include "sim/support.hpp"
 
 namespace armwright {
 namespace {
@@ -16,18 +16,6 @@ namespace {
 using testing::HasSubstr;
 
 constexpr double kAcceleration = 15;  // m/s^2, the thesis's
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-std::string usage_message(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::usage);
-    return error.what();
-  }
-  return "(no error)";
-}
 
 // A few operations on numbers of at most the distance's size, each rounded by half an ulp.
 double rounding(double distance_m) {

@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 using testing::ElementsAre;
 
-constexpr double kPeriod_s = 0.01;
+constexpr double kSamplePeriod_s = 0.01;
 const Vector3d kFrom_m(1.2, -0.4, 0.7);
 const Vector3d kWay_m(0.3, 0.6, -0.6);  // 0.9 m long
 constexpr double kLength_m = 0.9;
@@ -25,7 +25,7 @@ TargetTable make_table(int moving, int resting, const Vector3d& way_m = kWay_m) 
   segment.to_m = kFrom_m + way_m;
   segment.steps = moving + resting;
   segment.window_start = std::max(0, moving - 1);
-  segment.duration_s = moving * kPeriod_s;
+  segment.duration_s = moving * kSamplePeriod_s;
   TargetTable table;
   table.steps = segment.steps;
   table.segments = {segment};
@@ -40,9 +40,9 @@ TipMove make_motion(const TargetTable& table, const std::function<double(double)
   const Vector3d beside = beside_m * kWay_m.cross(Vector3d::UnitZ()).normalized();
   std::vector<Vector3d> tips_m;
   for (int k = 1; k <= table.steps; ++k) {
-    tips_m.push_back(kFrom_m + along(k * kPeriod_s) * kWay_m + beside);
+    tips_m.push_back(kFrom_m + along(k * kSamplePeriod_s) * kWay_m + beside);
   }
-  return find_tip_move(table, 0, tips_m, kPeriod_s).value();
+  return find_tip_move(table, 0, tips_m, kSamplePeriod_s).value();
 }
 
 // A step through 1 / (s^2 / w^2 + 2 z s / w + 1), underdamped.
@@ -62,7 +62,7 @@ TEST(Response, OfASecondOrderStepHasTheTextbooksOvershoot) {
     const double expected =
         std::exp(-std::numbers::pi * damping / std::sqrt(1 - damping * damping));
     // The peak is missed by at most |s''| h^2 / 8, and |s''| <= w^2 there.
-    const double tolerance = w * w * kPeriod_s * kPeriod_s / 8;
+    const double tolerance = w * w * kSamplePeriod_s * kSamplePeriod_s / 8;
     EXPECT_NEAR(calc_overshoot(make_motion(table, make_second_order(damping, w))), expected,
                 tolerance)
         << damping;
@@ -74,7 +74,7 @@ TEST(Response, OfAFirstOrderStepHasTheTextbooksTimes) {
   const TargetTable table = make_table(10, 190);
   const TipMove move = make_motion(table, [&](double t_s) { return 1 - std::exp(-t_s / tau_s); });
   // Chords of a curve with |s''| <= 1 / tau^2 s': each crossing is off by less than h^2 / (8 tau).
-  const double tolerance_s = 2 * kPeriod_s * kPeriod_s / (8 * tau_s);
+  const double tolerance_s = 2 * kSamplePeriod_s * kSamplePeriod_s / (8 * tau_s);
   EXPECT_EQ(calc_overshoot(move), 0);
   EXPECT_NEAR(calc_rise_time_s(move), tau_s * std::log(9), tolerance_s);
   for (const double share : {0.02, 0.05}) {
@@ -90,8 +90,9 @@ TEST(Response, SettlesOnlyWhenItStaysInside) {
     return t_s < 0.195 ? 0.5 : t_s > 0.495 && t_s < 0.605 ? 1.1 : 1.0;
   });
   // Between 0.60 s (90 mm off) and 0.61 s (none): 10 mm is reached 8/9 of a period later.
-  EXPECT_NEAR(calc_settling_time_s(move, 0.01), 0.6 + 8.0 / 9 * kPeriod_s - 0.1, 1e-12);
-  EXPECT_NEAR(calc_settling_time_s(move, 0.1), 0.19 + kPeriod_s * (0.45 - 0.1) / 0.45 - 0.1, 1e-12);
+  EXPECT_NEAR(calc_settling_time_s(move, 0.01), 0.6 + 8.0 / 9 * kSamplePeriod_s - 0.1, 1e-12);
+  EXPECT_NEAR(calc_settling_time_s(move, 0.1), 0.19 + kSamplePeriod_s * (0.45 - 0.1) / 0.45 - 0.1,
+              1e-12);
   EXPECT_NEAR(calc_overshoot(move), 0.1, 1e-12);
 }
 
@@ -116,7 +117,7 @@ TEST(Response, ATipThatNeverArrivesCountsAllTheTimeItHad) {
 
 TEST(Response, ATipThatIsThereAtOnceHasNoTimes) {
   const TipMove move = make_motion(make_table(10, 40), [](double) { return 1.0; });
-  EXPECT_NEAR(calc_rise_time_s(move), 0.8 * kPeriod_s, 1e-12);  // within the first period
+  EXPECT_NEAR(calc_rise_time_s(move), 0.8 * kSamplePeriod_s, 1e-12);  // within the first period
   EXPECT_EQ(calc_settling_time_s(move, 1e-6), 0);
 }
 
@@ -128,7 +129,7 @@ TEST(Response, OnlyMovesHaveOne) {
   EXPECT_FALSE(is_move(make_table(10, 40, Vector3d(0, 0.0009, 0)).segments[0]));
   EXPECT_TRUE(is_move(make_table(10, 40, Vector3d(0, 0.0011, 0)).segments[0]));
   const std::vector<Vector3d> too_few(49, kFrom_m);
-  EXPECT_FALSE(find_tip_move(make_table(10, 40), 0, too_few, kPeriod_s));
+  EXPECT_FALSE(find_tip_move(make_table(10, 40), 0, too_few, kSamplePeriod_s));
 }
 
 TEST(Response, ALaterMoveBeginsWhereTheTipWas) {
@@ -139,7 +140,7 @@ TEST(Response, ALaterMoveBeginsWhereTheTipWas) {
   table.segments.push_back(back);
   std::vector<Vector3d> tips_m(50, kFrom_m + 1.01 * kWay_m);
   tips_m.resize(100, kFrom_m);
-  const TipMove move = find_tip_move(table, 1, tips_m, kPeriod_s).value();
+  const TipMove move = find_tip_move(table, 1, tips_m, kSamplePeriod_s).value();
   ASSERT_EQ(move.along_m.size(), 51u);
   EXPECT_NEAR(move.along_m[0], -0.01 * kLength_m, 1e-12);
   EXPECT_NEAR(move.along_m[1], kLength_m, 1e-12);
@@ -154,11 +155,11 @@ TEST(JointSpeeds, AreTheLargestOfAnyStepTheShortWayRound) {
   TrackingResult result;
   // A turn over the half circle by 0.083 rad; a slide by 7 m is no turn.
   result.angles_rad = {-3.1, 7, -3.09, 7.01, -3.08, 7.0};
-  EXPECT_THAT(calc_joint_speeds(robot, table, result, kPeriod_s),
-              ElementsAre(testing::DoubleNear((2 * std::numbers::pi - 6.2) / kPeriod_s, 1e-9),
+  EXPECT_THAT(calc_joint_speeds(robot, table, result, kSamplePeriod_s),
+              ElementsAre(testing::DoubleNear((2 * std::numbers::pi - 6.2) / kSamplePeriod_s, 1e-9),
                           testing::DoubleNear(700, 1e-9)));
   result.angles_rad = {};
-  EXPECT_THAT(calc_joint_speeds(robot, table, result, kPeriod_s), ElementsAre(0, 0));
+  EXPECT_THAT(calc_joint_speeds(robot, table, result, kSamplePeriod_s), ElementsAre(0, 0));
 }
 
 }  // namespace

@@ -5,21 +5,16 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <numbers>
 #include <string>
 
 #include "base/error.hpp"
+#include "sim/support.hpp"
 
 namespace armwright {
 namespace {
 
 using ::testing::HasSubstr;
 
-constexpr double kPi = std::numbers::pi;
-
-RobotModel load_arm() {
-  return load_urdf(std::filesystem::path(ARMWRIGHT_CONFIGS) / "robots/irb4600_40_255.urdf");
-}
 RobotModel load_two_joints() {
   return load_urdf(std::filesystem::path(ARMWRIGHT_TEST_DATA) / "urdf/two_joints.urdf");
 }
@@ -40,7 +35,7 @@ void expect_body(const Inertial& body, double mass_kg, const Eigen::Vector3d& co
 // To the last bit: the file's decimals are the table's, and nothing is lumped or rotated on the
 // way.
 TEST(Irb4600, HasTheMassesAndInertiaOfTheTable) {
-  const RobotModel arm = load_arm();
+  const RobotModel arm = load_irb4600();
   ASSERT_EQ(arm.links.size(), 4u);
   expect_body(arm.base.inertial, 229.6, {-0.09141, 0.00036, 0.08247},
               make_tensor(3.20368, 6.50802, 8.78618, 0.02969, 0.43936, 0.00056));
@@ -55,7 +50,7 @@ TEST(Irb4600, HasTheMassesAndInertiaOfTheTable) {
 }
 
 TEST(Irb4600, HasTheRangesAndSpeedsOfTheDataSheet) {
-  const RobotModel arm = load_arm();
+  const RobotModel arm = load_irb4600();
   const double lower_deg[] = {-180, -90, -180, -125};
   const double upper_deg[] = {180, 150, 75, 120};
   const double speed_deg_per_s[] = {175, 175, 175, 250};
@@ -76,7 +71,7 @@ TEST(Irb4600, HasTheRangesAndSpeedsOfTheDataSheet) {
 }
 
 TEST(Irb4600, EveryLinkCanBeDrawn) {
-  const RobotModel arm = load_arm();
+  const RobotModel arm = load_irb4600();
   EXPECT_GE(arm.base.visuals.size(), 3u);
   for (const Link& link : arm.links) {
     EXPECT_GE(link.visuals.size(), 3u) << link.name;
@@ -112,7 +107,6 @@ TEST(LoadUrdf, ReadsJointsFramesAndVisuals) {
                                        .toRotationMatrix();
   EXPECT_LT((robot.joints[0].origin.linear() - expected).norm(), 1e-15);
 
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   EXPECT_EQ(robot.joints[1].lower, -kInfinity);
   EXPECT_EQ(robot.joints[1].upper, kInfinity);
   EXPECT_EQ(robot.joints[1].speed_limit, kInfinity);
@@ -290,7 +284,7 @@ TEST(Inertial, TwoCubesMakeABar) {
 }
 
 TEST(Inertial, NothingAddedChangesNothing) {
-  const RobotModel arm = load_arm();
+  const RobotModel arm = load_irb4600();
   const Inertial& body = arm.links[2].inertial;
   expect_body(combine(body, Inertial{}), body.mass_kg, body.com_m, body.inertia_kg_m2);
   expect_body(combine(Inertial{}, body), body.mass_kg, body.com_m, body.inertia_kg_m2);
@@ -352,7 +346,7 @@ TEST(LoadUrdf, LumpsAChainOfFixedLinks) {
 // The thesis's block: 20 kg, 168.25 x 168.25 x 90 mm, by hand about the last joint. Along link 3
 // (x): m/12 2 L^2; across: m/12 (L^2 + s^2); its centre at 0.135 + 0.045 = 0.18 m.
 TEST(AddLoad, PutsTheBlockBeyondTheTip) {
-  const RobotModel arm = load_arm();
+  const RobotModel arm = load_irb4600();
   const RobotModel loaded = add_load(arm, 20);
   const Inertial& before = arm.links[3].inertial;
   const Inertial& after = loaded.links[3].inertial;
@@ -382,7 +376,7 @@ TEST(AddLoad, PutsTheBlockBeyondTheTip) {
 }
 
 TEST(AddLoad, RefusesWhatIsNoMass) {
-  const RobotModel arm = load_arm();
+  const RobotModel arm = load_irb4600();
   for (const double mass :
        {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     try {
@@ -409,7 +403,7 @@ TEST(AddLoad, NeedsATipThatPointsSomewhere) {
 }
 
 TEST(ScaleMasses, ScalesWhatMovesAndNothingElse) {
-  const RobotModel arm = load_arm();
+  const RobotModel arm = load_irb4600();
   const RobotModel heavy = scale_masses(arm, 1.25);
   for (std::size_t i = 0; i < arm.joint_count(); ++i) {
     const Inertial& before = arm.links[i].inertial;
@@ -427,7 +421,7 @@ TEST(ScaleMasses, RefusesWhatIsNoFactor) {
   for (const double factor : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(),
                               std::numeric_limits<double>::infinity()}) {
     try {
-      scale_masses(load_arm(), factor);
+      scale_masses(load_irb4600(), factor);
       FAIL() << factor;
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::usage);

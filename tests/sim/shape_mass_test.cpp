@@ -4,16 +4,15 @@
 
 #include <cmath>
 #include <fstream>
-#include <numbers>
 #include <string>
 
 #include "base/error.hpp"
 #include "base/temporary_folder.hpp"
+#include "sim/support.hpp"
 
 namespace armwright {
 namespace {
 
-using std::numbers::pi;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -85,27 +84,27 @@ TEST(ShapeMass, OfABox) {
 // A general pose, and 2 pi instead of the textbook's formulas: sums over thin rings and discs (the
 // midpoint rule, whose error is below (1/n)^2).
 TEST(ShapeMass, OfACylinderAndASphereAgreeWithSums) {
-  constexpr double kRadius_m = 0.3, kLength_m = 0.8;
+  constexpr double kRadius_m = 0.3, kCylinder_m = 0.8;
   constexpr int kCount = 1000;
   double cylinder = 0, along = 0, sphere = 0, moment = 0, across = 0;
   for (int i = 0; i < kCount; ++i) {
     const double r = (i + 0.5) / kCount * kRadius_m;
-    const double ring = 2 * pi * r * kRadius_m / kCount * kLength_m * kDensity_kg_per_m3;
+    const double ring = 2 * kPi * r * kRadius_m / kCount * kCylinder_m * kDensity_kg_per_m3;
     cylinder += ring;
     along += ring * r * r;
     across += ring * r * r / 2;
     const double z = (2 * (i + 0.5) / kCount - 1) * kRadius_m;
     const double square = kRadius_m * kRadius_m - z * z;
-    const double disc = pi * square * 2 * kRadius_m / kCount * kDensity_kg_per_m3;
+    const double disc = kPi * square * 2 * kRadius_m / kCount * kDensity_kg_per_m3;
     sphere += disc;
     moment += disc * square / 2;
   }
   for (int i = 0; i < kCount; ++i) {
-    const double z = ((i + 0.5) / kCount - 0.5) * kLength_m;
+    const double z = ((i + 0.5) / kCount - 0.5) * kCylinder_m;
     across += cylinder / kCount * z * z;
   }
   const double error = 2.0 / kCount / kCount;
-  const Inertial rod = calc_solid(make_shape(ShapeKind::cylinder, {kRadius_m, kLength_m, 0}));
+  const Inertial rod = calc_solid(make_shape(ShapeKind::cylinder, {kRadius_m, kCylinder_m, 0}));
   EXPECT_NEAR(rod.mass_kg / cylinder, 1, error);
   EXPECT_NEAR(rod.inertia_kg_m2(2, 2) / along, 1, error);
   EXPECT_NEAR(rod.inertia_kg_m2(0, 0) / across, 1, error);
@@ -163,7 +162,7 @@ TEST(MeshMass, OfABallConverges) {
   const auto make_ball = [](int count) {
     TriangleMesh mesh;
     const auto add = [&](double z, double radius, int at) {
-      const double angle = pi * at / count;
+      const double angle = kPi * at / count;
       for (const double value : {radius * std::cos(angle), radius * std::sin(angle), z}) {
         mesh.positions.push_back(static_cast<float>(value));
       }
@@ -178,7 +177,7 @@ TEST(MeshMass, OfABallConverges) {
     add(-1, 0, 0);
     for (int row = 1; row < count; ++row) {
       for (int column = 0; column < 2 * count; ++column) {
-        add(std::cos(pi * row / count), std::sin(pi * row / count), column);
+        add(std::cos(kPi * row / count), std::sin(kPi * row / count), column);
       }
     }
     for (int row = 0; row < count; ++row) {

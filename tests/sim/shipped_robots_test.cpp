@@ -2,11 +2,12 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
-#include <numbers>
 #include <vector>
 
+#include "sim/designed_arm.hpp"
 #include "sim/kinematics.hpp"
 #include "sim/robot_model.hpp"
+#include "sim/support.hpp"
 
 namespace armwright {
 namespace {
@@ -14,19 +15,9 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-constexpr double kPi = std::numbers::pi;
-
 RobotModel load_shipped(const std::string& name, const std::string& tip = "") {
   return load_urdf(std::filesystem::path(ARMWRIGHT_CONFIGS) / "robots" / (name + ".urdf"),
                    {.tip = tip});
-}
-
-double calc_moving_mass_kg(const RobotModel& robot) {
-  double sum = 0;
-  for (const Link& link : robot.links) {
-    sum += link.inertial.mass_kg;
-  }
-  return sum;
 }
 
 // Relative to the number's own size, and to 1 where it is small: the files give 9 decimals.

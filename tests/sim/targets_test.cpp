@@ -5,12 +5,11 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
-#include <limits>
 #include <vector>
 
 #include "base/random.hpp"
 #include "sim/simd_level.hpp"
+#include "sim/support.hpp"
 #include "sim/tracking.hpp"
 
 namespace armwright {
@@ -20,10 +19,6 @@ using targets::ElbowUpArm;
 using targets::Move;
 
 constexpr double kNone = -99;  // what no angle is
-
-RobotModel load_arm() {
-  return load_urdf(std::filesystem::path(ARMWRIGHT_CONFIGS) / "robots/irb4600_40_255.urdf");
-}
 
 Move make_move(const Eigen::Vector3d& from, const Eigen::Vector3d& to, SignalShape shape,
                double speed_m_per_s = 1.5) {
@@ -74,7 +69,7 @@ std::vector<SimdLevel> supported_levels() {
 // without the thesis's error, and of every number of steps left over in a register.
 TEST(Targets, AreTheSameBitsAtEverySimdLevelAndOneByOne) {
   RandomStream random("test/targets/levels");
-  const RobotModel robot = load_arm();
+  const RobotModel robot = load_irb4600();
   const ElbowUpArm arms[] = {ElbowUpKinematics(robot).arm(), ElbowUpKinematics(robot, true).arm()};
   int left_reach = 0;
   for (int i = 0; i < 4000; ++i) {
@@ -114,7 +109,7 @@ TEST(Targets, AreTheSameBitsAtEverySimdLevelAndOneByOne) {
 // cotangents' denominator, says how much.
 TEST(Targets, AnglesAreThoseOfTheTextbook) {
   using Real = long double;
-  const ElbowUpArm arm = ElbowUpKinematics(load_arm()).arm();
+  const ElbowUpArm arm = ElbowUpKinematics(load_irb4600()).arm();
   RandomStream random("test/targets/textbook");
   const Real a = arm.forearm_m, c = arm.upper_arm_m, pi = std::acos(Real{-1});
   int solved = 0, beyond_pi = 0;
@@ -177,8 +172,8 @@ TEST(TargetTable, IsTheKinematicsOfTheTargetsPositions) {
       task.signal = shape;
       task.rest_s = rest_s;
       task.ik_bug = shape == SignalShape::ramp;
-      const TrackingSetup setup(load_arm(), task);
-      const ElbowUpKinematics kinematics(load_arm(), task.ik_bug);
+      const TrackingSetup setup(load_irb4600(), task);
+      const ElbowUpKinematics kinematics(load_irb4600(), task.ik_bug);
       const TargetTable table = setup.make_targets(test_case);
       ASSERT_EQ(table.unreachable, "");
       ASSERT_EQ(table.angles_rad.size(), static_cast<std::size_t>(4 * table.steps));
@@ -199,8 +194,8 @@ TEST(TargetTable, EndsAtTheFirstTargetOutOfReach) {
   test_case.points_m = {{1.4, 0, 0.7}, {1.4, 0, 1.2}, {3.4, 0, 1.2}, {1.4, 0, 1.2}};
   TrackingTask task;
   task.signal = SignalShape::ramp;
-  const TrackingSetup setup(load_arm(), task);
-  const ElbowUpKinematics kinematics(load_arm());
+  const TrackingSetup setup(load_irb4600(), task);
+  const ElbowUpKinematics kinematics(load_irb4600());
   const TargetTable table = setup.make_targets(test_case);
   const Segment& segment = table.segments[1];
   std::array<double, 4> q{};

@@ -11,14 +11,12 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "sim/support.hpp"
 
 namespace armwright {
 namespace {
 
 using testing::HasSubstr;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Coordinates are below 4 m in every sphere used here; a point is the sum of two rounded numbers of
 // that size.

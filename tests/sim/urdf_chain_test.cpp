@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <ostream>
 #include <string>
 #include <utility>
@@ -14,6 +13,7 @@
 #include "base/file.hpp"
 #include "base/temporary_folder.hpp"
 #include "sim/robot_model.hpp"
+#include "sim/support.hpp"
 
 namespace armwright {
 namespace {
@@ -68,7 +68,6 @@ TEST(UrdfChain, RunsFromTheBaseToTheTip) {
 
 TEST(UrdfChain, TakesLimitsOfZeroForNone) {
   const RobotModel cell = load_cell();
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   EXPECT_EQ(cell.joints[0].speed_limit, kInfinity);
   EXPECT_EQ(cell.joints[0].effort_limit, kInfinity);
   EXPECT_EQ(cell.joints[0].lower, -2.5);

@@ -24,7 +24,7 @@ std::vector<std::string> get_labels(const StudyPlan& plan) {
   return labels;
 }
 
-constexpr const char* kHead = "problems = ['sphere']\nbudget = 100\nreplicates = 3\n";
+constexpr const char* kStudyHead = "problems = ['sphere']\nbudget = 100\nreplicates = 3\n";
 
 TEST(StudyPlan, BaselinesTakePartUnlessAskedNotTo) {
   StudyRequest request = make_small_request();
@@ -41,14 +41,15 @@ TEST(StudyPlan, NoOptimizerCanBeGivenMoreThanOthers) {
   const TemporaryFolder folder;
   for (const std::string privilege :
        {"budget = 200", "replicates = 9", "seed = 4", "start_spread = 0.5"}) {
-    const std::string toml = std::string(kHead) +
+    const std::string toml = std::string(kStudyHead) +
                              "optimizers = ['ga']\n[[optimizer]]\nname = 'cmaes'\n" + privilege +
                              "\n";
     EXPECT_THAT(usage_error_of([&] { load_plan(folder, toml); }),
                 HasSubstr("it is the same for every optimizer of a comparison"));
   }
   const std::string unknown =
-      std::string(kHead) + "optimizers = ['ga']\n[[optimizer]]\nname = 'cmaes'\nevaluations = 5\n";
+      std::string(kStudyHead) +
+      "optimizers = ['ga']\n[[optimizer]]\nname = 'cmaes'\nevaluations = 5\n";
   EXPECT_THAT(usage_error_of([&] { load_plan(folder, unknown); }),
               HasSubstr("unknown key optimizer[0].evaluations"));
 }
@@ -61,14 +62,14 @@ TEST(StudyPlan, MistakesAreNamed) {
   expect("optimizers = ['ga']\nbudget = 10\n", "the study names no problem");
   expect("problems = ['sphere']\nbudget = 10\n", "the study names no optimizer");
   expect("problems = ['sphere']\noptimizers = ['ga']\n", "the study names no budget");
-  expect(std::string(kHead) + "optimizers = ['gaa']\n", "did you mean 'ga'?");
-  expect(std::string(kHead) + "optimizers = ['ga', 'ga']\n",
+  expect(std::string(kStudyHead) + "optimizers = ['gaa']\n", "did you mean 'ga'?");
+  expect(std::string(kStudyHead) + "optimizers = ['ga', 'ga']\n",
          "two optimizers of the study are called 'ga'");
   expect("problems = ['sphere', 'sphere']\nbudget = 100\noptimizers = ['ga']\n",
          "two problems of the study are called 'sphere'");
-  expect(std::string(kHead) + "optimizers = ['ga']\nschedule = 'sometimes'\n",
+  expect(std::string(kStudyHead) + "optimizers = ['ga']\nschedule = 'sometimes'\n",
          "schedule is 'sometimes'; it must be fresh:K");
-  expect(std::string(kHead) + "optimizers = ['ga']\nschedule = 'fixed:101'\n",
+  expect(std::string(kStudyHead) + "optimizers = ['ga']\nschedule = 'fixed:101'\n",
          "a budget of 100 cases does not pay for one evaluation");
 }
 
@@ -165,7 +166,7 @@ TEST(StudyPlan, SetsHaveNoCaseInCommonAndAreNamedByHash) {
 
 TEST(StudyPlan, TheResolvedPlanReadsBackAsItself) {
   const TemporaryFolder folder;
-  const StudyPlan plan = load_plan(folder, std::string(kHead) + R"(
+  const StudyPlan plan = load_plan(folder, std::string(kStudyHead) + R"(
 optimizers = ["random"]
 [[optimizer]]
 name = "ga"
