@@ -46,7 +46,7 @@ test('every tab of a run has its figures', async () => {
 test('a run of several objectives and one of a function have pages, too', async () => {
   for (const name of ['front', 'function']) {
     const { page, expect_no_faults } = await open_run(name);
-    const found = await check_every_tab(page);
+    const found = await check_every_tab(page, 1);
     assert.ok(found.includes('fitness'), found.join(', '));
     assert.equal(found.includes('front'), name === 'front');
     assert.equal(found.includes('joint-torques'), name === 'front');

@@ -144,8 +144,11 @@ void work_on_cells(const StudyPlan& plan, std::span<const Cell> cells,
       }
       parent.send(make_note(Note::done, ""));
     } catch (const Error& error) {
-      const bool is_io = error.kind() == ErrorKind::io;
-      parent.send(make_note(is_io ? Note::io_error : Note::broken, error.what()));
+      if (error.kind() == ErrorKind::io) {
+        parent.send(make_note(Note::io_error, error.what()));
+        return;  // the comparison ends with it and hands over nothing more
+      }
+      parent.send(make_note(Note::broken, error.what()));
     }
   }
 }
