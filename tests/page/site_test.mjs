@@ -134,13 +134,16 @@ test('on a phone nothing has to be scrolled sideways, and the menu opens', async
   assert.deepEqual(faults, []);
 });
 
-test('on paper there is the text alone', async () => {
+test('on paper there is the text alone, dark on white whatever the theme', async () => {
   await page.goto(address('verify.html'));
-  await page.emulateMedia({ media: 'print' });
+  await page.evaluate(() => (document.documentElement.dataset.theme = 'dark'));
+  await page.emulateMedia({ media: 'print', colorScheme: 'dark' });
+  const code = page.locator('figure.console, pre').first();
+  assert.equal(await code.evaluate((element) => getComputedStyle(element).getPropertyValue('color-scheme')), 'light');
   for (const part of ['header', '#pages', 'aside', '.neighbours']) {
     assert.ok(await page.locator(part).first().isHidden(), part);
   }
   assert.ok(await page.locator('article').isVisible());
-  await page.emulateMedia({ media: 'screen' });
+  await page.emulateMedia({ media: 'screen', colorScheme: 'light' });
   assert.deepEqual(faults, []);
 });
