@@ -17,7 +17,7 @@ function(armwright_compile_settings target)
 endfunction()
 
 # A compiler's time is mostly spent on reading the same headers and making the same templates for every file. With this option up to 24
-# files of a target are compiled as one: in less than half the time from the beginning, slower after a change. Names in unnamed namespaces
+# files of a target are compiled as one: much faster from the beginning (docs/architecture.md), slower after a change. Names in unnamed namespaces
 # must then differ within a room.
 option(ARMWRIGHT_UNITY_BUILD "Compile several files at once: builds faster from the beginning, slower after a change" OFF)
 function(armwright_join_files target)

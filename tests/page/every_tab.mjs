@@ -1,5 +1,5 @@
 // What holds for every page: each tab opens, each chart is drawn, each table has rows, at both
-// widths and in both themes, or in one where colours are not the point.
+// widths and in both themes, or at each in another one where colours are not the point.
 import assert from 'node:assert/strict';
 import { list_tabs, open_tab } from './browser.mjs';
 

@@ -60,9 +60,9 @@ TYPED_TEST(Slider, GoesOnPastPi) {
   }
 }
 
-// In coordinates of a plane: a slider on a hinge (a polar manipulator)
-// and a hinge on a slider (a cart with a pole), centres of mass anywhere. Both derived from
-// Lagrange's equations with c, d: centres of mass and the joint between, a: the slider's axis.
+// In coordinates of a plane: a slider on a hinge (a polar manipulator) and a hinge on a slider (a
+// cart with a pole), centres of mass anywhere. Both derived from Lagrange's equations with c, d:
+// centres of mass and the joint between, a: the slider's axis.
 struct PlanarBodies {
   PlanarBodies(const RobotModel& model, const Plane& plane, std::size_t slider) {
     const auto project = [&](const Vector3d& p) {
