@@ -18,7 +18,8 @@
 #include <vector>
 
 #include "base/random.hpp"
-#include "optimizers/optimizer.hpp"
+#include "optimizers/interface/optimizer.hpp"
+#include "optimizers/table/optimizer_table.hpp"
 
 #ifdef ARMWRIGHT_WITH_PAGMO
 #include <pagmo/algorithm.hpp>

@@ -12,10 +12,10 @@
 
 #include "engines/parts.hpp"
 #include "measure.hpp"
-#include "problems/design_file.hpp"
-#include "problems/problem_loader.hpp"
-#include "sim/articulated/chain_model.hpp"
-#include "study/case_runner.hpp"
+#include "problems/config/design_file.hpp"
+#include "problems/config/problem_loader.hpp"
+#include "sim/dynamics/chain_model.hpp"
+#include "study/executor/case_runner.hpp"
 
 namespace armwright {
 namespace {

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <string>
 
-#include "study/journal.hpp"
+#include "study/journal/journal.hpp"
 
 namespace {
 

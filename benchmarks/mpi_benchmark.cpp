@@ -23,7 +23,7 @@
 
 #include "measure.hpp"
 #include "study/executor/coordinator.hpp"
-#include "study/executor/mpi_links.hpp"
+#include "study/executor/mpi_transport.hpp"
 #include "study/executor/worker.hpp"
 #include "synthetic_problem.hpp"
 

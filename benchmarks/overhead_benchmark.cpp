@@ -18,8 +18,10 @@
 #include <vector>
 
 #include "base/random.hpp"
-#include "study/run_evaluator.hpp"
-#include "study/run_folder.hpp"
+#include "optimizers/table/optimizer_table.hpp"
+#include "study/run/run_evaluator.hpp"
+#include "study/run/run_folder.hpp"
+#include "study/run/run_observer.hpp"
 
 namespace armwright {
 namespace {

@@ -9,9 +9,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/stop_signal.hpp"
 #include "measure.hpp"
 #include "study/executor/case_batch.hpp"
-#include "study/stop.hpp"
 
 namespace armwright {
 

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "measure.hpp"
-#include "problems/design_file.hpp"
-#include "problems/problem_loader.hpp"
-#include "sim/ode_arm.hpp"
-#include "study/case_runner.hpp"
+#include "problems/config/design_file.hpp"
+#include "problems/config/problem_loader.hpp"
+#include "sim/engines/ode/ode_arm.hpp"
+#include "study/executor/case_runner.hpp"
 
 namespace armwright {
 namespace {

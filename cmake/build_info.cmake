@@ -6,8 +6,8 @@ add_custom_target(
           ${PROJECT_SOURCE_DIR}/cmake/write_git_state.cmake
   BYPRODUCTS ${header}
   COMMENT "")
-add_dependencies(armwright_study armwright_git_state)
-set_source_files_properties(${PROJECT_SOURCE_DIR}/src/study/build_info.cpp TARGET_DIRECTORY armwright_study
+add_dependencies(armwright_base armwright_git_state)
+set_source_files_properties(${PROJECT_SOURCE_DIR}/src/base/build_info.cpp TARGET_DIRECTORY armwright_base
                             PROPERTIES OBJECT_DEPENDS ${header})
 
 # The versions of all libraries, as they were found when the build was configured; one that is left out has none. Those without a CMake
@@ -55,9 +55,9 @@ inline constexpr struct {
 @armwright_library_rows@};
 " @ONLY)
 
-target_include_directories(armwright_study PRIVATE ${PROJECT_BINARY_DIR}/generated)
+target_include_directories(armwright_base PRIVATE ${PROJECT_BINARY_DIR}/generated)
 target_compile_definitions(
-  armwright_study
+  armwright_base
   PRIVATE ARMWRIGHT_VERSION="${PROJECT_VERSION}"
           ARMWRIGHT_RELEASE_DATE="${ARMWRIGHT_RELEASE_DATE}"
           ARMWRIGHT_COMPILER="${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}"

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "sim/simd_level.hpp"
+#include "sim/simd/simd_level.hpp"
 
 namespace armwright::benchmarks {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engines/parts.hpp"
-#include "sim/articulated/chain_dynamics.hpp"
+#include "sim/dynamics/chain_dynamics.hpp"
 
 namespace armwright::benchmarks {
 

@@ -4,7 +4,7 @@
 #include <iterator>
 
 #include "base/text.hpp"
-#include "optimizers/capability_names.hpp"
+#include "optimizers/interface/capability_names.hpp"
 
 namespace armwright::python {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "optimizers/optimizer.hpp"
-#include "problems/problem_loader.hpp"
+#include "optimizers/interface/optimizer.hpp"
+#include "problems/config/problem_loader.hpp"
 
 namespace armwright::python {
 

@@ -9,12 +9,12 @@
 #include "base/text.hpp"
 #include "host.hpp"
 #include "parts.hpp"
-#include "problems/design_file.hpp"
-#include "problems/requirement_grade.hpp"
-#include "sim/controller.hpp"
-#include "sim/test_case_file.hpp"
-#include "study/design_evaluation.hpp"
-#include "study/json_values.hpp"
+#include "problems/config/design_file.hpp"
+#include "problems/tracking/requirement_grade.hpp"
+#include "sim/controllers/controller.hpp"
+#include "sim/tracking/test_case_file.hpp"
+#include "study/run/design_evaluation.hpp"
+#include "study/run/json_values.hpp"
 
 namespace armwright::python {
 namespace {

@@ -14,8 +14,8 @@
 #include <string>
 #include <thread>
 
-#include "study/run_evaluator.hpp"
-#include "study/stop.hpp"
+#include "base/stop_signal.hpp"
+#include "study/run/run_observer.hpp"
 
 namespace armwright::python {
 

@@ -3,10 +3,10 @@
 // this is its inside.
 #include <pybind11/pybind11.h>
 
+#include "base/build_info.hpp"
 #include "base/error.hpp"
 #include "parts.hpp"
-#include "problems/config_files.hpp"
-#include "study/build_info.hpp"
+#include "problems/config/config_files.hpp"
 
 namespace armwright::python {
 namespace {

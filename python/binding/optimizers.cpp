@@ -13,9 +13,10 @@
 #include "base/text.hpp"
 #include "description.hpp"
 #include "host.hpp"
-#include "optimizers/foreign_optimizer.hpp"
+#include "optimizers/plugins/host_optimizer.hpp"
+#include "optimizers/table/optimizer_table.hpp"
 #include "parts.hpp"
-#include "study/contract.hpp"
+#include "study/contract/contract.hpp"
 
 namespace armwright::python {
 namespace {

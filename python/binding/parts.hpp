@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "optimizers/optimizer.hpp"
-#include "problems/problem_loader.hpp"
+#include "optimizers/interface/optimizer.hpp"
+#include "problems/config/problem_loader.hpp"
 
 namespace armwright::python {
 

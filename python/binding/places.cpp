@@ -4,7 +4,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "study/run_folder.hpp"
+#include "study/run/run_folder.hpp"
 
 namespace armwright::python {
 

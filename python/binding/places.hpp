@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "problems/schedule.hpp"
+#include "problems/interface/schedule.hpp"
 
 namespace armwright::python {
 

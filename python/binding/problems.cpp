@@ -11,8 +11,9 @@
 #include "description.hpp"
 #include "host.hpp"
 #include "parts.hpp"
-#include "problems/path_survey.hpp"
-#include "study/case_runner.hpp"
+#include "problems/config/path_survey.hpp"
+#include "study/executor/case_runner.hpp"
+#include "study/run/run_observer.hpp"
 
 namespace armwright::python {
 namespace {

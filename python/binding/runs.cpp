@@ -9,9 +9,9 @@
 #include "host.hpp"
 #include "parts.hpp"
 #include "places.hpp"
-#include "study/journal.hpp"
-#include "study/run.hpp"
-#include "study/run_folder.hpp"
+#include "study/journal/journal.hpp"
+#include "study/run/run.hpp"
+#include "study/run/run_folder.hpp"
 
 namespace armwright::python {
 namespace {

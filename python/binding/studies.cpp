@@ -8,12 +8,13 @@
 #include "host.hpp"
 #include "parts.hpp"
 #include "places.hpp"
+#include "study/analysis/final_check.hpp"
+#include "study/analysis/study_tables.hpp"
 #include "study/compare/escape.hpp"
-#include "study/compare/final_check.hpp"
 #include "study/compare/study_folder.hpp"
 #include "study/compare/study_runner.hpp"
-#include "study/compare/study_tables.hpp"
 #include "study/matrix/earlier_state.hpp"
+#include "study/run/run_observer.hpp"
 
 namespace armwright::python {
 namespace {

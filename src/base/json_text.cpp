@@ -3,12 +3,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
 
 namespace armwright {
+namespace {
+
+using nlohmann::json;
+
+// Fit for a line: a recorded value can be anything.
+std::string cut(std::string_view text) {
+  constexpr std::size_t kLongest_bytes = 200;
+  return sanitize(text.substr(0, kLongest_bytes)) + (text.size() > kLongest_bytes ? "..." : "");
+}
+
+}  // namespace
 
 // Brackets within strings do not count. Exact as far as the text is valid; what is behind the first
 // syntax error the parser never gets to.
@@ -45,6 +57,41 @@ std::string read_json_file(const std::filesystem::path& file, std::size_t limit_
   std::string text = read_file(file, limit_bytes);
   check_json_depth(text, file.string());
   return text;
+}
+
+std::vector<std::string> describe_differences(const std::string& recorded_json,
+                                              const std::string& now_json) {
+  constexpr std::size_t kMostShown = 50;
+  const json recorded = json::parse(recorded_json).flatten();
+  const json now = json::parse(now_json).flatten();
+  std::vector<std::string> differences;
+  const auto name = [](std::string pointer) {
+    pointer.erase(0, 1);
+    for (char& c : pointer) {
+      c = c == '/' ? '.' : c;
+    }
+    return cut(pointer);
+  };
+  const auto show = [](const json& value) { return cut(value.dump()); };
+  for (const auto& [key, value] : recorded.items()) {
+    if (!now.contains(key)) {
+      differences.push_back(fmt::format("{}: recorded {}, now absent", name(key), show(value)));
+    } else if (now[key] != value) {
+      differences.push_back(
+          fmt::format("{}: recorded {}, now {}", name(key), show(value), show(now[key])));
+    }
+  }
+  for (const auto& [key, value] : now.items()) {
+    if (!recorded.contains(key)) {
+      differences.push_back(fmt::format("{}: recorded absent, now {}", name(key), show(value)));
+    }
+  }
+  if (differences.size() > kMostShown) {
+    const std::size_t left = differences.size() - kMostShown;
+    differences.resize(kMostShown);
+    differences.push_back(fmt::format("and {} more", left));
+  }
+  return differences;
 }
 
 }  // namespace armwright

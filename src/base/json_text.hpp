@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace armwright {
 
@@ -17,5 +18,9 @@ void check_json_depth(std::string_view text, const std::string& name);
 
 // The file's text, with both checks; the size as in read_file().
 std::string read_json_file(const std::filesystem::path& file, std::size_t limit_bytes);
+
+// One line a difference: "run.seed: recorded 1, now 2". Empty if the texts say the same.
+std::vector<std::string> describe_differences(const std::string& recorded_json,
+                                              const std::string& now_json);
 
 }  // namespace armwright

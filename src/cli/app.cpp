@@ -14,10 +14,10 @@
 #include "base/error.hpp"
 #include "base/file_descriptor.hpp"
 #include "base/text.hpp"
-#include "cli/session.hpp"
-#include "cli/terminal.hpp"
-#include "cli/version.hpp"
-#include "study/executor/mpi_links.hpp"
+#include "cli/commands/version.hpp"
+#include "cli/terminal/session.hpp"
+#include "cli/terminal/terminal.hpp"
+#include "study/executor/mpi_transport.hpp"
 
 namespace armwright {
 namespace {

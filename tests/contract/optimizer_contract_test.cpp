@@ -7,8 +7,9 @@
 #include <memory>
 #include <thread>
 
-#include "study/contract.hpp"
-#include "study/contract_problems.hpp"
+#include "optimizers/table/optimizer_table.hpp"
+#include "study/contract/contract.hpp"
+#include "study/contract/contract_problems.hpp"
 
 namespace armwright {
 namespace {

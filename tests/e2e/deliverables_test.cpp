@@ -11,10 +11,10 @@
 
 #include "base/temporary_folder.hpp"
 #include "e2e/program.hpp"
-#include "problems/design_file.hpp"
-#include "sim/robot_model.hpp"
-#include "sim/urdf_limits.hpp"
-#include "study/run.hpp"
+#include "problems/config/design_file.hpp"
+#include "sim/robot/robot_model.hpp"
+#include "sim/robot/urdf_limits.hpp"
+#include "study/run/run.hpp"
 
 namespace armwright {
 namespace {

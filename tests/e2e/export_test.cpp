@@ -15,9 +15,9 @@
 #include "base/temporary_folder.hpp"
 #include "base/text.hpp"
 #include "e2e/program.hpp"
-#include "problems/design_file.hpp"
-#include "problems/problem_loader.hpp"
-#include "study/journal.hpp"
+#include "problems/config/design_file.hpp"
+#include "problems/config/problem_loader.hpp"
+#include "study/journal/journal.hpp"
 
 namespace armwright {
 namespace {

@@ -11,7 +11,7 @@
 #include "base/random.hpp"
 #include "base/temporary_folder.hpp"
 #include "e2e/program.hpp"
-#include "study/journal.hpp"
+#include "study/journal/journal.hpp"
 
 namespace armwright {
 namespace {

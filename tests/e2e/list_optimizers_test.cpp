@@ -12,7 +12,8 @@
 
 #include "base/temporary_folder.hpp"
 #include "e2e/program.hpp"
-#include "optimizers/optimizer.hpp"
+#include "optimizers/interface/optimizer.hpp"
+#include "optimizers/table/optimizer_table.hpp"
 
 namespace armwright {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "base/temporary_folder.hpp"
 #include "e2e/program.hpp"
-#include "study/journal.hpp"
+#include "study/journal/journal.hpp"
 
 namespace armwright {
 namespace {

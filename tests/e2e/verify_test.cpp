@@ -9,7 +9,7 @@
 
 #include "base/temporary_folder.hpp"
 #include "e2e/program.hpp"
-#include "sim/physics_engine.hpp"
+#include "sim/engines/engine_table.hpp"
 
 namespace armwright {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "base/text.hpp"
 #include "fuzz/harness.hpp"
-#include "optimizers/plugin_description.hpp"
+#include "optimizers/plugins/plugin_description.hpp"
 
 namespace armwright::fuzz {
 namespace {

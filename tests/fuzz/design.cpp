@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "fuzz/harness.hpp"
-#include "problems/design_file.hpp"
+#include "problems/config/design_file.hpp"
 
 namespace armwright::fuzz {
 namespace {

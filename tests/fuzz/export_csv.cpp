@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "fuzz/harness.hpp"
-#include "report/import_reader.hpp"
-#include "report/tables.hpp"
+#include "report/exchange/import_reader.hpp"
+#include "report/formats/tables.hpp"
 
 namespace armwright::fuzz {
 

@@ -1,7 +1,7 @@
 // Journals. An input that begins with '=' is payloads, each behind two bytes of length: it gets the
 // journal's beginning, and every payload its frame with the right checksum, which no fuzzer finds.
 // Any other input is a journal as it stands. What is read is the same written and read again.
-#include "study/journal.hpp"
+#include "study/journal/journal.hpp"
 
 #include <sys/mman.h>
 #include <unistd.h>
@@ -11,7 +11,7 @@
 #include "base/file_descriptor.hpp"
 #include "base/hash.hpp"
 #include "fuzz/harness.hpp"
-#include "study/journal_format.hpp"
+#include "study/journal/journal_format.hpp"
 
 namespace armwright::fuzz {
 namespace {

@@ -1,9 +1,10 @@
 // A manifest, compared with a plan, and the configuration of a problem that it records, loaded
 // again.
 #include "fuzz/harness.hpp"
-#include "problems/recorded_problem.hpp"
-#include "study/run_folder.hpp"
-#include "study/run_plan.hpp"
+#include "optimizers/table/optimizer_table.hpp"
+#include "problems/config/recorded_problem.hpp"
+#include "study/run/run_folder.hpp"
+#include "study/run/run_plan.hpp"
 
 namespace armwright::fuzz {
 namespace {

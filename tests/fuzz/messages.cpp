@@ -4,8 +4,8 @@
 
 #include "base/text.hpp"
 #include "fuzz/harness.hpp"
-#include "optimizers/line_process.hpp"
-#include "optimizers/plugin_messages.hpp"
+#include "optimizers/plugins/plugin_messages.hpp"
+#include "process/line_process.hpp"
 
 namespace armwright::fuzz {
 namespace {

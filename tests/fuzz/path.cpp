@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "fuzz/harness.hpp"
-#include "problems/path_file.hpp"
-#include "sim/test_case_file.hpp"
+#include "problems/config/path_file.hpp"
+#include "sim/tracking/test_case_file.hpp"
 
 namespace armwright::fuzz {
 

@@ -7,9 +7,9 @@
 
 #include "base/text.hpp"
 #include "fuzz/harness.hpp"
-#include "problems/config_files.hpp"
-#include "problems/problem_loader.hpp"
-#include "problems/recorded_problem.hpp"
+#include "problems/config/config_files.hpp"
+#include "problems/config/problem_loader.hpp"
+#include "problems/config/recorded_problem.hpp"
 
 namespace armwright::fuzz {
 namespace {

@@ -2,7 +2,7 @@
 #include "fuzz/harness.hpp"
 #include "study/compare/cell.hpp"
 #include "study/matrix/attempt.hpp"
-#include "study/run_result.hpp"
+#include "study/run/run_result.hpp"
 
 namespace armwright::fuzz {
 namespace {

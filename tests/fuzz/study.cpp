@@ -3,7 +3,7 @@
 
 #include "base/config.hpp"
 #include "fuzz/harness.hpp"
-#include "problems/config_files.hpp"
+#include "problems/config/config_files.hpp"
 #include "study/compare/study_folder.hpp"
 #include "study/compare/study_plan.hpp"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "fuzz/harness.hpp"
-#include "sim/robot_model.hpp"
+#include "sim/robot/robot_model.hpp"
 
 namespace armwright::fuzz {
 namespace {

@@ -14,13 +14,13 @@
 #include <string>
 #include <vector>
 
-#include "optimizers/isolation.hpp"
-#include "problems/analytic.hpp"
-#include "study/memory_evaluator.hpp"
+#include "optimizers/interface/isolation.hpp"
+#include "problems/analytic/analytic.hpp"
+#include "study/contract/memory_evaluator.hpp"
 
 namespace armwright {
 
-inline constexpr IsolationLimits kLimits{.silence_s = 30, .memory_mib = 1024};
+inline constexpr ProcessLimits kLimits{.silence_s = 30, .memory_mib = 1024};
 
 inline std::size_t count_descriptors() {
   std::size_t count = 0;
@@ -41,7 +41,7 @@ class Isolation : public testing::Test {
   }
 
   std::string failure_of(const std::function<void(Evaluator&)>& body,
-                         const IsolationLimits& limits = kLimits) {
+                         const ProcessLimits& limits = kLimits) {
     try {
       minimize_isolated("demo", body, evaluator_, limits);
     } catch (const OptimizerFailure& failure) {

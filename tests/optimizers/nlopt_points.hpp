@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "study/memory_evaluator.hpp"
+#include "study/contract/memory_evaluator.hpp"
 
 namespace armwright {
 

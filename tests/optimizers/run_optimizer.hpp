@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "study/memory_evaluator.hpp"
+#include "optimizers/table/optimizer_table.hpp"
+#include "study/contract/memory_evaluator.hpp"
 
 namespace armwright {
 

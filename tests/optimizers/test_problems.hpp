@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "problems/problem.hpp"
+#include "problems/interface/problem.hpp"
 
 namespace armwright {
 

@@ -18,7 +18,7 @@ step("install" ${CMAKE_COMMAND} --install ${BUILD_DIR} --config ${CONFIG} --pref
 file(RENAME ${WORK_DIR}/first ${prefix})
 
 foreach(room IN LISTS room_list)
-  file(GLOB headers RELATIVE ${SOURCE_DIR}/src ${SOURCE_DIR}/src/${room}/*.hpp)
+  file(GLOB_RECURSE headers RELATIVE ${SOURCE_DIR}/src ${SOURCE_DIR}/src/${room}/*.hpp)
   foreach(header IN LISTS headers)
     if(NOT EXISTS ${prefix}/include/armwright/${header})
       message(FATAL_ERROR "include/armwright/${header} was not installed")

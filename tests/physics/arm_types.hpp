@@ -7,10 +7,10 @@
 #include <Eigen/Dense>
 #include <string>
 
-#include "sim/articulated/articulated_arm.hpp"
-#include "sim/ode_arm.hpp"
+#include "sim/engines/articulated/articulated_arm.hpp"
+#include "sim/engines/ode/ode_arm.hpp"
 #ifdef ARMWRIGHT_WITH_MUJOCO
-#include "sim/mujoco_arm.hpp"
+#include "sim/engines/mujoco/mujoco_arm.hpp"
 #endif
 
 namespace armwright::physics_test {

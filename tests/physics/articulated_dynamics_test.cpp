@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "chain_oracle.hpp"
-#include "sim/articulated/articulated_arm.hpp"
-#include "sim/articulated/chain_dynamics.hpp"
-#include "sim/articulated/chain_model.hpp"
+#include "sim/dynamics/chain_dynamics.hpp"
+#include "sim/dynamics/chain_model.hpp"
+#include "sim/engines/articulated/articulated_arm.hpp"
 #include "test_arms.hpp"
 #include "tracking_arms.hpp"
 

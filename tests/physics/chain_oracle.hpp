@@ -17,7 +17,7 @@
 #include <functional>
 #include <vector>
 
-#include "sim/robot_model.hpp"
+#include "sim/robot/robot_model.hpp"
 
 namespace armwright::physics_test {
 

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "base/expect_error.hpp"
-#include "sim/articulated/articulated_arm.hpp"
-#include "sim/design_conversion.hpp"
-#include "sim/kinematics.hpp"
-#include "sim/tracking_loop.hpp"
+#include "sim/engines/articulated/articulated_arm.hpp"
+#include "sim/kinematics/kinematics.hpp"
+#include "sim/tracking/design_conversion.hpp"
+#include "sim/tracking/tracking_loop.hpp"
 #include "tracking_arms.hpp"
 
 namespace armwright::physics_test {

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "sim/design_conversion.hpp"
+#include "sim/tracking/design_conversion.hpp"
 #include "tracking_arms.hpp"
 
 namespace armwright::physics_test {

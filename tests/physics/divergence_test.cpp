@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "sim/tracking/tracking_result.hpp"
 #include "test_arms.hpp"
 #include "tracking_arms.hpp"
 

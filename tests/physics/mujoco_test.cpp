@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
-#include "sim/physics_engine.hpp"
+#include "sim/engines/engine_table.hpp"
 
 #ifdef ARMWRIGHT_WITH_MUJOCO
 
@@ -19,7 +19,8 @@
 #include <vector>
 
 #include "base/random.hpp"
-#include "sim/mujoco_arm.hpp"
+#include "sim/engines/mujoco/mujoco_arm.hpp"
+#include "sim/tracking/tracking_result.hpp"
 #include "test_arms.hpp"
 #include "tracking_arms.hpp"
 

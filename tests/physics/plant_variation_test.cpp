@@ -1,14 +1,14 @@
 // What perturbed plants do to a joint, against closed forms and by hand, and that the engines agree
 // on it.
-#include "sim/plant_variation.hpp"
+#include "sim/tracking/plant_variation.hpp"
 
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "sim/arm_plant.hpp"
-#include "sim/tracking_loop.hpp"
+#include "sim/tracking/arm_plant.hpp"
+#include "sim/tracking/tracking_loop.hpp"
 #include "test_arms.hpp"
 #include "tracking_arms.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/path_check.hpp"
+#include "sim/tracking/path_check.hpp"
 #include "tracking_arms.hpp"
 
 namespace armwright {

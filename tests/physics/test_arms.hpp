@@ -13,7 +13,7 @@
 #include "arm_types.hpp"
 #include "base/random.hpp"
 #include "chain_oracle.hpp"
-#include "sim/robot_model.hpp"
+#include "sim/robot/robot_model.hpp"
 
 namespace armwright::physics_test {
 

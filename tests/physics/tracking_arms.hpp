@@ -8,10 +8,10 @@
 #include <memory>
 #include <vector>
 
-#include "sim/physics_engine.hpp"
-#include "sim/robot_model.hpp"
-#include "sim/test_case.hpp"
-#include "sim/tracking.hpp"
+#include "sim/engines/engine_table.hpp"
+#include "sim/robot/robot_model.hpp"
+#include "sim/tracking/test_case.hpp"
+#include "sim/tracking/tracking.hpp"
 
 namespace armwright::physics_test {
 

@@ -1,6 +1,6 @@
 // The tracking loop on arms that follow a script instead of physics: the timeline, what is asked of
 // the arm and when, and the measures, all by hand.
-#include "sim/tracking_loop.hpp"
+#include "sim/tracking/tracking_loop.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "sim/kinematics.hpp"
+#include "sim/kinematics/kinematics.hpp"
 #include "test_arms.hpp"
 #include "tracking_arms.hpp"
 

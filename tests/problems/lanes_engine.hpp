@@ -5,7 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "sim/physics_engine.hpp"
+#include "sim/engines/engine_table.hpp"
+#include "sim/tracking/physics_engine.hpp"
 
 namespace armwright {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "problems/problem_loader.hpp"
-#include "problems/tracking_problem.hpp"
+#include "problems/config/problem_loader.hpp"
+#include "problems/tracking/tracking_problem.hpp"
 
 namespace armwright {
 

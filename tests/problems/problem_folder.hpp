@@ -8,8 +8,8 @@
 
 #include "base/expect_error.hpp"
 #include "base/temporary_folder.hpp"
-#include "problems/design_file.hpp"
-#include "problems/problem_loader.hpp"
+#include "problems/config/design_file.hpp"
+#include "problems/config/problem_loader.hpp"
 
 namespace armwright {
 

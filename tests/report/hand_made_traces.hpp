@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "report/run_traces.hpp"
+#include "report/formats/run_traces.hpp"
 
 namespace armwright {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "physics/tracking_arms.hpp"
-#include "sim/simd_level.hpp"
+#include "sim/simd/simd_level.hpp"
 
 namespace armwright::articulated_test {
 

@@ -15,7 +15,7 @@
 
 #include "base/error.hpp"
 #include "base/temporary_folder.hpp"
-#include "study/journal.hpp"
+#include "study/journal/journal.hpp"
 
 namespace armwright::journal_testing {
 

@@ -11,7 +11,8 @@
 #include <vector>
 
 #include "base/random.hpp"
-#include "sim/bred_case.hpp"
+#include "optimizers/table/optimizer_table.hpp"
+#include "sim/tracking/bred_case.hpp"
 #include "study/run_support.hpp"
 
 namespace armwright {

@@ -11,8 +11,10 @@
 #include "base/bits.hpp"
 #include "base/file.hpp"
 #include "base/temporary_folder.hpp"
-#include "study/journal.hpp"
-#include "study/run.hpp"
+#include "optimizers/table/optimizer_table.hpp"
+#include "study/journal/journal.hpp"
+#include "study/run/run.hpp"
+#include "study/run/run_observer.hpp"
 
 namespace armwright {
 

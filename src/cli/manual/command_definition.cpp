@@ -5,7 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "cli/arguments.hpp"
+#include "cli/terminal/arguments.hpp"
 
 namespace armwright {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cli/manual/manual_page.hpp"
-#include "cli/terminal.hpp"
+#include "cli/terminal/terminal.hpp"
 
 namespace armwright {
 

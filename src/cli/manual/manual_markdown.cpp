@@ -6,7 +6,7 @@
 
 #include "base/text.hpp"
 #include "cli/manual/manual_formats.hpp"
-#include "cli/markdown.hpp"
+#include "cli/terminal/markdown.hpp"
 
 namespace armwright {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "base/text.hpp"
 #include "cli/manual/manual_formats.hpp"
-#include "cli/table.hpp"
+#include "cli/terminal/table.hpp"
 
 namespace armwright {
 namespace {

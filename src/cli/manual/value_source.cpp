@@ -4,12 +4,12 @@
 #include <span>
 
 #include "base/text.hpp"
-#include "cli/list_views.hpp"
+#include "cli/list/list_views.hpp"
 #include "cli/manual/manual_formats.hpp"
-#include "cli/plugin_templates.hpp"
-#include "problems/config_files.hpp"
-#include "report/export.hpp"
-#include "sim/simd_level.hpp"
+#include "cli/manual/plugin_templates.hpp"
+#include "problems/config/config_files.hpp"
+#include "report/exchange/export.hpp"
+#include "sim/simd/simd_level.hpp"
 
 namespace armwright {
 namespace {

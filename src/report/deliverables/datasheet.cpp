@@ -6,15 +6,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/build_info.hpp"
 #include "base/text.hpp"
-#include "problems/requirement_grade.hpp"
+#include "problems/tracking/requirement_grade.hpp"
 #include "report/deliverables/datasheet_figures.hpp"
 #include "report/deliverables/datasheet_style.hpp"
 #include "report/deliverables/finished_arm.hpp"
 #include "report/deliverables/html_table.hpp"
-#include "report/html_text.hpp"
-#include "sim/designed_arm.hpp"
-#include "study/build_info.hpp"
+#include "report/formats/html_text.hpp"
+#include "sim/tracking/designed_arm.hpp"
 
 namespace armwright {
 namespace {

@@ -8,8 +8,8 @@
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
-#include "report/csv_reader.hpp"
 #include "report/deliverables/line_figure.hpp"
+#include "report/formats/csv_reader.hpp"
 
 namespace armwright {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/build_info.hpp"
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/hash.hpp"
@@ -9,10 +10,9 @@
 #include "report/deliverables/datasheet.hpp"
 #include "report/deliverables/finished_arm.hpp"
 #include "report/deliverables/ros2_control.hpp"
-#include "report/export_folder.hpp"
-#include "sim/designed_arm.hpp"
-#include "sim/urdf_limits.hpp"
-#include "study/build_info.hpp"
+#include "report/formats/export_folder.hpp"
+#include "sim/robot/urdf_limits.hpp"
+#include "sim/tracking/designed_arm.hpp"
 
 namespace armwright {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "report/run_traces.hpp"
-#include "study/run.hpp"
+#include "report/formats/run_traces.hpp"
+#include "study/run/run.hpp"
 
 namespace armwright {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "report/page/recorded_run.hpp"
+#include "report/evidence/recorded_run.hpp"
 
 namespace armwright {
 

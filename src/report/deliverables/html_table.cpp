@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "report/html_text.hpp"
+#include "report/formats/html_text.hpp"
 
 namespace armwright {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/html_text.hpp"
+#include "report/formats/html_text.hpp"
 
 namespace armwright {
 namespace {

@@ -20,7 +20,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/tracking.hpp"
+#include "sim/tracking/tracking.hpp"
 
 namespace armwright {
 

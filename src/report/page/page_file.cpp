@@ -4,7 +4,7 @@
 
 #include "base/base64.hpp"
 #include "base/hash.hpp"
-#include "report/html_text.hpp"
+#include "report/formats/html_text.hpp"
 #include "report/page/page_assets.hpp"
 
 namespace armwright {

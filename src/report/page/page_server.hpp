@@ -11,7 +11,7 @@
 #include <memory>
 #include <string>
 
-#include "study/stop.hpp"
+#include "base/stop_signal.hpp"
 
 namespace armwright {
 

@@ -6,13 +6,13 @@
 #include <tuple>
 
 #include "base/text.hpp"
-#include "problems/config_files.hpp"
-#include "report/page/distance_response.hpp"
-#include "report/page/page_json.hpp"
+#include "problems/config/config_files.hpp"
+#include "report/evidence/distance_response.hpp"
+#include "report/evidence/page_json.hpp"
+#include "report/evidence/signals.hpp"
 #include "report/page/reproduction_replays.hpp"
-#include "report/page/signals.hpp"
 #include "report/reproduction/reproduction.hpp"
-#include "study/design_evaluation.hpp"
+#include "study/run/design_evaluation.hpp"
 
 namespace armwright {
 namespace {

@@ -6,9 +6,9 @@
 #include <optional>
 #include <string>
 
-#include "report/page/page_options.hpp"
-#include "study/run_evaluator.hpp"
-#include "study/stop.hpp"
+#include "base/stop_signal.hpp"
+#include "report/evidence/page_options.hpp"
+#include "study/run/run_observer.hpp"
 
 namespace armwright {
 

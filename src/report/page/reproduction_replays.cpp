@@ -5,10 +5,10 @@
 #include <algorithm>
 
 #include "base/text.hpp"
-#include "problems/config_files.hpp"
-#include "report/page/replay_list.hpp"
-#include "report/page/robot_scene.hpp"
-#include "study/design_evaluation.hpp"
+#include "problems/config/config_files.hpp"
+#include "report/evidence/replay_list.hpp"
+#include "report/evidence/robot_scene.hpp"
+#include "study/run/design_evaluation.hpp"
 
 namespace armwright {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "report/page/page_options.hpp"
-#include "report/page/page_simulator.hpp"
+#include "report/evidence/page_options.hpp"
+#include "report/evidence/page_simulator.hpp"
 #include "report/reproduction/reproduction_config.hpp"
 #include "report/reproduction/reproduction_record.hpp"
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "base/text.hpp"
-#include "problems/requirement_grade.hpp"
-#include "report/page/page_json.hpp"
-#include "study/run.hpp"
+#include "problems/tracking/requirement_grade.hpp"
+#include "report/evidence/page_json.hpp"
+#include "study/run/run.hpp"
 
 namespace armwright {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "report/page/recorded_run.hpp"
+#include "report/evidence/recorded_run.hpp"
 
 namespace armwright {
 

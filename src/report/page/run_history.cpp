@@ -5,7 +5,7 @@
 #include <functional>
 #include <limits>
 
-#include "report/page/page_json.hpp"
+#include "report/evidence/page_json.hpp"
 #include "study/statistics/spread.hpp"
 
 namespace armwright {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "report/page/recorded_run.hpp"
+#include "report/evidence/recorded_run.hpp"
 #include "study/compare/incumbents.hpp"
 
 namespace armwright {

@@ -7,13 +7,13 @@
 #include <numeric>
 
 #include "base/text.hpp"
-#include "report/page/arm_evidence.hpp"
-#include "report/page/distance_response.hpp"
-#include "report/page/page_json.hpp"
-#include "report/page/robot_scene.hpp"
+#include "report/evidence/arm_evidence.hpp"
+#include "report/evidence/distance_response.hpp"
+#include "report/evidence/page_json.hpp"
+#include "report/evidence/robot_scene.hpp"
 #include "report/page/run_facts.hpp"
 #include "report/page/run_history.hpp"
-#include "study/run.hpp"
+#include "study/run/run.hpp"
 
 namespace armwright {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "base/text.hpp"
-#include "report/page/page_json.hpp"
+#include "report/evidence/page_json.hpp"
 #include "report/page/study_parts.hpp"
 #include "study/compare/study_folder.hpp"
 

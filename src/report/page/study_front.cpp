@@ -2,7 +2,7 @@
 // share of the replicates attains.
 #include <algorithm>
 
-#include "report/page/page_json.hpp"
+#include "report/evidence/page_json.hpp"
 #include "report/page/study_parts.hpp"
 #include "study/statistics/pareto.hpp"
 

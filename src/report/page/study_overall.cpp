@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "report/page/page_json.hpp"
+#include "report/evidence/page_json.hpp"
 #include "report/page/study_parts.hpp"
 #include "study/statistics/cliques.hpp"
 #include "study/statistics/ranks.hpp"

@@ -5,11 +5,11 @@
 #include <algorithm>
 
 #include "base/text.hpp"
-#include "report/page/page_json.hpp"
+#include "report/evidence/page_json.hpp"
 #include "report/page/study_parts.hpp"
-#include "study/compare/final_check.hpp"
+#include "study/analysis/final_check.hpp"
+#include "study/analysis/verdict.hpp"
 #include "study/compare/study_folder.hpp"
-#include "study/compare/verdict.hpp"
 
 namespace armwright {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "report/page/page_simulator.hpp"
-#include "study/compare/study_result.hpp"
+#include "report/evidence/page_simulator.hpp"
+#include "study/analysis/study_result.hpp"
 
 namespace armwright {
 

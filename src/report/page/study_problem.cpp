@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "base/text.hpp"
-#include "report/page/page_json.hpp"
+#include "report/evidence/page_json.hpp"
 #include "report/page/study_parts.hpp"
-#include "study/compare/verdict_targets.hpp"
+#include "study/analysis/verdict_targets.hpp"
 #include "study/statistics/spread.hpp"
 
 namespace armwright {

@@ -5,14 +5,14 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "problems/config_files.hpp"
-#include "report/page/motions.hpp"
-#include "report/page/page_json.hpp"
-#include "report/page/replay_list.hpp"
-#include "report/page/robot_scene.hpp"
+#include "problems/config/config_files.hpp"
+#include "report/evidence/motions.hpp"
+#include "report/evidence/page_json.hpp"
+#include "report/evidence/replay_list.hpp"
+#include "report/evidence/robot_scene.hpp"
 #include "report/page/study_parts.hpp"
-#include "study/compare/final_check.hpp"
-#include "study/run.hpp"
+#include "study/analysis/final_check.hpp"
+#include "study/run/run.hpp"
 
 namespace armwright {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "base/error.hpp"
-#include "report/page/point_statistics.hpp"
+#include "report/evidence/point_statistics.hpp"
 
 namespace armwright {
 namespace {

@@ -7,7 +7,8 @@
 
 #include "report/reproduction/reproduction_plan.hpp"
 #include "report/reproduction/reproduction_record.hpp"
-#include "study/run.hpp"
+#include "study/run/run.hpp"
+#include "study/run/run_observer.hpp"
 
 namespace armwright {
 

@@ -1,7 +1,7 @@
 #include "report/reproduction/reproduction_config.hpp"
 
 #include "base/config.hpp"
-#include "problems/config_files.hpp"
+#include "problems/config/config_files.hpp"
 
 namespace armwright {
 namespace {

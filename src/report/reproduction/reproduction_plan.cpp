@@ -8,9 +8,10 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "problems/config_files.hpp"
+#include "optimizers/table/optimizer_table.hpp"
+#include "problems/config/config_files.hpp"
 #include "report/reproduction/reproduction_config.hpp"
-#include "study/design_evaluation.hpp"
+#include "study/run/design_evaluation.hpp"
 
 namespace armwright {
 namespace {

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "problems/design_file.hpp"
-#include "problems/problem_loader.hpp"
-#include "study/run_plan.hpp"
+#include "problems/config/design_file.hpp"
+#include "problems/config/problem_loader.hpp"
+#include "study/run/run_plan.hpp"
 
 namespace armwright {
 

@@ -7,14 +7,14 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "base/build_info.hpp"
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/hash.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
-#include "report/page/page_json.hpp"
-#include "study/build_info.hpp"
-#include "study/json_values.hpp"
+#include "report/evidence/page_json.hpp"
+#include "study/run/json_values.hpp"
 
 namespace armwright {
 namespace {

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "report/page/point_statistics.hpp"
+#include "report/evidence/point_statistics.hpp"
 #include "report/reproduction/reproduction_plan.hpp"
-#include "study/design_evaluation.hpp"
-#include "study/run_lock.hpp"
+#include "study/run/design_evaluation.hpp"
+#include "study/run/run_lock.hpp"
 
 namespace armwright {
 

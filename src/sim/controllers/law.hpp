@@ -12,8 +12,8 @@
 // integrand. For lanes there are no branches on numbers: select(), min() and max() instead.
 #pragma once
 
-#include "sim/articulated/lane_math.hpp"
 #include "sim/controllers/law_types.hpp"
+#include "sim/simd/lane_math.hpp"
 
 namespace armwright::controllers {
 

@@ -8,7 +8,7 @@
 // on lanes of float.
 #pragma once
 
-#include "sim/articulated/lane_pack.hpp"
+#include "sim/simd/lane_pack.hpp"
 
 namespace armwright::controllers {
 

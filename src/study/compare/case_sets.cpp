@@ -9,7 +9,7 @@
 #include <span>
 
 #include "base/error.hpp"
-#include "study/case_breeder.hpp"
+#include "study/run/case_breeder.hpp"
 
 namespace armwright {
 namespace {

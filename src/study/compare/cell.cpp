@@ -11,8 +11,8 @@
 #include "base/text.hpp"
 #include "study/compare/choices.hpp"
 #include "study/compare/incumbents.hpp"
-#include "study/json_values.hpp"
-#include "study/record_files.hpp"
+#include "study/run/json_values.hpp"
+#include "study/run/record_files.hpp"
 #include "study/statistics/values.hpp"
 
 namespace armwright {

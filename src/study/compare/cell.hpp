@@ -10,7 +10,8 @@
 #include <vector>
 
 #include "study/compare/study_plan.hpp"
-#include "study/run.hpp"
+#include "study/run/run.hpp"
+#include "study/run/run_observer.hpp"
 
 namespace armwright {
 

@@ -13,8 +13,8 @@
 #include "base/file.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
-#include "study/journal.hpp"
-#include "study/run_plan.hpp"
+#include "study/journal/journal.hpp"
+#include "study/run/run_plan.hpp"
 
 namespace armwright {
 namespace {

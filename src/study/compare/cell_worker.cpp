@@ -12,8 +12,9 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "optimizers/packet.hpp"
+#include "process/packet.hpp"
 #include "study/executor/case_packets.hpp"
+#include "study/run/run_observer.hpp"
 
 namespace armwright {
 namespace {

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <span>
 
-#include "optimizers/parent_link.hpp"
+#include "process/parent_link.hpp"
 #include "study/compare/cell.hpp"
 
 namespace armwright {

@@ -5,9 +5,9 @@
 #include <numeric>
 
 #include "base/bits.hpp"
-#include "study/candidate_pool.hpp"
-#include "study/judge.hpp"
-#include "study/summary.hpp"
+#include "study/run/candidate_pool.hpp"
+#include "study/run/judge.hpp"
+#include "study/statistics/summary.hpp"
 
 namespace armwright {
 namespace {

@@ -9,10 +9,10 @@
 #include <span>
 #include <vector>
 
-#include "study/case_runner.hpp"
-#include "study/journal.hpp"
-#include "study/run_plan.hpp"
-#include "study/run_result.hpp"
+#include "study/executor/case_runner.hpp"
+#include "study/journal/journal.hpp"
+#include "study/run/run_plan.hpp"
+#include "study/run/run_result.hpp"
 
 namespace armwright {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "study/journal.hpp"
+#include "study/journal/journal.hpp"
 
 namespace armwright {
 

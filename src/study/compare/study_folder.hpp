@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "study/compare/study_plan.hpp"
-#include "study/run_lock.hpp"
+#include "study/run/run_lock.hpp"
 
 namespace armwright {
 

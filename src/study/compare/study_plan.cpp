@@ -11,9 +11,9 @@
 #include "base/hash.hpp"
 #include "base/random.hpp"
 #include "base/text.hpp"
-#include "optimizers/search_space.hpp"
-#include "problems/replicate.hpp"
-#include "sim/design_conversion.hpp"
+#include "optimizers/interface/search_space.hpp"
+#include "problems/config/replicate.hpp"
+#include "sim/tracking/design_conversion.hpp"
 #include "study/compare/escape.hpp"
 
 namespace armwright {

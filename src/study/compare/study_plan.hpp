@@ -23,7 +23,7 @@
 #include <vector>
 
 #include "base/config.hpp"
-#include "study/run_plan.hpp"
+#include "study/run/run_plan.hpp"
 
 namespace armwright {
 

@@ -15,7 +15,7 @@
 #include <thread>
 
 #include "base/error.hpp"
-#include "optimizers/child_process.hpp"
+#include "process/child_process.hpp"
 #include "study/compare/cell_worker.hpp"
 #include "study/executor/case_packets.hpp"
 #include "study/executor/coordinator.hpp"
@@ -109,8 +109,8 @@ class Runner {
 
   std::unique_ptr<ChildProcess> start_worker() {
     // A cell takes as long and as much as it takes: the optimizers' own processes are watched.
-    const IsolationLimits limits{.silence_s = std::numeric_limits<double>::infinity(),
-                                 .memory_mib = 1e9};
+    const ProcessLimits limits{.silence_s = std::numeric_limits<double>::infinity(),
+                               .memory_mib = 1e9};
     return std::make_unique<ChildProcess>(
         [this](ParentLink& parent) {
           work_on_cells(plan_, cells_, study_, parent, coordinator_ != nullptr);

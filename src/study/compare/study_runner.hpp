@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "study/compare/cell.hpp"
+#include "study/run/run_observer.hpp"
 
 namespace armwright {
 

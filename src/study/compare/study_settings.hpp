@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "problems/setting_list.hpp"
+#include "problems/config/setting_list.hpp"
 
 namespace armwright {
 

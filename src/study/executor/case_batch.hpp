@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "problems/problem.hpp"
+#include "problems/interface/problem.hpp"
 
 namespace armwright {
 

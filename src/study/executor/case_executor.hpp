@@ -3,9 +3,9 @@
 
 #include <cstddef>
 
+#include "base/stop_signal.hpp"
 #include "study/executor/case_batch.hpp"
-#include "study/stop.hpp"
-#include "study/thread_pool.hpp"
+#include "study/executor/thread_pool.hpp"
 
 namespace armwright {
 

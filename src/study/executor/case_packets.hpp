@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "optimizers/packet.hpp"
+#include "process/packet.hpp"
 #include "study/executor/case_batch.hpp"
 
 namespace armwright {

@@ -19,10 +19,10 @@
 #include <tuple>
 #include <vector>
 
-#include "optimizers/process_watch.hpp"
+#include "process/process_watch.hpp"
 #include "study/executor/case_executor.hpp"
 #include "study/executor/chunk_planner.hpp"
-#include "study/executor/links.hpp"
+#include "study/executor/message_transport.hpp"
 #include "study/executor/rank_messages.hpp"
 
 namespace armwright {

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "study/build_info.hpp"
+#include "base/build_info.hpp"
 
 namespace armwright {
 

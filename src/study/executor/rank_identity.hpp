@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "problems/problem_loader.hpp"
+#include "problems/config/problem_loader.hpp"
 #include "study/executor/rank_messages.hpp"
 
 namespace armwright {

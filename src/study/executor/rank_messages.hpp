@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "optimizers/packet.hpp"
+#include "process/packet.hpp"
 
 namespace armwright {
 

@@ -10,9 +10,9 @@
 #include <thread>
 #include <vector>
 
-#include "optimizers/process_watch.hpp"
+#include "process/process_watch.hpp"
 #include "study/executor/case_packets.hpp"
-#include "study/executor/links.hpp"
+#include "study/executor/message_transport.hpp"
 #include "study/executor/rank_messages.hpp"
 
 namespace armwright {

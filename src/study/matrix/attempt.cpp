@@ -14,8 +14,8 @@
 #include "base/file.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
-#include "study/json_values.hpp"
-#include "study/run_lock.hpp"
+#include "study/run/json_values.hpp"
+#include "study/run/run_lock.hpp"
 
 namespace armwright {
 namespace {

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "base/stop_signal.hpp"
 #include "study/compare/study_plan.hpp"
-#include "study/run_evaluator.hpp"
-#include "study/stop.hpp"
+#include "study/run/run_observer.hpp"
 
 namespace armwright {
 

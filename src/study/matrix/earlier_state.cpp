@@ -12,9 +12,9 @@
 #include "base/file.hpp"
 #include "base/text.hpp"
 #include "study/compare/cell.hpp"
-#include "study/journal.hpp"
+#include "study/journal/journal.hpp"
 #include "study/matrix/attempt.hpp"
-#include "study/record_files.hpp"
+#include "study/run/record_files.hpp"
 
 namespace armwright {
 namespace {

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "study/compare/study_plan.hpp"
-#include "study/run_evaluator.hpp"
+#include "study/run/run_observer.hpp"
 
 namespace armwright {
 

@@ -10,8 +10,8 @@
 #include "base/file.hpp"
 #include "base/text.hpp"
 #include "study/compare/cell.hpp"
-#include "study/journal_file.hpp"
-#include "study/run_lock.hpp"
+#include "study/journal/journal_file.hpp"
+#include "study/run/run_lock.hpp"
 
 namespace armwright {
 namespace {

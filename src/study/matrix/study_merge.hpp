@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "base/stop_signal.hpp"
 #include "study/compare/study_plan.hpp"
-#include "study/stop.hpp"
 
 namespace armwright {
 

@@ -2,7 +2,7 @@
 
 #include "base/error.hpp"
 #include "study/compare/cell.hpp"
-#include "study/run_lock.hpp"
+#include "study/run/run_lock.hpp"
 
 namespace armwright {
 namespace {

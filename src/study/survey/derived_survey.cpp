@@ -12,7 +12,7 @@
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
-#include "problems/design_file.hpp"
+#include "problems/config/design_file.hpp"
 
 namespace armwright {
 namespace {

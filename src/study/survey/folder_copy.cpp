@@ -13,7 +13,7 @@
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
-#include "study/journal_file.hpp"
+#include "study/journal/journal_file.hpp"
 
 namespace armwright {
 namespace {

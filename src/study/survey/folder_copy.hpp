@@ -8,7 +8,7 @@
 
 #include "base/file_descriptor.hpp"
 #include "base/partial_folder.hpp"
-#include "study/stop.hpp"
+#include "base/stop_signal.hpp"
 
 namespace armwright {
 

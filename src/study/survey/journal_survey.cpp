@@ -12,9 +12,9 @@
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/file_descriptor.hpp"
-#include "study/journal_file.hpp"
-#include "study/journal_format.hpp"
-#include "study/journal_window.hpp"
+#include "study/journal/journal_file.hpp"
+#include "study/journal/journal_format.hpp"
+#include "study/journal/journal_window.hpp"
 
 namespace armwright {
 namespace {

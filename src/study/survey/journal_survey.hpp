@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "study/journal.hpp"
-#include "study/run_counts.hpp"
+#include "study/journal/journal.hpp"
+#include "study/run/run_counts.hpp"
 #include "study/survey/index_set.hpp"
 
 namespace armwright {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "study/run_result.hpp"
+#include "study/run/run_result.hpp"
 #include "study/survey/journal_survey.hpp"
 
 namespace armwright {

@@ -7,7 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "study/run_lock.hpp"
+#include "study/run/run_lock.hpp"
 #include "study/survey/folder_copy.hpp"
 
 namespace armwright {

@@ -12,7 +12,7 @@
 #include <optional>
 #include <vector>
 
-#include "study/stop.hpp"
+#include "base/stop_signal.hpp"
 #include "study/survey/store_survey.hpp"
 
 namespace armwright {

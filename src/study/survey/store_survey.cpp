@@ -10,7 +10,7 @@
 #include "base/text.hpp"
 #include "study/compare/escape.hpp"
 #include "study/compare/study_plan.hpp"
-#include "study/run_lock.hpp"
+#include "study/run/run_lock.hpp"
 #include "study/survey/derived_survey.hpp"
 
 namespace armwright {

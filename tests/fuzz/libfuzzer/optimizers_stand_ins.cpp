@@ -1,13 +1,13 @@
 // Loading a study makes its optimizers but runs none. And a name in it can be a program to start or
 // a library to open: nothing that a fuzzer has made up is ever run.
 #include "base/error.hpp"
-#include "optimizers/ceres.hpp"
-#include "optimizers/cmaes.hpp"
-#include "optimizers/nlopt.hpp"
-#include "optimizers/pagmo.hpp"
-#include "optimizers/plugin_library.hpp"
-#include "optimizers/plugin_process.hpp"
-#include "optimizers/random_search.hpp"
+#include "optimizers/builtin/random_search.hpp"
+#include "optimizers/ceres/ceres.hpp"
+#include "optimizers/cma/cmaes.hpp"
+#include "optimizers/nlopt/nlopt.hpp"
+#include "optimizers/pagmo/pagmo.hpp"
+#include "optimizers/plugins/plugin_library.hpp"
+#include "optimizers/plugins/plugin_process.hpp"
 
 namespace armwright {
 
@@ -33,7 +33,7 @@ OptimizerRow load_process_plugin(std::string_view /*command*/, double /*loading_
 }
 
 OptimizerRow load_library_plugin(const std::filesystem::path& /*file*/, const std::string& /*name*/,
-                                 const IsolationLimits& /*loading*/) {
+                                 const ProcessLimits& /*loading*/) {
   throw Error(ErrorKind::usage, "fuzzers open no libraries");
 }
 

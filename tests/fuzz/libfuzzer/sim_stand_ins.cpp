@@ -2,8 +2,8 @@
 // SIMD kernels to compile.
 #include <stdexcept>
 
-#include "sim/articulated/articulated_engine.hpp"
-#include "sim/articulated/targets.hpp"
+#include "sim/engines/articulated/articulated_engine.hpp"
+#include "sim/kinematics/targets.hpp"
 
 namespace armwright {
 namespace {

@@ -1,7 +1,8 @@
 // A cell of a study is read but not run.
 #include <stdexcept>
 
-#include "study/run.hpp"
+#include "study/run/run.hpp"
+#include "study/run/run_observer.hpp"
 
 namespace armwright {
 

@@ -12,6 +12,7 @@
 #include "base/expect_error.hpp"
 #include "report/reproduction/reproduction.hpp"
 #include "report/reproduction/small_reproduction.hpp"
+#include "study/run/run_observer.hpp"
 
 namespace armwright {
 namespace {

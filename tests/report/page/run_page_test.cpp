@@ -9,7 +9,8 @@
 #include <set>
 
 #include "base/error.hpp"
-#include "problems/config_files.hpp"
+#include "optimizers/table/optimizer_table.hpp"
+#include "problems/config/config_files.hpp"
 #include "report/page/unpack.hpp"
 #include "study/run_support.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "base/file.hpp"
 #include "base/temporary_folder.hpp"
-#include "problems/config_files.hpp"
+#include "problems/config/config_files.hpp"
 #include "report/reproduction/reproduction_config.hpp"
 #include "report/reproduction/reproduction_plan.hpp"
 

@@ -2,9 +2,9 @@
 #include <gmock/gmock.h>
 
 #include "base/expect_error.hpp"
-#include "sim/design_conversion.hpp"
+#include "sim/tracking/design_conversion.hpp"
+#include "study/analysis/verdict.hpp"
 #include "study/compare/study_support.hpp"
-#include "study/compare/verdict.hpp"
 
 namespace armwright {
 namespace {

@@ -2,9 +2,9 @@
 // alarm, and of those there may be as many as the level says.
 #include <gtest/gtest.h>
 
+#include "study/analysis/study_values.hpp"
 #include "study/compare/study_plan.hpp"
-#include "study/compare/study_values.hpp"
-#include "study/memory_evaluator.hpp"
+#include "study/contract/memory_evaluator.hpp"
 
 namespace armwright {
 namespace {

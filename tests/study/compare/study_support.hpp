@@ -11,9 +11,9 @@
 
 #include "base/file.hpp"
 #include "base/temporary_folder.hpp"
+#include "study/analysis/study_tables.hpp"
 #include "study/compare/study_folder.hpp"
 #include "study/compare/study_runner.hpp"
-#include "study/compare/study_tables.hpp"
 #include "study/run_support.hpp"
 
 namespace armwright {

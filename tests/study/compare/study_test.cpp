@@ -4,9 +4,10 @@
 #include <fstream>
 
 #include "base/expect_error.hpp"
+#include "study/analysis/study_values.hpp"
+#include "study/analysis/verdict.hpp"
 #include "study/compare/study_support.hpp"
-#include "study/compare/study_values.hpp"
-#include "study/compare/verdict.hpp"
+#include "study/run/run_observer.hpp"
 
 namespace armwright {
 namespace {

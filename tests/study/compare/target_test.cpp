@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include "base/expect_error.hpp"
+#include "study/analysis/study_values.hpp"
+#include "study/analysis/verdict.hpp"
 #include "study/compare/choices.hpp"
 #include "study/compare/study_support.hpp"
-#include "study/compare/study_values.hpp"
-#include "study/compare/verdict.hpp"
 
 namespace armwright {
 namespace {

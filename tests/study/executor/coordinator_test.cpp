@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <thread>
 
-#include "study/case_runner.hpp"
-#include "study/executor/memory_links.hpp"
+#include "study/executor/case_runner.hpp"
+#include "study/executor/memory_transport.hpp"
 #include "study/executor/worker.hpp"
 #include "wait_until.hpp"
 

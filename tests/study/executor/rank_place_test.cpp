@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "study/executor/mpi_links.hpp"
+#include "study/executor/mpi_transport.hpp"
 
 namespace armwright {
 namespace {

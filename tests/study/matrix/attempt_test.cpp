@@ -15,6 +15,7 @@
 #include "study/matrix/earlier_state.hpp"
 #include "study/matrix/matrix_support.hpp"
 #include "study/matrix/publication.hpp"
+#include "study/run/run_observer.hpp"
 
 namespace armwright {
 namespace {

@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include "base/file_descriptor.hpp"
-#include "study/journal_format.hpp"
+#include "study/journal/journal_format.hpp"
 #include "study/journal_test_support.hpp"
 
 namespace armwright {

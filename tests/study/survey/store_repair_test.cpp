@@ -12,7 +12,8 @@
 
 #include "base/error.hpp"
 #include "study/compare/study_support.hpp"
-#include "study/run_lock.hpp"
+#include "study/run/run_lock.hpp"
+#include "study/run/run_observer.hpp"
 #include "study/survey/folder_copy.hpp"
 
 namespace armwright {

@@ -1,0 +1,46 @@
+// armwright completion: the script by which a shell completes what is typed.
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "base/build_info.hpp"
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "cli/manual/bash_completion.hpp"
+#include "cli/terminal/arguments.hpp"
+#include "cli/terminal/session.hpp"
+#include "cli/terminal/terminal.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr const char* kCompletionExamples = R"(Examples:
+  source <(armwright completion bash)              # in this shell; in ~/.bashrc: in every one
+  armwright completion bash > ~/.local/share/bash-completion/completions/armwright
+
+The Debian package installs the script where bash, with the package bash-completion, finds it by itself. Commands and
+flags are completed, and the names of problems, optimizers, robots, engines, designs and studies, files and folders.)";
+
+int run_completion(const CLI::App& app, const std::string& shell) {
+  const std::vector<std::string> shells = {"bash"};
+  if (shell != shells.front()) {
+    throw Error(ErrorKind::usage, describe_unknown("shell", shell, shells));
+  }
+  write_stdout(make_bash_completion(describe_command(app), get_version()));
+  return exit_code::kDone;
+}
+
+}  // namespace
+
+void add_completion(CLI::App& app, Session& session) {
+  auto shell = std::make_shared<std::string>();
+  CLI::App* command =
+      add_command(app, session, "completion",
+                  "Print the script by which a shell completes commands", kCompletionExamples);
+  command->add_option("SHELL", *shell, "The shell: bash")->required();
+  command->callback([shell, &app, &session] {
+    session.action = [shell, &app] { return run_completion(app, *shell); };
+  });
+}
+
+}  // namespace armwright

@@ -1,0 +1,285 @@
+// armwright evaluate: a design on test cases, without optimization.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "cli/terminal/arguments.hpp"
+#include "cli/terminal/format.hpp"
+#include "cli/terminal/json.hpp"
+#include "cli/terminal/progress_bar.hpp"
+#include "cli/terminal/session.hpp"
+#include "cli/terminal/signals.hpp"
+#include "cli/terminal/table.hpp"
+#include "cli/terminal/terminal.hpp"
+#include "cli/views/design_evaluation.hpp"
+#include "cli/views/requirement_view.hpp"
+#include "cli/views/result_view.hpp"
+#include "problems/config/design_file.hpp"
+#include "problems/config/path_survey.hpp"
+#include "study/run/store.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kEvaluateExamples = R"(Examples:
+  armwright evaluate table-a10                     # a published design on the problem it was made for
+  armwright evaluate results/q1-complex-ga-seed1/winner.toml --problem q1-complex --cases 100
+  armwright evaluate table-a10 --problem q2-e6 --set task.load_kg=20 --json
+  armwright evaluate start --robot my.urdf         # what is proposed for an arm of your own, before any tuning
+  armwright evaluate table-a5 --problem q1-complex --trajectory arm.csv --case 7
+
+Terms: a test case is a sequence of points the arm's tip has to follow; its error is the mean over the points of
+the largest distance between tip and target from the target's arrival there until it leaves. Points are in the frame of
+the robot's base. A failure is a case with an error above
+100 mm or none at all (the simulation diverged, or a target lies out of reach). The total torque is the sum of
+the joints' effort limits. Where the problem has requirements (docs/requirements.md), each is judged by its worst case. The
+exit code is 3 if a case has no number, or a requirement with use = "constraint" is missed.)";
+
+struct EvaluateOptions {
+  std::string design;
+  std::string problem;
+  OverrideOptions overrides;
+  CaseOptions cases;
+  JobsOption jobs;
+  bool json = false;
+  bool quiet = false;
+  std::string csv;
+  std::string trajectory;
+  std::string trajectory_case;
+};
+
+struct EvaluatedDesign {
+  DesignFile design;
+  LoadedProblem problem;
+  ChosenCases cases;
+  DesignEvaluation evaluation;
+  std::vector<ShownRequirement> requirements;
+};
+
+std::string format_json(const EvaluatedDesign& evaluated) {
+  json cases = json::array();
+  for (std::size_t i = 0; i < evaluated.evaluation.results.size(); ++i) {
+    const TrackingResult& result = evaluated.evaluation.results[i];
+    json one = {{"case", i},
+                {"status", to_string(result.status)},
+                {"mean_error_m", to_json_value(get_error(result))},
+                {"point_error_m", json::array()},
+                {"energy_j",
+                 to_json_value(get_error(result) ? std::optional(result.energy_j) : std::nullopt)}};
+    for (const double error : result.point_error_m) {
+      one["point_error_m"].push_back(to_json_value(error));
+    }
+    if (!result.reason.empty()) {
+      one["reason"] = sanitize(result.reason);
+    }
+    cases.push_back(std::move(one));
+  }
+  const DesignEvaluation& evaluation = evaluated.evaluation;
+  const json summary = {
+      {"design", sanitize(evaluated.design.name)},
+      {"problem", sanitize(evaluated.problem.name)},
+      {"test_set", sanitize(evaluated.cases.set.name())},
+      {"cases", evaluation.summary.cases},
+      {"mean_error_m", to_json_value(evaluation.summary.mean)},
+      {"median_error_m", to_json_value(evaluation.summary.median)},
+      {"percentile_95_error_m", to_json_value(evaluation.summary.percentile_95)},
+      {"worst_error_m", to_json_value(evaluation.summary.worst)},
+      {"failures", evaluation.summary.failures},
+      {"without_number", evaluation.summary.without_number},
+      {"total_torque_n_m", evaluation.total_torque_n_m},
+      {"mean_energy_j", to_json_value(evaluation.mean_energy_j)},
+  };
+  json all = {{"cases", cases}, {"summary", summary}};
+  if (!evaluated.requirements.empty()) {
+    all["requirements"] = requirements_to_json(evaluated.requirements);
+  }
+  return all.dump(1) + "\n";
+}
+
+std::string format_csv(const DesignEvaluation& evaluation) {
+  std::size_t points = 0;
+  for (const TrackingResult& result : evaluation.results) {
+    points = std::max(points, result.point_error_m.size());
+  }
+  std::string text = "case,status,mean_error_m,energy_j";
+  for (std::size_t k = 1; k <= points; ++k) {
+    text += fmt::format(",point_{}_error_m", k);
+  }
+  text += '\n';
+  for (std::size_t i = 0; i < evaluation.results.size(); ++i) {
+    const TrackingResult& result = evaluation.results[i];
+    const auto error = get_error(result);
+    text +=
+        fmt::format("{},{},{},{}", i, to_string(result.status), error ? format_exact(*error) : "",
+                    error ? format_exact(result.energy_j) : "");
+    for (std::size_t k = 0; k < points; ++k) {
+      const bool known = k < result.point_error_m.size() && std::isfinite(result.point_error_m[k]);
+      text += fmt::format(",{}", known ? format_exact(result.point_error_m[k]) : "");
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+// How the error depends on how far the arm has to move: short moves are slow, and end closer.
+std::string format_profile(const EvaluatedDesign& evaluated, const Style& style) {
+  struct Class {
+    double upper_m;
+    double sum_m = 0;
+    double worst_m = 0;
+    int points = 0;
+  };
+  std::array<Class, 6> classes{{{0.1}, {0.2}, {0.4}, {0.8}, {1.2}, {HUGE_VAL}}};
+  const bool skip_first = !evaluated.problem.tracking->config().task.count_first_point;
+  for (std::size_t i = 0; i < evaluated.evaluation.results.size(); ++i) {
+    const auto& errors_m = evaluated.evaluation.results[i].point_error_m;
+    const auto points_m = evaluated.cases.set.make_case(i).points_m;
+    for (std::size_t k = skip_first ? 2 : 1; k <= errors_m.size(); ++k) {
+      const double error_m = errors_m[k - 1];
+      if (!std::isfinite(error_m)) {
+        continue;
+      }
+      const double move_m = (points_m[k] - points_m[k - 1]).norm();
+      Class& its = *std::find_if(classes.begin(), classes.end(),
+                                 [&](const Class& c) { return move_m < c.upper_m; });
+      its.sum_m += error_m;
+      its.worst_m = std::max(its.worst_m, error_m);
+      ++its.points;
+    }
+  }
+  Table table({{"move", false}, {"points"}, {"mean error"}, {"worst"}});
+  double lower_m = 0;
+  for (const Class& c : classes) {
+    const double from_m = std::exchange(lower_m, c.upper_m);
+    if (c.points == 0) {
+      continue;
+    }
+    table.add_row({std::isinf(c.upper_m) ? fmt::format("{:.1f} m and more", from_m)
+                                         : fmt::format("{:.1f} to {:.1f} m", from_m, c.upper_m),
+                   fmt::format("{}", c.points), format_mm(c.sum_m / c.points) + " mm",
+                   format_mm(c.worst_m) + " mm"});
+  }
+  return table.format(style, 2);
+}
+
+std::string format_text(const EvaluatedDesign& evaluated, const Style& style) {
+  const DesignEvaluation& evaluation = evaluated.evaluation;
+  const ErrorSummary& summary = evaluation.summary;
+  std::string text =
+      style.bold(fmt::format("{} on {}: the first {} of {}", sanitize(evaluated.design.name),
+                             sanitize(evaluated.problem.name), format_count(summary.cases, "case"),
+                             sanitize(evaluated.cases.set.name())));
+  text += "\n\n";
+  Table table = make_summary_table(summary);
+  table.add_row({"total torque", format_quantity(evaluation.total_torque_n_m, "N m")});
+  table.add_row({"mean energy",
+                 evaluation.mean_energy_j ? format_quantity(*evaluation.mean_energy_j, "J") : "-"});
+  text += table.format(style, 2) + "\n";
+  if (!evaluated.requirements.empty()) {
+    text += format_requirements(evaluated.requirements, style) + "\n";
+  }
+  return text + style.bold("Error against the length of the move") + "\n" +
+         format_profile(evaluated, style);
+}
+
+int run_evaluate(const EvaluateOptions& options, Session& session) {
+  if (options.trajectory.empty() != options.trajectory_case.empty()) {
+    throw Error(
+        ErrorKind::usage,
+        "--trajectory FILE and --case N belong together: the trajectory is that of one case");
+  }
+  if (options.json + (options.csv == "-") + (options.trajectory == "-") > 1) {
+    throw Error(ErrorKind::usage,
+                "only one of --json, --csv - and --trajectory - can have standard output");
+  }
+  const unsigned jobs = options.jobs.get();
+  auto [design, problem] =
+      load_design_and_problem(options.design, options.overrides.choose_problem(options.problem),
+                              options.overrides.get(), options.quiet);
+  const TrackingProblem& tracking = require_tracking(problem);
+  tracking.check_design(design.design);
+  ChosenCases cases = choose_cases(problem, options.cases);
+  std::uint64_t traced = 0;
+  if (!options.trajectory.empty()) {
+    const auto most = static_cast<std::int64_t>(cases.set.size().value_or(1'000'000'000)) - 1;
+    traced = static_cast<std::uint64_t>(parse_count("--case", options.trajectory_case, 0, most));
+  }
+
+  const std::vector<std::string> notes = check_paths(problem);
+  if (!options.quiet) {
+    std::ranges::for_each(notes, write_message);
+  }
+  catch_signals(session.stop);
+  ProgressBar bar(options.quiet, {"error", "m"});
+  auto evaluation = evaluate_with_progress(tracking, design.design, cases, jobs, session.stop, bar,
+                                           {0, cases.count});
+  bar.clear();
+  if (!evaluation) {
+    write_message(fmt::format("{}; nothing was written", describe_stop(session.stop.reason())));
+    return get_stop_code(session.stop.reason());
+  }
+  report_failures(list_failures(evaluation->results), "");
+  auto requirements = judge_evaluation(tracking, *evaluation);
+  const EvaluatedDesign evaluated{std::move(design), std::move(problem), std::move(cases),
+                                  std::move(*evaluation), std::move(requirements)};
+  if (!options.csv.empty()) {
+    write_output(options.csv, format_csv(evaluated.evaluation));
+  }
+  if (!options.trajectory.empty()) {
+    const TrackingResult result =
+        tracking.track(evaluated.design.design, evaluated.cases.set, traced, {.trajectory = true});
+    write_output(options.trajectory, make_trajectory_csv(tracking, result));
+  }
+  if (options.json) {
+    write_stdout(format_json(evaluated));
+  } else if (options.csv != "-" && options.trajectory != "-") {
+    write_stdout(format_text(evaluated, make_style(Stream::out, session.color)));
+  }
+  const bool failed = evaluated.evaluation.summary.without_number > 0 ||
+                      is_constraint_missed(evaluated.requirements);
+  return failed ? exit_code::kFailed : exit_code::kDone;
+}
+
+}  // namespace
+
+void add_evaluate(CLI::App& app, Session& session) {
+  auto options = std::make_shared<EvaluateOptions>();
+  CLI::App* command =
+      add_command(app, session, "evaluate", "Evaluate a design on test cases, without optimization",
+                  kEvaluateExamples);
+  add_design_argument(*command, options->design);
+  command
+      ->add_option("--problem,-p", options->problem,
+                   "Robot, task and physics to evaluate it under (default: what the design was\n"
+                   "published for; with --robot the problem 'robot'; of others it is required)")
+      ->type_name("PROBLEM");
+  options->overrides.add_to(*command);
+  options->cases.add_to(*command);
+  options->jobs.add_to(*command);
+  command->add_flag("--json", options->json, "Print everything as JSON")->group("Output");
+  command->add_option("--csv", options->csv, "Write one line a case; - is standard output")
+      ->type_name("FILE")
+      ->group("Output");
+  command
+      ->add_option("--trajectory", options->trajectory,
+                   "Write angles, efforts and positions over time of one case, as CSV")
+      ->type_name("FILE")
+      ->group("Output");
+  command->add_option("--case", options->trajectory_case, "Which case that is, from 0")
+      ->type_name("N")
+      ->group("Output");
+  command->add_flag("--quiet,-q", options->quiet, "No progress")->group("Output");
+  command->callback([options, &session] {
+    session.action = [options, &session] { return run_evaluate(*options, session); };
+  });
+}
+
+}  // namespace armwright

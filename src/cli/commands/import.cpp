@@ -1,0 +1,111 @@
+// armwright import: designs out of exports.
+
+#include "report/exchange/import.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <limits>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "cli/terminal/arguments.hpp"
+#include "cli/terminal/session.hpp"
+#include "cli/terminal/terminal.hpp"
+#include "cli/views/design_evaluation.hpp"
+#include "problems/config/design_file.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr const char* kImportExamples = R"(Examples:
+  armwright import results/q1/export-csv --problem q1-complex --out best.toml
+  armwright import q1-ioh --problem q1-complex --optimizer ga --replicate 3 --out best.toml
+  armwright evaluate best.toml --problem q1-complex
+
+It writes the design of the best evaluation, by its training objective, of the runs that are chosen: under a fresh
+schedule that is the luckiest, so prefer the winner, which csv has in designs/. An export names the problem and its
+variables, no more: --config says which problem that is, if it is no shipped one or was changed by --set.
+'armwright testset import' reads files of test cases.)";
+
+struct ImportOptions {
+  std::string folder;
+  std::string problem;
+  std::string label;
+  std::string replicate;
+  std::string config;
+  OverrideOptions overrides;
+  std::string out = "-";
+};
+
+// Error{bad_data} if the problem has other variables than the export.
+void check_variables(const LoadedProblem& problem, const ImportedPoint& point) {
+  std::vector<std::string> names;
+  for (const DecisionVariable& variable : problem.problem->description().variables) {
+    names.push_back(variable.name);
+  }
+  if (names != point.variables) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("the export's variables on '{}' are {}; those of problem {} are {}; "
+                            "name the problem that it was made with by --config and --set",
+                            sanitize(point.problem), sanitize(join(point.variables, ", ")),
+                            problem.name, join(names, ", ")));
+  }
+}
+
+int run_import(const ImportOptions& options) {
+  ImportChoice choice;
+  if (!options.problem.empty()) {
+    choice.problem = options.problem;
+  }
+  if (!options.label.empty()) {
+    choice.label = options.label;
+  }
+  if (!options.replicate.empty()) {
+    choice.replicate = static_cast<std::uint64_t>(
+        parse_count("--replicate", options.replicate, 1, std::numeric_limits<std::int64_t>::max()));
+  }
+  const ImportedPoint point = import_best(options.folder, choice);
+  const LoadedProblem problem = load_problem(
+      options.config.empty() ? point.problem : options.config, options.overrides.get());
+  const TrackingProblem& tracking = require_tracking(problem);
+  check_variables(problem, point);
+  DesignFile file;
+  file.name = fmt::format("{}-{}-{}", point.problem, point.label, point.replicate);
+  file.title = fmt::format("Evaluation {} of {} on {}, replicate {}", point.evaluation, point.label,
+                           point.problem, point.replicate);
+  file.source = fmt::format("armwright import; training objective {}", point.objective);
+  file.design = tracking.make_design(point.x);
+  for (const Joint& joint : tracking.config().robot.joints) {
+    file.joint_names.push_back(joint.name);
+  }
+  write_output(options.out, to_toml(file));
+  write_message(fmt::format("{}: training objective {}", file.title, point.objective));
+  return exit_code::kDone;
+}
+
+}  // namespace
+
+void add_import(CLI::App& app, Session& session) {
+  auto options = std::make_shared<ImportOptions>();
+  CLI::App* command = add_command(
+      app, session, "import", "Make a design file of the best point of an export", kImportExamples);
+  command->add_option("EXPORT", options->folder, "What armwright export wrote as csv, json or ioh")
+      ->required();
+  command->add_option("--problem,-p", options->problem, "Only runs on this problem")
+      ->type_name("PROBLEM");
+  command->add_option("--optimizer", options->label, "Only runs of this label")->type_name("LABEL");
+  command->add_option("--replicate", options->replicate, "Only this replicate")->type_name("N");
+  command
+      ->add_option("--config", options->config,
+                   "Problem that makes designs of the points, by name or file (default: the one\n"
+                   "that the export names)")
+      ->type_name("PROBLEM");
+  options->overrides.add_to(*command);
+  command->add_option("--out", options->out, "Where to (default: standard output)")
+      ->type_name("FILE");
+  command->callback(
+      [options, &session] { session.action = [options] { return run_import(*options); }; });
+}
+
+}  // namespace armwright

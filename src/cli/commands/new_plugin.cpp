@@ -1,0 +1,106 @@
+// armwright new-plugin: the beginning of an optimizer of the user's own.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+#include "base/error.hpp"
+#include "base/file.hpp"
+#include "base/text.hpp"
+#include "cli/manual/plugin_templates.hpp"
+#include "cli/terminal/arguments.hpp"
+#include "cli/terminal/session.hpp"
+#include "cli/terminal/terminal.hpp"
+#include "optimizers/interface/optimizer.hpp"
+#include "optimizers/table/optimizer_table.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr const char* kNewPluginExamples = R"(Examples:
+  armwright new-plugin mine                        # in C++
+  armwright new-plugin --language python mine
+  cd mine && ./test.sh                             # builds it, checks it, runs it
+
+It writes a folder of that name with an optimizer that works, how to build it and a test. Nothing is overwritten.)";
+
+struct NewPluginOptions {
+  std::string name;
+  std::string language = "c++";
+};
+
+// It becomes a file, a class, a target of CMake and the optimizer's name.
+void check_name(const std::string& name) {
+  constexpr std::size_t kLongestName = 64;
+  const auto is_allowed = [](char c) {
+    return (c >= 'a' && c <= 'z') || c == '_' || (c >= '0' && c <= '9');
+  };
+  if (name.empty() || name.size() > kLongestName || !(name[0] >= 'a' && name[0] <= 'z') ||
+      !std::ranges::all_of(name, is_allowed)) {
+    throw Error(ErrorKind::usage,
+                fmt::format("NAME is '{}'; it must begin with a lower-case letter and go on with "
+                            "at most 63 lower-case letters, digits and underscores",
+                            sanitize(name)));
+  }
+  // Targets that CMake keeps for itself, and the folder that the build is made in.
+  const std::vector<std::string> reserved = {"all",  "build",   "clean",   "edit_cache",
+                                             "help", "install", "package", "rebuild_cache",
+                                             "test", "plugin"};
+  const auto shipped = optimizer_names();
+  if (std::ranges::count(reserved, name) + std::ranges::count(shipped, name) > 0) {
+    throw Error(ErrorKind::usage,
+                fmt::format("NAME is '{}', which is taken by CMake or an optimizer of armwright's "
+                            "own; choose another",
+                            name));
+  }
+}
+
+int run_new_plugin(const NewPluginOptions& options) {
+  check_name(options.name);
+  const auto languages = plugin_languages();
+  if (std::ranges::count(languages, options.language) == 0) {
+    throw Error(ErrorKind::usage, describe_unknown("--language", options.language, languages));
+  }
+  const std::filesystem::path folder = options.name;
+  if (std::filesystem::exists(std::filesystem::symlink_status(folder))) {
+    throw Error(ErrorKind::usage,
+                fmt::format("'{}' exists already; nothing is overwritten. Choose another name, or "
+                            "move it away",
+                            folder.string()));
+  }
+  make_folder(folder);
+  std::string text;
+  for (const PluginFile& file : make_plugin_files(options.language, options.name)) {
+    const std::filesystem::path path = folder / file.name;
+    write_file_atomically(path, file.content);
+    if (file.is_program) {
+      using std::filesystem::perms;
+      std::filesystem::permissions(path, perms::owner_exec | perms::group_exec | perms::others_exec,
+                                   std::filesystem::perm_options::add);
+    }
+    text += path.string() + "\n";
+  }
+  write_stdout(text);
+  write_message(fmt::format("next: cd {} && ./test.sh", folder.string()));
+  return exit_code::kDone;
+}
+
+}  // namespace
+
+void add_new_plugin(CLI::App& app, Session& session) {
+  auto options = std::make_shared<NewPluginOptions>();
+  CLI::App* command =
+      add_command(app, session, "new-plugin", "Begin an optimizer of your own", kNewPluginExamples);
+  command->add_option("NAME", options->name, "Of the optimizer and of its folder")->required();
+  command
+      ->add_option("--language,-l", options->language,
+                   fmt::format("{} (default: c++)", join(plugin_languages(), ", ")))
+      ->type_name("LANGUAGE");
+  command->callback(
+      [options, &session] { session.action = [options] { return run_new_plugin(*options); }; });
+}
+
+}  // namespace armwright

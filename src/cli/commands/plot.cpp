@@ -1,0 +1,229 @@
+// armwright plot: the figures of a page as SVG files, with their numbers as CSV.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "base/file.hpp"
+#include "base/text.hpp"
+#include "cli/commands/page_input.hpp"
+#include "cli/terminal/format.hpp"
+#include "cli/terminal/session.hpp"
+#include "cli/terminal/table.hpp"
+#include "cli/terminal/terminal.hpp"
+#include "report/page/page_assets.hpp"
+#include "report/page/plotter.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr const char* kPlotExamples = R"(Examples:
+  armwright plot results/q1-complex-ga-seed1       # every figure, into results/q1-complex-ga-seed1/figures
+  armwright plot results/q1/report.html --list     # which figures there are, and what can be chosen of them
+  armwright plot results/q1/report.html --figure convergence --out - > convergence.svg
+  armwright plot results/q1-complex-ga-seed1 --figure joint-torques --choose joint=2 --size 800x400
+
+They are the figures of 'armwright report', drawn by the same code. Given a page's file nothing is simulated anew.)";
+
+struct PlotOptions {
+  PageInput input;
+  std::vector<std::string> figures;
+  std::vector<std::string> choices;
+  std::string out;
+  std::string theme = "light";
+  std::string size;
+  bool list = false;
+};
+
+Plotter::Format parse_format(const PlotOptions& options) {
+  Plotter::Format format;
+  format.dark = options.theme == "dark";
+  if (options.size.empty()) {
+    return format;
+  }
+  const std::vector<std::string> parts = split(options.size, 'x');
+  if (parts.size() != 2) {
+    throw Error(ErrorKind::usage,
+                fmt::format("--size is '{}'; it must be WIDTHxHEIGHT in pixels, as in 640x400",
+                            sanitize(options.size)));
+  }
+  format.width = static_cast<int>(parse_count("--size (width)", parts[0], 100, 10000));
+  format.height = static_cast<int>(parse_count("--size (height)", parts[1], 100, 10000));
+  return format;
+}
+
+Plotter::Picks parse_picks(const std::vector<std::string>& choices) {
+  Plotter::Picks picks;
+  for (const std::string& choice : choices) {
+    const std::size_t equals = choice.find('=');
+    if (equals == std::string::npos || equals == 0) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("--choose is '{}'; it must be NAME=VALUE, as --list "
+                              "shows them",
+                              sanitize(choice)));
+    }
+    picks[choice.substr(0, equals)] = choice.substr(equals + 1);
+  }
+  return picks;
+}
+
+std::string describe_choices(const PlotEntry& entry) {
+  constexpr std::size_t kShown = 6;
+  std::string text;
+  for (const PlotChoice& choice : entry.choices) {
+    const std::size_t count = std::min(kShown, choice.values.size());
+    text += fmt::format("{}{}={}{}", text.empty() ? "" : "; ", choice.id,
+                        join(std::span(choice.values).first(count), "|"),
+                        choice.values.size() > count ? "|..." : "");
+  }
+  return sanitize(text);
+}
+
+std::string describe_entries(const Plotter& plotter, const Style& style) {
+  Table table({{"figure", false}, {"thesis", false}, {"title", false}, {"choices", false}});
+  for (const PlotEntry& entry : plotter.entries()) {
+    table.add_row({sanitize(entry.id), sanitize(entry.thesis),
+                   sanitize(entry.title) + (entry.is_table ? " (table)" : ""),
+                   describe_choices(entry)});
+  }
+  return table.format(style);
+}
+
+// Those that were named, or all.
+std::vector<PlotEntry> choose_entries(const PlotOptions& options, const Plotter& plotter) {
+  if (options.figures.empty()) {
+    return plotter.entries();
+  }
+  std::vector<std::string> ids;
+  for (const PlotEntry& entry : plotter.entries()) {
+    ids.push_back(entry.id);
+  }
+  std::vector<PlotEntry> chosen;
+  for (const std::string& id : options.figures) {
+    const auto found = std::ranges::find(plotter.entries(), id, &PlotEntry::id);
+    if (found == plotter.entries().end()) {
+      throw Error(ErrorKind::usage, describe_unknown("figure", id, ids));
+    }
+    chosen.push_back(*found);
+  }
+  return chosen;
+}
+
+// Choices apply to the figures that have them.
+Plotter::Picks get_picks(const PlotEntry& entry, const Plotter::Picks& wanted) {
+  Plotter::Picks picks;
+  for (const PlotChoice& choice : entry.choices) {
+    if (const auto pick = wanted.find(choice.id); pick != wanted.end()) {
+      picks.insert(*pick);
+    }
+  }
+  return picks;
+}
+
+// A choice that no chosen figure has is a mistake.
+void check_picks(const std::vector<PlotEntry>& entries, const Plotter::Picks& wanted) {
+  for (const auto& [id, value] : wanted) {
+    std::vector<std::string> valid;
+    for (const PlotEntry& entry : entries) {
+      for (const PlotChoice& choice : entry.choices) {
+        if (std::ranges::find(valid, choice.id) == valid.end()) {
+          valid.push_back(choice.id);
+        }
+      }
+    }
+    if (std::ranges::find(valid, id) == valid.end()) {
+      throw Error(ErrorKind::usage, describe_unknown("choice of these figures", id, valid));
+    }
+  }
+}
+
+std::filesystem::path choose_folder(const PlotOptions& options) {
+  if (!options.out.empty()) {
+    return options.out;
+  }
+  const std::filesystem::path source = options.input.source;
+  return (std::filesystem::is_regular_file(source) ? source.parent_path() : source) / "figures";
+}
+
+int run_plot(const PlotOptions& options, Session& session) {
+  get_page_assets();  // says so before anything is computed, if there are none
+  const Plotter::Format format = parse_format(options);
+  const Plotter::Picks picks = parse_picks(options.choices);
+  if (options.out == "-" && options.figures.size() != 1) {
+    throw Error(ErrorKind::usage,
+                "--out - writes one figure to standard output: name it with "
+                "--figure (--list shows them)");
+  }
+  const std::optional<std::string> data = options.input.make_data(session);
+  if (!data) {
+    write_message(fmt::format("{}; nothing was written", describe_stop(session.stop.reason())));
+    return get_stop_code(session.stop.reason());
+  }
+  const Plotter plotter(*data);
+  if (options.list) {
+    write_stdout(describe_entries(plotter, make_style(Stream::out, session.color)));
+    return exit_code::kDone;
+  }
+  const std::vector<PlotEntry> entries = choose_entries(options, plotter);
+  check_picks(entries, picks);
+  if (options.out == "-") {
+    const PlotEntry& entry = entries.front();
+    write_stdout(entry.is_table ? plotter.make_csv(entry.id, picks)
+                                : plotter.draw(entry.id, format, picks) + "\n");
+    return exit_code::kDone;
+  }
+  const std::filesystem::path folder = choose_folder(options);
+  make_folder(folder);
+  std::size_t drawn = 0;
+  for (const PlotEntry& entry : entries) {
+    const Plotter::Picks its = get_picks(entry, picks);
+    if (!entry.is_table) {
+      write_file_atomically(folder / (entry.id + ".svg"),
+                            plotter.draw(entry.id, format, its) + "\n");
+      ++drawn;
+    }
+    write_file_atomically(folder / (entry.id + ".csv"), plotter.make_csv(entry.id, its));
+  }
+  write_stdout(fmt::format("{} as SVG and {} as CSV in {}\n", format_count(drawn, "figure"),
+                           format_count(entries.size(), "table"), sanitize(folder.string())));
+  return exit_code::kDone;
+}
+
+}  // namespace
+
+void add_plot(CLI::App& app, Session& session) {
+  auto options = std::make_shared<PlotOptions>();
+  CLI::App* command = add_command(
+      app, session, "plot", "Write the figures of a run or a comparison as SVG", kPlotExamples);
+  options->input.add_to(*command);
+  command->add_option("--figure", options->figures, "Only this figure or table; repeatable")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--choose", options->choices,
+                   "What a figure shows, where it leaves a choice; repeatable")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+  command->add_option("--theme", options->theme, "light or dark (default: light)")
+      ->check(CLI::IsMember({"light", "dark"}))
+      ->type_name("NAME");
+  command
+      ->add_option("--size", options->size,
+                   "Of a figure, in pixels (default: its own, 640x400 for most)")
+      ->type_name("WIDTHxHEIGHT");
+  command->add_flag("--list", options->list, "Show which figures there are, and draw none")
+      ->group("Output");
+  command
+      ->add_option("--out", options->out,
+                   "The folder for them (default: FOLDER/figures), where files of these names are "
+                   "replaced; - writes one figure to standard output")
+      ->type_name("DIR")
+      ->group("Output");
+  command->callback([options, &session] {
+    session.action = [options, &session] { return run_plot(*options, session); };
+  });
+}
+
+}  // namespace armwright

@@ -1,0 +1,187 @@
+// armwright rerun: one run of a comparison once more, compared to the last bit.
+
+#include "study/compare/rerun.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "cli/terminal/arguments.hpp"
+#include "cli/terminal/format.hpp"
+#include "cli/terminal/progress_bar.hpp"
+#include "cli/terminal/session.hpp"
+#include "cli/terminal/signals.hpp"
+#include "cli/terminal/terminal.hpp"
+#include "study/compare/cell.hpp"
+#include "study/compare/cell_comparison.hpp"
+#include "study/compare/study_folder.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr const char* kRerunExamples = R"(Examples:
+  armwright rerun results/q1 q1-complex/ga/r03
+  armwright rerun results/q1 q1-complex/ga/r03 --jobs 1 --json
+
+Runs what the study recorded: the same training cases, start, seed and options. Then every evaluation, the judgements,
+the result and the winner are compared with the study's, to the last bit. Exit code 0: identical; 3: they differ. The
+study itself stays as it is. Labels with other characters than letters, digits, '_', '-' and '.' can be given as they are
+or as their folder is named.)";
+
+struct RerunOptions {
+  std::string study;
+  std::string cell;
+  JobsOption jobs;
+  TimeLimitOption time_limit;
+  std::string out;
+  bool json = false;
+  bool quiet = false;
+};
+
+std::string describe_cell(const StudyPlan& plan, const Cell& cell) {
+  return fmt::format("{} on {}, replicate {}", plan.optimizers[cell.optimizer].label,
+                     plan.problems[cell.problem].label, cell.replicate);
+}
+
+void check_recorded(const RerunOptions& options, const StudyPlan& plan, const Cell& cell,
+                    const std::string& program) {
+  if (load_cell(plan, cell, options.study)) {
+    return;
+  }
+  const std::filesystem::path study = options.study;
+  const std::vector<std::string> words = {program, "compare", (study / "study.toml").string(),
+                                          "--out", options.study};
+  throw Error(
+      ErrorKind::usage,
+      fmt::format("{}: {} has not ended in this study, so there is nothing to compare with. "
+                  "To go on with the study:\n{}",
+                  sanitize(options.study), describe_cell(plan, cell),
+                  sanitize(quote_command(words))));
+}
+
+std::filesystem::path choose_folder(const RerunOptions& options, const StudyPlan& plan,
+                                    const Cell& cell) {
+  if (options.out.empty()) {
+    return choose_rerun_folder(options.study, plan, cell);
+  }
+  if (has_ended(options.out)) {
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("--out is '{}', which holds a run that has ended; choose another folder",
+                    sanitize(options.out)));
+  }
+  return options.out;
+}
+
+std::string to_json(const std::string& cell, const std::filesystem::path& recorded,
+                    const std::filesystem::path& folder, const CellComparison& comparison,
+                    const std::vector<std::string>& causes) {
+  nlohmann::json difference = nullptr;
+  if (const auto& found = comparison.difference) {
+    difference = {{"where", found->where},
+                  {"field", found->field},
+                  {"recorded", found->recorded},
+                  {"now", found->now}};
+  }
+  const nlohmann::json j = {{"cell", cell},
+                            {"recorded", recorded.string()},
+                            {"folder", folder.string()},
+                            {"identical", !comparison.difference},
+                            {"evaluations", comparison.evaluations},
+                            {"judgements", comparison.judgements},
+                            {"files", comparison.files},
+                            {"difference", difference},
+                            {"likely_causes", causes}};
+  return j.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+// "120 evaluations, 9 judgements, result.json and cell.json"
+std::string describe_same(const CellComparison& comparison) {
+  std::vector<std::string> parts = {format_count(comparison.evaluations, "evaluation"),
+                                    format_count(comparison.judgements, "judgement")};
+  parts.insert(parts.end(), comparison.files.begin(), comparison.files.end());
+  const std::string last = parts.back();
+  parts.pop_back();
+  return join(parts, ", ") + " and " + last;
+}
+
+std::string to_text(const std::filesystem::path& recorded, const std::filesystem::path& folder,
+                    const CellComparison& comparison, const std::vector<std::string>& causes) {
+  const std::string folders =
+      fmt::format("study  {}\nrerun  {}\n", sanitize(recorded.string()), sanitize(folder.string()));
+  if (!comparison.difference) {
+    return fmt::format("identical: {} are the same to the last bit\n", describe_same(comparison)) +
+           folders;
+  }
+  const CellDifference& found = *comparison.difference;
+  std::string text = fmt::format("different: {}, {}: recorded {}, now {}\n", found.where,
+                                 found.field, found.recorded, found.now);
+  text += fmt::format("Before that {} are the same.\n", describe_same(comparison)) + folders;
+  for (const std::string& cause : causes) {
+    text += cause + "\n";
+  }
+  return text;
+}
+
+int run_rerun(const RerunOptions& options, Session& session) {
+  const unsigned jobs = options.jobs.get();
+  options.time_limit.apply(session.stop);
+  const StudyPlan plan = load_study_plan(options.study);
+  const Cell cell = find_cell(plan, options.cell);
+  check_recorded(options, plan, cell, session.command_line.front());
+  const auto folder = choose_folder(options, plan, cell);
+  if (!options.quiet) {
+    write_message(describe_cell(plan, cell));
+    write_message(fmt::format("folder {} ({})", sanitize(folder.string()),
+                              std::filesystem::exists(folder) ? "found" : "new"));
+  }
+  catch_signals(session.stop);
+  ProgressBar bar(
+      options.quiet,
+      get_scalar_quantity(plan.problems[cell.problem].loaded.problem->description().objectives));
+  const CellRequest where{.folder = folder, .jobs = jobs, .command_line = session.command_line};
+  const auto outcome = run_cell(plan, cell, where, session.stop, bar);
+  bar.clear();
+  if (!outcome) {
+    return end_stopped(session, session.command_line);
+  }
+  const auto recorded = std::filesystem::path(options.study) / make_cell_path(plan, cell);
+  const CellComparison comparison = compare_cells(recorded, folder);
+  std::vector<std::string> causes;
+  if (comparison.difference) {
+    causes = list_likely_causes(recorded, folder);
+  }
+  write_stdout(options.json ? to_json(options.cell, recorded, folder, comparison, causes)
+                            : to_text(recorded, folder, comparison, causes));
+  return comparison.difference ? exit_code::kFailed : exit_code::kDone;
+}
+
+}  // namespace
+
+void add_rerun(CLI::App& app, Session& session) {
+  auto options = std::make_shared<RerunOptions>();
+  CLI::App* command = add_command(
+      app, session, "rerun", "Run one cell of a comparison anew and compare it, to the last bit",
+      kRerunExamples);
+  command->add_option("STUDY", options->study, "The folder of a study")->required();
+  command->add_option("CELL", options->cell, "Which run: PROBLEM/OPTIMIZER/rNN")->required();
+  options->jobs.add_to(*command);
+  options->time_limit.add_to(*command);
+  command
+      ->add_option(
+          "--out", options->out,
+          "The new run's folder (default: STUDY/reruns/PROBLEM/OPTIMIZER/rNN, or the first\n"
+          "free of rNN-002, ...); nothing is overwritten")
+      ->type_name("FOLDER")
+      ->group("Output");
+  command->add_flag("--json", options->json, "Print the comparison as JSON")->group("Output");
+  command->add_flag("--quiet,-q", options->quiet, "No progress")->group("Output");
+  command->callback([options, &session] {
+    session.action = [options, &session] { return run_rerun(*options, session); };
+  });
+}
+
+}  // namespace armwright

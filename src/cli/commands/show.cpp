@@ -1,0 +1,143 @@
+// armwright show: what a run's folder holds, or a study's.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "base/error.hpp"
+#include "base/json_text.hpp"
+#include "base/text.hpp"
+#include "cli/terminal/arguments.hpp"
+#include "cli/terminal/format.hpp"
+#include "cli/terminal/session.hpp"
+#include "cli/terminal/terminal.hpp"
+#include "cli/views/result_view.hpp"
+#include "cli/views/study_view.hpp"
+#include "study/analysis/final_check.hpp"
+#include "study/analysis/study_tables.hpp"
+#include "study/journal/journal.hpp"
+#include "study/run/json_values.hpp"
+#include "study/run/run.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kShowExamples = R"(Examples:
+  armwright show results/q1-complex-ga-seed1
+  armwright show results/q1                        # a comparison: its tables and verdict
+  armwright show results/q1-complex-ga-seed1 --json | jq .winner.test_summary
+
+Of a run or a study that has not come to its end it says how far it is, and how to go on. It changes nothing.
+'armwright status' has more on the cells of a comparison that many processes or machines work on.)";
+
+struct ShowOptions {
+  std::string folder;
+  bool json = false;
+};
+
+struct UnfinishedRun {
+  std::uint64_t evaluations = 0;
+  std::uint64_t cases = 0;
+  std::uint64_t judgements = 0;
+  std::int64_t budget = 0;
+  std::vector<std::string> command_line;
+};
+
+UnfinishedRun read_unfinished(const std::filesystem::path& folder) {
+  constexpr std::size_t kLimit_bytes = std::size_t{16} << 20;
+  const auto file = folder / "manifest.json";
+  UnfinishedRun run;
+  try {
+    const json manifest = json::parse(read_json_file(file, kLimit_bytes));
+    run.command_line = manifest.at("command_line").get<std::vector<std::string>>();
+    run.budget = whole_from_json<std::int64_t>(manifest.at("configuration").at("run").at("budget"));
+  } catch (const json::exception& error) {
+    throw Error(ErrorKind::bad_data, fmt::format("{}: is not a manifest that armwright wrote ({})",
+                                                 file.string(), sanitize(error.what())));
+  }
+  if (std::filesystem::exists(folder / "journal")) {
+    const JournalContent journal = read_journal(folder / "journal");
+    run.evaluations = journal.training.size();
+    run.judgements = journal.judgements.size();
+    for (const EvaluationRecord& record : journal.training) {
+      run.cases += record.calc_charge();
+    }
+  }
+  return run;
+}
+
+int show_study(const ShowOptions& options, const Session& session) {
+  const std::filesystem::path folder = options.folder;
+  const StudyPlan plan = load_study_plan(folder);
+  StudyResult result = analyze_study(plan, folder);
+  load_final_checks(plan, folder, result);
+  if (options.json) {
+    write_stdout(to_json(plan, result));
+  } else if (result.missing.empty()) {
+    write_stdout(describe_study(plan, result, folder, make_style(Stream::out, session.color)));
+  } else {
+    const std::vector<std::string> command = {session.command_line.front(), "compare",
+                                              (folder / "study.toml").string(), "--out",
+                                              folder.string()};
+    write_stdout(
+        fmt::format("{}: this study has not come to its end\n  {} of {} have ended\nTo go "
+                    "on:\n  {}\n",
+                    sanitize(folder.string()), result.cells.size() - result.missing.size(),
+                    format_count(result.cells.size(), "cell"), sanitize(quote_command(command))));
+  }
+  return exit_code::kDone;
+}
+
+int run_show(const ShowOptions& options, const Session& session) {
+  const std::filesystem::path folder = options.folder;
+  if (is_study_folder(folder)) {
+    return show_study(options, session);
+  }
+  const bool a_run = std::filesystem::exists(folder / "manifest.json");
+  if (!a_run || std::filesystem::exists(folder / "result.json")) {
+    const RunResult result = load_result(folder);  // says so, if it is none
+    if (options.json) {
+      write_stdout(to_json(result));
+    } else {
+      const Style style = make_style(Stream::out, session.color);
+      write_stdout(describe_result(result, folder, style) + "\n" + describe_judged(result, style));
+    }
+    return get_result_code(result);
+  }
+  const UnfinishedRun run = read_unfinished(folder);
+  const std::string command = sanitize(quote_command(run.command_line));
+  if (options.json) {
+    const json state = {
+        {"finished", false},    {"evaluations", run.evaluations}, {"cases", run.cases},
+        {"budget", run.budget}, {"judgements", run.judgements},   {"resume", command}};
+    write_stdout(state.dump(1) + "\n");
+  } else {
+    write_stdout(
+        fmt::format("{}: this run has not come to its end\n"
+                    "  {} on {} of {} recorded, {}\n"
+                    "To go on:\n  {}\n",
+                    sanitize(folder.string()), format_count(run.evaluations, "evaluation"),
+                    run.cases, format_count(static_cast<unsigned long long>(run.budget), "case"),
+                    format_count(run.judgements, "judgement"), command));
+  }
+  return exit_code::kDone;
+}
+
+}  // namespace
+
+void add_show(CLI::App& app, Session& session) {
+  auto options = std::make_shared<ShowOptions>();
+  CLI::App* command = add_command(
+      app, session, "show", "Show the result of a run or a study, or how far it is", kShowExamples);
+  command->add_option("FOLDER", options->folder, "The folder, as optimize or compare named it")
+      ->required();
+  command->add_flag("--json", options->json, "Print it as JSON")->group("Output");
+  command->callback([options, &session] {
+    session.action = [options, &session] { return run_show(*options, session); };
+  });
+}
+
+}  // namespace armwright

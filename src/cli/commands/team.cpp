@@ -1,0 +1,114 @@
+#include "cli/commands/team.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "cli/terminal/format.hpp"
+#include "cli/terminal/terminal.hpp"
+#include "study/executor/rank_identity.hpp"
+#include "study/executor/worker.hpp"
+#include "study/run/run_observer.hpp"
+
+namespace armwright {
+namespace {
+
+// Of workers that are there, and must only say goodbye.
+constexpr double kPatience_s = 2;
+
+std::vector<const Problem*> get_simulated(const Team::Problems& problems) {
+  std::vector<const Problem*> simulated;
+  for (const LoadedProblem* problem : problems) {
+    simulated.push_back(problem->problem.get());
+  }
+  return simulated;
+}
+
+}  // namespace
+
+Team::Team(Session& session) : session_(session), place_(find_rank_place()) {
+  if (place_) {
+    links_ = open_mpi_links();
+    begun_ = std::chrono::steady_clock::now();
+  }
+}
+
+Team::~Team() {
+  // Somebody may still be reading the configuration.
+  constexpr double kBeginning_s = 10;
+  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begun_;
+  end(std::max(kPatience_s, kBeginning_s - passed.count()));
+}
+
+void Team::dismiss(std::unique_ptr<Coordinator> coordinator) {
+  if (coordinator && !coordinator->expects_workers()) {
+    coordinator.reset();
+    end(kPatience_s);
+  }
+}
+
+void Team::end(double patience_s) {
+  if (!links_) {
+    return;
+  }
+  constexpr double kStopped_s = 0.3;  // mpirun kills one second after it has asked
+  const StopReason stopped = session_.stop.reason();
+  const bool is_asked = stopped == StopReason::interrupted || stopped == StopReason::terminated;
+  patience_s = is_asked ? kStopped_s : patience_s;
+  if (end_workers(*links_, patience_s)) {
+    close_mpi();
+    links_.reset();
+    return;
+  }
+  // MPI still has these messages, and what it would do at the end needs all ranks.
+  [[maybe_unused]] const Links* kept = links_.release();
+  session_.must_abort_ranks = true;
+  if (!is_asked) {
+    write_message(
+        "note: a rank is missing, so that MPI cannot end in order. The command is done; what "
+        "mpirun says now about errors and about ending all processes is of no consequence");
+  }
+}
+
+void Team::serve(const std::function<Problems()>& load, unsigned threads) {
+  WorkerIntroduction introduction = make_introduction(threads);
+  Problems problems;
+  try {
+    problems = load();
+    introduction.identity = make_rank_identity(problems);
+  } catch (const std::exception& error) {
+    introduction.failure = error.what();
+  }
+  try {
+    Worker worker(*links_, get_simulated(problems), introduction);
+    if (worker.serve() == Worker::End::finalize) {
+      close_mpi();
+    }
+    ::_exit(exit_code::kDone);  // whatever its threads are still at, for ever perhaps
+  } catch (const std::exception&) {
+    ::_exit(exit_code::kInternal);  // rank 0 does its work and says that it is missing
+  }
+}
+
+std::unique_ptr<Coordinator> Team::lead(const Problems& problems, unsigned threads,
+                                        RunObserver& observer) {
+  if (!place_) {
+    return nullptr;
+  }
+  if (!place_->survives) {
+    observer.on_message(
+        "note: started without mpirun's --enable-recovery: should a rank die, all end with it "
+        "(nothing is lost; the same command goes on)");
+  }
+  return std::make_unique<Coordinator>(
+      *links_, get_simulated(problems), make_rank_identity(problems),
+      CoordinatorSettings{.threads = threads, .cpu = make_introduction(threads).cpu},
+      [&observer](const std::string& message) { observer.on_message(message); });
+}
+
+std::string Team::describe() const {
+  return place_ ? format_count(place_->size, "rank") : "";
+}
+
+}  // namespace armwright

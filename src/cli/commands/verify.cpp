@@ -1,0 +1,383 @@
+// armwright verify: does a design hold under other engines, time steps, masses and on perturbed
+// plants?
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "cli/terminal/arguments.hpp"
+#include "cli/terminal/format.hpp"
+#include "cli/terminal/json.hpp"
+#include "cli/terminal/progress_bar.hpp"
+#include "cli/terminal/session.hpp"
+#include "cli/terminal/signals.hpp"
+#include "cli/terminal/table.hpp"
+#include "cli/terminal/terminal.hpp"
+#include "cli/views/design_evaluation.hpp"
+#include "cli/views/verification.hpp"
+#include "problems/config/config_files.hpp"
+#include "problems/config/design_file.hpp"
+#include "problems/config/perturbation_reader.hpp"
+#include "sim/engines/engine_table.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::uint64_t kUsualCases = 50;
+
+constexpr const char* kVerifyExamples = R"(Examples:
+  armwright verify table-a10                       # a published design, on the problem it was made for
+  armwright verify results/q1-complex-ga-seed1/winner.toml --problem q1-complex --cases 200
+  armwright verify table-a5 --set task.load_kg=5 --json
+  armwright verify table-a1 --problem q1-complex --engines articulated --substeps 10 --cases 10000 \
+      --perturbations none,friction,sensor,all
+
+The design is simulated in every engine that is built in, with 1, 2, 5 and 10 substeps of the physics in a control
+period (physics.substeps), and with all masses and inertias of the arm at -10 %, 0 and +10 % (robot.mass_scale), in
+all combinations; and under its own engine and time step on perturbed plants (arms that differ from the nominal one),
+another for each case, of every shipped kind but those that weaken motors or change gains. Who gives --perturbations
+gets all combinations of them with the engines and substeps; a list that is not given keeps its default. The error of a
+case is the mean distance of the tip from its target. Each setting is compared with the design's own setting, the problem as it is:
+
+  holds   no more cases fail, and the median error is at most 1.1 times its own
+  worse   no more cases fail, but the median error is larger than that
+  fails   more cases fail, or the median error is more than 10 times its own or does not exist
+
+A failure is a case with an error above 100 mm or none at all; the first one of each setting is named with the command
+that simulates it again and writes down its motion. The exit code is 3 if any setting is worse or fails.)";
+
+struct VerifyOptions {
+  std::string design;
+  std::string problem;
+  OverrideOptions overrides;
+  CaseOptions cases;
+  std::vector<std::string> engines, substeps, perturbations;
+  JobsOption jobs;
+  bool json = false;
+  bool quiet = false;
+};
+
+struct VerifiedDesign {
+  std::string design;
+  std::string problem;
+  ChosenCases cases;
+  std::vector<VerifyRow> rows;       // the first is the design's own setting
+  std::vector<ErrorSurvey> surveys;  // one a row
+  std::vector<std::string> replays;  // one a row: the command for its first failure, if any
+};
+
+VerifySetting get_own_setting(const TrackingProblem& problem) {
+  const TrackingConfig& config = problem.config();
+  return {config.engines.judging_name, config.task.physics.substeps, 1,
+          config.perturbation.applies_to(CaseRole::test) ? "" : kNoPerturbation};
+}
+
+std::string describe_setting(const VerifySetting& setting) {
+  return fmt::format("{}, {}, {}", setting.engine,
+                     format_count(static_cast<unsigned long long>(setting.substeps), "substep"),
+                     sanitize(describe_plant(setting)));
+}
+
+std::string format_text(const VerifiedDesign& verified, const Style& style) {
+  std::string text = style.bold(fmt::format(
+      "{} on {}: the first {} of {}", sanitize(verified.design), sanitize(verified.problem),
+      format_count(verified.cases.count, "case"), sanitize(verified.cases.set.name())));
+  Table table({{"engine", false},
+               {"substeps"},
+               {"plant", false},
+               {"mean mm"},
+               {"median mm"},
+               {"worst mm"},
+               {"failures"},
+               {"ratio"},
+               {"verdict", false}});
+  for (const VerifyRow& row : verified.rows) {
+    const bool own = &row == &verified.rows.front();
+    table.add_row({row.setting.engine, fmt::format("{}", row.setting.substeps),
+                   sanitize(describe_plant(row.setting)), format_mm(row.summary.mean),
+                   format_mm(row.summary.median), format_mm(row.summary.worst),
+                   fmt::format("{}", row.summary.failures),
+                   row.ratio ? format_significant(*row.ratio, 3) : "-",
+                   own ? "its own setting" : to_string(row.verdict)});
+  }
+  text += "\n\n" + table.format(style) + "\n";
+  for (const std::string& line :
+       wrap_words(conclude(sanitize(verified.design), verified.rows), 100)) {
+    text += line + "\n";
+  }
+  const char* title = "\nThe first failure of each, to be simulated again:\n";
+  for (std::size_t i = 0; i < verified.rows.size(); ++i) {
+    if (!verified.replays[i].empty()) {
+      text += fmt::format("{}  {}: case {}\n    {}\n", std::exchange(title, ""),
+                          describe_setting(verified.rows[i].setting),
+                          verified.surveys[i].first_failure, sanitize(verified.replays[i]));
+    }
+  }
+  return text;
+}
+
+bool holds(const VerifiedDesign& verified) {
+  return std::ranges::all_of(verified.rows,
+                             [](const VerifyRow& row) { return row.verdict == Verdict::holds; });
+}
+
+std::string format_json(const VerifiedDesign& verified) {
+  json rows = json::array();
+  for (std::size_t i = 0; i < verified.rows.size(); ++i) {
+    const VerifyRow& row = verified.rows[i];
+    json one = {{"engine", row.setting.engine},
+                {"substeps", row.setting.substeps},
+                {"mass_factor", row.setting.mass_factor},
+                {"perturbation",
+                 row.setting.perturbation.empty() ? "own" : sanitize(row.setting.perturbation)},
+                {"own_setting", i == 0},
+                {"mean_error_m", to_json_value(row.summary.mean)},
+                {"median_error_m", to_json_value(row.summary.median)},
+                {"worst_error_m", to_json_value(row.summary.worst)},
+                {"failures", row.summary.failures},
+                {"without_number", row.summary.without_number},
+                {"median_ratio", to_json_value(row.ratio)},
+                {"verdict", to_string(row.verdict)}};
+    if (!verified.surveys[i].reason.empty()) {
+      one["reason"] = sanitize(verified.surveys[i].reason);
+    }
+    if (!verified.replays[i].empty()) {
+      one["first_failure"] = verified.surveys[i].first_failure;
+      one["replay"] = sanitize(verified.replays[i]);
+    }
+    rows.push_back(std::move(one));
+  }
+  return json{{"design", sanitize(verified.design)},
+              {"problem", sanitize(verified.problem)},
+              {"test_set", sanitize(verified.cases.set.name())},
+              {"cases", verified.cases.count},
+              {"worse_ratio", kWorseRatio},
+              {"fail_ratio", kFailRatio},
+              {"rows", rows},
+              {"holds", holds(verified)},
+              {"conclusion", conclude(sanitize(verified.design), verified.rows)}}
+             .dump(1) +
+         "\n";
+}
+
+// What makes the setting's plants of the problem's own.
+std::vector<std::string> list_plant_overrides(const VerifySetting& setting,
+                                              const TrackingConfig& config) {
+  if (setting.perturbation.empty()) {
+    return {};
+  }
+  if (setting.perturbation == kNoPerturbation) {
+    return config.perturbation.applies_to(CaseRole::test) ? make_overrides(Perturbation{})
+                                                          : std::vector<std::string>{};
+  }
+  if (config.perturbation.changes_anything()) {
+    Perturbation plants = load_perturbation(setting.perturbation, config.robot.joint_count());
+    plants.where = Perturbation::Where::everywhere;  // a kind that is there to train with, too
+    return make_overrides(plants);
+  }
+  return {"perturbation.preset=" + setting.perturbation, "perturbation.apply_to=everywhere"};
+}
+
+// What makes the setting of the problem as its file is: what the user changed about it, then the
+// setting's own changes.
+std::vector<std::string> list_overrides(const VerifyOptions& options, const VerifySetting& setting,
+                                        const TrackingConfig& config) {
+  std::vector<std::string> changes = list_plant_overrides(setting, config);
+  changes.push_back("physics.engine=" + setting.engine);
+  changes.push_back("physics.judging_engine=" + setting.engine);
+  // Designs are judged in double, and only some engines have a SIMD level.
+  changes.push_back("physics.precision=double");
+  if (!find_engine(setting.engine).simd) {
+    changes.push_back("physics.simd=auto");
+  }
+  changes.push_back(fmt::format("physics.substeps={}", setting.substeps));
+  changes.push_back("robot.mass_scale=" + format_exact(config.mass_scale * setting.mass_factor));
+  std::vector<std::string> all;
+  for (std::string& own : options.overrides.get()) {
+    if (std::ranges::find(changes, get_override_key(own), get_override_key) == changes.end()) {
+      all.push_back(std::move(own));
+    }
+  }
+  std::ranges::move(changes, std::back_inserter(all));
+  return all;
+}
+
+// The command that simulates one case again and writes down its motion.
+std::string make_replay(const VerifyOptions& options, std::span<const std::string> overrides,
+                        std::uint64_t number) {
+  std::vector<std::string> words = {"armwright", "evaluate", options.design};
+  const auto add = [&](const std::string& flag, const std::string& value) {
+    if (!value.empty()) {
+      words.insert(words.end(), {flag, value});
+    }
+  };
+  add("--problem", options.overrides.choose_problem(options.problem));
+  add("--test-set", options.cases.test_set);
+  add("--test-cases", options.cases.test_cases);
+  for (const std::string& assignment : overrides) {
+    add("--set", assignment);
+  }
+  add("--cases", "1");
+  add("--case", fmt::format("{}", number));
+  add("--trajectory", fmt::format("case-{}.csv", number));
+  return quote_command(words);
+}
+
+// Presets that a design should stand: not those that are there to train with, nor, which is said
+// unless `quiet`, those with numbers for an arm of other joints.
+std::vector<std::string> list_usual_presets(std::size_t joints, bool quiet) {
+  std::vector<std::string> presets;
+  std::vector<std::string> of_others;
+  for (const std::string& name : list_configs("perturbations")) {
+    try {
+      if (!load_perturbation(name, joints).changes_design()) {
+        presets.push_back(name);
+      }
+    } catch (const Error&) {  // a shipped file is wrong in nothing else
+      of_others.push_back(name);
+    }
+  }
+  if (!of_others.empty() && !quiet) {
+    write_message(
+        fmt::format("left out, as their numbers are for an arm of other joints: {}; "
+                    "--perturbations takes files of your own (docs/robust.md)",
+                    join(of_others, ", ")));
+  }
+  return presets;
+}
+
+VerifyMatrix choose_matrix(const VerifyOptions& options, const VerifySetting& own,
+                           std::size_t joints) {
+  VerifyMatrix matrix{engine_names(), kUsualSubsteps, kUsualPlants, {}};
+  matrix.substeps.push_back(own.substeps);
+  if (!options.engines.empty()) {
+    for (const std::string& name : options.engines) {
+      find_engine(name);
+    }
+    matrix.engines = options.engines;
+  }
+  if (!options.substeps.empty()) {
+    matrix.substeps.clear();
+    for (const std::string& text : options.substeps) {
+      matrix.substeps.push_back(static_cast<int>(parse_count("--substeps", text, 1, 1000)));
+    }
+  }
+  if (options.perturbations.empty()) {
+    matrix.own_plants = list_usual_presets(joints, options.quiet);
+    return matrix;
+  }
+  std::vector<std::string> known = list_configs("perturbations");
+  known.insert(known.begin(), kUsualPlants.begin(), kUsualPlants.end());
+  for (const std::string& name : options.perturbations) {
+    const bool is_path = name.find('/') != std::string::npos || name.ends_with(".toml");
+    if (!is_path && std::ranges::find(known, name) == known.end()) {
+      throw Error(ErrorKind::usage,
+                  describe_unknown("perturbation", name, known) + " (or the path of a .toml file)");
+    }
+  }
+  matrix.plants = options.perturbations;
+  return matrix;
+}
+
+int run_verify(const VerifyOptions& options, Session& session) {
+  const unsigned jobs = options.jobs.get();
+  const std::string named = options.overrides.choose_problem(options.problem);
+  const auto [design, base] =
+      load_design_and_problem(options.design, named, options.overrides.get(), options.quiet);
+  const TrackingProblem& tracking = require_tracking(base);
+  tracking.check_design(design.design);
+  ChosenCases cases = choose_cases(base, options.cases);
+  if (options.cases.cases.empty()) {
+    cases.count = std::min(cases.count, kUsualCases);
+  }
+  const VerifySetting own_setting = get_own_setting(tracking);
+  const auto settings = list_verify_settings(
+      own_setting, choose_matrix(options, own_setting, tracking.config().robot.joint_count()));
+  // All settings are validated before the first is simulated.
+  std::vector<std::vector<std::string>> overrides;
+  std::vector<LoadedProblem> problems;
+  for (const VerifySetting& setting : settings) {
+    overrides.push_back(list_overrides(options, setting, tracking.config()));
+    problems.push_back(load_its_problem(design, named, overrides.back(), true));
+  }
+
+  catch_signals(session.stop);
+  ProgressBar bar(options.quiet, {"error", "m"});
+  VerifiedDesign verified{design.name, base.name, cases, {}, {}, {}};
+  BarShare share{0, cases.count * settings.size()};
+  for (std::size_t i = 0; i < settings.size(); ++i) {
+    auto survey = survey_with_progress(*problems[i].tracking, design.design, cases, jobs,
+                                       session.stop, bar, share);
+    problems[i] = {};  // its targets are of no use to the next
+    if (!survey) {
+      bar.clear();
+      write_message(fmt::format("{}; nothing was written", describe_stop(session.stop.reason())));
+      return get_stop_code(session.stop.reason());
+    }
+    share.done_before += cases.count;
+    const ErrorSummary& own =
+        verified.rows.empty() ? survey->summary : verified.rows.front().summary;
+    verified.rows.push_back(judge_setting(settings[i], survey->summary, own));
+    verified.replays.push_back(survey->summary.failures == 0
+                                   ? ""
+                                   : make_replay(options, overrides[i], survey->first_failure));
+    verified.surveys.push_back(std::move(*survey));
+  }
+  bar.clear();
+  write_stdout(options.json ? format_json(verified)
+                            : format_text(verified, make_style(Stream::out, session.color)));
+  return holds(verified) ? exit_code::kDone : exit_code::kFailed;
+}
+
+}  // namespace
+
+void add_verify(CLI::App& app, Session& session) {
+  auto options = std::make_shared<VerifyOptions>();
+  CLI::App* command = add_command(
+      app, session, "verify",
+      "Try whether a design holds under other engines, time steps and masses, and on perturbed\n"
+      "plants",
+      kVerifyExamples);
+  add_design_argument(*command, options->design);
+  command
+      ->add_option("--problem,-p", options->problem,
+                   "Robot, task and physics that are its own setting (default: what the design\n"
+                   "was published for; with --robot the problem 'robot'; of others it is required)")
+      ->type_name("PROBLEM");
+  options->overrides.add_to(*command);
+  options->cases.add_to(*command);
+  command
+      ->add_option("--engines", options->engines,
+                   "Engines to try, separated by commas (default: all that are built in)")
+      ->delimiter(',')
+      ->type_name("NAMES");
+  command
+      ->add_option("--substeps", options->substeps,
+                   "Plant steps in a control period to try (default: 1,2,5,10 and its own)")
+      ->delimiter(',')
+      ->type_name("NUMBERS");
+  command
+      ->add_option(
+          "--perturbations", options->perturbations,
+          "Plants to try: none, lighter and heavier (all masses -10 and +10 %), a shipped\n"
+          "perturbation (docs/robust.md: masses-10, load-0-40, friction, sensor, ripple,\n"
+          "all of these together: all, weak), paths of such files (default: none, lighter,\n"
+          "heavier, and all shipped ones but weak)")
+      ->delimiter(',')
+      ->type_name("NAMES");
+  options->jobs.add_to(*command);
+  command->add_flag("--json", options->json, "Print everything as JSON")->group("Output");
+  command->add_flag("--quiet,-q", options->quiet, "No progress")->group("Output");
+  command->callback([options, &session] {
+    session.action = [options, &session] { return run_verify(*options, session); };
+  });
+}
+
+}  // namespace armwright

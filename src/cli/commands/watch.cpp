@@ -1,0 +1,79 @@
+// armwright watch: the page of a run or comparison that is still under way, served to this machine.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "cli/terminal/arguments.hpp"
+#include "cli/terminal/session.hpp"
+#include "cli/terminal/signals.hpp"
+#include "cli/terminal/terminal.hpp"
+#include "report/page/page_data.hpp"
+#include "report/page/page_server.hpp"
+#include "study/run/run_observer.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr const char* kWatchExamples = R"(Examples:
+  armwright compare configs/studies/q1.toml &      # a study that runs
+  armwright watch results/q1                       # prints an address; Ctrl-C ends it
+  armwright watch results/q1 --port 8642
+
+It reads only, and answers this machine only (127.0.0.1): over ssh, forward the port with ssh -L. What needs
+simulations of its own (the motion in 3D, curves on the test set) comes with 'armwright report' afterwards.)";
+
+struct WatchOptions {
+  std::string folder;
+  std::string port = "0";
+};
+
+// Nobody asks a page how far its making is.
+class SilentObserver final : public RunObserver {
+ public:
+  void on_progress(const Progress&) override {}
+  void on_message(const std::string&) override {}
+};
+
+int run_watch(const WatchOptions& options, Session& session) {
+  const int port = static_cast<int>(parse_count("--port", options.port, 0, 65535));
+  catch_signals(session.stop);
+  const auto make_data = [&] {
+    PageOptions page;
+    page.simulate = false;
+    SilentObserver observer;
+    const auto data = make_page_data(options.folder, page, session.stop, observer);
+    if (!data) {
+      throw Error(ErrorKind::io, "the program is ending");
+    }
+    return *data;
+  };
+  const std::string first = make_data();  // says so now, if there is nothing to show
+  PageServer server(port, get_page_title(first), make_data);
+  write_stdout(fmt::format("http://127.0.0.1:{}/ shows {}; Ctrl-C ends it\n", server.port(),
+                           sanitize(options.folder)));
+  server.serve(session.stop);
+  return session.stop.reason() == StopReason::interrupted ? exit_code::kDone
+                                                          : get_stop_code(session.stop.reason());
+}
+
+}  // namespace
+
+void add_watch(CLI::App& app, Session& session) {
+  auto options = std::make_shared<WatchOptions>();
+  CLI::App* command = add_command(
+      app, session, "watch",
+      "Serve the page of a run or a comparison to this machine while it runs", kWatchExamples);
+  command
+      ->add_option("FOLDER", options->folder, "The folder of a run, a comparison or a reproduction")
+      ->required();
+  command->add_option("--port", options->port, "Of 127.0.0.1 (default: 0, any that is free)")
+      ->type_name("N");
+  command->callback([options, &session] {
+    session.action = [options, &session] { return run_watch(*options, session); };
+  });
+}
+
+}  // namespace armwright

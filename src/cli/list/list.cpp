@@ -1,0 +1,238 @@
+// armwright list: what there is to choose from, and one thing explained in full.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "cli/list/list_views.hpp"
+#include "cli/terminal/arguments.hpp"
+#include "cli/terminal/session.hpp"
+#include "cli/terminal/table.hpp"
+#include "cli/terminal/terminal.hpp"
+#include "sim/tracking/reference_signal.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kListExamples = R"(Examples:
+  armwright list problems                          # what can be optimized
+  armwright list problems q1-complex               # its variables, bounds and settings (for --set)
+  armwright list optimizers ga                     # what it is, can do, and its options (for --opt)
+  armwright list optimizers ga --markdown          # the same as a page, as under docs/optimizers
+  armwright list settings task.rest_s              # a key of the configuration: unit, range, default, meaning
+  armwright list controllers pi2d                  # its formula, and its gains (for variables.optimize)
+  armwright list designs --json
+  armwright list designs --names | head -1         # names alone, for scripts
+  armwright list studies q1                        # a comparison of optimizers: who, on what, at what cost
+
+Terms: a problem is a robot with a task, or a function, to be minimised; an optimizer minimises it; a design is what
+comes out: the gains and effort limits of all joints. An engine does the physics, a signal says how the target moves
+between two points, a controller turns joint errors into efforts.)";
+
+// Kinds whose members are a name and a sentence.
+ListKind make_plain_kind(const std::string& name, std::vector<ListItem> (*list)()) {
+  const std::string what = name.substr(0, name.size() - 1);  // "engines" -> "engine"
+  const auto find = [what, list](const std::string& wanted) {
+    std::vector<std::string> names;
+    for (const ListItem& item : list()) {
+      if (item.name == wanted) {
+        return item;
+      }
+      names.push_back(item.name);
+    }
+    throw Error(ErrorKind::usage, describe_unknown(what, wanted, names));
+  };
+  const auto explain = [find](const std::string& wanted, const Style& style) {
+    const ListItem item = find(wanted);
+    return format_title(style, item.name, item.summary);
+  };
+  const auto explain_as_json = [find](const std::string& wanted) {
+    const ListItem item = find(wanted);
+    return json{{"name", item.name}, {"summary", item.summary}};
+  };
+  return {name, list, explain, explain_as_json};
+}
+
+std::vector<ListItem> list_signals() {
+  // In the order of the names; physics and formulas are with the signals themselves.
+  constexpr const char* kMeanings[] = {
+      "the target jumps to the next point at once, and counts as reached after distance / speed",
+      "constant speed",
+      "constant acceleration, constant speed, constant deceleration",
+      "accelerates half of the time, decelerates the other half",
+      "the speed rises linearly to 2.5 times the average in 0.4 of the time, then decays "
+      "quadratically",
+  };
+  std::vector<ListItem> items;
+  for (std::size_t i = 0; i < signal_names().size(); ++i) {
+    items.push_back({signal_names()[i], i < std::size(kMeanings) ? kMeanings[i] : ""});
+  }
+  return items;
+}
+
+std::vector<ListKind> list_kinds() {
+  return {make_problem_kind(),
+          make_optimizer_kind(),
+          make_robot_kind(),
+          make_engine_kind(),
+          make_design_kind(),
+          make_study_kind(),
+          make_plain_kind("signals", list_signals),
+          make_controller_kind(),
+          make_setting_kind()};
+}
+
+struct ListOptions {
+  std::string kind;
+  std::string name;
+  bool json = false;
+  bool markdown = false;
+  bool names = false;
+};
+
+ListKind find_kind(const std::string& name) {
+  for (const ListKind& kind : list_kinds()) {
+    if (kind.name == name) {
+      return kind;
+    }
+  }
+  throw Error(ErrorKind::usage, describe_unknown("kind", name, list_kind_names()));
+}
+
+std::string format_names(const ListKind& kind) {
+  std::string text;
+  for (const ListItem& item : kind.list()) {
+    text += item.unavailable.empty() ? sanitize(item.name) + "\n" : "";
+  }
+  return text;
+}
+
+json list_as_json(const ListKind& kind) {
+  if (kind.list_as_json) {
+    return kind.list_as_json();
+  }
+  json list = json::array();
+  for (const ListItem& item : kind.list()) {
+    list.push_back({{"name", sanitize(item.name)}, {"summary", sanitize(item.summary)}});
+  }
+  return list;
+}
+
+// What is marked with a star in the list: names by reason.
+std::string explain_unavailable(const std::vector<ListItem>& items, int width) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> reasons;
+  for (const ListItem& item : items) {
+    if (item.unavailable.empty()) {
+      continue;
+    }
+    const std::string reason = sanitize(item.unavailable);
+    if (std::ranges::count(reasons, reason, [](const auto& one) { return one.first; }) == 0) {
+      reasons.push_back({reason, {}});
+    }
+    std::ranges::find(reasons, reason, [](const auto& one) {
+      return one.first;
+    })->second.push_back(sanitize(item.name));
+  }
+  if (reasons.empty()) {
+    return "";
+  }
+  std::string text = "\n* not available here:\n";
+  for (const auto& [reason, names] : reasons) {
+    for (const std::string& line : wrap_words(join(names, ", ") + ": " + reason, width - 2)) {
+      text += "  " + line + "\n";
+    }
+  }
+  return text;
+}
+
+std::string format_list(const ListKind& kind, const Style& style) {
+  const std::vector<ListItem> items = kind.list();
+  // Into a pipe one line a row, for grep.
+  const int width = is_terminal(Stream::out) ? get_width(Stream::out) : kUnlimited;
+  Table table({{kind.name, false}, {"", false, true}});
+  for (const ListItem& item : items) {
+    table.add_row(
+        {sanitize(item.name) + (item.unavailable.empty() ? "" : " *"), sanitize(item.summary)});
+  }
+  const std::string hint = fmt::format("\n'armwright list {} NAME' explains one.\n", kind.name);
+  return table.format(style, 0, width) + explain_unavailable(items, get_text_width(Stream::out)) +
+         (is_terminal(Stream::out) ? hint : "");
+}
+
+int run_list(const ListOptions& options, const Session& session) {
+  const ListKind kind = find_kind(options.kind);
+  const Style style = make_style(Stream::out, session.color);
+  if (options.names) {
+    if (options.json || options.markdown || !options.name.empty()) {
+      throw Error(ErrorKind::usage,
+                  "--names prints the names of a kind and nothing else; leave out NAME, --json and "
+                  "--markdown, or --names");
+    }
+    write_stdout(format_names(kind));
+    return exit_code::kDone;
+  }
+  if (options.markdown) {
+    if (options.json) {
+      throw Error(ErrorKind::usage, "--json and --markdown are two formats; choose one");
+    }
+    if (!kind.explain_as_markdown) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("--markdown is for problems, optimizers and settings, not for {}; "
+                              "--json is for all kinds",
+                              kind.name));
+    }
+    write_stdout(kind.explain_as_markdown(options.name));
+    return exit_code::kDone;
+  }
+  if (!options.name.empty()) {
+    write_stdout(options.json ? kind.explain_as_json(options.name).dump(1) + "\n"
+                              : kind.explain(options.name, style));
+    return exit_code::kDone;
+  }
+  write_stdout(options.json ? list_as_json(kind).dump(1) + "\n" : format_list(kind, style));
+  return exit_code::kDone;
+}
+
+}  // namespace
+
+std::vector<std::string> list_kind_names() {
+  std::vector<std::string> names;
+  for (const ListKind& kind : list_kinds()) {
+    names.push_back(kind.name);
+  }
+  return names;
+}
+
+std::string format_title(const Style& style, const std::string& name, const std::string& summary) {
+  return style.bold(sanitize(name)) + (summary.empty() ? "" : ": " + sanitize(summary)) + "\n";
+}
+
+void add_list(CLI::App& app, Session& session) {
+  auto options = std::make_shared<ListOptions>();
+  CLI::App* command =
+      add_command(app, session, "list", "List problems, optimizers, robots, engines, designs, ...",
+                  kListExamples);
+  command->add_option("KIND", options->kind, join(list_kind_names(), ", "))->required();
+  command->add_option("NAME", options->name, "Explain this one in full");
+  command->add_flag("--json", options->json, "Print it as JSON")->group("Output");
+  command
+      ->add_flag("--names", options->names, "Only the names, one a line, of what can be used here")
+      ->group("Output");
+  command
+      ->add_flag("--markdown", options->markdown,
+                 "Print it as a page of documentation (problems,\n"
+                 "optimizers, settings)")
+      ->group("Output");
+  command->callback([options, &session] {
+    session.action = [options, &session] { return run_list(*options, session); };
+  });
+}
+
+}  // namespace armwright

@@ -1,0 +1,150 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "base/text.hpp"
+#include "cli/list/list_views.hpp"
+#include "cli/list/optimizer_page.hpp"
+#include "cli/list/optimizer_words.hpp"
+#include "cli/terminal/table.hpp"
+#include "optimizers/table/optimizer_table.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+
+std::vector<ListItem> list_known_optimizers() {
+  std::vector<ListItem> items;
+  for (const OptimizerRow& row : optimizer_table()) {
+    items.push_back({row.name, row.summary, row.unavailable});
+  }
+  return items;
+}
+
+// A row of the table, available or not, or a plugin.
+OptimizerRow get_row(const std::string& name) {
+  const bool listed = std::ranges::count(optimizer_table(), name, &OptimizerRow::name) > 0;
+  return listed ? find_optimizer(name) : load_optimizer(name);
+}
+
+std::string format_heading(const OptimizerRow& row, const Style& style, int width) {
+  const std::string name = sanitize(row.name);
+  const int indent = static_cast<int>(name.size()) + 2;
+  const auto lines = wrap_words(sanitize(row.summary), std::max(width - indent, indent));
+  return style.bold(name) + ": " + join(lines, "\n" + std::string(name.size() + 2, ' ')) + "\n";
+}
+
+std::string format_facts(const OptimizerRow& row, const Style& style, int width) {
+  Table facts({{"", false}, {"", false, true}});
+  if (!row.unavailable.empty()) {
+    facts.add_row({"Not available", sanitize(row.unavailable)});
+  }
+  const std::vector<std::string> required = list_requirements(row.requirements);
+  facts.add_row({"Problem", required.empty() ? "any" : "one with " + join(required, " and ")});
+  facts.add_row(
+      {"Schedules", row.capabilities.generations
+                        ? "fresh:K (new training cases every generation), coevolution:K and fixed:K"
+                        : "fixed:K only"});
+  facts.add_row({"Runs", describe_isolation(row)});
+  if (!row.backend.empty()) {
+    facts.add_row({"Library", row.backend});
+  }
+  facts.add_row({"Source", sanitize(row.source)});
+  return facts.format(style, 2, width);
+}
+
+std::string format_capabilities(const OptimizerRow& row, const Style& style, int width) {
+  Table table({{"capability", false}, {"", false}, {"what that means", false, true}});
+  for (const CapabilityWords& words : capability_words()) {
+    table.add_row({words.name, row.capabilities.*words.member ? "yes" : "no",
+                   describe_capability(row, words)});
+  }
+  return table.format(style, 0, width);
+}
+
+std::string format_options(const OptimizerRow& row, const Style& style, int width) {
+  if (row.options.empty()) {
+    return "It has no options.\n";
+  }
+  Table table({{"option (for --opt)", false},
+               {"default", false},
+               {"allowed", false, true},
+               {"meaning", false, true}});
+  for (const OptionSpec& option : row.options) {
+    const std::string range = describe_range(option);
+    const std::string type = get_option_type(option.fallback);
+    table.add_row({sanitize(option.name), sanitize(to_text(option.fallback)),
+                   !option.choices.empty() ? sanitize(join(option.choices, ", "))
+                   : range.empty()         ? type
+                                           : type + ", " + range,
+                   sanitize(option.description)});
+  }
+  return table.format(style, 0, width);
+}
+
+std::string explain_optimizer(const std::string& name, const Style& style) {
+  const OptimizerRow row = get_row(name);
+  const int width = get_text_width(Stream::out);
+  return format_heading(row, style, width) + format_facts(row, style, width) + "\n" +
+         format_capabilities(row, style, width) + "\n" + format_options(row, style, width);
+}
+
+json to_json(const OptimizerRow& row) {
+  json options = json::array();
+  for (const OptionSpec& option : row.options) {
+    json one = {{"name", option.name},
+                {"type", get_option_type(option.fallback)},
+                {"default", std::visit([](const auto& v) { return json(v); }, option.fallback)},
+                {"meaning", option.description}};
+    if (!option.choices.empty()) {
+      one["choices"] = option.choices;
+    } else if (!describe_range(option).empty()) {
+      one["lower"] = option.lower;
+      one["upper"] = option.upper;
+    }
+    options.push_back(std::move(one));
+  }
+  json capabilities = json::object();
+  for (const CapabilityWords& words : capability_words()) {
+    capabilities[words.name] = row.capabilities.*words.member;
+  }
+  return {{"name", row.name},
+          {"summary", row.summary},
+          {"source", row.source},
+          {"unavailable", row.unavailable},
+          {"library", row.backend},
+          {"isolated", row.isolated},
+          {"capabilities", capabilities},
+          {"requirements",
+           {{"objectives", row.requirements.objectives},
+            {"variables", row.requirements.variables},
+            {"residuals", row.requirements.residuals}}},
+          {"options", options}};
+}
+
+json list_optimizers_as_json() {
+  json list = json::array();
+  for (const OptimizerRow& row : optimizer_table()) {
+    list.push_back(to_json(row));
+  }
+  return list;
+}
+
+}  // namespace
+
+ListKind make_optimizer_kind() {
+  return {.name = "optimizers",
+          .list = list_known_optimizers,
+          .explain = explain_optimizer,
+          .explain_as_json = [](const std::string& name) { return to_json(get_row(name)); },
+          .list_as_json = list_optimizers_as_json,
+          .explain_as_markdown =
+              [](const std::string& name) {
+                return name.empty() ? format_optimizer_index(optimizer_table())
+                                    : format_optimizer_page(get_row(name));
+              }};
+}
+
+}  // namespace armwright

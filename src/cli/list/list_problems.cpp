@@ -1,0 +1,137 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "cli/list/list_views.hpp"
+#include "cli/list/problem_page.hpp"
+#include "cli/terminal/format.hpp"
+#include "cli/terminal/table.hpp"
+#include "cli/views/requirement_view.hpp"
+#include "problems/config/problem_loader.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+
+std::vector<ListItem> list_known_problems() {
+  std::vector<ListItem> items;
+  for (const ProblemTitle& problem : list_problems()) {
+    items.push_back({problem.name, problem.title});
+  }
+  return items;
+}
+
+// "/task/speed_m_per_s" -> "task.speed_m_per_s", as --set takes it
+std::string get_key(std::string pointer) {
+  pointer.erase(0, 1);
+  std::replace(pointer.begin(), pointer.end(), '/', '.');
+  return pointer;
+}
+
+// Tables one below the other, lists on one line.
+void collect_settings(const json& value, const std::string& pointer, Table& table) {
+  if (value.is_object()) {
+    for (const auto& [key, inner] : value.items()) {
+      collect_settings(inner, pointer + "/" + key, table);
+    }
+    return;
+  }
+  const std::string key = get_key(pointer);
+  if (key != "title" && key != "description") {
+    table.add_row({sanitize(key), sanitize(value.dump())});
+  }
+}
+
+// What is required of a design; nothing of most problems.
+std::string format_required(const ProblemDescription& description, const Style& style) {
+  if (description.requirements.empty()) {
+    return "";
+  }
+  Table table({{"requirement", false}, {"at most"}, {"use", false}});
+  for (const RequiredMetric& requirement : description.requirements) {
+    table.add_row({sanitize(requirement.limit.quantity.name), describe_limit(requirement.limit),
+                   requirement.is_constraint ? "constraint" : "report"});
+  }
+  return table.format(style) + "\n";
+}
+
+std::string explain_problem(const std::string& name, const Style& style) {
+  const LoadedProblem loaded = load_problem(name);
+  const ProblemDescription& description = loaded.problem->description();
+  const json settings = json::parse(loaded.resolved_json);
+  std::string text = format_title(style, loaded.name, loaded.title);
+  if (settings.contains("description")) {
+    for (const std::string& line : split(settings["description"].get<std::string>(), '\n')) {
+      text += fmt::format("  {}\n", sanitize(line));
+    }
+  }
+  text += "\n";
+  for (const Quantity& objective : description.objectives) {
+    text += fmt::format("Minimises {} [{}]", objective.name, objective.unit);
+  }
+  text += fmt::format(", {} decision variables, {} constraints; a case is a {}\n\n",
+                      description.variables.size(), description.constraints.size(),
+                      description.cost_unit);
+  Table variables(
+      {{"variable", false}, {"unit", false}, {"start"}, {"lower"}, {"upper"}, {"scale", false}});
+  for (const DecisionVariable& variable : description.variables) {
+    variables.add_row({variable.name, variable.unit, format_significant(variable.start),
+                       format_significant(variable.lower), format_significant(variable.upper),
+                       variable.scale == Scale::logarithmic ? "logarithmic" : "linear"});
+  }
+  Table table({{"setting (for --set)", false}, {"value", false}});
+  collect_settings(settings, "", table);
+  return text + variables.format(style) + "\n" + format_required(description, style) +
+         table.format(style);
+}
+
+json explain_problem_as_json(const std::string& name) {
+  const LoadedProblem loaded = load_problem(name);
+  const ProblemDescription& description = loaded.problem->description();
+  json variables = json::array();
+  for (const DecisionVariable& variable : description.variables) {
+    variables.push_back(
+        {{"name", variable.name},
+         {"unit", variable.unit},
+         {"start", variable.start},
+         {"lower", variable.lower},
+         {"upper", variable.upper},
+         {"scale", variable.scale == Scale::logarithmic ? "logarithmic" : "linear"}});
+  }
+  json objectives = json::array();
+  for (const Quantity& objective : description.objectives) {
+    objectives.push_back({{"name", objective.name}, {"unit", objective.unit}});
+  }
+  json requirements = json::array();
+  for (const RequiredMetric& requirement : description.requirements) {
+    requirements.push_back({{"name", sanitize(requirement.limit.quantity.name)},
+                            {"unit", requirement.limit.quantity.unit},
+                            {"limit", requirement.limit.value},
+                            {"use", requirement.is_constraint ? "constraint" : "report"}});
+  }
+  return {{"name", sanitize(loaded.name)}, {"title", sanitize(loaded.title)},
+          {"objectives", objectives},      {"variables", variables},
+          {"requirements", requirements},  {"settings", json::parse(loaded.resolved_json)}};
+}
+
+}  // namespace
+
+ListKind make_problem_kind() {
+  return {.name = "problems",
+          .list = list_known_problems,
+          .explain = explain_problem,
+          .explain_as_json = explain_problem_as_json,
+          .explain_as_markdown = [](const std::string& name) {
+            if (!name.empty()) {
+              throw Error(ErrorKind::usage,
+                          "the page of problems has all of them; leave out the name");
+            }
+            return format_problem_page();
+          }};
+}
+
+}  // namespace armwright

@@ -1,0 +1,212 @@
+// The kind "settings": every key of a problem's, a study's and a design's file.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "cli/list/list_views.hpp"
+#include "cli/terminal/markdown.hpp"
+#include "study/compare/study_settings.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+
+struct SettingFile {
+  std::string prefix;  // of names; none for problems, whose keys --set takes as they are
+  std::string title;
+  std::string words;  // Markdown
+  std::vector<Setting> settings;
+};
+
+std::vector<SettingFile> list_setting_files() {
+  return {
+      {"", "Problems",
+       "`configs/problems/NAME.toml`, or a file of your own. `--set KEY=VALUE` changes any of them "
+       "on the command line. `extends = \"NAME\"` takes over another problem's file, beside this "
+       "one or a shipped one, and changes it.",
+       list_problem_settings()},
+      {"study:", "Studies",
+       "`configs/studies/NAME.toml`, or a file of your own, for `armwright compare` "
+       "([comparing.md](../comparing.md)). `extends` works as in problems.",
+       list_study_settings()},
+      {"design:", "Designs",
+       "`configs/designs/NAME.toml`, or the `winner.toml` of a run. Which gains there are depends "
+       "on the controller.",
+       list_design_settings()},
+  };
+}
+
+std::string describe_allowed(const Setting& setting) {
+  return join(setting.allowed, "; or ");
+}
+
+// More than two say only that it depends on something else, which the meaning tells.
+std::vector<std::string> list_defaults(const Setting& setting) {
+  return setting.fallbacks.size() > 2 ? std::vector<std::string>{} : setting.fallbacks;
+}
+
+std::vector<ListItem> list_known_settings() {
+  std::vector<ListItem> items;
+  for (const SettingFile& file : list_setting_files()) {
+    for (const Setting& setting : file.settings) {
+      items.push_back({file.prefix + setting.path, setting.meaning});
+    }
+  }
+  return items;
+}
+
+// Names that hold what was typed, a key without its unit, say; else the nearest.
+std::string suggest(const std::string& typed, const std::vector<std::string>& names) {
+  constexpr std::size_t kMostSuggested = 5;
+  std::vector<std::string> holding;
+  std::ranges::copy_if(names, std::back_inserter(holding), [&](const std::string& name) {
+    return name.find(typed) != std::string::npos;
+  });
+  if (const auto nearest = find_nearest(typed, names); holding.empty() && nearest) {
+    holding.push_back(*nearest);
+  }
+  if (holding.empty() || holding.size() > kMostSuggested) {
+    return ".";
+  }
+  return fmt::format("; did you mean '{}'?", join(holding, "' or '"));
+}
+
+Setting find_setting(const std::string& name) {
+  std::vector<std::string> names;
+  for (const SettingFile& file : list_setting_files()) {
+    for (const Setting& setting : file.settings) {
+      names.push_back(file.prefix + setting.path);
+      if (names.back() == name) {
+        return setting;
+      }
+    }
+  }
+  throw Error(ErrorKind::usage,
+              fmt::format("unknown setting '{}'{} 'armwright list settings' shows all {}",
+                          sanitize(name), suggest(name, names), names.size()));
+}
+
+std::string explain_setting(const std::string& name, const Style& style) {
+  const Setting setting = find_setting(name);
+  std::string text = format_title(style, name, setting.meaning) + "\n";
+  if (!setting.unit.empty()) {
+    text += fmt::format("  unit     {}\n", setting.unit);
+  }
+  text += fmt::format("  allowed  {}\n", describe_allowed(setting));
+  if (const auto defaults = list_defaults(setting); !defaults.empty()) {
+    text += fmt::format("  default  {}\n", join(defaults, " or "));
+  }
+  return text;
+}
+
+json to_json(const std::string& name, const Setting& setting) {
+  return {{"name", name},
+          {"unit", setting.unit},
+          {"allowed", setting.allowed},
+          {"default", list_defaults(setting)},
+          {"meaning", setting.meaning}};
+}
+
+json list_settings_as_json() {
+  json all = json::array();
+  for (const SettingFile& file : list_setting_files()) {
+    for (const Setting& setting : file.settings) {
+      all.push_back(to_json(file.prefix + setting.path, setting));
+    }
+  }
+  return all;
+}
+
+// In few words, for a narrow column of a table.
+std::string shorten_allowed(const Setting& setting) {
+  constexpr std::pair<std::string_view, std::string_view> kShorter[] = {
+      {"an array, each element of it a finite number", "numbers, each"},
+      {"one of these strings: ", ""},
+      {"an array of strings", "list of texts"},
+      {"a finite number", "number"},
+      {"an integer", "integer"},
+      {"a string", "text"},
+  };
+  std::vector<std::string> texts;
+  for (std::string text : setting.allowed) {
+    for (const auto& [longer, shorter] : kShorter) {
+      if (text.starts_with(longer)) {
+        text.replace(0, longer.size(), shorter);
+        break;
+      }
+    }
+    texts.push_back(std::move(text));
+  }
+  return join(texts, "; or ");
+}
+
+// "task.speed_m_per_s" -> "[task]"; "requirement[].use" -> "[[requirement]]"; "" at the top.
+std::string get_table_heading(const std::string& path) {
+  const std::size_t dot = path.rfind('.');
+  if (dot == std::string::npos) {
+    return "";
+  }
+  const std::string table = path.substr(0, dot);
+  return table.ends_with("[]") ? "[[" + table.substr(0, table.size() - 2) + "]]"
+                               : "[" + table + "]";
+}
+
+std::string format_row(const Setting& setting) {
+  std::vector<std::string> defaults;
+  std::ranges::transform(list_defaults(setting), std::back_inserter(defaults), format_code);
+  return fmt::format("| {} | {} | {} | {} | {} |\n",
+                     format_code(setting.path.substr(setting.path.rfind('.') + 1)),
+                     escape_markdown(setting.meaning), escape_markdown(shorten_allowed(setting)),
+                     escape_markdown(setting.unit), join(defaults, " or "));
+}
+
+// A table of Markdown for each of the file's tables.
+std::string format_tables(const std::vector<Setting>& settings) {
+  std::string text, heading = "none yet";
+  for (const Setting& setting : settings) {
+    if (const std::string own = get_table_heading(setting.path); own != heading) {
+      heading = own;
+      text += (heading.empty() ? "\n" : fmt::format("\n### `{}`\n\n", heading)) +
+              "| key | meaning | allowed | unit | default |\n|---|---|---|---|---|\n";
+    }
+    text += format_row(setting);
+  }
+  return text;
+}
+
+std::string format_page(const std::string& name) {
+  if (!name.empty()) {
+    throw Error(ErrorKind::usage, "the page of settings has all of them; leave out the name");
+  }
+  std::string text = fmt::format(
+      "{}# Settings\n\n"
+      "Every key of the configuration files, as `armwright list settings` prints them. Units are "
+      "SI, and a key's name ends with its unit. Without a default a key is required, or what its "
+      "absence means stands beside it. Unknown keys are refused, with the nearest valid one. In "
+      "`--set` a key is named with its table: `task.speed_m_per_s`.\n",
+      kGeneratedPage);
+  for (const SettingFile& file : list_setting_files()) {
+    text += fmt::format("\n## {}\n\n{}\n", file.title, file.words) + format_tables(file.settings);
+  }
+  return text;
+}
+
+}  // namespace
+
+ListKind make_setting_kind() {
+  return {
+      .name = "settings",
+      .list = list_known_settings,
+      .explain = explain_setting,
+      .explain_as_json = [](const std::string& name) { return to_json(name, find_setting(name)); },
+      .list_as_json = list_settings_as_json,
+      .explain_as_markdown = format_page};
+}
+
+}  // namespace armwright

@@ -1,0 +1,45 @@
+// The kinds of things that `list` knows: how to name them all, and how to explain one of them.
+#pragma once
+
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cli/terminal/terminal.hpp"
+#include "sim/engines/engine_table.hpp"
+
+namespace armwright {
+
+struct ListItem {
+  std::string name;
+  std::string summary;
+  std::string unavailable = {};  // why it cannot be used here; empty: it can
+};
+
+struct ListKind {
+  std::string name;  // "optimizers"
+  std::function<std::vector<ListItem>()> list;
+  // Error{usage} with the valid names if there is none of that name.
+  std::function<std::string(const std::string& name, const Style& style)> explain;
+  std::function<nlohmann::json(const std::string& name)> explain_as_json;
+  // Optional: more than names and summaries, for --json; and Markdown of all (no name) or of one.
+  std::function<nlohmann::json()> list_as_json = {};
+  std::function<std::string(const std::string& name)> explain_as_markdown = {};
+};
+
+ListKind make_problem_kind();
+ListKind make_optimizer_kind();
+ListKind make_robot_kind();
+ListKind make_engine_kind(std::span<const EngineRow> table = engine_table());
+ListKind make_design_kind();
+ListKind make_study_kind();
+ListKind make_controller_kind();
+ListKind make_setting_kind();
+std::vector<std::string> list_kind_names();  // "problems", "optimizers", ...
+
+// "NAME: SUMMARY" as a first line.
+std::string format_title(const Style& style, const std::string& name, const std::string& summary);
+
+}  // namespace armwright

@@ -1,0 +1,174 @@
+#include "cli/list/optimizer_page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/text.hpp"
+#include "cli/list/optimizer_words.hpp"
+#include "cli/terminal/format.hpp"
+#include "cli/terminal/markdown.hpp"
+
+namespace armwright {
+namespace {
+
+std::string format_sentence(const std::string& text) {
+  return escape_markdown(text) + (text.ends_with('.') ? "" : ".");
+}
+
+std::string format_allowed(const OptionSpec& option) {
+  if (option.choices.empty()) {
+    const std::string range = describe_range(option);
+    const bool is_text = std::holds_alternative<std::string>(option.fallback);
+    const std::string type = is_text ? "any text" : get_option_type(option.fallback);
+    return range.empty() ? type : type + ", " + range;
+  }
+  std::vector<std::string> choices;
+  std::ranges::transform(option.choices, std::back_inserter(choices), format_code);
+  return join(choices, ", ");
+}
+
+// "NLopt (CMake option X)" -> "NLopt"
+std::string get_backend_name(const OptimizerRow& row) {
+  return row.backend.substr(0, row.backend.find(" ("));
+}
+
+std::string format_index_row(const OptimizerRow& row) {
+  std::vector<std::string> needs = list_requirements(row.requirements);
+  if (!row.backend.empty()) {
+    needs.insert(needs.begin(), get_backend_name(row));
+  }
+  return fmt::format("| [`{}`]({}) | {}{} | {} | {} |\n", row.name, get_page_name(row.name),
+                     escape_markdown(row.summary), row.unfit.empty() ? "" : " (not offered)",
+                     escape_markdown(join(list_capabilities(row.capabilities), ", ")),
+                     escape_markdown(join(needs, ", ")));
+}
+
+std::string format_facts(const OptimizerRow& row) {
+  std::string text;
+  if (!row.unfit.empty()) {
+    text += fmt::format("- **Not offered:** {}\n", format_sentence(row.unfit));
+  }
+  text += row.backend.empty()
+              ? "- **Build:** every one has it.\n"
+              : fmt::format("- **Build:** one with {}, as every build is by default.\n",
+                            escape_markdown(row.backend));
+  const std::vector<std::string> required = list_requirements(row.requirements);
+  text += required.empty() ? "- **Problem:** any.\n"
+                           : fmt::format("- **Problem:** one with {}.\n",
+                                         escape_markdown(join(required, " and ")));
+  return text + fmt::format("- **Runs:** {}\n", format_sentence(describe_isolation(row)));
+}
+
+std::string format_calls(const OptimizerRow& row) {
+  if (!row.unfit.empty()) {
+    return "";
+  }
+  const std::string problem = row.requirements.objectives > 1 ? "q2-pareto" : "q1-complex";
+  const auto format_call = [&](const std::string& name, const std::vector<std::string>& flags) {
+    std::vector<std::string> words = {"armwright", "optimize", problem, "--optimizer", name};
+    words.insert(words.end(), flags.begin(), flags.end());
+    return "    " + quote_command(words) + "\n";
+  };
+  std::string text = "## How to call it\n\n" + format_call(row.name, {});
+  if (row.capabilities.stochastic) {
+    text += format_call(row.name, {"--seed", "2"});
+  }
+  if (!row.options.empty()) {
+    const OptionSpec& first = row.options.front();
+    text += format_call(row.name, {"--opt", first.name + "=" + to_text(first.fallback)});
+  }
+  if (row.capabilities.generations) {
+    text += format_call(row.name, {"--schedule", "fresh:1"});
+  }
+  if (row.capabilities.local) {
+    text += format_call("multistart:" + row.name, {});
+  }
+  return text + "\n";
+}
+
+std::string format_capabilities(const OptimizerRow& row) {
+  std::string text = "## Capabilities\n\n| capability | | what that means |\n|---|---|---|\n";
+  for (const CapabilityWords& words : capability_words()) {
+    text +=
+        fmt::format("| {} | {} | {} |\n", words.name, row.capabilities.*words.member ? "yes" : "no",
+                    escape_markdown(describe_capability(row, words)));
+  }
+  return text + "\n";
+}
+
+std::string format_options(const OptimizerRow& row) {
+  if (row.options.empty()) {
+    return "## Options\n\nIt has none.\n\n";
+  }
+  std::string text = "## Options\n\n| option | default | allowed | meaning |\n|---|---|---|---|\n";
+  for (const OptionSpec& option : row.options) {
+    text += fmt::format("| {} | {} | {} | {} |\n", format_code(option.name),
+                        format_code(to_text(option.fallback)), format_allowed(option),
+                        escape_markdown(option.description));
+  }
+  return text + "\n";
+}
+
+// Papers stand in a row's source one behind the other.
+std::string format_source(const OptimizerRow& row) {
+  std::string text = "## Source\n\n";
+  std::string rest = row.source;
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find("; "), rest.size());
+    text += fmt::format("- {}\n", format_sentence(rest.substr(0, end)));
+    rest.erase(0, end + 2);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string get_page_name(const std::string& optimizer) {
+  std::string name = optimizer + ".md";
+  std::ranges::replace(name, ':', '-');
+  return name;
+}
+
+std::string format_optimizer_index(std::span<const OptimizerRow> rows) {
+  std::string text = fmt::format(
+      "{}# Optimizers\n\n"
+      "What `--optimizer` takes, in the order of `armwright list optimizers`. Two more ways to "
+      "name "
+      "one:\n\n"
+      "- `multistart:NAME` runs a *local* one from the start and then from random points, until "
+      "the budget ends.\n"
+      "- `./libmine.so` and `exec:COMMAND` are [optimizers of your "
+      "own](../plugins.md).\n\n"
+      "Every optimizer gets the same budget, the same training cases and the same judging of its "
+      "winner. All are repeatable: the same seed gives the same run. Where options speak of a "
+      "share of "
+      "the box, they mean the distance between a variable's bounds, or between their logarithms "
+      "where "
+      "the variable is logarithmic.\n\n"
+      "| optimizer | what it is | capabilities | needs |\n|---|---|---|---|\n",
+      kGeneratedPage);
+  for (const OptimizerRow& row : rows) {
+    text += format_index_row(row);
+  }
+  text +=
+      "\nWhat *needs* names a library is missing in a build without it. What *needs* demands of "
+      "the "
+      "problem is checked before a run begins.\n\n"
+      "## How to read the capabilities\n\n"
+      "| capability | an optimizer with it | one without |\n|---|---|---|\n";
+  for (const CapabilityWords& words : capability_words()) {
+    text += fmt::format("| {} | {} | {} |\n", words.name, escape_markdown(words.with),
+                        escape_markdown(words.without));
+  }
+  return text;
+}
+
+std::string format_optimizer_page(const OptimizerRow& row) {
+  return fmt::format("{}# {}\n\n{}\n\n", kGeneratedPage, format_code(row.name),
+                     format_sentence(row.summary)) +
+         format_facts(row) + "\n" + format_calls(row) + format_capabilities(row) +
+         format_options(row) + format_source(row) + "\n[All optimizers](README.md)\n";
+}
+
+}  // namespace armwright

@@ -1,0 +1,288 @@
+#include "cli/terminal/arguments.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <iterator>
+#include <thread>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "base/toml_text.hpp"
+#include "cli/terminal/session.hpp"
+#include "problems/config/config_files.hpp"
+#include "sim/engines/engine_table.hpp"
+#include "sim/tracking/physics_engine.hpp"
+#include "study/executor/mpi_transport.hpp"
+#include "study/run/run_folder.hpp"
+#include "study/run/run_plan.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr std::int64_t kMostJobs = 1024;
+
+[[noreturn]] void refuse(std::string_view flag, std::string_view text, std::string_view allowed) {
+  throw Error(ErrorKind::usage,
+              fmt::format("{} is '{}'; it must be {}", flag, sanitize(text), allowed));
+}
+
+}  // namespace
+
+std::int64_t parse_count(std::string_view flag, std::string_view text, std::int64_t lower,
+                         std::int64_t upper) {
+  const auto value = parse_integer(text);
+  if (!value || *value < lower || *value > upper) {
+    refuse(flag, text, fmt::format("an integer from {} to {}", lower, upper));
+  }
+  return *value;
+}
+
+double parse_duration_s(std::string_view flag, std::string_view text) {
+  constexpr double kLongest_s = 1e9;
+  double unit_s = 1;
+  std::string_view number = text;
+  if (!text.empty() && std::string_view("smh").find(text.back()) != std::string_view::npos) {
+    unit_s = text.back() == 's' ? 1 : text.back() == 'm' ? 60 : 3600;
+    number.remove_suffix(1);
+  }
+  const auto value = parse_finite(number);
+  if (!value || *value <= 0 || *value * unit_s > kLongest_s) {
+    refuse(flag, text, "a time above 0: seconds (90 or 90s), minutes (10m) or hours (2h)");
+  }
+  return *value * unit_s;
+}
+
+Schedule parse_schedule(std::string_view text) {
+  const auto schedule = read_schedule(text);
+  if (!schedule) {
+    refuse("--schedule", text, kScheduleForms);
+  }
+  return *schedule;
+}
+
+Racing parse_racing(std::string_view text) {
+  const auto racing = read_racing(text);
+  if (!racing) {
+    refuse("--racing", text, kRacingForms);
+  }
+  return *racing;
+}
+
+CLI::App* add_command(CLI::App& parent, Session& session, const std::string& name,
+                      const std::string& description, const std::string& examples) {
+  CLI::App* command = parent.add_subcommand(name, description);
+  command->add_option("--color", session.color, "When to use colour: auto, always or never")
+      ->type_name("WHEN")
+      ->group("Output");
+  command->footer(examples + std::string(kSeeExitCodes));
+  return command;
+}
+
+void JobsOption::add_to(CLI::App& command, const std::string& fallback) {
+  command
+      .add_option("--jobs,-j", text,
+                  fmt::format("Threads that simulate; the results do not depend on it\n"
+                              "(default: {})",
+                              fallback))
+      ->type_name("N")
+      ->envname("ARMWRIGHT_JOBS");
+}
+
+unsigned JobsOption::get() const {
+  if (text.empty()) {
+    const auto place = find_rank_place();
+    return place ? count_rank_cores(*place) : std::max(1U, std::thread::hardware_concurrency());
+  }
+  return static_cast<unsigned>(parse_count("--jobs (ARMWRIGHT_JOBS)", text, 1, kMostJobs));
+}
+
+void TimeLimitOption::add_to(CLI::App& command) {
+  command.add_option("--time-limit", text, "Stop, resumably, after a time: 90, 90s, 10m, 2h")
+      ->type_name("DURATION");
+}
+
+void TimeLimitOption::apply(StopSignal& stop) const {
+  if (!text.empty()) {
+    const std::chrono::duration<double> limit(parse_duration_s("--time-limit", text));
+    stop.set_deadline(StopSignal::Clock::now() +
+                      std::chrono::duration_cast<StopSignal::Clock::duration>(limit));
+  }
+}
+
+void FolderOptions::add_to(CLI::App& command, const std::string& what,
+                           const std::string& fallback) {
+  command.add_option("--out", out, fmt::format("The {}'s folder (default: {})", what, fallback))
+      ->type_name("FOLDER")
+      ->group("Output");
+  command
+      .add_flag(
+          "--new", another,
+          fmt::format("Another {} beside one that is there: FOLDER-002, FOLDER-003, ...", what))
+      ->group("Output");
+}
+
+std::filesystem::path FolderOptions::choose(const std::string& name) const {
+  if (out.empty()) {
+    return choose_run_folder("results", name, another);
+  }
+  auto path = std::filesystem::path(out).lexically_normal();
+  if (!path.has_filename()) {
+    path = path.parent_path();  // "results/mine/"
+  }
+  return choose_run_folder(path.parent_path(), path.filename().string(), another);
+}
+
+void add_design_argument(CLI::App& command, std::string& design) {
+  command
+      .add_option(
+          "DESIGN", design,
+          "A design file, the name of a shipped one (armwright list designs), or \"start\":\n"
+          "where the problem's optimization starts")
+      ->required();
+}
+
+void EngineFlags::add_to(CLI::App& command, bool with_training) {
+  trains = with_training;
+  command
+      .add_option("--engine", engine,
+                  trains ? "Physics engine, the same as --set physics.engine=NAME\n"
+                           "(armwright list engines; default: the problem's)"
+                         : "Physics engine (armwright list engines; default: the one that the\n"
+                           "problem is judged with)")
+      ->type_name("NAME");
+  if (trains) {
+    command
+        .add_option("--judging-engine", judging_engine,
+                    "Another engine for validation and test, the same as\n"
+                    "--set physics.judging_engine=NAME (default: that of training)")
+        ->type_name("NAME");
+    command
+        .add_option("--precision", precision,
+                    "double (default) or float, the latter quicker and in training only; for\n"
+                    "engines with SIMD, the same as --set physics.precision=NAME")
+        ->type_name("NAME");
+  }
+  command
+      .add_option("--simd", simd,
+                  "Instruction set of engines with SIMD, on which the last digits of results\n"
+                  "depend; the same as physics.simd (default: auto, the best of this machine)")
+      ->type_name("LEVEL");
+}
+
+std::vector<std::string> EngineFlags::get() const {
+  std::vector<std::string> overrides;
+  const auto add = [&](std::string_view key, std::string_view what, const std::string& value,
+                       const std::vector<std::string>& valid) {
+    if (value.empty()) {
+      return;
+    }
+    if (std::ranges::find(valid, value) == valid.end()) {
+      throw Error(ErrorKind::usage, describe_unknown(what, value, valid));
+    }
+    overrides.push_back(fmt::format("physics.{}={}", key, value));
+  };
+  std::vector<std::string> levels = simd_names();
+  levels.insert(levels.begin(), "auto");
+  add("engine", "engine", engine, engine_names());
+  add("judging_engine", "engine", trains ? judging_engine : engine, engine_names());
+  add("precision", "precision", precision, precision_names());
+  add("simd", "SIMD level", simd, levels);
+  return overrides;
+}
+
+std::string_view get_override_key(std::string_view assignment) {
+  constexpr std::string_view kBlanks = " \t";
+  std::string_view key = assignment.substr(0, assignment.find('='));
+  key.remove_prefix(std::min(key.size(), key.find_first_not_of(kBlanks)));
+  return key.substr(0, key.find_last_not_of(kBlanks) + 1);
+}
+
+void OverrideOptions::add_to(CLI::App& command, bool with_training) {
+  command
+      .add_option("--set", set,
+                  "Change a setting of the problem, as in task.speed_m_per_s=2; repeatable.\n"
+                  "'armwright list problems NAME' shows its own, 'list settings' what they mean")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  engines.add_to(command, with_training);
+  robot.add_to(command);
+}
+
+std::string OverrideOptions::choose_problem(const std::string& typed) const {
+  return typed.empty() && !robot.robot.empty() ? "robot" : typed;
+}
+
+void RobotFlags::add_to(CLI::App& command) {
+  command
+      .add_option("--robot", robot,
+                  "An arm of your own, a URDF, or a shipped one (armwright list robots); the same\n"
+                  "as --set robot.urdf=FILE, on the problem 'robot' if none is named")
+      ->type_name("FILE");
+  command
+      .add_option("--base", base,
+                  "The link at which the arm begins (default: the robot's root), the same as\n"
+                  "--set robot.base=LINK")
+      ->type_name("LINK");
+  command
+      .add_option("--tip", tip,
+                  "The link whose frame is the tool centre point (default: the only one at the\n"
+                  "end of the chain), the same as --set robot.tip=LINK")
+      ->type_name("LINK");
+}
+
+std::vector<std::string> RobotFlags::get() const {
+  std::vector<std::string> overrides;
+  if (!robot.empty()) {
+    // As it is from everywhere, so that a run's folder can be reported on from another one.
+    const std::filesystem::path file = resolve_config("robots", robot);
+    overrides.push_back("robot.urdf=" + quote_toml(std::filesystem::absolute(file).string()));
+  }
+  if (!base.empty()) {
+    overrides.push_back("robot.base=" + quote_toml(base));
+  }
+  if (!tip.empty()) {
+    overrides.push_back("robot.tip=" + quote_toml(tip));
+  }
+  return overrides;
+}
+
+std::vector<std::string> OverrideOptions::get() const {
+  std::vector<std::string> overrides = set;
+  std::vector<std::string> flags = engines.get();
+  std::ranges::move(robot.get(), std::back_inserter(flags));
+  for (std::string& flag : flags) {
+    const std::string_view key = get_override_key(flag);
+    const auto same = std::ranges::find(set, key, get_override_key);
+    if (same != set.end()) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("--set {} is contradicted or repeated by a flag that means --set {}; "
+                              "give only one of them",
+                              sanitize(*same), flag));
+    }
+    overrides.push_back(std::move(flag));
+  }
+  return overrides;
+}
+
+void CaseOptions::add_to(CLI::App& command) {
+  auto* set = command
+                  .add_option("--test-set", test_set,
+                              "Generated test set: 2 is short for test/2 (default: the problem's)")
+                  ->type_name("ID");
+  command
+      .add_option("--test-cases", test_cases,
+                  "Test cases from a file instead: JSON {\"cases\": [[[x,y,z], ...], ...]} in\n"
+                  "metres, or CSV case,point,x_m,y_m,z_m")
+      ->type_name("FILE")
+      ->excludes(set);
+  command
+      .add_option("--cases", cases,
+                  "Use the first N cases (default: as many as the problem says, or all in\n"
+                  "the file)")
+      ->type_name("N");
+}
+
+}  // namespace armwright

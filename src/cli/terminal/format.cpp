@@ -1,0 +1,50 @@
+#include "cli/terminal/format.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/text.hpp"
+
+namespace armwright {
+
+std::string format_significant(double value, int digits) {
+  const double size = std::abs(value);
+  if (size == 0) {
+    return "0";
+  }
+  if (!(size >= 1e-4 && size < 1e9)) {
+    return fmt::format("{:.{}e}", value, digits - 1);
+  }
+  const int decimals = digits - 1 - static_cast<int>(std::floor(std::log10(size)));
+  return fmt::format("{:.{}f}", value, std::max(0, decimals));
+}
+
+std::string format_mm(std::optional<double> length_m) {
+  return length_m ? format_significant(*length_m * 1000) : "-";
+}
+
+std::string format_quantity(double value, std::string_view unit) {
+  if (unit == "m") {
+    return format_mm(value) + " mm";
+  }
+  return format_significant(value) + (unit.empty() || unit == "1" ? "" : fmt::format(" {}", unit));
+}
+
+std::string format_duration(double seconds) {
+  const auto whole = static_cast<long long>(std::ceil(seconds));
+  if (whole < 60) {
+    return fmt::format("{} s", whole);
+  }
+  if (whole < 3600) {
+    return fmt::format("{}:{:02}", whole / 60, whole % 60);
+  }
+  return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+}
+
+std::string format_count(unsigned long long count, std::string_view singular) {
+  return fmt::format("{} {}{}", count, singular, count == 1 ? "" : "s");
+}
+
+}  // namespace armwright

@@ -1,0 +1,324 @@
+#include "cli/views/result_view.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/text.hpp"
+#include "cli/terminal/format.hpp"
+#include "cli/terminal/session.hpp"
+#include "cli/views/requirement_view.hpp"
+#include "sim/tracking/designed_arm.hpp"
+
+namespace armwright {
+namespace {
+
+struct RunFile {
+  const char* name;
+  const char* what;
+};
+constexpr RunFile kRunFiles[] = {
+    {"winner.toml", "the winner, for evaluate and sweep"},
+    {"winner-trajectory.csv", "its motion on the first test case"},
+    {"front.csv", "the designs on the front, with what the validation set says of them"},
+    {"result.json", "all numbers of this result"},
+    {"convergence.csv", "the best value over the evaluations"},
+    {"results.sqlite", "every evaluation, as SQL tables"},
+    {"journal", "every evaluation, as it was made: resuming reads it"},
+    {"optimizer.log", "what the optimizer printed"},
+    {"manifest.json", "what was asked for, and what it was made with"},
+};
+
+std::optional<double> get_metric(const RunResult& result, const std::string& name) {
+  const auto found = std::find(result.metric_names.begin(), result.metric_names.end(), name);
+  const auto at = static_cast<std::size_t>(found - result.metric_names.begin());
+  return at < result.test.metrics.size() ? std::optional(result.test.metrics[at]) : std::nullopt;
+}
+
+// Robot problems have cases with errors in metres; of a function there is only its value.
+bool is_tracking(const RunResult& result) {
+  return std::find(result.metric_names.begin(), result.metric_names.end(), "total_torque") !=
+         result.metric_names.end();
+}
+
+std::string format_vector(const RunResult& result, const std::vector<double>& x,
+                          const Style& style) {
+  Table table({{"variable", false}, {"value"}});
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    table.add_row({sanitize(result.variable_names.at(i)), format_significant(x[i], 6)});
+  }
+  return table.format(style, 2);
+}
+
+std::string format_winner(const RunResult& result, const std::filesystem::path& folder,
+                          const Style& style) {
+  const Candidate& winner = result.judged[*result.winner].candidate;
+  std::string origin = winner.recommended ? std::string("recommended by the optimizer")
+                                          : fmt::format("evaluation {}", winner.evaluation);
+  if (winner.generation > 0) {
+    origin += fmt::format(", generation {}", winner.generation);
+  }
+  const std::string title =
+      style.bold("Winner") + fmt::format(" ({}; the best of {} judged on the validation set)\n",
+                                         origin, format_count(result.judged.size(), "design"));
+  const auto file = folder / "winner.toml";
+  return title + (std::filesystem::exists(file) ? format_design(load_design(file.string()), style)
+                                                : format_vector(result, winner.x, style));
+}
+
+void add_target(const RunResult& result, Table& table) {
+  const Quantity target = get_target(result);
+  table.add_row(
+      {sanitize(target.name), format_quantity(calc_target(result, result.test), target.unit)});
+}
+
+std::string format_tracking_test(const RunResult& result, const Style& style) {
+  Table table = make_summary_table(result.test_summary);
+  if (const auto torque = get_metric(result, "total_torque")) {
+    table.add_row({"total torque", format_quantity(*torque, "N m")});
+  }
+  if (const auto energy = get_metric(result, "energy")) {
+    table.add_row({"mean energy", format_quantity(*energy, "J")});
+  }
+  const bool is_shown = get_target(result).unit == "m" || get_target(result).name == "total torque";
+  if (!is_shown && !result.test.objectives.empty()) {
+    add_target(result, table);
+  }
+  return style.bold(fmt::format("On the test set {}", sanitize(result.test_set))) + "\n" +
+         table.format(style, 2);
+}
+
+std::string format_function_test(const RunResult& result, const Style& style) {
+  Table table({{"", false}, {"", false}});
+  if (!result.test.objectives.empty()) {
+    add_target(result, table);
+  }
+  return table.format(style, 2);
+}
+
+// A constraint's value as a user thinks of it: what keeps the limit, or else g.
+std::string format_constraint(const RunResult& result, std::size_t i, double g) {
+  if (result.limits.empty()) {
+    return format_quantity(g, result.constraints[i].unit) + (g > 0 ? " (violated)" : " (met)");
+  }
+  const Limit& limit = result.limits[i];
+  return fmt::format("{} ({} % {})", format_quantity((1 + g) * limit.value, limit.quantity.unit),
+                     format_significant(100 * std::abs(g), 3), g > 0 ? "above" : "below");
+}
+
+std::string describe_feasibility(const Evaluation& evaluation) {
+  if (is_proven_feasible(evaluation)) {
+    return "feasible";
+  }
+  return evaluation.failed_cases > 0
+             ? fmt::format(
+                   "not shown: {} without a number",
+                   format_count(static_cast<unsigned long long>(evaluation.failed_cases), "case"))
+             : "NOT feasible";
+}
+
+std::string format_constraints(const RunResult& result, const Style& style) {
+  const Evaluation& validation = result.judged[*result.winner].validation;
+  Table table({{"", false}, {"at most"}, {"on the validation set"}, {"on the test set"}});
+  for (std::size_t i = 0; i < result.constraints.size(); ++i) {
+    const auto value = [&](const Evaluation& evaluation) {
+      return evaluation.constraint_values.empty()
+                 ? std::string("-")
+                 : format_constraint(result, i, evaluation.constraint_values.at(i));
+    };
+    const bool has_limit = !result.limits.empty();
+    table.add_row(
+        {sanitize(has_limit ? result.limits[i].quantity.name : result.constraints[i].name),
+         has_limit ? format_quantity(result.limits[i].value, result.limits[i].quantity.unit) : "0",
+         value(validation), value(result.test)});
+  }
+  table.add_row({"all", "", describe_feasibility(validation), describe_feasibility(result.test)});
+  return style.bold("Constraints") + "\n" + table.format(style, 2);
+}
+
+// On the test set.
+std::string format_winner_requirements(const RunResult& result, const Style& style) {
+  std::vector<ShownRequirement> shown;
+  for (JudgedRequirement& judged : judge_requirements(result.requirements, result.test)) {
+    shown.push_back({std::move(judged), {}});
+  }
+  return format_requirements(shown, style);
+}
+
+std::string format_published(const RunResult& result, const Style& style) {
+  const PublishedWinner& published = result.published;
+  Table table({{"", false}, {"published"}, {"ours"}, {"ratio"}});
+  const auto add = [&](const char* name, std::optional<double> theirs, std::optional<double> ours,
+                       const char* unit) {
+    if (theirs) {
+      table.add_row({name, format_quantity(*theirs, unit),
+                     ours ? format_quantity(*ours, unit) : "-",
+                     ours ? format_significant(*ours / *theirs, 3) : "-"});
+    }
+  };
+  add("mean error", published.error_m, result.test_summary.mean, "m");
+  add("total torque", published.total_torque_n_m, get_metric(result, "total_torque"), "N m");
+  return style.bold("Beside the published winner") +
+         (published.where.empty() ? "" : fmt::format(" ({})", sanitize(published.where))) + "\n" +
+         table.format(style, 2);
+}
+
+}  // namespace
+
+std::string format_design(const DesignFile& design, const Style& style) {
+  const ControllerRow& controller = find_controller(design.design.controller);
+  std::vector<Column> columns = {{"joint", false}};
+  for (const GainSpec& gain : controller.gains) {
+    columns.push_back({fmt::format("{} [{}]", gain.name, gain.unit)});
+  }
+  columns.push_back({"min [N m]"});
+  columns.push_back({"max [N m]"});
+  const bool stretched = is_stretched(design.design);
+  if (stretched) {
+    columns.push_back({"length"});
+    columns.push_back({"section"});
+  }
+  Table table(std::move(columns));
+  for (std::size_t i = 0; i < design.design.joints.size(); ++i) {
+    const JointDrive& joint = design.design.joints[i];
+    std::vector<std::string> cells = {sanitize(design.joint_names.at(i))};
+    for (const double gain : joint.gains) {
+      cells.push_back(format_significant(gain, 6));
+    }
+    cells.push_back(format_significant(joint.limits.min_n_m, 6));
+    cells.push_back(format_significant(joint.limits.max_n_m, 6));
+    if (stretched) {
+      cells.push_back(format_significant(joint.length_scale, 4));
+      cells.push_back(format_significant(joint.section_scale, 4));
+    }
+    table.add_row(std::move(cells));
+  }
+  std::string text = table.format(style, 2);
+  if (design.design.speed_m_per_s) {
+    text += fmt::format("  speed {} m/s\n", format_significant(*design.design.speed_m_per_s, 4));
+  }
+  return text;
+}
+
+std::string describe_no_winner(const RunResult& result) {
+  if (result.counts.evaluations == 0) {
+    return "Nothing was evaluated, so there is no winner.";
+  }
+  if (result.counts.feasible == 0 && !result.first_failure.empty()) {
+    return "No design worked, so there is no winner. The first failed with: " +
+           sanitize(result.first_failure);
+  }
+  if (result.counts.feasible > 0) {
+    return "Of the designs that were good in training none has a number on the validation set, so "
+           "there is no winner.";
+  }
+  std::string nearest;
+  if (result.least_violation && result.limits.size() == 1) {
+    const Limit& limit = result.limits.front();
+    nearest = fmt::format(
+        " The nearest had {} {}, where {} are allowed.", sanitize(limit.quantity.name),
+        format_quantity((1 + *result.least_violation) * limit.value, limit.quantity.unit),
+        format_quantity(limit.value, limit.quantity.unit));
+  } else if (result.least_violation) {
+    nearest = fmt::format(" The nearest violated them by {} in sum.",
+                          format_significant(*result.least_violation));
+  }
+  return "No design met the constraints, so there is no winner." + nearest;
+}
+
+std::string describe_result(const RunResult& result, const std::filesystem::path& folder,
+                            const Style& style) {
+  const RunCounts& counts = result.counts;
+  std::string text = style.bold(fmt::format("{}: {}, seed {}", sanitize(result.problem),
+                                            sanitize(result.optimizer), result.seed));
+  text += fmt::format("\n  {} on {}", format_count(counts.evaluations, "evaluation"),
+                      format_count(counts.cases, "case"));
+  if (counts.generations > 0) {
+    text += fmt::format(", {}", format_count(counts.generations, "generation"));
+  }
+  if (counts.abandoned > 0) {
+    text += fmt::format(", {} of them dropped in races", counts.abandoned);
+  }
+  text += fmt::format("; {} failed, {} clipped to the bounds; ended by: {}\n\n", counts.failed,
+                      counts.clipped, sanitize(result.end_reason));
+  if (!result.failure.empty()) {
+    text +=
+        style.red("The optimizer failed: " + sanitize(result.failure)) +
+        "\nWhat it had asked for until then is kept and judged; the same command tries again from "
+        "there.\n\n";
+  }
+  if (!result.winner) {
+    text += style.red(describe_no_winner(result)) + "\n\n";
+  } else {
+    text += format_winner(result, folder, style) + "\n";
+    text += is_tracking(result) ? format_tracking_test(result, style)
+                                : format_function_test(result, style);
+    text += "\n";
+    if (!result.requirements.empty()) {
+      text += format_winner_requirements(result, style) + "\n";
+    }
+    if (!result.constraints.empty()) {
+      text += format_constraints(result, style) + "\n";
+    }
+    if (result.published.error_m || result.published.total_torque_n_m) {
+      text += format_published(result, style) + "\n";
+    }
+  }
+  Table files({{"", false}, {"", false}});
+  for (const RunFile& file : kRunFiles) {
+    if (std::filesystem::exists(folder / file.name)) {
+      files.add_row({file.name, file.what});
+    }
+  }
+  return text + style.bold("Files in " + sanitize(folder.string())) + "\n" + files.format(style, 2);
+}
+
+std::string describe_judged(const RunResult& result, const Style& style) {
+  std::vector<Column> columns = {{"", false},  {"evaluation"}, {"generation"},
+                                 {"training"}, {"validation"}, {"without number"}};
+  if (!result.constraints.empty()) {
+    columns.push_back({"constraints", false});
+  }
+  Table table(std::move(columns));
+  for (std::size_t i = 0; i < result.judged.size(); ++i) {
+    const Candidate& candidate = result.judged[i].candidate;
+    const Evaluation& validation = result.judged[i].validation;
+    const auto value = [&](double objective) {
+      return format_quantity(objective, get_target(result).unit);
+    };
+    std::vector<std::string> cells = {
+        result.winner == i ? "winner" : "",
+        candidate.recommended ? "recommended" : fmt::format("{}", candidate.evaluation),
+        candidate.generation > 0 ? fmt::format("{}", candidate.generation) : "-",
+        candidate.recommended ? "-" : value(candidate.training_objective),
+        validation.objectives.empty() ? "-" : value(calc_target(result, validation)),
+        fmt::format("{}", validation.failed_cases)};
+    if (!result.constraints.empty()) {
+      cells.push_back(describe_feasibility(validation));
+    }
+    table.add_row(std::move(cells));
+  }
+  return style.bold("Judged on the validation set") + "\n" + table.format(style, 2);
+}
+
+Table make_summary_table(const ErrorSummary& summary) {
+  const auto mm = [](std::optional<double> error_m) {
+    return error_m ? format_mm(error_m) + " mm" : "-";
+  };
+  Table table({{"", false}, {"", false}});
+  table.add_row({"mean error", mm(summary.mean)});
+  table.add_row({"median", mm(summary.median)});
+  table.add_row({"95 % below", mm(summary.percentile_95)});
+  table.add_row({"worst", mm(summary.worst)});
+  table.add_row({"failures", fmt::format("{} of {} ({} without a number)", summary.failures,
+                                         summary.cases, summary.without_number)});
+  return table;
+}
+
+int get_result_code(const RunResult& result) {
+  const bool good = result.failure.empty() && result.winner && is_proven_feasible(result.test);
+  return good ? exit_code::kDone : exit_code::kFailed;
+}
+
+}  // namespace armwright

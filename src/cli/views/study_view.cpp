@@ -1,0 +1,259 @@
+#include "cli/views/study_view.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/text.hpp"
+#include "cli/terminal/format.hpp"
+#include "cli/terminal/table.hpp"
+#include "study/analysis/verdict.hpp"
+#include "study/analysis/verdict_targets.hpp"
+
+namespace armwright {
+namespace {
+
+std::string format_value(double value, const Quantity& quantity) {
+  return std::isfinite(value) ? format_quantity(value, quantity.unit) : "-";
+}
+
+std::string list_labels(const StudyPlan& plan, bool baselines) {
+  std::vector<std::string> labels;
+  for (const StudyOptimizer& optimizer : plan.optimizers) {
+    if (optimizer.baseline == baselines) {
+      labels.push_back(optimizer.label);
+    }
+  }
+  return join(labels, ", ");
+}
+
+// The same without its unit, for a column where that stands already.
+std::string format_number(double value, const Quantity& quantity) {
+  const std::string text = format_value(value, quantity);
+  return text.substr(0, text.find(' '));
+}
+
+std::string describe_check(const std::optional<FinalCheck>& check, const Quantity& quantity) {
+  if (!check) {
+    return "-";
+  }
+  const std::string value = format_value(check->value, quantity);
+  return check->errors.failures == 0
+             ? value
+             : fmt::format("{}, {} of {} fail", value, check->errors.failures, check->errors.cases);
+}
+
+// The comparison with the problem's leader in a few characters.
+std::string describe_against_leader(const ProblemResult& problem, std::size_t optimizer) {
+  const std::size_t leader = problem.order.front();
+  if (optimizer == leader) {
+    return "";
+  }
+  const auto pair = std::ranges::find_if(problem.pairs, [&](const PairResult& one) {
+    return std::minmax(one.a, one.b) == std::minmax(leader, optimizer);
+  });
+  const double a12 = pair->a == leader ? pair->a12 : 1 - pair->a12;
+  return fmt::format("{:.2f}, p {}{}", a12, format_p(pair->p_holm),
+                     pair->is_beaten_by(leader) ? " *" : "");
+}
+
+std::string describe_problem(const StudyPlan& plan, const ProblemResult& problem,
+                             const Style& style) {
+  const bool has_final = std::ranges::any_of(
+      problem.optimizers, [](const OptimizerResult& one) { return one.final_check.has_value(); });
+  const bool has_cost = std::isfinite(problem.best_known) && !problem.has_front;
+  std::vector<Column> columns = {{"optimizer", false}, {"median"},   {"quartiles"},
+                                 {"mean rank"},        {"no value"}, {"A12, p"}};
+  if (has_cost) {
+    columns.push_back({"cases to 1 %"});
+  }
+  const bool some_fail = std::ranges::any_of(problem.optimizers, [](const OptimizerResult& one) {
+    return std::ranges::any_of(one.failure_shares, [](double share) { return share > 0; });
+  });
+  if (some_fail) {
+    columns.push_back({"cases failed"});
+  }
+  if (has_final) {
+    columns.push_back({"best on " + plan.final_engine});
+  }
+  Table table(columns);
+  for (const std::size_t o : problem.order) {
+    const OptimizerResult& one = problem.optimizers[o];
+    std::vector<std::string> row = {
+        plan.optimizers[o].label + (plan.optimizers[o].baseline ? " (baseline)" : ""),
+        format_value(one.spread.median, problem.quantity),
+        std::isfinite(one.spread.lower_quartile)
+            ? format_number(one.spread.lower_quartile, problem.quantity) + " to " +
+                  format_number(one.spread.upper_quartile, problem.quantity)
+            : "-",
+        fmt::format("{:.2f}", one.mean_rank),
+        one.infinite == 0 ? "" : fmt::format("{}", one.infinite),
+        describe_against_leader(problem, o)};
+    if (has_cost) {
+      const double expected = one.running_times[1].expected;
+      row.push_back(std::isfinite(expected) ? fmt::format("{:.0f}", expected) : "-");
+    }
+    if (some_fail) {
+      row.push_back(std::isfinite(one.mean_failure_share)
+                        ? fmt::format("{:.2g} %", 100 * one.mean_failure_share)
+                        : "-");
+    }
+    if (has_final) {
+      row.push_back(describe_check(one.final_check, problem.quantity));
+    }
+    table.add_row(std::move(row));
+  }
+  std::string text =
+      style.bold(problem.label) +
+      fmt::format("  {} on the test set, {} runs each\n", problem.quantity.name, plan.replicates) +
+      table.format(style, 2);
+  if (problem.friedman) {
+    text += fmt::format("  Friedman test (Iman-Davenport): F = {:.3g}, p {}\n", problem.friedman->f,
+                        format_p(problem.friedman->f_p_value));
+  }
+  return text + "\n";
+}
+
+std::string format_cases(double cases) {
+  return std::isfinite(cases) ? fmt::format("{:.0f}", cases) : "inf";
+}
+
+std::string format_ratio(double ratio) {
+  return std::isfinite(ratio) ? fmt::format("{:.2g}", ratio) : "inf";
+}
+
+std::string describe_targets(const StudyPlan& plan, const StudyProblem& problem,
+                             const ProblemResult& result, const Style& style) {
+  std::string text;
+  for (std::size_t t = 0; t < result.fixed_targets.size(); ++t) {
+    std::vector<Column> columns = {
+        {"optimizer", false}, {"runs"}, {"kept"}, {"expected cases"}, {"95 %"}};
+    if (!plan.reference.empty()) {
+      columns.push_back({"times " + plan.reference});
+      columns.push_back({"95 %"});
+    }
+    Table table(columns);
+    std::vector<std::size_t> order = result.order;
+    std::ranges::stable_sort(
+        order, {}, [&](std::size_t o) { return result.optimizers[o].target_times[t].expected; });
+    for (const std::size_t o : order) {
+      const TargetTime& time = result.optimizers[o].target_times[t];
+      const auto format_interval = [](const Interval& interval, auto format) {
+        return format(interval.lower) + " to " + format(interval.upper);
+      };
+      const bool ever = std::isfinite(time.expected);
+      std::vector<std::string> row = {
+          plan.optimizers[o].label, fmt::format("{}/{}", time.reached, time.trials.size()),
+          std::to_string(time.kept), ever ? format_cases(time.expected) : "-",
+          ever ? format_interval(time.interval, format_cases) : "-"};
+      if (!plan.reference.empty()) {
+        const bool compared = time.ratio && time.ratio->ratio;
+        row.push_back(compared ? format_ratio(*time.ratio->ratio) : "-");
+        row.push_back(compared ? format_interval(time.ratio->interval, format_ratio) : "-");
+      }
+      table.add_row(std::move(row));
+    }
+    text += style.bold(result.label) +
+            fmt::format("  to the target {}\n",
+                        describe_target(problem, plan.targets[result.fixed_targets[t]])) +
+            table.format(style, 2) + "\n";
+  }
+  return text;
+}
+
+std::string describe_ranking(const StudyPlan& plan, const StudyResult& result, const Style& style) {
+  Table table({{"optimizer", false}, {"mean rank"}});
+  const Ranking& ranking = result.overall.ranking.full;
+  for (const std::size_t o : ranking.order) {
+    table.add_row({plan.optimizers[o].label, fmt::format("{:.2f}", ranking.mean_ranks[o])});
+  }
+  return style.bold("Over the problems") + "  ranks of the medians\n" + table.format(style, 2) +
+         "\n";
+}
+
+}  // namespace
+
+std::string describe_plan(const StudyPlan& plan) {
+  Table table({{"", false}, {"", false, true}});
+  for (const StudyProblem& problem : plan.problems) {
+    const std::string settings =
+        problem.settings.empty() ? "" : " (" + join(problem.settings, ", ") + ")";
+    table.add_row({"problem", fmt::format("{}: schedule {}, {} test cases{}", problem.label,
+                                          to_text(problem.schedule), problem.loaded.sets.test_cases,
+                                          settings)});
+  }
+  table.add_row({"optimizers", list_labels(plan, false)});
+  for (const StudyOptimizer& optimizer : plan.optimizers) {
+    std::vector<std::string> own = optimizer.settings;
+    if (optimizer.schedule) {
+      own.insert(own.begin(), "schedule " + to_text(*optimizer.schedule));
+    }
+    if (!own.empty()) {
+      table.add_row({"method", fmt::format("{}: {}", optimizer.label, join(own, ", "))});
+    }
+  }
+  for (const StudyTarget& target : plan.targets) {
+    for (const std::string& label : target.problems) {
+      const auto problem = std::ranges::find(plan.problems, label, &StudyProblem::label);
+      table.add_row({"target", fmt::format("{} on {}", describe_target(*problem, target), label)});
+    }
+  }
+  if (!plan.reference.empty()) {
+    table.add_row({"reference", plan.reference});
+  }
+  const std::string baselines = list_labels(plan, true);
+  if (!baselines.empty()) {
+    table.add_row({"baselines", baselines});
+  } else if (!plan.baselines) {
+    table.add_row({"baselines", "left out on request"});
+  }
+  table.add_row({"each", fmt::format("{} replicates, budget {} simulated cases", plan.replicates,
+                                     plan.budget)});
+  table.add_row({"paired", fmt::format("start and training cases of a replicate are the same for "
+                                       "all optimizers; study seed {}",
+                                       plan.seed)});
+  return table.format(Style(false), 0, get_text_width(Stream::error));
+}
+
+std::string describe_cost(const StudyPlan& plan, double expected_s, unsigned jobs) {
+  const StudyCost cost = calc_cost(plan);
+  std::string text = fmt::format(
+      "{} cells; at most {} simulated cases: training {}, validation {}, test {}\n", cost.cells,
+      cost.training + cost.validation + cost.test, cost.training, cost.validation, cost.test);
+  if (expected_s > 0) {
+    text += fmt::format(
+        "about {} with --jobs {} (measured on a few simulations; optimizers that think long "
+        "take longer)\n",
+        format_duration(expected_s), jobs);
+  }
+  return text;
+}
+
+std::string describe_study(const StudyPlan& plan, const StudyResult& result,
+                           const std::filesystem::path& folder, const Style& style) {
+  std::string text;
+  for (std::size_t p = 0; p < result.problems.size(); ++p) {
+    text += describe_problem(plan, result.problems[p], style);
+    text += describe_targets(plan, plan.problems[p], result.problems[p], style);
+  }
+  if (plan.problems.size() > 1) {
+    text += describe_ranking(plan, result, style);
+  }
+  text += style.bold("Verdict") + "\n";
+  for (const std::string& sentence : describe_verdict(plan, result)) {
+    for (const std::string& line : wrap_words(sentence, get_text_width(Stream::out) - 2)) {
+      text += "  " + line + "\n";
+    }
+  }
+  return text +
+         fmt::format(
+             "\nA12: how often a run of the table's first is better than one of this "
+             "optimizer's. p: of the\ndifference in pairs (Wilcoxon, after Holm); * below "
+             "{}. Cases to 1 %: expected, with restarts,\nuntil 1 % of the way from the "
+             "start to the best known is left. Cases failed: mean share of test cases with an "
+             "error above\n100 mm.\nTables: {}\n",
+             kSignificance, sanitize((folder / "tables").string()));
+}
+
+}  // namespace armwright

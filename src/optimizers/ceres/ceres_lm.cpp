@@ -1,0 +1,307 @@
+#include "optimizers/ceres/ceres_backend.hpp"
+
+#ifdef ARMWRIGHT_WITH_CERES
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <span>
+
+#include "base/error.hpp"
+#include "optimizers/ceres/ceres_support.hpp"
+
+namespace armwright {
+namespace {
+
+// Larger sums of squares count as failures: Ceres goes on to square their slopes, and complains on
+// stderr of what is not finite.
+constexpr double kLargestSquareSum = 1e200;
+
+double calc_square_sum(const std::vector<double>& values) {
+  return std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+}
+
+bool uses_logarithm(ResidualTransform transform, const ProblemDescription& problem) {
+  if (transform != ResidualTransform::automatic) {
+    return transform == ResidualTransform::logarithm;
+  }
+  return std::ranges::all_of(problem.variables, [](const DecisionVariable& variable) {
+    return variable.scale == Scale::logarithmic;
+  });
+}
+
+// The residuals as Ceres sees them. The first usable ones, the start's, set the scale: the cost,
+// half the sum of squares, is that of a mean, so that the damping means the same for every problem.
+class ResidualsOf {
+ public:
+  ResidualsOf(bool logarithm, double floor) : logarithm_(logarithm), floor_share_(floor) {}
+
+  // Empty for what failed: it has no residuals.
+  std::vector<double> operator()(const Score& score) {
+    std::vector<double> residuals = score.residuals;
+    const double square_sum = calc_square_sum(residuals);
+    if (residuals.empty() || !(square_sum < kLargestSquareSum)) {  // also where it is no number
+      return {};
+    }
+    const auto count = static_cast<double>(residuals.size());
+    if (scale_ == 0) {
+      scale_ = std::max(std::sqrt(square_sum / count), std::numeric_limits<double>::min());
+    }
+    const double floor = floor_share_ * scale_;
+    for (double& residual : residuals) {
+      const double share = residual / (logarithm_ ? floor : scale_);
+      residual = (logarithm_ ? std::log1p(share * share) : share) / std::sqrt(count);
+    }
+    return residuals;
+  }
+
+  // How fast each of them changes with the residual it is made of; after they were asked for.
+  std::vector<double> calc_slopes(const Score& score) const {
+    std::vector<double> slopes = score.residuals;
+    const auto root = std::sqrt(static_cast<double>(slopes.size()));
+    const double unit = logarithm_ ? floor_share_ * scale_ : scale_;
+    for (double& slope : slopes) {
+      const double share = slope / unit;
+      slope = (logarithm_ ? 2 * share / (1 + share * share) : 1) / (unit * root);
+    }
+    return slopes;
+  }
+
+ private:
+  bool logarithm_;
+  double floor_share_;
+  double scale_ = 0;  // root mean square of the start's residuals
+};
+
+// The coordinates in which the box is 10 wide and `centre` is 0.
+class CentredBox {
+ public:
+  CentredBox(const SearchSpace& space, std::vector<double> centre)
+      : space_(space), centre_(std::move(centre)) {}
+
+  double unit(std::size_t i) const {
+    return (space_.upper()[i] - space_.lower()[i]) / kCeresBoxWidth;
+  }
+  double lower(std::size_t i) const { return to_own(i, space_.lower()[i]); }
+  double upper(std::size_t i) const { return to_own(i, space_.upper()[i]); }
+
+  std::vector<double> to_coordinates(const double* p) const {
+    std::vector<double> coordinates;
+    for (std::size_t i = 0; i < space_.dimension(); ++i) {
+      coordinates.push_back(
+          std::clamp(centre_[i] + p[i] * unit(i), space_.lower()[i], space_.upper()[i]));
+    }
+    return coordinates;
+  }
+
+ private:
+  double to_own(std::size_t i, double coordinate) const {
+    return unit(i) > 0 ? (coordinate - centre_[i]) / unit(i) : 0;
+  }
+
+  const SearchSpace& space_;
+  std::vector<double> centre_;
+};
+
+// Steepest slope of a residual, in units of what its values are divided by and a tenth of the box.
+constexpr double kSteepest = 10;
+
+class ResidualCost : public ceres::CostFunction {
+ public:
+  ResidualCost(DifferencedFunction& function, const CentredBox& box, HeldException& held,
+               std::size_t residual_count)
+      : function_(function), box_(box), held_(held), residual_count_(residual_count) {
+    set_num_residuals(static_cast<int>(residual_count));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(function.space().dimension()));
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override {
+    double* const jacobian = jacobians == nullptr ? nullptr : jacobians[0];
+    const std::size_t dimension = function_.space().dimension();
+    const bool is_known = held_.run([&] {
+      const DifferencedFunction::Place& place =
+          function_.look_at(box_.to_coordinates(parameters[0]), jacobian != nullptr);
+      if (place.values.size() != residual_count_) {
+        return false;
+      }
+      std::ranges::copy(place.values, residuals);
+      for (std::size_t i = 0; jacobian != nullptr && i < dimension; ++i) {
+        for (std::size_t k = 0; k < residual_count_; ++k) {
+          jacobian[k * dimension + i] = place.derivatives[i][k] * box_.unit(i);
+        }
+      }
+      for (std::size_t k = 0; jacobian != nullptr && function_.is_exact() && k < residual_count_;
+           ++k) {
+        limit_steepness({jacobian + k * dimension, dimension});
+      }
+      return true;
+    });
+    if (is_known || jacobian == nullptr) {
+      return is_known;
+    }
+    // A Jacobian is asked for only where the residuals are known, so this is the end of the run.
+    // Ceres would announce a failure on stderr, logging switched off or not; a place without slope
+    // makes it return in silence.
+    std::fill_n(residuals, residual_count_, 0.0);
+    std::fill_n(jacobian, residual_count_ * dimension, 0.0);
+    return true;
+  }
+
+ private:
+  // A motion that is about to lose control answers to gains without bounds, and the slope says
+  // nothing of what lies a step away. It keeps its direction (gradient clipping; Pascanu, Mikolov
+  // and Bengio 2013, On the difficulty of training recurrent neural networks).
+  void limit_steepness(std::span<double> row) const {
+    const double steepest = kSteepest / std::sqrt(static_cast<double>(residual_count_));
+    const double largest =
+        std::abs(*std::ranges::max_element(row, {}, [](double slope) { return std::abs(slope); }));
+    if (largest > steepest) {
+      for (double& slope : row) {
+        slope *= steepest / largest;
+      }
+    }
+  }
+
+  DifferencedFunction& function_;
+  const CentredBox& box_;
+  HeldException& held_;
+  std::size_t residual_count_;
+};
+
+// The widest differences, share of the box: what is simulated is rough, what is not is smooth.
+constexpr double kRoughStep = 0.07;
+constexpr double kSmoothStep = 0.005;
+
+class LevenbergMarquardt : public Optimizer {
+ public:
+  explicit LevenbergMarquardt(const LevenbergSettings& settings) : settings_(settings) {}
+
+  void check_problem(const ProblemDescription& problem) const override {
+    if (settings_.exact && !problem.has_jacobian) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("optimizer 'ceres:lm': option derivatives is exact, but problem {} "
+                              "offers no exact derivatives: {}; or use derivatives=differences",
+                              problem.name,
+                              problem.jacobian_advice.empty() ? "only arms on an engine that "
+                                                                "computes them do"
+                                                              : problem.jacobian_advice));
+    }
+  }
+
+  void minimize(Evaluator& evaluator, std::uint64_t /*seed*/) override {
+    check_problem(evaluator.problem());
+    const bool logarithm = uses_logarithm(settings_.transform, evaluator.problem());
+    HeldException held;
+    if (settings_.exact) {
+      minimize_exactly(evaluator, held, logarithm);
+      held.rethrow_unless_stopped();
+      return;
+    }
+    DifferenceSettings differences = settings_.differences;
+    if (differences.step == 0) {
+      differences.step = logarithm ? kRoughStep : kSmoothStep;
+    }
+    std::optional<DifferencedFunction::Best> best;
+    const double smallest_step = std::min(settings_.smallest_step, differences.step);
+    for (bool is_going = true; is_going && differences.step >= smallest_step;
+         differences.step /= 2) {
+      is_going = held.run([&] {
+        ResidualsOf residuals_of(logarithm, settings_.floor);
+        DifferencedFunction function(evaluator, std::ref(residuals_of), differences);
+        if (best) {
+          function.learn(*best);
+        }
+        const std::vector<double> centre = best ? best->coordinates : function.space().start();
+        const std::size_t residual_count = function.look_at(centre, false).values.size();
+        if (residual_count == 0) {  // a start that fails offers nothing to descend from
+          return false;
+        }
+        solve(evaluator, function, held, centre, residual_count);
+        best = function.best();
+        return true;
+      });
+    }
+    held.rethrow_unless_stopped();
+  }
+
+ private:
+  void minimize_exactly(Evaluator& evaluator, HeldException& held, bool logarithm) const {
+    std::optional<DifferencedFunction::Best> best;
+    const auto calc = [&](const DifferencedFunction::Best& one) {
+      return calc_scalar(evaluator.problem(), one.score.objectives);
+    };
+    for (bool is_going = true; is_going;) {
+      is_going = held.run([&] {
+        ResidualsOf residuals_of(logarithm, settings_.floor);
+        DifferencedFunction function(evaluator, std::ref(residuals_of), [&](const Score& score) {
+          return residuals_of.calc_slopes(score);
+        });
+        if (best) {
+          function.learn(*best);
+        }
+        const std::vector<double> centre = best ? best->coordinates : function.space().start();
+        const std::size_t residual_count = function.look_at(centre, false).values.size();
+        if (residual_count == 0) {
+          return false;
+        }
+        solve(evaluator, function, held, centre, residual_count);
+        const bool has_gained = !best || calc(*function.best()) < calc(*best);
+        best = function.best();
+        return has_gained;
+      });
+    }
+  }
+
+  void solve(const Evaluator& evaluator, DifferencedFunction& function, HeldException& held,
+             const std::vector<double>& centre, std::size_t residual_count) const {
+    const CentredBox box(function.space(), centre);
+    std::vector<double> p(centre.size(), 0.0);
+    ResidualCost cost(function, box, held, residual_count);
+    ceres::Problem::Options ownership;
+    ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    ceres::Problem problem(ownership);
+    problem.AddResidualBlock(&cost, nullptr, p.data());
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      problem.SetParameterLowerBound(p.data(), static_cast<int>(i), box.lower(i));
+      problem.SetParameterUpperBound(p.data(), static_cast<int>(i), box.upper(i));
+    }
+    StopCallback callback(held, evaluator);
+    ceres::Solver::Options options;
+    options.minimizer_type = ceres::TRUST_REGION;
+    options.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
+    options.linear_solver_type = ceres::DENSE_QR;
+    options.num_threads = 1;
+    options.logging_type = ceres::SILENT;
+    options.minimizer_progress_to_stdout = false;
+    options.max_num_iterations = std::numeric_limits<int>::max();
+    options.max_solver_time_in_seconds = std::numeric_limits<double>::max();
+    // Steps are cut off at the bounds; a search along them would cost evaluations.
+    options.max_num_line_search_step_size_iterations = 0;
+    options.jacobi_scaling = settings_.jacobi_scaling;
+    options.min_lm_diagonal = settings_.min_damping;
+    options.initial_trust_region_radius = settings_.initial_radius;
+    options.function_tolerance = settings_.function_tolerance;
+    options.parameter_tolerance = settings_.parameter_tolerance;
+    options.callbacks.push_back(&callback);
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, &problem, &summary);
+  }
+
+  LevenbergSettings settings_;
+};
+
+}  // namespace
+
+std::unique_ptr<Optimizer> make_levenberg_marquardt(const LevenbergSettings& settings) {
+  return std::make_unique<LevenbergMarquardt>(settings);
+}
+
+}  // namespace armwright
+
+#endif

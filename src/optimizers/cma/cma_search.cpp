@@ -1,0 +1,237 @@
+#include "optimizers/cma/cma_search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/random.hpp"
+#include "optimizers/cma/cma_box.hpp"
+#include "optimizers/cma/cma_uncertainty.hpp"
+#include "optimizers/interface/feasibility.hpp"
+#include "optimizers/interface/scalar_function.hpp"
+
+namespace armwright {
+namespace {
+
+// What one run of the strategy begins with.
+struct RunPlan {
+  std::vector<double> mean;
+  std::size_t population = 0;
+  double sigma = 0;
+  std::int64_t budget = INT64_MAX;  // evaluations; ends the run after a generation
+};
+
+class CmaSearch {
+ public:
+  CmaSearch(const CmaSearchSettings& settings, Evaluator& evaluator, std::uint64_t seed)
+      : settings_(settings),
+        evaluator_(evaluator),
+        box_(evaluator.problem().variables),
+        order_(evaluator.problem()),
+        random_("optimizer/cmaes", seed) {}
+
+  void search() {
+    const std::size_t base =
+        round_up(settings_.cma.population > 0 ? settings_.cma.population
+                                              : calc_default_population(box_.dimension()));
+    if (settings_.cma.mu > base) {
+      throw Error(
+          ErrorKind::usage,
+          fmt::format("optimizer 'cmaes': option 'mu' is {}; it must not be larger than the "
+                      "population, which is {}",
+                      settings_.cma.mu, base));
+    }
+    base_population_ = base;
+    // The start is no sample of the distribution, so that it must not enter the update; evaluated
+    // alone, it shares the first generation's cases.
+    evaluator_.begin_generation();
+    if (!evaluate({box_.make_start()})) {
+      return;
+    }
+    bool goes_on = run({.mean = box_.make_start(), .population = base, .sigma = settings_.sigma});
+    while (goes_on && settings_.restarts != CmaRestarts::none) {
+      goes_on = settings_.restarts == CmaRestarts::ipop ? restart_larger() : restart_either();
+    }
+  }
+
+ private:
+  std::size_t round_up(std::size_t population) const {
+    const std::size_t m = settings_.batch_multiple;
+    return (population + m - 1) / m * m;
+  }
+
+  std::vector<double> draw_start() {
+    std::vector<double> u(box_.dimension());
+    std::ranges::generate(u, [this] { return calc_preimage_of_share(random_.uniform()); });
+    return u;
+  }
+
+  // Auger and Hansen 2005: every restart has twice the population.
+  bool restart_larger() {
+    large_population_ = std::max(large_population_, base_population_) * 2;
+    return run({.mean = draw_start(),
+                .population = round_up(large_population_),
+                .sigma = settings_.restart_sigma});
+  }
+
+  // Hansen 2009: the same with, in between and for as many evaluations, runs of a smaller
+  // population and step.
+  bool restart_either() {
+    const std::int64_t before = evaluations_;
+    if (large_population_ == 0 || large_evaluations_ <= small_evaluations_) {
+      const bool goes_on = restart_larger();
+      last_large_run_ = evaluations_ - before;
+      large_evaluations_ += last_large_run_;
+      return goes_on;
+    }
+    const auto base = static_cast<double>(base_population_);
+    const double ratio = 0.5 * static_cast<double>(large_population_) / base;
+    const double u = random_.uniform();
+    const auto population = static_cast<std::size_t>(base * std::pow(ratio, u * u));
+    const double sigma = settings_.restart_sigma * std::pow(10.0, -2 * random_.uniform());
+    const bool goes_on = run({.mean = draw_start(),
+                              .population = round_up(std::max(population, base_population_)),
+                              .sigma = sigma,
+                              .budget = std::max(last_large_run_ / 2, std::int64_t{1})});
+    small_evaluations_ += evaluations_ - before;
+    return goes_on;
+  }
+
+  // One run until it has ended by itself (true) or the evaluator has stopped (false).
+  bool run(const RunPlan& plan) {
+    CmaSettings cma = settings_.cma;
+    cma.population = plan.population;
+    cma.mu = cma.mu * plan.population / base_population_;
+    CmaDistribution distribution(make_cma_parameters(box_.dimension(), cma), plan.mean, plan.sigma);
+    CmaTermination termination(distribution.parameters(), settings_.tolerances, plan.sigma);
+    const std::int64_t first_evaluation = evaluations_;
+    while (evaluations_ - first_evaluation < plan.budget) {
+      if (evaluator_.stopped()) {
+        return false;
+      }
+      if (!is_first_generation_) {
+        evaluator_.begin_generation();
+      }
+      is_first_generation_ = false;
+      const std::vector<std::vector<double>>& points = distribution.sample(random_);
+      const std::optional<std::vector<double>> values = evaluate(points);
+      if (!values) {
+        return false;
+      }
+      std::optional<UncertaintyMeasure> measure;
+      if (settings_.uncertainty_handling) {
+        measure = evaluate_again(points, *values);
+        if (!measure) {
+          return false;
+        }
+      }
+      const std::vector<std::size_t> ranking = measure ? measure->ranking : rank(*values);
+      distribution.update(ranking);
+      evaluator_.recommend(box_.to_point(distribution.mean()));
+      if (measure && measure->s > 0) {
+        enlarge(distribution);
+      }
+      std::vector<double> sorted = *values;
+      std::ranges::sort(sorted);
+      escape_plateau(distribution, sorted);
+      if (termination.check(distribution, sorted) != CmaEnd::none) {
+        return true;
+      }
+    }
+    return true;
+  }
+
+  // Nothing if the evaluator stopped before the last of them.
+  std::optional<std::vector<double>> evaluate(const std::vector<std::vector<double>>& points) {
+    std::vector<std::vector<double>> asked;
+    asked.reserve(points.size());
+    for (const std::vector<double>& point : points) {
+      asked.push_back(box_.to_point(point));
+    }
+    const std::vector<Score> scores = evaluator_.evaluate(asked);
+    evaluations_ += static_cast<std::int64_t>(scores.size());
+    if (scores.size() < points.size()) {
+      return std::nullopt;
+    }
+    if (settings_.feasibility_first) {
+      return order_.rate(scores);
+    }
+    std::vector<double> values;
+    values.reserve(scores.size());
+    for (const Score& score : scores) {
+      values.push_back(calc_merit(evaluator_.problem(), score, settings_.constraint_weight));
+    }
+    return values;
+  }
+
+  static std::vector<std::size_t> rank(const std::vector<double>& values) {
+    std::vector<std::size_t> ranking(values.size());
+    std::iota(ranking.begin(), ranking.end(), std::size_t{0});
+    std::ranges::stable_sort(ranking, {}, [&](std::size_t i) { return values[i]; });
+    return ranking;
+  }
+
+  // A tenth of the generation, two points in a small one, on new cases; a fraction decides by
+  // chance (Hansen et al. 2009: r = max(0.1, 2 / lambda)).
+  std::optional<UncertaintyMeasure> evaluate_again(const std::vector<std::vector<double>>& points,
+                                                   const std::vector<double>& values) {
+    const double expected = std::max(0.1 * static_cast<double>(points.size()), 2.0);
+    const double whole = std::floor(expected);
+    const auto count =
+        static_cast<std::size_t>(whole + (random_.bernoulli(expected - whole) ? 1 : 0));
+    const std::vector<std::vector<double>> some(
+        points.begin(),
+        points.begin() + static_cast<std::ptrdiff_t>(std::min(count, points.size())));
+    evaluator_.begin_generation();
+    const std::optional<std::vector<double>> again = evaluate(some);
+    if (!again) {
+      return std::nullopt;
+    }
+    return measure_uncertainty(values, *again);
+  }
+
+  // The paper's treatment where more time cannot be spent on an evaluation: sigma grows. Never
+  // beyond the box's width, where there is nothing left to find.
+  void enlarge(CmaDistribution& distribution) const {
+    const double factor = 1 + 2 / (static_cast<double>(box_.dimension()) + 10);
+    if (distribution.longest_axis() * factor <= 1) {
+      distribution.scale_sigma(factor);
+    }
+  }
+
+  // A flat generation says nothing: look further (Hansen 2016, appendix B.2).
+  static void escape_plateau(CmaDistribution& distribution, const std::vector<double>& sorted) {
+    const std::size_t place =
+        static_cast<std::size_t>(std::ceil(0.7 * static_cast<double>(sorted.size())) - 1);
+    if (sorted.front() == sorted[place]) {
+      const CmaParameters& p = distribution.parameters();
+      distribution.scale_sigma(std::exp(0.2 + p.c_sigma / p.d_sigma));
+    }
+  }
+
+  const CmaSearchSettings& settings_;
+  Evaluator& evaluator_;
+  CmaBox box_;
+  FeasibilityOrder order_;
+  RandomStream random_;
+  std::size_t base_population_ = 0;
+  std::size_t large_population_ = 0;  // of the last restart with a larger one
+  std::int64_t large_evaluations_ = 0;
+  std::int64_t small_evaluations_ = 0;
+  std::int64_t last_large_run_ = 0;
+  std::int64_t evaluations_ = 0;
+  bool is_first_generation_ = true;
+};
+
+}  // namespace
+
+void search_with_cma(const CmaSearchSettings& settings, Evaluator& evaluator, std::uint64_t seed) {
+  CmaSearch(settings, evaluator, seed).search();
+}
+
+}  // namespace armwright

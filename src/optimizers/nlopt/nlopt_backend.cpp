@@ -1,0 +1,214 @@
+#include "optimizers/nlopt/nlopt_backend.hpp"
+
+#include "optimizers/interface/optimizer.hpp"
+
+#ifdef ARMWRIGHT_WITH_NLOPT
+
+#include <fmt/format.h>
+#include <nlopt.h>
+
+#include <algorithm>
+#include <memory>
+#include <type_traits>
+
+#include "optimizers/interface/seed.hpp"
+#include "optimizers/nlopt/nlopt_adapter.hpp"
+
+namespace armwright {
+namespace {
+
+using NloptHandle = std::unique_ptr<std::remove_pointer_t<nlopt_opt>, decltype(&nlopt_destroy)>;
+
+// ORIG_DIRECT reserves room for all its evaluations at once, for 100 000 if it is not told how many
+// there will be. So many fit into some hundreds of MiB.
+constexpr std::int64_t kMostPacedEvaluations = 1'000'000;
+
+// A restart steps at least this share of the box: below, coordinates stop changing.
+constexpr double kSmallestRestartScale = 1e-9;
+
+struct ConstraintQuestion {
+  NloptQuestions* questions = nullptr;
+  std::size_t index = 0;
+};
+
+double call_objective(unsigned n, const double* x, double* /*gradient*/, void* data) {
+  return static_cast<NloptQuestions*>(data)->ask_objective({x, n});
+}
+
+double call_constraint(unsigned n, const double* x, double* /*gradient*/, void* data) {
+  const auto& question = *static_cast<ConstraintQuestion*>(data);
+  return question.questions->ask_constraint({x, n}, question.index);
+}
+
+class Search {
+ public:
+  Search(const NloptSettings& settings, Evaluator& evaluator)
+      : settings_(settings),
+        evaluator_(evaluator),
+        questions_(settings, evaluator),
+        solver_(create(settings.algorithm)),
+        local_(nullptr, &nlopt_destroy) {
+    if (!settings_.local.empty()) {
+      local_ = create(settings_.local);
+      set_tolerances(local_.get());
+    }
+    if (!settings_.tolerances_are_local) {
+      set_tolerances(solver_.get());
+    }
+    apply(nlopt_set_min_objective(solver_.get(), call_objective, &questions_), "the objective");
+    if (settings_.takes_constraints) {
+      constraints_.resize(evaluator.problem().constraints.size());
+      for (std::size_t i = 0; i < constraints_.size(); ++i) {
+        constraints_[i] = {&questions_, i};
+        apply(nlopt_add_inequality_constraint(solver_.get(), call_constraint, &constraints_[i], 0),
+              "constraints");
+      }
+    }
+    if (settings_.population > 0) {
+      apply(nlopt_set_population(solver_.get(), static_cast<unsigned>(settings_.population)),
+            "option 'population'");
+    }
+    if (settings_.is_paced) {
+      const std::int64_t most =
+          std::clamp(evaluator.remaining(), std::int64_t{1}, kMostPacedEvaluations);
+      apply(nlopt_set_maxeval(solver_.get(), static_cast<int>(most)), "maxeval");
+    }
+  }
+
+  void run() {
+    const SearchSpace& space = questions_.space();
+    descend(space.start(), 1);
+    double scale = 1;
+    for (std::int64_t restart = 1; restart <= settings_.restarts && !is_over(); ++restart) {
+      scale *= 0.5;
+      if (!questions_.has_best() || scale < kSmallestRestartScale) {
+        return;
+      }
+      std::vector<double> from = questions_.best_coordinates();
+      for (std::size_t i = 0; i < from.size(); ++i) {  // where it was evaluated
+        from[i] = std::clamp(from[i], space.lower()[i], space.upper()[i]);
+      }
+      const auto before = questions_.best_rank();
+      descend(from, scale);
+      if (!(questions_.best_rank() < before)) {
+        return;
+      }
+    }
+  }
+
+ private:
+  bool is_over() const { return questions_.has_ended() || evaluator_.stopped(); }
+
+  NloptHandle create(const std::string& algorithm) const {
+    const SearchSpace& space = questions_.space();
+    const nlopt_algorithm number = nlopt_algorithm_from_string(algorithm.c_str());
+    NloptHandle handle(
+        number < 0 ? nullptr : nlopt_create(number, static_cast<unsigned>(space.dimension())),
+        &nlopt_destroy);
+    if (!handle) {
+      throw OptimizerFailure(
+          fmt::format("optimizer '{}': this NLopt has no {}", settings_.optimizer, algorithm));
+    }
+    apply(nlopt_set_lower_bounds(handle.get(), space.lower().data()), "the bounds");
+    apply(nlopt_set_upper_bounds(handle.get(), space.upper().data()), "the bounds");
+    // MLSL reads this array whether it is there or not.
+    const std::vector<double> none(space.dimension(), 0.0);
+    apply(nlopt_set_xtol_abs(handle.get(), none.data()), "xtol_abs");
+    return handle;
+  }
+
+  void apply(nlopt_result result, const char* what) const {
+    if (result < 0) {
+      throw OptimizerFailure(fmt::format("optimizer '{}': NLopt refuses {}: {}",
+                                         settings_.optimizer, what,
+                                         nlopt_result_to_string(result)));
+    }
+  }
+
+  void set_tolerances(nlopt_opt solver) const {
+    apply(nlopt_set_xtol_rel(solver, settings_.xtol_rel), "option 'xtol_rel'");
+    apply(nlopt_set_ftol_rel(solver, settings_.ftol_rel), "option 'ftol_rel'");
+  }
+
+  // The step in every coordinate, and into NLopt's solver that takes steps.
+  void set_step(nlopt_opt solver, std::span<const double> from, double scale) const {
+    const SearchSpace& space = questions_.space();
+    std::vector<double> step(space.dimension());
+    if (settings_.initial_step > 0) {
+      for (std::size_t i = 0; i < step.size(); ++i) {
+        step[i] = scale * settings_.initial_step * (space.upper()[i] - space.lower()[i]);
+      }
+    } else if (scale == 1) {
+      return;  // its own
+    } else {
+      apply(nlopt_set_default_initial_step(solver, from.data()), "its own initial step");
+      apply(nlopt_get_initial_step(solver, from.data(), step.data()), "its own initial step");
+      std::ranges::for_each(step, [scale](double& value) { value *= scale; });
+    }
+    apply(nlopt_set_initial_step(solver, step.data()), "option 'initial_step'");
+  }
+
+  void descend(std::vector<double> from, double scale) {
+    if (local_) {
+      set_step(local_.get(), from, scale);
+      apply(nlopt_set_local_optimizer(solver_.get(), local_.get()), "option 'local'");
+    } else {
+      set_step(solver_.get(), from, scale);
+    }
+    questions_.begin([this] { nlopt_force_stop(solver_.get()); });
+    double value = 0;
+    const nlopt_result result = nlopt_optimize(solver_.get(), from.data(), &value);
+    questions_.rethrow();
+    // What it found is not read: the evaluator knows better (COBYLA returns its last point).
+    const bool is_normal_end =
+        result > 0 || result == NLOPT_ROUNDOFF_LIMITED || result == NLOPT_FORCED_STOP;
+    if (!is_normal_end && !is_over()) {
+      const char* message = nlopt_get_errmsg(solver_.get());
+      throw OptimizerFailure(fmt::format(
+          "optimizer '{}': NLopt's {} ended with {}{}{} on {} variables and {} constraints",
+          settings_.optimizer, settings_.algorithm, nlopt_result_to_string(result),
+          message == nullptr ? "" : ": ", message == nullptr ? "" : message, from.size(),
+          evaluator_.problem().constraints.size()));
+    }
+  }
+
+  const NloptSettings& settings_;
+  Evaluator& evaluator_;
+  NloptQuestions questions_;
+  std::vector<ConstraintQuestion> constraints_;
+  NloptHandle solver_;
+  NloptHandle local_;
+};
+
+}  // namespace
+
+std::string explain_missing_nlopt() {
+  return "";
+}
+
+void minimize_with_nlopt(const NloptSettings& settings, Evaluator& evaluator, std::uint64_t seed) {
+  if (evaluator.stopped()) {
+    return;
+  }
+  nlopt_srand(fold_seed(seed));  // of this thread; by the time of day otherwise
+  Search(settings, evaluator).run();
+}
+
+}  // namespace armwright
+
+#else
+
+namespace armwright {
+
+std::string explain_missing_nlopt() {
+  return "built without NLopt (CMake option ARMWRIGHT_WITH_NLOPT is OFF)";
+}
+
+void minimize_with_nlopt(const NloptSettings& settings, Evaluator& /*evaluator*/,
+                         std::uint64_t /*seed*/) {
+  throw OptimizerFailure("optimizer '" + settings.optimizer + "': " + explain_missing_nlopt());
+}
+
+}  // namespace armwright
+
+#endif

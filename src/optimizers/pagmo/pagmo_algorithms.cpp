@@ -1,0 +1,226 @@
+#ifdef ARMWRIGHT_WITH_PAGMO
+
+#include "optimizers/pagmo/pagmo_algorithms.hpp"
+
+#include <functional>
+#include <map>
+#include <pagmo/algorithms/bee_colony.hpp>
+#include <pagmo/algorithms/cmaes.hpp>
+#include <pagmo/algorithms/compass_search.hpp>
+#include <pagmo/algorithms/de.hpp>
+#include <pagmo/algorithms/de1220.hpp>
+#include <pagmo/algorithms/gaco.hpp>
+#include <pagmo/algorithms/gwo.hpp>
+#include <pagmo/algorithms/ihs.hpp>
+#include <pagmo/algorithms/maco.hpp>
+#include <pagmo/algorithms/mbh.hpp>
+#include <pagmo/algorithms/moead.hpp>
+#include <pagmo/algorithms/nsga2.hpp>
+#include <pagmo/algorithms/nspso.hpp>
+#include <pagmo/algorithms/pso.hpp>
+#include <pagmo/algorithms/pso_gen.hpp>
+#include <pagmo/algorithms/sade.hpp>
+#include <pagmo/algorithms/sea.hpp>
+#include <pagmo/algorithms/sga.hpp>
+#include <pagmo/algorithms/simulated_annealing.hpp>
+#include <pagmo/algorithms/xnes.hpp>
+#include <pagmo/batch_evaluators/member_bfe.hpp>
+#include <pagmo/bfe.hpp>
+
+namespace armwright {
+namespace {
+
+// Never remember anything between two calls of evolve(): an Optimizer keeps nothing between runs.
+constexpr bool kMemory = false;
+// The differential evolutions would end where the population has become flat; evolve() is called
+// again anyway, so that ending would only cost them what they have adapted.
+constexpr double kNoTolerance = 0;
+// Stop criteria of the ant colonies that must never come first.
+constexpr unsigned kNever = 1'000'000'000;
+// pagmo: "choose by yourself".
+constexpr double kAutomatic = -1;
+
+// Options of one row, in the types that pagmo takes.
+class Reader {
+ public:
+  explicit Reader(const Options& options) : options_(options) {}
+  double number(const std::string& name) const { return options_.get_number(name); }
+  unsigned count(const std::string& name) const {
+    return static_cast<unsigned>(options_.get_integer(name));
+  }
+  bool flag(const std::string& name) const { return options_.get_bool(name); }
+  const std::string& text(const std::string& name) const { return options_.get_text(name); }
+
+ private:
+  const Options& options_;
+};
+
+using Maker = std::function<pagmo::algorithm(const Reader&, const PagmoPlan&)>;
+
+template <typename Method>
+pagmo::algorithm with_batches(Method method) {
+  method.set_bfe(pagmo::bfe{pagmo::member_bfe{}});
+  return pagmo::algorithm{method};
+}
+
+pagmo::compass_search make_compass_search(const Reader& read) {
+  return pagmo::compass_search{kNever, read.number("start_range"), read.number("stop_range"),
+                               read.number("reduction_coeff")};
+}
+
+template <typename Swarm>
+Swarm make_swarm(const Reader& read, const PagmoPlan& plan) {
+  return Swarm{plan.generations,
+               read.number("omega"),
+               read.number("eta1"),
+               read.number("eta2"),
+               read.number("max_vel"),
+               read.count("variant"),
+               read.count("neighb_type"),
+               read.count("neighb_param"),
+               kMemory,
+               plan.seed};
+}
+
+const std::map<std::string, Maker>& single_objective_makers() {
+  static const std::map<std::string, Maker> makers = {
+      {"gaco",
+       [](const Reader& read, const PagmoPlan& plan) {
+         return with_batches(pagmo::gaco{plan.generations, read.count("ker"), read.number("q"),
+                                         read.number("oracle"), read.number("acc"),
+                                         read.count("threshold"), read.count("n_gen_mark"), kNever,
+                                         kNever, read.number("focus"), kMemory, plan.seed});
+       }},
+      {"de",
+       [](const Reader& read, const PagmoPlan& plan) {
+         return pagmo::algorithm{pagmo::de{plan.generations, read.number("F"), read.number("CR"),
+                                           read.count("variant"), kNoTolerance, kNoTolerance,
+                                           plan.seed}};
+       }},
+      {"sade",
+       [](const Reader& read, const PagmoPlan& plan) {
+         return pagmo::algorithm{pagmo::sade{plan.generations, read.count("variant"),
+                                             read.count("variant_adptv"), kNoTolerance,
+                                             kNoTolerance, kMemory, plan.seed}};
+       }},
+      {"de1220",
+       [](const Reader& read, const PagmoPlan& plan) {
+         return pagmo::algorithm{pagmo::de1220{
+             plan.generations, pagmo::de1220_statics<void>::allowed_variants,
+             read.count("variant_adptv"), kNoTolerance, kNoTolerance, kMemory, plan.seed}};
+       }},
+      {"gwo",
+       [](const Reader&, const PagmoPlan& plan) {
+         return pagmo::algorithm{pagmo::gwo{plan.generations, plan.seed}};
+       }},
+      {"ihs",
+       [](const Reader& read, const PagmoPlan& plan) {
+         return pagmo::algorithm{pagmo::ihs{
+             plan.generations, read.number("phmcr"), read.number("ppar_min"),
+             read.number("ppar_max"), read.number("bw_min"), read.number("bw_max"), plan.seed}};
+       }},
+      {"pso",
+       [](const Reader& read, const PagmoPlan& plan) {
+         return pagmo::algorithm{make_swarm<pagmo::pso>(read, plan)};
+       }},
+      {"pso_gen",
+       [](const Reader& read, const PagmoPlan& plan) {
+         return with_batches(make_swarm<pagmo::pso_gen>(read, plan));
+       }},
+      {"sea",
+       [](const Reader&, const PagmoPlan& plan) {
+         return pagmo::algorithm{pagmo::sea{plan.generations, plan.seed}};
+       }},
+      {"sga",
+       [](const Reader& read, const PagmoPlan& plan) {
+         return pagmo::algorithm{
+             pagmo::sga{plan.generations, read.number("cr"), read.number("eta_c"), read.number("m"),
+                        read.number("param_m"), read.count("param_s"), read.text("crossover"),
+                        read.text("mutation"), read.text("selection"), plan.seed}};
+       }},
+      {"simulated_annealing",
+       [](const Reader& read, const PagmoPlan& plan) {
+         return pagmo::algorithm{pagmo::simulated_annealing{
+             plan.scale * read.number("Ts"), plan.scale * read.number("Tf"), plan.generations,
+             read.count("n_range_adj"), read.count("bin_size"), read.number("start_range"),
+             plan.seed}};
+       }},
+      {"bee_colony",
+       [](const Reader& read, const PagmoPlan& plan) {
+         return pagmo::algorithm{
+             pagmo::bee_colony{plan.generations, read.count("limit"), plan.seed}};
+       }},
+      {"cmaes",
+       [](const Reader& read, const PagmoPlan& plan) {
+         const bool force_bounds = true;
+         return pagmo::algorithm{pagmo::cmaes{plan.generations, kAutomatic, kAutomatic, kAutomatic,
+                                              kAutomatic, read.number("sigma0"),
+                                              read.number("ftol"), read.number("xtol"), kMemory,
+                                              force_bounds, plan.seed}};
+       }},
+      {"xnes",
+       [](const Reader& read, const PagmoPlan& plan) {
+         const bool force_bounds = true;
+         return pagmo::algorithm{pagmo::xnes{
+             plan.generations, kAutomatic, kAutomatic, kAutomatic, read.number("sigma0"),
+             read.number("ftol"), read.number("xtol"), kMemory, force_bounds, plan.seed}};
+       }},
+      {"compass_search",
+       [](const Reader& read, const PagmoPlan&) {
+         return pagmo::algorithm{make_compass_search(read)};
+       }},
+      {"mbh",
+       [](const Reader& read, const PagmoPlan& plan) {
+         return pagmo::algorithm{
+             pagmo::mbh{make_compass_search(read), kNever, read.number("perturb"), plan.seed}};
+       }},
+  };
+  return makers;
+}
+
+const std::map<std::string, Maker>& multi_objective_makers() {
+  static const std::map<std::string, Maker> makers = {
+      {"nsga2",
+       [](const Reader& read, const PagmoPlan& plan) {
+         return with_batches(pagmo::nsga2{plan.generations, read.number("cr"), read.number("eta_c"),
+                                          read.number("m"), read.number("eta_m"), plan.seed});
+       }},
+      {"moead",
+       [](const Reader& read, const PagmoPlan& plan) {
+         return pagmo::algorithm{
+             pagmo::moead{plan.generations, read.text("weight_generation"),
+                          read.text("decomposition"), read.count("neighbours"), read.number("CR"),
+                          read.number("F"), read.number("eta_m"), read.number("realb"),
+                          read.count("limit"), read.flag("preserve_diversity"), plan.seed}};
+       }},
+      {"maco",
+       [](const Reader& read, const PagmoPlan& plan) {
+         return with_batches(pagmo::maco{plan.generations, read.count("ker"), read.number("q"),
+                                         read.count("threshold"), read.count("n_gen_mark"), kNever,
+                                         read.number("focus"), kMemory, plan.seed});
+       }},
+      {"nspso",
+       [](const Reader& read, const PagmoPlan& plan) {
+         return with_batches(pagmo::nspso{
+             plan.generations, read.number("omega"), read.number("c1"), read.number("c2"),
+             read.number("chi"), read.number("v_coeff"), read.count("leader_selection_range"),
+             read.text("diversity_mechanism"), kMemory, plan.seed});
+       }},
+  };
+  return makers;
+}
+
+}  // namespace
+
+pagmo::algorithm make_pagmo_algorithm(const std::string& name, const Options& options,
+                                      const PagmoPlan& plan) {
+  const auto single = single_objective_makers().find(name);
+  const Maker& maker = single != single_objective_makers().end()
+                           ? single->second
+                           : multi_objective_makers().at(name);
+  return maker(Reader(options), plan);
+}
+
+}  // namespace armwright
+
+#endif

@@ -1,0 +1,207 @@
+#include "optimizers/pagmo/pagmo_backend.hpp"
+
+#include "base/error.hpp"
+
+#ifdef ARMWRIGHT_WITH_PAGMO
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <pagmo/population.hpp>
+#include <pagmo/problem.hpp>
+#include <utility>
+#include <vector>
+
+#include "base/random.hpp"
+#include "optimizers/interface/seed.hpp"
+#include "optimizers/pagmo/pagmo_algorithms.hpp"
+#include "optimizers/pagmo/pagmo_bridge.hpp"
+
+namespace armwright {
+namespace {
+
+// pagmo's messages are several lines; the last says what is wrong.
+std::string get_reason(const std::exception& error) {
+  const std::string text = error.what();
+  const std::string mark = "what: ";
+  const std::size_t at = text.rfind(mark);
+  std::string reason = at == std::string::npos ? text : text.substr(at + mark.size());
+  while (!reason.empty() && reason.back() == '\n') {
+    reason.pop_back();
+  }
+  return reason;
+}
+
+class PagmoOptimizer : public Optimizer {
+ public:
+  PagmoOptimizer(PagmoMethod method, Options options)
+      : method_(std::move(method)), options_(std::move(options)) {
+    require_options_that_fit();
+    try {
+      make_pagmo_algorithm(method_.algorithm, options_, {});
+    } catch (const std::exception& error) {
+      refuse(get_reason(error));
+    }
+  }
+
+  void minimize(Evaluator& evaluator, std::uint64_t seed) override {
+    PagmoBridge bridge(method_, options_, evaluator);
+    try {
+      evolve(bridge, evaluator, seed);
+    } catch (const EvaluatorStopped&) {
+    } catch (const std::invalid_argument& error) {
+      if (bridge.has_thrown()) {
+        throw;
+      }
+      refuse(get_reason(error));
+    } catch (const std::exception& error) {
+      if (bridge.has_thrown()) {
+        throw;
+      }
+      throw OptimizerFailure(
+          fmt::format("optimizer '{}': pagmo: {}", method_.row, get_reason(error)));
+    }
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& what) const {
+    throw Error(ErrorKind::usage, fmt::format("optimizer '{}': {}", method_.row, what));
+  }
+
+  bool has_option(const std::string& name) const { return options_.values().contains(name); }
+
+  // What pagmo would find out only after the first population has been evaluated.
+  void require_options_that_fit() const {
+    const std::int64_t population = population_size();
+    if (has_option("ker") && options_.get_integer("ker") > population) {
+      refuse(fmt::format("option 'ker' is {}; it must be at most option 'population', which is {}",
+                         options_.get_integer("ker"), population));
+    }
+    if (has_option("neighbours") && options_.get_integer("neighbours") >= population) {
+      refuse(fmt::format(
+          "option 'neighbours' is {}; it must be smaller than option 'population', which is {}",
+          options_.get_integer("neighbours"), population));
+    }
+    if (method_.algorithm == "nsga2" && population % 4 != 0) {
+      refuse(fmt::format("option 'population' is {}; it must be a multiple of 4", population));
+    }
+  }
+
+  std::int64_t population_size() const {
+    return has_option("population") ? options_.get_integer("population") : 1;
+  }
+
+  void evolve(PagmoBridge& bridge, Evaluator& evaluator, std::uint64_t seed) const {
+    const pagmo::problem problem{BridgedPagmoProblem{&bridge}};
+    pagmo::population population = make_population(bridge, problem, seed);
+    PagmoPlan plan{.seed = fold_seed(seed)};
+    if (const double start_value = std::abs(population.get_f().front().front()); start_value > 0) {
+      plan.scale = start_value;
+    }
+    pagmo::algorithm algorithm = plan_algorithm(plan, bridge, evaluator);
+    while (!evaluator.stopped()) {
+      const std::int64_t before = bridge.evaluation_count();
+      population = algorithm.evolve(population);
+      if (method_.ends || bridge.evaluation_count() == before) {
+        return;
+      }
+      if (method_.paced) {  // a remainder shorter than one step of the schedule
+        ++plan.seed;
+        algorithm = plan_algorithm(plan, bridge, evaluator);
+      }
+    }
+  }
+
+  pagmo::algorithm plan_algorithm(PagmoPlan& plan, const PagmoBridge& bridge,
+                                  const Evaluator& evaluator) const {
+    if (method_.paced) {
+      const std::int64_t generations =
+          evaluator.remaining() / calc_generation_cost(bridge.space().dimension());
+      plan.generations = static_cast<unsigned>(
+          std::clamp<std::int64_t>(generations, 1, std::int64_t{kEndlessGenerations}));
+    }
+    return make_pagmo_algorithm(method_.algorithm, options_, plan);
+  }
+
+  // Evaluations between two steps of a schedule.
+  std::int64_t calc_generation_cost(std::size_t dimension) const {
+    if (method_.algorithm == "ihs") {
+      return 1;
+    }
+    if (method_.algorithm == "simulated_annealing") {
+      return options_.get_integer("n_range_adj") * options_.get_integer("bin_size") *
+             static_cast<std::int64_t>(dimension);
+    }
+    return population_size();
+  }
+
+  // The start, and points drawn uniformly from a box about it: `spread` times the whole box in
+  // size, centred on the start, cut off at the bounds.
+  pagmo::population make_population(PagmoBridge& bridge, const pagmo::problem& problem,
+                                    std::uint64_t seed) const {
+    const SearchSpace& space = bridge.space();
+    std::vector<std::vector<double>> individuals = {space.start()};
+    RandomStream random("optimizer/pagmo:" + method_.algorithm, seed);
+    std::vector<double> lower = space.lower();
+    std::vector<double> upper = space.upper();
+    const double spread = has_option("spread") ? options_.get_number("spread") : 1;
+    for (std::size_t i = 0; i < space.dimension() && spread != 1; ++i) {
+      const double reach = 0.5 * spread * (space.upper()[i] - space.lower()[i]);
+      lower[i] = std::max(lower[i], space.start()[i] - reach);
+      upper[i] = std::min(upper[i], space.start()[i] + reach);
+    }
+    while (std::ssize(individuals) < population_size()) {
+      individuals.push_back(space.draw_between(lower, upper, random));
+    }
+    return evaluate_population(bridge, problem, individuals, fold_seed(seed));
+  }
+
+  pagmo::population evaluate_population(PagmoBridge& bridge, const pagmo::problem& problem,
+                                        std::span<const std::vector<double>> individuals,
+                                        unsigned seed) const {
+    // Only a method that asks for batches later begins with one.
+    const std::size_t batch = method_.batch ? individuals.size() : 1;
+    pagmo::population population(problem, 0, seed);
+    for (std::size_t from = 0; from < individuals.size(); from += batch) {
+      const auto asked = individuals.subspan(from, batch);
+      const std::vector<std::vector<double>> fitness = bridge.evaluate(asked);
+      for (std::size_t i = 0; i < asked.size(); ++i) {
+        population.push_back(asked[i], fitness[i]);
+      }
+    }
+    return population;
+  }
+
+  PagmoMethod method_;
+  Options options_;
+};
+
+}  // namespace
+
+std::string explain_missing_pagmo() {
+  return {};
+}
+
+std::unique_ptr<Optimizer> make_pagmo_optimizer(const PagmoMethod& method, const Options& options) {
+  return std::make_unique<PagmoOptimizer>(method, options);
+}
+
+}  // namespace armwright
+
+#else
+
+namespace armwright {
+
+std::string explain_missing_pagmo() {
+  return "built without pagmo (CMake option ARMWRIGHT_WITH_PAGMO is OFF)";
+}
+
+std::unique_ptr<Optimizer> make_pagmo_optimizer(const PagmoMethod& method,
+                                                const Options& /*options*/) {
+  throw Error(ErrorKind::usage, "optimizer '" + method.row + "': " + explain_missing_pagmo());
+}
+
+}  // namespace armwright
+
+#endif

@@ -1,0 +1,123 @@
+#include "optimizers/table/optimizer_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "optimizers/builtin/ga.hpp"
+#include "optimizers/builtin/latin_hypercube.hpp"
+#include "optimizers/builtin/random_search.hpp"
+#include "optimizers/ceres/ceres.hpp"
+#include "optimizers/cma/cmaes.hpp"
+#include "optimizers/nlopt/nlopt.hpp"
+#include "optimizers/pagmo/pagmo.hpp"
+#include "optimizers/plugins/host_optimizer.hpp"
+#include "optimizers/plugins/plugin_library.hpp"
+#include "optimizers/plugins/plugin_process.hpp"
+#include "optimizers/table/multistart.hpp"
+
+namespace armwright {
+
+const std::vector<OptimizerRow>& optimizer_table() {
+  static const std::vector<OptimizerRow> table = [] {
+    std::vector<OptimizerRow> rows;
+    for (const auto make_rows :
+         {make_ga_rows, make_cmaes_rows, make_ceres_rows, make_nlopt_rows, make_pagmo_rows,
+          make_random_search_rows, make_latin_hypercube_rows}) {
+      std::ranges::move(make_rows(), std::back_inserter(rows));
+    }
+    return rows;
+  }();
+  return table;
+}
+
+std::vector<std::string> optimizer_names() {
+  std::vector<std::string> names;
+  std::ranges::transform(optimizer_table(), std::back_inserter(names), &OptimizerRow::name);
+  return names;
+}
+
+const OptimizerRow& find_optimizer(std::string_view name) {
+  const auto row = std::ranges::find(optimizer_table(), name, &OptimizerRow::name);
+  if (row == optimizer_table().end()) {
+    throw Error(ErrorKind::usage, describe_unknown("optimizer", name, optimizer_names()));
+  }
+  return *row;
+}
+
+OptimizerRow load_optimizer(std::string_view name) {
+  // It stands in results and reports, which are UTF-8.
+  if (sanitize(name) != name) {
+    throw Error(ErrorKind::usage,
+                fmt::format("optimizer '{}': this name is not printable UTF-8; rename the file",
+                            sanitize(name)));
+  }
+  constexpr std::string_view kMultistart = "multistart:";
+  if (name.starts_with(kMultistart)) {
+    return make_multistart_row(load_optimizer(name.substr(kMultistart.size())));
+  }
+  constexpr std::string_view kProcess = "exec:";
+  if (name.starts_with(kProcess)) {
+    OptimizerRow row = load_process_plugin(name.substr(kProcess.size()));
+    if (std::ranges::count(optimizer_table(), row.name, &OptimizerRow::name) > 0) {
+      throw Error(
+          ErrorKind::bad_data,
+          fmt::format("optimizer '{}': it calls itself '{}', which is the name of an optimizer "
+                      "of armwright's own; results could be mistaken for one another",
+                      sanitize(name), row.name));
+    }
+    return row;
+  }
+  if (is_foreign_name(name)) {
+    throw Error(ErrorKind::usage, explain_foreign(name));
+  }
+  if (is_library_name(name)) {
+    return load_library_plugin(name);
+  }
+  if (std::ranges::count(optimizer_table(), name, &OptimizerRow::name) == 0) {
+    if (const auto file = find_library_plugin(name)) {
+      return load_library_plugin(*file, std::string(name));
+    }
+  }
+  OptimizerRow row = find_optimizer(name);
+  if (!row.unavailable.empty()) {
+    throw Error(ErrorKind::usage,
+                fmt::format("optimizer '{}' is not available: {}", row.name, row.unavailable));
+  }
+  return row;
+}
+
+std::string explain_unsuitable(const OptimizerRow& row, const ProblemDescription& problem) {
+  const Requirements& required = row.requirements;
+  if (std::ssize(problem.objectives) < required.objectives) {
+    return fmt::format("it needs a problem of at least {} objectives, and this one has {}",
+                       required.objectives, problem.objectives.size());
+  }
+  if (std::ssize(problem.variables) < required.variables) {
+    return fmt::format("it needs a problem of at least {} decision variables, and this one has {}",
+                       required.variables, problem.variables.size());
+  }
+  if (required.residuals && !problem.has_residuals && !problem.constraints.empty()) {
+    std::vector<std::string> able;
+    for (const OptimizerRow& one : optimizer_table()) {
+      if (one.capabilities.constraints && one.unavailable.empty()) {
+        able.push_back(one.name);
+      }
+    }
+    return fmt::format(
+        "it works on residuals, which know no constraints, and this problem has {}; "
+        "these see constraints: {}; and all that have an option constraint_weight, as cmaes, "
+        "take them for a penalty",
+        problem.constraints.size(), join(able, ", "));
+  }
+  if (required.residuals && !problem.has_residuals) {
+    return "it works on residuals, of whose squares the objective is the sum, and this problem "
+           "offers none" +
+           (problem.residuals_advice.empty() ? "" : "; " + problem.residuals_advice);
+  }
+  return "";
+}
+
+}  // namespace armwright

@@ -1,0 +1,161 @@
+#include "problems/analytic/analytic_functions.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace armwright {
+namespace {
+
+using Point = AnalyticPoint;
+
+// Off the centre of the box, and outside (-2, 2), where the coordinates of the minimiser lie.
+constexpr double kStart = -2.5;
+
+double calc_sphere(Point z) {
+  double sum = 0;
+  for (const double zi : z) {
+    sum += zi * zi;
+  }
+  return sum;
+}
+
+double calc_ellipsoid_weight(std::size_t index, std::size_t dimension) {
+  constexpr double kCondition = 1e6;
+  const double last = dimension > 1 ? static_cast<double>(dimension - 1) : 1;
+  return std::pow(kCondition, static_cast<double>(index) / last);
+}
+
+double calc_ellipsoid(Point z) {
+  double sum = 0;
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    sum += calc_ellipsoid_weight(i, z.size()) * z[i] * z[i];
+  }
+  return sum;
+}
+
+double calc_rosenbrock(Point z) {
+  double sum = 0;
+  for (std::size_t i = 0; i + 1 < z.size(); ++i) {
+    const double y = z[i] + 1;
+    const double valley = z[i + 1] + 1 - y * y;
+    sum += 100 * valley * valley + z[i] * z[i];
+  }
+  return sum;
+}
+
+double calc_rastrigin(Point z) {
+  double sum = 0;
+  for (const double zi : z) {
+    sum += zi * zi + 10 * (1 - std::cos(2 * std::numbers::pi * zi));
+  }
+  return sum;
+}
+
+// What the functions are the squares of; the sum of those is the value up to rounding.
+std::vector<double> calc_sphere_residuals(Point z) {
+  return {z.begin(), z.end()};
+}
+
+std::vector<double> calc_ellipsoid_residuals(Point z) {
+  std::vector<double> residuals;
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    residuals.push_back(std::sqrt(calc_ellipsoid_weight(i, z.size())) * z[i]);
+  }
+  return residuals;
+}
+
+std::vector<double> calc_rosenbrock_residuals(Point z) {
+  std::vector<double> residuals;
+  for (std::size_t i = 0; i + 1 < z.size(); ++i) {
+    const double y = z[i] + 1;
+    residuals.push_back(10 * (z[i + 1] + 1 - y * y));
+    residuals.push_back(-z[i]);  // 1 - y
+  }
+  return residuals;
+}
+
+// 10 (1 - cos(2 pi z)) is 20 sin(pi z)^2.
+std::vector<double> calc_rastrigin_residuals(Point z) {
+  std::vector<double> residuals;
+  for (const double zi : z) {
+    residuals.push_back(zi);
+    residuals.push_back(std::sqrt(20.0) * std::sin(std::numbers::pi * zi));
+  }
+  return residuals;
+}
+
+double calc_rosen_suzuki(Point x) {
+  return x[0] * x[0] + x[1] * x[1] + 2 * x[2] * x[2] + x[3] * x[3] - 5 * x[0] - 5 * x[1] -
+         21 * x[2] + 7 * x[3];
+}
+
+std::vector<double> calc_rosen_suzuki_constraints(Point x) {
+  const double a = x[0] * x[0];
+  const double b = x[1] * x[1];
+  const double c = x[2] * x[2];
+  const double d = x[3] * x[3];
+  return {a + b + c + d + x[0] - x[1] + x[2] - x[3] - 8, a + 2 * b + c + 2 * d - x[0] - x[3] - 10,
+          2 * a + b + c + 2 * x[0] - x[1] - x[3] - 5};
+}
+
+}  // namespace
+
+const std::vector<AnalyticDefinition>& analytic_definitions() {
+  static const std::vector<AnalyticDefinition> table = {
+      {.row = {.name = "sphere",
+               .summary = "Sum of squares; the easiest function there is",
+               .source = "De Jong 1975, An analysis of the behavior of a class of genetic adaptive "
+                         "systems, F1"},
+       .lower = -5,
+       .upper = 5,
+       .start = {kStart},
+       .calc_value = calc_sphere,
+       .calc_residuals = calc_sphere_residuals},
+      {.row = {.name = "ellipsoid",
+               .summary = "Separable quadratic of condition number 1e6",
+               .source = "Hansen, Finck, Ros and Auger 2009, Real-parameter black-box optimization "
+                         "benchmarking: noiseless functions definitions, f2 without oscillation"},
+       .lower = -5,
+       .upper = 5,
+       .start = {kStart},
+       .calc_value = calc_ellipsoid,
+       .calc_residuals = calc_ellipsoid_residuals},
+      {.row = {.name = "rosenbrock",
+               .summary = "A long, bent, flat valley",
+               .source = "Rosenbrock 1960, An automatic method for finding the greatest or least "
+                         "value of a function; chained to n variables",
+               .smallest_dimension = 2},
+       .lower = -5,
+       .upper = 5,
+       .start = {kStart},
+       .calc_value = calc_rosenbrock,
+       .calc_residuals = calc_rosenbrock_residuals},
+      {.row = {.name = "rastrigin",
+               .summary = "A bowl with a regular grid of local minima",
+               .source = "Rastrigin 1974, Systems of extremal control; Muehlenbein, Schomisch and "
+                         "Born 1991 for n variables"},
+       .lower = -5.12,
+       .upper = 5.12,
+       .start = {kStart},
+       .calc_value = calc_rastrigin,
+       .calc_residuals = calc_rastrigin_residuals},
+      {.row = {.name = "constrained",
+               .summary = "Rosen-Suzuki: a convex quadratic under three quadratic constraints",
+               .source = "Rosen and Suzuki 1965, Construction of nonlinear programming test "
+                         "problems; Hock and Schittkowski 1981, problem 43 (our box and start)",
+               .smallest_dimension = 4,
+               .largest_dimension = 4,
+               .default_dimension = 4},
+       .lower = -4,
+       .upper = 5,
+       .start = {-1, -1, -1,
+                 0.5},  // feasible; the source's origin shares a coordinate with the minimiser
+       .minimiser = {0, 1, 2, -1},
+       .constraint_count = 3,
+       .calc_value = calc_rosen_suzuki,
+       .calc_constraints = calc_rosen_suzuki_constraints},
+  };
+  return table;
+}
+
+}  // namespace armwright

@@ -1,0 +1,149 @@
+#include "problems/config/config_files.hpp"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+#include <link.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+
+namespace armwright {
+namespace {
+
+std::string get_extension(std::string_view kind) {
+  return kind == "robots" ? ".urdf" : ".toml";
+}
+
+std::string get_singular(std::string_view kind) {
+  if (kind == "studies") {
+    return "study";
+  }
+  return std::string(kind.substr(0, kind.size() - 1));  // "problems" -> "problem"
+}
+
+bool is_file(const std::filesystem::path& path) {
+  std::error_code ignored;  // a file that cannot even be looked at is as good as none
+  return std::filesystem::is_regular_file(path, ignored);
+}
+
+std::string describe_missing(std::string_view kind, const std::filesystem::path& path,
+                             const std::filesystem::path& beside) {
+  const std::string name = sanitize(path.string());
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {
+    return fmt::format("'{}' is a folder; name a {} file in it", name, get_extension(kind));
+  }
+  std::string text = fmt::format("there is no file '{}'", name);
+  if (path.is_relative()) {
+    text += beside.empty()
+                ? " in the current folder"
+                : fmt::format(" in {} or in the current folder", sanitize(beside.string()));
+  }
+  if (!path.has_parent_path()) {
+    text += fmt::format(", and no shipped {} has that name", get_singular(kind));
+    const auto nearest = find_nearest(path.stem().string(), list_configs(kind));
+    return nearest ? fmt::format("{}; did you mean '{}'?", text, *nearest) : text;
+  }
+  const std::string completed = path.string() + get_extension(kind);
+  return is_file(completed) ? fmt::format("{}; did you mean '{}'?", text, sanitize(completed))
+                            : text;
+}
+
+// The shared object that this code is part of; empty if that is the program itself.
+std::filesystem::path find_own_library() {
+  static const char place = 0;
+  Dl_info info;
+  link_map* object = nullptr;
+  const bool known =
+      dladdr1(&place, &info, reinterpret_cast<void**>(&object), RTLD_DL_LINKMAP) != 0;
+  return known && object != nullptr ? object->l_name : "";  // the program's has no name
+}
+
+// Where the configuration lies beside a library: of PREFIX/lib/python3/dist-packages/armwright/*.so
+// PREFIX is four folders above its own. If nowhere, where it should be in the highest of them.
+std::filesystem::path find_beside(const std::filesystem::path& library) {
+  constexpr int kMostLevels = 4;
+  std::filesystem::path folder = std::filesystem::absolute(library).parent_path();
+  for (int level = 1;; ++level) {
+    folder = folder.parent_path();
+    const auto configs = folder / "share" / "armwright" / "configs";
+    if (level == kMostLevels || std::filesystem::is_directory(configs / "problems")) {
+      return configs;
+    }
+  }
+}
+
+}  // namespace
+
+std::filesystem::path find_config_folder() {
+  if (const char* folder = std::getenv("ARMWRIGHT_CONFIGS"); folder != nullptr && *folder != '\0') {
+    if (std::filesystem::is_directory(std::filesystem::path(folder) / "problems")) {
+      return folder;
+    }
+    throw Error(ErrorKind::usage,
+                fmt::format("ARMWRIGHT_CONFIGS is '{}'; it must be a folder that holds problems/, "
+                            "designs/ and robots/",
+                            sanitize(folder)));
+  }
+  std::error_code ignored;
+  const auto library = find_own_library();
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", ignored);
+  const auto folder = library.empty()
+                          ? program.parent_path().parent_path() / "share" / "armwright" / "configs"
+                          : find_beside(library);
+  if (!std::filesystem::is_directory(folder / "problems")) {
+    throw Error(ErrorKind::usage,
+                fmt::format("the shipped configuration was not found in {}; reinstall armwright or "
+                            "set ARMWRIGHT_CONFIGS to the folder that holds problems/",
+                            folder.string()));
+  }
+  return folder;
+}
+
+std::filesystem::path resolve_config(std::string_view kind, std::string_view name_or_path,
+                                     const std::filesystem::path& beside) {
+  const std::string extension = get_extension(kind);
+  const std::filesystem::path path(name_or_path);
+  const bool has_folder = name_or_path.find('/') != std::string_view::npos;
+  const bool is_xacro =
+      kind == "robots" && path.extension() == ".xacro";  // which load_urdf() refuses
+  if (has_folder || path.extension() == extension || is_xacro) {
+    for (const auto& candidate : {beside / path, path}) {
+      if (is_file(candidate)) {
+        return candidate;
+      }
+    }
+    const auto shipped = has_folder ? path : find_config_folder() / kind / path;
+    if (!has_folder && is_file(shipped)) {  // "irb.urdf" may name a shipped file
+      return shipped;
+    }
+    throw Error(ErrorKind::usage, describe_missing(kind, path, beside));
+  }
+  const auto names = list_configs(kind);
+  if (std::find(names.begin(), names.end(), name_or_path) == names.end()) {
+    throw Error(ErrorKind::usage, describe_unknown(get_singular(kind), name_or_path, names) +
+                                      fmt::format(" (or the path of a {} file)", extension));
+  }
+  return find_config_folder() / kind / (std::string(name_or_path) + extension);
+}
+
+std::vector<std::string> list_configs(std::string_view kind) {
+  std::vector<std::string> names;
+  const auto folder = find_config_folder() / kind;
+  if (!std::filesystem::is_directory(folder)) {
+    return names;
+  }
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const auto& path = entry.path();
+    if (path.extension() == get_extension(kind) && path.stem().string().front() != '_') {
+      names.push_back(path.stem().string());
+    }
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace armwright

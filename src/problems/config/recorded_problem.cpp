@@ -1,0 +1,91 @@
+#include "problems/config/recorded_problem.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/json_text.hpp"
+#include "base/text.hpp"
+#include "base/toml_text.hpp"
+#include "problems/config/problem_tables.hpp"
+#include "problems/config/replicate.hpp"
+
+namespace armwright {
+namespace {
+
+// JSON as TOML: a line for each key at the top, everything below it inline.
+std::string write_toml(const nlohmann::json& value) {
+  const auto write_scalar = [](const nlohmann::json& scalar) {
+    return scalar.is_string() ? quote_toml(scalar.get<std::string>()) : scalar.dump();
+  };
+  std::vector<std::string> parts;
+  if (value.is_array()) {
+    for (const nlohmann::json& element : value) {
+      parts.push_back(write_toml(element));
+    }
+    return "[" + join(parts, ", ") + "]";
+  }
+  if (value.is_object()) {
+    for (const auto& [key, element] : value.items()) {
+      parts.push_back(write_scalar(key) + " = " + write_toml(element));
+    }
+    return "{" + join(parts, ", ") + "}";
+  }
+  return write_scalar(value);
+}
+
+// Keys that were renamed since.
+void rename_old_keys(nlohmann::json& resolved) {
+  if (resolved.contains("task") && resolved.at("task").contains("control_period_s")) {
+    nlohmann::json& task = resolved.at("task");
+    resolved["control"]["period_s"] = task.at("control_period_s");
+    task.erase("control_period_s");
+  }
+}
+
+}  // namespace
+
+LoadedProblem load_recorded_problem(const std::string& resolved_json, const std::string& name,
+                                    const std::filesystem::path& beside) {
+  check_json_depth(resolved_json, name);
+  nlohmann::json resolved;
+  std::string toml;
+  std::vector<double> start;
+  try {
+    resolved = nlohmann::json::parse(resolved_json);
+    if (resolved.contains("replicate")) {
+      start = resolved.at("replicate").at("start").get<std::vector<double>>();
+      resolved.erase("replicate");
+    }
+    rename_old_keys(resolved);
+    for (const auto& [key, value] : resolved.items()) {
+      toml += write_toml(key) + " = " + write_toml(value) + "\n";
+    }
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("the recorded configuration of {} is not what armwright wrote ({})",
+                            sanitize(name), sanitize(error.what())));
+  }
+  const auto path = beside / (name + ".toml");
+  LoadedProblem loaded = load_problem_tables(
+      path,
+      [&](std::span<const std::string> all) {
+        return ConfigTable::parse(toml, path.string(), all);
+      },
+      {}, engine_table());
+  if (!start.empty()) {
+    if (start.size() != loaded.problem->description().variables.size()) {
+      throw Error(ErrorKind::bad_data,
+                  fmt::format("the recorded configuration of {} has {} start values for {} "
+                              "variables",
+                              sanitize(name), start.size(),
+                              loaded.problem->description().variables.size()));
+    }
+    loaded = make_replicate(loaded, loaded.sets.training, start);
+  }
+  return loaded;
+}
+
+}  // namespace armwright

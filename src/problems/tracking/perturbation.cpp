@@ -1,0 +1,104 @@
+#include "problems/tracking/perturbation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "base/random.hpp"
+
+namespace armwright {
+namespace {
+
+bool has_any(const std::vector<double>& sizes) {
+  return std::ranges::any_of(sizes, [](double size) { return size > 0; });
+}
+
+double get_size(const std::vector<double>& sizes, std::size_t joint) {
+  return sizes.empty() ? 0 : sizes[joint];
+}
+
+}  // namespace
+
+bool Perturbation::applies_to(CaseRole role) const {
+  return changes_anything() &&
+         (where == Where::everywhere || (where == Where::training) == (role == CaseRole::training));
+}
+
+bool Perturbation::changes_loop() const {
+  return has_any(viscous_friction_n_m_s_per_rad) || has_any(coulomb_friction_n_m) ||
+         quantisation_rad > 0 || delay_s > 0 || torque_ripple_relative > 0;
+}
+
+RobotModel Plant::make_arm(RobotModel nominal) const {
+  for (std::size_t i = 0; i < nominal.links.size(); ++i) {
+    nominal.links[i].inertial.mass_kg *= mass_factors[i];
+    nominal.links[i].inertial.inertia_kg_m2 *= mass_factors[i];
+  }
+  return nominal;
+}
+
+TrackingTask Plant::make_task(TrackingTask nominal) const {
+  nominal.load_kg = load_kg.value_or(nominal.load_kg);
+  return nominal;
+}
+
+void Plant::change_design(ArmDesign& design) const {
+  for (std::size_t i = 0; i < design.joints.size(); ++i) {
+    JointDrive& joint = design.joints[i];
+    if (joint.gains.size() > kMostGains) {
+      throw std::logic_error(fmt::format("a plant knows {} gains a joint, not {}",
+                                         std::size_t{kMostGains}, joint.gains.size()));
+    }
+    for (std::size_t k = 0; k < joint.gains.size(); ++k) {
+      joint.gains[k] *= gain_factors[i][k];
+    }
+    joint.limits.min_n_m *= limit_factors[i];
+    joint.limits.max_n_m *= limit_factors[i];
+  }
+}
+
+Plant draw_plant(const Perturbation& perturbation, std::size_t joints, double substep_s,
+                 std::string_view case_set, std::uint64_t number) {
+  const Perturbation& p = perturbation;
+  RandomStream random(fmt::format("{} for {}", p.set, case_set), number);
+  Plant plant;
+  const double load_share = random.uniform();
+  const double delay_share = random.uniform();
+  PlantVariation variation;
+  for (std::size_t i = 0; i < joints; ++i) {
+    plant.mass_factors.push_back(1 + p.mass_relative * (2 * random.uniform() - 1));
+    variation.viscous_friction_n_m_s_per_rad.push_back(
+        get_size(p.viscous_friction_n_m_s_per_rad, i) * random.uniform());
+    variation.coulomb_friction_n_m.push_back(get_size(p.coulomb_friction_n_m, i) *
+                                             random.uniform());
+    variation.torque_ripple.push_back(p.torque_ripple_relative * random.uniform());
+    variation.ripple_phase_rad.push_back(2 * std::numbers::pi * random.uniform());
+  }
+  // Normal numbers take as many from the stream as they need, so they come last.
+  for (std::size_t i = 0; i < joints; ++i) {
+    plant.limit_factors.push_back(std::exp(-p.effort_limit_sigma * std::abs(random.normal())));
+  }
+  for (std::size_t i = 0; i < joints; ++i) {
+    std::vector<double>& factors = plant.gain_factors.emplace_back();
+    for (std::size_t k = 0; k < Plant::kMostGains; ++k) {
+      factors.push_back(std::exp(p.gain_sigma * random.normal()));
+    }
+  }
+  if (p.load_kg) {
+    const auto [lower, upper] = *p.load_kg;
+    plant.load_kg = lower + (upper - lower) * load_share;
+  }
+  if (p.changes_loop()) {
+    variation.friction_transition_rad_per_s = p.friction_transition_rad_per_s;
+    variation.quantisation_rad = p.quantisation_rad;
+    variation.delay_substeps = static_cast<int>(std::lround(p.delay_s * delay_share / substep_s));
+    variation.ripple_cycles_per_turn = p.ripple_cycles_per_turn;
+    plant.variation = std::move(variation);
+  }
+  return plant;
+}
+
+}  // namespace armwright

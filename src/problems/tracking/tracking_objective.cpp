@@ -1,0 +1,243 @@
+#include "problems/tracking/tracking_objective.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/text.hpp"
+
+namespace armwright {
+namespace {
+
+using Kind = TrackingObjective::Kind;
+using Statistic = TrackingObjective::Statistic;
+
+double calc_mean(std::span<const double> errors_m) {
+  double sum = 0;
+  for (const double error_m : errors_m) {
+    sum += error_m;
+  }
+  return sum / static_cast<double>(errors_m.size());
+}
+
+double calc_cvar(std::span<const double> errors_m, double share) {
+  std::vector<double> sorted(errors_m.begin(), errors_m.end());
+  std::ranges::sort(sorted, std::ranges::greater());
+  const double counted = share * static_cast<double>(sorted.size());
+  const auto whole = std::min(static_cast<std::size_t>(counted), sorted.size());
+  double sum = 0;
+  for (std::size_t i = 0; i < whole; ++i) {
+    sum += sorted[i];
+  }
+  if (whole < sorted.size()) {
+    sum += (counted - static_cast<double>(whole)) * sorted[whole];
+  }
+  return sum / counted;
+}
+
+// The parts of a sum without unit.
+double calc_sum(const TrackingObjective& objective, const ObjectiveTerms& terms) {
+  double sum = terms.error_m / objective.error_scale_m;
+  if (objective.has_torque()) {
+    sum += objective.torque_weight * terms.torque_n_m / objective.torque_scale_n_m;
+  }
+  if (objective.energy_weight > 0) {
+    sum += objective.energy_weight * terms.energy_j / objective.energy_scale_j;
+  }
+  if (objective.duration_weight > 0) {
+    sum += objective.duration_weight * terms.duration_s / objective.duration_scale_s;
+  }
+  return sum;
+}
+
+// "error, torque and energy".
+std::string describe_sum(const TrackingObjective& objective) {
+  std::vector<std::string> parts = {describe_error(objective)};
+  if (objective.has_torque()) {
+    parts.emplace_back("torque");
+  }
+  if (objective.energy_weight > 0) {
+    parts.emplace_back("energy");
+  }
+  if (objective.duration_weight > 0) {
+    parts.emplace_back("duration");
+  }
+  const std::string last = parts.back();
+  parts.pop_back();
+  return fmt::format("{} and {}", join(parts, ", "), last);
+}
+
+}  // namespace
+
+bool TrackingObjective::is_sum() const {
+  return kind == Kind::error_and_torque ||
+         (kind == Kind::error && (energy_weight > 0 || duration_weight > 0));
+}
+
+bool TrackingObjective::has_residuals() const {
+  return statistic == Statistic::mean && kind != Kind::torque_with_error_limit &&
+         kind != Kind::error_with_torque_limit;
+}
+
+std::string describe_error(const TrackingObjective& objective) {
+  switch (objective.statistic) {
+    case Statistic::mean:
+      break;
+    case Statistic::worst:
+      return "worst error";
+    case Statistic::cvar:
+      return fmt::format("error of the worst {:g} %", 100 * objective.cvar_share);
+    case Statistic::mean_with_failures:
+      return "error with failures";
+  }
+  return "error";
+}
+
+std::vector<Quantity> describe_objectives(const TrackingObjective& objective) {
+  const auto describe = [&](const std::string& name, const std::string& unit) {
+    if (!objective.logarithm) {
+      return Quantity{name, unit};
+    }
+    return Quantity{
+        unit == "1" ? fmt::format("ln({})", name) : fmt::format("ln({} / 1 {})", name, unit), "1"};
+  };
+  if (objective.is_sum()) {
+    return {describe(describe_sum(objective), "1")};
+  }
+  switch (objective.kind) {
+    case Kind::error_vs_torque:
+      return {{describe_error(objective), "m"}, {"total torque", "N m"}};
+    case Kind::torque_with_error_limit:
+      return {describe("total torque", "N m")};
+    case Kind::error:
+    case Kind::error_and_torque:
+    case Kind::error_with_torque_limit:
+      break;
+  }
+  return {describe(describe_error(objective), "m")};
+}
+
+double calc_error_statistic(const TrackingObjective& objective, std::span<const double> errors_m,
+                            double lost_share) {
+  switch (objective.statistic) {
+    case Statistic::mean:
+      break;
+    case Statistic::worst:
+      return std::ranges::max(errors_m);
+    case Statistic::cvar:
+      return calc_cvar(errors_m, objective.cvar_share);
+    case Statistic::mean_with_failures:
+      return calc_mean(errors_m) + objective.failure_penalty_m * lost_share;
+  }
+  return calc_mean(errors_m);
+}
+
+std::vector<double> calc_objectives(const TrackingObjective& objective,
+                                    const ObjectiveTerms& terms) {
+  // No arm comes near it: keeps the logarithm finite whatever happens.
+  constexpr double kLeast = 1e-300;
+  const auto apply_scale = [&](double value) {
+    return objective.logarithm ? std::log(std::max(value, kLeast)) : value;
+  };
+  if (objective.is_sum()) {
+    return {apply_scale(calc_sum(objective, terms))};
+  }
+  switch (objective.kind) {
+    case Kind::error_vs_torque:
+      return {terms.error_m, terms.torque_n_m};
+    case Kind::torque_with_error_limit:
+      return {apply_scale(terms.torque_n_m)};
+    case Kind::error:
+    case Kind::error_and_torque:
+    case Kind::error_with_torque_limit:
+      break;
+  }
+  return {apply_scale(terms.error_m)};
+}
+
+std::vector<double> calc_constraints(const TrackingObjective& objective,
+                                     const ObjectiveTerms& terms) {
+  switch (objective.kind) {
+    case Kind::torque_with_error_limit:
+      return {terms.error_m / objective.error_limit_m - 1};
+    case Kind::error_with_torque_limit:
+      return {terms.torque_n_m / objective.total_torque_limit_n_m - 1};
+    case Kind::error:
+    case Kind::error_and_torque:
+    case Kind::error_vs_torque:
+      break;
+  }
+  return {};
+}
+
+std::vector<double> calc_residuals(const TrackingObjective& objective, const ArmDesign& design,
+                                   const ObjectiveTerms& terms,
+                                   std::span<const CaseOutcome> outcomes, double cases) {
+  // error_vs_torque's are those of its weighted sum.
+  const bool has_scale = objective.is_sum() || objective.kind == Kind::error_vs_torque;
+  std::vector<double> residuals;
+  for (const CaseOutcome& outcome : outcomes) {
+    const double share = cases * static_cast<double>(outcome.residuals.size()) *
+                         (has_scale ? objective.error_scale_m : 1);
+    for (const double error_m : outcome.residuals) {
+      residuals.push_back(std::sqrt(error_m / share));
+    }
+  }
+  if (objective.has_torque()) {
+    for (const JointDrive& joint : design.joints) {
+      residuals.push_back(std::sqrt(objective.torque_weight * calc_largest_torque_n_m(joint) /
+                                    objective.torque_scale_n_m));
+    }
+  }
+  if (objective.energy_weight > 0) {
+    residuals.push_back(
+        std::sqrt(objective.energy_weight * terms.energy_j / objective.energy_scale_j));
+  }
+  if (objective.duration_weight > 0) {
+    residuals.push_back(
+        std::sqrt(objective.duration_weight * terms.duration_s / objective.duration_scale_s));
+  }
+  return residuals;
+}
+
+std::vector<double> calc_jacobian(const TrackingObjective& objective, const ArmDesign& design,
+                                  std::span<const ArmDesign> directions,
+                                  std::span<const CaseOutcome> outcomes,
+                                  std::span<const double> residuals) {
+  std::vector<double> jacobian;
+  const std::size_t n = directions.size();
+  // A residual r = sqrt(c v) of a value v: dr = r / (2 v) dv.
+  const auto calc_share = [](double residual, double value) {
+    return value > 0 ? residual / (2 * value) : 0;
+  };
+  std::size_t row = 0;
+  for (const CaseOutcome& outcome : outcomes) {
+    if (!outcome.has_error) {
+      continue;
+    }
+    if (outcome.jacobian.empty()) {
+      return {};  // not asked for
+    }
+    for (std::size_t k = 0; k < outcome.residuals.size(); ++k, ++row) {
+      const double share = calc_share(residuals[row], outcome.residuals[k]);
+      for (std::size_t i = 0; i < n; ++i) {
+        jacobian.push_back(share * outcome.jacobian[k * n + i]);
+      }
+    }
+  }
+  const std::size_t drives = objective.has_torque() ? design.joints.size() : 0;
+  for (std::size_t joint = 0; joint < drives; ++joint, ++row) {
+    const EffortLimits& limits = design.joints[joint].limits;
+    const double share = calc_share(residuals[row], calc_largest_torque_n_m(design.joints[joint]));
+    for (const ArmDesign& direction : directions) {
+      const EffortLimits& change = direction.joints[joint].limits;
+      jacobian.push_back(share *
+                         (-limits.min_n_m < limits.max_n_m ? change.max_n_m : -change.min_n_m));
+    }
+  }
+  jacobian.resize(residuals.size() * n, 0.0);  // a case takes as long whatever the gains
+  return jacobian;
+}
+
+}  // namespace armwright

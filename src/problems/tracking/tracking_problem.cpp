@@ -1,0 +1,470 @@
+#include "problems/tracking/tracking_problem.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <iterator>
+#include <numbers>
+#include <numeric>
+#include <optional>
+#include <unordered_map>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "problems/tracking/tracking_description.hpp"
+#include "sim/tracking/designed_arm.hpp"
+
+namespace armwright {
+namespace {
+
+// What simulate() puts into a case's metrics before the peaks and root-mean-squares of the joints'
+// efforts. The duration is that of the whole case, wherever its simulation ended.
+enum CaseMetric : std::size_t { kEnergy, kSaturation, kDuration, kFirstJointMetric };
+
+// The residuals of an outcome are the errors (m) of the points that count; aggregate() scales them.
+// `own_targets`: the job's are those of its design alone.
+CaseOutcome make_outcome(TrackingResult result, const TrackingTask& task, CaseRole role,
+                         const TrackingJob& job, bool own_targets, bool residuals) {
+  const TargetTable& targets = *job.targets;
+  CaseOutcome outcome;
+  outcome.reason = std::move(result.reason);
+  switch (result.status) {
+    case SimulationStatus::ok:
+    case SimulationStatus::cut_off:  // an ordinary, bad result of training: the error counts as the
+                                     // limit from there on
+      break;
+    case SimulationStatus::diverged:
+      outcome.status = EvaluationStatus::diverged;
+      // In training it counts like a cut-off; nowhere else does a number stand for it.
+      outcome.has_error = role == CaseRole::training;
+      break;
+    case SimulationStatus::abandoned:
+      outcome.status = EvaluationStatus::abandoned;
+      residuals = false;  // those of some points only would be a vector of another length
+      break;
+    case SimulationStatus::unreachable:
+      outcome.status = EvaluationStatus::unreachable;
+      if (role != CaseRole::training || !own_targets) {
+        outcome.has_error = false;
+        return outcome;
+      }
+      // The design's own doing: were the case left out, an arm that reaches the easy ones only
+      // would be the best.
+      result.mean_error_m = job.cutoff_m;
+      result.point_error_m.assign(targets.segments.size(), job.cutoff_m);
+      result.peak_effort_n_m.assign(targets.joints, 0);
+      result.rms_effort_n_m.assign(targets.joints, 0);
+      result.saturated_share.assign(targets.joints, 0);
+      break;
+  }
+  outcome.error = outcome.has_error ? result.mean_error_m : 0;
+  if (residuals && outcome.has_error) {
+    outcome.residuals.assign(result.point_error_m.begin() + (task.count_first_point ? 0 : 1),
+                             result.point_error_m.end());
+  }
+  const double joints = static_cast<double>(result.saturated_share.size());
+  double saturation = 0;
+  for (const double share : result.saturated_share) {
+    saturation += share / joints;
+  }
+  outcome.metrics.reserve(kFirstJointMetric + 2 * result.peak_effort_n_m.size());
+  outcome.metrics.assign({result.energy_j, saturation, targets.steps * task.control_period_s});
+  for (std::size_t i = 0; i < result.peak_effort_n_m.size(); ++i) {
+    outcome.metrics.push_back(result.peak_effort_n_m[i]);
+    outcome.metrics.push_back(result.rms_effort_n_m[i]);
+  }
+  return outcome;
+}
+
+// Of every parameter: a design that is 1 there and 0 elsewhere.
+std::vector<ArmDesign> make_directions(const TrackingConfig& config) {
+  ArmDesign zero = config.start;
+  for (JointDrive& joint : zero.joints) {
+    joint.gains.assign(joint.gains.size(), 0.0);
+    joint.limits = {};
+    joint.length_scale = 0;
+    joint.section_scale = 0;
+  }
+  if (zero.speed_m_per_s) {
+    zero.speed_m_per_s = 0;
+  }
+  std::vector<ArmDesign> directions(config.parameters.size(), zero);
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    get_parameter(directions[i], config.parameters[i]) = 1;
+  }
+  return directions;
+}
+
+}  // namespace
+
+TrackingProblem::TrackingProblem(TrackingConfig config)
+    : config_(std::move(config)), inputs_(config_) {
+  check_design(config_.start);
+  description_ = make_tracking_description(config_);
+  check_bounds();
+  set_jacobian();
+  directions_ = make_directions(config_);
+}
+
+void TrackingProblem::check_bounds() const {
+  if (!changes_links(config_)) {
+    return;
+  }
+  // Each variable at either end, the others at the start: links are stretched independently of each
+  // other, so that what one of them does not allow shows there.
+  for (const DesignParameter& parameter : config_.parameters) {
+    const double factor = get_bounds_factor(config_, parameter);
+    for (const double scale : {1 / factor, factor}) {
+      ArmDesign design = config_.start;
+      get_parameter(design, parameter) *= scale;
+      get_setup(design);
+    }
+  }
+}
+
+void TrackingProblem::set_jacobian() {
+  std::string& advice = description_.jacobian_advice;
+  if (config_.objective.energy_weight > 0) {
+    advice = "the energy in the objective has no derivatives; set objective.energy_weight to 0";
+  } else if (changes_links(config_) || changes_speed(config_)) {
+    advice =
+        "there are none to variables that change the arm or the task; leave length_scale, "
+        "section_scale and speed out of [variables]";
+  } else if (config_.torque_per_mass_n_m_per_kg > 0 &&
+             std::ranges::any_of(config_.parameters, is_effort)) {
+    advice =
+        "there are none to the masses of motors; leave [motors] out, or effort_min and effort_max "
+        "out of [variables]";
+  } else if (config_.perturbation.applies_to(CaseRole::training) &&
+             config_.perturbation.changes_loop()) {
+    advice =
+        "there are none under friction, quantisation, delay or torque ripple in training; leave "
+        "these out of [perturbation] or set apply_to to judging";
+  } else if (!config_.engines.training->has_derivatives()) {
+    advice =
+        fmt::format("engine '{}' computes no derivatives; choose --engine articulated, which does",
+                    config_.engines.training_name);
+  }
+  description_.has_jacobian = description_.has_residuals && advice.empty();
+}
+
+void TrackingProblem::check_design(const ArmDesign& design) const {
+  if (design.joints.size() != config_.robot.joint_count()) {
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("the design has {} joints, the robot {} of problem {} has {}; use a design "
+                    "made for this robot",
+                    design.joints.size(), config_.robot.name, config_.name,
+                    config_.robot.joint_count()));
+  }
+  const ControllerRow& controller = find_controller(design.controller);
+  if (controller.feed_forward != FeedForward::none &&
+      controller.feed_forward != config_.task.feed_forward) {
+    throw Error(ErrorKind::usage,
+                fmt::format("the design is for controller '{}', whose efforts in advance problem "
+                            "{} does not make; set control.controller to '{}'",
+                            controller.name, config_.name, controller.name));
+  }
+}
+
+void TrackingProblem::add_set(const TestSet& set) {
+  sets_.insert_or_assign(set.name(), set);
+}
+
+TestSet TrackingProblem::get_set(const std::string& name) const {
+  const auto found = sets_.find(name);
+  if (found != sets_.end()) {
+    return found->second;
+  }
+  if (name.starts_with("file:")) {  // any other name generates cases, but never those of the file
+    throw Error(ErrorKind::usage,
+                fmt::format("problem {} has no test cases named {}; load the file they came from",
+                            config_.name, sanitize(name)));
+  }
+  return config_.path ? TestSet::make_repeated(name, *config_.path)
+                      : TestSet::make_generated(name, config_.workspace);
+}
+
+ArmDesign TrackingProblem::make_design(std::span<const double> x) const {
+  ArmDesign design = config_.start;
+  for (std::size_t i = 0; i < config_.parameters.size(); ++i) {
+    get_parameter(design, config_.parameters[i]) = x[i];
+  }
+  return design;
+}
+
+std::vector<double> TrackingProblem::make_vector(const ArmDesign& design) const {
+  check_design(design);
+  if (design.controller != config_.start.controller) {
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("the design is for controller '{}', the variables of problem {} are "
+                    "those of '{}'; set control.controller to '{}'",
+                    design.controller, config_.name, config_.start.controller, design.controller));
+  }
+  ArmDesign copy = design;
+  if (changes_speed(config_)) {
+    copy.speed_m_per_s = design.speed_m_per_s.value_or(config_.task.speed_m_per_s);
+  }
+  std::vector<double> x;
+  for (const DesignParameter& parameter : config_.parameters) {
+    x.push_back(get_parameter(copy, parameter));
+  }
+  return x;
+}
+
+BatchSize TrackingProblem::batch_size(CaseRole role) const {
+  return config_.engines.get(role).batch_size();
+}
+
+std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs) const {
+  // By where the decision vector lies. Nothing is taken from the maps before the simulation ends.
+  struct Candidate {
+    ArmDesign design;
+    TrackingInputs::OfDesign inputs;
+  };
+  std::unordered_map<const double*, Candidate> candidates;
+  // An engine with SIMD needs some 60 us for a job: sets, tables and plants are looked up once for
+  // all neighbours that share a block.
+  std::optional<TestSet> set;
+  std::deque<std::unordered_map<std::uint64_t, TrackingInputs::OfCase>> cases;
+  std::vector<const TrackingInputs::OfCase*> case_of_job;
+  TrackingInputs::Kept kept;
+  std::vector<TrackingJob> tracking;
+  tracking.reserve(jobs.size());
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    const CaseJob& job = jobs[i];
+    const auto [candidate, is_new] = candidates.try_emplace(job.x.data());
+    if (is_new) {
+      candidate->second.design = make_design(job.x);
+      candidate->second.inputs = inputs_.prepare(candidate->second.design);
+    }
+    if (i == 0 || job.block != jobs[i - 1].block) {
+      set = get_set(job.block->set);
+      cases.emplace_back();
+    }
+    auto its_case = cases.back().find(job.number);
+    if (its_case == cases.back().end()) {
+      its_case = cases.back()
+                     .emplace(job.number, inputs_.prepare(job.block->role, *set, job.number))
+                     .first;
+      check_moves(config_.requirements, config_.task, *its_case->second.targets, set->name(),
+                  job.number);
+    }
+    case_of_job.push_back(&its_case->second);
+    TrackingJob& one =
+        tracking.emplace_back(inputs_.make_job(candidate->second.inputs, its_case->second, kept));
+    one.abandon_above_m = job.abandon_above;
+    if (job.block->role == CaseRole::training) {
+      one.cutoff_m = config_.cutoff_error_m;
+    }
+  }
+  auto results = simulate(jobs, tracking);
+  std::vector<CaseOutcome> outcomes;
+  outcomes.reserve(jobs.size());
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    const bool own_targets = tracking[i].targets != case_of_job[i]->targets.get();
+    const CaseRole role = jobs[i].block->role;
+    const std::vector<double> required = make_required_metrics(
+        config_.requirements, results[i], *tracking[i].targets, role == CaseRole::training);
+    outcomes.push_back(make_outcome(std::move(results[i].result), config_.task, role, tracking[i],
+                                    own_targets, jobs[i].residuals));
+    if (outcomes[i].has_error) {
+      outcomes[i].metrics.insert(outcomes[i].metrics.end(), required.begin(), required.end());
+    }
+    const PhysicsEngine& engine = config_.engines.get(role);
+    if (jobs[i].jacobian && engine.has_derivatives() && tracking[i].variation == nullptr &&
+        !outcomes[i].residuals.empty()) {
+      outcomes[i].jacobian = engine.calc_derivatives(
+          inputs_.setup(), tracking[i], inputs_.change_directions(*case_of_job[i], directions_));
+      const std::size_t counted = outcomes[i].residuals.size() * directions_.size();
+      outcomes[i].jacobian.erase(outcomes[i].jacobian.begin(),
+                                 outcomes[i].jacobian.end() - static_cast<std::ptrdiff_t>(counted));
+    }
+  }
+  return outcomes;
+}
+
+std::vector<MeasuredCase> TrackingProblem::simulate(std::span<const CaseJob> jobs,
+                                                    std::span<const TrackingJob> tracking) const {
+  std::vector<MeasuredCase> results;
+  results.reserve(jobs.size());
+  for (std::size_t first = 0; first < jobs.size();) {
+    const PhysicsEngine& engine = config_.engines.get(jobs[first].block->role);
+    std::size_t end = first + 1;
+    while (end < jobs.size() && &config_.engines.get(jobs[end].block->role) == &engine) {
+      ++end;
+    }
+    auto some = simulate_measured(engine, inputs_.setup(), tracking.subspan(first, end - first),
+                                  config_.requirements);
+    std::ranges::move(some, std::back_inserter(results));
+    first = end;
+  }
+  return results;
+}
+
+TrackingResult TrackingProblem::track(const ArmDesign& design, const TestSet& set,
+                                      std::uint64_t number, RecordingOptions recording) const {
+  return std::move(track(design, set, number, 1, recording).front());
+}
+
+std::vector<TrackingResult> TrackingProblem::track(const ArmDesign& design, const TestSet& set,
+                                                   std::uint64_t first, std::size_t count,
+                                                   RecordingOptions recording) const {
+  std::vector<TrackingResult> results;
+  for (MeasuredCase& one : simulate_judged(design, set, first, count, recording, {})) {
+    results.push_back(std::move(one.result));
+  }
+  return results;
+}
+
+std::vector<MeasuredCase> TrackingProblem::measure(const ArmDesign& design, const TestSet& set,
+                                                   std::uint64_t first, std::size_t count) const {
+  return simulate_judged(design, set, first, count, {}, config_.requirements);
+}
+
+std::vector<MeasuredCase> TrackingProblem::simulate_judged(
+    const ArmDesign& design, const TestSet& set, std::uint64_t first, std::size_t count,
+    RecordingOptions recording, std::span<const Requirement> requirements) const {
+  check_design(design);
+  const TrackingInputs::OfDesign of_design = inputs_.prepare(design);
+  std::deque<TrackingInputs::OfCase> cases;
+  TrackingInputs::Kept kept;
+  std::vector<TrackingJob> jobs;
+  for (std::size_t i = 0; i < count; ++i) {
+    cases.push_back(inputs_.prepare(CaseRole::test, set, first + i));
+    jobs.push_back(inputs_.make_job(of_design, cases.back(), kept));
+    jobs.back().recording = recording;
+  }
+  return simulate_measured(*config_.engines.judging, inputs_.setup(), jobs, requirements);
+}
+
+Evaluation TrackingProblem::aggregate(std::span<const double> x,
+                                      std::span<const CaseOutcome> outcomes) const {
+  Evaluation evaluation;
+  const std::size_t joints = config_.robot.joint_count();
+  std::vector<double> sums(kFirstJointMetric + 2 * joints);
+  double failures = 0;
+  double lost = 0;  // failures, and what diverged on its last points only
+  std::vector<double> errors_m;
+  for (const CaseOutcome& outcome : outcomes) {
+    // That the numbers are bounds matters more than why others are missing.
+    const bool is_first_abandoned = outcome.status == EvaluationStatus::abandoned &&
+                                    evaluation.status != EvaluationStatus::abandoned;
+    if (is_first_abandoned ||
+        (outcome.status != EvaluationStatus::ok && evaluation.status == EvaluationStatus::ok)) {
+      evaluation.status = outcome.status;
+      evaluation.reason = outcome.reason;
+    }
+    if (!outcome.has_error) {
+      evaluation.case_errors.push_back(std::numeric_limits<double>::quiet_NaN());
+      ++evaluation.failed_cases;
+      ++failures;
+      ++lost;
+      continue;
+    }
+    evaluation.case_errors.push_back(outcome.error);
+    errors_m.push_back(outcome.error);
+    const bool failed = outcome.error > kFailureError_m;
+    failures += failed ? 1 : 0;
+    lost += failed || outcome.status == EvaluationStatus::diverged ? 1 : 0;
+    sums[kDuration] += outcome.metrics[kDuration];
+    sums[kEnergy] += outcome.metrics[kEnergy];
+    sums[kSaturation] += outcome.metrics[kSaturation];
+    for (std::size_t i = kFirstJointMetric; i < sums.size(); i += 2) {
+      sums[i] = std::max(sums[i], outcome.metrics[i]);
+      sums[i + 1] += outcome.metrics[i + 1];
+    }
+  }
+  if (errors_m.empty()) {
+    return evaluation;
+  }
+  const auto numbers = static_cast<double>(errors_m.size());
+  const TrackingObjective& objective = config_.objective;
+  const ArmDesign design = make_design(x);
+  const double mean_error = std::accumulate(errors_m.begin(), errors_m.end(), 0.0) / numbers;
+  ObjectiveTerms terms;
+  terms.error_m =
+      calc_error_statistic(objective, errors_m, lost / static_cast<double>(outcomes.size()));
+  terms.torque_n_m = calc_total_torque_n_m(design);
+  terms.energy_j = sums[kEnergy] / numbers;
+  terms.duration_s = sums[kDuration] / numbers;
+  evaluation.objectives = calc_objectives(objective, terms);
+  evaluation.constraint_values = calc_constraints(objective, terms);
+  const auto required = calc_worst_required(outcomes, config_.requirements.size());
+  append_constraints(config_.requirements, required, evaluation.constraint_values);
+  // Asked for and not abandoned: a case with an error has a residual for each point that counts.
+  const bool has_residuals =
+      description_.has_residuals && std::ranges::all_of(outcomes, [](const CaseOutcome& outcome) {
+        return !outcome.has_error || !outcome.residuals.empty();
+      });
+  if (has_residuals) {
+    evaluation.residuals = calc_residuals(objective, design, terms, outcomes, numbers);
+    evaluation.jacobian =
+        calc_jacobian(objective, design, directions_, outcomes, evaluation.residuals);
+  }
+  evaluation.metrics = {mean_error, terms.torque_n_m, failures, terms.energy_j,
+                        sums[kSaturation] / numbers};
+  if (has_duration_metric(config_)) {
+    evaluation.metrics.push_back(terms.duration_s);
+  }
+  if (has_mass_metric(config_)) {
+    evaluation.metrics.push_back(calc_moving_mass_kg(make_robot(design)) + config_.task.load_kg);
+  }
+  for (std::size_t i = kFirstJointMetric; i < sums.size(); i += 2) {
+    evaluation.metrics.push_back(sums[i]);
+    evaluation.metrics.push_back(sums[i + 1] / numbers);
+  }
+  evaluation.metrics.insert(evaluation.metrics.end(), required.begin(), required.end());
+  return evaluation;
+}
+
+std::optional<double> TrackingProblem::calc_lower_bound(std::span<const double> x,
+                                                        std::span<const CaseOutcome> outcomes,
+                                                        std::size_t cases) const {
+  if (description_.objectives.size() > 1 || !description_.constraints.empty()) {
+    return std::nullopt;
+  }
+  // Errors and what efforts cost are never negative: no objective is smaller with a further case
+  // than with one that is perfect and costs nothing.
+  CaseOutcome perfect;
+  perfect.metrics.assign(
+      kFirstJointMetric + 2 * config_.robot.joint_count() + config_.requirements.size(), 0.0);
+  std::vector<CaseOutcome> all(cases, perfect);
+  std::ranges::copy(outcomes, all.begin());
+  const Evaluation evaluation = aggregate(x, all);
+  return evaluation.objectives.empty() ? -std::numeric_limits<double>::infinity()
+                                       : evaluation.objectives.front();
+}
+
+std::vector<double> TrackingProblem::penalty_objectives() const {
+  // Ten times the error of a design that is cut off at once on every case, and as much torque as
+  // the box allows; where torque alone is minimised, ten times that. As much energy as this torque
+  // has after a turn of every joint on every move.
+  const TrackingObjective& objective = config_.objective;
+  ArmDesign strongest = config_.start;
+  for (const DesignParameter& parameter : config_.parameters) {
+    if (is_effort(parameter)) {
+      get_parameter(strongest, parameter) *= config_.bounds_factor;
+    }
+  }
+  TrackingTask slowest = make_task(config_.start);
+  if (changes_speed(config_)) {
+    slowest.speed_m_per_s /= config_.speed_bounds_factor;
+  }
+  const double torque_n_m = calc_total_torque_n_m(strongest);
+  const bool is_torque = objective.kind == TrackingObjective::Kind::torque_with_error_limit;
+  ObjectiveTerms terms;
+  terms.error_m = 10 * config_.cutoff_error_m;
+  if (objective.statistic == TrackingObjective::Statistic::mean_with_failures) {
+    terms.error_m += 10 * objective.failure_penalty_m;
+  }
+  terms.torque_n_m = (is_torque ? 10 : 1) * torque_n_m;
+  terms.energy_j = torque_n_m * 2 * std::numbers::pi * config_.workspace.points;
+  terms.duration_s = calc_case_duration_s(config_, slowest);
+  return calc_objectives(objective, terms);
+}
+
+}  // namespace armwright

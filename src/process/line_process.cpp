@@ -1,0 +1,319 @@
+#include "process/line_process.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <system_error>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/file.hpp"
+#include "base/text.hpp"
+#include "process/fork_support.hpp"
+#include "process/process_watch.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr auto kSlice = std::chrono::milliseconds(100);  // between two looks at what is watched
+
+using Clock = LineProcess::Clock;
+
+Clock::time_point after(double seconds) {
+  return Clock::now() +
+         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+}
+
+// Resident memory in MiB; 0 for a process that is gone.
+double read_memory_mib(pid_t pid) {
+  const auto memory = measure_memory(std::to_string(pid));
+  return memory ? static_cast<double>(memory->resident_bytes) / 1048576 : 0;
+}
+
+void set_nonblocking(int fd) {
+  fcntl(fd, F_SETFL, fcntl(fd, F_GETFL) | O_NONBLOCK);
+}
+
+std::string describe_exit(int status) {
+  if (WIFSIGNALED(status)) {
+    return describe_signal(WTERMSIG(status));
+  }
+  return fmt::format("ended with exit code {}", WEXITSTATUS(status));
+}
+
+// What the child is to become. All of it is there before the fork: after it, nothing may take
+// memory.
+struct ChildPlan {
+  pid_t parent = -1;
+  std::array<int, 3> streams{};  // its standard ones
+  int report = -1;               // where it says why it could not begin: an errno
+  char* const* words = nullptr;
+};
+
+[[noreturn]] void become_program(const ChildPlan& plan) {
+  constexpr int kReport = STDERR_FILENO + 1;
+  lead_own_group();
+  die_with(plan.parent);
+  for (int stream = 0; stream < std::ssize(plan.streams); ++stream) {
+    dup2(plan.streams[static_cast<std::size_t>(stream)], stream);
+  }
+  if (plan.report != kReport) {
+    dup3(plan.report, kReport, O_CLOEXEC);
+  }
+  closefrom(kReport + 1);
+  reset_signals();
+  execvp(plan.words[0], plan.words);
+  const int error = errno;
+  [[maybe_unused]] const ssize_t told = write(kReport, &error, sizeof error);
+  _exit(EXIT_FAILURE);
+}
+
+// 0, or why it could not begin.
+int read_report(int report) {
+  int error = 0;
+  ssize_t count = 0;
+  do {
+    count = read(report, &error, sizeof error);
+  } while (count < 0 && errno == EINTR);
+  return count == sizeof error ? error : 0;
+}
+
+}  // namespace
+
+LineProcess::LineProcess(const std::vector<std::string>& words, OutputLog& log)
+    : log_(log), next_memory_check_(Clock::now()) {
+  // The child's input is a socket, not a pipe: send() can be told not to raise SIGPIPE.
+  std::array<int, 2> to_child{};
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, to_child.data()) != 0) {
+    fail_io(words.front(), "connect to the process", errno);
+  }
+  input_.reset(to_child[0]);
+  const FileDescriptor child_input(to_child[1]);
+  std::array<int, 2> from_child{};
+  if (pipe2(from_child.data(), O_CLOEXEC) != 0) {
+    fail_io(words.front(), "connect to the process", errno);
+  }
+  output_.reset(from_child[0]);
+  const FileDescriptor child_output(from_child[1]);
+  set_nonblocking(input_.get());
+  set_nonblocking(output_.get());
+
+  std::array<int, 2> report{};
+  if (pipe2(report.data(), O_CLOEXEC) != 0) {
+    fail_io(words.front(), "connect to the process", errno);
+  }
+  const FileDescriptor our_report(report[0]);
+  FileDescriptor child_report(report[1]);
+  std::vector<char*> arguments;
+  std::ranges::transform(words, std::back_inserter(arguments),
+                         [](const std::string& word) { return const_cast<char*>(word.c_str()); });
+  arguments.push_back(nullptr);
+  const ChildPlan plan{.parent = getpid(),
+                       .streams = {child_input.get(), child_output.get(), log_.child_end()},
+                       .report = child_report.get(),
+                       .words = arguments.data()};
+  {
+    const AllSignalsBlocked blocked;
+    pid_ = fork();
+    if (pid_ == 0) {
+      become_program(plan);
+    }
+  }
+  if (pid_ < 0) {
+    fail_io(words.front(), "start a process for it", errno);
+  }
+  setpgid(pid_, pid_);  // as the child does: whoever comes first
+  child_report.close();
+  log_.close_child_end();
+  const int error = read_report(our_report.get());
+  if (error != 0) {
+    reap(std::exchange(pid_, -1));
+    throw Error(ErrorKind::usage,
+                fmt::format("cannot start '{}': {}; it must be a program on the PATH or the path "
+                            "of one",
+                            sanitize(words.front()), std::generic_category().message(error)));
+  }
+}
+
+LineProcess::~LineProcess() {
+  try {
+    kill();
+  } catch (const std::exception&) {
+    // Dead it is; only its last words are lost.
+  }
+}
+
+void LineProcess::limit_memory(double mib) {
+  memory_limit_mib_ = mib;
+  memory_mib_at_start_ = read_memory_mib(pid_);
+}
+
+std::string LineProcess::kill() {
+  if (pid_ < 0) {
+    return "ended";
+  }
+  kill_group(pid_);
+  const int status = reap(std::exchange(pid_, -1));
+  log_.take_available();
+  return describe_exit(status);
+}
+
+void LineProcess::check_memory() {
+  const auto now = Clock::now();
+  if (memory_limit_mib_ <= 0 || now < next_memory_check_) {
+    return;
+  }
+  next_memory_check_ = now + kSlice;
+  const double grown_mib = read_memory_mib(pid_) - memory_mib_at_start_;
+  if (grown_mib > memory_limit_mib_) {
+    throw LineProcessFailure(
+        fmt::format("took {:.0f} MiB of memory beyond what it began with; {:.0f} MiB are allowed "
+                    "(option memory_mib)",
+                    grown_mib, memory_limit_mib_));
+  }
+}
+
+void LineProcess::read_available() {
+  std::array<char, 65536> buffer;
+  while (!at_end_ && received_.size() <= kLongestLine) {
+    const ssize_t count = read(output_.get(), buffer.data(), buffer.size());
+    if (count > 0) {
+      received_.append(buffer.data(), static_cast<std::size_t>(count));
+    } else if (count == 0) {
+      at_end_ = true;
+    } else if (errno != EINTR) {
+      return;  // nothing more for now
+    }
+  }
+}
+
+std::optional<std::string> LineProcess::take_line() {
+  const std::size_t end = received_.find('\n', searched_);
+  const std::size_t length = std::min(end, received_.size()) - taken_;
+  if (length > kLongestLine) {
+    throw LineProcessFailure(
+        fmt::format("sent a line of more than {} MiB", kLongestLine / (1024 * 1024)));
+  }
+  if (end == std::string::npos) {
+    received_.erase(0, taken_);
+    taken_ = 0;
+    searched_ = received_.size();
+    return std::nullopt;
+  }
+  std::string line = received_.substr(taken_, length);
+  taken_ = end + 1;
+  searched_ = taken_;
+  return line;
+}
+
+void LineProcess::send(const std::string& line, double silence_s) {
+  const std::string text = line + '\n';
+  WakingTime silence;
+  std::size_t sent = 0;
+  while (sent < text.size()) {
+    const ssize_t count =
+        ::send(input_.get(), text.data() + sent, text.size() - sent, MSG_NOSIGNAL);
+    if (count >= 0) {
+      sent += static_cast<std::size_t>(count);
+      continue;
+    }
+    if (errno == EPIPE || errno == ECONNRESET) {
+      return;  // it does not listen: receive() finds out why
+    }
+    if (has_ended(pid_)) {
+      return;
+    }
+    silence.look();
+    if (silence.get_s() > silence_s) {
+      throw LineProcessSilence(fmt::format("has not read its input for {:g} s", silence_s));
+    }
+    check_memory();
+    log_.take_available();
+    // It may have to get rid of something before it listens.
+    const bool has_room = !at_end_ && received_.size() <= kLongestLine;
+    std::array<pollfd, 3> waiting{pollfd{input_.get(), POLLOUT, 0}, pollfd{log_.get(), POLLIN, 0},
+                                  pollfd{has_room ? output_.get() : -1, POLLIN, 0}};
+    poll(waiting.data(), waiting.size(), static_cast<int>(kSlice.count()));
+    read_available();
+  }
+}
+
+std::optional<std::string> LineProcess::receive(double silence_s,
+                                                const std::function<bool()>& is_given_up) {
+  WakingTime silence;
+  while (true) {
+    if (auto line = take_line()) {
+      return line;
+    }
+    check_memory();
+    log_.take_available();
+    if (is_given_up()) {
+      return std::nullopt;
+    }
+    // What it wrote before it ended is read first, whoever else holds its output open.
+    const bool ended = has_ended(pid_);
+    const std::size_t before = received_.size();
+    read_available();
+    const bool has_grown = received_.size() > before;
+    if (has_grown) {
+      if (auto line = take_line()) {
+        return line;
+      }
+    }
+    // Only a whole line breaks the silence: one byte now and then would keep us here for ever.
+    silence.look();
+    const bool is_late = silence.get_s() > silence_s;
+    if (has_grown && !is_late) {
+      continue;
+    }
+    if (ended) {
+      throw LineProcessFailure(kill());
+    }
+    if (is_late) {
+      if (at_end_) {
+        throw LineProcessFailure("closed its standard output");
+      }
+      if (!received_.empty()) {
+        throw LineProcessSilence(
+            fmt::format("has begun a line and not ended it within {:g} s", silence_s));
+      }
+      throw LineProcessSilence(fmt::format("has been silent for {:g} s", silence_s));
+    }
+    if (at_end_) {
+      poll(nullptr, 0, 10);  // it is about to end
+    } else {
+      std::array<pollfd, 2> waiting{pollfd{output_.get(), POLLIN, 0},
+                                    pollfd{log_.get(), POLLIN, 0}};
+      poll(waiting.data(), waiting.size(), static_cast<int>(kSlice.count()));
+    }
+  }
+}
+
+std::string LineProcess::finish(double patience_s) {
+  input_.close();
+  const auto deadline = after(patience_s);
+  while (!has_ended(pid_)) {
+    received_.clear();
+    taken_ = searched_ = 0;
+    read_available();  // so that it does not wait for us
+    log_.take_available();
+    if (Clock::now() > deadline) {
+      kill();
+      return "";
+    }
+    poll(nullptr, 0, 2);
+  }
+  const std::string exit = kill();
+  return exit == describe_exit(0) ? "" : exit;
+}
+
+}  // namespace armwright

@@ -1,0 +1,49 @@
+#include "report/evidence/distance_response.hpp"
+
+#include "problems/tracking/tracking_description.hpp"
+#include "report/evidence/page_json.hpp"
+
+namespace armwright {
+
+using nlohmann::json;
+
+json make_response_series(const TrackingProblem& problem, const std::string& name,
+                          std::span<const TrackingResult> results,
+                          const std::optional<double>& published_mean_m,
+                          const std::string& command) {
+  const std::size_t points = list_moves_m(problem.config()).size();
+  return make_response_series({name, command}, get_case_errors(results),
+                              calc_point_statistics(results, points), published_mean_m);
+}
+
+json make_response_series(const SeriesText& text, std::span<const double> case_errors,
+                          const PointStatistics& points,
+                          const std::optional<double>& published_mean_m) {
+  const ErrorSummary summary = summarize(case_errors, kFailureError_m);
+  return {{"name", text.name},
+          {"cases", summary.cases - summary.without_number},
+          {"failures", summary.failures},
+          {"mean_m", finite_or_null(points.mean_m)},
+          {"standard_error_m", finite_or_null(points.standard_error_m)},
+          {"overall_mean_m", finite_or_null(summary.mean)},
+          {"overall_median_m", finite_or_null(summary.median)},
+          {"published_mean_m", finite_or_null(published_mean_m)},
+          {"command", text.command}};
+}
+
+json make_distance_response(const TrackingProblem& problem, const ResponseText& text, json series) {
+  const std::vector<double> distances = list_moves_m(problem.config());
+  json counted = json::array();
+  for (std::size_t k = 0; k < distances.size(); ++k) {
+    counted.push_back(k > 0 || problem.config().task.count_first_point);
+  }
+  return {{"id", text.id},
+          {"title", text.title},
+          {"thesis", text.thesis},
+          {"remark", text.remark},
+          {"distances_m", distances},
+          {"counted", std::move(counted)},
+          {"series", std::move(series)}};
+}
+
+}  // namespace armwright

@@ -1,0 +1,312 @@
+#include "report/evidence/recorded_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/build_info.hpp"
+#include "base/error.hpp"
+#include "base/json_text.hpp"
+#include "base/text.hpp"
+#include "problems/config/config_files.hpp"
+#include "problems/config/recorded_problem.hpp"
+#include "sim/simd/simd_level.hpp"
+#include "study/compare/incumbents.hpp"
+#include "study/run/record_files.hpp"
+#include "study/run/run.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+// A word of the command line that names a problem: its file, where that is still there.
+struct NamedProblem {
+  std::string word;
+  fs::path file;
+};
+
+// `optimize PROBLEM`, or for a cell of a comparison the shipped problem of that name.
+std::optional<NamedProblem> find_named_problem(const RecordedRun& run) {
+  std::vector<std::string> words = run.command_line;
+  const auto command = std::ranges::find(words, "optimize");
+  words.erase(words.begin(), command == words.end() ? command : command + 1);
+  words.push_back(run.problem_name);
+  for (const std::string& word : words) {
+    const bool is_path = word.find('/') != std::string::npos;
+    if (word.starts_with("-") || word.empty() || (is_path && !word.ends_with(".toml"))) {
+      continue;
+    }
+    try {
+      const fs::path file = resolve_config("problems", word);
+      if (run.problem_name.empty() || file.stem() == run.problem_name) {
+        return NamedProblem{word, file};
+      }
+    } catch (const Error&) {
+      // Another word, as the value of an option.
+    }
+  }
+  return std::nullopt;
+}
+
+// What decides how a design is judged, a line each: not the title, nor how it was found, which
+// races, schedules and the cut-off of training belong to.
+std::map<std::string, json> list_settings(const json& resolved) {
+  std::map<std::string, json> settings;
+  for (const char* table : {"robot", "task", "control", "physics", "motors", "perturbation",
+                            "workspace", "objective", "variables"}) {
+    if (resolved.contains(table) && resolved[table].is_object()) {
+      for (const auto& [key, value] : resolved[table].items()) {
+        settings[fmt::format("{}.{}", table, key)] = value;
+      }
+    }
+  }
+  return settings;
+}
+
+// As TOML, but a word without its quotes.
+std::string write_value(const json& value) {
+  if (!value.is_string()) {
+    return value.dump();
+  }
+  const auto text = value.get<std::string>();
+  const bool is_word = text.find_first_not_of("abcdefghijklmnopqrstuvwxyz_") == std::string::npos;
+  const bool has_meaning =
+      text.empty() || text == "true" || text == "false" || text == "inf" || text == "nan";
+  return is_word && !has_meaning ? text : value.dump();
+}
+
+std::vector<std::string> list_overrides(const json& from, const json& to) {
+  const auto before = list_settings(from);
+  std::vector<std::string> overrides;
+  for (const auto& [key, value] : list_settings(to)) {
+    const auto found = before.find(key);
+    if (found == before.end() || found->second != value) {
+      overrides.push_back(key + "=" + write_value(value));
+    }
+  }
+  return overrides;
+}
+
+// Only if it leads to exactly this problem.
+std::vector<std::string> find_problem_words(const NamedProblem& named, const json& recorded) {
+  try {
+    const json plain = json::parse(load_problem(named.file.string()).resolved_json);
+    const auto all = list_overrides(plain, recorded);
+    // The SIMD level is found anew on another machine, if it need not be said here.
+    std::vector<std::string> fewer = all;
+    std::erase_if(fewer, [](const auto& text) { return text.starts_with("physics.simd="); });
+    for (const auto& overrides : {fewer, all}) {
+      const json changed = json::parse(load_problem(named.file.string(), overrides).resolved_json);
+      if (list_settings(changed) == list_settings(recorded)) {
+        std::vector<std::string> words = {"--problem", named.word};
+        for (const std::string& text : overrides) {
+          words.insert(words.end(), {"--set", text});
+        }
+        return words;
+      }
+    }
+  } catch (const Error&) {
+    // Its file has changed, so that it cannot be used any more.
+  }
+  return {};
+}
+
+void read_manifest(RecordedRun& run) {
+  const auto file = run.folder / "manifest.json";
+  if (!fs::exists(file)) {
+    throw Error(ErrorKind::usage,
+                fmt::format("{}: is not the folder of a run (it has no manifest.json)",
+                            sanitize(run.folder.string())));
+  }
+  try {
+    const json manifest = json::parse(read_json_file(file, kManifestLimit_bytes));
+    run.configuration = manifest.at("configuration");
+    run.build = manifest.at("build").get<std::map<std::string, std::string>>();
+    run.command_line = manifest.at("command_line").get<std::vector<std::string>>();
+    run.started = manifest.value("started", "");
+    const json& settings = run.configuration.at("run");
+    run.budget = settings.at("budget").get<std::int64_t>();
+    const auto kind = settings.at("schedule").at("kind").get<std::string>();
+    run.schedule.kind = find_schedule_kind(kind).value_or(Schedule::Kind::fixed);
+    run.schedule.cases = settings.at("schedule").at("cases").get<int>();
+    settings.at("optimizer").get<std::string>();
+    settings.at("options").get<std::map<std::string, json>>();
+    settings.at("seed").get<std::uint64_t>();
+    run.configuration.at("problem").at("kind").get<std::string>();
+    run.configuration.at("inputs").get<std::map<std::string, std::string>>();
+  } catch (const json::exception& error) {
+    throw Error(ErrorKind::bad_data, fmt::format("{}: is not a manifest that armwright wrote ({})",
+                                                 sanitize(file.string()), error.what()));
+  }
+}
+
+void read_name(RecordedRun& run) {
+  if (run.result) {
+    run.problem_name = run.result->problem;
+    return;
+  }
+  const auto cell = run.folder / "cell.json";
+  if (fs::exists(cell)) {
+    const json content = json::parse(read_json_file(cell, kCellLimit_bytes), nullptr, false);
+    if (content.is_object() && content.contains("problem") && content["problem"].is_string()) {
+      run.problem_name = content["problem"].get<std::string>();
+      return;
+    }
+  }
+  if (const auto named = find_named_problem(run)) {
+    run.problem_name = named->file.stem().string();
+  }
+}
+
+// Which files that the problem refers to are not those that the run used.
+std::vector<std::string> list_changed_inputs(const RecordedRun& run, const LoadedProblem& problem) {
+  std::vector<std::string> changed;
+  const json& recorded = run.configuration.at("inputs");
+  for (const auto& [name, hash] : problem.input_hashes) {
+    if (!recorded.contains(name) || recorded[name] != hash) {
+      changed.push_back(sanitize(name));
+    }
+  }
+  return changed;
+}
+
+// A level that this machine lacks is replaced: the last bits may differ, nothing else does.
+json choose_simd(json problem, std::vector<std::string>& notes) {
+  const json::json_pointer level("/physics/simd");
+  if (!problem.contains(level) || !problem[level].is_string()) {
+    return problem;
+  }
+  const auto possible = supported_simd_names();
+  const auto name = problem[level].get<std::string>();
+  if (name != "auto" && std::ranges::find(possible, name) == possible.end()) {
+    notes.push_back(
+        fmt::format("The run was made with the SIMD level {}, which this machine "
+                    "lacks: what is simulated for this page may differ in the last "
+                    "digits.",
+                    sanitize(name)));
+    problem[level] = "auto";
+  }
+  return problem;
+}
+
+void rebuild_problem(RecordedRun& run) {
+  const auto named = find_named_problem(run);
+  run.beside = named ? named->file.parent_path() : run.folder;
+  const json& recorded = run.configuration.at("problem");
+  const json usable = choose_simd(recorded, run.notes);
+  constexpr const char* kConsequence =
+      "What would have to be simulated for this page is left out, rather than showing another "
+      "problem's numbers.";
+  try {
+    LoadedProblem problem = load_recorded_problem(usable.dump(), run.problem_name, run.beside);
+    const auto changed = list_changed_inputs(run, problem);
+    if (!changed.empty()) {
+      run.problem_fault = fmt::format(
+          "Files of the problem are not what the run used any more: {}.", join(changed, ", "));
+      run.notes.push_back(run.problem_fault + " " + kConsequence);
+      return;
+    }
+    if (named) {
+      run.problem_words = find_problem_words(*named, json::parse(problem.resolved_json));
+    }
+    run.problem = std::move(problem);
+  } catch (const Error& error) {
+    run.problem_fault = fmt::format("The problem cannot be made again as the run recorded it ({}).",
+                                    sanitize(error.what()));
+    run.notes.push_back(run.problem_fault + " " + kConsequence);
+  }
+}
+
+void compare_builds(RecordedRun& run) {
+  const auto now = describe_build();
+  std::vector<std::string> differences;
+  for (const char* key : {"version", "git", "compiler", "ode", "cpu"}) {
+    const auto recorded = run.build.find(key);
+    if (recorded != run.build.end() && recorded->second != now.at(key)) {
+      differences.push_back(
+          fmt::format("{} {} then, {} now", key, sanitize(recorded->second), now.at(key)));
+    }
+  }
+  if (!differences.empty()) {
+    run.notes.push_back(
+        fmt::format("The run was made by another program or machine than this "
+                    "page: {}.",
+                    join(differences, "; ")));
+  }
+}
+
+}  // namespace
+
+ProblemDescription RecordedRun::describe() const {
+  if (problem) {
+    return problem->problem->description();
+  }
+  ProblemDescription description;
+  description.name = problem_name;
+  description.objectives = {{"objective", ""}};
+  if (result) {
+    description.objectives = result->objectives;
+    description.objective_weights = result->objective_weights;
+    description.constraints = result->constraints;
+    description.limits = result->limits;
+  }
+  return description;
+}
+
+std::vector<double> RecordedRun::find_best() const {
+  if (result) {
+    return result->winner ? result->judged[*result->winner].candidate.x : std::vector<double>{};
+  }
+  const auto incumbents = find_incumbents(describe(), journal.training, schedule.changes_cases());
+  return incumbents.empty() ? std::vector<double>{}
+                            : journal.training.find(incumbents.back().evaluation).value().x;
+}
+
+fs::path RecordedRun::find_urdf() const {
+  const auto urdf = configuration.at("problem").at("robot").at("urdf").get<std::string>();
+  return resolve_config("robots", urdf, beside);
+}
+
+std::string RecordedRun::make_evaluate_command(const std::string& design,
+                                               const std::vector<std::string>& words) const {
+  if (problem_words.empty()) {
+    return "";
+  }
+  std::vector<std::string> all = {"armwright", "evaluate", design};
+  all.insert(all.end(), problem_words.begin(), problem_words.end());
+  all.insert(all.end(), words.begin(), words.end());
+  return quote_command(all);
+}
+
+RecordedRun read_recorded_run(const fs::path& folder) {
+  RecordedRun run;
+  run.folder = folder;
+  read_manifest(run);
+  // The result first: a journal that is read after it holds all that the result tells of.
+  if (fs::exists(folder / "result.json")) {
+    run.result = load_result(folder);
+  }
+  if (fs::exists(folder / "journal")) {
+    run.journal = read_journal(folder / "journal");
+  }
+  read_name(run);
+  compare_builds(run);
+  rebuild_problem(run);
+  if (run.problem) {
+    const std::size_t variables = run.problem->problem->description().variables.size();
+    for (const EvaluationRecord& record : run.journal.training) {
+      if (record.x.size() != variables) {
+        throw Error(ErrorKind::bad_data,
+                    fmt::format("{}: evaluation {} has {} variables, but the problem {}; they "
+                                "belong to different runs",
+                                sanitize((folder / "journal").string()), record.index + 1,
+                                record.x.size(), variables));
+      }
+    }
+  }
+  return run;
+}
+
+}  // namespace armwright

@@ -1,0 +1,74 @@
+#include "report/exchange/export.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "report/deliverables/deliverables.hpp"
+#include "report/deliverables/finished_arm.hpp"
+#include "report/formats/coco.hpp"
+#include "report/formats/export_folder.hpp"
+#include "report/formats/ioh.hpp"
+#include "report/formats/tables.hpp"
+
+namespace armwright {
+
+namespace {
+
+void export_survey(const std::filesystem::path& folder, const ExportFormat& format,
+                   ExportSummary& summary) {
+  FoundRuns found = find_runs(folder);
+  ExportFolder target(summary.folder);
+  summary.unfinished = found.unfinished;
+  summary.survey = survey_runs(found.runs);
+  format.write(summary.survey, target.path());
+  target.put_in_place();
+}
+
+void export_arm(const std::filesystem::path& folder, const ExportFormat& format,
+                ExportSummary& summary) {
+  const FinishedArm arm = load_finished_arm(folder, format.name);
+  ExportFolder target(summary.folder);
+  format.write_arm(arm, target.path());
+  target.put_in_place();
+  summary.winner = arm.describe();
+  for (const auto& entry : std::filesystem::directory_iterator(summary.folder)) {
+    summary.files.push_back(entry.path().filename().string());
+  }
+  std::ranges::sort(summary.files);
+}
+
+}  // namespace
+
+std::span<const ExportFormat> export_formats() {
+  static const std::array<ExportFormat, 7> formats = {{
+      {"csv", "tables: every run, every evaluation; designs and test cases", write_csv},
+      {"ioh", "IOHprofiler's JSON, for IOHanalyzer", write_ioh},
+      {"coco", "COCO's bbob-new2, for cocopp; at most 24 problems", write_coco},
+      {"json", "all of it nested in one file, and the test cases", write_json},
+      {"ros2-control", "one arm: the winner's gains as parameters of ROS 2 controllers (YAML)",
+       nullptr, write_ros2_control},
+      {"urdf", "one arm: its URDF with the winner's effort limits", nullptr, write_urdf},
+      {"datasheet", "one arm: design, results and limits on one page to print (HTML)", nullptr,
+       write_datasheet},
+  }};
+  return formats;
+}
+
+ExportSummary export_runs(const std::filesystem::path& folder, std::string_view format,
+                          std::filesystem::path out) {
+  const auto formats = export_formats();
+  const auto chosen = std::ranges::find(formats, format, &ExportFormat::name);
+  if (chosen == formats.end()) {
+    std::vector<std::string> names;
+    std::ranges::transform(formats, std::back_inserter(names), &ExportFormat::name);
+    throw Error(ErrorKind::usage, describe_unknown("--format", format, names));
+  }
+  ExportSummary summary;
+  summary.folder = out.empty() ? folder / ("export-" + chosen->name) : std::move(out);
+  (chosen->write_arm != nullptr ? export_arm : export_survey)(folder, *chosen, summary);
+  return summary;
+}
+
+}  // namespace armwright

@@ -1,0 +1,253 @@
+#include "report/exchange/import_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <tuple>
+
+#include "base/error.hpp"
+#include "base/file.hpp"
+#include "base/json_text.hpp"
+#include "base/text.hpp"
+#include "report/formats/csv_reader.hpp"
+#include "report/formats/tables.hpp"
+#include "study/run/json_values.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+constexpr std::size_t kLimit_bytes = std::size_t{4} << 30;
+
+[[noreturn]] void refuse(const fs::path& file, std::string_view why) {
+  throw Error(ErrorKind::bad_data,
+              fmt::format("{}: is not what armwright exported: {}", file.string(), why));
+}
+
+void check(const ImportedRun& run, const fs::path& file) {
+  if (run.feasible && run.point.x.size() != run.point.variables.size()) {
+    refuse(file, fmt::format("a point has {} values for {} variables", run.point.x.size(),
+                             run.point.variables.size()));
+  }
+}
+
+// Where the columns of evaluations/PROBLEM.csv are.
+class EvaluationColumns {
+ public:
+  explicit EvaluationColumns(const std::vector<std::string>& header) : header_(header) {
+    constexpr std::string_view kPrefix = "x.";
+    for (std::size_t i = 0; i < header.size(); ++i) {
+      if (header[i].starts_with(kPrefix)) {
+        variables_.push_back(header[i].substr(kPrefix.size()));
+        x_.push_back(i);
+      }
+    }
+    for (const char* name :
+         {"problem", "label", "replicate", "evaluation", "feasible", "objective"}) {
+      const auto found = std::ranges::find(header, name);
+      if (found == header.end()) {
+        throw Error(ErrorKind::bad_data, fmt::format("it has no column '{}'", name));
+      }
+      places_[name] = static_cast<std::size_t>(found - header.begin());
+    }
+  }
+
+  std::size_t count() const { return header_.size(); }
+
+  const std::string& get(const std::vector<std::string>& row, const char* column) const {
+    return row[places_.at(column)];
+  }
+  std::uint64_t get_count(const std::vector<std::string>& row, const char* column) const {
+    const auto value = parse_integer(get(row, column));
+    if (!value || *value < 1) {
+      throw Error(ErrorKind::bad_data, fmt::format("'{}' is no {}", get(row, column), column));
+    }
+    return static_cast<std::uint64_t>(*value);
+  }
+  double get_number(const std::string& text) const {
+    const auto value = parse_finite(text);
+    if (!value) {
+      throw Error(ErrorKind::bad_data, fmt::format("'{}' is no number", text));
+    }
+    return *value;
+  }
+
+  void read_point(const std::vector<std::string>& row, ImportedPoint& point) const {
+    point.evaluation = get_count(row, "evaluation");
+    point.objective = get_number(get(row, "objective"));
+    point.variables = variables_;
+    point.x.clear();
+    for (const std::size_t place : x_) {
+      point.x.push_back(get_number(row[place]));
+    }
+  }
+
+ private:
+  std::vector<std::string> header_;
+  std::map<std::string, std::size_t> places_;
+  std::vector<std::string> variables_;
+  std::vector<std::size_t> x_;
+};
+
+void read_csv(const fs::path& file, std::vector<ImportedRun>& runs) {
+  const std::string text = read_file(file, kLimit_bytes);
+  CsvReader reader(text);
+  try {
+    std::vector<std::string> row;
+    reader.read_row(row);
+    const EvaluationColumns columns(row);
+    std::map<std::tuple<std::string, std::string, std::uint64_t>, ImportedRun> found;
+    while (reader.read_row(row)) {
+      if (row.size() != columns.count()) {
+        throw Error(ErrorKind::bad_data,
+                    fmt::format("it has {} fields instead of {}", row.size(), columns.count()));
+      }
+      const std::string& problem = columns.get(row, "problem");
+      const std::string& label = columns.get(row, "label");
+      const std::uint64_t replicate = columns.get_count(row, "replicate");
+      ImportedRun& run = found[{problem, label, replicate}];
+      run.point.problem = problem;
+      run.point.label = label;
+      run.point.replicate = replicate;
+      if (columns.get(row, "feasible") == "1" &&
+          (!run.feasible ||
+           columns.get_number(columns.get(row, "objective")) < run.point.objective)) {
+        run.feasible = true;
+        columns.read_point(row, run.point);
+      }
+    }
+    for (auto& [key, run] : found) {
+      runs.push_back(std::move(run));
+    }
+  } catch (const Error& error) {
+    refuse(file, fmt::format("row {}: {}", reader.row(), sanitize(error.what())));
+  }
+}
+
+void read_csv_folder(const fs::path& folder, std::vector<ImportedRun>& runs) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder / kEvaluationsFolder)) {
+    if (entry.path().extension() == ".csv") {
+      files.push_back(entry.path());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  for (const fs::path& file : files) {
+    read_csv(file, runs);
+  }
+}
+
+void read_json(const fs::path& file, std::vector<ImportedRun>& runs) {
+  // The best of each run stands beside its evaluations, which are by far the most of the file.
+  const auto skip_evaluations = [](int /*depth*/, json::parse_event_t event, json& parsed) {
+    return event != json::parse_event_t::key || parsed != "evaluations";
+  };
+  try {
+    const json root = json::parse(read_json_file(file, kLimit_bytes), skip_evaluations);
+    for (const json& problem : root.at("problems")) {
+      for (const json& run : problem.at("runs")) {
+        ImportedRun imported;
+        imported.point.problem = problem.at("name");
+        imported.point.label = run.at("label");
+        imported.point.replicate = whole_from_json(run.at("replicate"));
+        imported.point.variables = problem.at("variables").get<std::vector<std::string>>();
+        const json& best = run.at("best");
+        if (!best.is_null()) {
+          imported.feasible = true;
+          imported.point.evaluation = whole_from_json(best.at("evaluation"));
+          imported.point.objective = best.at("objective");
+          imported.point.x = best.at("x").get<std::vector<double>>();
+        }
+        check(imported, file);
+        runs.push_back(std::move(imported));
+      }
+    }
+  } catch (const json::exception& error) {
+    refuse(file, sanitize(error.what()));
+  }
+}
+
+void read_ioh(const fs::path& file, std::vector<ImportedRun>& runs) {
+  try {
+    const json root = json::parse(read_json_file(file, kLimit_bytes));
+    std::vector<std::string> variables;
+    for (const json& attribute : root.at("experiment_attributes")) {
+      if (attribute.contains("variables")) {
+        const json names = json::parse(attribute.at("variables").get<std::string>());
+        variables = names.get<std::vector<std::string>>();
+      }
+    }
+    for (const json& scenario : root.at("scenarios")) {
+      for (const json& run : scenario.at("runs")) {
+        ImportedRun imported;
+        imported.point.problem = root.at("function_name");
+        imported.point.label = root.at("algorithm").at("name");
+        imported.point.replicate = whole_from_json(run.at("instance"));
+        imported.point.variables = variables;
+        const json& best = run.at("best");
+        imported.point.objective = best.at("y");
+        imported.feasible = imported.point.objective < std::numeric_limits<double>::max();
+        imported.point.evaluation = whole_from_json(best.at("evals"));
+        imported.point.x = best.at("x").get<std::vector<double>>();
+        check(imported, file);
+        runs.push_back(std::move(imported));
+      }
+    }
+  } catch (const json::exception& error) {
+    refuse(file, sanitize(error.what()));
+  }
+}
+
+// In the folder of one label, or in those of all.
+std::vector<fs::path> find_ioh_files(const fs::path& folder) {
+  std::vector<fs::path> files;
+  const auto is_index = [](const fs::path& file) {
+    return file.extension() == ".json" && file.filename().string().starts_with("IOHprofiler_f");
+  };
+  for (auto entry = fs::recursive_directory_iterator(folder);
+       entry != fs::recursive_directory_iterator(); ++entry) {
+    if (entry.depth() > 0 && entry->is_directory()) {
+      entry.disable_recursion_pending();
+    }
+    if (is_index(entry->path())) {
+      files.push_back(entry->path());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace
+
+std::vector<ImportedRun> read_export(const fs::path& folder) {
+  std::vector<ImportedRun> runs;
+  if (!fs::is_directory(folder)) {
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("{}: is no folder; name the one that armwright export wrote", folder.string()));
+  }
+  if (fs::exists(folder / kRunsCsv)) {
+    read_csv_folder(folder, runs);
+  } else if (fs::exists(folder / kRunsJson)) {
+    read_json(folder / kRunsJson, runs);
+  } else {
+    const auto files = find_ioh_files(folder);
+    if (files.empty()) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("{}: holds no export as csv, json or ioh (coco rounds what it "
+                              "writes down, and cannot be imported)",
+                              folder.string()));
+    }
+    for (const fs::path& file : files) {
+      read_ioh(file, runs);
+    }
+  }
+  return runs;
+}
+
+}  // namespace armwright

@@ -1,0 +1,143 @@
+#include "report/formats/ioh.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "base/build_info.hpp"
+#include "base/text.hpp"
+#include "report/formats/export_folder.hpp"
+#include "report/formats/export_names.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::ordered_json;
+
+// Of the format, as IOHexperimenter counts it; readers take anything below 0.3.3 for another one.
+constexpr const char* kVersion = "0.3.5";
+
+// It could be taken for a decision variable.
+bool looks_like_variable(std::string_view name) {
+  return name.size() > 1 && (name[0] == 'x' || name[0] == 'X') &&
+         name.find_first_not_of("0123456789", 1) == std::string_view::npos;
+}
+
+std::string make_row(const TracedEvaluation& evaluation, const TraceNames& names) {
+  std::string row = fmt::format("{} {} {} {}", evaluation.number,
+                                evaluation.feasible ? format_exact(*evaluation.objective) : "inf",
+                                evaluation.simulated_cases, evaluation.feasible ? 1 : 0);
+  const auto append = [&](const std::vector<double>& values, std::size_t columns) {
+    for (std::size_t i = 0; i < columns; ++i) {
+      row += " " + (i < values.size() ? format_exact(values[i]) : "None");
+    }
+  };
+  if (names.objectives.size() > 1) {
+    append(evaluation.objectives, names.objectives.size());
+  }
+  append(evaluation.metrics, names.metrics.size());
+  append(evaluation.x, names.variables.size());
+  return row + "\n";
+}
+
+ordered_json make_run(const RunTrace& trace) {
+  const auto& best = trace.evaluations.best();
+  const TracedEvaluation& shown = best ? *best : trace.evaluations.first().value();
+  return {{"instance", trace.run.replicate},
+          {"evals", trace.evaluations.last()->number},
+          {"best",
+           {{"evals", shown.number},
+            {"y", best ? *best->objective : std::numeric_limits<double>::max()},
+            {"x", shown.x}}}};
+}
+
+struct FunctionNames {
+  std::size_t id = 0;    // from 1
+  std::string function;  // "f1_sphere", as part of a file's name
+};
+
+void write_function(const ProblemRuns& problem, const LabelRuns& label, const FunctionNames& names,
+                    const std::filesystem::path& root) {
+  const std::string data = fmt::format("data_{}/IOHprofiler_f{}_DIM{}.dat", names.function,
+                                       names.id, problem.names.variables.size());
+  OutputFile file(root / data);
+  ordered_json runs = ordered_json::array();
+  for (const RunEntry& run : label.runs) {
+    const RunTrace trace = read_trace(run);
+    file.write(make_ioh_rows(trace));
+    runs.push_back(make_run(trace));
+  }
+  file.close();
+  const ordered_json index = {
+      {"version", kVersion},
+      {"suite", "armwright"},
+      {"function_id", names.id},
+      {"function_name", problem.name},
+      {"maximization", false},
+      {"algorithm", {{"name", label.label}, {"info", label.runs.front().optimizer}}},
+      {"experiment_attributes",
+       ordered_json::array({{{"armwright", get_version()}},
+                            {{"variables", ordered_json(problem.names.variables).dump()}}})},
+      {"attributes", make_ioh_columns(problem.names)},
+      {"scenarios", ordered_json::array({{{"dimension", problem.names.variables.size()},
+                                          {"path", data},
+                                          {"runs", std::move(runs)}}})},
+  };
+  write_output_file(root / fmt::format("IOHprofiler_{}.json", names.function),
+                    index.dump(2) + "\n");
+}
+
+}  // namespace
+
+std::vector<std::string> make_ioh_columns(const TraceNames& names) {
+  std::vector<std::string> columns = {"evaluations", "raw_y", "simulated_cases", "feasible"};
+  UniqueNames unique('_');
+  for (const std::string& column : columns) {
+    unique.add(column);
+  }
+  const auto append = [&](const std::vector<std::string>& added) {
+    for (const std::string& name : added) {
+      const std::string column = escape_column_name(name);
+      columns.push_back(unique.add(looks_like_variable(column) ? "c_" + column : column));
+    }
+  };
+  if (names.objectives.size() > 1) {
+    append(names.objectives);
+  }
+  append(names.metrics);
+  return columns;
+}
+
+std::string make_ioh_rows(const RunTrace& trace) {
+  std::string rows = join(make_ioh_columns(trace.names), " ");
+  for (std::size_t i = 0; i < trace.names.variables.size(); ++i) {
+    rows += fmt::format(" x{}", i);
+  }
+  rows += '\n';
+  double best = std::numeric_limits<double>::infinity();
+  trace.evaluations.visit([&](const TracedEvaluation& evaluation) {
+    const bool improves = evaluation.feasible && *evaluation.objective < best;
+    if (improves) {
+      best = *evaluation.objective;
+    }
+    if (improves || evaluation.number == trace.evaluations.last()->number) {
+      rows += make_row(evaluation, trace.names);
+    }
+  });
+  return rows;
+}
+
+void write_ioh(const Survey& survey, const std::filesystem::path& folder) {
+  const auto labels = make_file_names(list_labels(survey));
+  for (std::size_t i = 0; i < survey.problems.size(); ++i) {
+    const ProblemRuns& problem = survey.problems[i];
+    const FunctionNames names{i + 1, fmt::format("f{}_{}", i + 1, escape_file_name(problem.name))};
+    for (const LabelRuns& label : problem.labels) {
+      write_function(problem, label, names, folder / labels.at(label.label));
+    }
+  }
+}
+
+}  // namespace armwright

@@ -1,0 +1,272 @@
+#include "report/formats/run_traces.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <tuple>
+
+#include "base/error.hpp"
+#include "base/json_text.hpp"
+#include "base/text.hpp"
+#include "study/journal/journal.hpp"
+#include "study/run/json_values.hpp"
+#include "study/run/record_files.hpp"
+#include "study/run/run.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+std::vector<fs::path> list_folders(const fs::path& parent) {
+  std::vector<fs::path> folders;
+  for (const auto& entry : fs::directory_iterator(parent)) {
+    if (entry.is_directory()) {
+      folders.push_back(entry.path());
+    }
+  }
+  std::sort(folders.begin(), folders.end());
+  return folders;
+}
+
+RunEntry read_cell(const fs::path& folder) {
+  const auto file = folder / "cell.json";
+  RunEntry run;
+  run.folder = folder;
+  try {
+    const json cell = json::parse(read_json_file(file, kCellLimit_bytes));
+    run.problem = cell.at("problem").get<std::string>();
+    run.label = cell.at("label").get<std::string>();
+    run.optimizer = cell.at("optimizer").get<std::string>();
+    const auto replicate = whole_from_json(cell.at("replicate"));
+    if (replicate < 1) {
+      throw Error(ErrorKind::bad_data, fmt::format("{}: replicate is {}; they are counted from 1",
+                                                   file.string(), replicate));
+    }
+    run.replicate = replicate;
+  } catch (const json::exception& error) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("{}: is no cell that armwright wrote ({}); remove it and start the "
+                            "study again to have it rebuilt",
+                            file.string(), sanitize(error.what())));
+  }
+  return run;
+}
+
+auto make_key(const RunEntry& run) {
+  return std::tie(run.problem, run.label, run.replicate);
+}
+
+FoundRuns find_cells(const fs::path& folder) {
+  FoundRuns found;
+  for (const fs::path& problem : list_folders(folder / "cells")) {
+    for (const fs::path& label : list_folders(problem)) {
+      for (const fs::path& replicate : list_folders(label)) {
+        if (fs::exists(replicate / "cell.json")) {
+          found.runs.push_back(read_cell(replicate));
+        } else {
+          ++found.unfinished;
+        }
+      }
+    }
+  }
+  if (found.runs.empty()) {
+    throw Error(ErrorKind::usage,
+                fmt::format("{}: no cell of this study has finished, so there is nothing to "
+                            "export; start it again with the same command to go on",
+                            folder.string()));
+  }
+  std::sort(found.runs.begin(), found.runs.end(),
+            [](const RunEntry& a, const RunEntry& b) { return make_key(a) < make_key(b); });
+  const auto twice = std::adjacent_find(
+      found.runs.begin(), found.runs.end(),
+      [](const RunEntry& a, const RunEntry& b) { return make_key(a) == make_key(b); });
+  if (twice != found.runs.end()) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("{} and {} are both replicate {} of '{}' on '{}'; remove one of them",
+                            twice->folder.string(), std::next(twice)->folder.string(),
+                            twice->replicate, sanitize(twice->label), sanitize(twice->problem)));
+  }
+  return found;
+}
+
+// From the journal rather than the result: it says which cases were simulated.
+std::optional<UsedCases> find_tested(const JournalContent& journal) {
+  std::optional<UsedCases> used;
+  for (const EvaluationRecord& record : journal.judgements) {
+    if (record.cases.role == CaseRole::test && !record.cases.numbers.empty()) {
+      used.emplace(UsedCases{record.cases.set, std::ranges::max(record.cases.numbers) + 1});
+    }
+  }
+  return used;
+}
+
+TracedEvaluation make_traced(const EvaluationRecord& record, const std::vector<double>& weights,
+                             std::uint64_t simulated_cases) {
+  TracedEvaluation traced;
+  traced.number = record.index + 1;
+  traced.simulated_cases = simulated_cases;
+  traced.feasible = is_feasible(record.evaluation);
+  if (!record.evaluation.objectives.empty()) {
+    traced.objective = calc_scalar(weights, record.evaluation.objectives);
+  }
+  traced.status = record.evaluation.status;
+  traced.reason = record.evaluation.reason;
+  traced.objectives = record.evaluation.objectives;
+  traced.constraint_values = record.evaluation.constraint_values;
+  traced.metrics = record.evaluation.metrics;
+  traced.x = record.x;
+  return traced;
+}
+
+void include_trace(ProblemRuns& problem, const RunTrace& trace) {
+  trace.evaluations.visit([&](const TracedEvaluation& evaluation) {
+    problem.constraints = std::max(problem.constraints, evaluation.constraint_values.size());
+    if (evaluation.feasible) {
+      problem.best = std::min(problem.best.value_or(*evaluation.objective), *evaluation.objective);
+      problem.worst =
+          std::max(problem.worst.value_or(*evaluation.objective), *evaluation.objective);
+    }
+  });
+  if (trace.tested_on) {
+    if (problem.tested_on && problem.tested_on->set != trace.tested_on->set) {
+      throw Error(ErrorKind::bad_data,
+                  fmt::format("{}: this run was tested on {}, others on problem '{}' on {}; export "
+                              "them apart",
+                              trace.run.folder.string(), sanitize(trace.tested_on->set),
+                              sanitize(problem.name), sanitize(problem.tested_on->set)));
+    }
+    const std::uint64_t before = problem.tested_on ? problem.tested_on->count : 0;
+    problem.tested_on = trace.tested_on;
+    problem.tested_on->count = std::max(before, trace.tested_on->count);
+  }
+  if (problem.labels.empty() || problem.labels.back().label != trace.run.label) {
+    problem.labels.push_back({trace.run.label, {}});
+  }
+  problem.labels.back().runs.push_back(trace.run);
+}
+
+}  // namespace
+
+FoundRuns find_runs(const fs::path& folder) {
+  if (fs::is_directory(folder / "cells")) {
+    return find_cells(folder);
+  }
+  if (!fs::exists(folder / "manifest.json")) {
+    throw Error(ErrorKind::usage,
+                fmt::format("{}: is neither the folder of a run (it has no manifest.json) nor that "
+                            "of a study (it has no folder cells)",
+                            folder.string()));
+  }
+  const RunResult result = load_result(folder);
+  return {{{folder, result.problem, result.optimizer, result.optimizer, 1}}, 0};
+}
+
+TracedEvaluations::TracedEvaluations(Source source) : source_(std::move(source)) {
+  visit([this](const TracedEvaluation& evaluation) {
+    ++size_;
+    if (!first_) {
+      first_ = evaluation;
+    }
+    if (evaluation.feasible && (!best_ || *evaluation.objective < *best_->objective)) {
+      best_ = evaluation;
+    }
+    last_ = evaluation;
+  });
+}
+
+void TracedEvaluations::visit(const Visitor& visitor) const {
+  if (source_) {
+    source_(visitor);
+  }
+}
+
+RunTrace read_trace(const RunEntry& run) {
+  const RunResult result = load_result(run.folder);
+  const JournalContent journal = read_journal(run.folder / "journal");
+  RunTrace trace;
+  trace.run = run;
+  trace.seed = result.seed;
+  trace.end_reason = result.end_reason;
+  trace.tracking = result.tracking;
+  trace.names.variables = result.variable_names;
+  trace.names.metrics = result.metric_names;
+  for (const Quantity& objective : result.objectives) {
+    trace.names.objectives.push_back(objective.name);
+  }
+  trace.tested_on = find_tested(journal);
+  if (result.winner) {
+    trace.test = result.test;
+    if (!result.test.objectives.empty()) {
+      trace.test_objective = calc_target(result, result.test);
+    }
+    trace.winner = result.judged[*result.winner].candidate.x;
+  }
+  const auto visit = [file = run.folder / "journal", training = journal.training,
+                      variables = trace.names.variables.size(), weights = result.objective_weights](
+                         const TracedEvaluations::Visitor& visitor) {
+    std::uint64_t simulated_cases = 0;
+    for (const EvaluationRecord& record : training) {
+      if (record.x.size() != variables) {
+        throw Error(
+            ErrorKind::bad_data,
+            fmt::format("{}: evaluation {} has {} variables, but result.json names {}; they "
+                        "belong to different runs",
+                        file.string(), record.index + 1, record.x.size(), variables));
+      }
+      simulated_cases += record.calc_charge();
+      visitor(make_traced(record, weights, simulated_cases));
+    }
+  };
+  trace.evaluations = TracedEvaluations(visit);
+  return trace;
+}
+
+Survey survey_runs(const std::vector<RunEntry>& runs) {
+  Survey survey;
+  for (const RunEntry& run : runs) {
+    const RunTrace trace = read_trace(run);
+    if (trace.evaluations.empty()) {
+      ++survey.empty;
+      continue;
+    }
+    if (survey.problems.empty() || survey.problems.back().name != run.problem) {
+      ProblemRuns problem;
+      problem.name = run.problem;
+      problem.names = trace.names;
+      problem.tracking = trace.tracking;
+      survey.problems.push_back(std::move(problem));
+    }
+    ProblemRuns& problem = survey.problems.back();
+    if (problem.names != trace.names) {
+      throw Error(
+          ErrorKind::bad_data,
+          fmt::format("{} and {} are both runs on '{}', but with other variables, objectives or "
+                      "metrics; export them apart",
+                      problem.labels.front().runs.front().folder.string(), run.folder.string(),
+                      sanitize(run.problem)));
+    }
+    include_trace(problem, trace);
+    ++survey.runs;
+    survey.evaluations += trace.evaluations.size();
+  }
+  if (survey.problems.empty()) {
+    throw Error(ErrorKind::usage, "no run has evaluated anything, so there is nothing to export");
+  }
+  return survey;
+}
+
+std::vector<std::string> list_labels(const Survey& survey) {
+  std::set<std::string> labels;
+  for (const ProblemRuns& problem : survey.problems) {
+    for (const LabelRuns& runs : problem.labels) {
+      labels.insert(runs.label);
+    }
+  }
+  return {labels.begin(), labels.end()};
+}
+
+}  // namespace armwright

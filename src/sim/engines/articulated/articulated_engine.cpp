@@ -1,0 +1,119 @@
+#include "sim/engines/articulated/articulated_engine.hpp"
+
+#include <algorithm>
+
+#include "sim/engines/articulated/derivatives.hpp"
+#include "sim/engines/articulated/lane_block.hpp"
+#include "sim/tracking/tracking_result.hpp"
+
+namespace armwright {
+namespace {
+
+using namespace articulated;
+
+// Groups of lanes that go through the timeline together; enough to fill the lanes of simulations
+// that ended early, few enough to stay in the cache.
+constexpr std::size_t kGroups = 16;
+
+bool have_same_timeline(const TargetTable& a, const TargetTable& b) {
+  if (&a == &b) {
+    return true;
+  }
+  if (a.segments.size() != b.segments.size()) {
+    return false;
+  }
+  for (std::size_t k = 0; k < a.segments.size(); ++k) {
+    if (a.segments[k].steps != b.segments[k].steps ||
+        a.segments[k].window_start != b.segments[k].window_start) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool have_same_shape(const ChainModel& a, const ChainModel& b) {
+  return &a == &b || (a.flags() == b.flags() && a.tilted_gravity() == b.tilted_gravity());
+}
+
+// Error{usage} as from every engine where the design's numbers make no controller.
+void check_design(const ArmDesign& design, const RobotModel& robot) {
+  const ControllerRow& row = find_controller(design.controller);
+  for (std::size_t i = 0; i < design.joints.size(); ++i) {
+    row.make(design.joints[i].gains, design.joints[i].limits, robot.joints[i].kind);
+  }
+}
+
+template <class T>
+class ArticulatedEngine final : public PhysicsEngine {
+ public:
+  explicit ArticulatedEngine(SimdLevel level) : kernel_(get_kernel<T>(level)) {}
+
+  std::vector<TrackingResult> simulate(const TrackingSetup& setup,
+                                       std::span<const TrackingJob> jobs) const override {
+    std::vector<TrackingResult> results(jobs.size());
+    // Jobs of one timeline, of arms of one shape, under one controller, and of perturbed plants or
+    // not, each: these decide which code is run, which must not depend on the company that a job is
+    // in.
+    std::vector<std::vector<std::size_t>> alike;
+    const auto get_chain = [&](std::size_t job) -> const ChainModel& {
+      return jobs[job].choose_setup(setup).chain();
+    };
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+      if (i == 0 || jobs[i].design != jobs[i - 1].design) {
+        check_design(*jobs[i].design, setup.robot());
+      }
+      check_feed_forward(jobs[i]);
+      if (apply_unreachable(jobs[i], results[i])) {
+        continue;
+      }
+      const TargetTable& targets = *jobs[i].targets;
+      const auto found = std::find_if(alike.begin(), alike.end(), [&](const auto& group) {
+        return have_same_timeline(*jobs[group.front()].targets, targets) &&
+               have_same_shape(get_chain(group.front()), get_chain(i)) &&
+               jobs[group.front()].design->controller == jobs[i].design->controller &&
+               (jobs[group.front()].variation == nullptr) == (jobs[i].variation == nullptr);
+      });
+      (found == alike.end() ? alike.emplace_back() : *found).push_back(i);
+    }
+    const std::size_t most = kGroups * static_cast<std::size_t>(kernel_.lanes);
+    for (const std::vector<std::size_t>& group : alike) {
+      for (std::size_t first = 0; first < group.size(); first += most) {
+        const std::size_t count = std::min(most, group.size() - first);
+        LaneBlock<T>(setup, kernel_, jobs, std::span(group).subspan(first, count), results).run();
+      }
+    }
+    return results;
+  }
+
+  bool has_derivatives() const override { return true; }
+  std::vector<double> calc_derivatives(const TrackingSetup& setup, const TrackingJob& job,
+                                       std::span<const ArmDesign> directions) const override {
+    if (job.variation != nullptr) {
+      throw std::logic_error("there are no derivatives of a perturbed plant");
+    }
+    if (!job.targets->unreachable.empty()) {
+      return {};
+    }
+    check_feed_forward(job);
+    return calc_point_derivatives(setup, job, directions);
+  }
+
+  BatchSize batch_size() const override {
+    const auto lanes = static_cast<std::size_t>(kernel_.lanes);
+    return {lanes, kGroups * lanes};
+  }
+
+ private:
+  Kernel<T> kernel_;
+};
+
+}  // namespace
+
+std::unique_ptr<PhysicsEngine> make_articulated_engine(const EngineOptions& options) {
+  if (options.precision == Precision::single) {
+    return std::make_unique<ArticulatedEngine<float>>(*options.simd);
+  }
+  return std::make_unique<ArticulatedEngine<double>>(*options.simd);
+}
+
+}  // namespace armwright

@@ -1,0 +1,22 @@
+// The kernels for AVX-512 (F, VL, DQ, BW). src/CMakeLists.txt compiles this file for it; nothing
+// else may be included here that other files share functions with.
+#include "sim/engines/articulated/lane_kernel.hpp"
+
+#if defined(__x86_64__)
+
+namespace armwright::articulated {
+
+struct Avx512Level;
+void run_segment_avx512(SegmentCall<double>& call);
+void run_segment_avx512(SegmentCall<float>& call);
+
+void run_segment_avx512(SegmentCall<double>& call) {
+  run_segment<lanes::Pack<double, 8, Avx512Level>>(call);
+}
+void run_segment_avx512(SegmentCall<float>& call) {
+  run_segment<lanes::Pack<float, 16, Avx512Level>>(call);
+}
+
+}  // namespace armwright::articulated
+
+#endif

@@ -1,0 +1,288 @@
+#ifdef ARMWRIGHT_WITH_MUJOCO
+
+#include "sim/engines/mujoco/mujoco_arm.hpp"
+
+#include <fmt/format.h>
+#include <mujoco/mujoco.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "sim/kinematics/kinematics.hpp"
+#include "sim/tracking/tracking_result.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr double kFarthest_m = 1e3;
+constexpr double kFastest_rad_per_s = 1e6;
+
+static_assert(sizeof(mjtNum) == sizeof(double), "armwright needs MuJoCo in double precision");
+
+struct ModelDeleter {
+  void operator()(mjModel* model) const { mj_deleteModel(model); }
+};
+struct DataDeleter {
+  void operator()(mjData* data) const { mj_deleteData(data); }
+};
+struct FilesDeleter {
+  void operator()(mjVFS* files) const {
+    mj_deleteVFS(files);
+    delete files;
+  }
+};
+using ModelHandle = std::unique_ptr<mjModel, ModelDeleter>;
+using DataHandle = std::unique_ptr<mjData, DataDeleter>;
+
+[[noreturn]] void throw_mujoco_message(const char* message) {
+  throw DivergenceError(fmt::format("MuJoCo stopped: {}", message));
+}
+void ignore_warning(const char* /*message*/) {}  // each step looks at the counter that matters
+
+// Without handlers MuJoCo writes a log file into the current folder, and an error ends the process.
+void prepare_mujoco() {
+  [[maybe_unused]] static const bool prepared = [] {
+    mju_user_error = throw_mujoco_message;
+    mju_user_warning = ignore_warning;
+    return true;
+  }();
+}
+
+std::string format_numbers(std::initializer_list<double> numbers) {
+  std::vector<std::string> texts;
+  for (const double number : numbers) {
+    texts.push_back(format_exact(number));
+  }
+  return join(texts, " ");
+}
+std::string format_vector(const Eigen::Vector3d& v) {
+  return format_numbers({v.x(), v.y(), v.z()});
+}
+std::string format_rotation(const Eigen::Matrix3d& rotation) {
+  const Eigen::Quaterniond q(rotation);
+  return format_numbers({q.w(), q.x(), q.y(), q.z()});
+}
+
+// Moments and axes of inertia; the axes are right-handed.
+struct PrincipalInertia {
+  Eigen::Vector3d moments_kg_m2;
+  Eigen::Matrix3d axes;
+};
+PrincipalInertia calc_principal_inertia(const Eigen::Matrix3d& inertia_kg_m2) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertia_kg_m2);
+  Eigen::Matrix3d axes = solver.eigenvectors();
+  if (axes.determinant() < 0) {
+    axes.col(2) = -axes.col(2);
+  }
+  return {solver.eigenvalues(), axes};
+}
+
+// The chain in MuJoCo's own format, names left out: bodies and joints are found by their number.
+// The masses are placeholders: MuJoCo's compiler refuses moments of inertia that violate the
+// triangle inequality by a rounding error, which our own reading of a URDF has checked already.
+std::string make_mjcf(const RobotModel& robot, const PhysicsSettings& physics) {
+  std::string text = fmt::format(
+      R"(<mujoco><compiler angle="radian" inertiafromgeom="false"/><size njmax="0" nconmax="0"/>)"
+      R"(<option integrator="Euler" gravity="{}">)"
+      R"(<flag constraint="disable" contact="disable" passive="disable"/></option><worldbody>)",
+      format_numbers({0, 0, -physics.gravity_m_per_s2}));
+  for (std::size_t i = 0; i < robot.joint_count(); ++i) {
+    const Joint& joint = robot.joints[i];
+    const Inertial& inertial = robot.links[i].inertial;
+    text += fmt::format(
+        R"(<body pos="{}" quat="{}">)"
+        R"(<inertial pos="{}" quat="{}" mass="1" diaginertia="1 1 1"/>)"
+        R"(<joint type="{}" axis="{}" limited="false" damping="0" armature="0" frictionloss="0"/>)",
+        format_vector(joint.origin.translation()), format_rotation(joint.origin.linear()),
+        format_vector(inertial.com_m),
+        format_rotation(calc_principal_inertia(inertial.inertia_kg_m2).axes),
+        joint.kind == JointKind::prismatic ? "slide" : "hinge", format_vector(joint.axis));
+  }
+  for (std::size_t i = 0; i < robot.joint_count(); ++i) {
+    text += "</body>";
+  }
+  return text + "</worldbody></mujoco>";
+}
+
+ModelHandle compile(const std::string& mjcf, const std::string& robot_name) {
+  constexpr const char* kFile = "arm.xml";
+  const std::unique_ptr<mjVFS, FilesDeleter> files(
+      new mjVFS);  // 2 MB: not zeroed, not on the stack
+  mj_defaultVFS(files.get());
+  if (mj_makeEmptyFileVFS(files.get(), kFile, static_cast<int>(mjcf.size())) != 0) {
+    throw std::bad_alloc();
+  }
+  std::memcpy(files->filedata[mj_findFileVFS(files.get(), kFile)], mjcf.data(), mjcf.size());
+  char message[1000] = "";
+  ModelHandle model;
+  {
+    static std::mutex mutex;  // the library keeps the last text that it read, for all threads
+    const std::lock_guard lock(mutex);
+    model.reset(mj_loadXML(kFile, files.get(), message, sizeof message));
+    mj_freeLastXML();
+  }
+  if (model == nullptr) {
+    throw Error(ErrorKind::bad_data, fmt::format("MuJoCo does not take the robot '{}': {}",
+                                                 sanitize(robot_name), sanitize(message)));
+  }
+  return model;
+}
+
+}  // namespace
+
+struct MujocoModel::Compiled {
+  const RobotModel* robot;
+  double gravity_m_per_s2;
+  ModelHandle model;
+};
+
+MujocoModel::MujocoModel(const RobotModel& robot, const PhysicsSettings& physics) {
+  prepare_mujoco();
+  compiled_ = std::make_unique<Compiled>(
+      Compiled{&robot, physics.gravity_m_per_s2, compile(make_mjcf(robot, physics), robot.name)});
+  mjModel* const model = compiled_->model.get();
+  for (std::size_t i = 0; i < robot.joint_count(); ++i) {
+    const Inertial& inertial = robot.links[i].inertial;
+    const std::size_t body = i + 1;  // body 0 is the world
+    model->body_mass[body] = inertial.mass_kg;
+    const auto moments_kg_m2 = calc_principal_inertia(inertial.inertia_kg_m2).moments_kg_m2;
+    std::copy(moments_kg_m2.begin(), moments_kg_m2.end(), model->body_inertia + 3 * body);
+  }
+  // What MuJoCo derives from the masses: those of subtrees, inertias at position 0.
+  const DataHandle data(mj_makeData(model));
+  mj_setConst(model, data.get());
+}
+
+MujocoModel::~MujocoModel() = default;
+
+struct MujocoArm::World {
+  const RobotModel* robot;
+  double gravity_m_per_s2;
+  ModelHandle model;  // an arm's own: it holds the size of the step
+  DataHandle data;
+
+  // All that can be read belongs to the present state. mj_step1 and mj_step2 would do the same, but
+  // put an arm whose state they find bad back to its start.
+  void update() {
+    mj_fwdPosition(model.get(), data.get());
+    mj_fwdVelocity(model.get(), data.get());
+  }
+
+  // A point of the last link's frame in the world.
+  Eigen::Vector3d calc_place(const Eigen::Vector3d& in_last_link) const {
+    const std::size_t body = robot->joint_count();
+    using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+    return Eigen::Map<const Eigen::Vector3d>(data->xpos + 3 * body) +
+           Eigen::Map<const RowMajor>(data->xmat + 9 * body) * in_last_link;
+  }
+};
+
+MujocoArm::MujocoArm(const MujocoModel& model, std::span<const double> q) {
+  const MujocoModel::Compiled& compiled = *model.compiled_;
+  world_ = std::make_unique<World>();
+  World& w = *world_;
+  w.robot = compiled.robot;
+  w.gravity_m_per_s2 = compiled.gravity_m_per_s2;
+  w.model.reset(mj_copyModel(nullptr, compiled.model.get()));
+  w.data.reset(mj_makeData(w.model.get()));
+  std::copy(q.begin(), q.end(), w.data->qpos);
+  w.update();
+}
+
+MujocoArm::MujocoArm(const RobotModel& robot, std::span<const double> q,
+                     const PhysicsSettings& physics)
+    : MujocoArm(MujocoModel(robot, physics), q) {}
+
+MujocoArm::~MujocoArm() = default;
+
+void MujocoArm::step(std::span<const double> effort, double dt_s) {
+  World& w = *world_;
+  for (std::size_t i = 0; i < w.robot->joint_count(); ++i) {
+    if (!std::isfinite(effort[i])) {
+      throw DivergenceError(
+          fmt::format("joint {} ({}): its controller asks for a non-finite effort", i + 1,
+                      w.robot->joints[i].name));
+    }
+    w.data->qfrc_applied[i] = effort[i];
+  }
+  w.model->opt.timestep = dt_s;
+  mj_fwdActuation(w.model.get(), w.data.get());
+  mj_fwdAcceleration(w.model.get(), w.data.get());
+  mj_fwdConstraint(w.model.get(), w.data.get());
+  mj_Euler(w.model.get(), w.data.get());
+  w.update();
+  check();
+}
+
+void MujocoArm::check() const {
+  const World& w = *world_;
+  const mjWarningStat& singular = w.data->warning[mjWARN_INERTIA];
+  if (singular.number > 0) {  // it has gone on with another inertia
+    const auto joint = static_cast<std::size_t>(singular.lastinfo);
+    throw DivergenceError(fmt::format("joint {} ({}): what it moves has hardly any inertia",
+                                      joint + 1, w.robot->joints[joint].name));
+  }
+  for (std::size_t i = 0; i < w.robot->joint_count(); ++i) {
+    const double* position = w.data->xipos + 3 * (i + 1);
+    const double* spin = w.data->cvel + 6 * (i + 1);  // its first half
+    const double distance = std::abs(position[0]) + std::abs(position[1]) + std::abs(position[2]);
+    const double rate = std::abs(spin[0]) + std::abs(spin[1]) + std::abs(spin[2]);
+    if (distance < kFarthest_m && rate < kFastest_rad_per_s) {  // false for NaN too
+      continue;
+    }
+    throw DivergenceError(
+        fmt::format("joint {} ({}): its link is {:.3g} m from the base and turns at {:.3g} rad/s",
+                    i + 1, w.robot->joints[i].name, distance, rate));
+  }
+}
+
+void MujocoArm::read_angles(std::span<double> q) const {
+  for (std::size_t i = 0; i < world_->robot->joint_count(); ++i) {
+    const double position = world_->data->qpos[i];
+    q[i] = world_->robot->joints[i].kind == JointKind::prismatic ? position : wrap_angle(position);
+  }
+}
+
+void MujocoArm::read_rates(std::span<double> qd) const {
+  std::copy_n(world_->data->qvel, world_->robot->joint_count(), qd.begin());
+}
+
+Eigen::Vector3d MujocoArm::tip_position_m() const {
+  return world_->calc_place(world_->robot->tip_pose.translation());
+}
+
+Eigen::Vector3d MujocoArm::tool_point_m(std::size_t point) const {
+  return world_->calc_place(world_->robot->tool_points_m[point]);
+}
+
+Eigen::Vector3d MujocoArm::com_position_m(std::size_t link) const {
+  return Eigen::Map<const Eigen::Vector3d>(world_->data->xipos + 3 * (link + 1));
+}
+
+double MujocoArm::calc_kinetic_energy_j() const {
+  const World& w = *world_;
+  std::vector<double> momentum(w.robot->joint_count());
+  mj_mulM(w.model.get(), w.data.get(), momentum.data(), w.data->qvel);
+  return 0.5 * mju_dot(momentum.data(), w.data->qvel, static_cast<int>(momentum.size()));
+}
+
+double MujocoArm::calc_potential_energy_j() const {
+  double energy = 0;
+  for (std::size_t i = 0; i < world_->robot->joint_count(); ++i) {
+    energy +=
+        world_->robot->links[i].inertial.mass_kg * world_->gravity_m_per_s2 * com_position_m(i).z();
+  }
+  return energy;
+}
+
+}  // namespace armwright
+
+#endif

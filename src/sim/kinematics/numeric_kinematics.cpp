@@ -1,0 +1,403 @@
+#include "sim/kinematics/numeric_kinematics.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/error.hpp"
+#include "base/random.hpp"
+#include "base/text.hpp"
+
+namespace armwright {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Error6 = Eigen::Matrix<double, 6, 1>;
+using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0,
+                             NumericKinematics::kMostJoints, NumericKinematics::kMostJoints>;
+
+// Of the arm's length: far below what any controller resolves.
+constexpr double kTolerance = 1e-10;
+constexpr double kDamping = 1e-9;  // of the largest diagonal element, where the error is nothing
+// Along a path a step begins next to its end; from nothing it takes its time.
+constexpr int kFollowIterations = 30;
+constexpr double kFollowStep = 0.5;  // rad or m
+constexpr int kSearchIterations = 200;
+constexpr double kSearchStep = 0.3;
+constexpr int kRelaxations = 300;
+constexpr double kRelaxationShare = 0.2;
+constexpr double kRelaxed = 1e-7;
+constexpr int kRestarts = 60;
+constexpr int kRankPostures = 20;
+constexpr double kNoMotion = 1e-6;  // of the largest singular value
+// How far joints without ranges are drawn apart: revolute ones a turn, prismatic ones this.
+constexpr double kSlide_m = 1;
+constexpr double kShortest_m = 1e-3;  // an arm, so that nothing is divided by zero
+
+Matrix3d make_cross(const Vector3d& a) {
+  Matrix3d cross;
+  cross << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
+  return cross;
+}
+
+// The vector along the axis of a rotation, as long as its angle in [0, pi].
+Vector3d calc_rotation_vector(const Matrix3d& turn) {
+  const Eigen::AngleAxisd rotation(turn);
+  return rotation.angle() * rotation.axis();
+}
+
+NumericKinematics::Vector to_vector(std::span<const double> q) {
+  return Eigen::Map<const Eigen::VectorXd>(q.data(), static_cast<Eigen::Index>(q.size()));
+}
+
+void copy(const NumericKinematics::Vector& from, std::span<double> to) {
+  std::copy_n(from.data(), to.size(), to.begin());
+}
+
+std::string describe_task(ToolOrientation orientation) {
+  switch (orientation) {
+    case ToolOrientation::free:
+      break;
+    case ToolOrientation::pointing:
+      return "position and direction of the tool, 5 in all";
+    case ToolOrientation::pose:
+      return "position and orientation of the tool, 6 in all";
+  }
+  return "position of the tip";
+}
+
+}  // namespace
+
+struct NumericKinematics::Posture {
+  Vector3d axis[kMostJoints];
+  Vector3d place[kMostJoints];
+  Matrix3d turn;  // of the tip's frame
+  Vector3d tip;
+};
+
+NumericKinematics::NumericKinematics(const RobotModel& robot, const ToolTask& tool,
+                                     std::vector<double> home, bool within_limits)
+    : tool_(tool),
+      tip_turn_(robot.tip_pose.linear()),
+      tip_place_(robot.tip_pose.translation()),
+      home_(std::move(home)),
+      within_limits_(within_limits) {
+  const std::size_t n = robot.joint_count();
+  if (n > kMostJoints) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("robot '{}' has {} joints; the inverse kinematics takes at most {}",
+                            sanitize(robot.name), n, kMostJoints));
+  }
+  if (!home_.empty() && home_.size() != n) {
+    throw Error(ErrorKind::usage,
+                fmt::format("task.home has {} positions for the {} joints of robot '{}'",
+                            home_.size(), n, sanitize(robot.name)));
+  }
+  length_m_ = tip_place_.norm();
+  for (const Joint& joint : robot.joints) {
+    Part part;
+    part.turn = joint.origin.linear();
+    part.place = joint.origin.translation();
+    part.axis = joint.axis;
+    part.cross = make_cross(joint.axis);
+    part.outer = joint.axis * joint.axis.transpose();
+    part.slides = joint.kind == JointKind::prismatic;
+    part.lower = joint.lower;
+    part.upper = joint.upper;
+    part.has_middle = std::isfinite(joint.lower) && std::isfinite(joint.upper);
+    part.middle = part.has_middle ? 0.5 * (joint.lower + joint.upper) : 0;
+    length_m_ += part.place.norm() + (part.slides && part.has_middle ? part.upper - part.lower : 0);
+    chain_.push_back(part);
+  }
+  if (home_.empty()) {
+    for (std::size_t i = 0; i < n; ++i) {
+      home_.push_back(chain_[i].middle);
+    }
+  }
+  length_m_ = std::max(length_m_, kShortest_m);
+  find_rank();
+}
+
+void NumericKinematics::find_rank() {
+  RandomStream random("inverse kinematics/rank", 0);
+  for (int i = 0; i < kRankPostures; ++i) {
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(calc_even_jacobian(draw_posture(random)));
+    const auto& values = svd.singularValues();
+    int rank = 0;
+    while (rank < values.size() && values[rank] > kNoMotion * std::max(values[0], 1e-12)) {
+      ++rank;
+    }
+    rank_ = std::max(rank_, rank);
+  }
+}
+
+bool NumericKinematics::suits_task() const {
+  switch (tool_.orientation) {
+    case ToolOrientation::free:
+      return rank_ >= 1;
+    case ToolOrientation::pointing:
+      return rank_ >= 5;
+    case ToolOrientation::pose:
+      return rank_ >= 6;
+  }
+  return false;
+}
+
+void NumericKinematics::check_task(const RobotModel& robot) const {
+  if (!suits_task()) {
+    throw Error(
+        ErrorKind::bad_data,
+        fmt::format("the joints of robot '{}' move its tool in {} independent directions at most, "
+                    "but task.orientation = \"{}\" is about the {}; choose another orientation",
+                    sanitize(robot.name), rank_,
+                    tool_orientation_names()[static_cast<std::size_t>(tool_.orientation)],
+                    describe_task(tool_.orientation)));
+  }
+}
+
+std::vector<double> NumericKinematics::draw_posture(RandomStream& random) const {
+  std::vector<double> q;
+  for (const Part& part : chain_) {
+    const double widest = part.slides ? kSlide_m : std::numbers::pi;
+    double lower = std::max(part.lower, -widest);
+    double upper = std::min(part.upper, widest);
+    if (lower > upper) {  // a range that lies beyond
+      lower = part.lower;
+      upper = part.upper;
+    }
+    q.push_back(random.uniform(lower, upper));
+  }
+  return q;
+}
+
+void NumericKinematics::calc_posture(const Vector& q, Posture& posture) const {
+  Matrix3d turn = Matrix3d::Identity();
+  Vector3d place = Vector3d::Zero();
+  for (std::size_t i = 0; i < chain_.size(); ++i) {
+    const Part& part = chain_[i];
+    const double position = q[static_cast<Eigen::Index>(i)];
+    place += turn * part.place;
+    turn = turn * part.turn;
+    posture.axis[i] = turn * part.axis;
+    posture.place[i] = place;
+    if (part.slides) {
+      place += position * posture.axis[i];
+      continue;
+    }
+    // Rodrigues: cos 1 + sin [a]x + (1 - cos) a a^T.
+    const double cosine = std::cos(position);
+    turn = turn * (cosine * Matrix3d::Identity() + std::sin(position) * part.cross +
+                   (1 - cosine) * part.outer);
+  }
+  posture.tip = place + turn * tip_place_;
+  posture.turn = turn * tip_turn_;
+}
+
+Error6 NumericKinematics::calc_error(const ToolPose& target, const Posture& posture) const {
+  Error6 error = Error6::Zero();
+  error.head<3>() = target.position_m - posture.tip;
+  switch (tool_.orientation) {
+    case ToolOrientation::free:
+      break;
+    case ToolOrientation::pointing: {
+      // The turn that takes the tool's axis to where it should point.
+      const Vector3d is = posture.turn * tool_.axis;
+      const Vector3d should = target.turn * tool_.axis;
+      const Vector3d across = is.cross(should);
+      const double sine = across.norm();
+      const double angle = std::atan2(sine, is.dot(should));
+      if (sine > 0) {
+        error.tail<3>() = tool_.arm_m * angle / sine * across;
+      } else if (angle > 1) {  // the opposite: any axis across will do
+        error.tail<3>() = tool_.arm_m * angle * is.unitOrthogonal();
+      }
+      break;
+    }
+    case ToolOrientation::pose:
+      error.tail<3>() = tool_.arm_m * calc_rotation_vector(target.turn * posture.turn.transpose());
+      break;
+  }
+  return error;
+}
+
+NumericKinematics::Jacobian NumericKinematics::calc_jacobian(const Posture& posture) const {
+  const auto n = static_cast<Eigen::Index>(chain_.size());
+  Jacobian jacobian = Jacobian::Zero(6, n);
+  const Vector3d pointing = posture.turn * tool_.axis;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Vector3d& axis = posture.axis[i];
+    if (chain_[static_cast<std::size_t>(i)].slides) {
+      jacobian.col(i).head<3>() = axis;
+      continue;
+    }
+    jacobian.col(i).head<3>() = axis.cross(posture.tip - posture.place[i]);
+    if (tool_.orientation == ToolOrientation::pose) {
+      jacobian.col(i).tail<3>() = tool_.arm_m * axis;
+    } else if (tool_.orientation == ToolOrientation::pointing) {  // turns about it do not count
+      jacobian.col(i).tail<3>() = tool_.arm_m * (axis - axis.dot(pointing) * pointing);
+    }
+  }
+  return jacobian;
+}
+
+NumericKinematics::Jacobian NumericKinematics::calc_jacobian(std::span<const double> q) const {
+  Posture posture;
+  calc_posture(to_vector(q), posture);
+  return calc_jacobian(posture);
+}
+
+ToolPose NumericKinematics::calc_pose(std::span<const double> q) const {
+  Posture posture;
+  calc_posture(to_vector(q), posture);
+  return {posture.tip, posture.turn};
+}
+
+double NumericKinematics::calc_distance(const ToolPose& target, std::span<const double> q) const {
+  Posture posture;
+  calc_posture(to_vector(q), posture);
+  return calc_error(target, posture).norm();
+}
+
+Eigen::MatrixXd NumericKinematics::calc_even_jacobian(std::span<const double> q) const {
+  Eigen::MatrixXd jacobian = calc_jacobian(q);
+  jacobian.topRows<3>() /= length_m_;
+  jacobian.bottomRows<3>() /= tool_.arm_m;
+  for (std::size_t i = 0; i < chain_.size(); ++i) {
+    if (chain_[i].slides) {
+      jacobian.col(static_cast<Eigen::Index>(i)) *= length_m_;
+    }
+  }
+  return jacobian;
+}
+
+double NumericKinematics::calc_dexterity(std::span<const double> q) const {
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(calc_even_jacobian(q));
+  const auto& values = svd.singularValues();
+  return values[0] > 0 ? values[rank_ - 1] / values[0] : 0;
+}
+
+std::size_t NumericKinematics::find_idle_joint(std::span<const double> q) const {
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(calc_even_jacobian(q), Eigen::ComputeThinV);
+  Eigen::Index joint = 0;
+  svd.matrixV().col(rank_ - 1).cwiseAbs().maxCoeff(&joint);
+  return static_cast<std::size_t>(joint);
+}
+
+bool NumericKinematics::improve(const Jacobian& jacobian, const Error6& error, const Vector& wish,
+                                double longest_step, Vector& q) const {
+  const Eigen::Index n = jacobian.cols();
+  Square normal = jacobian.transpose() * jacobian;
+  const double damping = error.squaredNorm() + kDamping * normal.diagonal().maxCoeff();
+  normal.diagonal().array() += damping;
+  Vector right = jacobian.transpose() * error + damping * wish;
+  bool held[kMostJoints] = {};
+  Vector step;
+  for (Eigen::Index round = 0; round <= n; ++round) {
+    step = normal.llt().solve(right);
+    if (!step.allFinite()) {
+      return false;
+    }
+    const double longest = step.cwiseAbs().maxCoeff();
+    if (longest > longest_step) {
+      step *= longest_step / longest;
+    }
+    if (!within_limits_) {
+      break;
+    }
+    Eigen::Index worst = -1;
+    double farthest = 0;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Part& part = chain_[static_cast<std::size_t>(i)];
+      const double beyond = std::max(q[i] + step[i] - part.upper, part.lower - q[i] - step[i]);
+      if (!held[i] && beyond > farthest) {
+        worst = i;
+        farthest = beyond;
+      }
+    }
+    if (worst < 0) {
+      break;
+    }
+    // That joint goes to the end of its range, whatever the others do.
+    const Part& part = chain_[static_cast<std::size_t>(worst)];
+    const double way = std::clamp(q[worst] + step[worst], part.lower, part.upper) - q[worst];
+    right -= way * normal.col(worst);
+    normal.row(worst).setZero();
+    normal.col(worst).setZero();
+    normal(worst, worst) = 1;
+    right[worst] = way;
+    held[worst] = true;
+  }
+  q += step;
+  if (within_limits_) {
+    for (Eigen::Index i = 0; i < n; ++i) {  // what rounding may have left beyond
+      const Part& part = chain_[static_cast<std::size_t>(i)];
+      q[i] = std::clamp(q[i], part.lower, part.upper);
+    }
+  }
+  return true;
+}
+
+bool NumericKinematics::solve(const ToolPose& target, const Vector& wish, int iterations,
+                              double longest_step, Vector& q) const {
+  const Vector nothing = Vector::Zero(q.size());
+  Posture posture;
+  for (int i = 0;; ++i) {
+    calc_posture(q, posture);
+    const Error6 error = calc_error(target, posture);
+    if (i > 0 && error.norm() <= kTolerance * length_m_) {
+      return true;
+    }
+    if (i == iterations ||
+        !improve(calc_jacobian(posture), error, i == 0 ? wish : nothing, longest_step, q)) {
+      return false;
+    }
+  }
+}
+
+bool NumericKinematics::follow(const ToolPose& target, std::span<const double> wish,
+                               std::span<double> q) const {
+  Vector posture = to_vector(q);
+  const bool reached = solve(target, to_vector(wish), kFollowIterations, kFollowStep, posture);
+  copy(posture, q);
+  return reached;
+}
+
+void NumericKinematics::relax(const ToolPose& target, Vector& q) const {
+  Vector wish = Vector::Zero(q.size());
+  for (int i = 0; i < kRelaxations; ++i) {
+    for (Eigen::Index joint = 0; joint < q.size(); ++joint) {
+      const Part& part = chain_[static_cast<std::size_t>(joint)];
+      wish[joint] = part.has_middle ? kRelaxationShare * (part.middle - q[joint]) : 0;
+    }
+    Vector next = q;
+    if (!solve(target, wish, kFollowIterations, kSearchStep, next)) {
+      return;
+    }
+    const double moved = (next - q).cwiseAbs().maxCoeff();
+    q = next;
+    if (moved < kRelaxed) {
+      return;
+    }
+  }
+}
+
+bool NumericKinematics::find(const ToolPose& target, std::span<double> q) const {
+  RandomStream random("inverse kinematics/start", 0);
+  const Vector nothing = Vector::Zero(static_cast<Eigen::Index>(chain_.size()));
+  for (int attempt = 0; attempt <= kRestarts; ++attempt) {
+    Vector posture = to_vector(attempt == 0 ? home_ : draw_posture(random));
+    if (solve(target, nothing, kSearchIterations, kSearchStep, posture)) {
+      relax(target, posture);
+      copy(posture, q);
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace armwright

@@ -1,0 +1,162 @@
+// The formulas of targets.hpp for any lane type V of double. Only files compiled for one
+// instruction set include this, without fused multiply-add, and name their own `Isa` in V
+// (lane_pack.hpp).
+#pragma once
+
+#include "sim/kinematics/targets.hpp"
+#include "sim/simd/lane_trigonometry.hpp"
+
+namespace armwright::targets {
+
+using lanes::calc_angle_above;
+using lanes::calc_atan2;
+using lanes::select;
+using lanes::sqrt;
+
+template <class V>
+ARMWRIGHT_INLINE V calc_distance(const SignalCurve& curve, V t) {
+  const V whole = curve.distance_m;
+  const V acceleration = curve.acceleration_m_per_s2;
+  const V ramp_up = curve.ramp_up_s;
+  const V left = V(curve.duration_s) - t;
+  V s = whole;
+  switch (curve.shape) {
+    case SignalShape::step:
+      return s;
+    case SignalShape::ramp:
+      s = V(curve.speed_m_per_s) * t;  // before t_m it cannot round to above ds
+      break;
+    case SignalShape::trapezoid: {
+      const V plateau = acceleration * ramp_up * (t - V(0.5) * ramp_up);
+      const V down = whole - V(0.5) * acceleration * left * left;
+      s = select(t > ramp_up, select(left > ramp_up, plateau, down), V(0.5) * acceleration * t * t);
+      break;
+    }
+    case SignalShape::triangular:
+      s = select(t > left, whole - V(0.5) * acceleration * left * left,
+                 V(0.5) * acceleration * t * t);
+      break;
+    case SignalShape::complex: {
+      // In x = v t / ds = t / t_m; the speed peaks at x = 0.4, where both pieces give ds / 2.
+      const V x = t / V(curve.duration_s);
+      const V rest = V(1.0) - x;
+      s = select(x > V(0.4), whole * (V(1.0) - V(125.0 / 54.0) * rest * rest * rest),
+                 whole * V(25.0 / 8.0) * x * x);
+      break;
+    }
+  }
+  return select(t < V(curve.duration_s), s, whole);
+}
+
+template <class V>
+struct Point {
+  V x, y, z;
+};
+
+// `step` may be any whole numbers, one a lane.
+template <class V>
+ARMWRIGHT_INLINE Point<V> calc_position(const Move& move, V step) {
+  const V time = (step + V(1.0)) * V(move.period_s);
+  const V share = calc_distance(move.curve, time) / V(move.curve.distance_m);
+  // From t_m on the point itself, not the start plus a rounded move.
+  const auto moving = time < V(move.curve.duration_s);
+  const auto place = [&](int i) __attribute__((always_inline)) {
+    return select(moving, V(move.from_m[i]) + V(move.way_m[i]) * share, V(move.to_m[i]));
+  };
+  return {place(0), place(1), place(2)};
+}
+
+// The wrist, which hangs above the target, from the shoulder in the arm's vertical plane.
+template <class V>
+struct Wrist {
+  V forward, up, squared_distance;  // f, e, b^2
+};
+template <class V>
+ARMWRIGHT_INLINE Wrist<V> calc_wrist(const ElbowUpArm& arm, Point<V> target) {
+  Wrist<V> wrist;
+  wrist.forward = sqrt(target.x * target.x + target.y * target.y) - V(arm.shoulder_radius_m);
+  if (arm.shoulder_offset_m > 0) {
+    const double offset = arm.shoulder_offset_m;
+    wrist.forward = sqrt(wrist.forward * wrist.forward + V(offset * offset));
+  }
+  wrist.up = target.z + V(arm.last_link_m) - V(arm.shoulder_height_m);
+  wrist.squared_distance = wrist.up * wrist.up + wrist.forward * wrist.forward;
+  return wrist;
+}
+
+// One bit a lane, set where the target is within reach. Elsewhere the angles are of no use.
+template <class V>
+ARMWRIGHT_INLINE unsigned solve(const ElbowUpArm& arm, Point<V> target, V* angles) {
+  const double a = arm.forearm_m;
+  const double c = arm.upper_arm_m;
+  const V farthest = (a + c) * (a + c);
+  const V nearest = (a - c) * (a - c);
+  const Wrist<V> wrist = calc_wrist(arm, target);
+  const V b2 = wrist.squared_distance;
+  // The first bits catch what is no number and a wrist in the shoulder.
+  const unsigned reached =
+      find_less(V(0.0), b2) & ~find_less(farthest, b2) & ~find_less(b2, nearest);
+
+  // The upper arm's elevation is the wrist's plus beta: the direction (f, e) turned by an angle
+  // with the tangent area / along. Where the wrist's is positive the sum is, even if it exceeds pi.
+  const V area = sqrt((farthest - b2) * (b2 - nearest));
+  const V along = b2 + V(c * c - a * a);
+  const V direction =
+      calc_atan2(wrist.up * along + wrist.forward * area, wrist.forward * along - wrist.up * area);
+  const V turn = select(wrist.up < V(0.0), V(0.0), V(6.28318530717958647693));
+  const V upper_arm_elevation = direction + select(direction < V(0.0), turn, V(0.0));
+  const V bend = calc_angle_above(area, b2 - V(c * c + a * a));
+  const V heading = calc_atan2(target.y, target.x);
+  const V forearm_elevation = upper_arm_elevation - bend;
+  constexpr double kLastLinkElevation = -1.57079632679489661923;
+
+  // A positive rotation about +y tips a link down, so the angles of joints 2 to i add up to its
+  // elevation at angle zero less the one it is to have.
+  const V q2 = V(arm.upper_arm_zero_rad) - upper_arm_elevation;
+  const V q23 = V(arm.forearm_zero_rad) - forearm_elevation;
+  const V q234 = arm.last_link_zero_rad - kLastLinkElevation;
+  angles[0] = V(arm.sign[0]) * heading;
+  angles[1] = V(arm.sign[1]) * q2;
+  angles[2] = V(arm.sign[2]) * (q23 - q2);
+  angles[3] = V(arm.sign[3]) * (q234 - q23);
+  return reached;
+}
+
+// From four packs to four numbers a lane, for the first `count` lanes.
+template <class V>
+ARMWRIGHT_INLINE void write_rows(const V* angles, int count, double* rows) {
+  double numbers[4][V::kLanes];
+  __builtin_memcpy(numbers, angles, sizeof numbers);
+  for (int lane = 0; lane < count; ++lane) {
+    for (int joint = 0; joint < 4; ++joint) {
+      rows[4 * lane + joint] = numbers[joint][lane];
+    }
+  }
+}
+
+template <class V>
+ARMWRIGHT_INLINE int solve_move(const ElbowUpArm& arm, const Move& move, int steps, double* rows) {
+  constexpr int kLanes = V::kLanes;
+  constexpr double kNumbers[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+  static_assert(kLanes <= 8);
+  V lane;
+  __builtin_memcpy(static_cast<void*>(&lane), kNumbers, sizeof lane);
+  for (int first = 0; first < steps; first += kLanes) {
+    V angles[4];
+    const unsigned reached =
+        solve(arm, calc_position(move, V(static_cast<double>(first)) + lane), angles);
+    const int left = steps - first;
+    if (left >= kLanes) {
+      write_rows(angles, kLanes, rows + 4 * first);
+    } else {
+      write_rows(angles, left, rows + 4 * first);
+    }
+    const unsigned wanted = (left < kLanes ? 1U << left : 1U << kLanes) - 1;
+    if ((reached & wanted) != wanted) {
+      return first + __builtin_ctz(~reached);
+    }
+  }
+  return steps;
+}
+
+}  // namespace armwright::targets

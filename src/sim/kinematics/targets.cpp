@@ -1,0 +1,25 @@
+#include "sim/kinematics/targets.hpp"
+
+#include "sim/simd/simd_level.hpp"
+
+namespace armwright::targets {
+
+SolveMove get_solve_move(SimdLevel level) {
+#if defined(__x86_64__)
+  switch (level) {
+    case SimdLevel::avx512:
+      return solve_move_avx512;
+    case SimdLevel::avx2:
+      return solve_move_avx2;
+    case SimdLevel::sse2:
+      return solve_move_sse2;
+    case SimdLevel::scalar:
+      break;
+  }
+#else
+  (void)level;  // no other is supported
+#endif
+  return solve_move_scalar;
+}
+
+}  // namespace armwright::targets

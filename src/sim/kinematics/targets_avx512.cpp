@@ -1,0 +1,17 @@
+// The targets with AVX-512 (F, VL, DQ, BW), nothing fused: src/CMakeLists.txt
+// compiles this file for it. Nothing may be included here that other files share functions with.
+#include "sim/kinematics/target_kernel.hpp"
+
+#if defined(__x86_64__)
+
+namespace armwright::targets {
+
+struct Avx512Level;
+
+int solve_move_avx512(const ElbowUpArm& arm, const Move& move, int steps, double* angles_rad) {
+  return solve_move<lanes::Pack<double, 8, Avx512Level>>(arm, move, steps, angles_rad);
+}
+
+}  // namespace armwright::targets
+
+#endif

@@ -1,0 +1,45 @@
+// The targets one by one, on any machine, and the functions that are asked for one only.
+#include "sim/kinematics/target_kernel.hpp"
+
+namespace armwright::targets {
+
+struct ScalarLevel;
+using Number = lanes::Single<double, ScalarLevel>;
+
+double calc_angle(double y, double x) {
+  return calc_atan2(Number(y), Number(x)).v;
+}
+
+double calc_distance(const SignalCurve& curve, double t_s) {
+  return calc_distance(curve, Number(t_s)).v;
+}
+
+void calc_position(const Move& move, int step, double position_m[3]) {
+  const Point<Number> position = calc_position(move, Number(static_cast<double>(step)));
+  position_m[0] = position.x.v;
+  position_m[1] = position.y.v;
+  position_m[2] = position.z.v;
+}
+
+double calc_wrist_distance(const ElbowUpArm& arm, const double target_m[3]) {
+  return sqrt(
+             calc_wrist(arm, Point<Number>{target_m[0], target_m[1], target_m[2]}).squared_distance)
+      .v;
+}
+
+bool solve(const ElbowUpArm& arm, const double target_m[3], double angles_rad[4]) {
+  Number angles[4];
+  if (solve(arm, Point<Number>{target_m[0], target_m[1], target_m[2]}, angles) == 0) {
+    return false;
+  }
+  for (int i = 0; i < 4; ++i) {
+    angles_rad[i] = angles[i].v;
+  }
+  return true;
+}
+
+int solve_move_scalar(const ElbowUpArm& arm, const Move& move, int steps, double* angles_rad) {
+  return solve_move<Number>(arm, move, steps, angles_rad);
+}
+
+}  // namespace armwright::targets

@@ -1,0 +1,18 @@
+// The targets with SSE2, which every x86-64 has.
+#include "sim/kinematics/target_kernel.hpp"
+
+#if defined(__x86_64__)
+
+namespace armwright::targets {
+
+struct Sse2Level;
+// Two at a time: one waits too long for its own results.
+using Numbers = lanes::Pair<lanes::Pack<double, 2, Sse2Level>>;
+
+int solve_move_sse2(const ElbowUpArm& arm, const Move& move, int steps, double* angles_rad) {
+  return solve_move<Numbers>(arm, move, steps, angles_rad);
+}
+
+}  // namespace armwright::targets
+
+#endif

@@ -1,0 +1,184 @@
+#include "sim/proposal/drive_proposal.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "base/text.hpp"
+#include "sim/engines/articulated/articulated_arm.hpp"
+#include "sim/proposal/workspace_proposal.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr double kSpeedShare = 0.6;
+constexpr double kEffortShare = 0.6;
+constexpr double kSlower = 0.8;
+constexpr int kSlowdowns = 20;
+
+constexpr double kBandwidth_rad_per_s = 10;
+constexpr double kDampingRatio = 0.7;
+// Of the 2 at which sampled damping diverges.
+constexpr double kMostSampledDamping = 0.7;
+constexpr double kEffortReserve = 2;
+constexpr double kUsualEffortShare = 0.1;
+constexpr double kMostReserve = 10;
+constexpr double kLeastAcceleration = 5;  // rad/s^2 or m/s^2
+constexpr int kStepsBetween = 20;         // at which the mass matrix is looked at
+
+// The largest efforts that inverse dynamics asks for on the path, and the largest M_ii.
+struct Demand {
+  std::vector<double> efforts;
+  std::vector<double> inertia;
+  std::vector<double> mobility;  // the largest (M^-1)_ii
+};
+
+Demand calc_demand(const TrackingSetup& setup, const std::vector<TargetTable>& tables) {
+  const std::size_t n = setup.robot().joint_count();
+  const std::vector<double> nothing(n, 0);
+  Demand demand{nothing, nothing, nothing};
+  ArticulatedArm arm(setup.robot(), tables.front().start_rad, setup.task().physics);
+  const std::vector<double> rest(n, 0);
+  for (const TargetTable& table : tables) {
+    for (int step = 0; step < table.steps; ++step) {
+      const auto efforts = table.feed_forward(step);
+      for (std::size_t i = 0; i < n; ++i) {
+        demand.efforts[i] = std::max(demand.efforts[i], std::abs(efforts[i]));
+      }
+      if (step % kStepsBetween == 0) {
+        arm.set_state(table.angles(step), rest);
+        const Eigen::MatrixXd mass = arm.calc_mass_matrix();
+        const Eigen::MatrixXd inverse = mass.inverse();
+        for (std::size_t i = 0; i < n; ++i) {
+          const auto at = static_cast<Eigen::Index>(i);
+          demand.inertia[i] = std::max(demand.inertia[i], mass(at, at));
+          demand.mobility[i] = std::max(demand.mobility[i], inverse(at, at));
+        }
+      }
+    }
+  }
+  return demand;
+}
+
+std::vector<TargetTable> make_tables(const RobotModel& robot, const TrackingSetup& setup,
+                                     const std::vector<TestCase>& cases) {
+  std::vector<TargetTable> tables;
+  for (const TestCase& its : cases) {
+    tables.push_back(setup.make_targets(its));
+    if (!tables.back().unreachable.empty()) {
+      refuse_proposal(robot,
+                      fmt::format("it cannot follow the path: {}", tables.back().unreachable));
+    }
+  }
+  return tables;
+}
+
+// The joint that is asked for most of what its limit allows, and how much of it.
+template <class GetShare>
+std::pair<std::size_t, double> find_busiest(std::size_t joints, const GetShare& get_share) {
+  std::pair<std::size_t, double> busiest{0, 0};
+  for (std::size_t i = 0; i < joints; ++i) {
+    const double share = get_share(i);
+    if (share > busiest.second) {
+      busiest = {i, share};
+    }
+  }
+  return busiest;
+}
+
+}  // namespace
+
+double propose_speed(const RobotModel& robot, TrackingTask task,
+                     const std::vector<TestCase>& cases) {
+  if (task.limits == LimitPolicy::enforce) {
+    task.limits = LimitPolicy::warn;  // what it is too quick for is found out here
+  }
+  coarsen(task);
+  task.feed_forward = FeedForward::inverse_dynamics;
+  task.speed_m_per_s = task.distance_limit_m / kProposedMove_s;
+  const std::size_t n = robot.joint_count();
+  for (int round = 0;; ++round) {
+    const TrackingSetup setup(robot, task);
+    const std::vector<TargetTable> tables = make_tables(robot, setup, cases);
+    std::vector<double> speeds(n, 0);
+    for (const TargetTable& table : tables) {
+      std::span<const double> before = table.start_rad;
+      for (int step = 0; step < table.steps; ++step) {
+        for (std::size_t i = 0; i < n; ++i) {
+          const double way =
+              calc_displacement(robot.joints[i].kind, before[i], table.angles(step)[i]);
+          speeds[i] = std::max(speeds[i], std::abs(way) / task.control_period_s);
+        }
+        before = table.angles(step);
+      }
+    }
+    const double fastest = find_busiest(n, [&](std::size_t i) {
+                             return speeds[i] / robot.joints[i].speed_limit;
+                           }).second;
+    if (fastest > kSpeedShare) {
+      task.speed_m_per_s *= std::max(kSpeedShare / fastest, 0.1) * 0.99;
+      if (round < kSlowdowns) {
+        continue;
+      }
+    }
+    const Demand demand = calc_demand(setup, tables);
+    const auto [joint, share] = find_busiest(
+        n, [&](std::size_t i) { return demand.efforts[i] / setup.robot().joints[i].effort_limit; });
+    if (share <= kEffortShare) {
+      return task.speed_m_per_s;
+    }
+    if (round >= kSlowdowns) {
+      if (share < 1) {
+        return task.speed_m_per_s;  // it can be held, but hardly more
+      }
+      refuse_proposal(
+          robot,
+          fmt::format("joint {} ('{}') needs {:.4g} {} to hold the arm in its workspace, its "
+                      "effort limit is {:.4g}; correct the limit or the masses in the URDF, "
+                      "carry less, or set another workspace",
+                      joint + 1, sanitize(robot.joints[joint].name), demand.efforts[joint],
+                      robot.joints[joint].kind == JointKind::revolute ? "N m" : "N",
+                      robot.joints[joint].effort_limit));
+    }
+    task.speed_m_per_s *= kSlower;
+  }
+}
+
+ArmDesign propose_design(const RobotModel& robot, TrackingTask task,
+                         const std::vector<TestCase>& cases) {
+  if (task.limits == LimitPolicy::enforce) {
+    task.limits = LimitPolicy::warn;
+  }
+  if (!cases.front().continuous) {
+    coarsen(task);
+  }
+  task.feed_forward = FeedForward::inverse_dynamics;
+  const TrackingSetup setup(robot, task);
+  const Demand demand = calc_demand(setup, make_tables(robot, setup, cases));
+  ArmDesign design;
+  for (std::size_t i = 0; i < robot.joint_count(); ++i) {
+    const double w = kBandwidth_rad_per_s;
+    const double m = demand.inertia[i];
+    const double d = std::min(2 * kDampingRatio * w * m,
+                              kMostSampledDamping / (task.control_period_s * demand.mobility[i]));
+    const double p = std::min(w * w * m, d * d / m);
+    JointDrive drive;
+    drive.gains = {p, p * std::sqrt(p / m) / 4, d};
+    const double own = robot.joints[i].effort_limit;
+    const double needed =
+        std::max(kEffortReserve * demand.efforts[i], kLeastAcceleration * demand.inertia[i]);
+    // A tenth of what the joint can do, where that is not out of all proportion.
+    const double usual =
+        std::isfinite(own) ? std::min(kUsualEffortShare * own, kMostReserve * needed) : 0;
+    const double limit = std::min(std::max(needed, usual), own);
+    drive.limits = {-limit, limit};
+    design.joints.push_back(drive);
+  }
+  return design;
+}
+
+}  // namespace armwright

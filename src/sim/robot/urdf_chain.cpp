@@ -1,0 +1,245 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "base/text.hpp"
+#include "sim/robot/urdf.hpp"
+
+namespace armwright {
+namespace {
+
+// Names in the order of the file, the first dozen of them.
+std::string list_names(const std::vector<std::string>& names, std::string_view separator) {
+  constexpr std::size_t kShown = 12;
+  std::vector<std::string> shown;
+  for (std::size_t i = 0; i < std::min(kShown, names.size()); ++i) {
+    shown.push_back(fmt::format("'{}'", names[i]));
+  }
+  return join(shown, separator) +
+         (names.size() > kShown ? fmt::format(" and {} more", names.size() - kShown) : "");
+}
+
+// Links and joints as a tree.
+class Tree {
+ public:
+  Tree(const std::vector<UrdfLink>& links, const std::vector<UrdfJoint>& joints,
+       const std::string& name)
+      : links_(links), name_(name) {
+    for (const UrdfJoint& joint : joints) {
+      const auto [other, inserted] = joint_above_.emplace(joint.child, &joint);
+      if (!inserted) {
+        fail_urdf(
+            name_, joint.line,
+            fmt::format(
+                "link '{}' is the child of the joints '{}' and '{}'; a link hangs on one joint",
+                joint.child, other->second->name, joint.name));
+      }
+      children_[joint.parent].push_back(joint.child);
+    }
+    find_root();
+    check_cycles();
+  }
+
+  const UrdfLink& root() const { return *root_; }
+
+  bool has(const std::string& link) const {
+    return std::any_of(links_.begin(), links_.end(),
+                       [&](const UrdfLink& other) { return other.name == link; });
+  }
+
+  std::set<std::string> find_all_below(const std::string& top) const {
+    std::set<std::string> found{top};
+    std::vector<std::string> open{top};
+    while (!open.empty()) {
+      const auto children = children_.find(open.back());
+      open.pop_back();
+      if (children != children_.end()) {
+        for (const std::string& child : children->second) {
+          if (found.insert(child).second) {
+            open.push_back(child);
+          }
+        }
+      }
+    }
+    return found;
+  }
+
+  std::vector<std::string> find_leaves(const std::string& top) const {
+    const std::set<std::string> below = find_all_below(top);
+    std::vector<std::string> leaves;
+    for (const UrdfLink& link : links_) {
+      if (below.contains(link.name) && !children_.contains(link.name)) {
+        leaves.push_back(link.name);
+      }
+    }
+    return leaves;
+  }
+
+  // The joints from the root down to that link.
+  std::vector<const UrdfJoint*> find_way(const std::string& link) const {
+    std::vector<const UrdfJoint*> way;
+    for (auto joint = joint_above_.find(link); joint != joint_above_.end();
+         joint = joint_above_.find(joint->second->parent)) {
+      way.push_back(joint->second);
+    }
+    std::reverse(way.begin(), way.end());
+    return way;
+  }
+
+ private:
+  void find_root() {
+    for (const UrdfLink& link : links_) {
+      if (joint_above_.contains(link.name)) {
+        continue;
+      }
+      if (root_ != nullptr) {
+        fail_urdf(name_, link.line,
+                  fmt::format("the links '{}' and '{}' both hang on no joint; exactly one link is "
+                              "the root: join them by a joint or remove one",
+                              root_->name, link.name));
+      }
+      root_ = &link;
+    }
+    if (root_ == nullptr) {
+      fail_urdf(name_, links_.front().line,
+                fmt::format(
+                    "the links form a cycle, {}; one link must be the root that hangs on no joint",
+                    describe_cycle(links_.front())));
+    }
+  }
+
+  void check_cycles() const {
+    const std::set<std::string> on_root = find_all_below(root_->name);
+    for (const UrdfLink& link : links_) {
+      if (!on_root.contains(link.name)) {
+        fail_urdf(name_, link.line,
+                  fmt::format("the links form a cycle, {}; every link must hang on the root '{}'",
+                              describe_cycle(link), root_->name));
+      }
+    }
+  }
+
+  // "'a' -> 'b' -> 'a'": follows the joints down from a link that has no root above it.
+  std::string describe_cycle(const UrdfLink& start) const {
+    // Going up never ends on such a link, so after as many steps as there are joints we are on the
+    // cycle itself.
+    std::string on_cycle = start.name;
+    for (std::size_t i = 0; i < joint_above_.size(); ++i) {
+      on_cycle = joint_above_.at(on_cycle)->parent;
+    }
+    std::string text = fmt::format("'{}'", on_cycle);
+    std::string link = on_cycle;
+    do {
+      link = joint_above_.at(link)->parent;
+      text = fmt::format("'{}' -> {}", link, text);
+    } while (link != on_cycle);
+    return text;
+  }
+
+  const std::vector<UrdfLink>& links_;
+  const std::string& name_;
+  const UrdfLink* root_ = nullptr;
+  std::map<std::string, const UrdfJoint*> joint_above_;       // by child link
+  std::map<std::string, std::vector<std::string>> children_;  // by parent link
+};
+
+class Chooser {
+ public:
+  Chooser(const std::vector<UrdfLink>& links, const Tree& tree, const RobotOptions& options,
+          const std::string& name)
+      : links_(links), tree_(tree), options_(options), name_(name) {}
+
+  UrdfChain choose() const {
+    UrdfChain chain;
+    chain.base = options_.base.empty() ? tree_.root().name : find_link("base", options_.base);
+    chain.tip = options_.tip.empty() ? find_only_leaf(chain.base) : find_link("tip", options_.tip);
+    const std::vector<const UrdfJoint*> way = tree_.find_way(chain.tip);
+    auto first = way.begin();
+    if (chain.base != tree_.root().name) {
+      first = std::find_if(way.begin(), way.end(),
+                           [&](const UrdfJoint* joint) { return joint->child == chain.base; });
+      if (first == way.end()) {
+        fail("base", fmt::format("the base '{}' is not above the tip '{}', to which the way from "
+                                 "the root is {}; name one of these",
+                                 chain.base, chain.tip, describe_way(way)));
+      }
+      ++first;
+    }
+    for (; first != way.end(); ++first) {
+      if ((*first)->type != "fixed") {
+        chain.joints.emplace((*first)->name, (*first)->line);
+      }
+    }
+    if (chain.joints.empty()) {
+      fail_without_joint(chain);
+    }
+    return chain;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& option, const std::string& what,
+                         const std::vector<std::string>& leaves = {}) const {
+    throw RobotOptionError(option, fmt::format("{}: {}", name_, what), leaves);
+  }
+
+  std::string find_link(const std::string& option, const std::string& link) const {
+    if (!tree_.has(link)) {
+      std::vector<std::string> known;
+      for (const UrdfLink& other : links_) {
+        known.push_back(other.name);
+      }
+      fail(option,
+           fmt::format("the {}: {}", option, describe_unknown("link", sanitize(link), known)));
+    }
+    return link;
+  }
+
+  std::string find_only_leaf(const std::string& base) const {
+    const std::vector<std::string> leaves = tree_.find_leaves(base);
+    if (leaves.size() > 1) {
+      fail("tip",
+           fmt::format("the links branch and end in {}; name the one whose frame is the tool "
+                       "centre point (or any other link) with robot.tip or --tip",
+                       list_names(leaves, ", ")),
+           leaves);
+    }
+    return leaves.front();
+  }
+
+  std::string describe_way(const std::vector<const UrdfJoint*>& way) const {
+    std::vector<std::string> names{tree_.root().name};
+    for (const UrdfJoint* joint : way) {
+      names.push_back(joint->child);
+    }
+    return list_names(names, " -> ");
+  }
+
+  [[noreturn]] void fail_without_joint(const UrdfChain& chain) const {
+    if (options_.base.empty() && options_.tip.empty()) {
+      fail_urdf(name_, tree_.root().line,
+                "the robot has no moving joint; it needs at least one revolute, continuous or "
+                "prismatic joint");
+    }
+    fail(options_.tip.empty() ? "base" : "tip",
+         fmt::format("no joint between the base '{}' and the tip '{}' moves; the chain needs at "
+                     "least one revolute, continuous or prismatic joint",
+                     chain.base, chain.tip));
+  }
+
+  const std::vector<UrdfLink>& links_;
+  const Tree& tree_;
+  const RobotOptions& options_;
+  const std::string& name_;
+};
+
+}  // namespace
+
+UrdfChain choose_chain(const std::vector<UrdfLink>& links, const std::vector<UrdfJoint>& joints,
+                       const RobotOptions& options, const std::string& name) {
+  const Tree tree(links, joints, name);
+  return Chooser(links, tree, options, name).choose();
+}
+
+}  // namespace armwright

@@ -1,0 +1,194 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "base/text.hpp"
+#include "sim/robot/urdf_parts.hpp"
+
+namespace armwright {
+
+using tinyxml2::XMLElement;
+
+void UrdfWriter::write(const char* attribute, const std::vector<double>& numbers) {
+  std::vector<std::string> texts;
+  for (const double number : numbers) {
+    texts.push_back(format_exact(number));
+  }
+  write(attribute, join(texts, " "));
+}
+
+void copy_origin(const XMLElement& parent, const UrdfXml& xml, UrdfWriter& out) {
+  const XMLElement* origin = xml.find_only(parent, "origin");
+  if (origin == nullptr) {
+    return;
+  }
+  xml.check_names(*origin, {}, {"xyz", "rpy"});
+  if (origin->Attribute("quat_xyzw") != nullptr) {
+    xml.fail(*origin, "<origin>: quat_xyzw is not supported; give the rotation as rpy");
+  }
+  const std::vector<double> xyz = xml.read_numbers(*origin, "xyz", 3, {0, 0, 0});
+  const std::vector<double> rpy = xml.read_numbers(*origin, "rpy", 3, {0, 0, 0});
+  out.open("origin");
+  out.write("xyz", xyz);
+  out.write("rpy", rpy);
+  out.close();
+}
+
+namespace {
+
+std::string explain(const tinyxml2::XMLDocument& document) {
+  switch (document.ErrorID()) {
+    case tinyxml2::XML_ERROR_MISMATCHED_ELEMENT:
+      return "an element is closed by another name, or not at all";
+    case tinyxml2::XML_ERROR_PARSING_ATTRIBUTE:
+      return "an attribute is malformed or given twice; they are written name=\"value\"";
+    case tinyxml2::XML_ERROR_PARSING_TEXT:
+    case tinyxml2::XML_ERROR_EMPTY_DOCUMENT:
+      return "it has no elements; a URDF has one <robot> element";
+    default:
+      return document.ErrorName();
+  }
+}
+
+const XMLElement& find_robot(const tinyxml2::XMLDocument& document, const UrdfXml& xml,
+                             const std::string& name) {
+  const XMLElement* robot = document.RootElement();
+  if (robot == nullptr) {
+    fail_urdf(name, 1, "has no element at all; a URDF has one <robot> element");
+  }
+  if (std::string_view(robot->Name()) != "robot") {
+    xml.fail(*robot, fmt::format("begins with <{}>; a URDF's root element is <robot>",
+                                 shorten(robot->Name())));
+  }
+  if (const XMLElement* second = robot->NextSiblingElement()) {
+    xml.fail(*second, fmt::format("has <{}> after </robot>; a URDF has one root element",
+                                  shorten(second->Name())));
+  }
+  return *robot;
+}
+
+// Names and how they hang together, before anything else of links and joints is read.
+class Index {
+ public:
+  Index(const XMLElement& robot, UrdfXml& xml) : xml_(xml) {
+    for (const XMLElement* e = robot.FirstChildElement("link"); e != nullptr;
+         e = e->NextSiblingElement("link")) {
+      add_link(*e);
+    }
+    if (links.empty()) {
+      xml_.fail(robot, "<robot> has no <link>; it needs a chain of links and joints");
+    }
+    for (const XMLElement* e = robot.FirstChildElement("joint"); e != nullptr;
+         e = e->NextSiblingElement("joint")) {
+      add_joint(*e);
+    }
+  }
+
+  std::vector<UrdfLink> links;
+  std::vector<UrdfJoint> joints;
+
+ private:
+  void add_link(const XMLElement& element) {
+    xml_.set_context("a link");
+    const std::string name = xml_.get_text(element, "name");
+    xml_.set_context(fmt::format("link '{}'", name));
+    if (!link_names_.insert(name).second) {
+      xml_.fail(element, "the name is used by an earlier link; names must be unique");
+    }
+    links.push_back({name, element.GetLineNum()});
+    if (links.size() > kUrdfLinkLimit) {
+      xml_.fail(element,
+                fmt::format("is one too many; at most {} links are allowed", kUrdfLinkLimit));
+    }
+    xml_.set_context("the file");
+  }
+
+  void add_joint(const XMLElement& element) {
+    xml_.set_context("a joint");
+    UrdfJoint joint;
+    joint.line = element.GetLineNum();
+    joint.name = xml_.get_text(element, "name");
+    xml_.set_context(fmt::format("joint '{}'", joint.name));
+    if (!joint_names_.insert(joint.name).second) {
+      xml_.fail(element, "the name is used by an earlier joint; names must be unique");
+    }
+    joint.type = xml_.get_text(element, "type");
+    const std::vector<std::string> types{"revolute", "continuous", "prismatic",
+                                         "fixed",    "floating",   "planar"};
+    if (std::find(types.begin(), types.end(), joint.type) == types.end()) {
+      xml_.fail(element, describe_unknown("type", joint.type, types));
+    }
+    joint.parent = read_end(element, "parent");
+    joint.child = read_end(element, "child");
+    if (joint.parent == joint.child) {
+      xml_.fail(element, fmt::format("joins link '{}' to itself; parent and child must differ",
+                                     joint.parent));
+    }
+    joints.push_back(std::move(joint));
+  }
+
+  // The link that <parent> or <child> names.
+  std::string read_end(const XMLElement& joint, const char* end) const {
+    const XMLElement& element =
+        xml_.get_only(joint, end, "a joint needs a parent and a child link");
+    xml_.check_names(element, {}, {"link"});
+    const std::string link = xml_.get_text(element, "link");
+    if (!link_names_.contains(link)) {
+      const std::vector<std::string> known(link_names_.begin(), link_names_.end());
+      xml_.fail(element, fmt::format("<{}>: {}", end, describe_unknown("link", link, known)));
+    }
+    return link;
+  }
+
+  UrdfXml& xml_;
+  std::set<std::string> link_names_, joint_names_;
+};
+
+}  // namespace
+
+CheckedUrdf check_urdf(std::string_view xml_text, const std::string& name,
+                       const RobotOptions& options) {
+  scan_urdf(xml_text, name);
+  tinyxml2::XMLDocument document;
+  if (document.Parse(xml_text.data(), xml_text.size()) != tinyxml2::XML_SUCCESS) {
+    fail_urdf(name, std::max(1, document.ErrorLineNum()),
+              fmt::format("is not well-formed XML: {}", explain(document)));
+  }
+  UrdfXml xml(name);
+  const XMLElement& robot = find_robot(document, xml, name);
+  xml.check_names(robot,
+                  {"link", "joint", "material", "transmission", "gazebo", "sensor", "ros2_control"},
+                  {"name", "version"});
+  UrdfWriter out;
+  out.open("robot");
+  out.write("name", xml.get_text(robot, "name"));
+  if (robot.Attribute("version") != nullptr) {
+    out.write("version", xml.get_text(robot, "version"));
+  }
+  LinkChecker links(robot, xml, out);
+  const Index index(robot, xml);
+  CheckedUrdf checked;
+  checked.chain = choose_chain(index.links, index.joints, options, name);
+  auto link = index.links.begin();
+  for (const XMLElement* e = robot.FirstChildElement("link"); e != nullptr;
+       e = e->NextSiblingElement("link")) {
+    links.check(*e, (link++)->name);
+  }
+  JointChecker joints(checked.chain, xml, out);
+  auto joint = index.joints.begin();
+  for (const XMLElement* e = robot.FirstChildElement("joint"); e != nullptr;
+       e = e->NextSiblingElement("joint")) {
+    joints.check(*e, *joint++);
+  }
+  out.close();
+  checked.xml = out.text();
+  checked.held = joints.held();
+  checked.notes = links.make_notes();
+  for (std::string& note : joints.make_notes()) {
+    checked.notes.push_back(std::move(note));
+  }
+  return checked;
+}
+
+}  // namespace armwright

@@ -1,0 +1,227 @@
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+#include "base/text.hpp"
+#include "sim/robot/urdf_parts.hpp"
+
+namespace armwright {
+
+using tinyxml2::XMLElement;
+
+namespace {
+
+// How far the largest principal moment may exceed the sum of the others: the rounding of a plate's
+// moments to three digits.
+constexpr double kTriangleTolerance = 1e-3;
+
+constexpr const char* kEntries[3][3] = {
+    {"ixx", "ixy", "ixz"}, {"ixy", "iyy", "iyz"}, {"ixz", "iyz", "izz"}};
+
+Eigen::Matrix3d read_tensor(const XMLElement& inertia, const UrdfXml& xml) {
+  xml.check_names(inertia, {}, {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"});
+  Eigen::Matrix3d tensor;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      tensor(row, column) = xml.read_number(inertia, kEntries[row][column]);
+    }
+  }
+  return tensor;
+}
+
+void check_tensor(const XMLElement& element, const Eigen::Matrix3d& tensor, const UrdfXml& xml) {
+  const Eigen::Vector3d moments =  // ascending
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(tensor, Eigen::EigenvaluesOnly).eigenvalues();
+  const std::string found =
+      fmt::format("<inertia> has the principal moments {:.6g}, {:.6g}, {:.6g} kg m2", moments[0],
+                  moments[1], moments[2]);
+  if (!(moments[0] > 0)) {
+    xml.fail(element,
+             found + "; all must be > 0 (a positive definite tensor about the centre of mass)");
+  }
+  if (!(moments[0] + moments[1] >= (1 - kTriangleTolerance) * moments[2])) {
+    xml.fail(element,
+             found + "; no body has these: the largest must not exceed the sum of the other two");
+  }
+}
+
+}  // namespace
+
+LinkChecker::LinkChecker(const XMLElement& robot, UrdfXml& xml, UrdfWriter& out)
+    : xml_(xml), out_(out) {
+  collect_colors(robot);
+  for (const XMLElement* link = robot.FirstChildElement("link"); link != nullptr;
+       link = link->NextSiblingElement("link")) {
+    for (const XMLElement* visual = link->FirstChildElement("visual"); visual != nullptr;
+         visual = visual->NextSiblingElement("visual")) {
+      collect_colors(*visual);
+    }
+  }
+}
+
+// Materials are defined at the top or in the visual that uses them first.
+void LinkChecker::collect_colors(const XMLElement& holder) {
+  for (const XMLElement* e = holder.FirstChildElement("material"); e != nullptr;
+       e = e->NextSiblingElement("material")) {
+    xml_.check_names(*e, {"color", "texture"}, {"name"});
+    std::vector<double> rgba;
+    if (const XMLElement* color = xml_.find_only(*e, "color")) {
+      xml_.check_names(*color, {}, {"rgba"});
+      rgba = xml_.read_numbers(*color, "rgba", 4);
+      for (const double part : rgba) {
+        if (part < 0 || part > 1) {
+          xml_.fail(*color,
+                    fmt::format("<color>: rgba has the part {}; each must be in [0, 1]", part));
+        }
+      }
+    }
+    const char* material = e->Attribute("name");
+    if (!rgba.empty() || e->FirstChildElement("texture") != nullptr) {
+      colors_.emplace(material == nullptr ? "" : material, rgba);
+    }
+    own_colors_[e] = rgba;
+  }
+}
+
+void LinkChecker::check(const XMLElement& link, const std::string& link_name) {
+  xml_.set_context(fmt::format("link '{}'", link_name));
+  xml_.check_names(link, {"inertial", "visual", "collision", "sensor"}, {"name", "type"});
+  out_.open("link");
+  out_.write("name", link_name);
+  if (const XMLElement* inertial = xml_.find_only(link, "inertial")) {
+    check_inertial(*inertial, link_name);
+  }
+  for (const XMLElement* visual = link.FirstChildElement("visual"); visual != nullptr;
+       visual = visual->NextSiblingElement("visual")) {
+    check_visual(*visual);
+  }
+  out_.close();
+}
+
+void LinkChecker::check_inertial(const XMLElement& element, const std::string& link_name) {
+  xml_.check_names(element, {"origin", "mass", "inertia"}, {});
+  const XMLElement& mass =
+      xml_.get_only(element, "mass",
+                    "a body needs its mass in kg (leave <inertial> out for a frame without mass)");
+  xml_.check_names(mass, {}, {"value"});
+  const double mass_kg = xml_.read_number(mass, "value");
+  if (mass_kg < 0) {
+    xml_.fail(mass, fmt::format("<mass>: value is {}; it must be > 0", mass_kg));
+  }
+  const XMLElement& inertia = xml_.get_only(
+      element, "inertia", "a body needs its inertia about the centre of mass in kg m2");
+  const Eigen::Matrix3d tensor = read_tensor(inertia, xml_);
+  if (mass_kg == 0 && tensor.isZero(0)) {
+    massless_.push_back(fmt::format("'{}'", link_name));
+    return;
+  }
+  if (mass_kg == 0) {
+    xml_.fail(mass,
+              "<mass>: value is 0; it must be > 0 (a frame without mass has an inertia of zeros, "
+              "or no <inertial>)");
+  }
+  check_tensor(inertia, tensor, xml_);
+  out_.open("inertial");
+  copy_origin(element, xml_, out_);
+  out_.open("mass");
+  out_.write("value", {mass_kg});
+  out_.close();
+  out_.open("inertia");
+  for (int row = 0; row < 3; ++row) {
+    for (int column = row; column < 3; ++column) {
+      out_.write(kEntries[row][column], {tensor(row, column)});
+    }
+  }
+  out_.close();
+  out_.close();
+}
+
+void LinkChecker::check_visual(const XMLElement& element) {
+  xml_.check_names(element, {"origin", "geometry", "material"}, {"name"});
+  out_.open("visual");
+  copy_origin(element, xml_, out_);
+  const XMLElement& geometry = xml_.get_only(element, "geometry", "a visual needs one");
+  const std::vector<std::string> shapes{"box", "cylinder", "sphere", "mesh"};
+  const XMLElement* shape = geometry.FirstChildElement();
+  if (shape == nullptr || shape->NextSiblingElement() != nullptr) {
+    xml_.fail(geometry, fmt::format("<geometry> must hold exactly one of {}", join(shapes, ", ")));
+  }
+  xml_.check_names(geometry, shapes, {});
+  out_.open("geometry");
+  check_shape(*shape, shapes);
+  out_.close();
+  if (const XMLElement* material = xml_.find_only(element, "material")) {
+    write_color(*material);
+  }
+  out_.close();
+}
+
+void LinkChecker::check_shape(const XMLElement& shape, const std::vector<std::string>& shapes) {
+  const std::string kind = shape.Name();
+  out_.open(kind.c_str());
+  if (kind == "box") {
+    xml_.check_names(shape, {}, {"size"});
+    const std::vector<double> size = xml_.read_numbers(shape, "size", 3);
+    if (*std::min_element(size.begin(), size.end()) <= 0) {
+      xml_.fail(shape, fmt::format("<box>: size is '{}'; all three edges must be > 0",
+                                   shorten(shape.Attribute("size"))));
+    }
+    out_.write("size", size);
+  } else if (kind == "cylinder") {
+    xml_.check_names(shape, {}, {"radius", "length"});
+    out_.write("radius", {xml_.read_positive(shape, "radius")});
+    out_.write("length", {xml_.read_positive(shape, "length")});
+  } else if (kind == "sphere") {
+    xml_.check_names(shape, {}, {"radius"});
+    out_.write("radius", {xml_.read_positive(shape, "radius")});
+  } else if (kind == "mesh") {
+    xml_.check_names(shape, {}, {"filename", "scale"});
+    out_.write("filename", xml_.get_text(shape, "filename"));
+    out_.write("scale", xml_.read_numbers(shape, "scale", 3, {1, 1, 1}));
+  } else {
+    xml_.fail(shape,
+              describe_unknown("shape", kind, shapes) +
+                  (kind == "capsule" ? " (write a capsule as three <visual>, a cylinder and "
+                                       "a sphere at each end, or leave it out: visuals count "
+                                       "for looks, and for mass at a density)"
+                                     : ""));
+  }
+  out_.close();
+}
+
+// Under a name of its own, as urdfdom takes the first colour it saw for every material of that
+// name ("", say).
+void LinkChecker::write_color(const XMLElement& material) {
+  std::vector<double> rgba = own_colors_.at(&material);
+  if (rgba.empty() && material.FirstChildElement("texture") == nullptr) {
+    const std::string wanted = xml_.get_text(material, "name");
+    const auto found = colors_.find(wanted);
+    if (found == colors_.end()) {
+      std::vector<std::string> known;
+      for (const auto& [known_name, color] : colors_) {
+        known.push_back(known_name);
+      }
+      xml_.fail(material, describe_unknown("material", wanted, known));
+    }
+    rgba = found->second;
+  }
+  if (rgba.empty()) {
+    return;  // a texture only
+  }
+  out_.open("material");
+  out_.write("name", fmt::format("material_{}", ++materials_));
+  out_.open("color");
+  out_.write("rgba", rgba);
+  out_.close();
+  out_.close();
+}
+
+std::vector<std::string> LinkChecker::make_notes() const {
+  if (massless_.empty()) {
+    return {};
+  }
+  return {fmt::format("<inertial> with zeros is taken for none: {}", join(massless_, ", "))};
+}
+
+}  // namespace armwright

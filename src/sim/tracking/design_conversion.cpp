@@ -1,0 +1,46 @@
+#include "sim/tracking/design_conversion.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/error.hpp"
+
+namespace armwright {
+
+ArmDesign convert_design(const ArmDesign& design, std::string_view controller, double period_s) {
+  if (design.controller == controller) {
+    return design;
+  }
+  const ControllerRow& row = find_controller(controller);
+  if (design.controller != "pid") {
+    throw Error(ErrorKind::usage,
+                fmt::format("the start design is for controller '{}', and only one for 'pid' can "
+                            "be turned into one for '{}'; name another start",
+                            design.controller, row.name));
+  }
+  ArmDesign converted = design;  // arm, limits and speed stay
+  converted.controller = row.name;
+  for (std::size_t joint = 0; joint < design.joints.size(); ++joint) {
+    const JointDrive& pid = design.joints[joint];
+    JointDrive& drive = converted.joints[joint];
+    drive.gains.assign(row.gains.size(), 0.0);
+    row.convert(
+        {pid.gains.at(0), pid.gains.at(1), pid.gains.at(2), calc_largest_torque_n_m(pid), period_s},
+        drive.gains.data());
+    for (std::size_t gain = 0; gain < drive.gains.size(); ++gain) {
+      if (!std::isfinite(drive.gains[gain])) {
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("'{}' cannot be made of the start's joint {}, whose PID has p = {}, "
+                        "i = {}, d = {} and an effort limit of {} N m: {} would be {}; "
+                        "name another start",
+                        row.name, joint + 1, pid.gains[0], pid.gains[1], pid.gains[2],
+                        calc_largest_torque_n_m(pid), row.gains[gain].key, drive.gains[gain]));
+      }
+    }
+  }
+  return converted;
+}
+
+}  // namespace armwright

@@ -1,0 +1,114 @@
+#include "sim/tracking/designed_arm.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+
+namespace armwright {
+namespace {
+
+Inertial map_linearly(const Inertial& body, const Eigen::Matrix3d& map, double mass_factor) {
+  const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
+  // tr(I) = 2 tr(K), as I = tr(K) 1 - K.
+  const Eigen::Matrix3d before = body.inertia_kg_m2.trace() / 2 * identity - body.inertia_kg_m2;
+  const Eigen::Matrix3d after = mass_factor * (map * before * map.transpose());
+  return {mass_factor * body.mass_kg, map * body.com_m, after.trace() * identity - after};
+}
+
+// Pictures stay boxes, cylinders and spheres: their edges are stretched, their angles kept.
+void stretch_visual(VisualShape& visual, const Eigen::Matrix3d& map) {
+  const Eigen::Vector3d factor = (map * visual.pose.linear()).colwise().norm();
+  switch (visual.kind) {
+    case ShapeKind::box:
+    case ShapeKind::mesh:
+      visual.size_m = visual.size_m.cwiseProduct(factor);
+      break;
+    case ShapeKind::cylinder:
+      visual.size_m.x() *= std::sqrt(factor.x() * factor.y());
+      visual.size_m.y() *= factor.z();
+      break;
+    case ShapeKind::sphere:
+      visual.size_m.x() *= std::cbrt(factor.prod());
+      break;
+  }
+  visual.pose.translation() = map * visual.pose.translation();
+}
+
+}  // namespace
+
+RobotModel stretch_link(RobotModel model, std::size_t link, double length_scale,
+                        double section_scale) {
+  for (const double scale : {length_scale, section_scale}) {
+    if (!std::isfinite(scale) || scale <= 0) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("link '{}' is stretched by {}; it must be finite and > 0",
+                              sanitize(model.links[link].name), scale));
+    }
+  }
+  if (length_scale == 1 && section_scale == 1) {
+    return model;
+  }
+  const bool is_last = link + 1 == model.joint_count();
+  Eigen::Isometry3d& end = is_last ? model.tip_pose : model.joints[link + 1].origin;
+  const double length_m = end.translation().norm();
+  if (length_m == 0) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("robot '{}': link '{}' cannot be stretched: {} lies in its own joint, "
+                            "which leaves no direction",
+                            sanitize(model.name), sanitize(model.links[link].name),
+                            is_last ? "the tip" : "the next joint"));
+  }
+  const Eigen::Vector3d direction = end.translation() / length_m;
+  const double across = std::sqrt(section_scale);
+  const Eigen::Matrix3d map = across * Eigen::Matrix3d::Identity() +
+                              (length_scale - across) * (direction * direction.transpose());
+  Link& stretched = model.links[link];
+  stretched.inertial = map_linearly(stretched.inertial, map, length_scale * section_scale);
+  for (VisualShape& visual : stretched.visuals) {
+    stretch_visual(visual, map);
+  }
+  end.translation() *= length_scale;
+  return model;
+}
+
+RobotModel make_robot(const RobotModel& nominal, const ArmDesign& design,
+                      double torque_per_mass_n_m_per_kg) {
+  RobotModel robot = nominal;
+  for (std::size_t i = 0; i < design.joints.size(); ++i) {
+    robot = stretch_link(std::move(robot), i, design.joints[i].length_scale,
+                         design.joints[i].section_scale);
+  }
+  for (std::size_t i = 1; torque_per_mass_n_m_per_kg > 0 && i < design.joints.size(); ++i) {
+    Inertial motor;
+    motor.mass_kg = calc_largest_torque_n_m(design.joints[i]) / torque_per_mass_n_m_per_kg;
+    motor.com_m = robot.joints[i].origin.translation();
+    Inertial& carrier = robot.links[i - 1].inertial;
+    carrier = combine(carrier, motor);
+  }
+  return robot;
+}
+
+TrackingTask make_task(TrackingTask nominal, const ArmDesign& design) {
+  nominal.speed_m_per_s = design.speed_m_per_s.value_or(nominal.speed_m_per_s);
+  return nominal;
+}
+
+bool is_stretched(const ArmDesign& design) {
+  return std::ranges::any_of(design.joints, [](const JointDrive& joint) {
+    return joint.length_scale != 1 || joint.section_scale != 1;
+  });
+}
+
+double calc_moving_mass_kg(const RobotModel& model) {
+  double mass_kg = 0;
+  for (const Link& link : model.links) {
+    mass_kg += link.inertial.mass_kg;
+  }
+  return mass_kg;
+}
+
+}  // namespace armwright

@@ -1,0 +1,157 @@
+#include "sim/tracking/path_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/text.hpp"
+
+namespace armwright {
+namespace {
+
+// Rounding of angles at the end of a range or at a joint's full speed.
+constexpr double kRounding = 1e-6;
+// Singular values cost far more than positions: so often a path is looked at for them.
+constexpr int kStepsBetween = 5;
+
+struct Worst {
+  std::optional<PathFault> fault;
+  double excess = 0;
+
+  void consider(const PathFault& found, double by) {
+    if (by > excess) {
+      excess = by;
+      fault = found;
+    }
+  }
+};
+
+// How much a joint is beyond its range; an angle counts as the turn nearest to the middle.
+double calc_excess(const Joint& joint, bool wrapped, double& position) {
+  if (!std::isfinite(joint.lower) || !std::isfinite(joint.upper)) {
+    return 0;
+  }
+  if (wrapped && joint.kind == JointKind::revolute) {
+    const double middle = 0.5 * (joint.lower + joint.upper);
+    position = middle + wrap_angle(position - middle);
+  }
+  return std::max(joint.lower - position, position - joint.upper);
+}
+
+}  // namespace
+
+std::vector<PathFault> find_path_faults(const TrackingSetup& setup, const TargetTable& table) {
+  const RobotModel& robot = setup.robot();
+  const double period_s = setup.task().control_period_s;
+  const auto kinematics = setup.get_kinematics();
+  std::vector<Worst> positions(table.joints), speeds(table.joints);
+  Worst singular;
+  std::span<const double> before = table.start_rad;
+  for (std::size_t k = 0; k < table.segments.size(); ++k) {
+    const Segment& segment = table.segments[k];
+    for (int step = segment.first_step; step < segment.first_step + segment.steps; ++step) {
+      const std::span<const double> q = table.angles(step);
+      PathFault fault;
+      fault.point = k + 1;
+      fault.time_s = (step + 1) * period_s;
+      for (std::size_t i = 0; i < table.joints; ++i) {
+        const Joint& joint = robot.joints[i];
+        fault.joint = i;
+        fault.kind = PathFault::Kind::position;
+        fault.value = q[i];
+        const double beyond = calc_excess(joint, setup.has_closed_form(), fault.value);
+        fault.limit = fault.value > joint.upper ? joint.upper : joint.lower;
+        if (beyond > kRounding) {
+          positions[i].consider(fault, beyond);
+        }
+        fault.kind = PathFault::Kind::speed;
+        fault.value = std::abs(calc_displacement(joint.kind, before[i], q[i])) / period_s;
+        fault.limit = joint.speed_limit;
+        if (fault.value > (1 + kRounding) * joint.speed_limit) {
+          speeds[i].consider(fault, fault.value - joint.speed_limit);
+        }
+      }
+      if (step % kStepsBetween == 0 && !std::ranges::equal(before, q)) {
+        fault.kind = PathFault::Kind::singular;
+        fault.value = kinematics->calc_dexterity(q);
+        fault.limit = kSingularDexterity;
+        if (fault.value < kSingularDexterity &&
+            kSingularDexterity - fault.value > singular.excess) {
+          fault.joint = kinematics->find_idle_joint(q);
+          singular.consider(fault, kSingularDexterity - fault.value);
+        }
+      }
+      before = q;
+    }
+  }
+  std::vector<PathFault> faults;
+  for (std::size_t i = 0; i < table.joints; ++i) {
+    for (const Worst& worst : {positions[i], speeds[i]}) {
+      if (worst.fault) {
+        faults.push_back(*worst.fault);
+      }
+    }
+  }
+  if (singular.fault) {
+    faults.push_back(*singular.fault);
+  }
+  return faults;
+}
+
+std::string describe(const PathFault& fault, const RobotModel& robot) {
+  const Joint& joint = robot.joints[fault.joint];
+  const std::string unit = joint.kind == JointKind::revolute ? "rad" : "m";
+  const std::string name = fmt::format("joint {} ('{}')", fault.joint + 1, sanitize(joint.name));
+  const std::string where = fmt::format("on the way to point {}: ", fault.point);
+  switch (fault.kind) {
+    case PathFault::Kind::position:
+      return where + fmt::format(
+                         "{} would have to go to {:.4g} {} (at {:.2f} s), its range is "
+                         "{:.4g} to {:.4g} {}",
+                         name, fault.value, unit, fault.time_s, joint.lower, joint.upper, unit);
+    case PathFault::Kind::speed:
+      return where + fmt::format(
+                         "{} would have to move at {:.4g} {}/s (at {:.2f} s), its limit "
+                         "is {:.4g} {}/s",
+                         name, fault.value, unit, fault.time_s, fault.limit, unit);
+    case PathFault::Kind::singular:
+      break;
+  }
+  return where + fmt::format(
+                     "the arm comes close to a singularity (at {:.2f} s), in which {} "
+                     "hardly moves the tool: its least singular value is {:.2g} of the "
+                     "largest, allowed is {:.2g}",
+                     fault.time_s, name, fault.value, fault.limit);
+}
+
+std::string describe_unreachable(const NumericKinematics& kinematics, const RobotModel& robot,
+                                 const ToolTask& tool, const ToolPose& target,
+                                 std::span<const double> from) {
+  std::string text = fmt::format("target ({:.6g}, {:.6g}, {:.6g}) m", target.position_m.x(),
+                                 target.position_m.y(), target.position_m.z());
+  if (tool.orientation != ToolOrientation::free) {
+    const Eigen::Vector3d rpy = calc_rpy(target.turn);
+    text += fmt::format(" with the tool at roll, pitch, yaw ({:.4g}, {:.4g}, {:.4g}) rad", rpy.x(),
+                        rpy.y(), rpy.z());
+  }
+  text += " is out of reach";
+  std::vector<std::string> ends;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const Joint& joint = robot.joints[i];
+    constexpr double kAtTheEnd = 1e-3;
+    if (from[i] < joint.lower + kAtTheEnd || from[i] > joint.upper - kAtTheEnd) {
+      ends.push_back(fmt::format("joint {} ('{}')", i + 1, sanitize(joint.name)));
+    }
+  }
+  if (!ends.empty()) {
+    return fmt::format("{}: at the end of its range is {}", text, join(ends, ", "));
+  }
+  if (kinematics.calc_dexterity(from) < 5 * kSingularDexterity) {
+    text += ", the arm being stretched out or otherwise singular there";
+  }
+  return text;
+}
+
+}  // namespace armwright

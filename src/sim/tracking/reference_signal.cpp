@@ -1,0 +1,72 @@
+#include "sim/tracking/reference_signal.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+
+namespace armwright {
+namespace {
+
+void require_positive(std::string_view what, double value, std::string_view unit) {
+  if (!(value > 0) || !std::isfinite(value)) {
+    throw Error(ErrorKind::usage,
+                fmt::format("reference signal: {} is {} {}; it must be finite and > 0", what,
+                            format_exact(value), unit));
+  }
+}
+
+}  // namespace
+
+const std::vector<std::string>& signal_names() {
+  static const std::vector<std::string> names = {"step", "ramp", "trapezoid", "triangular",
+                                                 "complex"};
+  return names;
+}
+
+SignalShape find_signal(const std::string& name) {
+  const auto& names = signal_names();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) {
+    throw Error(ErrorKind::usage, describe_unknown("reference signal", name, names));
+  }
+  return static_cast<SignalShape>(found - names.begin());
+}
+
+ReferenceSignal::ReferenceSignal(SignalShape shape, double distance_m, double speed_m_per_s,
+                                 double acceleration_m_per_s2) {
+  curve_.shape = shape;
+  curve_.distance_m = distance_m;
+  curve_.speed_m_per_s = speed_m_per_s;
+  curve_.duration_s = distance_m / speed_m_per_s;
+  require_positive("the distance", distance_m, "m");
+  require_positive("the speed", speed_m_per_s, "m/s");
+  require_positive("the duration (distance / speed)", curve_.duration_s, "s");
+  if (curve_.shape == SignalShape::trapezoid) {
+    require_positive("the acceleration", acceleration_m_per_s2, "m/s^2");
+    // The plateau ds = a t_a (t_m - t_a) solved for t_a, in the form that does not cancel where a
+    // is large.
+    const double rest_s2 =
+        curve_.duration_s * curve_.duration_s - 4 * distance_m / acceleration_m_per_s2;
+    if (rest_s2 >= 0) {
+      curve_.acceleration_m_per_s2 = acceleration_m_per_s2;
+      curve_.ramp_up_s =
+          2 * distance_m / acceleration_m_per_s2 / (curve_.duration_s + std::sqrt(rest_s2));
+    } else {
+      curve_.shape = SignalShape::triangular;
+    }
+  }
+  if (curve_.shape == SignalShape::triangular) {
+    curve_.acceleration_m_per_s2 = 4 * speed_m_per_s / curve_.duration_s;
+  }
+}
+
+double ReferenceSignal::calc_distance(double t_s) const {
+  return targets::calc_distance(curve_, t_s);
+}
+
+}  // namespace armwright

@@ -1,0 +1,37 @@
+// How the target moves from one trajectory point to the next: the distance s(t) covered after t
+// seconds (thesis section 5.2.3). All reach the distance ds at t_m = ds / v, v the average speed,
+// and stay there.
+//   step        s = ds
+//   ramp        s = v t
+//   trapezoid   constant acceleration a, plateau, deceleration; triangular where a is too small
+//   triangular  accelerates half of the time, decelerates the other half
+//   complex     speed rises linearly to 2.5 v at 0.4 t_m, then decays quadratically:
+//               s = 25 v^2 t^2 / (8 ds) before, s = ds - 125 (ds - v t)^3 / (54 ds^2) after
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/kinematics/targets.hpp"
+
+namespace armwright {
+
+const std::vector<std::string>& signal_names();    // in the order of the enum
+SignalShape find_signal(const std::string& name);  // the name must be one of signal_names()
+
+class ReferenceSignal {
+ public:
+  // distance_m > 0, speed_m_per_s > 0; the acceleration matters to the trapezoid only.
+  ReferenceSignal(SignalShape shape, double distance_m, double speed_m_per_s,
+                  double acceleration_m_per_s2);
+
+  double duration_s() const { return curve_.duration_s; }  // t_m
+  double calc_distance(double t_s) const;                  // s(t) in m, for t >= 0
+  const targets::SignalCurve& curve() const { return curve_; }
+
+ private:
+  targets::SignalCurve curve_;
+};
+
+}  // namespace armwright

@@ -1,0 +1,179 @@
+// analyze_overall() and analyze_study(): what holds over problems.
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "study/analysis/study_result.hpp"
+#include "study/analysis/study_values.hpp"
+#include "study/statistics/profiles.hpp"
+#include "study/statistics/values.hpp"
+
+namespace armwright {
+namespace {
+
+std::vector<double> make_grid(double first, double last, int steps) {
+  std::vector<double> grid;
+  for (int i = 0; i <= steps; ++i) {
+    grid.push_back(first * std::pow(last / first, static_cast<double>(i) / steps));
+  }
+  return grid;
+}
+
+double calc_share_left(const ProblemResult& problem, double median) {
+  if (problem.has_front || !std::isfinite(median)) {
+    return median;  // a share already; or nothing found, nothing done
+  }
+  const double way = problem.start - problem.best_known;
+  return way > 0 ? (median - problem.best_known) / way : 0;
+}
+
+// What it cost every optimizer to converge on every (problem, replicate), in evaluations.
+struct Costs {
+  std::vector<std::vector<double>> table;
+  std::vector<int> dimensions;
+};
+
+Costs calc_costs(const StudyPlan& plan, std::span<const CellOutcome> cells, double tolerance) {
+  Costs costs;
+  const auto optimizers = plan.optimizers.size();
+  const auto replicates = static_cast<std::size_t>(plan.replicates);
+  for (std::size_t p = 0; p < plan.problems.size(); ++p) {
+    const StudyProblem& problem = plan.problems[p];
+    for (std::size_t r = 0; r < replicates; ++r) {
+      const auto get_cell = [&](std::size_t o) -> const CellOutcome& {
+        return cells[(p * optimizers + o) * replicates + r];
+      };
+      double best = kInfinity;
+      double start = kInfinity;
+      for (std::size_t o = 0; o < optimizers; ++o) {
+        start = std::min(start, get_cell(o).start_value);  // one and the same, but where missing
+        for (const CurvePoint& point : get_cell(o).curve) {
+          best = std::min(best, point.value);
+        }
+      }
+      const double target = calc_convergence_target(start, best, tolerance);
+      std::vector<double> row;
+      for (std::size_t o = 0; o < optimizers; ++o) {
+        const double cases = calc_cost_to_target(make_trace(get_cell(o)), target);
+        row.push_back(cases / problem.schedule.cases);
+      }
+      costs.table.push_back(std::move(row));
+      costs.dimensions.push_back(
+          static_cast<int>(problem.loaded.problem->description().variables.size()));
+    }
+  }
+  return costs;
+}
+
+// A cell that has not ended: as if its optimizer had found nothing.
+CellOutcome make_missing(const StudyPlan& plan, const Cell& cell) {
+  CellOutcome outcome;
+  outcome.problem = plan.problems[cell.problem].label;
+  outcome.optimizer = plan.optimizers[cell.optimizer].label;
+  outcome.optimizer_name = plan.optimizers[cell.optimizer].row.name;
+  outcome.replicate = cell.replicate;
+  outcome.end_reason = "not ended";
+  outcome.value = outcome.validation_value = outcome.start_value = kInfinity;
+  for (const std::int64_t budget : list_checkpoints(plan, cell.problem)) {
+    outcome.curve.push_back({budget, kInfinity, std::nullopt});
+  }
+  return outcome;
+}
+
+}  // namespace
+
+OverallResult analyze_overall(const StudyPlan& plan, std::span<const ProblemResult> problems,
+                              std::span<const CellOutcome> cells) {
+  OverallResult overall;
+  std::vector<std::vector<double>> medians;  // a row a problem
+  std::vector<std::vector<double>> by_optimizer(plan.optimizers.size());
+  for (const ProblemResult& problem : problems) {
+    auto& row = medians.emplace_back();
+    for (std::size_t o = 0; o < problem.optimizers.size(); ++o) {
+      row.push_back(problem.optimizers[o].spread.median);
+      by_optimizer[o].push_back(calc_share_left(problem, row.back()));
+    }
+  }
+  overall.ranking = calc_ranking_stability(medians);
+  if (medians.size() > 1 && plan.optimizers.size() > 1) {
+    overall.friedman = calc_friedman_test(medians);
+  }
+  if (medians.size() > 1) {
+    overall.pairs = compare_pairs(by_optimizer);
+  }
+  constexpr double kMostTimes = 100;
+  constexpr int kSteps = 40;
+  overall.alphas = make_grid(1, kMostTimes, kSteps);
+  double most = 1;
+  double least = kInfinity;
+  for (const StudyProblem& problem : plan.problems) {
+    const auto n = static_cast<double>(problem.loaded.problem->description().variables.size());
+    most = std::max(most, static_cast<double>(plan.budget / problem.schedule.cases) / (n + 1));
+    least = std::min(least, 1 / (n + 1));
+  }
+  overall.kappas = make_grid(least, most, kSteps);
+  for (const double tolerance : kProfileTolerances) {
+    const Costs costs = calc_costs(plan, cells, tolerance);
+    overall.data_profiles.push_back(
+        {tolerance, calc_data_profiles(costs.table, costs.dimensions, overall.kappas)});
+    overall.performance_profiles.push_back(
+        {tolerance, calc_performance_profiles(costs.table, overall.alphas)});
+  }
+  return overall;
+}
+
+namespace {
+
+// Over the problems that have all their cells.
+OverallResult analyze_complete(const StudyPlan& plan, const StudyResult& result) {
+  StudyPlan complete = plan;
+  complete.problems.clear();
+  std::vector<ProblemResult> problems;
+  std::vector<CellOutcome> cells;
+  for (std::size_t p = 0; p < plan.problems.size(); ++p) {
+    if (std::ranges::find(result.missing, p, &Cell::problem) != result.missing.end()) {
+      continue;
+    }
+    complete.problems.push_back(plan.problems[p]);
+    problems.push_back(result.problems[p]);
+    std::ranges::copy_if(result.cells, std::back_inserter(cells), [&](const CellOutcome& cell) {
+      return cell.problem == plan.problems[p].label;
+    });
+  }
+  return problems.empty() ? OverallResult{} : analyze_overall(complete, problems, cells);
+}
+
+}  // namespace
+
+StudyResult analyze_study(const StudyPlan& plan, const std::filesystem::path& study,
+                          MissingCells missing) {
+  StudyResult result;
+  result.missing_left_out = missing == MissingCells::left_out;
+  for (std::size_t p = 0; p < plan.problems.size(); ++p) {
+    const std::size_t first = result.cells.size();
+    for (std::size_t o = 0; o < plan.optimizers.size(); ++o) {
+      for (int r = 1; r <= plan.replicates; ++r) {
+        const Cell cell{p, o, r};
+        auto outcome = load_cell(plan, cell, study);
+        if (!outcome) {
+          result.missing.push_back(cell);
+          if (result.missing_left_out) {
+            continue;
+          }
+          outcome = make_missing(plan, cell);
+        }
+        if (plan.value == StudyValue::failures) {
+          outcome = count_failures_only(std::move(*outcome), plan.problems[p].loaded.sets);
+        }
+        result.cells.push_back(std::move(*outcome));
+      }
+    }
+    result.problems.push_back(
+        analyze_problem(plan, p, std::span<const CellOutcome>(result.cells).subspan(first)));
+  }
+  result.overall = result.missing_left_out ? analyze_complete(plan, result)
+                                           : analyze_overall(plan, result.problems, result.cells);
+  return result;
+}
+
+}  // namespace armwright

@@ -1,0 +1,272 @@
+// analyze_problem(): one problem's statistics.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+#include "study/analysis/study_result.hpp"
+#include "study/analysis/study_values.hpp"
+#include "study/statistics/holm.hpp"
+#include "study/statistics/pareto.hpp"
+#include "study/statistics/profiles.hpp"
+#include "study/statistics/values.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr int kEcdfTargets = 31;
+constexpr double kEcdfDecades = 3;
+
+// Where the hypervolume is measured from: a tenth of its extent beyond the front of all runs
+// together. It depends on who takes part, as best known values do.
+std::vector<double> calc_reference_point(std::span<const CellOutcome> cells, std::size_t objectives,
+                                         std::vector<double>& ideal) {
+  std::vector<std::vector<double>> all;
+  for (const CellOutcome& cell : cells) {
+    all.insert(all.end(), cell.front.begin(), cell.front.end());
+  }
+  ideal.assign(objectives, 0);
+  std::vector<double> reference(objectives, 1);
+  const auto front = find_non_dominated(all);
+  for (std::size_t k = 0; k < objectives && !front.empty(); ++k) {
+    const auto by_objective = [&](std::size_t a, std::size_t b) { return all[a][k] < all[b][k]; };
+    const auto [least, most] = std::ranges::minmax_element(front, by_objective);
+    const double lower = all[*least][k];
+    const double upper = all[*most][k];
+    const double extent = upper > lower ? upper - lower : upper != 0 ? std::abs(upper) : 1;
+    ideal[k] = lower;
+    reference[k] = upper + 0.1 * extent;
+  }
+  return reference;
+}
+
+// The share of the box between ideal and reference point that the front leaves undominated.
+double calc_missed_volume(const CellOutcome& cell, std::span<const double> ideal,
+                          std::span<const double> reference) {
+  double box = 1;
+  for (std::size_t k = 0; k < ideal.size(); ++k) {
+    box *= reference[k] - ideal[k];
+  }
+  return 1 - calc_hypervolume(cell.front, reference) / box;
+}
+
+// Values between the best known and the start, on a logarithmic scale of what is left of the way.
+std::vector<double> make_targets(double best, double start) {
+  std::vector<double> targets;
+  if (!std::isfinite(best) || !std::isfinite(start)) {
+    return targets;
+  }
+  for (int i = 0; i < kEcdfTargets; ++i) {
+    const double share = std::pow(10, -kEcdfDecades * i / (kEcdfTargets - 1));
+    targets.push_back(calc_convergence_target(start, best, share));
+  }
+  return targets;
+}
+
+void set_best_and_start(std::span<const CellOutcome> cells, ProblemResult& result) {
+  result.best_known = kInfinity;
+  double worst = -kInfinity;
+  std::vector<double> starts;
+  const auto meet = [&](double value) {
+    result.best_known = std::min(result.best_known, value);
+    worst = std::isfinite(value) ? std::max(worst, value) : worst;
+  };
+  for (const CellOutcome& cell : cells) {
+    starts.push_back(cell.start_value);
+    meet(result.has_front ? kInfinity : cell.value);
+    for (const CurvePoint& point : cell.curve) {
+      meet(point.value);
+    }
+  }
+  result.start = starts.empty() ? kInfinity : calc_spread(starts).median;
+  if (!std::isfinite(result.start) && std::isfinite(worst)) {
+    result.start = worst;  // nothing else tells how far the way was
+  }
+}
+
+void add_running_times(const StudyPlan& plan, const ProblemResult& problem,
+                       std::span<const CellOutcome* const> runs, const std::string& stream,
+                       OptimizerResult& result) {
+  std::vector<double> times;  // a pair of run and target each
+  for (const CellOutcome* run : runs) {
+    for (const double target : problem.targets) {
+      times.push_back(calc_cost_to_target(make_trace(*run), target));
+    }
+  }
+  const auto costs = std::vector<double>(problem.checkpoints.begin(), problem.checkpoints.end());
+  const bool has_range = costs.size() > 1;
+  if (!times.empty() && has_range) {
+    result.ecdf = calc_runtime_ecdf(times, costs);
+    result.anytime_area = calc_anytime_area(times, costs.front(), costs.back());
+  } else {
+    result.ecdf.assign(costs.size(), 0);
+  }
+  for (const double share : kRunningTimeTargets) {
+    RunningTime time;
+    time.expected = kInfinity;
+    time.interval = {kInfinity, kInfinity};
+    time.target = calc_convergence_target(problem.start, problem.best_known, share);
+    std::vector<Trial> trials;
+    for (const CellOutcome* run : runs) {
+      const double cost = calc_cost_to_target(make_trace(*run), time.target);
+      const bool reached = std::isfinite(cost);
+      // One that ended early has spent no more than that, whether it had reached the target or not.
+      const double spent =
+          run->cases > 0 ? static_cast<double>(run->cases) : static_cast<double>(plan.budget);
+      trials.push_back({std::min(cost, spent), reached});
+      time.reached += reached ? 1 : 0;
+    }
+    if (time.reached > 0) {
+      time.expected = calc_expected_running_time(trials);
+      time.interval = calc_expected_running_time_interval(
+          trials, kIntervalLevel, kResamples, fmt::format("{}/running time {}", stream, share));
+    }
+    result.running_times.push_back(time);
+  }
+}
+
+void add_curve(const ProblemResult& problem, std::span<const CellOutcome* const> runs,
+               OptimizerResult& result) {
+  for (const std::int64_t budget : problem.checkpoints) {
+    std::vector<double> values;
+    for (const CellOutcome* run : runs) {
+      const auto point = std::ranges::find(run->curve, budget, &CurvePoint::budget);
+      values.push_back(point == run->curve.end() ? kInfinity : point->value);
+    }
+    result.curve.push_back(values.empty() ? Spread{kInfinity, kInfinity, kInfinity}
+                                          : calc_spread(values));
+  }
+}
+
+// Ranks, tests and pairs, over replicates.
+void compare_optimizers(std::span<const std::vector<double>> values, ProblemResult& result) {
+  std::vector<std::vector<double>> blocks(values.front().size());
+  for (std::size_t r = 0; r < blocks.size(); ++r) {
+    for (const auto& its_values : values) {
+      blocks[r].push_back(its_values[r]);
+    }
+  }
+  const Ranking ranking = calc_ranking(blocks);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    result.optimizers[i].mean_rank = ranking.mean_ranks[i];
+  }
+  if (blocks.size() > 1 && values.size() > 1) {
+    result.friedman = calc_friedman_test(blocks);
+  }
+  result.pairs = compare_pairs(values);
+}
+
+}  // namespace
+
+std::vector<TracePoint> make_trace(const CellOutcome& cell) {
+  std::vector<TracePoint> trace;
+  double worst = -kInfinity;
+  for (auto point = cell.curve.rbegin(); point != cell.curve.rend(); ++point) {
+    worst = std::max(worst, point->value);
+    trace.push_back({static_cast<double>(point->budget), worst});
+  }
+  std::ranges::reverse(trace);
+  return trace;
+}
+
+std::vector<PairResult> compare_pairs(std::span<const std::vector<double>> values) {
+  std::vector<PairResult> pairs;
+  std::vector<double> p_values;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    for (std::size_t j = i + 1; j < values.size(); ++j) {
+      PairResult pair{.a = i, .b = j, .test = {}, .wins = {}};
+      const double a12 = calc_a12(values[i], values[j]);
+      const double median_i = calc_spread(values[i]).median;
+      const double median_j = calc_spread(values[j]).median;
+      if (median_j < median_i || (median_j == median_i && a12 < 0.5)) {
+        std::swap(pair.a, pair.b);
+      }
+      pair.a12 = calc_a12(values[pair.a], values[pair.b]);
+      pair.test = calc_signed_rank_test(values[pair.a], values[pair.b]);
+      pair.wins = count_wins(values[pair.a], values[pair.b]);
+      p_values.push_back(pair.test.p_value);
+      pairs.push_back(pair);
+    }
+  }
+  const auto adjusted = adjust_holm(p_values);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    pairs[i].p_holm = adjusted[i];
+  }
+  return pairs;
+}
+
+ProblemResult analyze_problem(const StudyPlan& plan, std::size_t number,
+                              std::span<const CellOutcome> cells) {
+  const StudyProblem& problem = plan.problems[number];
+  const ProblemDescription& description = problem.loaded.problem->description();
+  ProblemResult result;
+  result.label = problem.label;
+  result.has_front = description.objectives.size() > 1;
+  if (plan.value == StudyValue::failures) {
+    result.quantity = {"share of failed test cases", "1"};
+  } else {
+    result.quantity = result.has_front ? Quantity{"missed hypervolume", "1"}
+                                       : get_scalar_quantity(description.objectives);
+  }
+  result.checkpoints = list_checkpoints(plan, number);
+  set_best_and_start(cells, result);
+  result.targets = make_targets(result.best_known, result.start);
+  std::vector<double> ideal;
+  if (result.has_front) {
+    result.reference_point = calc_reference_point(cells, description.objectives.size(), ideal);
+  }
+  std::vector<std::vector<double>> values;
+  std::vector<std::vector<const CellOutcome*>> all_runs;
+  for (std::size_t i = 0; i < plan.optimizers.size(); ++i) {
+    const std::string& label = plan.optimizers[i].label;
+    const std::string stream = fmt::format("analysis/{}/{}", problem.label, label);
+    std::vector<const CellOutcome*> runs;
+    OptimizerResult one;
+    std::vector<double> cases;
+    for (const CellOutcome& cell : cells) {
+      if (cell.optimizer != label) {
+        continue;
+      }
+      runs.push_back(&cell);
+      const double value =
+          result.has_front ? calc_missed_volume(cell, ideal, result.reference_point) : cell.value;
+      one.values.push_back(value);
+      one.infinite += std::isfinite(value) ? 0 : 1;
+      one.infeasible += cell.violation > plan.constraint_tolerance ? 1 : 0;
+      one.failed += cell.failure.empty() ? 0 : 1;
+      cases.push_back(static_cast<double>(cell.cases));
+    }
+    if (runs.empty()) {
+      one.spread = {kInfinity, kInfinity, kInfinity};
+      one.median_interval = {kInfinity, kInfinity};
+    } else {
+      one.spread = calc_spread(one.values);
+      one.median_interval =
+          calc_median_interval(one.values, kIntervalLevel, kResamples, stream + "/median");
+      one.cases = calc_spread(cases).median;
+    }
+    add_running_times(plan, result, runs, stream, one);
+    add_curve(result, runs, one);
+    values.push_back(one.values);
+    all_runs.push_back(std::move(runs));
+    result.optimizers.push_back(std::move(one));
+  }
+  const bool complete = cells.size() == values.size() * static_cast<std::size_t>(plan.replicates);
+  if (complete) {
+    compare_optimizers(values, result);
+  }
+  add_targets(plan, all_runs, complete, result);
+  if (problem.loaded.tracking) {
+    add_failures(all_runs, complete, result);
+  }
+  result.order.resize(values.size());
+  std::iota(result.order.begin(), result.order.end(), std::size_t{0});
+  std::ranges::stable_sort(result.order, {}, [&](std::size_t i) {
+    return std::tuple(result.optimizers[i].spread.median, result.optimizers[i].mean_rank);
+  });
+  return result;
+}
+
+}  // namespace armwright

@@ -1,0 +1,309 @@
+#include "study/journal/journal.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <condition_variable>
+#include <cstring>
+#include <mutex>
+#include <stdexcept>
+#include <string_view>
+#include <system_error>
+#include <thread>
+
+#include "base/error.hpp"
+#include "base/file.hpp"
+#include "base/file_descriptor.hpp"
+#include "study/journal/journal_file.hpp"
+#include "study/journal/journal_format.hpp"
+#include "study/journal/journal_reader.hpp"
+
+namespace armwright {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Half of what is promised (10 ms), so that a late wake-up does not break the promise.
+constexpr auto kWriteInterval = std::chrono::milliseconds(5);
+constexpr auto kSyncInterval = std::chrono::seconds(1);
+// Fits a core's L2 cache; larger writes gain nothing.
+constexpr std::size_t kBufferBytes = std::size_t{256} << 10;
+
+// For reading what is there while more is appended.
+FileDescriptor duplicate(const FileDescriptor& fd, const std::filesystem::path& file) {
+  FileDescriptor copy(::fcntl(fd.get(), F_DUPFD_CLOEXEC, 0));
+  if (!copy.is_open()) {
+    fail_io(file, "open it a second time", errno);
+  }
+  return copy;
+}
+
+}  // namespace
+
+// Two threads, both asleep unless there is something to do: one writes what append() left in the
+// buffer, the other syncs. A sync can take long on a slow disk, and records must reach the
+// operating system meanwhile.
+class Journal::Writer {
+ public:
+  Writer(const std::filesystem::path& file, JournalContent& content)
+      : file_(file),
+        fd_(::open(file.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC | O_NONBLOCK, 0644)) {
+    if (!fd_.is_open()) {
+      fail_io(file_, "open it for appending", errno);
+    }
+    JournalScan scan = scan_journal(duplicate(fd_, file_), file_);
+    if (scan.content.torn_bytes != 0) {
+      cut_torn_end(fd_.get(), scan.good_bytes, file_);
+      unsynced_ = true;
+    }
+    good_bytes_ = scan.good_bytes;
+    ended_ = scan.content.ended;
+    if (good_bytes_ == 0) {
+      begin_file();
+    }
+    start_threads();
+    content = std::move(scan.content);
+  }
+
+  ~Writer() { stop_threads(); }
+
+  void append(const EvaluationRecord& record) {
+    const std::string bytes = encode(record);  // by each thread for itself, before it waits
+    const std::lock_guard lock(mutex_);
+    add(bytes);
+  }
+
+  void append(const EndRecord& record) {
+    const std::string bytes = encode(record);
+    const std::lock_guard lock(mutex_);
+    add(bytes);
+    ended_ = true;
+  }
+
+  void flush() {
+    const std::lock_guard lock(mutex_);
+    write_buffer();
+    throw_if_failed();
+  }
+
+  void close() {
+    stop_threads();
+    const std::lock_guard lock(mutex_);
+    if (!fd_.is_open()) {
+      return;
+    }
+    write_buffer();
+    if (error_.empty() && unsynced_) {
+      remember_error("sync it to the disk", sync_data(fd_.get()));
+    }
+    if (fd_.close() != 0) {
+      remember_error("close it", errno);
+    }
+    throw_if_failed();
+  }
+
+ private:
+  template <class Record>
+  std::string encode(const Record& record) const {
+    try {
+      std::string bytes;
+      journal_format::encode(record, bytes);
+      return bytes;
+    } catch (const Error& error) {
+      throw Error(error.kind(), fmt::format("{}: {}", file_.string(), error.what()));
+    }
+  }
+
+  void begin_file() {
+    const WriteResult result = write_fully(fd_.get(), journal_format::kMagic);
+    if (result.error != 0) {
+      fail_io(file_, "write it", result.error);
+    }
+    good_bytes_ = journal_format::kMagic.size();
+    unsynced_ = true;
+    sync_folder_of(file_);
+  }
+
+  // A system that grants no more threads gets a journal that writes every record at once instead;
+  // see add().
+  void start_threads() {
+    try {
+      write_thread_ = std::thread([this] { write_loop(); });
+      sync_thread_ = std::thread([this] { sync_loop(); });
+    } catch (const std::system_error&) {
+      // has_threads_ stays false
+    }
+    const std::lock_guard lock(mutex_);
+    has_threads_ = write_thread_.joinable() && sync_thread_.joinable();
+  }
+
+  void stop_threads() {
+    {
+      const std::lock_guard lock(mutex_);
+      stopping_ = true;
+    }
+    write_wanted_.notify_all();
+    sync_wanted_.notify_all();
+    for (std::thread* const thread : {&write_thread_, &sync_thread_}) {
+      if (thread->joinable()) {
+        thread->join();
+      }
+    }
+  }
+
+  // Everything below is called with mutex_ held.
+
+  void add(std::string_view record) {
+    throw_if_failed();
+    if (!fd_.is_open()) {
+      throw std::logic_error("append to a closed journal");
+    }
+    if (ended_) {
+      throw std::logic_error("append to a journal whose run has ended");
+    }
+    buffer_ += record;
+    const auto now = Clock::now();
+    if (!has_threads_ || now - last_write_ >= kWriteInterval || buffer_.size() > kBufferBytes) {
+      write_buffer(now);
+      if (!has_threads_ && unsynced_ && now - last_sync_ >= kSyncInterval) {
+        last_sync_ = now;
+        unsynced_ = false;
+        remember_error("sync it to the disk", sync_data(fd_.get()));
+      }
+      throw_if_failed();
+    } else if (writer_idle_) {
+      writer_idle_ = false;
+      write_wanted_.notify_one();
+    }
+  }
+
+  void write_buffer(Clock::time_point now = Clock::now()) {
+    if (!error_.empty()) {
+      buffer_.clear();  // never to be written; left there, it would keep the writing thread busy
+    }
+    if (buffer_.empty()) {
+      return;
+    }
+    last_write_ = now;
+    const WriteResult result = write_fully(fd_.get(), buffer_);
+    if (result.error != 0) {
+      good_bytes_ += journal_format::count_whole_record_bytes(
+          std::string_view(buffer_).substr(0, result.written));
+      // Should this fail as well, the next opening finds a torn end and cuts it off.
+      [[maybe_unused]] const int cut = ::ftruncate(fd_.get(), static_cast<off_t>(good_bytes_));
+      remember_error("write it", result.error);
+    } else {
+      good_bytes_ += buffer_.size();
+      if (is_deleted(fd_.get())) {
+        error_ = fmt::format("{}: was deleted while the run was writing it", file_.string());
+      }
+    }
+    buffer_.clear();
+    if (!unsynced_) {
+      unsynced_ = true;
+      sync_wanted_.notify_one();
+    }
+  }
+
+  // Sticky: a record that failed may not be followed by others.
+  void remember_error(std::string_view doing, int error) {
+    if (error != 0 && error_.empty()) {
+      error_ = fmt::format(
+          "{}: cannot {}: {}; once this is put right, the same command resumes the "
+          "run from the records that are intact",
+          file_.string(), doing, std::strerror(error));
+    }
+  }
+
+  void throw_if_failed() const {
+    if (!error_.empty()) {
+      throw Error(ErrorKind::io, error_);
+    }
+  }
+
+  // The loops of the two threads.
+
+  void write_loop() {
+    std::unique_lock lock(mutex_);
+    while (!stopping_) {
+      if (buffer_.empty()) {
+        writer_idle_ = true;
+        write_wanted_.wait(lock, [this] { return stopping_ || !buffer_.empty(); });
+        writer_idle_ = false;
+        continue;
+      }
+      // add() writes by itself when the last write is that long ago, so no record in the buffer
+      // waits longer than this.
+      const auto due = last_write_ + kWriteInterval;
+      if (Clock::now() >= due) {
+        write_buffer();
+      } else {
+        write_wanted_.wait_until(lock, due, [this] { return stopping_; });
+      }
+    }
+  }
+
+  void sync_loop() {
+    std::unique_lock lock(mutex_);
+    while (true) {
+      sync_wanted_.wait(lock, [this] { return stopping_ || unsynced_; });
+      sync_wanted_.wait_until(lock, last_sync_ + kSyncInterval, [this] { return stopping_; });
+      if (stopping_) {
+        return;  // close() syncs
+      }
+      unsynced_ = false;
+      last_sync_ = Clock::now();
+      lock.unlock();
+      const int error = sync_data(fd_.get());
+      lock.lock();
+      remember_error("sync it to the disk", error);
+    }
+  }
+
+  const std::filesystem::path file_;
+  FileDescriptor fd_;
+  std::mutex mutex_;  // guards all that follows
+  std::condition_variable write_wanted_;
+  std::condition_variable sync_wanted_;
+  std::string buffer_;            // whole records
+  std::uint64_t good_bytes_ = 0;  // of the file: the magic and whole records
+  std::string error_;             // the first one, empty if there is none
+  bool ended_ = false;
+  bool unsynced_ = false;
+  bool writer_idle_ = false;
+  bool has_threads_ = false;
+  bool stopping_ = false;
+  Clock::time_point last_write_ = Clock::now();
+  Clock::time_point last_sync_ = Clock::now();
+  std::thread write_thread_;
+  std::thread sync_thread_;
+};
+
+Journal::Journal(const std::filesystem::path& file, JournalContent& content)
+    : writer_(std::make_unique<Writer>(file, content)) {}
+
+Journal::~Journal() {
+  try {
+    close();
+  } catch (const std::exception&) {
+    // As documented: who wants to know calls close().
+  }
+}
+
+void Journal::append(const EvaluationRecord& record) {
+  writer_->append(record);
+}
+void Journal::append(const EndRecord& record) {
+  writer_->append(record);
+}
+void Journal::flush() {
+  writer_->flush();
+}
+void Journal::close() {
+  writer_->close();
+}
+
+}  // namespace armwright

@@ -1,0 +1,277 @@
+#include "study/journal/journal_format.hpp"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cstring>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/hash.hpp"
+
+namespace armwright::journal_format {
+namespace {
+
+static_assert(std::endian::native == std::endian::little,
+              "the journal's numbers are copied as they lie in memory");
+static_assert(sizeof(double) == 8 && sizeof(std::uint64_t) == 8);
+
+constexpr std::uint8_t kEvaluationType = 1;
+constexpr std::uint8_t kEndType = 2;
+constexpr std::uint8_t kJacobianType = 3;
+constexpr unsigned kStatuses = 1 + static_cast<unsigned>(EvaluationStatus::abandoned);
+
+// The fields are listed once, in visit_fields, and four visitors measure, write, read and check
+// them.
+
+template <class Fields, class Record>
+void visit_evaluation(Fields& fields, Record& record) {
+  auto& evaluation = record.evaluation;
+  fields.choice(record.clipped, 2);
+  fields.choice(record.cases.role, 3);
+  fields.choice(evaluation.status, kStatuses);
+  fields.number(evaluation.failed_cases);
+  fields.number(record.index);
+  fields.number(record.generation);
+  fields.list(record.cases.set);
+  fields.list(record.cases.numbers);
+  fields.list(record.x);
+  fields.list(evaluation.reason);
+  fields.list(evaluation.objectives);
+  fields.list(evaluation.constraint_values);
+  fields.list(evaluation.case_errors);
+  fields.list(evaluation.metrics);
+  fields.list(evaluation.residuals);
+  if (record.with_jacobian) {
+    fields.list(evaluation.jacobian);
+  }
+}
+
+template <class Fields, class Record>
+void visit_fields(Fields& fields, Record& record) {
+  if constexpr (std::is_same_v<std::remove_const_t<Record>, EndRecord>) {
+    fields.number(record.evaluations);
+    fields.list(record.reason);
+  } else {
+    visit_evaluation(fields, record);
+  }
+}
+
+struct Measure {
+  std::size_t bytes = 1;  // the type
+
+  template <class T>
+  void choice(const T&, unsigned) {
+    bytes += 1;
+  }
+  template <class T>
+  void number(const T& value) {
+    bytes += sizeof value;
+  }
+  template <class List>
+  void list(const List& values) {
+    bytes += 4 + values.size() * sizeof(typename List::value_type);
+  }
+};
+
+struct Write {
+  char* at;
+
+  void raw(const void* bytes, std::size_t count) {
+    if (count != 0) {  // an empty list may have no address
+      std::memcpy(at, bytes, count);
+      at += count;
+    }
+  }
+  template <class T>
+  void choice(const T& value, unsigned) {
+    *at++ = static_cast<char>(value);
+  }
+  template <class T>
+  void number(const T& value) {
+    raw(&value, sizeof value);
+  }
+  template <class List>
+  void list(const List& values) {
+    number(static_cast<std::uint32_t>(values.size()));
+    raw(values.data(), values.size() * sizeof(typename List::value_type));
+  }
+};
+
+struct Read {
+  std::string_view rest;
+  bool good = true;
+
+  bool has(std::size_t bytes) {
+    good = good && bytes <= rest.size();
+    return good;
+  }
+  template <class T>
+  void choice(T& value, unsigned choices) {
+    if (has(1)) {
+      const auto byte = static_cast<std::uint8_t>(rest.front());
+      good = byte < choices;
+      value = static_cast<T>(good ? byte : 0);
+      rest.remove_prefix(1);
+    }
+  }
+  template <class T>
+  void number(T& value) {
+    if (has(sizeof value)) {
+      std::memcpy(&value, rest.data(), sizeof value);
+      rest.remove_prefix(sizeof value);
+    }
+  }
+  template <class List>
+  void list(List& values) {
+    std::uint32_t count = 0;
+    number(count);
+    const std::size_t bytes = std::size_t{count} * sizeof(typename List::value_type);
+    if (has(bytes) && bytes != 0) {
+      values.resize(count);
+      std::memcpy(values.data(), rest.data(), bytes);
+      rest.remove_prefix(bytes);
+    }
+  }
+};
+
+// As Read, without taking anything.
+struct Check {
+  Read read;
+
+  template <class T>
+  void choice(const T&, unsigned choices) {
+    T value;
+    read.choice(value, choices);
+  }
+  template <class T>
+  void number(const T&) {
+    T value;
+    read.number(value);
+  }
+  template <class List>
+  void list(const List&) {
+    std::uint32_t count = 0;
+    read.number(count);
+    const std::size_t bytes = std::size_t{count} * sizeof(typename List::value_type);
+    if (read.has(bytes)) {
+      read.rest.remove_prefix(bytes);
+    }
+  }
+};
+
+template <class Record>
+void encode_as(std::uint8_t type, const Record& record, std::string& buffer) {
+  Measure measure;
+  visit_fields(measure, record);
+  if (measure.bytes > kMaxPayloadBytes) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("a record of {} bytes is too large for the journal; at most {} bytes "
+                            "are allowed: evaluate each candidate on fewer cases",
+                            measure.bytes, kMaxPayloadBytes));
+  }
+  const std::size_t begin = buffer.size();
+  buffer.resize(begin + kFrameBytes + measure.bytes);
+  char* const payload = buffer.data() + begin + kFrameBytes;
+  Write write{payload};
+  write.number(type);
+  visit_fields(write, record);
+  Write frame{buffer.data() + begin};
+  frame.number(static_cast<std::uint32_t>(measure.bytes));
+  frame.number(calc_crc32({payload, measure.bytes}));
+}
+
+// `on_blank` gets a record of the payload's type, still empty.
+template <class OnBlank>
+auto with_blank_record(std::string_view payload, OnBlank on_blank)
+    -> decltype(on_blank(EvaluationRecord())) {
+  if (payload.empty()) {
+    return {};
+  }
+  switch (static_cast<std::uint8_t>(payload.front())) {
+    case kEvaluationType:
+      return on_blank(EvaluationRecord());
+    case kEndType:
+      return on_blank(EndRecord());
+    case kJacobianType: {
+      EvaluationRecord record;
+      record.with_jacobian = true;
+      return on_blank(std::move(record));
+    }
+    default:
+      return {};
+  }
+}
+
+}  // namespace
+
+void encode(const EvaluationRecord& record, std::string& buffer) {
+  encode_as(record.with_jacobian ? kJacobianType : kEvaluationType, record, buffer);
+}
+
+void encode(const EndRecord& record, std::string& buffer) {
+  encode_as(kEndType, record, buffer);
+}
+
+Frame decode_frame(std::string_view bytes) {
+  Read read{bytes};
+  Frame frame;
+  read.number(frame.payload_bytes);
+  read.number(frame.checksum);
+  return frame;
+}
+
+std::size_t count_whole_record_bytes(std::string_view records) {
+  std::size_t whole = 0;
+  while (records.size() - whole >= kFrameBytes) {
+    const Frame frame = decode_frame(records.substr(whole, kFrameBytes));
+    const std::size_t record_bytes = kFrameBytes + frame.payload_bytes;
+    if (record_bytes > records.size() - whole) {
+      break;
+    }
+    whole += record_bytes;
+  }
+  return whole;
+}
+
+bool could_begin_payload(std::string_view probe, std::uint32_t payload_bytes) {
+  Read read{probe};
+  std::uint8_t type = 0;
+  read.number(type);
+  if (type == kEvaluationType || type == kJacobianType) {
+    EvaluationRecord record;
+    read.choice(record.clipped, 2);
+    read.choice(record.cases.role, 3);
+    read.choice(record.evaluation.status, kStatuses);
+    return read.good;
+  }
+  std::uint64_t evaluations = 0;
+  std::uint32_t reason_bytes = 0;
+  read.number(evaluations);
+  read.number(reason_bytes);
+  return type == kEndType && read.good &&
+         kProbeBytes + std::uint64_t{reason_bytes} == payload_bytes;
+}
+
+bool is_payload(std::string_view bytes) {
+  return with_blank_record(bytes, [&](const auto& record) {
+    Check check{{bytes.substr(1)}};
+    visit_fields(check, record);
+    return check.read.good && check.read.rest.empty();
+  });
+}
+
+std::optional<Record> decode_payload(std::string_view payload) {
+  return with_blank_record(payload, [&](auto record) -> std::optional<Record> {
+    Read read{payload.substr(1)};
+    visit_fields(read, record);
+    if (!read.good || !read.rest.empty()) {
+      return std::nullopt;
+    }
+    return record;
+  });
+}
+
+}  // namespace armwright::journal_format

@@ -1,0 +1,177 @@
+#include "study/run/database.hpp"
+
+#include <fmt/format.h>
+#include <sqlite3.h>
+
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "base/error.hpp"
+#include "base/file.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr const char* kSchema = R"(
+  CREATE TABLE variable(position INTEGER PRIMARY KEY, name TEXT, unit TEXT, lower REAL, upper REAL, start REAL);
+  CREATE TABLE metric(position INTEGER PRIMARY KEY, name TEXT, unit TEXT);
+  CREATE TABLE evaluation(role TEXT, number INTEGER, generation INTEGER, status TEXT, reason TEXT, clipped INTEGER,
+                          set_name TEXT, first_case INTEGER, cases INTEGER, objective REAL, x TEXT, metrics TEXT,
+                          PRIMARY KEY(role, number));
+  CREATE TABLE case_error(role TEXT, number INTEGER, case_number INTEGER, error REAL,
+                          PRIMARY KEY(role, number, case_number)) WITHOUT ROWID;
+)";
+
+class Database {
+ public:
+  explicit Database(const std::filesystem::path& file) : file_(file) {
+    sqlite3* handle = nullptr;
+    const int code = sqlite3_open(file.c_str(), &handle);
+    handle_.reset(handle);
+    check(code);
+  }
+
+  void execute(const char* sql) {
+    check(sqlite3_exec(handle_.get(), sql, nullptr, nullptr, nullptr));
+  }
+
+  void check(int code) const {
+    if (code != SQLITE_OK && code != SQLITE_DONE && code != SQLITE_ROW) {
+      // Of other failures it is one of something that SQLite tried before.
+      const bool has_reason = (code & 0xff) == SQLITE_IOERR || (code & 0xff) == SQLITE_FULL;
+      const int reason = has_reason ? sqlite3_system_errno(handle_.get()) : 0;
+      throw Error(ErrorKind::io,
+                  fmt::format("{}: cannot write it: {}", file_.string(),
+                              reason != 0 ? std::strerror(reason) : sqlite3_errmsg(handle_.get())));
+    }
+  }
+
+  void close() { check(sqlite3_close(handle_.release())); }
+  sqlite3* get() const { return handle_.get(); }
+
+ private:
+  struct Closer {
+    void operator()(sqlite3* handle) const { sqlite3_close(handle); }
+  };
+  std::filesystem::path file_;
+  std::unique_ptr<sqlite3, Closer> handle_;
+};
+
+// One prepared INSERT, filled column by column.
+class Insert {
+ public:
+  Insert(Database& database, const char* sql) : database_(database) {
+    sqlite3_stmt* statement = nullptr;
+    database.check(sqlite3_prepare_v2(database.get(), sql, -1, &statement, nullptr));
+    statement_.reset(statement);
+  }
+
+  Insert& operator<<(const std::string& text) {
+    database_.check(sqlite3_bind_text(statement_.get(), ++column_, text.data(),
+                                      static_cast<int>(text.size()), SQLITE_TRANSIENT));
+    return *this;
+  }
+  Insert& operator<<(std::uint64_t number) {
+    database_.check(
+        sqlite3_bind_int64(statement_.get(), ++column_, static_cast<sqlite3_int64>(number)));
+    return *this;
+  }
+  Insert& operator<<(double number) {  // NaN becomes NULL
+    database_.check(std::isnan(number) ? sqlite3_bind_null(statement_.get(), ++column_)
+                                       : sqlite3_bind_double(statement_.get(), ++column_, number));
+    return *this;
+  }
+  void run() {
+    database_.check(sqlite3_step(statement_.get()));
+    database_.check(sqlite3_reset(statement_.get()));
+    column_ = 0;
+  }
+
+ private:
+  struct Finalizer {
+    void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+  };
+  Database& database_;
+  std::unique_ptr<sqlite3_stmt, Finalizer> statement_;
+  int column_ = 0;
+};
+
+std::string get_role_name(CaseRole role) {
+  switch (role) {
+    case CaseRole::training:
+      return "training";
+    case CaseRole::validation:
+      return "validation";
+    case CaseRole::test:
+      return "test";
+  }
+  return "?";
+}
+
+template <class Records>
+void insert_records(Database& database, const ProblemDescription& problem, const Records& records) {
+  Insert evaluation(database, "INSERT INTO evaluation VALUES (?,?,?,?,?,?,?,?,?,?,?,?)");
+  Insert case_error(database, "INSERT INTO case_error VALUES (?,?,?,?)");
+  for (const EvaluationRecord& record : records) {
+    const Evaluation& result = record.evaluation;
+    const std::string role = get_role_name(record.cases.role);
+    const auto& numbers = record.cases.numbers;
+    evaluation << role << record.index << record.generation << std::string(to_string(result.status))
+               << result.reason << std::uint64_t{record.clipped} << record.cases.set
+               << (numbers.empty() ? std::uint64_t{0} : numbers.front())
+               << std::uint64_t{numbers.size()}
+               << (result.objectives.empty() ? std::nan("")
+                                             : calc_scalar(problem, result.objectives))
+               << nlohmann::json(record.x).dump() << nlohmann::json(result.metrics).dump();
+    evaluation.run();
+    for (std::size_t i = 0; i < result.case_errors.size() && i < numbers.size(); ++i) {
+      case_error << role << record.index << numbers[i] << result.case_errors[i];
+      case_error.run();
+    }
+  }
+}
+
+void fill_database(const std::filesystem::path& file, const ProblemDescription& problem,
+                   const JournalContent& journal) {
+  Database database(file);
+  // The whole file is synced at the end: before that nobody looks at it.
+  database.execute("PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF; BEGIN");
+  database.execute(kSchema);
+  {
+    Insert variable(database, "INSERT INTO variable VALUES (?,?,?,?,?,?)");
+    for (std::size_t i = 0; i < problem.variables.size(); ++i) {
+      const DecisionVariable& v = problem.variables[i];
+      variable << std::uint64_t{i} << v.name << v.unit << v.lower << v.upper << v.start;
+      variable.run();
+    }
+    Insert metric(database, "INSERT INTO metric VALUES (?,?,?)");
+    for (std::size_t i = 0; i < problem.metrics.size(); ++i) {
+      metric << std::uint64_t{i} << problem.metrics[i].name << problem.metrics[i].unit;
+      metric.run();
+    }
+    insert_records(database, problem, journal.training);
+    insert_records(database, problem, journal.judgements);
+  }
+  database.execute("COMMIT");
+  database.close();
+}
+
+}  // namespace
+
+void write_database(const std::filesystem::path& file, const ProblemDescription& problem,
+                    const JournalContent& journal) {
+  const std::filesystem::path temporary = file.string() + ".new";
+  std::filesystem::remove(temporary);
+  try {
+    fill_database(temporary, problem, journal);
+    put_in_place(temporary, file);
+  } catch (...) {
+    std::error_code ignored;  // there is a better error to tell
+    std::filesystem::remove(temporary, ignored);
+    throw;
+  }
+}
+
+}  // namespace armwright

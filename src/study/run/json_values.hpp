@@ -1,0 +1,63 @@
+// Values as the result files of this room have them: JSON knows neither NaN nor infinity, so what
+// has no number is null. Only .cpp files include this.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "study/statistics/summary.hpp"
+
+namespace armwright {
+
+inline nlohmann::json optional_to_json(const std::optional<double>& value) {
+  return value ? nlohmann::json(*value) : nlohmann::json(nullptr);
+}
+inline std::optional<double> optional_from_json(const nlohmann::json& value) {
+  return value.is_null() ? std::nullopt : std::optional(value.get<double>());
+}
+
+// A count or an index. nlohmann's own conversion makes one of any number: of -1 the largest there
+// is, of 1e300 whatever the machine has.
+template <class Number = std::uint64_t>
+Number whole_from_json(const nlohmann::json& value) {
+  if (!value.is_number_unsigned() ||
+      value.get<std::uint64_t>() > std::uint64_t{std::numeric_limits<Number>::max()}) {
+    const std::string found = value.is_number() ? value.dump() : value.type_name();
+    throw nlohmann::json::type_error::create(302, "must be a whole number from 0, but is " + found,
+                                             &value);
+  }
+  return value.get<Number>();
+}
+
+// Of a value to be minimised: null is infinite.
+inline nlohmann::json value_to_json(double value) {
+  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
+}
+inline double value_from_json(const nlohmann::json& value) {
+  return value.is_null() ? std::numeric_limits<double>::infinity() : value.get<double>();
+}
+
+inline nlohmann::json summary_to_json(const ErrorSummary& summary) {
+  return {{"cases", summary.cases},
+          {"without_number", summary.without_number},
+          {"failures", summary.failures},
+          {"mean", optional_to_json(summary.mean)},
+          {"median", optional_to_json(summary.median)},
+          {"percentile_95", optional_to_json(summary.percentile_95)},
+          {"worst", optional_to_json(summary.worst)}};
+}
+inline ErrorSummary summary_from_json(const nlohmann::json& j) {
+  return {.cases = whole_from_json<std::size_t>(j.at("cases")),
+          .without_number = whole_from_json<std::size_t>(j.at("without_number")),
+          .failures = whole_from_json<std::size_t>(j.at("failures")),
+          .mean = optional_from_json(j.at("mean")),
+          .median = optional_from_json(j.at("median")),
+          .percentile_95 = optional_from_json(j.at("percentile_95")),
+          .worst = optional_from_json(j.at("worst"))};
+}
+
+}  // namespace armwright

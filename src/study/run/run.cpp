@@ -1,0 +1,198 @@
+#include "study/run/run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "base/file.hpp"
+#include "base/text.hpp"
+#include "process/output_log.hpp"
+#include "study/run/judge.hpp"
+#include "study/run/record_files.hpp"
+#include "study/run/run_folder.hpp"
+#include "study/run/store.hpp"
+
+namespace armwright {
+namespace {
+
+// SQLite opens no file whose whole path is longer, which would be found out when all is done.
+void check_path(const std::filesystem::path& folder) {
+  constexpr std::size_t kLongestPath_bytes = 480;
+  const std::size_t size = std::filesystem::absolute(folder).native().size();
+  if (size > kLongestPath_bytes) {
+    throw Error(ErrorKind::usage,
+                fmt::format("{}... is too long a path for a run: {} bytes, and {} are possible; "
+                            "choose another folder with --out",
+                            sanitize(folder.string().substr(0, 60)), size, kLongestPath_bytes));
+  }
+}
+
+RunResult make_result(const RunPlan& plan) {
+  RunResult result;
+  const ProblemDescription& description = plan.problem.problem->description();
+  result.problem = plan.problem.name;
+  result.optimizer = plan.optimizer.name;
+  result.seed = plan.seed;
+  for (const DecisionVariable& variable : description.variables) {
+    result.variable_names.push_back(variable.name);
+  }
+  for (const Quantity& metric : description.metrics) {
+    result.metric_names.push_back(metric.name);
+  }
+  result.objectives = description.objectives;
+  result.objective_weights = description.objective_weights;
+  result.constraints = description.constraints;
+  result.limits = description.limits;
+  result.requirements = description.requirements;
+  result.test_set = plan.problem.sets.test;
+  result.tracking = plan.problem.tracking != nullptr;
+  result.published = plan.problem.published;
+  return result;
+}
+
+void describe_start(const RunFolder& folder, const JournalContent& journal, RunObserver& observer) {
+  for (const std::string& warning : folder.warnings()) {
+    observer.on_message("warning: " + warning +
+                        "; if the results differ, resuming stops with an error");
+  }
+  if (journal.torn_bytes > 0) {
+    observer.on_message(
+        fmt::format("warning: {}: cut {} bytes of an unfinished record off the end (kept beside "
+                    "it); what it held "
+                    "is evaluated again",
+                    folder.journal().string(), journal.torn_bytes));
+  }
+  if (!journal.training.empty()) {
+    observer.on_message(fmt::format("resuming: {} evaluations and {} judgements are recorded",
+                                    journal.training.size(), journal.judgements.size()));
+  }
+}
+
+void warn_of_fewer_threads(std::size_t granted, std::size_t wanted, RunObserver& observer) {
+  if (granted < wanted) {
+    observer.on_message(
+        fmt::format("warning: the system grants {} of {} threads; the result is "
+                    "the same, but takes longer",
+                    granted, wanted));
+  }
+}
+
+}  // namespace
+
+std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop,
+                                     RunObserver& observer) {
+  const RunPlan& plan = request.plan;
+  check_plan(plan);
+  if (request.derived == DerivedFiles::all) {
+    check_path(request.folder);
+  }
+  const auto optimizer = plan.optimizer.make(plan.options);
+  optimizer->check_problem(plan.problem.problem->description());
+  const RunFolder folder(request.folder, plan, request.command_line);
+  if (are_derived_files_there(folder.path(), request.derived)) {
+    if (request.derived == DerivedFiles::all) {  // of a comparison's cell nobody asked
+      observer.on_message(fmt::format("{}: this run is complete; use --new for another one",
+                                      folder.path().string()));
+    }
+    return load_result(folder.path());
+  }
+
+  JournalContent recorded;
+  Journal journal(folder.journal(), recorded);
+  describe_start(folder, recorded, observer);
+  std::optional<ThreadExecutor> threads;
+  if (request.executor == nullptr) {
+    threads.emplace(request.jobs);
+    warn_of_fewer_threads(threads->pool().size(), request.jobs, observer);
+  }
+  CaseRunner runner(*plan.problem.problem,
+                    request.executor != nullptr ? *request.executor : *threads, stop);
+  const bool ended = recorded.ended;
+  Judge judge(plan, runner, journal, std::move(recorded.judgements), ended, observer);
+  RunEvaluator evaluator(plan, runner, stop, journal, std::move(recorded), observer);
+  RunResult result = make_result(plan);
+  optimizer->log_to(folder.log());
+  try {
+    optimizer->minimize(evaluator, plan.seed);
+  } catch (const OptimizerFailure& failure) {
+    result.failure = failure.what();
+    observer.on_message("error: " + result.failure + describe_printed(failure.printed()));
+  }
+  if (stop.requested()) {
+    journal.close();
+    return std::nullopt;
+  }
+  if (!result.failure.empty()) {
+    evaluator.take_remaining_recorded();
+    result.end_reason = "optimizer failed";
+  } else {
+    evaluator.check_replay_complete();
+    result.end_reason = evaluator.budget_spent() ? "budget" : "optimizer finished";
+  }
+  result.counts = evaluator.counts();
+  result.first_failure = evaluator.first_failure();
+  result.least_violation = evaluator.least_violation();
+  auto judged = judge.validate(evaluator.select_candidates());
+  if (!judged) {
+    journal.close();
+    return std::nullopt;
+  }
+  result.judged = std::move(*judged);
+  result.winner = Judge::choose_winner(plan.problem.problem->description(), result.judged);
+  if (result.winner) {
+    auto test = judge.test(result.judged[*result.winner].candidate);
+    if (!test) {
+      journal.close();
+      return std::nullopt;
+    }
+    result.test = std::move(*test);
+    result.test_summary = summarize(result.test.case_errors, get_failure_error(result));
+  }
+  // A failed run stays open: started again, it goes on where its optimizer failed.
+  if (!ended && result.failure.empty()) {
+    journal.append(EndRecord{result.end_reason, result.counts.evaluations});
+  }
+  journal.close();
+  write_derived_files(folder, plan, result, read_journal(folder.journal()), request.derived);
+  return result;
+}
+
+std::optional<std::vector<MeasuredCase>> evaluate_design(const TrackingProblem& problem,
+                                                         const ArmDesign& design,
+                                                         const TestSet& set, std::uint64_t first,
+                                                         std::uint64_t cases, unsigned jobs,
+                                                         StopSignal& stop) {
+  problem.check_design(design);
+  std::vector<MeasuredCase> results(cases);
+  ThreadPool pool(jobs);
+  const std::size_t chunk = calc_chunk(problem.batch_size(CaseRole::test), cases, pool.size());
+  pool.run((results.size() + chunk - 1) / chunk, [&](std::size_t number) {
+    if (!stop.requested()) {
+      const std::size_t begin = number * chunk;
+      const std::size_t count = std::min(chunk, results.size() - begin);
+      std::ranges::move(problem.measure(design, set, first + begin, count),
+                        results.begin() + static_cast<std::ptrdiff_t>(begin));
+    }
+  });
+  return stop.requested() ? std::nullopt : std::optional(std::move(results));
+}
+
+RunResult load_result(const std::filesystem::path& folder) {
+  const auto file = folder / "result.json";
+  if (!std::filesystem::exists(folder / "manifest.json")) {
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("{}: is not the folder of a run (it has no manifest.json)", folder.string()));
+  }
+  if (!std::filesystem::exists(file)) {
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("{}: this run has not come to its end; start it again with the same command "
+                    "to go on where it was",
+                    folder.string()));
+  }
+  return parse_result(read_file(file, kResultLimit_bytes), file);
+}
+
+}  // namespace armwright

@@ -1,0 +1,445 @@
+#include "study/run/run_evaluator.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <iterator>
+#include <mutex>
+#include <numeric>
+#include <span>
+#include <stdexcept>
+#include <utility>
+
+#include "base/bits.hpp"
+#include "base/error.hpp"
+#include "base/text.hpp"
+
+namespace armwright {
+
+const char* to_string(Progress::Phase phase) {
+  switch (phase) {
+    case Progress::Phase::training:
+      return "training";
+    case Progress::Phase::validation:
+      return "validation";
+    case Progress::Phase::test:
+      break;
+  }
+  return "test";
+}
+
+RunEvaluator::RunEvaluator(const RunPlan& plan, CaseRunner& runner, StopSignal& stop,
+                           Journal& journal, JournalContent recorded, RunObserver& observer)
+    : plan_(plan),
+      runner_(runner),
+      stop_(stop),
+      journal_(journal),
+      observer_(observer),
+      recorded_(std::move(recorded.training)),
+      journal_ended_(recorded.ended),
+      candidates_(plan) {
+  block_.role = CaseRole::training;
+  block_.set = get_training_set(plan.problem.sets.training, plan.schedule);
+  block_.numbers.resize(static_cast<std::size_t>(plan.schedule.cases));
+  std::iota(block_.numbers.begin(), block_.numbers.end(), std::uint64_t{0});
+  if (plan.schedule.kind == Schedule::Kind::coevolution) {
+    breeder_.emplace(block_.set, plan.schedule.cases);
+    block_.numbers = breeder_->genomes();
+  }
+}
+
+const ProblemDescription& RunEvaluator::problem() const {
+  return plan_.problem.problem->description();
+}
+
+bool RunEvaluator::stopped() const {
+  return stopped_ || budget_spent_ || stop_.requested();
+}
+
+std::int64_t RunEvaluator::remaining() const {
+  return (plan_.budget - static_cast<std::int64_t>(counts_.cases)) / plan_.schedule.cases;
+}
+
+void RunEvaluator::begin_generation() {
+  if (!stopped()) {
+    start_generation();
+  }
+}
+
+void RunEvaluator::start_generation() {
+  if (plan_.schedule.kind == Schedule::Kind::fresh) {
+    const std::uint64_t first = counts_.generations * block_.numbers.size();
+    std::iota(block_.numbers.begin(), block_.numbers.end(), first);
+  }
+  if (breeder_) {
+    breeder_->breed();
+    block_.numbers = breeder_->genomes();
+  }
+  if (plan_.schedule.changes_cases()) {
+    candidates_.end_generation();
+  }
+  ++counts_.generations;
+}
+
+void RunEvaluator::recommend(std::span<const double> x) {
+  if (stopped()) {
+    return;
+  }
+  candidates_.recommend(make_request(x).x, counts_.generations);
+}
+
+EvaluationRecord RunEvaluator::make_request(std::span<const double> x) const {
+  const auto& variables = problem().variables;
+  if (x.size() != variables.size()) {
+    throw OptimizerFailure(
+        fmt::format("optimizer '{}' asked for a point of {} numbers; problem {} has {} decision "
+                    "variables",
+                    plan_.optimizer.name, x.size(), plan_.problem.name, variables.size()));
+  }
+  EvaluationRecord request;
+  request.generation = counts_.generations;
+  request.cases = block_;
+  request.x.resize(x.size());
+  bool clipped = false;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    // A coordinate that is no number at all goes to the start value: there is no nearest point
+    // inside.
+    const double inside = std::isnan(x[i])
+                              ? variables[i].start
+                              : std::clamp(x[i], variables[i].lower, variables[i].upper);
+    clipped |= !(inside == x[i]);
+    request.x[i] = inside;
+  }
+  request.clipped = clipped;
+  return request;
+}
+
+void RunEvaluator::check_replay(const EvaluationRecord& request, const EvaluationRecord& recorded,
+                                double threshold) const {
+  const Evaluation& evaluation = recorded.evaluation;
+  const auto& had = recorded.cases.numbers;
+  const auto& all = request.cases.numbers;
+  const bool is_first =
+      !had.empty() && had.size() <= all.size() && std::equal(had.begin(), had.end(), all.begin());
+  const bool may_be_part =
+      (races(Racing::Kind::halving, request.with_jacobian) &&
+       (evaluation.status == EvaluationStatus::abandoned || evaluation.objectives.empty())) ||
+      (races(Racing::Kind::abandonment, request.with_jacobian) &&
+       evaluation.status == EvaluationStatus::abandoned && !evaluation.objectives.empty() &&
+       had.size() % static_cast<std::size_t>(plan_.racing.chunk_cases) == 0 &&
+       evaluation.objectives.front() > threshold);
+  std::string difference;
+  if (recorded.cases.set != request.cases.set || !is_first ||
+      (had.size() < all.size() && !may_be_part)) {
+    difference = "its training cases differ";
+  } else if (!same_bits(recorded.x, request.x)) {
+    difference = "the decision vector differs";
+    for (std::size_t i = 0; i < std::min(request.x.size(), recorded.x.size()); ++i) {
+      if (!same_bits({&request.x[i], 1}, {&recorded.x[i], 1})) {
+        difference = fmt::format("{} was {} and is now {}", problem().variables[i].name,
+                                 format_exact(recorded.x[i]), format_exact(request.x[i]));
+        break;
+      }
+    }
+  } else if (recorded.with_jacobian != request.with_jacobian) {
+    difference = "one was asked for with derivatives, the other without";
+  } else if (recorded.generation != request.generation || recorded.clipped != request.clipped) {
+    difference = "its generation or clipping differs";
+  }
+  if (!difference.empty()) {
+    refuse_replay(recorded.index, difference);
+  }
+}
+
+void RunEvaluator::refuse_replay(std::uint64_t evaluation, const std::string& difference) const {
+  throw Error(
+      ErrorKind::bad_data,
+      fmt::format("evaluation {} of the journal is not what optimizer '{}' asks for now: {}. "
+                  "The run was made by another version, machine or plugin; resume it there, "
+                  "or start a new run with --new",
+                  evaluation, plan_.optimizer.name, difference));
+}
+
+void RunEvaluator::check_replay_complete() const {
+  const std::size_t next = recorded_.find_number(counts_.evaluations);
+  if (next < recorded_.size()) {
+    refuse_replay(recorded_.get_index(next), "it is recorded, and no longer asked for");
+  }
+}
+
+void RunEvaluator::take_remaining_recorded() {
+  const std::size_t first = recorded_.find_number(counts_.evaluations);
+  for (std::size_t number = first; number < recorded_.size(); ++number) {
+    EvaluationRecord record = recorded_[number];
+    if (record.generation < counts_.generations) {
+      refuse_replay(record.index, "its generation is over");
+    }
+    while (counts_.generations < record.generation) {
+      start_generation();
+    }
+    ++counts_.replayed;
+    replayed_cases_ += record.calc_charge();
+    Score score;  // nobody is asking any more
+    take(std::move(record), score);
+  }
+  report(0, 0);
+}
+
+std::vector<Score> RunEvaluator::evaluate_with_jacobian(
+    std::span<const std::vector<double>> points) {
+  if (!problem().has_jacobian) {
+    throw std::logic_error("derivatives were asked for of a problem that has none");
+  }
+  return evaluate(points, true);
+}
+
+bool RunEvaluator::races(Racing::Kind kind, bool with_jacobian) const {
+  return plan_.racing.kind == kind && !with_jacobian && can_race(plan_.optimizer, kind);
+}
+
+std::vector<Score> RunEvaluator::evaluate(std::span<const std::vector<double>> points,
+                                          bool with_jacobian) {
+  if (!races(Racing::Kind::abandonment, with_jacobian)) {
+    return evaluate_batch(points, with_jacobian);
+  }
+  // What candidates cost is known afterwards: at a time as many as the budget allows whatever
+  // happens, at least one, which ends it if it does not.
+  std::vector<Score> scores;
+  while (!points.empty() && !stopped()) {
+    const auto affordable = static_cast<std::size_t>(std::max<std::int64_t>(1, remaining()));
+    const auto some = points.first(std::min(points.size(), affordable));
+    std::ranges::move(evaluate_batch(some, false), std::back_inserter(scores));
+    points = points.subspan(some.size());
+  }
+  return scores;
+}
+
+std::vector<Score> RunEvaluator::evaluate_batch(std::span<const std::vector<double>> points,
+                                                bool with_jacobian) {
+  if (stopped()) {
+    return {};
+  }
+  const bool halves = races(Racing::Kind::halving, with_jacobian);
+  const std::int64_t charge = with_jacobian ? calc_jacobian_charge(problem().variables.size()) : 1;
+  const auto allowed =
+      halves
+          ? count_affordable(plan_.racing, points.size(), block_.numbers.size(), calc_cases_left())
+          : static_cast<std::size_t>(std::max<std::int64_t>(0, remaining() / charge));
+  if (points.size() > allowed) {
+    points = points.first(allowed);
+    budget_spent_ = true;
+  }
+  Batch batch;
+  batch.with_jacobian = with_jacobian;
+  batch.threshold = calc_threshold(plan_.racing, candidates_.incumbent_objective());
+  for (const std::vector<double>& point : points) {
+    batch.records.push_back(make_request(point));
+    batch.records.back().index = counts_.evaluations + batch.records.size() - 1;
+    batch.records.back().with_jacobian = with_jacobian;
+  }
+  const std::vector<std::size_t> missing = answer_from_journal(batch);
+  if (journal_ended_ && !missing.empty()) {
+    refuse_replay(batch.records[missing.front()].index, "the recorded run had ended before it");
+  }
+  if (halves && !missing.empty()) {
+    halve(batch);  // all of it: nothing is taken from the journal
+  } else {
+    count_replayed(batch);
+    if (halves) {
+      check_race(batch.records);
+    } else {
+      simulate(batch, missing);
+    }
+  }
+
+  // A stop can leave holes; the optimizer learns the results before the first, and a resumed run
+  // evaluates only the holes.
+  const auto complete =
+      static_cast<std::size_t>(std::ranges::find(batch.answered, false) - batch.answered.begin());
+  stopped_ = complete < points.size();
+  replayed_cases_ += batch.replayed_cases;
+  std::vector<Score> scores(complete);
+  for (std::size_t i = 0; i < complete; ++i) {
+    take(std::move(batch.records[i]), scores[i]);
+  }
+  if (remaining() <= 0) {
+    budget_spent_ = true;
+  }
+  report(0, 0);
+  return scores;
+}
+
+// What is missing, by place in the batch.
+std::vector<std::size_t> RunEvaluator::answer_from_journal(Batch& batch) {
+  std::vector<std::size_t> missing;
+  batch.answered.resize(batch.records.size());
+  for (std::size_t i = 0; i < batch.records.size(); ++i) {
+    EvaluationRecord& record = batch.records[i];
+    auto recorded = recorded_.find(record.index);
+    if (!recorded) {
+      missing.push_back(i);
+      continue;
+    }
+    check_replay(record, *recorded, batch.threshold);
+    record.cases.numbers = std::move(recorded->cases.numbers);
+    record.evaluation = std::move(recorded->evaluation);
+    batch.answered[i] = true;
+  }
+  return missing;
+}
+
+void RunEvaluator::count_replayed(Batch& batch) {
+  for (std::size_t i = 0; i < batch.records.size(); ++i) {
+    if (batch.answered[i]) {
+      batch.replayed_cases += batch.records[i].calc_charge();
+      ++counts_.replayed;
+    }
+  }
+}
+
+void RunEvaluator::simulate(Batch& batch, const std::vector<std::size_t>& missing) {
+  std::vector<std::span<const double>> candidates;
+  for (const std::size_t i : missing) {
+    candidates.emplace_back(batch.records[i].x);
+  }
+  // No flush of the journal: its promise of 10 ms is enough, since a resumed run makes again what
+  // a kill has cost, and for quick functions a write a batch would take longer than all the rest.
+  std::mutex mutex;
+  std::size_t finished = batch.records.size() - missing.size();
+  std::uint64_t cases = batch.replayed_cases;
+  const auto progress = [&](std::uint64_t more_cases, std::size_t more_finished) {
+    const std::lock_guard lock(mutex);
+    cases += more_cases;
+    finished += more_finished;
+    if (finished < batch.records.size()) {  // the last one's is the report on all, afterwards
+      report(cases, batch.replayed_cases);
+    }
+  };
+  const auto finish = [&](std::size_t candidate, Evaluation evaluation) {
+    const std::size_t i = missing[candidate];
+    batch.records[i].evaluation = std::move(evaluation);
+    journal_.append(batch.records[i]);
+    batch.answered[i] = true;
+  };
+  if (races(Racing::Kind::abandonment, batch.with_jacobian)) {
+    Racer(plan_.racing, *plan_.problem.problem, runner_)
+        .abandon(
+            candidates, block_, batch.threshold,
+            [&](std::size_t more_cases) { progress(more_cases, 0); },
+            [&](std::size_t candidate, RacedCandidate result) {
+              batch.records[missing[candidate]].cases.numbers.resize(result.cases);
+              finish(candidate, std::move(result.evaluation));
+              progress(0, 1);
+            });
+    return;
+  }
+  runner_.run(
+      candidates, block_, wants_residuals(plan_.optimizer) || batch.with_jacobian,
+      [&](std::size_t candidate, Evaluation evaluation) {
+        finish(candidate, std::move(evaluation));
+        progress(batch.records[missing[candidate]].calc_charge(), 1);
+      },
+      batch.with_jacobian);
+}
+
+// The whole race, as its outcome is one: where a kill has left only some of its records, they must
+// be what comes out now.
+void RunEvaluator::halve(Batch& batch) {
+  std::vector<std::span<const double>> candidates;
+  for (const EvaluationRecord& record : batch.records) {
+    candidates.emplace_back(record.x);
+  }
+  std::mutex mutex;
+  std::uint64_t cases = 0;
+  const double penalty = plan_.problem.problem->penalty_objectives().front();
+  auto results = Racer(plan_.racing, *plan_.problem.problem, runner_)
+                     .halve(candidates, block_, penalty, [&](std::size_t more_cases) {
+                       const std::lock_guard lock(mutex);
+                       cases += more_cases;
+                       report(cases, 0);
+                     });
+  if (!results) {
+    std::ranges::fill(batch.answered, false);
+    return;
+  }
+  for (std::size_t i = 0; i < batch.records.size(); ++i) {
+    EvaluationRecord& record = batch.records[i];
+    RacedCandidate& result = (*results)[i];
+    if (batch.answered[i] &&
+        !(record.cases.numbers.size() == result.cases &&
+          record.evaluation.status == result.evaluation.status &&
+          same_bits(record.evaluation.objectives, result.evaluation.objectives) &&
+          same_bits(record.evaluation.case_errors, result.evaluation.case_errors))) {
+      refuse_replay(record.index, "the race that it was in ends otherwise");
+    }
+    record.cases.numbers.assign(block_.numbers.begin(),
+                                block_.numbers.begin() + static_cast<std::ptrdiff_t>(result.cases));
+    record.evaluation = std::move(result.evaluation);
+    if (!batch.answered[i]) {
+      journal_.append(record);
+    }
+    batch.answered[i] = true;
+  }
+}
+
+// Of a race that is recorded as a whole.
+void RunEvaluator::check_race(const std::vector<EvaluationRecord>& records) const {
+  if (records.empty()) {
+    return;
+  }
+  std::vector<std::size_t> had;
+  for (const EvaluationRecord& record : records) {
+    had.push_back(record.cases.numbers.size());
+  }
+  std::ranges::sort(had, std::greater{});
+  for (const Rung& rung : plan_rungs(plan_.racing, records.size(), block_.numbers.size())) {
+    if (had[rung.candidates - 1] < rung.cases ||
+        (rung.candidates < had.size() && had[rung.candidates] >= rung.cases)) {
+      refuse_replay(records.front().index, "the race that it was in went otherwise");
+    }
+  }
+}
+
+void RunEvaluator::take(EvaluationRecord record, Score& score) {
+  Evaluation& evaluation = record.evaluation;
+  counts_.add(record);
+  if (breeder_ && evaluation.status != EvaluationStatus::abandoned &&
+      !evaluation.objectives.empty()) {
+    breeder_->learn(record, calc_scalar(problem(), evaluation.objectives));
+  }
+  if (is_feasible(evaluation)) {
+    candidates_.consider(record);
+  }
+  if (!evaluation.constraint_values.empty()) {
+    const double violation = calc_violation(evaluation.constraint_values);
+    least_violation_ = std::min(least_violation_.value_or(violation), violation);
+  }
+  score.status = evaluation.status;
+  score.clipped = record.clipped;
+  score.residuals = std::move(evaluation.residuals);
+  score.jacobian = std::move(evaluation.jacobian);
+  if (!evaluation.objectives.empty()) {
+    score.objectives = std::move(evaluation.objectives);
+    score.constraint_values = std::move(evaluation.constraint_values);
+    return;
+  }
+  score.objectives = plan_.problem.problem->penalty_objectives();
+  if (first_failure_.empty()) {
+    first_failure_ = std::move(evaluation.reason);
+  }
+}
+
+void RunEvaluator::report(std::uint64_t more_cases, std::uint64_t more_replayed) {
+  const bool is_raced = plan_.racing.kind != Racing::Kind::none;
+  const std::uint64_t cases_each = is_raced ? 1 : block_.numbers.size();
+  Progress progress;
+  progress.done = counts_.cases + more_cases;
+  progress.total = static_cast<std::uint64_t>(plan_.budget) / cases_each * cases_each;
+  progress.replayed = replayed_cases_ + more_replayed;
+  progress.generation = counts_.generations;
+  progress.best_objective = candidates_.best_objective();
+  observer_.on_progress(progress);
+}
+
+}  // namespace armwright

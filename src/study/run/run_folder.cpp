@@ -1,0 +1,133 @@
+#include "study/run/run_folder.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "base/build_info.hpp"
+#include "base/error.hpp"
+#include "base/file.hpp"
+#include "base/json_text.hpp"
+#include "base/text.hpp"
+#include "sim/simd/simd_level.hpp"
+#include "study/run/record_files.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+
+// Makes the folder, or accepts one that holds a run or nothing: a run's files must not replace
+// somebody else's of the same names.
+std::filesystem::path claim_folder(const std::filesystem::path& path) {
+  make_folder(path);
+  if (std::filesystem::exists(path / "manifest.json")) {
+    return path;
+  }
+  for (const auto& entry : std::filesystem::directory_iterator(path)) {
+    const std::string name = entry.path().filename().string();
+    if (name != "lock" && name != "manifest.json.new") {  // what a kill at the very start leaves
+      throw Error(
+          ErrorKind::usage,
+          fmt::format("{}: holds '{}' but no manifest.json, so it is not the folder of a run; "
+                      "choose another with --out, or --new",
+                      path.string(), sanitize(name)));
+    }
+  }
+  return path;
+}
+
+json make_manifest(const RunPlan& plan, std::span<const std::string> command_line) {
+  json words = json::array();
+  for (const std::string& word : command_line) {
+    words.push_back(sanitize(word));
+  }
+  const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  return {{"format", kManifestFormat},
+          {"configuration", json::parse(to_json(plan))},
+          {"build", describe_build()},
+          {"command_line", words},
+          {"started", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now))}};
+}
+
+json read_manifest(const std::filesystem::path& file) {
+  try {
+    json manifest = json::parse(read_json_file(file, kManifestLimit_bytes));
+    if (manifest.at("format") != kManifestFormat) {
+      throw std::runtime_error("its format is not the one this version reads");
+    }
+    manifest.at("configuration");
+    manifest.at("build").get<std::map<std::string, std::string>>();
+    return manifest;
+  } catch (const json::exception& error) {
+    throw Error(
+        ErrorKind::bad_data,
+        fmt::format("{}: is not a manifest that armwright wrote ({}); choose another folder "
+                    "with --out, or --new",
+                    file.string(), sanitize(error.what())));
+  } catch (const std::runtime_error& error) {
+    if (dynamic_cast<const Error*>(&error) != nullptr) {
+      throw;
+    }
+    throw Error(ErrorKind::bad_data, fmt::format("{}: {}", file.string(), sanitize(error.what())));
+  }
+}
+
+// What to do where the recorded SIMD level is another one than now; empty where it is not.
+std::string explain_simd(const json& recorded, const json& now) {
+  const json::json_pointer level("/problem/physics/simd");
+  if (!recorded.contains(level) || !recorded[level].is_string() || !now.contains(level) ||
+      recorded[level] == now[level]) {
+    return "";
+  }
+  const auto name = recorded[level].get<std::string>();
+  const auto possible = supported_simd_names();
+  if (std::ranges::find(possible, name) == possible.end()) {
+    return fmt::format(
+        "\nThe SIMD level decides the last bits of every result, and this CPU lacks {}: go on with "
+        "the run on a machine that has it",
+        sanitize(name));
+  }
+  return fmt::format(
+      "\nThe SIMD level decides the last bits of every result: to go on, pass --simd {}",
+      sanitize(name));
+}
+
+}  // namespace
+
+RunFolder::RunFolder(const std::filesystem::path& path, const RunPlan& plan,
+                     std::span<const std::string> command_line)
+    : path_(claim_folder(path)), lock_(path) {
+  const auto file = path / "manifest.json";
+  if (!std::filesystem::exists(file)) {
+    write_file_atomically(file, make_manifest(plan, command_line).dump(2) + "\n");
+    return;
+  }
+  const json manifest = read_manifest(file);
+  const auto differences = describe_differences(manifest["configuration"].dump(), to_json(plan));
+  if (!differences.empty()) {
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("{} holds a run with another configuration:\n  {}\nGo on with the recorded "
+                    "one, or use --new or --out for another folder{}",
+                    path.string(), join(differences, "\n  "),
+                    explain_simd(manifest["configuration"], json::parse(to_json(plan)))));
+  }
+  warnings_ =
+      describe_build_changes(manifest["build"].get<std::map<std::string, std::string>>(), "run");
+}
+
+std::filesystem::path choose_run_folder(const std::filesystem::path& parent,
+                                        const std::string& name, bool fresh) {
+  std::filesystem::path folder = parent / name;
+  for (int number = 2; fresh && std::filesystem::exists(folder); ++number) {
+    folder = parent / fmt::format("{}-{:03}", name, number);
+  }
+  return folder;
+}
+
+}  // namespace armwright

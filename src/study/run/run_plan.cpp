@@ -1,0 +1,173 @@
+#include "study/run/run_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <nlohmann/json.hpp>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "optimizers/table/optimizer_table.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+
+json to_json_value(const OptionValue& value) {
+  return std::visit([](const auto& v) { return json(v); }, value);
+}
+
+// Candidates of a generation or batch are held in memory all at once: their variables, and what
+// came of each of their cases.
+void check_size(const RunPlan& plan) {
+  constexpr std::int64_t kMostNumbers = 50'000'000;  // 400 MB, a few times over
+  const auto each =
+      static_cast<std::int64_t>(plan.problem.problem->description().variables.size()) +
+      plan.schedule.cases;
+  for (const char* name : {"population", "batch", "samples"}) {
+    const auto option = plan.options.values().find(name);
+    const auto* size = option == plan.options.values().end()
+                           ? nullptr
+                           : std::get_if<std::int64_t>(&option->second);
+    if (size != nullptr && *size > kMostNumbers / each) {
+      throw Error(
+          ErrorKind::usage,
+          fmt::format("optimizer '{}': option '{}' is {}; with {} variables and {} training "
+                      "cases a candidate it must be at most {}, or memory would not do",
+                      plan.optimizer.name, name, *size, each - plan.schedule.cases,
+                      plan.schedule.cases, kMostNumbers / each));
+    }
+  }
+}
+
+}  // namespace
+
+Schedule choose_schedule(const LoadedProblem& problem, const OptimizerRow& optimizer) {
+  if (problem.schedule.changes_cases() && !optimizer.capabilities.generations) {
+    return {.kind = Schedule::Kind::fixed, .cases = problem.fixed_cases};
+  }
+  return problem.schedule;
+}
+
+bool wants_residuals(const OptimizerRow& optimizer) {
+  return optimizer.capabilities.residuals || optimizer.requirements.residuals;
+}
+
+bool can_race(const OptimizerRow& optimizer, Racing::Kind kind) {
+  const Capabilities& can = optimizer.capabilities;
+  const bool competes = can.generations || can.sampling;
+  return kind != Racing::Kind::none && !wants_residuals(optimizer) &&
+         (kind != Racing::Kind::halving || competes);
+}
+
+std::string explain_no_race(const OptimizerRow& optimizer, const Racing& racing,
+                            const Schedule& schedule) {
+  if (racing.kind == Racing::Kind::none) {
+    return "";
+  }
+  if (!can_race(optimizer, racing.kind)) {
+    return can_race(optimizer, Racing::Kind::abandonment)
+               ? "candidates race within a generation or a sample, and there are none"
+               : "least squares need the errors of all cases";
+  }
+  if (racing.kind == Racing::Kind::abandonment && racing.chunk_cases >= schedule.cases) {
+    return fmt::format("chunks of {} leave nothing of {} to give up", racing.chunk_cases,
+                       to_text(schedule));
+  }
+  return "";
+}
+
+void check_plan(const RunPlan& plan) {
+  const OptimizerRow& row = plan.optimizer;
+  const std::string unsuitable = explain_unsuitable(row, plan.problem.problem->description());
+  if (!unsuitable.empty()) {
+    throw Error(ErrorKind::usage, fmt::format("optimizer '{}' cannot work on {}: {}", row.name,
+                                              plan.problem.name, unsuitable));
+  }
+  if (plan.schedule.changes_cases() && !row.capabilities.generations) {
+    throw Error(ErrorKind::usage,
+                fmt::format("optimizer '{}' has no generations, so new training cases for every "
+                            "generation (schedule {}) mean nothing to it; use --schedule fixed:K, "
+                            "which evaluates every candidate on the same K cases",
+                            row.name, to_string(plan.schedule.kind)));
+  }
+  if (plan.schedule.kind == Schedule::Kind::coevolution && plan.schedule.cases < kFewestBredCases) {
+    throw Error(ErrorKind::usage,
+                fmt::format("schedule coevolution breeds {} training cases; it must be at least "
+                            "{}, parents and places for children",
+                            plan.schedule.cases, kFewestBredCases));
+  }
+  const ProblemDescription& problem = plan.problem.problem->description();
+  if (plan.racing.kind != Racing::Kind::none &&
+      (problem.objectives.size() > 1 || !problem.constraints.empty())) {
+    throw Error(ErrorKind::usage,
+                fmt::format("racing {} ranks candidates by one number, but {} has {}; use racing "
+                            "none there, or one objective without limits",
+                            to_string(plan.racing.kind), plan.problem.name,
+                            problem.constraints.empty() ? "several objectives" : "constraints"));
+  }
+  if (plan.racing.kind == Racing::Kind::halving && plan.racing.first_cases >= plan.schedule.cases) {
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("racing {} gives every candidate {} to begin with, and schedule {} has "
+                    "no more: there is no race. Use a schedule of more cases, fewer "
+                    "racing.first_cases, or racing none",
+                    to_text(plan.racing),
+                    plan.racing.first_cases == 1 ? "1 case"
+                                                 : fmt::format("{} cases", plan.racing.first_cases),
+                    to_text(plan.schedule)));
+  }
+  if (plan.racing.kind == Racing::Kind::abandonment &&
+      !plan.problem.problem->calc_lower_bound(std::vector<double>(problem.variables.size()), {},
+                                              1)) {
+    throw Error(ErrorKind::usage,
+                fmt::format("racing abandonment needs to know what the objective is at least, and "
+                            "{} cannot tell; use racing halving or none",
+                            plan.problem.name));
+  }
+  check_size(plan);
+  if (plan.budget < 0) {
+    throw Error(ErrorKind::usage, fmt::format("--budget is {}; it must be >= 0", plan.budget));
+  }
+}
+
+std::string to_json(const RunPlan& plan) {
+  json options = json::object();
+  for (const auto& [name, value] : plan.options.values()) {
+    const auto spec = std::ranges::find(plan.optimizer.options, name, &OptionSpec::name);
+    if (spec == plan.optimizer.options.end() || spec->changes_result) {
+      options[name] = to_json_value(value);
+    }
+  }
+  json run = {
+      {"optimizer", plan.optimizer.name},
+      {"options", options},
+      {"seed", plan.seed},
+      {"budget", plan.budget},
+      {"schedule", {{"kind", to_string(plan.schedule.kind)}, {"cases", plan.schedule.cases}}},
+      {"selection", {{"last", plan.selection.last}, {"best", plan.selection.best}}},
+  };
+  if (plan.racing.kind != Racing::Kind::none) {  // plans from before there was racing say nothing
+    run["racing"] = to_text(plan.racing);
+  }
+  std::map<std::string, std::string> inputs = plan.problem.input_hashes;
+  inputs.insert(plan.optimizer.input_hashes.begin(), plan.optimizer.input_hashes.end());
+  const json whole = {
+      {"problem", json::parse(plan.problem.resolved_json)}, {"inputs", inputs}, {"run", run}};
+  return whole.dump(2);
+}
+
+std::string make_run_name(const RunPlan& plan) {
+  std::string optimizer = plan.optimizer.name;
+  for (char& c : optimizer) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '_';
+    c = plain ? c : '-';
+  }
+  // "./libmine.so" and "exec:python3 -u mine.py": neither hidden nor a path.
+  optimizer.erase(0, optimizer.find_first_not_of("-."));
+  return fmt::format("{}-{}-seed{}", plan.problem.name, optimizer, plan.seed);
+}
+
+}  // namespace armwright

@@ -1,0 +1,285 @@
+#include "problems/analytic/analytic.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "base/expect_error.hpp"
+#include "base/random.hpp"
+
+namespace armwright {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+const CaseBlock kOneCase{CaseRole::training, "train/1", {0}};
+
+double calc_value(const Problem& problem, const std::vector<double>& x) {
+  return problem.evaluate(x, kOneCase).objectives.at(0);
+}
+
+std::vector<double> shifted(const Problem& problem, double by) {
+  std::vector<double> x = problem.description().known_optimum;
+  for (double& xi : x) {
+    xi += by;
+  }
+  return x;
+}
+
+TEST(Analytic, NamesAndDimensionsAreChecked) {
+  EXPECT_THAT(analytic_names(),
+              ElementsAre("sphere", "ellipsoid", "rosenbrock", "rastrigin", "constrained"));
+  EXPECT_EQ(usage_error_of([] { make_analytic("spere", 3); }),
+            "unknown analytic function 'spere'; did you mean 'sphere'? Valid: sphere, ellipsoid, "
+            "rosenbrock, rastrigin, constrained");
+  EXPECT_EQ(usage_error_of([] { make_analytic("sphere", 0); }),
+            "analytic function 'sphere': dimension is 0; it must be between 1 and 1000");
+  EXPECT_EQ(usage_error_of([] { make_analytic("rosenbrock", 1); }),
+            "analytic function 'rosenbrock': dimension is 1; it must be between 2 and 1000");
+  EXPECT_EQ(usage_error_of([] { make_analytic("rastrigin", 1001); }),
+            "analytic function 'rastrigin': dimension is 1001; it must be between 1 and 1000");
+  EXPECT_EQ(usage_error_of([] { make_analytic("constrained", 10); }),
+            "analytic function 'constrained': dimension is 10; it must be 4");
+}
+
+TEST(Analytic, HandComputedValues) {
+  // At z = (1, 1, 1) = x - minimiser, up to the rounding of x: a few ulps of 1 times the largest
+  // derivative, 8e5 and 2e6.
+  EXPECT_NEAR(calc_value(*make_analytic("sphere", 3), shifted(*make_analytic("sphere", 3), 1)), 3,
+              1e-14);
+  EXPECT_NEAR(
+      calc_value(*make_analytic("ellipsoid", 3), shifted(*make_analytic("ellipsoid", 3), 1)),
+      1 + 1e3 + 1e6, 1e-8);
+  // y = (2, 2, 2): twice 100 (2 - 4)^2 + (1 - 2)^2
+  EXPECT_NEAR(
+      calc_value(*make_analytic("rosenbrock", 3), shifted(*make_analytic("rosenbrock", 3), 1)), 802,
+      1e-11);
+  // z = 1/2: three times 1/4 + 20
+  EXPECT_NEAR(
+      calc_value(*make_analytic("rastrigin", 3), shifted(*make_analytic("rastrigin", 3), 0.5)),
+      60.75, 1e-12);
+  // x = (1, 1, 1, 1): 1 + 1 + 2 + 1 - 5 - 5 - 21 + 7; the third constraint 2 + 1 + 1 + 2 - 1 - 1 -
+  // 5; all numbers exact
+  const Evaluation constrained =
+      make_analytic("constrained")->evaluate(std::vector<double>{1, 1, 1, 1}, kOneCase);
+  EXPECT_THAT(constrained.objectives, ElementsAre(-19));
+  EXPECT_THAT(constrained.constraint_values, ElementsAre(-4, -6, -1));
+}
+
+TEST(Analytic, OneDimensionIsEnough) {
+  EXPECT_NEAR(
+      calc_value(*make_analytic("ellipsoid", 1), shifted(*make_analytic("ellipsoid", 1), 2)), 4,
+      1e-14);
+}
+
+class AnalyticTable : public testing::TestWithParam<std::string> {};
+
+TEST_P(AnalyticTable, DescribesItselfConsistently) {
+  const AnalyticRow& row = find_analytic(GetParam());
+  EXPECT_FALSE(row.summary.empty());
+  EXPECT_FALSE(row.source.empty());
+  for (const int dimension :
+       {row.smallest_dimension, row.default_dimension, row.largest_dimension}) {
+    const auto problem = make_analytic(GetParam(), dimension);
+    const ProblemDescription& description = problem->description();
+    EXPECT_EQ(description.name, GetParam());
+    EXPECT_EQ(description.cost_unit, "function evaluation");
+    EXPECT_THAT(description.objectives, SizeIs(1));
+    ASSERT_THAT(description.variables, SizeIs(dimension));
+    ASSERT_THAT(description.known_optimum, SizeIs(dimension));
+    std::vector<double> start;
+    for (int i = 0; i < dimension; ++i) {
+      const DecisionVariable& variable = description.variables[i];
+      const double optimum = description.known_optimum[i];
+      start.push_back(variable.start);
+      EXPECT_EQ(variable.name, "x_" + std::to_string(i + 1));
+      EXPECT_LT(variable.lower, optimum);
+      EXPECT_GT(variable.upper, optimum);
+      EXPECT_LE(variable.lower, variable.start);
+      EXPECT_GE(variable.upper, variable.start);
+      EXPECT_NE(optimum, (variable.lower + variable.upper) / 2);
+      EXPECT_NE(optimum, variable.start);
+    }
+    const Evaluation at_start = problem->evaluate(start, kOneCase);
+    EXPECT_THAT(at_start.constraint_values, SizeIs(description.constraints.size()));
+    EXPECT_THAT(at_start.constraint_values, testing::Each(testing::Le(0)));
+    EXPECT_GT(at_start.objectives.at(0), calc_value(*problem, description.known_optimum));
+  }
+}
+
+TEST_P(AnalyticTable, NothingFeasibleBeatsTheKnownOptimum) {
+  const auto problem = make_analytic(GetParam());
+  const ProblemDescription& description = problem->description();
+  const Evaluation optimum = problem->evaluate(description.known_optimum, kOneCase);
+  EXPECT_EQ(optimum.objectives.at(0), GetParam() == "constrained" ? -44 : 0);  // exact in doubles
+  EXPECT_THAT(optimum.constraint_values, testing::Each(testing::Le(0)));
+  RandomStream random("test/analytic/" + GetParam());
+  int feasible = 0;
+  for (int sample = 0; sample < 20000; ++sample) {
+    // Half of them all over the box, half near the optimum, at distances from the box's size down
+    // to 1e-6 of it.
+    const double radius = sample % 2 == 0 ? 1 : std::pow(10, random.uniform(-6, 0));
+    std::vector<double> x;
+    for (std::size_t i = 0; i < description.variables.size(); ++i) {
+      const DecisionVariable& variable = description.variables[i];
+      const double anywhere = random.uniform(variable.lower, variable.upper);
+      x.push_back(sample % 2 == 0 ? anywhere
+                                  : description.known_optimum[i] +
+                                        radius * (anywhere - description.known_optimum[i]));
+    }
+    const Evaluation evaluation = problem->evaluate(x, kOneCase);
+    bool is_feasible = true;
+    for (const double g : evaluation.constraint_values) {
+      is_feasible = is_feasible && g <= 0;
+    }
+    if (is_feasible) {
+      ++feasible;
+      EXPECT_GT(evaluation.objectives.at(0), optimum.objectives.at(0));
+    }
+    EXPECT_LT(evaluation.objectives.at(0), problem->penalty_objectives().at(0));
+  }
+  EXPECT_GT(feasible, 1000);
+}
+
+TEST_P(AnalyticTable, EveryCaseGivesTheSameAndTheMeanIsTaken) {
+  const auto problem = make_analytic(GetParam());
+  std::vector<double> x = problem->description().known_optimum;
+  x[0] += 0.125;
+  const Evaluation one = problem->evaluate(x, kOneCase);
+  const Evaluation four = problem->evaluate(x, {CaseRole::test, "test/1", {3, 1, 4, 1}});
+  EXPECT_EQ(four.objectives, one.objectives);  // the sum of four equal numbers over 4 is exact
+  EXPECT_EQ(four.constraint_values, one.constraint_values);
+  EXPECT_EQ(four.case_errors, std::vector<double>(4, one.objectives.at(0)));
+  EXPECT_EQ(four.failed_cases, 0);
+  EXPECT_EQ(four.status, EvaluationStatus::ok);
+}
+
+TEST_P(AnalyticTable, TheObjectiveIsTheSumOfTheSquaredResiduals) {
+  const auto problem = make_analytic(GetParam());
+  const ProblemDescription& description = problem->description();
+  EXPECT_EQ(description.has_residuals, GetParam() != "constrained");
+  RandomStream random("test/analytic/residuals/" + GetParam());
+  for (int sample = 0; sample < 100; ++sample) {
+    std::vector<double> x;
+    for (const DecisionVariable& variable : description.variables) {
+      x.push_back(random.uniform(variable.lower, variable.upper));
+    }
+    // Three cases, so that the mean is taken, too.
+    for (const CaseBlock& block : {kOneCase, CaseBlock{CaseRole::test, "test/1", {3, 1, 4}}}) {
+      const Evaluation evaluation = problem->evaluate(x, block);
+      if (!description.has_residuals) {
+        EXPECT_THAT(evaluation.residuals, IsEmpty());
+        continue;
+      }
+      double sum = 0;
+      for (const double residual : evaluation.residuals) {
+        sum += residual * residual;
+      }
+      // Some tens of positive terms, each off by a few roundings; rastrigin's cosine cancels
+      // against 1, at worst a rounding of 10 each.
+      const double objective = evaluation.objectives.at(0);
+      EXPECT_NEAR(sum, objective, 1e-14 * objective + 1e-13);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, AnalyticTable, testing::ValuesIn(analytic_names()),
+                         [](const auto& parameters) { return parameters.param; });
+
+TEST(Analytic, ConstrainedOptimumMeetsKarushKuhnTucker) {
+  // Objective and constraints are convex quadratics, so stationarity of the Lagrangian with
+  // multipliers >= 0 proves the global minimum. Multipliers (1, 0, 2): Hock and Schittkowski 1981.
+  // Central differences are exact for quadratics but for rounding: eps |f| / step = 2e-16 * 44 /
+  // 1e-3 < 1e-11.
+  const auto problem = make_analytic("constrained");
+  const std::vector<double> optimum = problem->description().known_optimum;
+  const std::vector<double> multipliers = {1, 0, 2};
+  constexpr double kStep = 1e-3;
+  for (std::size_t i = 0; i < optimum.size(); ++i) {
+    std::vector<double> below = optimum;
+    std::vector<double> above = optimum;
+    below[i] -= kStep;
+    above[i] += kStep;
+    const Evaluation low = problem->evaluate(below, kOneCase);
+    const Evaluation high = problem->evaluate(above, kOneCase);
+    double gradient = high.objectives[0] - low.objectives[0];
+    for (std::size_t j = 0; j < multipliers.size(); ++j) {
+      gradient += multipliers[j] * (high.constraint_values[j] - low.constraint_values[j]);
+    }
+    EXPECT_NEAR(gradient / (2 * kStep), 0, 1e-10);
+  }
+  EXPECT_THAT(problem->evaluate(optimum, kOneCase).constraint_values, ElementsAre(0, -1, 0));
+}
+
+TEST(Analytic, EllipsoidHasItsConditionNumber) {
+  const auto problem = make_analytic("ellipsoid", 10);
+  const auto calc_along = [&](std::size_t axis) {
+    std::vector<double> x = problem->description().known_optimum;
+    x[axis] += 1;
+    return calc_value(*problem, x);
+  };
+  EXPECT_NEAR(calc_along(9) / calc_along(0), 1e6, 1e6 * 1e-14);
+  EXPECT_NEAR(calc_along(3) / calc_along(0), 100, 100 * 1e-14);
+}
+
+TEST(Analytic, AggregateLeavesOutCasesWithoutANumber) {
+  const auto problem = make_analytic("sphere", 2);
+  const std::vector<double> x = {0, 0};
+  std::vector<CaseOutcome> outcomes(3);
+  outcomes[0].error = 2;
+  outcomes[1] = {.status = EvaluationStatus::timed_out,
+                 .reason = "took too long",
+                 .has_error = false,
+                 .metrics = {},
+                 .residuals = {},
+                 .jacobian = {}};
+  outcomes[2].error = 4;
+  const Evaluation some = problem->aggregate(x, outcomes);
+  EXPECT_THAT(some.objectives, ElementsAre(3));
+  EXPECT_EQ(some.status, EvaluationStatus::timed_out);
+  EXPECT_EQ(some.reason, "took too long");
+  EXPECT_EQ(some.failed_cases, 1);
+  ASSERT_THAT(some.case_errors, SizeIs(3));
+  EXPECT_TRUE(std::isnan(some.case_errors[1]));
+  const Evaluation none = problem->aggregate(x, std::span(outcomes).subspan(1, 1));
+  EXPECT_THAT(none.objectives, IsEmpty());
+}
+
+TEST(Analytic, ResidualsAreHandComputed) {
+  // z = (1, 2): y = (2, 3), 10 (3 - 4) and 1 - 2; the roundings of x are multiplied by at most 40.
+  const auto rosenbrock = make_analytic("rosenbrock", 2);
+  std::vector<double> x = rosenbrock->description().known_optimum;
+  x[0] += 1;
+  x[1] += 2;
+  const Evaluation bent = rosenbrock->evaluate(x, kOneCase);
+  ASSERT_THAT(bent.residuals, SizeIs(2));
+  EXPECT_NEAR(bent.residuals[0], -10, 1e-13);
+  EXPECT_NEAR(bent.residuals[1], -1, 1e-14);
+  const auto rastrigin = make_analytic("rastrigin", 1);
+  const Evaluation wave = rastrigin->evaluate(shifted(*rastrigin, -0.5), kOneCase);
+  ASSERT_THAT(wave.residuals, SizeIs(2));
+  EXPECT_NEAR(wave.residuals[0], -0.5, 1e-14);
+  EXPECT_NEAR(wave.residuals[1], -std::sqrt(20.0), 1e-13);
+}
+
+TEST(Analytic, WithoutANumberThereAreNoResiduals) {
+  const auto problem = make_analytic("sphere", 2);
+  std::vector<CaseOutcome> outcomes(1);
+  outcomes[0].has_error = false;
+  outcomes[0].status = EvaluationStatus::failed;
+  EXPECT_THAT(problem->aggregate(std::vector<double>{0, 0}, outcomes).residuals, IsEmpty());
+}
+
+TEST(EvaluationStatusText, EveryStatusHasItsName) {
+  EXPECT_STREQ(to_string(EvaluationStatus::ok), "ok");
+  EXPECT_STREQ(to_string(EvaluationStatus::diverged), "diverged");
+  EXPECT_STREQ(to_string(EvaluationStatus::unreachable), "unreachable");
+  EXPECT_STREQ(to_string(EvaluationStatus::timed_out), "timed out");
+  EXPECT_STREQ(to_string(EvaluationStatus::failed), "failed");
+  EXPECT_STREQ(to_string(EvaluationStatus::abandoned), "abandoned");
+}
+
+}  // namespace
+}  // namespace armwright

@@ -1,0 +1,337 @@
+// Perturbed plants: what is drawn, and what the tracking problem makes of it.
+#include "problems/tracking/perturbation.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "problems/config/config_files.hpp"
+#include "problems/config/perturbation_reader.hpp"
+#include "problems/problem_folder.hpp"
+
+namespace armwright {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+Perturbation make_everything() {
+  Perturbation p;
+  p.mass_relative = 0.1;
+  p.load_kg = {5, 40};
+  p.viscous_friction_n_m_s_per_rad = {1, 2, 3, 4};
+  p.coulomb_friction_n_m = {5, 6, 7, 8};
+  p.quantisation_rad = 1e-4;
+  p.delay_s = 0.01;
+  p.torque_ripple_relative = 0.02;
+  p.effort_limit_sigma = 0.2;
+  p.gain_sigma = 0.1;
+  return p;
+}
+
+Plant draw(const Perturbation& p, std::string_view set, std::uint64_t number) {
+  return draw_plant(p, 4, 0.001, set, number);
+}
+
+TEST(DrawnPlant, IsAFunctionOfTheNamesAndTheNumber) {
+  Perturbation p = make_everything();
+  const Plant plant = draw(p, "train/1", 7);
+  const Plant again = draw(p, "train/1", 7);
+  EXPECT_EQ(again.mass_factors, plant.mass_factors);
+  EXPECT_EQ(again.load_kg, plant.load_kg);
+  EXPECT_EQ(again.limit_factors, plant.limit_factors);
+  EXPECT_EQ(again.gain_factors, plant.gain_factors);
+  EXPECT_EQ(again.variation->coulomb_friction_n_m, plant.variation->coulomb_friction_n_m);
+  EXPECT_EQ(again.variation->ripple_phase_rad, plant.variation->ripple_phase_rad);
+  EXPECT_NE(draw(p, "train/1", 8).mass_factors, plant.mass_factors);
+  EXPECT_NE(draw(p, "test/2", 7).mass_factors, plant.mass_factors);
+  p.set = "plant/2";
+  EXPECT_NE(draw(p, "train/1", 7).mass_factors, plant.mass_factors);
+}
+
+TEST(DrawnPlant, KindsDoNotShiftEachOther) {
+  const Plant all = draw(make_everything(), "train/1", 3);
+  Perturbation masses;
+  masses.mass_relative = 0.1;
+  EXPECT_EQ(draw(masses, "train/1", 3).mass_factors, all.mass_factors);
+  Perturbation gains;
+  gains.gain_sigma = 0.1;
+  EXPECT_EQ(draw(gains, "train/1", 3).gain_factors, all.gain_factors);
+  EXPECT_THAT(draw(gains, "train/1", 3).limit_factors, ElementsAre(1, 1, 1, 1));
+}
+
+// Moments of what 4000 plants hold, within five standard errors.
+TEST(DrawnPlant, NumbersHaveTheirDistributions) {
+  constexpr int kPlants = 4000;
+  double masses = 0;
+  double squares = 0;
+  double loads = 0;
+  double limits = 0;
+  double friction = 0;
+  double ripple = 0;
+  double delays = 0;
+  double gains = 0;
+  double gain_squares = 0;
+  for (int i = 0; i < kPlants; ++i) {
+    const Plant plant = draw(make_everything(), "train/1", static_cast<std::uint64_t>(i));
+    for (const double factor : plant.mass_factors) {
+      EXPECT_GE(factor, 0.9);
+      EXPECT_LE(factor, 1.1);
+      masses += factor / (4 * kPlants);
+      squares += (factor - 1) * (factor - 1) / (4 * kPlants);
+    }
+    EXPECT_GE(*plant.load_kg, 5);
+    EXPECT_LE(*plant.load_kg, 40);
+    loads += *plant.load_kg / kPlants;
+    const PlantVariation& variation = *plant.variation;
+    EXPECT_EQ(variation.quantisation_rad, 1e-4);
+    EXPECT_GE(variation.delay_substeps, 0);
+    EXPECT_LE(variation.delay_substeps, 10);
+    delays += static_cast<double>(variation.delay_substeps) / kPlants;
+    friction += variation.coulomb_friction_n_m[3] / kPlants;
+    ripple += variation.torque_ripple[1] / kPlants;
+    for (std::size_t joint = 0; joint < 4; ++joint) {
+      EXPECT_LE(plant.limit_factors[joint], 1);
+      limits += std::log(plant.limit_factors[joint]) / (4 * kPlants);
+      const double gain = std::log(plant.gain_factors[joint][2]);
+      gains += gain / (4 * kPlants);
+      gain_squares += gain * gain / (4 * kPlants);
+    }
+  }
+  const double numbers = 4 * kPlants;
+  EXPECT_NEAR(masses, 1, 5 * 0.1 / std::sqrt(3 * numbers));
+  EXPECT_NEAR(squares, 0.01 / 3, 5 * 0.01 * std::sqrt(4.0 / 45 / numbers));
+  EXPECT_NEAR(loads, 22.5, 5 * 35 / std::sqrt(12.0 * kPlants));
+  EXPECT_NEAR(limits, -0.2 * std::sqrt(2 / M_PI), 5 * 0.2 / std::sqrt(numbers));
+  EXPECT_NEAR(friction, 4, 5 * 8 / std::sqrt(12.0 * kPlants));
+  EXPECT_NEAR(ripple, 0.01, 5 * 0.02 / std::sqrt(12.0 * kPlants));
+  EXPECT_NEAR(delays, 5, 5 * 10 / std::sqrt(12.0 * kPlants));  // of 10 ms in substeps of 1 ms
+  EXPECT_NEAR(gains, 0, 5 * 0.1 / std::sqrt(numbers));
+  EXPECT_NEAR(gain_squares, 0.01, 5 * 0.01 * std::sqrt(2 / numbers));
+}
+
+TEST(DrawnPlant, ChangesLinkByLink) {
+  const RobotModel nominal = load_urdf(ARMWRIGHT_CONFIGS "/robots/irb4600_40_255.urdf");
+  const Plant plant = draw(make_everything(), "train/1", 0);
+  const RobotModel arm = plant.make_arm(nominal);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Inertial& before = nominal.links[i].inertial;
+    const Inertial& after = arm.links[i].inertial;
+    EXPECT_EQ(after.mass_kg, before.mass_kg * plant.mass_factors[i]);
+    EXPECT_EQ(after.inertia_kg_m2, before.inertia_kg_m2 * plant.mass_factors[i]);
+    EXPECT_EQ(after.com_m, before.com_m);
+  }
+  EXPECT_EQ(std::set(plant.mass_factors.begin(), plant.mass_factors.end()).size(), 4U);
+}
+
+TEST(DrawnPlant, ChangesGainsAndLimitsOfEveryJoint) {
+  const Plant plant = draw(make_everything(), "train/1", 0);
+  ArmDesign design;
+  design.joints.assign(4, {{2, 3, 5}, {-7, 11}});
+  plant.change_design(design);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const JointDrive& joint = design.joints[i];
+    const std::vector<double>& factors = plant.gain_factors[i];
+    EXPECT_THAT(joint.gains, ElementsAre(2 * factors[0], 3 * factors[1], 5 * factors[2]));
+    EXPECT_EQ(joint.limits.min_n_m, -7 * plant.limit_factors[i]);
+    EXPECT_EQ(joint.limits.max_n_m, 11 * plant.limit_factors[i]);
+  }
+}
+
+class PerturbedProblem : public testing::Test {
+ protected:
+  static std::shared_ptr<const TrackingProblem> load(std::vector<std::string> overrides) {
+    overrides.insert(overrides.begin(), {"physics.engine=articulated", "workspace.points=4"});
+    return load_problem("q1-complex", overrides).tracking;
+  }
+  static double track(const TrackingProblem& problem, std::uint64_t number) {
+    return problem.track(problem.config().start, problem.get_set("test/2"), number).mean_error_m;
+  }
+  static CaseOutcome simulate(const TrackingProblem& problem, CaseRole role, const std::string& set,
+                              std::uint64_t number, bool jacobian = false) {
+    const std::vector<double> x = problem.make_vector(problem.config().start);
+    const CaseBlock block{role, set, {number}};
+    const CaseJob job{
+        .x = x, .block = &block, .number = number, .residuals = jacobian, .jacobian = jacobian};
+    return problem.simulate({&job, 1}).front();
+  }
+};
+
+// A plant's masses, load, limits and gains are what the same numbers in robot, task and design do.
+TEST_F(PerturbedProblem, SimulatesThePlantThatWasDrawn) {
+  const auto problem = load({"perturbation.mass_relative=0.2", "perturbation.load_kg=[1,30]",
+                             "perturbation.effort_limit_sigma=1", "perturbation.gain_sigma=0.2"});
+  const TrackingConfig& config = problem->config();
+  for (const std::uint64_t number : {0U, 5U}) {
+    const Plant plant = draw_plant(config.perturbation, 4, 0.01, "test/2", number);
+    TrackingConfig nominal = config;
+    nominal.perturbation = {};
+    nominal.robot = plant.make_arm(config.robot);
+    nominal.task.load_kg = *plant.load_kg;
+    plant.change_design(nominal.start);
+    const TrackingProblem alike(nominal);
+    EXPECT_EQ(track(*problem, number), track(alike, number));
+    EXPECT_EQ(simulate(*problem, CaseRole::test, "test/2", number).error,
+              simulate(alike, CaseRole::test, "test/2", number).error);
+    EXPECT_NE(track(*problem, number), track(*load({}), number));
+  }
+}
+
+TEST_F(PerturbedProblem, AppliesWhereItSays) {
+  const auto nominal = load({});
+  for (const std::string where : {"training", "judging", "everywhere"}) {
+    SCOPED_TRACE(where);
+    const auto problem = load({"perturbation.mass_relative=0.2", "perturbation.apply_to=" + where});
+    const auto is_nominal = [&](CaseRole role) {
+      return simulate(*problem, role, "test/2", 1).error ==
+             simulate(*nominal, role, "test/2", 1).error;
+    };
+    EXPECT_EQ(is_nominal(CaseRole::training), where == "judging");
+    EXPECT_EQ(is_nominal(CaseRole::validation), where == "training");
+    EXPECT_EQ(is_nominal(CaseRole::test), where == "training");
+    EXPECT_EQ(track(*problem, 1) == track(*nominal, 1), where == "training");
+  }
+}
+
+// Every kind alone changes the error; in lanes and in a single arm alike.
+TEST_F(PerturbedProblem, EveryKindCountsInEveryEngine) {
+  const std::vector<std::vector<std::string>> kinds = {
+      {"perturbation.mass_relative=0.3"},
+      {"perturbation.load_kg=[10,40]"},
+      {"perturbation.viscous_friction_n_m_s_per_rad=[400,400,200,2]"},
+      {"perturbation.coulomb_friction_n_m=[400,400,200,1]",
+       "perturbation.friction_transition_rad_per_s=1"},
+      {"perturbation.quantisation_rad=0.001"},
+      {"perturbation.delay_s=0.004"},
+      {"perturbation.torque_ripple_relative=0.2", "perturbation.ripple_cycles_per_turn=20"},
+      {"perturbation.gain_sigma=0.3"}};
+  const std::vector<std::string> task = {"physics.substeps=10", "objective.kind=error"};
+  const double nominal = track(*load(task), 1);
+  for (const std::vector<std::string>& kind : kinds) {
+    SCOPED_TRACE(kind.front());
+    std::vector<std::string> overrides = task;
+    overrides.insert(overrides.end(), kind.begin(), kind.end());
+    const double lanes = track(*load(overrides), 1);
+    EXPECT_GT(std::abs(lanes / nominal - 1), 1e-4);
+    overrides.emplace_back("physics.engine=ode");
+    EXPECT_NEAR(track(*load(overrides), 1), lanes, 0.01 * lanes);
+  }
+}
+
+TEST_F(PerturbedProblem, HasNoDerivativesUnderWhatLoopsAdd) {
+  for (const std::string key : {"delay_s=0.004", "quantisation_rad=1e-4",
+                                "torque_ripple_relative=0.1", "coulomb_friction_n_m=[1,1,1,0.1]"}) {
+    const auto problem = load({"perturbation." + key});
+    EXPECT_FALSE(problem->description().has_jacobian);
+    EXPECT_THAT(problem->description().jacobian_advice, HasSubstr("apply_to to judging"));
+    EXPECT_TRUE(
+        load({"perturbation." + key, "perturbation.apply_to=judging"})->description().has_jacobian);
+  }
+}
+
+TEST_F(PerturbedProblem, CountsTheDesignsOwnTorque) {
+  const auto problem = load({"perturbation.effort_limit_sigma=1"});
+  const std::vector<double> x = problem->make_vector(problem->config().start);
+  const Evaluation evaluation = problem->evaluate(x, {CaseRole::training, "train/1", {0, 1}});
+  EXPECT_EQ(evaluation.metrics.at(1), calc_total_torque_n_m(problem->config().start));
+}
+
+// Exact derivatives of a perturbed plant against central differences.
+TEST_F(PerturbedProblem, DerivativesAreThoseOfThePlant) {
+  const auto problem = load({"perturbation.mass_relative=0.2", "perturbation.gain_sigma=0.3"});
+  ASSERT_TRUE(problem->description().has_jacobian);
+  const std::vector<double> x = problem->make_vector(problem->config().start);
+  const CaseBlock block{CaseRole::training, "train/1", {2}};
+  const Evaluation exact = problem->evaluate(x, block, true);
+  ASSERT_EQ(exact.jacobian.size(), exact.residuals.size() * x.size());
+  for (const std::size_t variable : {0U, 5U, 10U}) {  // P of three joints
+    constexpr double kStep = 1e-5;
+    std::vector<double> up = x;
+    std::vector<double> down = x;
+    up[variable] *= 1 + kStep;
+    down[variable] *= 1 - kStep;
+    const Evaluation above = problem->evaluate(up, block);
+    const Evaluation below = problem->evaluate(down, block);
+    for (std::size_t row = 0; row < exact.residuals.size(); ++row) {
+      const double slope =
+          (above.residuals[row] - below.residuals[row]) / (2 * kStep * x[variable]);
+      EXPECT_NEAR(exact.jacobian[row * x.size() + variable], slope, 1e-4 * std::abs(slope) + 1e-12);
+    }
+  }
+}
+
+TEST(PerturbationTable, PresetIsReadAndKeysBesideItGoFirst) {
+  const ProblemFolder folder;
+  folder.write("mine.toml", "mass_relative = 0.3\ngain_sigma = 0.2\n");
+  folder.write("p.toml",
+               "extends = \"base\"\n[perturbation]\npreset = \"mine.toml\"\ngain_sigma = 0.5\n");
+  const LoadedProblem loaded = folder.load("p.toml");
+  const Perturbation& p = loaded.tracking->config().perturbation;
+  EXPECT_EQ(p.mass_relative, 0.3);
+  EXPECT_EQ(p.gain_sigma, 0.5);
+  EXPECT_TRUE(loaded.input_hashes.contains("mine.toml"));
+  EXPECT_THAT(loaded.resolved_json, HasSubstr("\"mass_relative\":0.3"));
+  EXPECT_THAT(loaded.resolved_json, HasSubstr("\"gain_sigma\":0.5"));
+  EXPECT_THAT(loaded.resolved_json, Not(HasSubstr("mine")));
+}
+
+TEST(PerturbationTable, IsNothingByDefault) {
+  const LoadedProblem loaded = load_problem("q1-complex");
+  EXPECT_FALSE(loaded.tracking->config().perturbation.changes_anything());
+  EXPECT_THAT(loaded.resolved_json, Not(HasSubstr("perturbation")));
+}
+
+TEST(PerturbationTable, ShippedPresetsAreRead) {
+  for (const std::string& name : list_configs("perturbations")) {
+    const std::vector<std::string> overrides = {"perturbation.preset=" + name};
+    EXPECT_TRUE(
+        load_problem("q1-complex", overrides).tracking->config().perturbation.changes_anything());
+  }
+}
+
+// All keys, read back as they were.
+TEST(PerturbationTable, OverridesSayEverything) {
+  for (const std::string& name : list_configs("perturbations")) {
+    SCOPED_TRACE(name);
+    const Perturbation p = load_perturbation(name, 4);
+    std::vector<std::string> overrides = {"perturbation.preset=all", "perturbation.gain_sigma=1"};
+    const auto keys = make_overrides(p);
+    overrides.insert(overrides.end(), keys.begin(), keys.end());
+    const Perturbation read = load_problem("q1-complex", overrides).tracking->config().perturbation;
+    EXPECT_EQ(make_overrides(read), keys);
+    EXPECT_EQ(read.changes_arm(), p.changes_arm());
+    EXPECT_EQ(read.changes_loop(), p.changes_loop());
+    EXPECT_EQ(read.changes_design(), p.changes_design());
+  }
+}
+
+TEST(PerturbationTable, MistakesAreNamed) {
+  const ProblemFolder folder;
+  const auto refusal_of = [&](const std::string& line) {
+    return folder.refusal_of_base_with("[perturbation]\n" + line);
+  };
+  EXPECT_THAT(refusal_of("load_kg = [40, 0]"),
+              HasSubstr("p.toml:3: perturbation.load_kg is [40, 0]; it must be two numbers"));
+  EXPECT_THAT(refusal_of("load_kg = [-1, 0]"), HasSubstr("perturbation.load_kg"));
+  EXPECT_THAT(refusal_of("coulomb_friction_n_m = [1, 2]"),
+              HasSubstr("p.toml:3: perturbation.coulomb_friction_n_m is [1, 2]; it must hold 4 "
+                        "numbers, one a joint, or none"));
+  EXPECT_THAT(refusal_of("quantisation_rad = 1e-9"), HasSubstr("0 (none) or at least 1e-6"));
+  EXPECT_THAT(refusal_of("ripple_cycles_per_turn = 2.5"), HasSubstr("ripple_cycles_per_turn"));
+  EXPECT_THAT(refusal_of("friction_transition_rad_per_s = 0"), HasSubstr("friction_transition"));
+  EXPECT_THAT(refusal_of("mass_relative = 1"), HasSubstr("p.toml:3: perturbation.mass_relative"));
+  EXPECT_THAT(refusal_of("effort_limit_sigma = -0.1"), HasSubstr("effort_limit_sigma is -0.1"));
+  EXPECT_THAT(refusal_of("set = \"train/1\""), HasSubstr("must be named plant/ID"));
+  EXPECT_THAT(refusal_of("apply_to = \"test\""), HasSubstr("training, judging, everywhere"));
+  EXPECT_THAT(refusal_of("mass_relativ = 0.1"), HasSubstr("mass_relative"));
+  EXPECT_THAT(refusal_of("preset = \"mases-10\""), HasSubstr("masses-10"));
+  folder.write("bad.toml", "mass_relative = 0.1\ngain_sigmas = 0.1\n");
+  EXPECT_THAT(refusal_of("preset = \"bad.toml\""),
+              HasSubstr("bad.toml:2: unknown key gain_sigmas"));
+}
+
+}  // namespace
+}  // namespace armwright

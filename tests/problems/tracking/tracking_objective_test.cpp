@@ -1,0 +1,237 @@
+// The arithmetic of objectives by hand; tracking_problem_test.cpp has whole evaluations.
+#include "problems/tracking/tracking_objective.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/expect_error.hpp"
+#include "problems/problem_folder.hpp"
+
+namespace armwright {
+namespace {
+
+using Kind = TrackingObjective::Kind;
+using Statistic = TrackingObjective::Statistic;
+using testing::ElementsAre;
+using testing::SizeIs;
+
+const std::vector<double> kErrors_m = {0.5, 0.125, 2, 0.25};
+
+double calc_cvar(double share, const std::vector<double>& errors_m = kErrors_m) {
+  TrackingObjective objective;
+  objective.statistic = Statistic::cvar;
+  objective.cvar_share = share;
+  return calc_error_statistic(objective, errors_m, 0);
+}
+
+double calc_statistic(Statistic statistic, double lost_share) {
+  TrackingObjective objective;
+  objective.statistic = statistic;
+  objective.failure_penalty_m = 8;
+  return calc_error_statistic(objective, kErrors_m, lost_share);
+}
+
+TEST(ErrorStatistic, IsTheNumberByHand) {
+  EXPECT_EQ(calc_statistic(Statistic::mean, 0.5), 0.71875);
+  EXPECT_EQ(calc_statistic(Statistic::worst, 0.5), 2);
+  EXPECT_EQ(calc_statistic(Statistic::mean_with_failures, 0.5), 4.71875);
+  EXPECT_EQ(calc_statistic(Statistic::mean_with_failures, 0), 0.71875);
+}
+
+TEST(ErrorStatistic, CvarWeighsTheCaseOnTheBorderByItsPart) {
+  EXPECT_EQ(calc_cvar(0.25), 2);                  // one of four
+  EXPECT_EQ(calc_cvar(0.5), 1.25);                // (2 + 0.5) / 2
+  EXPECT_EQ(calc_cvar(0.375), (2 + 0.25) / 1.5);  // half of the second
+  EXPECT_EQ(calc_cvar(0.01), 2);                  // a part of the worst alone
+  EXPECT_EQ(calc_cvar(1), 0.71875);
+}
+
+// Rockafellar and Uryasev's definition, the least over a of a + mean(max(0, e - a)) / s, is a
+// minimum at one of the errors, as the function is convex and piecewise linear.
+TEST(ErrorStatistic, CvarIsTheMinimumThatDefinesIt) {
+  for (int percent = 1; percent <= 100; ++percent) {
+    const double share = percent / 100.0;
+    double least = INFINITY;
+    for (const double a : kErrors_m) {
+      double excess = 0;
+      for (const double error_m : kErrors_m) {
+        excess += std::max(0.0, error_m - a) / static_cast<double>(kErrors_m.size());
+      }
+      least = std::min(least, a + excess / share);
+    }
+    EXPECT_NEAR(calc_cvar(share), least, 1e-14) << share;  // a few roundings of numbers up to 2
+  }
+}
+
+TEST(ErrorStatistic, CvarFallsContinuouslyFromTheWorstToTheMean) {
+  double before = calc_statistic(Statistic::worst, 0);
+  for (int i = 1; i <= 10000; ++i) {
+    const double cvar = calc_cvar(i / 10000.0);
+    EXPECT_LE(cvar, before + 1e-14);
+    // Its slope is nowhere steeper than (worst - best) / share, and the share is 1/4 at least where
+    // it falls: 1.875 / 0.25 / 10000.
+    EXPECT_GE(cvar, before - 7.5e-4);
+    before = cvar;
+  }
+}
+
+// What makes a bound of what consists of bounds.
+TEST(ErrorStatistic, NeverFallsWhereACaseRises) {
+  for (const Statistic statistic :
+       {Statistic::mean, Statistic::worst, Statistic::cvar, Statistic::mean_with_failures}) {
+    TrackingObjective objective;
+    objective.statistic = statistic;
+    objective.cvar_share = 0.4;
+    for (std::size_t i = 0; i < kErrors_m.size(); ++i) {
+      std::vector<double> higher = kErrors_m;
+      for (int rise = 0; rise < 30; ++rise) {
+        const double before = calc_error_statistic(objective, higher, 0.25);
+        higher[i] += 0.1;
+        EXPECT_GE(calc_error_statistic(objective, higher, 0.25), before);
+      }
+    }
+  }
+}
+
+TEST(ObjectiveTerms, EnergyAndDurationAreAddedInPartsOfTheirScales) {
+  TrackingObjective objective;
+  objective.error_scale_m = 0.5;
+  objective.energy_weight = 3;
+  objective.energy_scale_j = 1000;
+  objective.duration_weight = 2;
+  objective.duration_scale_s = 16;
+  objective.torque_weight = 4;
+  objective.torque_scale_n_m = 100;
+  const ObjectiveTerms terms{.error_m = 0.25, .torque_n_m = 50, .energy_j = 500, .duration_s = 40};
+  EXPECT_THAT(calc_objectives(objective, terms), ElementsAre(0.5 + 1.5 + 5));
+  EXPECT_EQ(describe_objectives(objective)[0].name, "error, energy and duration");
+  EXPECT_EQ(describe_objectives(objective)[0].unit, "1");
+  objective.kind = Kind::error_and_torque;
+  EXPECT_THAT(calc_objectives(objective, terms), ElementsAre(0.5 + 2 + 1.5 + 5));
+  EXPECT_EQ(describe_objectives(objective)[0].name, "error, torque, energy and duration");
+  objective.logarithm = true;
+  EXPECT_THAT(calc_objectives(objective, terms), ElementsAre(std::log(9.0)));
+  objective.energy_weight = 0;
+  objective.duration_weight = 0;
+  EXPECT_EQ(describe_objectives(objective)[0].name, "ln(error and torque)");
+}
+
+CaseOutcome make_case(double error_m, double energy_j, double duration_s) {
+  CaseOutcome outcome;
+  outcome.error = error_m;
+  outcome.residuals = {error_m, error_m};
+  outcome.metrics = {energy_j, 0, duration_s};
+  outcome.metrics.resize(3 + 2 * 4);
+  return outcome;
+}
+
+TEST(TrackingStatistics, EvaluationsCarryThemAndTheMeanAsMetric) {
+  const std::vector<CaseOutcome> outcomes = {make_case(0.02, 1, 40), make_case(0.2, 1, 40),
+                                             make_case(0.08, 1, 40)};
+  const auto evaluate = [&](const std::vector<std::string>& overrides) {
+    const auto problem = load_problem("q1-complex", overrides).tracking;
+    EXPECT_FALSE(problem->description().has_residuals);
+    const Evaluation evaluation =
+        problem->aggregate(problem->make_vector(problem->config().start), outcomes);
+    EXPECT_DOUBLE_EQ(evaluation.metrics.at(0), 0.1);
+    EXPECT_THAT(evaluation.residuals, SizeIs(0));
+    return evaluation.objectives.at(0);
+  };
+  EXPECT_EQ(evaluate({"objective.statistic=worst"}), 0.2);
+  EXPECT_DOUBLE_EQ(evaluate({"objective.statistic=cvar", "objective.cvar_share=0.5"}),
+                   (0.2 + 0.5 * 0.08) / 1.5);
+  EXPECT_DOUBLE_EQ(
+      evaluate({"objective.statistic=mean_with_failures", "objective.failure_penalty_m=6"}),
+      0.1 + 6 / 3.0);
+}
+
+// Of a case that diverged on its last points the error may be small; of one without number there
+// is none.
+TEST(TrackingStatistics, EveryLossOfTheTargetIsAFailure) {
+  const auto problem =
+      load_problem("q1-complex", std::vector<std::string>{"objective.statistic=mean_with_failures",
+                                                          "objective.failure_penalty_m=8"})
+          .tracking;
+  CaseOutcome diverged = make_case(0.0625, 1, 40);
+  diverged.status = EvaluationStatus::diverged;
+  CaseOutcome none;
+  none.status = EvaluationStatus::unreachable;
+  none.has_error = false;
+  const std::vector<CaseOutcome> outcomes = {make_case(0.0625, 1, 40), diverged, none,
+                                             make_case(0.0625, 1, 40)};
+  const Evaluation evaluation =
+      problem->aggregate(problem->make_vector(problem->config().start), outcomes);
+  EXPECT_EQ(evaluation.objectives.at(0), 0.0625 + 8 * 0.5);
+}
+
+TEST(TrackingStatistics, LimitsAreOfTheSameError) {
+  const auto problem =
+      load_problem("q2-torque", std::vector<std::string>{"objective.statistic=worst",
+                                                         "objective.error_limit_m=0.1"})
+          .tracking;
+  EXPECT_EQ(problem->description().limits.at(0).quantity.name, "worst error");
+  const std::vector<CaseOutcome> outcomes = {make_case(0.02, 1, 40), make_case(0.2, 1, 40)};
+  EXPECT_THAT(
+      problem->aggregate(problem->make_vector(problem->config().start), outcomes).constraint_values,
+      ElementsAre(1));
+}
+
+TEST(TrackingStatistics, TheSquaresOfAllResidualsAddUp) {
+  const auto problem =
+      load_problem(
+          "q2-e6",
+          std::vector<std::string>{"objective.energy_weight=2", "objective.energy_scale_j=1000",
+                                   "objective.duration_weight=0.5", "objective.duration_scale_s=10",
+                                   "physics.engine=articulated"})
+          .tracking;
+  EXPECT_FALSE(problem->description().has_jacobian);
+  EXPECT_THAT(problem->description().jacobian_advice, testing::HasSubstr("energy_weight"));
+  const std::vector<CaseOutcome> outcomes = {make_case(0.25, 300, 40), make_case(0.5, 500, 40)};
+  const Evaluation evaluation =
+      problem->aggregate(problem->make_vector(problem->config().start), outcomes);
+  ASSERT_THAT(evaluation.residuals, SizeIs(4 + 4 + 2));
+  double sum = 0;
+  for (const double r : evaluation.residuals) {
+    sum += r * r;
+  }
+  EXPECT_DOUBLE_EQ(sum, evaluation.objectives.at(0));
+  EXPECT_DOUBLE_EQ(evaluation.objectives[0], 0.375 / 0.0058 + 85200.0 / 963686 + 0.8 + 2);
+  EXPECT_EQ(evaluation.metrics.at(5), 40);
+  EXPECT_EQ(problem->description().metrics.at(5).name, "duration");
+}
+
+TEST(ObjectiveTable, RefusesWhatCannotBeMeant) {
+  const ProblemFolder folder;
+  EXPECT_EQ(folder.refusal_of_base_with("[objective]\nstatistic = 'median'"),
+            "p.toml:3: unknown objective.statistic 'median'; did you mean 'mean'? Valid: mean, "
+            "worst, cvar, "
+            "mean_with_failures");
+  EXPECT_EQ(folder.refusal_of_base_with("[objective]\nstatistic = 'cvar'\ncvar_share = 0"),
+            "p.toml:4: objective.cvar_share is 0; it must be a finite number > 0 and <= 1");
+  EXPECT_EQ(folder.refusal_of_base_with("[objective]\nstatistic = 'mean_with_failures'\n"
+                                        "failure_penalty_m = -1"),
+            "p.toml:4: objective.failure_penalty_m is -1; it must be a finite number > 0 and <= "
+            "1000000000000");
+  EXPECT_EQ(folder.refusal_of_base_with("[objective]\nenergy_weight = 1"),
+            "p.toml:2: objective.energy_scale_j is missing; it must be a finite number > 0 and <= "
+            "1000000000000");
+  EXPECT_EQ(folder.refusal_of_base_with("[objective]\nkind = 'error_vs_torque'\nenergy_weight = 1\n"
+                                        "energy_scale_j = 1"),
+            "p.toml:4: objective.energy_weight is 1; only the kinds error and error_and_torque are "
+            "sums; choose one of them or leave it out");
+}
+
+TEST(TrackingObjective, WhatAStatisticDoesNotReadIsRefused) {
+  for (const std::string key : {"cvar_share", "failure_penalty_m"}) {
+    EXPECT_THAT(usage_error_of([&] {
+                  load_problem("q2-e6", std::vector<std::string>{"objective." + key + "=0.2"});
+                }),
+                testing::HasSubstr("it does nothing to the mean; set objective.statistic"))
+        << key;
+  }
+}
+
+}  // namespace
+}  // namespace armwright

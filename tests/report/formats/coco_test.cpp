@@ -1,0 +1,139 @@
+#include "report/formats/coco.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "report/hand_made_traces.hpp"
+
+namespace armwright {
+namespace {
+
+using testing::ElementsAre;
+
+TEST(LevelTrigger, ReachesALevelOnceWhateverIsSkipped) {
+  LevelTrigger level;
+  EXPECT_TRUE(level.reaches(1));  // 10^(0/20)
+  EXPECT_FALSE(level.reaches(1));
+  EXPECT_FALSE(level.reaches(0.9));  // 10^(-1/20) is 0.891...
+  EXPECT_TRUE(level.reaches(0.89));
+  EXPECT_FALSE(level.reaches(0.95));
+  EXPECT_TRUE(level.reaches(0.5));
+  EXPECT_FALSE(level.reaches(0.45));  // above 10^(-7/20), 0.4467
+  EXPECT_TRUE(level.reaches(0.44));
+}
+
+TEST(LevelTrigger, EndsAtThePrecision) {
+  LevelTrigger level;
+  EXPECT_TRUE(level.reaches(2e-8));
+  EXPECT_TRUE(level.reaches(1e-8));
+  EXPECT_FALSE(level.reaches(1e-9));
+  EXPECT_FALSE(level.reaches(0));
+  LevelTrigger another;
+  EXPECT_TRUE(another.reaches(0));
+}
+
+TEST(EvaluationTrigger, IsThePowersOfTenByTwentiethsAndMultiplesOfTheDimension) {
+  EvaluationTrigger trigger(3);
+  std::vector<std::uint64_t> numbers;
+  for (std::uint64_t i = 1; i <= 65; ++i) {
+    if (trigger.matches(i)) {
+      numbers.push_back(i);
+    }
+  }
+  // 10^(k/20): 1 1.1 1.3 1.4 1.6 1.8 2.0 2.2 2.5 2.8 3.2 3.5 4.0 4.5 5.0 5.6 6.3 7.1 7.9 8.9
+  // 10 11.2 12.6 14.1 15.8 17.8 20.0 22.4 25.1 28.2 31.6 35.5 39.8 44.7 50.1 56.2 63.1; 15, 30 and
+  // 60 are multiples of 3 only.
+  EXPECT_THAT(numbers, ElementsAre(1, 2, 3, 4, 5, 6, 7, 8, 10, 11, 12, 14, 15, 17, 19, 22, 25, 28,
+                                   30, 31, 35, 39, 44, 50, 56, 60, 63));
+}
+
+TEST(EvaluationTrigger, MeetsTheWholePowersAndGapsInBetween) {
+  EvaluationTrigger trigger(7);
+  EXPECT_TRUE(trigger.matches(100));
+  EXPECT_FALSE(trigger.matches(101));
+  EXPECT_TRUE(trigger.matches(1000));
+  EXPECT_TRUE(trigger.matches(7000));
+  EXPECT_FALSE(trigger.matches(9000));
+  EXPECT_TRUE(trigger.matches(1000000));
+  EXPECT_TRUE(trigger.matches(3500000));
+}
+
+TEST(ConstraintDigits, GrowWithTheViolation) {
+  const std::vector<double> values = {
+      -1,   0,    1e-9, 1e-7, 1.1e-7, 1e-6, 1e-5,
+      1e-4, 1e-3, 1e-2, 1e-1, 1,      1.1,  std::numeric_limits<double>::infinity()};
+  EXPECT_EQ(format_constraint_digits(values), "00112234567899");
+  EXPECT_EQ(format_constraint_digits({}), "");
+}
+
+TEST(CocoRun, HasARowALevelAndARowATrigger) {
+  const CocoRun run = make_coco_run(make_trace({101.0, 102.0, 2.0, 1.99, 1.5, 1.0, 4.0, 4.0, 5.0}),
+                                    {.reference = 1});
+  EXPECT_EQ(run.header,
+            "% f evaluations | g evaluations | best noise-free fitness - Fref (1.000000000000e+00) "
+            "+ sum g_i+ | measured fitness | best measured fitness or single-digit g-values | x1 | "
+            "x2...\n");
+  EXPECT_EQ(run.dat,
+            "1 0 +1.000000000e+02 +1.010000000e+02 +1.010000000e+02 +5.0000e-01\n"
+            "3 0 +1.000000000e+00 +2.000000000e+00 +2.000000000e+00 +5.0000e-01\n"
+            "5 0 +5.000000000e-01 +1.500000000e+00 +1.500000000e+00 +5.0000e-01\n"
+            "6 0 +0.000000000e+00 +1.000000000e+00 +1.000000000e+00 +5.0000e-01\n"
+            "9 0 +0.000000000e+00 +5.000000000e+00 +1.000000000e+00 +5.0000e-01\n");
+  EXPECT_EQ(run.tdat,
+            "1 0 +1.000000000e+02 +1.010000000e+02 +1.010000000e+02 +5.0000e-01\n"
+            "2 0 +1.000000000e+02 +1.020000000e+02 +1.010000000e+02 +5.0000e-01\n"
+            "3 0 +1.000000000e+00 +2.000000000e+00 +2.000000000e+00 +5.0000e-01\n"
+            "4 0 +9.900000000e-01 +1.990000000e+00 +1.990000000e+00 +5.0000e-01\n"
+            "5 0 +5.000000000e-01 +1.500000000e+00 +1.500000000e+00 +5.0000e-01\n"
+            "6 0 +0.000000000e+00 +1.000000000e+00 +1.000000000e+00 +5.0000e-01\n"
+            "7 0 +0.000000000e+00 +4.000000000e+00 +1.000000000e+00 +5.0000e-01\n"
+            "8 0 +0.000000000e+00 +4.000000000e+00 +1.000000000e+00 +5.0000e-01\n"
+            "9 0 +0.000000000e+00 +5.000000000e+00 +1.000000000e+00 +5.0000e-01\n");
+  EXPECT_EQ(run.summary, "3:9|0.0e+00");
+}
+
+TEST(CocoRun, CountsConstraintsAndShowsThemAsDigits) {
+  const RunTrace trace =
+      make_trace({5.0, 2.0, std::nullopt}, [](std::vector<TracedEvaluation>& evaluations) {
+        evaluations[0].constraint_values = {0.5, -1};
+        evaluations[0].feasible = false;
+        evaluations[1].constraint_values = {0, -2};
+      });
+  const CocoRun run = make_coco_run(trace, {.reference = 1.5, .constraints = 2});
+  EXPECT_EQ(run.dat,
+            "1 1 +9.999999998e+09 +1.000000000e+10 80 +5.0000e-01\n"
+            "2 2 +5.000000000e-01 +2.000000000e+00 00 +5.0000e-01\n"
+            "3 3 +5.000000000e-01 +1.000000000e+10 99 +5.0000e-01\n");
+  EXPECT_EQ(run.summary, "3:3|5.0e-01");
+}
+
+TEST(CocoRun, ShowsUpToSixVariables) {
+  const auto make = [](std::size_t variables) {
+    RunTrace trace = make_trace({2.0}, [&](std::vector<TracedEvaluation>& evaluations) {
+      evaluations[0].x.assign(variables, -0.25);
+    });
+    trace.names.variables.assign(variables, "x");
+    return trace;
+  };
+  EXPECT_THAT(make_coco_run(make(6), {}).dat,
+              testing::EndsWith(" +2.000000000e+00 -2.5000e-01 -2.5000e-01 -2.5000e-01 -2.5000e-01 "
+                                "-2.5000e-01 -2.5000e-01\n"));
+  EXPECT_THAT(make_coco_run(make(7), {}).dat, testing::EndsWith(" +2.000000000e+00\n"));
+}
+
+TEST(CocoScale, RefersToTheBestAndKeepsInfeasibleOnesAboveAll) {
+  ProblemRuns problem;
+  problem.constraints = 3;
+  EXPECT_EQ(make_coco_scale(problem).reference, 0);
+  EXPECT_EQ(make_coco_scale(problem).infeasible, 1e10);
+  problem.best = -2;
+  problem.worst = 3e11;
+  EXPECT_EQ(make_coco_scale(problem).reference, -2);
+  EXPECT_EQ(make_coco_scale(problem).infeasible, 1e12);
+  EXPECT_EQ(make_coco_scale(problem).constraints, 3u);
+}
+
+}  // namespace
+}  // namespace armwright

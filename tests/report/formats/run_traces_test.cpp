@@ -1,0 +1,97 @@
+#include "report/formats/run_traces.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "base/error.hpp"
+#include "base/temporary_folder.hpp"
+#include "report/hand_made_traces.hpp"
+
+namespace armwright {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class FindRuns : public testing::Test {
+ protected:
+  // cells/FOLDER/cell.json with this text, or the folder without the file.
+  void make_cell(const std::string& folder, const std::string& text) {
+    const auto cell = folder_ / ("cells/" + folder);
+    std::filesystem::create_directories(cell);
+    if (!text.empty()) {
+      std::ofstream(cell / "cell.json") << text;
+    }
+  }
+  void expect_refused(ErrorKind kind, const testing::Matcher<std::string>& message) {
+    try {
+      find_runs(folder_.path());
+      ADD_FAILURE() << "not refused";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), kind);
+      EXPECT_THAT(std::string(error.what()), message);
+    }
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(FindRuns, TakesNamesFromTheCellsAndSortsThem) {
+  make_cell("a/b/010", R"({"problem":"p","label":"l","optimizer":"ga","replicate":10})");
+  make_cell("a/b/9", R"({"problem":"p","label":"l","optimizer":"ga","replicate":9,"more":1})");
+  make_cell("z/b/1", R"({"problem":"\"o/o\"","label":"","optimizer":"random","replicate":1})");
+  make_cell("a/b/11", "");
+  std::ofstream(folder_ / "cells/file") << "no cell";
+  const FoundRuns found = find_runs(folder_.path());
+  EXPECT_EQ(found.unfinished, 1u);
+  std::vector<std::string> names;
+  for (const RunEntry& run : found.runs) {
+    names.push_back(run.problem + "|" + run.label + "|" + run.optimizer + "|" +
+                    std::to_string(run.replicate));
+  }
+  EXPECT_THAT(names, ElementsAre("\"o/o\"||random|1", "p|l|ga|9", "p|l|ga|10"));
+  EXPECT_EQ(found.runs[2].folder, folder_ / "cells/a/b/010");
+}
+
+TEST_F(FindRuns, RefusesAFolderOfNeitherKind) {
+  expect_refused(ErrorKind::usage, AllOf(HasSubstr("manifest.json"), HasSubstr("cells")));
+}
+
+TEST_F(FindRuns, RefusesAStudyInWhichNothingHasFinished) {
+  make_cell("a/b/1", "");
+  expect_refused(ErrorKind::usage, HasSubstr("no cell of this study has finished"));
+}
+
+TEST_F(FindRuns, RefusesACellTwice) {
+  make_cell("a/b/1", R"({"problem":"p","label":"l","optimizer":"ga","replicate":1})");
+  make_cell("a/c/1", R"({"problem":"p","label":"l","optimizer":"ga","replicate":1})");
+  expect_refused(ErrorKind::bad_data,
+                 AllOf(HasSubstr("a/b/1 and "), HasSubstr("a/c/1 are both replicate 1 of 'l'")));
+}
+
+TEST_F(FindRuns, RefusesCellsItCannotUseAndNamesTheFile) {
+  for (const char* text : {"{", "[]", R"({"problem":"p","label":"l","optimizer":"ga"})",
+                           R"({"problem":1,"label":"l","optimizer":"ga","replicate":1})"}) {
+    make_cell("a/b/1", text);
+    expect_refused(ErrorKind::bad_data, HasSubstr("a/b/1/cell.json: is no cell"));
+  }
+  make_cell("a/b/1", R"({"problem":"p","label":"l","optimizer":"ga","replicate":0})");
+  expect_refused(ErrorKind::bad_data, HasSubstr("replicate is 0; they are counted from 1"));
+}
+
+TEST(TracedEvaluations, HaveAFirstALastAndTheEarliestOfTheBestFeasible) {
+  const TracedEvaluations none;
+  EXPECT_TRUE(none.empty());
+  EXPECT_FALSE(none.first() || none.last() || none.best());
+  const RunTrace trace = make_trace(
+      {1.0, 2.0, 2.0}, [](std::vector<TracedEvaluation>& all) { all[0].feasible = false; });
+  EXPECT_EQ(trace.evaluations.size(), 3u);
+  EXPECT_EQ(trace.evaluations.first()->number, 1u);
+  EXPECT_EQ(trace.evaluations.best()->number, 2u);
+  EXPECT_EQ(trace.evaluations.last()->number, 3u);
+}
+
+}  // namespace
+}  // namespace armwright

@@ -1,0 +1,80 @@
+// Links between ranks that are threads of one process, and what can befall them.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "study/executor/message_transport.hpp"
+
+namespace armwright {
+
+// The wires of a job: messages lie here until they are received.
+class MemoryWires {
+ public:
+  explicit MemoryWires(std::size_t ranks) : arrived_(ranks) {}
+
+  std::size_t size() const { return arrived_.size(); }
+  void send(std::size_t from, std::size_t to, std::string message) {
+    const std::lock_guard lock(mutex_);
+    if (!dead_.contains(from) && !dead_.contains(to)) {
+      (held_.contains(from) ? kept_ : arrived_[to]).push_back({from, std::move(message)});
+    }
+  }
+  std::optional<Links::Message> receive(std::size_t rank) {
+    const std::lock_guard lock(mutex_);
+    if (dead_.contains(rank) || arrived_[rank].empty()) {
+      return std::nullopt;
+    }
+    Links::Message message = std::move(arrived_[rank].front());
+    arrived_[rank].pop_front();
+    return message;
+  }
+
+  // Nothing goes to it or comes from it any more.
+  void kill(std::size_t rank) {
+    const std::lock_guard lock(mutex_);
+    dead_.insert(rank);
+  }
+  // What it sends is kept back until it is let go again.
+  void hold(std::size_t rank) {
+    const std::lock_guard lock(mutex_);
+    held_.insert(rank);
+  }
+  void let_go(std::size_t rank) {
+    const std::lock_guard lock(mutex_);
+    held_.erase(rank);
+    for (Links::Message& message : std::exchange(kept_, {})) {
+      arrived_[0].push_back(std::move(message));
+    }
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::deque<Links::Message>> arrived_;  // by receiver
+  std::deque<Links::Message> kept_;                  // of workers: for the coordinator
+  std::set<std::size_t> dead_;
+  std::set<std::size_t> held_;
+};
+
+class MemoryLinks final : public Links {
+ public:
+  MemoryLinks(MemoryWires& wires, std::size_t rank) : wires_(wires), rank_(rank) {}
+  std::size_t rank() const override { return rank_; }
+  std::size_t size() const override { return wires_.size(); }
+  void send(std::size_t to, std::string message) override {
+    wires_.send(rank_, to, std::move(message));
+  }
+  std::optional<Message> receive() override { return wires_.receive(rank_); }
+
+ private:
+  MemoryWires& wires_;
+  std::size_t rank_;
+};
+
+}  // namespace armwright

@@ -1,0 +1,104 @@
+// Which of a run's improvements are judged.
+#include "study/run/candidate_pool.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/random.hpp"
+
+namespace armwright {
+namespace {
+
+using testing::ElementsAre;
+
+// Of a run of ten improvements, one an evaluation: which are judged if four may be, and two more
+// for their objective.
+std::vector<std::uint64_t> select_of_ten(const std::string& problem) {
+  RunPlan plan;
+  plan.problem = load_problem(problem);
+  plan.selection = {.last = 4, .best = 2};
+  CandidatePool pool(plan);
+  for (std::uint64_t i = 0; i < 10; ++i) {
+    EvaluationRecord record;
+    record.index = i;
+    record.x = {static_cast<double>(i)};
+    record.evaluation.objectives = {100.0 - static_cast<double>(i)};
+    pool.consider(record);
+  }
+  std::vector<std::uint64_t> evaluations;
+  for (const Candidate& candidate : pool.select()) {
+    evaluations.push_back(candidate.evaluation);
+  }
+  return evaluations;
+}
+
+TEST(CandidatePoolTest, TheLastImprovementsAreJudged) {
+  EXPECT_THAT(select_of_ten("sphere"), ElementsAre(6, 7, 8, 9));
+}
+
+TEST(CandidatePoolTest, WithConstraintsThoseOfTheWholeRun) {
+  EXPECT_THAT(select_of_ten("constrained"), ElementsAre(0, 3, 6, 8, 9));
+}
+
+// The pool holds few of a long run's candidates. That none is missed is seen against all of them.
+TEST(RememberedCandidatesTest, AreThoseThatAllTogetherWouldHaveGiven) {
+  RandomStream random("test/remembered-candidates", 1);
+  for (int round = 0; round < 200; ++round) {
+    const Selection selection{.last = 1 + round % 7, .best = round % 4};
+    RememberedCandidates remembered(selection, true);
+    std::vector<Candidate> all;
+    for (std::uint64_t i = 0; i < 60; ++i) {
+      const double x = std::floor(random.uniform(0, 12));  // many come again
+      const bool recommended = random.uniform(0, 1) < 0.3;
+      all.push_back({{x}, i, i, recommended, recommended ? 0 : std::floor(random.uniform(0, 5))});
+      remembered.add(all.back());
+    }
+    const auto list_different = [&](const std::vector<Candidate>& candidates, int most) {
+      std::vector<std::uint64_t> numbers;
+      std::vector<double> seen;
+      for (const Candidate& candidate : candidates) {
+        if (std::ssize(numbers) < most && !std::ranges::count(seen, candidate.x[0])) {
+          seen.push_back(candidate.x[0]);
+          numbers.push_back(candidate.evaluation);
+        }
+      }
+      return numbers;
+    };
+    std::vector<Candidate> newest_first(all.rbegin(), all.rend());
+    std::vector<Candidate> best_first = all;
+    std::erase_if(best_first, [](const Candidate& candidate) { return candidate.recommended; });
+    std::ranges::stable_sort(best_first, {}, &Candidate::training_objective);
+    const std::vector<Candidate>& last = remembered.last();
+    EXPECT_EQ(list_different({last.rbegin(), last.rend()}, 60),
+              list_different(newest_first, selection.last));
+    EXPECT_EQ(list_different(remembered.best(), 60), list_different(best_first, selection.best));
+  }
+}
+
+TEST(RememberedCandidatesTest, AreSpreadOverTheWholeOfALongRun) {
+  RememberedCandidates remembered({.last = 4, .best = 2}, true);
+  constexpr std::uint64_t kCount = 1'000'000;
+  for (std::uint64_t i = 0; i < kCount; ++i) {
+    remembered.add({{static_cast<double>(i)}, i, i, false, 0});
+  }
+  const std::vector<Candidate> some = remembered.spread(5);
+  ASSERT_EQ(some.size(), 5u);
+  EXPECT_EQ(some.back().evaluation, kCount - 1);
+  for (std::uint64_t i = 0; i < 5; ++i) {
+    EXPECT_NEAR(static_cast<double>(some[i].evaluation), 0.25 * static_cast<double>(i * kCount),
+                64);
+  }
+}
+
+TEST(CandidatePoolTest, NothingFeasibleIsNothingToJudge) {
+  for (const char* name : {"sphere", "constrained"}) {
+    RunPlan plan;
+    plan.problem = load_problem(name);
+    EXPECT_TRUE(CandidatePool(plan).select().empty());
+  }
+}
+
+}  // namespace
+}  // namespace armwright
