@@ -10,7 +10,7 @@ namespace {
 
 // A failed evaluation violates every constraint by this: more than any design does, and still a
 // number that linear models of the constraints survive.
-constexpr double kFailedViolation = 1e9;
+constexpr double kFailedConstraint = 1e9;
 
 // COBYLA and PRAXIS can ask for NaN for ever once they have begun; after so many in a row the start
 // is given up.
@@ -53,7 +53,7 @@ double NloptQuestions::ask_constraint(std::span<const double> coordinates, std::
   if (answer == nullptr) {
     answer = evaluate(coordinates);
   }
-  return answer == nullptr ? kFailedViolation : answer->constraint_values[index];
+  return answer == nullptr ? kFailedConstraint : answer->constraint_values[index];
 }
 
 NloptQuestions::Answer* NloptQuestions::find(std::span<const double> coordinates) {
@@ -105,7 +105,7 @@ NloptQuestions::Answer& NloptQuestions::remember(std::span<const double> coordin
   if (settings_.takes_constraints) {
     answer.objective = calc_scalar(problem, score.objectives);
     answer.constraint_values = score.constraint_values;
-    answer.constraint_values.resize(problem.constraints.size(), kFailedViolation);
+    answer.constraint_values.resize(problem.constraints.size(), kFailedConstraint);
     answer.violation = calc_violation(answer.constraint_values);
   } else {
     answer.objective = calc_merit(problem, score, settings_.constraint_weight);

@@ -113,7 +113,7 @@ class Multistart : public Optimizer {
   std::int64_t evaluations_per_start_;
 };
 
-std::vector<OptionSpec> make_own_options() {
+std::vector<OptionSpec> make_multistart_options() {
   return {{.name = "spread",
            .description = "of the random starts about the problem's start, share of the box",
            .fallback = 1.0,
@@ -158,7 +158,7 @@ OptimizerRow make_multistart_row(const OptimizerRow& inner) {
       "Rinnooy Kan and Timmer 1987, Stochastic global optimization methods; {}", inner.source);
   row.capabilities.stochastic = true;
   row.capabilities.local = false;
-  for (OptionSpec& own : make_own_options()) {
+  for (OptionSpec& own : make_multistart_options()) {
     if (std::ranges::count(inner.options, own.name, &OptionSpec::name) > 0) {
       throw Error(ErrorKind::usage,
                   fmt::format("optimizer '{}': '{}' has an option '{}' itself, which would hide "

@@ -10,6 +10,7 @@
 #include "process/output_log.hpp"
 #include "study/run/judge.hpp"
 #include "study/run/record_files.hpp"
+#include "study/run/run_evaluator.hpp"
 #include "study/run/run_folder.hpp"
 #include "study/run/store.hpp"
 
