@@ -1,4 +1,4 @@
-# Every library comes from Debian 12; scripts/setup installs them and the README's table says why each is there.
+# Every library comes from Debian 12. scripts/setup installs them, and docs/dependencies.md says why each is there.
 find_package(Threads REQUIRED)
 find_package(PkgConfig REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)

@@ -58,7 +58,7 @@ test('the search finds a part of a page and goes there, with the keyboard alone'
   await page.waitForSelector('#found a');
   await page.keyboard.press('ArrowDown');
   await page.keyboard.press('Enter');
-  await page.waitForURL(/(racing|architecture|engines|findings|comparing)\.html|changelog\.html/);
+  await page.waitForURL(/(racing|architecture|engines|findings|comparing|glossary)\.html|changelog\.html/);
   assert.match(await page.locator('article').textContent(), /coevolution/i);
   await page.fill('#search', 'zzzzqqqq');
   await page.waitForSelector('#found p');
