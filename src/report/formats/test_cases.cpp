@@ -17,11 +17,11 @@ namespace {
 // In which generated cases lie, from the resolved configuration that the run recorded. Nothing
 // where its cases are a path of the user's own, who has it.
 std::optional<WorkspaceSphere> read_workspace(const std::filesystem::path& run) {
-  constexpr std::size_t kLimit_bytes = std::size_t{16} << 20;
+  constexpr std::size_t kCaseFileLimit_bytes = std::size_t{16} << 20;
   const auto file = run / "manifest.json";
   WorkspaceSphere sphere;
   try {
-    const auto manifest = nlohmann::json::parse(read_json_file(file, kLimit_bytes));
+    const auto manifest = nlohmann::json::parse(read_json_file(file, kCaseFileLimit_bytes));
     const auto& problem = manifest.at("configuration").at("problem");
     if (problem.contains("path") && problem.at("path").contains("kind")) {
       return std::nullopt;
