@@ -52,8 +52,8 @@ std::vector<std::string> describe_origin(const FinishedArm& arm) {
 }
 
 std::string read_urdf_of(const FinishedArm& arm, const fs::path& file) {
-  constexpr std::size_t kLimit_bytes = std::size_t{8} << 20;  // as load_urdf()
-  std::string xml = read_file(file, kLimit_bytes);
+  constexpr std::size_t kUrdfLimit_bytes = std::size_t{8} << 20;  // as load_urdf()
+  std::string xml = read_file(file, kUrdfLimit_bytes);
   const auto& inputs = arm.run.configuration.at("inputs");
   const std::string name = file.filename().string();
   if (!inputs.contains(name) || inputs[name] != calc_sha256_hex(xml)) {
