@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "../base/expect_error.hpp"
+#include "base/expect_error.hpp"
 #include "base/random.hpp"
 #include "sim/generated_arm.hpp"
 #include "sim/kinematics/kinematics.hpp"
