@@ -1,4 +1,4 @@
-// The winner's numbers beside those of other designs, and what the designs achieve.
+// The numbers of the winner beside those of other designs, and the results of the designs.
 import type { ArmEvidence, RunData } from '../data';
 import type { Column, TableItem, Value } from '../model';
 import { kMillimetres } from '../numbers';

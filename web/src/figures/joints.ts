@@ -1,4 +1,4 @@
-// Joint angles, errors and torques in time, with the limits of the torques.
+// Joint angles, errors and torques over time, with the limits of the torques.
 import { decimate } from '../charts/decimate';
 import { get_series_style, type Look } from '../charts/look';
 import { make_number_axis, make_curve_plot, make_stretches } from '../charts/marks';
@@ -23,13 +23,13 @@ import {
 interface JointView {
   index: number;
   name: string;
-  unit: string; // of its position
+  unit: string; // unit of the position
   effort_unit: string;
-  factor: number; // from SI to that
+  factor: number; // factor from SI to that unit
 }
 
-const kAtLimit = 1 - 1e-4; // of it; torques are packed in 16 bits
-const kStretches = 300; // of the time, the shortest gap between two that is seen
+const kAtLimit = 1 - 1e-4; // share of a limit from which a torque counts as at the limit; torques are packed in 16 bits
+const kStretches = 300; // the whole time divided by the shortest visible gap between two stretches
 
 function get_joints(robot: Robot): JointView[] {
   const names = shorten_all(
@@ -125,7 +125,8 @@ export function is_at_limit(effort: number, limits: [number, number]): boolean {
   return (limits[0] < 0 && effort <= kAtLimit * limits[0]) || (limits[1] > 0 && effort >= kAtLimit * limits[1]);
 }
 
-// Stretches of time at a limit; those closer to each other than anybody sees are one.
+// Returns the stretches of time at a limit. Stretches with an invisible gap between them are
+// joined.
 export function find_saturated(set: ReplaySet, effort: Float32Array, limits: [number, number]): [number, number][] {
   const dt = set.task.control_period_s;
   const found: [number, number][] = [];
@@ -325,7 +326,7 @@ export function make_joint_figures(set: ReplaySet, robot: Robot | undefined): Fi
   return [angles, errors, torques];
 }
 
-// How often each joint of each design is at its limits.
+// Returns the share of time for which each joint of each design is at its limits.
 function tabulate_saturation(set: ReplaySet, joints: JointView[]): Value[][] {
   const rows: Value[][] = [];
   set.cases.forEach((one) => {
@@ -364,7 +365,7 @@ export function make_saturation_table(set: ReplaySet, robot: Robot | undefined):
     title: 'Torques and their limits',
     caption:
       'The largest torques of each joint in the recorded cases beside its limits, and in which share of the control periods it is at one of them.',
-    // Only when it is asked for: every motion has to be unpacked.
+    // The table is made only on request, because every motion must be unpacked for it.
     get table(): DataTable {
       made = made ?? {
         columns: [

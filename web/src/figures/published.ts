@@ -1,4 +1,4 @@
-// All published errors against those simulated again, at a glance.
+// All published errors compared with the errors of new simulations, in one figure.
 import { get_series_style } from '../charts/look';
 import { make_number_axis, make_plot } from '../charts/marks';
 import { shorten } from '../charts/names';

@@ -1,4 +1,4 @@
-// The page of the thesis repeated: its figures, each beside what it printed.
+// The page of the repeated thesis: its figures, each beside the published numbers.
 import { shorten_all } from '../charts/names';
 import type { DistanceResponse, ReproductionData, SignalCurve } from '../data';
 import type { Cell, Column, Figure, Item, Tab, TableItem, Value } from '../model';
@@ -12,7 +12,7 @@ import { make_reduction_figure, make_signal_figure } from './signals';
 import { make_sweep_figure } from './sweep';
 import { make_case_figure } from './trajectory';
 
-// Where the thesis has a figure.
+// The tabs of the parts of the thesis that have figures of responses.
 const kTabs: { id: string; title: string; responses: string[] }[] = [
   { id: 'initial', title: 'First experiment', responses: ['fig-5.9', 'fig-5.11'] },
   { id: 'q1', title: 'Q1: signals', responses: ['fig-6.4'] },
@@ -20,7 +20,7 @@ const kTabs: { id: string; title: string; responses: string[] }[] = [
   { id: 'q3', title: 'Q3: load', responses: ['fig-6.15'] },
 ];
 
-// Fig. 6.5-6.8 and their distance classes.
+// The figures 6.5-6.8 and their distance classes.
 const kClasses: [string, number, number][] = [
   ['6.5', 2, 7],
   ['6.6', 8, 13],
@@ -32,7 +32,7 @@ const millimetres = (label: string): Column => ({ label, unit: 'mm', numeric: tr
 const torque = (label: string): Column => ({ label, unit: 'N m', numeric: true, digits: 6 });
 const number = (label: string): Column => ({ label, numeric: true });
 
-// One alone has the page's whole width.
+// A figure that is alone in its tab has the full width of the page.
 function make_response(response: DistanceResponse, count: number): Figure {
   const figure = make_response_figure(response);
   return count === 1 ? { ...figure, width: 'full', height: 420 } : figure;
@@ -127,7 +127,7 @@ function make_runs(data: ReproductionData): TableItem | null {
   };
 }
 
-// Table 6.4: what the thesis printed, and the torques of the designs here.
+// Makes Table 6.4: the torques that the thesis printed and those of the designs here.
 function make_torques(data: ReproductionData): TableItem | null {
   const rows: (Value | Cell)[][] = [];
   data.rows

@@ -1,5 +1,5 @@
-// The traffic lights: what is required of the winner, and whether it keeps it. A sign and words say
-// what the colour says.
+// The traffic lights: the requirements for the winner, and whether it meets them. A sign and words
+// repeat the meaning of each colour.
 import type { RequirementLight } from '../data';
 import type { Cell, TableItem, Value } from '../model';
 import { get_shown, times } from './quantities';

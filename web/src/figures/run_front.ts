@@ -1,4 +1,4 @@
-// What a run with several objectives has found: the front of what it evaluated.
+// The result of a run with several objectives: the front of its evaluations.
 import { get_series_style } from '../charts/look';
 import { make_number_axis, make_plot } from '../charts/marks';
 import { shorten } from '../charts/names';
@@ -8,7 +8,7 @@ import type { Choice, Figure, Picked, Value } from '../model';
 import { format_number } from '../numbers';
 import { are_positive, find_range, get_shown, name_axis } from './quantities';
 
-const kWide = 10; // between largest and smallest, from where on an axis is logarithmic
+const kWide = 10; // ratio of the largest to the smallest value from which an axis is logarithmic
 
 export function make_front_figure(front: RunFront, variables: VariableHistory[]): Figure | null {
   const count = front.objectives.length;

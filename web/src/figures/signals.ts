@@ -1,4 +1,5 @@
-// The reference signals (Fig. 5.5-5.8 of the thesis) and how short moves are slowed down (Fig. 5.10).
+// The reference signals (Fig. 5.5-5.8 of the thesis), and how short moves are slowed down (Fig.
+// 5.10).
 import { decimate } from '../charts/decimate';
 import type { Look } from '../charts/look';
 import { get_line_style, make_number_axis, make_panel_title, make_panels, make_curve_plot, make_vertical } from '../charts/marks';
@@ -40,7 +41,7 @@ function draw_curves(look: Look, signals: Signals, curves: SignalCurve[], names:
   );
 }
 
-// Its place among all, so that it keeps its colour where others are left out.
+// Returns the index of a curve among all, so that it keeps its colour if others are left out.
 function find_curve(signals: Signals, curve: SignalCurve): number {
   return Math.max(0, signals.curves.indexOf(curve));
 }
@@ -67,10 +68,10 @@ export interface SignalOptions {
   title: string;
   thesis?: string;
   remark?: string;
-  marks?: boolean; // t_d and t_m of the first curve
+  marks?: boolean; // whether t_d and t_m of the first curve are marked
 }
 
-// One panel a part; the curves in all of them.
+// Makes one panel per part. Each panel has all the curves.
 export function make_signal_figure(signals: Signals, curves: SignalCurve[], parts: SignalPart[], options: SignalOptions): Figure {
   const names = shorten_all(curves.map((curve) => curve.name));
   const used = curves.filter((curve) => curve.name === signals.used)[0];
@@ -123,7 +124,8 @@ interface Mark {
   time_s: number;
 }
 
-// When the target begins to slow down, and when it arrives: from then on errors count.
+// Returns the times at which the target begins to slow down and at which it arrives. Errors count
+// from the arrival.
 function get_marks(signals: Signals, curve: SignalCurve): Mark[] {
   let top = 0;
   curve.speed_m_per_s.forEach((speed, i) => {

@@ -1,4 +1,5 @@
-// The winners' designs on parallel axes: do different optimizers end at the same place?
+// The designs of the winners on parallel axes. They show whether different optimizers end at the
+// same place.
 import type { EChartsOption } from '../charts/echarts';
 import type { Look } from '../charts/look';
 import { make_axis, make_chart, type Part } from '../charts/parts';
@@ -24,7 +25,7 @@ import {
 
 type Variable = StudyProblem['variables'][0];
 
-// Of a logarithmic variable the magnitude's logarithm counts: bounds have one sign.
+// For a logarithmic variable, the logarithm of the magnitude counts. Its bounds have one sign.
 function place(variable: Variable, value: number): number {
   const on = (one: number) => (variable.logarithmic ? Math.log(Math.abs(one)) : one);
   const [low, high] = [on(variable.lower), on(variable.upper)];
@@ -54,7 +55,7 @@ function get_lines(scope: Scope, problem: StudyProblem, which: string): Line[] {
 
 type Drawing = { coord(point: number[]): number[] };
 
-// One vertical axis a variable, with its bounds, and the start as a mark.
+// Makes one vertical axis per variable, with its bounds, and with the start as a mark.
 function make_axes(look: Look, variables: Variable[]): Part {
   const text = (x: number, y: number, value: string, color: string, more: Part = {}): Part => ({
     type: 'text',

@@ -1,4 +1,4 @@
-// The page of a comparison: the verdict first, then what it rests on.
+// The page of a comparison: the verdict first, then the statistics behind it.
 import { shorten_all } from '../charts/names';
 import { make_slugs } from '../charts/slugs';
 import type { StudyData } from '../data';
@@ -20,7 +20,7 @@ import {
 } from './study_tables';
 import { make_values } from './study_values';
 
-// With more problems than these, tabs would not fit side by side: then figures have a choice.
+// With more problems, tabs would not fit side by side. Figures then have a choice instead.
 const kMostTabs = 6;
 
 function keep(items: (Item | null)[]): Item[] {

@@ -1,4 +1,5 @@
-// How far optimizers get with how much: curves over the budget, and shares of targets and problems.
+// How good optimizers become for how much budget: curves over the budget, and shares of targets and
+// problems.
 import type { EChartsOption } from '../charts/echarts';
 import type { Look } from '../charts/look';
 import { make_band, make_line, type Part, type Point } from '../charts/parts';
@@ -39,10 +40,10 @@ function draw_convergence(look: Look, scope: Scope, problem: StudyProblem): ECha
   });
   const drawn = curves.slice(0, kMostAtFirst);
   const everything = (list: typeof curves) => list.reduce((all, one) => all.concat(one.q1, one.median, one.q3), [] as (number | null)[]);
-  // Room for all that can be switched on.
+  // The axis has room for all series that can be switched on.
   const y = make_scale(everything(curves.length > 2 * kMostAtFirst ? drawn : curves), true);
   const x = make_scale(problem.checkpoints, true);
-  // Lines before bands: the legend draws the first series of a name.
+  // Lines come before bands, because the legend draws the first series of a name.
   const bands: Part[] = [];
   const series: Part[] = [make_grid_lines(look, x, y)];
   order.forEach((o, place) => {
@@ -50,7 +51,7 @@ function draw_convergence(look: Look, scope: Scope, problem: StudyProblem): ECha
     const style = get_style(look, scope, o);
     const rows = problem.checkpoints.map((cases, i): [number, number, number] | null => {
       const low = q1[i] ?? null;
-      // A quartile without value is beyond any axis.
+      // A quartile without a value is beyond the end of the axis.
       return low === null ? null : [cases, low, q3[i] ?? y.high * 10];
     });
     split_rows(rows).forEach((piece) => bands.push(make_band(scope.names[o], piece, style.color)));
@@ -128,11 +129,11 @@ interface Steps {
   abscissae: number[];
   x_name: string;
   y_name: string;
-  shares: number[][]; // a row an optimizer
+  shares: number[][]; // one row per optimizer
   order: number[];
 }
 
-// Shares from 0 to 1 that only grow.
+// Draws shares from 0 to 1 that never decrease.
 function draw_steps(look: Look, scope: Scope, steps: Steps): EChartsOption {
   const x = make_scale(steps.abscissae, true);
   const y: Scale = { log: false, low: 0, high: 1, end: 1, ticks: [0, 0.2, 0.4, 0.6, 0.8, 1] };
@@ -147,7 +148,7 @@ function draw_steps(look: Look, scope: Scope, steps: Steps): EChartsOption {
       ...make_line(look, 0, scope.names[o], points, { style, step: 'end', width: 2, symbols: true }),
       ...make_symbol(look, style),
     };
-    // A mark here and there tells the steps apart; the others are there for the pointer.
+    // Marks at some points distinguish the steps. The other points are only for the pointer.
     const every = Math.ceil(points.length / 12);
     series.push({ ...line, symbolSize: (_: unknown, at: { dataIndex: number }) => (at.dataIndex % every === o % every ? 6 : 2) });
   });

@@ -6,8 +6,8 @@ import { tabulate_pairs } from './study_pairs';
 
 type Row = (Value | Cell)[];
 
-// Rows of all problems under one head: of several, with the problem, and with the unit where units
-// differ.
+// Returns the rows of all problems under one head. With several problems the table has a column for
+// the problem, and one for the unit if units differ.
 function tabulate(
   scope: Scope,
   get_problem_unit: (problem: StudyProblem) => Unit,
@@ -191,7 +191,7 @@ export function make_running_times_table(scope: Scope): TableItem {
   };
 }
 
-// The study's own targets, if it has any for these problems.
+// The targets of the study itself, if it has any for these problems.
 export function make_targets_table(scope: Scope): TableItem | null {
   const reference = scope.data.reference;
   const times: Column[] = [
@@ -238,7 +238,7 @@ export function make_targets_table(scope: Scope): TableItem | null {
   };
 }
 
-// Optimizers over all problems.
+// The results of the optimizers over all problems.
 export function make_overall_table(scope: Scope): TableItem | null {
   const overall = scope.data.overall;
   if (!overall) {

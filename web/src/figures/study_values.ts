@@ -1,4 +1,5 @@
-// Every run's value, box by box: nothing is dropped, what has no value has a place of its own.
+// The values of every run, with one box per optimizer. All runs are shown; values that do not exist
+// have their own place.
 import type { EChartsOption } from '../charts/echarts';
 import type { Look } from '../charts/look';
 import type { Part } from '../charts/parts';
@@ -21,7 +22,7 @@ import {
   type Unit,
 } from './study_parts';
 
-const kMostNames = 260; // pixels: methods have long names that differ at their ends
+const kMostNames = 260; // pixels; names of methods are long and differ at their ends
 
 export function describe_cell(scope: Scope, problem: StudyProblem, optimizer: number, cell: StudyCell, unit: Unit): string {
   const failed = cell.failures > 0 ? '; ' + cell.failures + (cell.failures === 1 ? ' test case' : ' test cases') + ' failed' : '';
@@ -42,7 +43,7 @@ export function describe_cell(scope: Scope, problem: StudyProblem, optimizer: nu
   );
 }
 
-// Between -0.5 and 0.5, far apart for consecutive numbers.
+// Returns a place between -0.5 and 0.5. The places of consecutive numbers are far apart.
 function spread_out(replicate: number): number {
   const golden = replicate * 0.6180339887498949;
   return golden - Math.floor(golden) - 0.5;
@@ -54,7 +55,8 @@ type Drawing = {
   size(extent: number[], point: number[]): number[];
 };
 
-// Box, median and whiskers of rows [row, min, q1, median, q3, max], already placed on the axis.
+// Makes boxes with medians and whiskers from rows [row, min, q1, median, q3, max], which are
+// already places on the axis.
 function make_boxes(look: Look, data: Part[], colors: string[]): Part {
   return {
     type: 'custom',

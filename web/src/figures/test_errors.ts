@@ -1,4 +1,4 @@
-// How the errors of the test cases are distributed, and which cases failed.
+// The distribution of the errors of the test cases, and the cases that failed.
 import { make_number_axis, make_plot, make_vertical, get_line_style } from '../charts/marks';
 import { shorten_all } from '../charts/names';
 import { make_line, type Part, type Point } from '../charts/parts';
@@ -13,10 +13,10 @@ const kLeastBins = 12;
 
 export interface Histogram {
   edges: number[];
-  counts: number[][]; // one list a list of values
+  counts: number[][]; // one list per list of values
 }
 
-// Bins of equal width, on a logarithmic axis where `log`. Every number falls in one.
+// Returns bins of equal width, on a logarithmic axis if `log` is true. Every number is in one bin.
 export function make_histogram(lists: (number | null)[][], log: boolean): Histogram | null {
   const range = find_range(flatten(lists));
   if (range === null) {
@@ -62,7 +62,7 @@ export function make_errors_figure(test: TestErrors): Figure | null {
   );
   const { edges, counts } = histogram;
   const limit = test.failure_error === null ? null : test.failure_error * shown.factor;
-  // A limit far beyond all errors would squeeze them.
+  // A limit far above all errors would squeeze them, so it is left out.
   const has_limit = limit !== null && limit > edges[0] && limit < edges[edges.length - 1] * (log ? 5 : 1.2);
   return {
     kind: 'figure',

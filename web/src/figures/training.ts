@@ -1,4 +1,4 @@
-// How a run got to its winner: the objective and the design variables against generations.
+// The history of a run: the objective and the design variables over the generations.
 import { get_series_style } from '../charts/look';
 import { make_number_axis, make_curve_plot } from '../charts/marks';
 import { make_line, type Part, type Point } from '../charts/parts';
@@ -11,12 +11,13 @@ const kBest = 'best';
 const kMean = 'average';
 const kIncumbentTest = 'incumbent on the test set';
 
-// "generation", or "evaluations" for optimizers without them.
+// Returns "generation", or "evaluations" for an optimizer without generations.
 export function name_progress(data: RunData): string {
   return data.training.unit === 'generation' ? 'generation' : 'evaluations';
 }
 
-// The best of a generation or block is that of its cases only; what it is worth is seen on others.
+// The best value of a generation or block holds only for its own cases. Other cases show its real
+// quality.
 export function make_fitness_figure(data: RunData, id = 'fitness'): Figure {
   const { training } = data;
   const { incumbents } = training;

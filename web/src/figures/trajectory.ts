@@ -1,4 +1,5 @@
-// The trajectory points of a test case (Fig. 5.12 of the thesis), from above and from the side.
+// The points of the trajectory of a test case (Fig. 5.12 of the thesis), from above and from the
+// side.
 import { get_series_style, type Look } from '../charts/look';
 import { make_number_axis, make_plot } from '../charts/marks';
 import type { Part } from '../charts/parts';
@@ -7,7 +8,8 @@ import type { Figure } from '../model';
 import { format_number } from '../numbers';
 import { get_case, make_case_choice } from './replay_access';
 
-// The same number of pixels for both axes of both panels, whatever the figure's width: one scale.
+// Both axes of both panels have the same number of pixels, whatever the width of the figure, so
+// that they have one scale.
 const kSide = 226;
 const kLefts = [60, 352];
 const kTop = 46;
@@ -21,7 +23,7 @@ interface Frame {
   half: number;
 }
 
-// A cube around all points.
+// Returns a cube around all points.
 function find_frame(one: ReplayCase): Frame {
   const low = [Infinity, Infinity, Infinity];
   const high = [-Infinity, -Infinity, -Infinity];

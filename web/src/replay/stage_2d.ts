@@ -1,4 +1,4 @@
-// The arm seen from the side or the front, in lines: for browsers without WebGL.
+// Draws the arm from the side or the front, in lines, for browsers without WebGL.
 import { make } from '../app/dom';
 import { calc_frames, find_position, multiply } from './chain';
 import { find_colour, to_css } from './colours';
