@@ -43,7 +43,7 @@ function describe_point(hovered: Hovered | Hovered[], columns: Column[]): HTMLEl
     }
     box.append(make('div', {}, note ?? numbers.join(', ')));
     if (command) {
-      box.append(make('div', { class: 'tip-hint' }, 'Choose the point for the command that reproduces it.'));
+      box.append(make('div', { class: 'tip-hint' }, 'Choose the point to see the command that reproduces it.'));
     }
   }
   return box;
@@ -195,7 +195,7 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
       'div',
       { class: 'card-head' },
       make('h3', {}, figure.title),
-      figure.thesis ? make('span', { class: 'thesis', title: 'Its counterpart in the thesis' }, 'thesis, ' + figure.thesis) : null,
+      figure.thesis ? make('span', { class: 'thesis', title: 'The corresponding figure of the thesis' }, 'thesis, ' + figure.thesis) : null,
       buttons,
     ),
     choices.childElementCount > 0 ? choices : null,

@@ -30,7 +30,7 @@ function make_cell(cell: Value | Cell, digits: number, details: HTMLElement): HT
     element.append(
       make_button(text, () => details.replaceChildren(make_provenance(note, command, () => details.replaceChildren())), {
         class: 'link',
-        title: 'Where this comes from',
+        title: 'Show the origin of this value',
       }),
     );
   } else if (cell !== null && typeof cell === 'object' && cell.mark !== undefined) {
@@ -111,7 +111,7 @@ export function make_table_view(item: TableItem): View {
       'div',
       { class: 'card-head' },
       make('h3', {}, item.title),
-      item.thesis ? make('span', { class: 'thesis', title: 'Its counterpart in the thesis' }, 'thesis, ' + item.thesis) : null,
+      item.thesis ? make('span', { class: 'thesis', title: 'The corresponding table of the thesis' }, 'thesis, ' + item.thesis) : null,
       make(
         'div',
         { class: 'buttons' },

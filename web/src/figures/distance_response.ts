@@ -41,11 +41,11 @@ function describe(response: DistanceResponse): string {
   const left_out = response.counted.filter((one) => !one).length;
   const has_published = response.series.some((one) => one.published_mean_m !== null);
   return (
-    `Average positional error of the moves of each length, in the order of the trajectory, ` +
+    `The average positional error of the moves of each length, in the order of the trajectory, ` +
     `over ${same ? count_of(numbers[0] ?? 0, 'test case') : `${numbers.join(', ')} test cases, in the order of the legend`}; ` +
-    `bars: standard error of the mean. ` +
-    (left_out > 0 ? `Hollow: ${left_out === 1 ? 'a move that does' : 'moves that do'} not count in a case's error. ` : '') +
-    `The legend gives the mean over all moves that count${has_published ? ', and beside it what the thesis printed' : ''}. ` +
+    `the bars show the standard error of the mean. ` +
+    (left_out > 0 ? `A hollow point is a move that does not count in the error of a case. ` : '') +
+    `The legend has the mean over all moves that count${has_published ? ' and the value that the thesis printed' : ''}. ` +
     (failures.length > 0 ? `Failed cases: ${failures.map((one) => `${shorten_all([one.name])[0]} ${one.failures}`).join(', ')}. ` : '') +
     response.remark
   ).trim();

@@ -228,8 +228,8 @@ export function make_joint_figures(set: ReplaySet, robot: Robot | undefined): Fi
     id: 'joint-angles',
     title: 'Joint angles',
     caption:
-      'Angles of the joints (solid) and what the inverse kinematics of the target asks for (dotted), over a whole case. ' +
-      'Where the two lie on each other the controllers follow; the joint errors show the difference.',
+      'The angles of the joints (solid lines) and the angles that the inverse kinematics of the target asks for (dotted lines), over a whole case. ' +
+      'If the two lines coincide, the controllers follow. The figure of the joint errors shows the difference.',
     width: 'full',
     choices: choices(kAll),
     time,
@@ -273,8 +273,8 @@ export function make_joint_figures(set: ReplaySet, robot: Robot | undefined): Fi
     id: 'joint-errors',
     title: 'Joint errors',
     caption:
-      'What the inverse kinematics of the target asks of each joint, less its angle: the error that its controller sees, over a whole case. ' +
-      'A standing difference in a rest is what the integral term has yet to remove.',
+      'The error that the controller of each joint gets, over a whole case: the angle that the inverse kinematics of the target asks for, minus the angle of the joint. ' +
+      'A constant error during a rest is one that the integral term has not yet removed.',
     width: 'full',
     choices: choices(kAll),
     time,
@@ -305,8 +305,8 @@ export function make_joint_figures(set: ReplaySet, robot: Robot | undefined): Fi
     id: 'joint-torques',
     title: 'Joint torques',
     caption:
-      'The torque of the chosen joint over a whole case; dashed: its limits, which the design sets; shaded: where it is at one of them and the controller has no say. ' +
-      'Of all joints together: the share of the limit in the direction of the torque. The legend says in which share of the control periods a joint is at a limit.',
+      'The torque of the chosen joint over a whole case. The dashed lines are its limits, which the design sets. In shaded times the torque is at a limit, so the controller has no effect. ' +
+      'With all joints together, the figure shows the torque as a share of the limit in its direction. The legend has the share of the control periods in which a joint is at a limit.',
     width: 'full',
     choices: choices(torque_initial),
     time,
@@ -364,7 +364,7 @@ export function make_saturation_table(set: ReplaySet, robot: Robot | undefined):
     id: 'saturation',
     title: 'Torques and their limits',
     caption:
-      'The largest torques of each joint in the recorded cases beside its limits, and in which share of the control periods it is at one of them.',
+      'The largest torques of each joint in the recorded cases, its limits, and the share of the control periods in which it is at a limit.',
     // The table is made only on request, because every motion must be unpacked for it.
     get table(): DataTable {
       made = made ?? {

@@ -191,10 +191,10 @@ export function make_momentary_figure(set: ReplaySet, id = 'momentary-error'): F
     id,
     title: 'Momentary positional error',
     caption:
-      `How far the tip is from its target, at every control period of ${format_number(set.task.control_period_s * kMillimetres, 3)} ms, ` +
-      `in the moves of the distance classes chosen (class n is the move to trajectory point n) on a clock that starts with the move, or over the whole case. ` +
-      `Shaded: the time in which the error is measured, of which the mean counts. ` +
-      `The thesis shows the same of its test case of generation 1 in Fig. 6.5 to 6.8.`,
+      `The distance of the tip from its target at every control period of ${format_number(set.task.control_period_s * kMillimetres, 3)} ms. ` +
+      `The figure shows the moves of the chosen distance classes, with the time from the start of each move, or the whole case. Class n is the move to trajectory point n. ` +
+      `In shaded times the error is measured, and its mean counts. ` +
+      `Fig. 6.5 to 6.8 of the thesis show the same for its test case of generation 1.`,
     width: 'full',
     height,
     choices: [make_case_choice(set), class_choice, make_design_choice(set, true), make_scale_choice('log')],
@@ -225,10 +225,10 @@ export function make_class_figure(traces: ErrorTrace[], first: number, last: num
     title: `Momentary positional error, distance classes ${first} to ${last}`,
     thesis,
     caption:
-      `How far the tip is from its target in the moves of distance classes ${first} to ${last} (${distances.join(', ')} m), ` +
-      `each on a clock that starts with the move, for ${traces.length} designs, each with its own reference signal, on the same case: that of generation 1. ` +
-      `Shaded: the time in which the error is measured. ` +
-      `With a step the target is at its end at once, so that the error starts at the whole distance.`,
+      `The distance of the tip from its target in the moves of distance classes ${first} to ${last} (${distances.join(', ')} m), ` +
+      `over the time from the start of each move. The figure has ${traces.length} designs, each with its own reference signal, on the same case: that of generation 1. ` +
+      `In shaded times the error is measured. ` +
+      `With the signal Step the target is at the end of the move at once, so the error starts with the whole distance.`,
     width: 'full',
     height,
     choices: [make_scale_choice('log')],

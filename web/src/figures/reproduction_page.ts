@@ -51,8 +51,8 @@ function make_results(data: ReproductionData): TableItem | null {
     id: 'results',
     title: 'Published results, simulated again',
     caption:
-      'The published designs on the published test set, which has other random numbers than in the source, beside what the source printed. ' +
-      'A ratio of 1 is agreement. Each row has the command that makes it.',
+      'The published designs on a test set like that of the thesis, with other random numbers, beside the values that the thesis printed. ' +
+      'A ratio of 1 means that both agree. Each row has the command that makes it.',
     table: {
       columns: [
         { label: 'result' },
@@ -101,7 +101,7 @@ function make_runs(data: ReproductionData): TableItem | null {
     id: 'runs',
     title: 'Optimized anew',
     caption:
-      'Experiments of which the source gives no design: they were optimized again as it describes, and the winners are shown in its place.',
+      'Experiments for which the thesis gives no design. They were optimized again as the thesis describes, and the new winners are shown.',
     table: {
       columns: [
         { label: 'run' },
@@ -161,8 +161,8 @@ function make_torques(data: ReproductionData): TableItem | null {
     title: 'Total torque',
     thesis: 'Table 6.4',
     caption:
-      'The sum over the joints of the larger magnitude of the two torque limits. That of a published design follows from its numbers; ' +
-      'a winner that was optimized anew is another one, and agrees in its size at best.',
+      'The total torque is a sum over the joints: of the two torque limits of each joint it takes the one with the larger magnitude. The torque of a published design follows from its numbers. ' +
+      'A winner that was optimized again is another design, so at best its torque has a similar size.',
     table: {
       columns: [{ label: 'experiment' }, { label: 'design' }, torque('published'), torque('here'), number('ratio')],
       rows,
@@ -203,7 +203,7 @@ function make_signal_items(data: ReproductionData): Item[] {
           id: 'fig-5.5',
           title: 'Step reference signal',
           thesis: 'Fig. 5.5',
-          remark: 'The target is at its end at once.',
+          remark: 'The target is at the end of the move at once.',
         })
       : null,
     smooth.length > 0
@@ -219,7 +219,7 @@ function make_signal_items(data: ReproductionData): Item[] {
           id: 'fig-5.7',
           title: 'Accelerations of Triangular and Complex',
           thesis: 'Fig. 5.7',
-          remark: 'Complex slows down ever more gently, so that there is no jump at the end.',
+          remark: 'Complex slows down less and less, so its acceleration has no jump at the end.',
         })
       : null,
     complex.length > 0
@@ -228,7 +228,7 @@ function make_signal_items(data: ReproductionData): Item[] {
           title: 'The Complex reference signal',
           thesis: 'Fig. 5.8',
           remark:
-            'At t_d the target begins to slow down, after 2/5 of the move; at t_m it has arrived, and the error is measured from there.',
+            'At t_d, after 2/5 of the move, the target begins to slow down. At t_m it has arrived, and from then on the error is measured.',
           marks: true,
         })
       : null,

@@ -36,9 +36,9 @@ export function make_requirement_table(lights: RequirementLight[]): TableItem | 
     id: 'requirements-table',
     title: 'Requirements',
     caption:
-      'Whether the winner keeps what is required, on the worst case of the test set. ' +
-      'The limit that binds is the one that it is nearest to, or furthest above. ' +
-      'Only constraints were known to the optimizer.',
+      'Whether the winner meets its requirements on the worst case of the test set. ' +
+      'The limit that binds is the one with the largest share in the column "of the limit". ' +
+      'The optimizer knew only the requirements that are constraints.',
     table: {
       columns: [
         { label: 'requirement' },

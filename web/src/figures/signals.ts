@@ -89,7 +89,7 @@ export function make_signal_figure(signals: Signals, curves: SignalCurve[], part
       ) +
       `${format_number(signals.distance_m, 3)} m at an average speed of ${format_number(signals.speed_m_per_s, 3)} m/s, ` +
       `and while it rests for ${format_number(signals.rest_s, 2)} s. ` +
-      (used && curves.length > 1 ? `Bold: ${names[curves.indexOf(used)]}, which this problem uses. ` : '') +
+      (used && curves.length > 1 ? `The bold line is ${names[curves.indexOf(used)]}, which this problem uses. ` : '') +
       (options.remark ?? ''),
     draw: (look) => {
       const grids = make_panels(parts.length, parts.length, height);
@@ -146,11 +146,11 @@ export function make_signal_figures(signals: Signals): Figure[] {
   const one = (part: SignalPart, remark: string) =>
     make_signal_figure(signals, signals.curves, [part], { id: `signals-${part}`, title: `Reference signals: ${part}`, remark });
   return [
-    one('distance', 'The tip should be there at that time.'),
-    one('speed', 'The same distance in the same time takes a higher peak the smoother the signal.'),
+    one('distance', 'The tip should have moved this distance at that time.'),
+    one('speed', 'For the same distance in the same time, a smoother signal needs a higher peak speed.'),
     one(
       'acceleration',
-      'Jumps excite the arm: the fewer and the smaller, the smoother the motion. A jump of the speed has no acceleration.',
+      'Jumps excite the arm: with fewer and smaller jumps the motion is smoother. At a jump of the speed the acceleration is not defined.',
     ),
   ];
 }
@@ -163,10 +163,10 @@ export function make_reduction_figure(signals: Signals, id = 'speed-reduction', 
     title: 'Speed of short moves',
     thesis: thesis || undefined,
     caption:
-      `The average speed of a move against its distance: ` +
+      `The average speed of a move against its distance. ` +
       (reduction.limit_m > 0
-        ? `below the distance limit of ${format_number(reduction.limit_m, 3)} m (dashed) it falls in proportion to the distance, so that short moves are not the worst ones.`
-        : `there is no distance limit, and all moves have the same.`),
+        ? `Below the distance limit of ${format_number(reduction.limit_m, 3)} m (dashed line) the speed is proportional to the distance, so that short moves are not the worst ones.`
+        : `There is no distance limit, so all moves have the same speed.`),
     draw: (look) =>
       make_curve_plot(
         look,

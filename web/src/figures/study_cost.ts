@@ -223,9 +223,9 @@ export function make_cost_quality(scope: Scope): Figure | null {
     id: 'cost-quality' + scope.suffix,
     title: end_title(scope, 'Cost against quality'),
     caption:
-      'A point an optimizer: how many simulated cases it would take on average to come to the chosen target, starting anew until it is reached, against the median value at the end of the budget; lower left is better. ' +
-      'Who reached the target in no run stands in the strip at the right. Running times are as coarse as the checkpoints; targets lie between the start and the best known value and depend on who takes part. ' +
-      'Neither axis shows how sure a difference is: see the pairs. ' +
+      'Each point is an optimizer. One axis has the average number of simulated cases that it needs to reach the chosen target, with a new start after each run that fails. The other axis has the median value at the end of the budget. Points towards the lower left are better. ' +
+      'An optimizer that reached the target in no run is in the strip at the right. Running times are as coarse as the checkpoints. Targets lie between the start and the best known value, and depend on the optimizers that take part. ' +
+      'Neither axis shows how certain a difference is; the figure of the pairs does. ' +
       (scope.names.length > kMostLabels ? 'The best ' + kMostLabels + ' are named. ' : '') +
       describe_size(scope),
     height: 400,

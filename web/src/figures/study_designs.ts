@@ -212,11 +212,11 @@ export function make_parallel(all: Scope): Figure | null {
     id: 'parallel' + scope.suffix,
     title: end_title(scope, "The winners' designs"),
     caption:
-      'Each line is the winning design of a run, each axis a variable between its bounds; the triangle marks the nominal start. ' +
-      'Axes are logarithmic in the magnitude unless their name says linear; the sign is that of the numbers at their ends. ' +
-      'Where lines of good runs meet, the variable is determined by the problem; where they spread, it hardly matters or there are several solutions. ' +
-      'Lines that end at a bound suggest that the bound is in the way. Neighbouring axes say nothing about interactions of others. ' +
-      "What counts as an optimizer's best was chosen on the test set, after the fact. " +
+      'Each line is the winning design of a run. Each axis is a variable between its bounds, and the triangle marks the nominal start. ' +
+      'Axes are logarithmic in the magnitude unless their name says linear. The sign is that of the numbers at their ends. ' +
+      'Where the lines of good runs meet, the problem determines the variable. Where they spread, the variable hardly matters, or there are several solutions. ' +
+      'Lines that end at a bound suggest that the bound is too tight. The figure shows interactions of neighbouring axes only. ' +
+      'The best run of each optimizer was chosen by its value on the test set. ' +
       describe_size(scope),
     width: 'full',
     height: 440,

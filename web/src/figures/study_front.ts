@@ -129,11 +129,11 @@ export function make_front(all: Scope): Figure | null {
     id: 'front' + scope.suffix,
     title: end_title(scope, 'Fronts of the objectives'),
     caption:
-      'Points are the fronts of all replicates; lower left is better. ' +
+      'The points are the fronts of all replicates. Points towards the lower left are better. ' +
       (objectives === 2
-        ? 'The thick stepped line bounds what half of the replicates of an optimizer attain: a typical front, where the points mix lucky and unlucky runs; thin ones are of other shares of the replicates. '
-        : 'Of more than two objectives the plane shows a projection: a point that looks dominated may not be. ') +
-      'The cross is the reference point of the hypervolume, a tenth beyond the front of all runs together; points far beyond it are left out of the plane. ' +
+        ? 'The thick stepped line bounds the area that half of the replicates of an optimizer attain. It is a typical front, whereas the points mix lucky and unlucky runs. Thin lines are for other shares of the replicates. '
+        : 'With more than two objectives the plane shows a projection: a point that looks dominated may not be dominated. ') +
+      'The cross is the reference point of the hypervolume, a tenth beyond the front of all runs together. Points far beyond it are not shown. ' +
       (scope.names.length > kDrawnAtFirst ? 'The best ' + kDrawnAtFirst + ' optimizers are drawn at first. ' : '') +
       describe_size(scope),
     height: 420,

@@ -42,9 +42,9 @@ function make_unfinished(data: StudyData): TextItem | null {
         (missing > 0
           ? missing +
             (missing === 1 ? ' run has' : ' runs have') +
-            ' not ended: all numbers are of those that have, and problems that lack runs have no ranks and no tests. '
+            ' not ended. All numbers are those of the runs that have ended. Problems with missing runs have no ranks and no tests. '
           : '') +
-        'What is shown is preliminary and changes as runs end.',
+        'The results are preliminary and change as more runs end.',
     ],
   };
 }

@@ -231,9 +231,9 @@ export function make_pairs(all: Scope): Figure | null {
     id: 'pairs' + scope.suffix,
     title: end_title(scope, 'Every two optimizers'),
     caption:
-      "Above the diagonal A12, the probability that a run of the row beats one of the column (0.5: neither; 0.56, 0.64, 0.71: small, medium, large); below it the p-value of Wilcoxon's signed-rank test over replicates, after Holm's correction for all pairs of the problem. " +
-      'Bold and underlined is what is significant at 0.05. Rows and columns are ordered best first. ' +
-      'A pair that is not told apart is not thereby equal: more replicates may tell. ' +
+      "Above the diagonal is A12, the probability that a run of the row beats a run of the column (0.5: no difference; 0.56, 0.64, 0.71: a small, medium, large one). Below the diagonal is the p-value of Wilcoxon's signed-rank test over replicates, after Holm's correction for all pairs of the problem. " +
+      'Values that are significant at 0.05 are bold and underlined. Rows and columns are ordered best first. ' +
+      'A pair that is not told apart need not be equal: more replicates may show a difference. ' +
       describe_size(scope),
     height: Math.max(380, 140 + 20 * scope.names.length),
     width: scope.names.length > 8 ? 'full' : 'half',

@@ -121,14 +121,16 @@ export function describe_size(scope: Scope): string {
   const n = scope.data.replicates;
   const missing = scope.problems.reduce((sum, problem) => sum + problem.missing, 0);
   const size =
-    n === 1 ? 'One replicate an optimizer: its value is an anecdote, and nothing can be concluded.' : n + ' replicates an optimizer.';
+    n === 1
+      ? 'There is one replicate per optimizer, so nothing can be concluded from its value.'
+      : 'There are ' + n + ' replicates per optimizer.';
   return missing === 0
     ? size
     : size +
         ' Unfinished: ' +
         missing +
         (missing === 1 ? ' run has' : ' runs have') +
-        ' not ended; the numbers are of those that have, and optimizers may stand on different replicates.';
+        ' not ended. The numbers are those of the runs that have ended, so optimizers may be compared on different replicates.';
 }
 
 export function end_title(scope: Scope, title: string): string {

@@ -29,7 +29,9 @@ import {
 
 const kCasesAxis = 'simulated training cases';
 const kFirstOnes = (count: number) =>
-  count > kMostAtFirst ? ' Of ' + count + ' optimizers the best ' + kMostAtFirst + ' are drawn at first; the legend switches them.' : '';
+  count > kMostAtFirst
+    ? ' Of the ' + count + ' optimizers, the best ' + kMostAtFirst + ' are drawn at first. The legend switches them on and off.'
+    : '';
 
 function draw_convergence(look: Look, scope: Scope, problem: StudyProblem): EChartsOption {
   const { name, unit } = get_curve_name(problem);
@@ -113,9 +115,9 @@ export function make_convergence(scope: Scope): Figure {
     id: 'convergence' + scope.suffix,
     title: end_title(scope, 'Convergence'),
     caption:
-      'What the best design known so far is worth on the test set, against the simulated training cases spent: the median over replicates, with the quartiles as a band. ' +
-      'Designs are chosen in training and simulated again on the test set, so a curve may rise; where it is missing, half of the runs have no value yet. ' +
-      'The order at one budget says nothing about another one. ' +
+      'The value of the incumbents on the test set against the number of simulated training cases. The line is the median over replicates, and the band shows the quartiles. ' +
+      'Designs are chosen in training and simulated again on the test set, so a curve may rise. Where a curve is missing, half of the runs have no value yet. ' +
+      'The order of the optimizers at one budget says nothing about another budget. ' +
       describe_size(scope) +
       kFirstOnes(scope.names.length),
     height: 400,
@@ -188,9 +190,9 @@ export function make_runtime_ecdf(scope: Scope): Figure {
     id: 'runtime-ecdf' + scope.suffix,
     title: end_title(scope, 'Targets reached over the budget'),
     caption:
-      'The share of all pairs of a run and a target that are reached, against the simulated training cases spent: higher and further left is better. ' +
-      'Targets lie between the start and the best value that any optimizer of this study found, evenly on a logarithmic scale of what is left of the way; they depend on who takes part. ' +
-      'A target counts from the budget on from which all later designs are there too, as coarsely as the checkpoints. ' +
+      'The share of all pairs of a run and a target that are reached, against the number of simulated training cases. Curves that are higher and further left are better. ' +
+      'Targets lie between the start and the best value that any optimizer of this study found. They are spaced evenly on a logarithmic scale of the remaining way to that value, and depend on the optimizers that take part. ' +
+      'A target counts as reached from the checkpoint on from which all later incumbents reach it too. ' +
       describe_size(scope) +
       kFirstOnes(scope.names.length),
     height: 400,
@@ -240,7 +242,7 @@ function make_profile(
 }
 
 const kSolved =
-  'A (problem, replicate) pair is solved once no more than the tolerance is left of the way from the start to the best value that any optimizer found there (Moré and Wild 2009). ';
+  'A (problem, replicate) pair is solved when at most the share "tolerance" remains of the way from the start to the best value that any optimizer found there (Moré and Wild 2009). ';
 
 export function make_profiles(scope: Scope): Figure[] {
   const overall = scope.data.overall;
@@ -253,7 +255,7 @@ export function make_profiles(scope: Scope): Figure[] {
       'data-profile',
       'Data profile',
       kSolved +
-        'Shown is the share solved against the effort, in simplex gradients: as many evaluations as the problem has variables, and one. It reads absolutely: so much of these problems is solved with such a budget.',
+        'The figure shows the share of solved pairs against the effort in simplex gradients. A simplex gradient is one evaluation more than the problem has variables. A curve says directly which share of these problems is solved with a given budget.',
       'simplex gradients',
       overall.kappas,
       overall.data_profiles,
@@ -263,8 +265,8 @@ export function make_profiles(scope: Scope): Figure[] {
       'performance-profile',
       'Performance profile',
       kSolved +
-        'Shown is the share solved within a multiple of what the quickest optimizer took there. At 1 it is how often an optimizer was the quickest, ties included; at the right how often it got there at all. ' +
-        'Multiples are relative to who takes part: two optimizers that are not the quickest may change places when it leaves.',
+        'The figure shows the share of pairs that are solved within a multiple of the cost of the fastest optimizer there. The value at 1 says how often an optimizer was the fastest, ties included. The value at the right says how often it solved a pair at all. ' +
+        'The multiples depend on the optimizers that take part: if the fastest one is left out, two others may change places.',
       'cost, as a multiple of the smallest',
       overall.alphas,
       overall.performance_profiles,

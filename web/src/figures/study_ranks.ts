@@ -246,7 +246,7 @@ function make_figure(scope: Scope, id: string, title: string, caption: string, g
 }
 
 const kBars =
-  "Bars join optimizers of which no two are told apart (Wilcoxon's signed-rank test, Holm's correction, 0.05); circles on a bar are its members. ";
+  "A bar joins optimizers of which the tests tell no two apart (Wilcoxon's signed-rank test, Holm's correction, 0.05). The circles on a bar are its members. ";
 
 // The ranks over problems. Each problem counts once, by its medians.
 export function make_overall_ranks(scope: Scope): Figure | null {
@@ -257,15 +257,15 @@ export function make_overall_ranks(scope: Scope): Figure | null {
   const ranks: Ranks = { ranks: overall.mean_ranks, intervals: overall.rank_intervals, cliques: overall.cliques };
   const few =
     scope.data.problems.length < 6
-      ? 'Of fewer than six problems no difference can be significant: the ranks are a description of these problems, and nothing can be concluded about others. '
-      : 'A bar is no proof of equality. ';
+      ? 'With fewer than six problems no difference can be significant. The ranks only describe these problems, and nothing can be concluded about others. '
+      : 'A bar does not prove that its members are equal. ';
   const caption =
-    'Critical-difference diagram: mean ranks over ' +
+    'Critical-difference diagram of the mean ranks over ' +
     scope.data.problems.length +
-    ' problems, each by its medians. ' +
+    ' problems. Each problem ranks the optimizers by their medians. ' +
     kBars +
     few +
-    'Mean ranks depend on who takes part. ' +
+    'Mean ranks depend on the optimizers that take part. ' +
     describe_size(scope);
   return make_figure(scope, 'ranks', 'Mean ranks over problems', caption, () => ranks, [ranks]);
 }
@@ -281,9 +281,9 @@ export function make_problem_ranks(all: Scope, id: string): Figure | null {
     return { ranks, intervals: null, cliques: find_cliques(problem, ranks) };
   };
   const caption =
-    'Critical-difference diagram: ranks of the runs of a replicate, averaged over the replicates. ' +
+    'Critical-difference diagram of the ranks of the runs of a replicate, averaged over the replicates. ' +
     kBars +
-    'A bar is no proof of equality, and mean ranks depend on who takes part. ' +
+    'A bar does not prove that its members are equal, and mean ranks depend on the optimizers that take part. ' +
     describe_size(scope);
   const figure = make_figure(
     scope,

@@ -185,12 +185,12 @@ export function make_values(scope: Scope): Figure {
     id: 'values' + scope.suffix,
     title: end_title(scope, 'Value of every run'),
     caption:
-      "Each point is a run: its winner's value on the test set, which no optimizer has seen. Boxes are quartiles with the median, whiskers reach to the best and the worst run; the best median is on top. " +
-      'A run whose winner fails on a test case or violates a constraint has no value; it counts as the worst and stands beyond the axis. ' +
+      'Each point is a run. Its place is the value of the winner on the test set, which was not used for training. The boxes are quartiles with the median, and the whiskers reach to the best and the worst run. The best median is at the top. ' +
+      'A run whose winner fails on a test case or violates a constraint has no value. It counts as the worst and is shown beyond the axis. ' +
       (scope.problems.some((problem) => problem.has_front)
-        ? "Of several objectives the value is the share of the hypervolume that a run's front misses; it depends on who takes part. "
+        ? 'With several objectives the value is the share of the hypervolume that the front of a run misses. It depends on the optimizers that take part. '
         : '') +
-      'Overlapping boxes do not mean equal optimizers: runs are paired by replicate, and the tests use the pairs. ' +
+      'Optimizers with overlapping boxes need not be equal: runs are paired by replicate, and the tests use these pairs. ' +
       describe_size(scope),
     width: scope.names.length > 16 ? 'full' : 'half',
     height: Math.max(320, 70 + 24 * scope.names.length),

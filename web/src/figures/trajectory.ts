@@ -113,9 +113,9 @@ export function make_case_figure(set: ReplaySet, id = 'test-case', thesis = ''):
     title: 'Trajectory points of a test case',
     thesis: thesis || undefined,
     caption:
-      'The points that the tip is to visit in turn, from above and from the side, in the frame of the base and on one scale; ' +
-      'the target moves between them on straight lines. The first move goes from the centre of the workspace to its edge, the second across it, ' +
-      'and each further one is shorter than that before. Numbers that would cover each other are left out; the table has them all.',
+      'The points that the tip has to visit one after the other, from above and from the side, in the frame of the base and on one scale. ' +
+      'The target moves between them on straight lines. The first move goes from the centre of the workspace to its edge, the second move goes across it, ' +
+      'and each further move is shorter than the one before. Numbers that would cover each other are left out. The table has all points.',
     height: 340,
     choices: usable.length > 1 ? [make_case_choice(shown)] : undefined,
     draw: (look, picked) => {

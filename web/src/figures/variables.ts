@@ -128,10 +128,10 @@ export function make_variables_figure(data: RunData): Figure | null {
     id: 'variables',
     title: 'Design variables during training',
     caption:
-      `The value of the best design of each ${unit === 'generation' ? 'generation' : 'block of evaluations'} (line), and between which values ` +
-      `half of all its designs lie (band). Dashed: the bounds; dotted: where the search started; diamond: the winner. ` +
-      `A minus sign before a name says that the variable is negative and its magnitude drawn. ` +
-      `A band that narrows shows a variable that the optimizer has settled on; a line along a bound, one that wants to go further.`,
+      `The value of the best design of each ${unit === 'generation' ? 'generation' : 'block of evaluations'} (line), and the range of the ` +
+      `middle half of all its designs (band). The dashed lines are the bounds, the dotted line is the start of the search, and the diamond is the winner. ` +
+      `A minus sign before a name means that the variable is negative and its magnitude is drawn. ` +
+      `If the band becomes narrow, the optimizer has found the value of the variable. If the line runs along a bound, a better value may be beyond it.`,
     width: 'full',
     height,
     choices: groups.length > 1 ? [choice] : undefined,

@@ -149,7 +149,7 @@ class Replay implements ReplayView {
       '1',
     );
     const traces: { value: TraceChoice; label: string }[] = [
-      { value: 'past', label: 'so far, earlier moves faint' },
+      { value: 'past', label: 'until now, with earlier moves faint' },
       { value: 'move', label: 'of this move' },
       { value: 'whole', label: 'of the whole motion' },
     ];
@@ -184,9 +184,9 @@ class Replay implements ReplayView {
       make(
         'p',
         { class: 'replay-hint' },
-        'Below the arm: the error over the whole test case, with what is measured shaded; click into it to go there. ' +
-          'Space plays and pauses, arrow keys step (with Shift by ten), Home and End go to the ends; ' +
-          'drag to turn the view, wheel to zoom, right button to move it.',
+        'The strip below the arm shows the error over the whole test case. In shaded times the error is measured. Click into the strip to go to a time. ' +
+          'The space bar plays and pauses, the arrow keys step (ten steps with Shift), and Home and End go to the ends. ' +
+          'Drag to turn the view, use the wheel to zoom and the right button to move the view.',
       ),
     );
   }
