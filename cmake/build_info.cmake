@@ -1,4 +1,4 @@
-# What describe_build() reports. The git state is read at every build, not only when CMake configures.
+# The data of describe_build(). Every build reads the git state, not only every run of CMake.
 set(header ${PROJECT_BINARY_DIR}/generated/git_state.hpp)
 add_custom_target(
   armwright_git_state
@@ -10,8 +10,8 @@ add_dependencies(armwright_base armwright_git_state)
 set_source_files_properties(${PROJECT_SOURCE_DIR}/src/base/build_info.cpp TARGET_DIRECTORY armwright_base
                             PROPERTIES OBJECT_DEPENDS ${header})
 
-# The versions of all libraries, as they were found when the build was configured; one that is left out has none. Those without a CMake
-# package or a module of pkg-config say it in a header.
+# The versions of all libraries, as CMake found them. A library that is not in the build has an empty version. Libraries without a CMake
+# package or a pkg-config module have their version in a header.
 file(STRINGS ${BOOST_INCLUDE_DIR}/boost/version.hpp boost_version REGEX "^#define BOOST_LIB_VERSION ")
 string(REGEX REPLACE ".*\"(.*)\".*" "\\1" boost_version "${boost_version}")
 string(REPLACE "_" "." boost_version "${boost_version}")
@@ -47,7 +47,7 @@ armwright_library(tomlplusplus TRUE "${TOMLPLUSPLUS_VERSION}")
 armwright_library(urdfdom TRUE "${URDFDOM_VERSION}")
 armwright_library(zlib TRUE "${ZLIB_VERSION_STRING}")
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/generated/library_versions.hpp CONTENT
-     "// Written by cmake/build_info.cmake. Without a version: not in this build.
+     "// Written by cmake/build_info.cmake. An empty version means: not in this build.
 inline constexpr struct {
   const char* name;
   const char* version;

@@ -13,15 +13,15 @@ pkg_check_modules(URDFDOM REQUIRED IMPORTED_TARGET urdfdom)
 pkg_check_modules(TOMLPLUSPLUS REQUIRED IMPORTED_TARGET tomlplusplus)
 pkg_check_modules(TINYXML2 REQUIRED IMPORTED_TARGET tinyxml2)
 find_path(RANDOM123_INCLUDE_DIR Random123/philox.h REQUIRED)
-find_path(BOOST_INCLUDE_DIR boost/math/distributions/fisher_f.hpp REQUIRED) # Boost.Math is headers only
+find_path(BOOST_INCLUDE_DIR boost/math/distributions/fisher_f.hpp REQUIRED) # Boost.Math has headers only
 
-# The optimizer libraries are optional: without one its optimizers are listed as unavailable, with the reason.
+# The optimizer libraries are optional. If one is missing, its optimizers are listed as unavailable, with the reason.
 option(ARMWRIGHT_WITH_NLOPT "Optimizers of NLopt (nlopt:*)" ON)
 option(ARMWRIGHT_WITH_PAGMO "Optimizers of pagmo (pagmo:*)" ON)
 option(ARMWRIGHT_WITH_CERES "Optimizers of Ceres Solver (ceres:*)" ON)
 set(ARMWRIGHT_OPTIMIZER_LIBRARIES "")
 if(ARMWRIGHT_WITH_NLOPT)
-  find_library(NLOPT_CXX_LIBRARY nlopt_cxx REQUIRED) # the one that has AGS, too
+  find_library(NLOPT_CXX_LIBRARY nlopt_cxx REQUIRED) # this variant of the library also has AGS
   find_path(NLOPT_INCLUDE_DIR nlopt.h REQUIRED)
   list(APPEND ARMWRIGHT_OPTIMIZER_LIBRARIES ${NLOPT_CXX_LIBRARY})
 endif()
@@ -34,8 +34,8 @@ if(ARMWRIGHT_WITH_CERES)
   list(APPEND ARMWRIGHT_OPTIMIZER_LIBRARIES Ceres::ceres)
 endif()
 
-# A third engine to check the others with: there where the library is, never asked for. (Its own CMake package wants OpenGL, which only
-# its pictures need.)
+# A third engine that checks the others. It is built if the library is there; the build never requires it. (The CMake package of the library
+# requires OpenGL, which only its graphics need, so it is not used.)
 find_library(MUJOCO_LIBRARY mujoco)
 find_path(MUJOCO_INCLUDE_DIR mujoco/mujoco.h)
 set(mujoco_found OFF)
@@ -46,34 +46,35 @@ if(MUJOCO_LIBRARY AND MUJOCO_INCLUDE_DIR)
     set(mujoco_found ON) # 2.3 has other data structures
   endif()
 endif()
-option(ARMWRIGHT_WITH_MUJOCO "Engine mujoco, to check the others with" ${mujoco_found})
+option(ARMWRIGHT_WITH_MUJOCO "Engine mujoco, which checks the other engines" ${mujoco_found})
 if(ARMWRIGHT_WITH_MUJOCO AND NOT mujoco_found)
-  message(FATAL_ERROR "ARMWRIGHT_WITH_MUJOCO is ON, but there is no MuJoCo 2.2; install the Debian package libmujoco-dev or leave the "
-                      "option OFF")
+  message(FATAL_ERROR "ARMWRIGHT_WITH_MUJOCO is ON, but MuJoCo 2.2 was not found; install the Debian package libmujoco-dev or set the "
+                      "option to OFF")
 endif()
 
-# Evaluations over the ranks of an mpirun. Asked for by pkg-config, since CMake's own module wants the language C for the plain C interface.
+# OpenMPI distributes evaluations over the ranks of an mpirun. It is found by pkg-config, because CMake's own module requires the language C for
+# the plain C interface.
 pkg_check_modules(OMPI_C IMPORTED_TARGET ompi-c)
-option(ARMWRIGHT_WITH_MPI "Evaluations shared out by mpirun (OpenMPI)" ${OMPI_C_FOUND})
+option(ARMWRIGHT_WITH_MPI "Distribution of evaluations by mpirun (OpenMPI)" ${OMPI_C_FOUND})
 if(ARMWRIGHT_WITH_MPI AND NOT OMPI_C_FOUND)
-  message(FATAL_ERROR "ARMWRIGHT_WITH_MPI is ON, but there is no OpenMPI; install the Debian package libopenmpi-dev or leave the option OFF")
+  message(FATAL_ERROR "ARMWRIGHT_WITH_MPI is ON, but OpenMPI was not found; install the Debian package libopenmpi-dev or set the option to OFF")
 endif()
 
-# Reads the meshes of robots, for the page's replay and for masses at a density. Without it they are shown in plain shapes, with a note,
-# and give no mass.
+# Assimp reads the meshes of robots, for the replay of the page and for masses from a density. Without it, the page shows plain shapes with a
+# note, and meshes give no mass.
 find_library(ASSIMP_LIBRARY assimp)
 find_path(ASSIMP_INCLUDE_DIR assimp/Importer.hpp)
 set(assimp_found OFF)
 if(ASSIMP_LIBRARY AND ASSIMP_INCLUDE_DIR)
   set(assimp_found ON)
 endif()
-option(ARMWRIGHT_WITH_ASSIMP "Meshes of robots: masses, replays" ${assimp_found})
+option(ARMWRIGHT_WITH_ASSIMP "Meshes of robots, for masses and replays" ${assimp_found})
 if(ARMWRIGHT_WITH_ASSIMP AND NOT assimp_found)
-  message(FATAL_ERROR "ARMWRIGHT_WITH_ASSIMP is ON, but there is no Assimp; install the Debian package libassimp-dev or leave the option OFF")
+  message(FATAL_ERROR "ARMWRIGHT_WITH_ASSIMP is ON, but Assimp was not found; install the Debian package libassimp-dev or set the option to OFF")
 endif()
 
-# The Python package is for Debian's own interpreter, which has Debian's numpy: another one may come first on a PATH.
-set(Python3_EXECUTABLE /usr/bin/python3 CACHE FILEPATH "The Python that the package armwright is built for")
+# The Python package is built for Debian's own interpreter, which has Debian's numpy. Another interpreter may come first on the PATH.
+set(Python3_EXECUTABLE /usr/bin/python3 CACHE FILEPATH "The Python interpreter for which the package armwright is built")
 find_package(Python3 3.9 QUIET COMPONENTS Interpreter Development.Module)
 find_package(pybind11 2.10 QUIET CONFIG)
 set(python_found OFF)
@@ -82,6 +83,6 @@ if(Python3_Development.Module_FOUND AND pybind11_FOUND)
 endif()
 option(ARMWRIGHT_WITH_PYTHON "The Python package armwright" ${python_found})
 if(ARMWRIGHT_WITH_PYTHON AND NOT python_found)
-  message(FATAL_ERROR "ARMWRIGHT_WITH_PYTHON is ON, but Python's headers or pybind11 are missing for ${Python3_EXECUTABLE}; install the "
-                      "Debian packages python3-dev and pybind11-dev or leave the option OFF")
+  message(FATAL_ERROR "ARMWRIGHT_WITH_PYTHON is ON, but the headers of Python or pybind11 were not found for ${Python3_EXECUTABLE}; install the "
+                      "Debian packages python3-dev and pybind11-dev or set the option to OFF")
 endif()

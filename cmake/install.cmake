@@ -1,13 +1,13 @@
-# What `cmake --install` lays down: the program and its configurations (component runtime), and the rooms below it as a CMake package with
-# their headers, so that plugins and other programs can build on them (dev). The cli room is the program's inside and stays out. Packages
-# are made of the components (package.cmake); without --component all are installed.
+# The files that `cmake --install` installs. The component runtime is the program and its configurations. The component dev is a CMake package
+# of the libraries and their headers, so that plugins and other programs can be built with them; it leaves out cli, which is internal to the
+# program. package.cmake makes one Debian package per component. Without --component, all components are installed.
 include(CMakePackageConfigHelpers)
 
 set(ARMWRIGHT_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/armwright)
 set(ARMWRIGHT_PACKAGE_ROOMS ${ARMWRIGHT_ROOMS})
 list(FILTER ARMWRIGHT_PACKAGE_ROOMS INCLUDE REGEX ".")
 list(REMOVE_ITEM ARMWRIGHT_PACKAGE_ROOMS cli)
-# What their libraries need of pkg-config.
+# The pkg-config modules that the libraries need.
 set(ARMWRIGHT_PACKAGE_MODULES ode urdfdom tomlplusplus tinyxml2)
 if(ARMWRIGHT_WITH_PAGE)
   list(APPEND ARMWRIGHT_PACKAGE_MODULES duktape cpp-httplib)
@@ -18,7 +18,7 @@ endif()
 
 install(TARGETS armwright RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
 install(DIRECTORY configs/ DESTINATION ${CMAKE_INSTALL_DATADIR}/armwright/configs COMPONENT runtime)
-# Examples to read and to build; the program looks for built plugins in lib/armwright/plugins.
+# Example plugins to read and to build. The program looks for built plugins in lib/armwright/plugins.
 install(DIRECTORY plugins/ DESTINATION ${CMAKE_INSTALL_DATADIR}/armwright/plugins COMPONENT runtime USE_SOURCE_PERMISSIONS
         PATTERN "__pycache__" EXCLUDE)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
@@ -30,19 +30,19 @@ install(FILES ${ARMWRIGHT_MANUAL_DIR}/completions/armwright DESTINATION ${CMAKE_
 
 foreach(room IN LISTS ARMWRIGHT_PACKAGE_ROOMS)
   install(TARGETS armwright_${room} EXPORT armwrightTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)
-  # Headers name each other by room ("base/error.hpp"); the targets carry the folder that makes this work.
+  # Headers include each other by folder ("base/error.hpp"). The targets have the include path for this.
   install(DIRECTORY src/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/armwright COMPONENT dev FILES_MATCHING PATTERN "*.hpp")
 endforeach()
 install(EXPORT armwrightTargets NAMESPACE armwright:: DESTINATION ${ARMWRIGHT_CMAKE_DIR} COMPONENT dev)
 
-# A set of its own, so that a plugin needs none of the libraries that the rooms need.
+# A separate export set, so that a plugin needs none of the libraries that armwright itself needs.
 install(TARGETS armwright_plugin EXPORT armwrightPluginTargets)
 install(DIRECTORY include/armwright DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp")
 install(EXPORT armwrightPluginTargets NAMESPACE armwright:: DESTINATION ${ARMWRIGHT_CMAKE_DIR} COMPONENT dev)
 
 configure_package_config_file(cmake/armwrightConfig.cmake.in ${PROJECT_BINARY_DIR}/armwrightConfig.cmake
                               INSTALL_DESTINATION ${ARMWRIGHT_CMAKE_DIR})
-# docs/versioning.md says what stays as it is within a major version.
+# docs/versioning.md says what does not change within a major version.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/armwrightConfigVersion.cmake COMPATIBILITY SameMajorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/armwrightConfig.cmake ${PROJECT_BINARY_DIR}/armwrightConfigVersion.cmake
         DESTINATION ${ARMWRIGHT_CMAKE_DIR} COMPONENT dev)

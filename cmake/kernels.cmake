@@ -1,14 +1,14 @@
-# How the SIMD kernels are compiled, ARMWRIGHT_KERNEL_FLAGS_LEVEL for every instruction set; the program chooses among them
-# when it runs. Their results need not agree to the last bit, so the compiler may fuse multiplications with additions.
+# The compiler flags of the SIMD kernels, in ARMWRIGHT_KERNEL_FLAGS_LEVEL for every instruction set LEVEL. The program chooses one of
+# the kernels at run time. Their results need not agree to the last bit, so the compiler may fuse multiplications with additions.
 set(instructions_scalar "")
 set(instructions_sse2 "")
 set(instructions_avx2 -mavx2 -mfma)
 set(instructions_avx512 -mavx512f -mavx512vl -mavx512dq -mavx512bw -mfma)
 foreach(level scalar sse2 avx2 avx512)
   set(flags -ffp-contract=fast)
-  # In straight-line code of two thousand instructions the order matters: scheduled before registers are given out, and
-  # without values kept for later turns of the loop, it runs 1.2 times as fast. GCC's guesses at what is uninitialised are
-  # wrong in it.
+  # In straight-line code of two thousand instructions the order of the instructions matters. The code runs 1.2 times as fast if
+  # GCC schedules it before it assigns registers, and keeps no values for later iterations of the loop. GCC's warnings about
+  # uninitialised values are wrong in this code.
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     list(APPEND flags -Wno-maybe-uninitialized -fno-tree-pre -fschedule-insns -fsched-pressure)
   endif()

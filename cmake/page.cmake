@@ -1,5 +1,5 @@
-# The page that `armwright report` writes, and the figures of `armwright plot`: built from web/ with npm, and carried in the program as
-# bytes. Without npm the option can be OFF; the commands that need the page say so then.
+# The page of `armwright report` and the figures of `armwright plot`. npm builds them from web/, and the program contains them as
+# bytes. Without npm, set the option to OFF; the commands that need the page then end with an error that says so.
 option(ARMWRIGHT_WITH_PAGE "The page of armwright report, plot and watch (needs Node and npm)" ON)
 if(NOT ARMWRIGHT_WITH_PAGE)
   return()
@@ -21,14 +21,14 @@ pkg_check_modules(CPP_HTTPLIB REQUIRED IMPORTED_TARGET cpp-httplib)
 
 set(web ${PROJECT_SOURCE_DIR}/web)
 set(page ${PROJECT_BINARY_DIR}/page)
-# The lock file names every package by its hash. None of them needs its installation script.
+# The lock file has the hash of every package. No package needs its installation script.
 add_custom_command(
   OUTPUT ${page}/packages
   COMMAND ${NPM_PROGRAM} ci --ignore-scripts --no-audit --no-fund --loglevel=error
   COMMAND ${CMAKE_COMMAND} -E touch ${page}/packages
   DEPENDS ${web}/package.json ${web}/package-lock.json
   WORKING_DIRECTORY ${web}
-  COMMENT "Fetching the page's packages (npm ci)"
+  COMMENT "Fetching the packages of the page (npm ci)"
   VERBATIM)
 file(GLOB_RECURSE page_sources CONFIGURE_DEPENDS ${web}/src/*.ts ${web}/src/*.css)
 set(ARMWRIGHT_PAGE_FILES ${page}/page.js ${page}/page.css ${page}/figures.js)

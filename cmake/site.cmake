@@ -1,5 +1,5 @@
-# The documentation's site, site/index.html of the build tree: README.md, CHANGELOG.md and docs as pages that open from disk, with a search and
-# without a server. A second's work, so it is part of every build that has Node for the page of `armwright report`.
+# The site of the documentation, site/index.html of the build tree: README.md, CHANGELOG.md and docs as pages. They open from disk without a
+# server and have a search. Making it takes a second, so every build that has Node for the page of `armwright report` makes it.
 if(NOT ARMWRIGHT_WITH_PAGE)
   return()
 endif()
@@ -11,9 +11,9 @@ add_custom_command(
   COMMAND ${NODE_PROGRAM} site/build.mjs ${site}
   DEPENDS ${page}/packages ${site_sources} ${PROJECT_SOURCE_DIR}/docs/site.json ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md
   WORKING_DIRECTORY ${web}
-  COMMENT "Building the documentation's site"
+  COMMENT "Building the site of the documentation"
   VERBATIM)
 add_custom_target(site ALL DEPENDS ${site}/index.html)
-# One rule fetches the packages, and two targets want them: one after the other.
+# Two targets need the packages, and one rule fetches them. The dependency makes the targets run one after the other.
 add_dependencies(site armwright_page)
 install(DIRECTORY ${site}/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/html COMPONENT runtime OPTIONAL)

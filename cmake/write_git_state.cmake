@@ -1,4 +1,4 @@
-# Writes the commit and whether the tree differs from it; touches the header only when that changes.
+# Writes the commit, and whether the working tree differs from it, into HEADER. The header is written only if this changes.
 cmake_minimum_required(VERSION 3.25)
 execute_process(COMMAND git -C ${SOURCE} describe --always --dirty --abbrev=12 --exclude=*
                 OUTPUT_VARIABLE state OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)

@@ -1,24 +1,24 @@
 #!/usr/bin/env python3
-"""Writes the reference of the C interface of plugins, in Markdown, from the header that plugins are built against: every declaration of
-include/armwright/plugin.h with what the header says of it. scripts/docs calls it."""
+"""Writes the reference page of the C interface of plugins, in Markdown, to standard output. The page has every declaration of
+include/armwright/plugin.h with its comment. scripts/docs calls this script."""
 import pathlib
 import re
 import sys
 
 HEADER = pathlib.Path(__file__).resolve().parent.parent / "include" / "armwright" / "plugin.h"
 
-# A comment, and the declaration behind it up to the next blank line outside braces.
+# A comment. The declaration after it ends at the next blank line outside braces.
 COMMENT = re.compile(r"/\*(.*?)\*/\n", re.S)
 
 
 def read_comment(text):
-    """The prose of a comment; what is indented in it by four blanks stays a block of code."""
+    """Returns the text of a comment. Lines that are indented by four blanks stay a block of code."""
     lines = [re.sub(r"^\s*\* ?", "", line).rstrip() for line in text.split("\n")]
     return "\n".join(line.lstrip() if not line.startswith("    ") else line for line in lines).strip()
 
 
 def split_declarations(code):
-    """(comment, declaration) for each top-level comment that has a declaration behind it."""
+    """Returns (comment, declaration) for each top-level comment that has a declaration after it."""
     parts = []
     position = 0
     while match := COMMENT.search(code, position):
@@ -48,14 +48,14 @@ def make_title(declaration):
 def make_page(header):
     introduction, rest = header.split("#ifndef ARMWRIGHT_PLUGIN_H", 1)
     rest = re.sub(r'#ifdef __cplusplus\n(extern "C" \{|\})\n#endif\n', "", rest)
-    rest = re.sub(r"#if defined\(__cplusplus\).*\n(#pragma.*\n)+#endif\n", "", rest)  # how compilers are to take it
+    rest = re.sub(r"#if defined\(__cplusplus\).*\n(#pragma.*\n)+#endif\n", "", rest)  # instructions for compilers
     version = re.search(r"#define ARMWRIGHT_PLUGIN_ABI (\d+)u", rest).group(1)
     text = (
         "<!-- Written by scripts/docs from include/armwright/plugin.h: change that, not this file. -->\n"
         f"# The C interface of plugins, version {version}\n\n"
         f"{read_comment(introduction.strip()[2:-2])}\n\n"
-        "The header is `armwright/plugin.h`; [plugins](../plugins.md) begins from nothing, and `plugins/hooke_jeeves` is a complete "
-        "one in C. The same for programs of their own is [the plugin protocol](../plugin-protocol.md).\n"
+        "The header is `armwright/plugin.h`. [Plugins](../plugins.md) explains how to write a plugin from the beginning, and `plugins/hooke_jeeves` "
+        "is a complete plugin in C. [The plugin protocol](../plugin-protocol.md) is the corresponding interface for plugins that are programs.\n"
     )
     for comment, declaration in split_declarations(rest):
         if not declaration.strip():

@@ -1,17 +1,18 @@
-"""How batches spread over ranks, simulated by discrete events: the policy of src/study/executor/chunk_planner.cpp and the ways of
-coordinator_links.cpp and worker.cpp, in a time of its own.
+"""Simulates by discrete events how batches are distributed over ranks. It follows the policy of src/study/executor/chunk_planner.cpp and
+the behaviour of coordinator_links.cpp and worker.cpp, in simulated time.
 
-A model has few parameters, all of them times in seconds:
+The model has few parameters. All are times in seconds, except crowding:
 
-    round_trip_s  an empty message there and back        byte_s   a byte more, there or back
-    chunk_s       processor time of the coordinator for a chunk, MPI left out (encode, decode, deliver, plan)
-    pair_s        the same for each of its pairs
-    wake_s        from the end of a sleep to the thread's being at work: what a pause is longer than was asked for
-    wake_shared_s the same where ranks share cores, and a thread that wakes finds its core at work for another
-    crowding      by how much a pair takes longer while all cores of the machine are at work (1: by nothing)
+    round_trip_s  an empty message there and back
+    byte_s        each byte of a message, there or back
+    chunk_s       processor time of the coordinator for a chunk, without MPI (encode, decode, deliver, plan)
+    pair_s        the same for each pair of the chunk
+    wake_s        the time from the end of a sleep until the thread works: a pause is longer than requested by this time
+    wake_shared_s the same if ranks share cores, and a thread that wakes finds its core busy with another thread
+    crowding      the factor by which a pair takes longer while all cores of the machine work (1: not longer)
 
-A chunk of m pairs so takes chunk_s + m pair_s + round_trip_s + bytes byte_s of the coordinator's one thread that communicates. Who
-computes shares the cores equally: k threads on C cores run at min(1, C / k) each."""
+A chunk of m pairs therefore takes chunk_s + m pair_s + round_trip_s + bytes byte_s of the coordinator's thread that communicates.
+Threads that compute share the cores equally: k threads on C cores run at min(1, C / k) each."""
 
 import collections
 import dataclasses
@@ -24,14 +25,14 @@ CHUNK_S = 0.01
 CHUNK_EACH_S = 4e-5
 CHUNKS_AHEAD = 2
 LATEST = 0.3
-# The same, WorkerLatency: what a chunk is taken to need beside its work, until it is known better
+# WorkerLatency in chunk_planner.hpp: the assumed time of a chunk beside its work, until it has been measured
 FIRST_LATENCY_S = 1e-3
 FORGETTING_S = 1.0
 MOST_RISE = 4
-# coordinator_links.cpp: a pause of the thread that communicates; messages that it takes in a row
+# coordinator_links.cpp: the pauses of the thread that communicates, and the number of messages that it takes in a row
 SHORTEST_S, LONGEST_S = 50e-6, 1e-3
 AT_ONCE = 256
-# worker.cpp: pauses while there is something to do, and while there is not
+# worker.cpp: pauses while the worker has work, and while it has none
 BUSY_PAUSE_S = 1e-3
 IDLE_SHORTEST_S, IDLE_LONGEST_S, IDLE_GROWTH = 100e-6, 2e-3, 64
 # case_packets.cpp, for vectors of 16 variables and outcomes with 11 metrics
@@ -54,28 +55,28 @@ class Model:
 @dataclasses.dataclass
 class Team:
     ranks: int
-    threads: int = 1      # of each
-    cores: float = math.inf  # of all ranks together
+    threads: int = 1      # per rank
+    cores: float = math.inf  # for all ranks together
 
 
 @dataclasses.dataclass
 class Work:
-    pairs: int            # of a batch
-    cost_s: float         # of a pair
+    pairs: int            # per batch
+    cost_s: float         # per pair
     granularity: int = 1
     largest: int = 1
-    cells: int = 1        # that have a batch each under way at any time
-    batches: int = 1      # of each cell, one after the other
-    serial_s: float = 0   # of a cell between two batches
-    pair_s: float = 0     # of the coordinator for a pair, beyond the model's: evaluator, journal
+    cells: int = 1        # that run at the same time, each with one batch at a time
+    batches: int = 1      # per cell, one after the other
+    serial_s: float = 0   # time of a cell between two batches
+    pair_s: float = 0     # coordinator time per pair beyond that of the model: evaluator, journal
 
 
 @dataclasses.dataclass
 class Outcome:
-    time_s: float         # of all batches
-    chunks: int           # sent to others
-    busy_s: float         # of the thread that communicates
-    batches_s: list       # of each batch, in the order in which they ended
+    time_s: float         # until all batches have ended
+    chunks: int           # sent to workers
+    busy_s: float         # busy time of the thread that communicates
+    batches_s: list       # time of each batch, in the order in which they ended
 
 
 def round_up(pairs, granularity):
@@ -119,19 +120,21 @@ class Batch:
 
 class Worker:
     def __init__(self, latency_s):
-        self.chunks = 0          # under way, as the coordinator sees it
+        self.chunks = 0          # that it has not answered, as the coordinator sees it
         self.free_at = 0.0
         self.latency_s = latency_s
-        self.heard_at = 0.0      # with outcomes
+        self.heard_at = 0.0      # time of its last outcomes
         self.idle_threads = 0
-        self.inbox = []          # arrived, and not looked at yet
-        self.pieces = []         # of chunks that have begun: [chunk, pairs]
+        self.inbox = []          # chunks that have arrived but were not read yet
+        self.pieces = []         # parts of chunks that have begun: [chunk, pairs]
         self.idle_since = 0.0
 
 
 class Simulation:
-    """Events are (time, order, function); computing is counted in the time that a thread would need by itself, of which all that
-    compute get the same share at any moment, so that the next to end is the one with the least left."""
+    """A simulation of one team that works on one kind of batches.
+
+    Events are (time, order, function). Work is counted in the time that one thread alone would need. All threads that compute
+    progress at the same rate at any moment, so the thread with the least work left ends next."""
 
     def __init__(self, model, team, work, latency_s=FIRST_LATENCY_S):
         self.model, self.team, self.work = model, team, work
@@ -148,10 +151,10 @@ class Simulation:
         self.hungry = set(range(len(self.workers)))
         self.batches = []
         self.idle_here = team.threads
-        self.busy_until = []     # of threads here
-        self.asleep = True       # the thread that communicates
+        self.busy_until = []     # times at which the local threads become free
+        self.asleep = True       # whether the thread that communicates sleeps
         self.turn_due = False
-        self.arrived = collections.deque()  # at the coordinator
+        self.arrived = collections.deque()  # answers that the coordinator has not read yet
         self.chunks, self.busy_s, self.batches_s = 0, 0.0, []
         self.left_batches = work.cells * work.batches
 
@@ -188,7 +191,7 @@ class Simulation:
             function(*arguments)
         return Outcome(self.now, self.chunks, self.busy_s, self.batches_s)
 
-    # The coordinator's batches and threads.
+    # The batches and the local threads of the coordinator.
     def submit(self, cell):
         self.batches.append(Batch(cell, self.work.pairs, self.now))
         self.work_here()
@@ -228,7 +231,7 @@ class Simulation:
         if self.left_batches >= self.work.cells:
             self.at(self.now + self.work.serial_s, self.submit, batch.cell)
 
-    # Its thread that communicates: assigns, sends, takes what has arrived, and sleeps if that was nothing.
+    # The thread of the coordinator that communicates: it assigns, sends, takes the messages that have arrived, and sleeps if there were none.
     def turn(self):
         self.turn_due = False
         self.asleep = False
@@ -275,7 +278,7 @@ class Simulation:
                 if sent:
                     left_here_s = self.calc_left_here_s()
                 elif worker.chunks == 0:
-                    break  # not worth while for one that has nothing to do, and so for nobody
+                    break  # if an idle worker would be too late, all others would be too
 
     def assign_to(self, rank, worker, left_here_s, latency_s):
         for batch in self.batches:
@@ -312,7 +315,7 @@ class Simulation:
         self.learn(busy_s / pairs)
         self.deliver(batch, pairs, self.wake_s)
 
-    # A worker's: one thread looks for messages, others compute.
+    # A worker: one thread reads messages, the others compute.
     def arrive(self, chunk):
         worker = self.workers[chunk[0]]
         worker.inbox.append(chunk)
@@ -357,7 +360,7 @@ class Simulation:
 
     def calc_pause(self):
         if len(self.workers) > 16:
-            return SHORTEST_S  # somebody is always expected
+            return SHORTEST_S  # with so many workers an answer is always expected
         pauses = [(worker.free_at - self.now) / (4 * worker.chunks) for worker in self.workers if worker.chunks]
         return min(LONGEST_S, max(SHORTEST_S, min(pauses, default=SHORTEST_S)))
 
@@ -367,8 +370,8 @@ def simulate(model, team, work):
 
 
 def predict_batch_s(model, team, work):
-    """The mean time of a batch as mpi_benchmark measures it: after others, from which the workers' delays are known, and beside the same
-    batch on one thread, by turns of at least 40 ms."""
+    """Returns the mean time of a batch as mpi_benchmark measures it: after other batches, from which the delays of the workers are known,
+    and by turns of at least 40 ms with the same batch on one thread."""
     if team.ranks == 1:
         return work.pairs * work.cost_s
     learning = Simulation(model, team, Work(400, 5e-4, batches=3))
@@ -377,7 +380,7 @@ def predict_batch_s(model, team, work):
     one_s = work.pairs * work.cost_s
     in_a_turn = max(1, int(0.04 / one_s))
     times_s = []
-    # A turn is what begins after a pause; what the workers have learned stays.
+    # A turn begins after a pause. The measured delays of the workers are kept.
     for _ in range(3 if in_a_turn == 1 else 1):
         turn = Simulation(model, team, dataclasses.replace(work, batches=in_a_turn), latency_s)
         for worker in turn.workers:
@@ -388,8 +391,8 @@ def predict_batch_s(model, team, work):
 
 
 def fit(model, rows, calc_error, names, start, spans):
-    """The parameters `names` that make the sum of squares of calc_error(model, row) least, by going along the axes with steps that
-    halve: two parameters, a handful of rows."""
+    """Returns the model whose parameters `names` minimise the sum of the squares of calc_error(model, row). The search goes along the axes
+    with steps that are halved. It suits a few parameters and a few rows."""
     values, steps = list(start), list(spans)
 
     def calc(candidate):

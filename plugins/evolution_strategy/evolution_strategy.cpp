@@ -1,14 +1,15 @@
 // A (mu/mu, lambda) evolution strategy with cumulative step-size adaptation (Ostermeier, Gawelczyk
 // and Hansen 1994, Step-size adaptation based on non-local use of selection information):
 //
-//   x_k   = m + sigma w z_k,  z_k normal, k = 1..lambda, w the box's widths
+//   x_k   = m + sigma w z_k,  z_k normal, k = 1..lambda, w the widths of the box
 //   <z>   = mean of the mu best z_k,   m <- m + sigma w <z>
 //   s     <- (1 - c) s + sqrt(mu c (2 - c)) <z>,   c = 1 / sqrt(n)
 //   sigma <- sigma exp((|s|^2 - n) / (2 D n)),     D = sqrt(n)
 //
-// in coordinates: linear variables as they are, logarithmic ones as the logarithm of their
-// magnitude. (The step rule in |s|^2 is Arnold and Beyer's of 2004; it needs no table of chi.)
-// Points outside the box are moved onto its edge, and m stays inside.
+// The equations hold in coordinates: a linear variable is its own coordinate, and the coordinate of
+// a logarithmic variable is the logarithm of its magnitude. The rule for sigma in |s|^2 is by
+// Arnold and Beyer (2004); it needs no table of chi. Points outside the box are moved onto its
+// edge. m stays inside the box.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -20,8 +21,8 @@ namespace {
 
 namespace plugin = armwright::plugin;
 
-// SplitMix64 (Steele, Lea and Flood 2014) and Box and Muller's transform: the same numbers with
-// every compiler, which std::normal_distribution does not promise.
+// A random generator: SplitMix64 (Steele, Lea and Flood 2014) and the transform of Box and Muller.
+// It gives the same numbers with every compiler. std::normal_distribution does not promise that.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
@@ -41,7 +42,7 @@ class Random {
   std::uint64_t state_;
 };
 
-// The box in coordinates.
+// The bounds and the start in coordinates.
 struct Box {
   explicit Box(const plugin::Problem& problem) : problem_(problem) {
     for (const plugin::Variable& v : problem.variables) {
@@ -112,7 +113,7 @@ class EvolutionStrategy {
       for (std::vector<double>& z : steps) {
         std::vector<double> coordinates = mean;
         for (std::size_t i = 0; i < n; ++i) {
-          z[i] = is_first ? 0 : random.normal();  // the start itself comes first
+          z[i] = is_first ? 0 : random.normal();  // the first point is the start itself
           coordinates[i] = move(box, mean, i, sigma, z[i]);
         }
         is_first = false;

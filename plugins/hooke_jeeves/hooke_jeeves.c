@@ -1,9 +1,11 @@
 /* Pattern search (Hooke and Jeeves 1961, "Direct search" solution of numerical and statistical
- * problems): steps along one variable at a time from a base point; where they helped, the whole
- * move is made once more before the next steps; where they did not, the steps are shortened.
+ * problems). The search makes steps along one variable at a time from a base point. If they
+ * improve the point, it repeats the whole move once before the next steps. If they do not, it
+ * shortens the steps.
  *
- * Works in coordinates: a linear variable as it is, a logarithmic one as the logarithm of its
- * magnitude. Steps are shares of the box in them. Constraints enter by an exact penalty.
+ * The search works in coordinates: a linear variable is its own coordinate, and the coordinate of
+ * a logarithmic variable is the logarithm of its magnitude. Steps are fractions of the box in
+ * coordinates. Constraints are added to the objective as an exact penalty.
  */
 #include <math.h>
 #include <stdio.h>
@@ -16,7 +18,7 @@ struct search {
   const struct armwright_problem* problem;
   const struct armwright_evaluator* evaluator;
   double violation_weight;
-  double* lower; /* of the box, in coordinates */
+  double* lower; /* bounds, in coordinates */
   double* upper;
   double* point;
   double* objectives;
@@ -41,7 +43,7 @@ static double to_variable(const struct search* s, size_t i, double coordinate) {
   return clamp(x, problem->lower[i], problem->upper[i]);
 }
 
-/* What is minimised; infinite at the end of the run, so that nothing is taken over. */
+/* Returns the value to minimise. At the end of the run it is infinite, so no point is accepted. */
 static double calc_merit(struct search* s, const double* coordinates) {
   int32_t status = ARMWRIGHT_OK;
   double merit;
@@ -64,7 +66,8 @@ static double calc_merit(struct search* s, const double* coordinates) {
   return merit;
 }
 
-/* A step up or down along each variable in turn, kept where it helps. */
+/* Tries a step up and a step down along each variable in turn, and keeps a step that improves x.
+ * Returns the merit of the new x. */
 static double explore(struct search* s, double* x, double merit, double step) {
   size_t i;
   for (i = 0; i < s->problem->dimension; ++i) {
@@ -102,7 +105,7 @@ static void run(struct search* s, double step, double shortest_step, double fact
       step *= factor;
       continue;
     }
-    while (explored < merit && !s->is_over) { /* pattern moves, as long as they pay */
+    while (explored < merit && !s->is_over) { /* pattern moves while they improve */
       merit = explored;
       memcpy(earlier, base, n * sizeof(double));
       memcpy(base, x, n * sizeof(double));
@@ -123,7 +126,7 @@ static int minimize(const struct armwright_problem* problem,
       calloc(6 * n + problem->objective_count + problem->constraint_count, sizeof(double));
   struct search s;
   size_t i;
-  (void)seed; /* nothing is left to chance */
+  (void)seed; /* the method uses no random numbers */
   if (memory == NULL) {
     snprintf(message, message_size, "no memory for %zu variables", n);
     return 1;
@@ -140,7 +143,7 @@ static int minimize(const struct armwright_problem* problem,
   for (i = 0; i < n; ++i) {
     const double a = to_coordinate(&s, i, problem->lower[i]);
     const double b = to_coordinate(&s, i, problem->upper[i]);
-    s.lower[i] = fmin(a, b); /* magnitudes of negative variables run the other way */
+    s.lower[i] = fmin(a, b); /* a < b does not hold for negative variables */
     s.upper[i] = fmax(a, b);
   }
   run(&s, options->get_number(options->context, "step"),

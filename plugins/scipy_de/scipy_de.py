@@ -1,10 +1,12 @@
 """Differential evolution (Storn and Price 1997, Differential evolution - a simple and efficient
-heuristic for global optimization over continuous spaces) as SciPy implements it, for armwright:
+heuristic for global optimization over continuous spaces) in the implementation of SciPy, as a
+plugin for armwright:
 
     armwright optimize sphere --optimizer 'exec:/usr/bin/python3 scipy_de.py'
 
-Needs SciPy 1.9 or later (Debian: python3-scipy). A whole generation is asked for at a time. SciPy
-works in the logarithm of logarithmic variables; the start is the first member of the population.
+The plugin needs SciPy 1.9 or later (Debian: python3-scipy). It asks for a whole generation at a
+time. SciPy works on the logarithm of logarithmic variables. The start is the first member of the
+population.
 """
 import json
 import os
@@ -40,27 +42,27 @@ DESCRIPTION = {
 
 
 class Stopped(Exception):
-    """The host wants no more points."""
+    """Raised when the host evaluates no more points."""
 
 
 def send(message):
-    # Standard output is the protocol's; it is flushed, or the host would wait for ever.
+    # Standard output is only for the protocol. Without the flush the host would wait forever.
     try:
         sys.stdout.write(json.dumps(message) + "\n")
         sys.stdout.flush()
     except BrokenPipeError:
-        os._exit(0)  # the host is gone
+        os._exit(0)  # the host has ended
 
 
 def receive():
     line = sys.stdin.readline()
     if not line:
-        sys.exit(0)  # the host is gone
+        sys.exit(0)  # the host has ended
     return json.loads(line)
 
 
 def minimize(task):
-    import numpy as np  # here, so that describing itself takes no time
+    import numpy as np  # imported here so that the description is sent without delay
     from scipy.optimize import differential_evolution
 
     options = task["options"]
@@ -83,7 +85,7 @@ def minimize(task):
         violation = sum(max(0.0, g) for g in score["constraints"])
         return score["objectives"][0] + options["violation_weight"] * violation
 
-    def calc_merits(columns):  # one column a point
+    def calc_merits(columns):  # one column per point
         points = [to_point(column).tolist() for column in np.atleast_2d(columns.T)]
         send({"type": "ask", "points": points})
         answer = receive()

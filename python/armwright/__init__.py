@@ -1,12 +1,12 @@
-"""armwright tunes robot arms by simulation with interchangeable gradient-free optimizers; this drives it from Python.
+"""armwright tunes robot arms by simulation with interchangeable gradient-free optimizers. This package is its Python interface.
 
     >>> import armwright
     >>> problem = armwright.load_problem("q1-complex", set={"physics.engine": "articulated"})
     >>> run = armwright.optimize(problem, "cmaes", seed=1, budget=2000)
     >>> run.summary["mean"]                            # metres, on the test set
 
-Evaluate points: Problem.evaluate(). Judge a design: Problem.evaluate_design(). Write an optimizer: derive a class from Optimizer. Settle
-which is better: compare(). docs/python.md goes through all of it. What is run here and by the program `armwright` is the same, bit for bit.
+Problem.evaluate() evaluates points. Problem.evaluate_design() judges a design. To write an optimizer, derive a class from Optimizer.
+compare() compares optimizers. docs/python.md describes all of this. The results are the same as those of the program `armwright`, bit for bit.
 """
 
 from . import _armwright

@@ -1,4 +1,4 @@
-# The module's inside, for type checkers. python/binding has what these are.
+# The types of the inner module, for type checkers. The functions are documented in python/binding.
 from typing import Any, Callable, Optional, Sequence, Union
 
 import numpy as np

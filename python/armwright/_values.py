@@ -1,4 +1,4 @@
-"""Values as Python has them, made what the library reads: settings and options as KEY=VALUE texts, points as arrays."""
+"""Converts Python values to the form that the library reads: settings and options to KEY=VALUE texts, points to arrays."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ MOST_JOBS = 1024
 
 
 def to_toml(value: Any) -> str:
-    """A value as TOML writes it; a plain word stays one, as on the command line."""
+    """Returns a value in TOML. A plain word stays without quotes, as on the command line. UsageError if TOML cannot hold the value."""
     if isinstance(value, (bool, np.bool_)):
         return "true" if value else "false"
     if isinstance(value, (int, np.integer)):
@@ -41,12 +41,12 @@ def to_toml(value: Any) -> str:
 
 
 def quote_words(value: Any) -> str:
-    """The same within a list or table, where a word needs its quotes."""
+    """Returns the value in TOML for use within a list or table, where a word needs quotes."""
     return json.dumps(value, ensure_ascii=False) if isinstance(value, str) else to_toml(value)
 
 
 def to_settings(settings: Optional[Settings]) -> list[str]:
-    """KEY=VALUE texts, of a mapping or of such texts."""
+    """Returns the settings as KEY=VALUE texts. They may be a mapping or a sequence of such texts."""
     if settings is None:
         return []
     if isinstance(settings, Mapping):
@@ -58,7 +58,7 @@ def to_settings(settings: Optional[Settings]) -> list[str]:
 
 
 def to_options(options: Optional[Mapping[str, Any]]) -> list[str]:
-    """An optimizer's options as KEY=VALUE texts."""
+    """Returns the options of an optimizer as KEY=VALUE texts."""
     texts = []
     for name, value in (options or {}).items():
         if isinstance(value, (bool, np.bool_)):
@@ -70,7 +70,7 @@ def to_options(options: Optional[Mapping[str, Any]]) -> list[str]:
 
 
 def to_jobs(jobs: Optional[int]) -> int:
-    """Threads: all cores unless told otherwise, by the argument or by $ARMWRIGHT_JOBS."""
+    """Returns the number of threads: `jobs`, else $ARMWRIGHT_JOBS, else the number of cores. UsageError if it is not from 1 to MOST_JOBS."""
     name = "jobs"
     if jobs is None:
         text = os.environ.get("ARMWRIGHT_JOBS", "")
@@ -84,14 +84,14 @@ def to_jobs(jobs: Optional[int]) -> int:
 
 
 def to_whole(name: str, value: Any, most: int) -> int:
-    """A whole number from 0."""
+    """Returns the value as an int. UsageError if it is not an integer from 0 to `most`."""
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)) or not 0 <= value <= most:
         raise UsageError(f"{name} is {value!r}; it must be an integer from 0 to {most}")
     return int(value)
 
 
 def to_points(points: npt.ArrayLike, name: str = "X") -> FloatArray:
-    """Points as a matrix of doubles in C order, a row each. What is one already is not copied."""
+    """Returns points as a matrix of doubles in C order, one row per point. An array that already has this form is not copied."""
     array = np.asarray(points)
     if array.dtype.kind not in "fiu":
         raise UsageError(f"{name} holds {array.dtype}; it must hold real numbers")
@@ -101,20 +101,20 @@ def to_points(points: npt.ArrayLike, name: str = "X") -> FloatArray:
 
 
 def to_masked(pair: tuple[FloatArray, npt.NDArray[np.bool_]]) -> MaskedFloats:
-    """Numbers some of which are not there. Below the mask they are infinite, never NaN."""
+    """Returns a masked array of (values, mask). Below the mask the values are infinite, never NaN."""
     values, mask = pair
     masked: MaskedFloats = np.ma.MaskedArray(values, mask=mask)  # type: ignore[no-untyped-call]
     return masked
 
 
 def to_masked_matrices(pair: tuple[FloatArray, npt.NDArray[np.bool_]], columns: int) -> MaskedFloats:
-    """The same of rows that each hold a matrix, row after row: (n, rows, columns)."""
+    """Returns a masked array (n, rows, columns). Each row of the input holds one matrix, row after row."""
     values, mask = pair
     shape = (len(values), values.shape[1] // columns, columns)
     return to_masked((values.reshape(shape), mask.reshape(shape)))
 
 
 def to_list(masked: MaskedFloats) -> list[Any]:
-    """Plain lists, None where there is no number."""
+    """Returns plain lists, with None for masked values."""
     plain: list[Any] = masked.tolist()  # type: ignore[no-untyped-call]
     return plain

@@ -1,4 +1,4 @@
-"""What is fixed about a problem: variables with units and bounds, objectives, constraints, metrics."""
+"""The description of a problem: variables with units and bounds, objectives, constraints, metrics."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ._values import FloatArray, to_points
 
 @dataclass(frozen=True)
 class Variable:
-    """A decision variable: bounds and start in its unit; `scale` is "linear" or "logarithmic" (bounds and start of one sign)."""
+    """A decision variable. Bounds and start are in its unit. `scale` is "linear" or "logarithmic" (bounds and start then have one sign)."""
 
     name: str
     unit: str
@@ -25,33 +25,33 @@ class Variable:
 
 @dataclass(frozen=True)
 class Quantity:
-    """Something that is measured, and its unit ("" for none)."""
+    """A measured quantity and its unit ("" if it has none)."""
 
     name: str
     unit: str
 
 
 class Description:
-    """A problem's description.
+    """The description of a problem.
 
     Attributes
     ----------
     name : str
     variables : tuple of Variable
     lower, upper, start : array (d,)
-        Of the variables, in their units.
+        One value per variable, in its unit.
     is_logarithmic : array of bool (d,)
     objectives : tuple of Quantity
-        To be minimised.
+        The quantities to minimise.
     weights : array (m,)
-        Where one number is needed, this weighted sum of the objectives counts.
+        Where one number is needed, it is the sum of the objectives with these weights.
     constraints : tuple of Quantity
-        One is met where its value g is at most 0.
+        A constraint is met if its value g is at most 0.
     violation_scale : float
-        What a violation of 1 is worth in the unit of the weighted sum.
+        The value that counts as much as a violation of 1, in the unit of the weighted sum.
     metrics : tuple of Quantity
     has_residuals, has_jacobian : bool
-        Whether evaluations can carry residuals, the sum of whose squares is the objective, and their exact derivatives.
+        Whether evaluations can contain residuals and their exact derivatives. The sum of the squared residuals is the objective.
     """
 
     def __init__(self, content: dict[str, Any]) -> None:
@@ -73,23 +73,23 @@ class Description:
         self._sign = np.where(self.is_logarithmic & (self.lower < 0), -1.0, 1.0)
 
     def __len__(self) -> int:
-        """How many decision variables there are."""
+        """Returns the number of decision variables."""
         return len(self.variables)
 
     def clip(self, points: npt.ArrayLike) -> FloatArray:
-        """The nearest points within the bounds, (n, d)."""
+        """Returns the nearest points within the bounds, (n, d)."""
         return np.clip(to_points(points), self.lower, self.upper)
 
     def to_unit(self, points: npt.ArrayLike) -> FloatArray:
-        """Points as shares of the way from the lower to the upper bound on each variable's own scale, (n, d) from 0 to 1.
+        """Returns points as fractions, (n, d): 0 at the lower bound, 1 at the upper bound, on the scale of each variable.
 
-        A step of the same size means the same for all variables here, linear or logarithmic.
+        With fractions, a step of one size means the same for all variables, linear or logarithmic.
         """
         low, high = self._to_scale(self.lower[np.newaxis]), self._to_scale(self.upper[np.newaxis])
         return np.asarray((self._to_scale(to_points(points)) - low) / (high - low), dtype=np.float64)
 
     def from_unit(self, shares: npt.ArrayLike) -> FloatArray:
-        """The points of to_unit()'s shares, (n, d), clipped to the bounds."""
+        """Returns the points for fractions of to_unit(), (n, d), clipped to the bounds."""
         low, high = self._to_scale(self.lower[np.newaxis]), self._to_scale(self.upper[np.newaxis])
         scaled = low + to_points(shares, "shares") * (high - low)
         magnitude = np.exp(np.where(self.is_logarithmic, scaled, 0.0))
@@ -100,7 +100,7 @@ class Description:
         return np.where(self.is_logarithmic, logarithm, points)
 
     def calc_values(self, objectives: FloatArray) -> FloatArray:
-        """The weighted sums of objectives (n, m): one number a point, (n,)."""
+        """Returns the weighted sums of objectives (n, m): one number per point, (n,)."""
         total = self.weights[0] * objectives[:, 0]
         for i in range(1, len(self.weights)):
             total = total + self.weights[i] * objectives[:, i]

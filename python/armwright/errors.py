@@ -1,8 +1,8 @@
-"""What goes wrong for a caller's reason, as exceptions: the program's kinds of error, with the same messages."""
+"""The exceptions of the package. They correspond to the kinds of error of the program and have the same messages."""
 
 
 class Error(Exception):
-    """Any error of armwright's that is not a bug. The message says what was found, what is allowed and what to do."""
+    """The base class of all errors that are not bugs of armwright. The message says what was found, what is allowed and what to do."""
 
 
 class UsageError(Error, ValueError):
@@ -10,16 +10,16 @@ class UsageError(Error, ValueError):
 
 
 class BadDataError(Error, ValueError):
-    """A file or a text that cannot be used: a robot, test cases, a design, a journal (exit code 4)."""
+    """A file or text cannot be used: a robot, test cases, a design, a journal (the program's exit code 4)."""
 
 
 class BusyError(Error):
-    """Another process writes this folder (exit code 5)."""
+    """Another process writes to this folder (the program's exit code 5)."""
 
 
 class IoError(Error, OSError):
-    """The operating system refused to read or write (exit code 74)."""
+    """The operating system refused to read or write (the program's exit code 74)."""
 
 
 class ArmwrightWarning(UserWarning):
-    """Something that a user should know, but that does not end a run: another version made it, its optimizer has failed."""
+    """A warning that does not end a run: for example, another version made the run, or its optimizer failed."""

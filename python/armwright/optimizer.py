@@ -1,4 +1,4 @@
-"""Optimizers: those that there are, and the class to derive your own from."""
+"""Optimizers: the list of available ones, and the base class for your own."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ from .problem import STATUSES
 OptionValue = Union[bool, int, float, str]
 CAPABILITIES = ("bounds", "constraints", "multi_objective", "batch", "noisy", "residuals", "stochastic", "generations", "local", "sampling",
                 "paced")
-_LARGEST_INTEGER = 2**53  # up to which doubles tell integers apart
+_LARGEST_INTEGER = 2**53  # the largest integer below which doubles represent every integer
 _LARGEST_NUMBER = 1e300
-_LAST_LINES = 10  # of a traceback
+_LAST_LINES = 10  # that are kept of a traceback
 
 
 @dataclass(frozen=True)
 class Option:
-    """An option of an optimizer's. The default's type is the option's: bool, int, float or str.
+    """An option of an optimizer. The type of the default is the type of the option: bool, int, float or str.
 
-    `lower` and `upper` are the closed range allowed of numbers, `choices` the texts allowed (none: any).
+    `lower` and `upper` are the closed range of allowed numbers. `choices` are the allowed texts; if it is empty, any text is allowed.
     """
 
     name: str
@@ -43,7 +43,7 @@ class Option:
     choices: Sequence[str] = ()
 
     def describe(self) -> dict[str, Any]:
-        """As the plugin protocol has it."""
+        """Returns the option in the form of the plugin protocol."""
         content: dict[str, Any] = {"name": self.name, "default": self.default, "description": self.description}
         if isinstance(self.default, str):
             if self.choices:
@@ -57,7 +57,7 @@ class Option:
 
 @dataclass(frozen=True)
 class OptimizerInfo:
-    """An optimizer that there is: `capabilities` is a subset of CAPABILITIES; `unavailable` says why it cannot be used here ("" if it can)."""
+    """A known optimizer. `capabilities` is a subset of CAPABILITIES. `unavailable` says why it cannot be used here ("" if it can)."""
 
     name: str
     summary: str
@@ -75,29 +75,29 @@ def _make_info(content: dict[str, Any]) -> OptimizerInfo:
 
 
 def optimizers() -> dict[str, OptimizerInfo]:
-    """The optimizers that there are, by name. Besides there are "multistart:NAME" and plugins: "./libmine.so", "exec:COMMAND"."""
+    """Returns all known optimizers by name. "multistart:NAME" and plugins ("./libmine.so", "exec:COMMAND") can be used too."""
     return {one["name"]: _make_info(one) for one in json.loads(_armwright.list_optimizers())}
 
 
 class Scores:
-    """What an optimizer learns of k points; always finite but for the constraints of failed evaluations, which are infinite.
+    """The scores that an optimizer gets for k points. All numbers are finite, except that the constraints of failed evaluations are infinite.
 
     Attributes
     ----------
     objectives : array (k, m)
-        Of a failed evaluation the problem's penalty.
+        A failed evaluation has the penalty of the problem.
     values : array (k,)
-        Their weighted sum.
+        The weighted sum of the objectives.
     constraints : array (k, c)
-        g, met where at most 0.
+        The values g. A constraint is met if g is at most 0.
     violations : array (k,)
-        The sum of what of them is above 0.
+        The sum of the positive g.
     ok, clipped : array of bool (k,)
-        Whether the evaluation succeeded; whether the point lay outside the bounds and was evaluated at the nearest one inside.
+        `ok`: the evaluation succeeded. `clipped`: the point was outside the bounds and was evaluated at the nearest point inside.
     residuals : masked array (k, r) or None
-        Of optimizers with the capability "residuals".
+        Only for optimizers with the capability "residuals".
     jacobian : masked array (k, r, d) or None
-        Of evaluate_with_jacobian().
+        Only from evaluate_with_jacobian().
     """
 
     __slots__ = ("objectives", "values", "constraints", "clipped", "residuals", "jacobian", "_status")
@@ -121,7 +121,7 @@ class Scores:
 
     @property
     def status(self) -> npt.NDArray[np.str_]:
-        """Texts as in Evaluations, and "abandoned" of who has lost a race."""
+        """The texts of Evaluations.status, and "abandoned" for a candidate that lost a race."""
         return np.array(STATUSES)[self._status]
 
     @property
@@ -130,7 +130,7 @@ class Scores:
 
 
 class _Bridge(Protocol):
-    """What is behind an Evaluator: the library, or the program at the other end of a pipe."""
+    """The interface that an Evaluator uses: the library, or the program at the other end of a pipe."""
 
     @property
     def stopped(self) -> bool: ...
@@ -148,12 +148,12 @@ class _Bridge(Protocol):
 
 
 class Evaluator:
-    """The only door from an optimizer to a problem: counts the budget, supplies the training cases, records every evaluation.
+    """The only access of an optimizer to a problem. It counts the budget, supplies the training cases and records every evaluation.
 
     Attributes
     ----------
     problem : Description
-        Variables with bounds and start, objectives, constraints.
+        The variables with bounds and start, the objectives and the constraints.
     """
 
     def __init__(self, bridge: _Bridge) -> None:
@@ -163,52 +163,52 @@ class Evaluator:
     def evaluate(self, X: npt.ArrayLike) -> Scores:
         """Evaluates points (n, d) or (d,), on all cores.
 
-        Fewer scores than points come back where budget, time or the user's patience end; from then on `stopped` holds, and every
-        further call is answered with none.
+        Returns fewer scores than points if the budget or the time ends or the user interrupts the run. From then on `stopped` is true, and
+        every further call returns no scores.
         """
         return Scores(self.problem, self._bridge.evaluate(to_points(X), False))
 
     def evaluate_with_jacobian(self, X: npt.ArrayLike) -> Scores:
-        """The same with exact derivatives of the residuals, each charged 1 + d/4 evaluations, rounded up."""
+        """Like evaluate(), with exact derivatives of the residuals. Each point is charged 1 + d/4 evaluations, rounded up."""
         return Scores(self.problem, self._bridge.evaluate(to_points(X), True))
 
     @property
     def stopped(self) -> bool:
-        """Whether it is over."""
+        """Whether the run has ended for the optimizer: no further point is evaluated."""
         return self._bridge.stopped
 
     @property
     def remaining(self) -> int:
-        """How many more points the budget allows."""
+        """The number of points that the budget still pays for."""
         return self._bridge.remaining
 
     def begin_generation(self) -> None:
-        """Before each generation, the first included, of optimizers with the capability "generations": the next training cases."""
+        """Selects the next training cases. Optimizers with the capability "generations" call it before each generation, also the first."""
         self._bridge.begin_generation()
 
     def recommend(self, x: npt.ArrayLike) -> None:
-        """Names a point (d,) worth judging at the end beside the best evaluated ones: a distribution's mean, say."""
+        """Names a point (d,) to judge at the end beside the best evaluated points, for example the mean of a distribution."""
         self._bridge.recommend(to_points(x, "x"))
 
 
 class Optimizer:
-    """Derive your own optimizer from this, and pass the class to optimize(), compare() or serve().
+    """The base class for your own optimizer. Pass the derived class to optimize(), compare() or serve().
 
-    It must be deterministic: all chance comes from `seed`. For every run an object is made of the class; of an object that you pass
-    instead, a copy, and its attributes are recorded with the run.
+    An optimizer must be deterministic: all its random numbers come from `seed`. Every run makes its own object of the class. If you pass an
+    object instead of a class, every run makes a copy of it, and the attributes of the object are recorded with the run.
 
     Attributes
     ----------
     name : str
-        Letters, digits, "_", "-" and "."; results say "python:NAME". Default: the class's name.
+        Letters, digits, "_", "-" and "."; results have "python:NAME". Default: the name of the class.
     summary, source : str
-        One line on what it does (default: the docstring's first), and where it comes from.
+        One line that says what the optimizer does (default: the first line of the docstring), and where it comes from.
     capabilities : collection of str
-        Of CAPABILITIES. "generations": it calls begin_generation(), so that a schedule with fresh cases can serve it. "residuals":
-        scores carry them. "constraints", "multi_objective": it uses these.
+        A subset of CAPABILITIES. "generations": the optimizer calls begin_generation(), so schedules with fresh cases work. "residuals":
+        the scores contain residuals. "constraints", "multi_objective": the optimizer uses them.
     options : sequence of Option
     settings : dict
-        The options' values by name, in minimize().
+        The values of the options by name; available in minimize().
 
     Examples
     --------
@@ -227,7 +227,7 @@ class Optimizer:
     settings: dict[str, OptionValue]
 
     def minimize(self, evaluator: Evaluator, seed: int) -> None:
-        """Minimises through the evaluator until it has stopped, or there is nothing more to try. What it returns nobody looks at."""
+        """Minimises through the evaluator until it has stopped, or until there is nothing more to try. The return value is ignored."""
         raise NotImplementedError(f"{type(self).__name__} has no minimize(self, evaluator, seed)")
 
 
@@ -236,7 +236,7 @@ AnyOptimizer = Union[str, Optimizer, type[Optimizer]]
 
 @dataclass(frozen=True)
 class PythonOptimizer:
-    """A class or an object as the library takes it."""
+    """A class or an object in the form that the library takes."""
 
     name: str  # without "python:"
     description: dict[str, Any]
@@ -253,7 +253,7 @@ class PythonOptimizer:
 
 
 class _Copies:
-    """Makes copies of an object, so that no run sees what another has left in it."""
+    """Makes copies of an object, so that no run sees changes by another run."""
 
     def __init__(self, original: Optimizer) -> None:
         self._original = original
@@ -263,7 +263,7 @@ class _Copies:
 
 
 def read_optimizer(optimizer: Union[Optimizer, type[Optimizer]]) -> PythonOptimizer:
-    """Checks a class or an object of one. UsageError or BadDataError say what does not hold together."""
+    """Checks a class derived from Optimizer, or an object of one. UsageError or BadDataError say what is wrong."""
     cls: type[Optimizer]
     state: Optional[dict[str, Any]]
     make: Callable[[], Optimizer]
@@ -302,13 +302,13 @@ def read_optimizer(optimizer: Union[Optimizer, type[Optimizer]]) -> PythonOptimi
 
 
 def to_row(optimizer: AnyOptimizer) -> Any:
-    """What the library takes: a name as it is."""
+    """Returns the form that the library takes. A name is returned as it is."""
     return optimizer if isinstance(optimizer, str) else read_optimizer(optimizer).to_row()
 
 
 @dataclass(frozen=True)
 class Finding:
-    """Whether a promise is "held", "broken" or does not apply ("exempt"); how it is broken, or why it does not apply."""
+    """The result of one check. `outcome` is "held", "broken" or "exempt" (the promise does not apply); `detail` says how or why."""
 
     check: str
     promise: str
@@ -317,9 +317,10 @@ class Finding:
 
 
 def check_optimizer(optimizer: AnyOptimizer, *, options: Optional[Mapping[str, OptionValue]] = None) -> list[Finding]:
-    """Tries whether an optimizer keeps what every optimizer promises, as `armwright check-plugin` does: in some seconds, on small functions.
+    """Checks whether an optimizer keeps the promises of all optimizers, as `armwright check-plugin` does. It takes some seconds.
 
-    Same seed, same evaluations; nothing kept from one run for the next; content with any budget; failing evaluations survived; and more.
+    The checks use small functions. Some of the promises: the same seed gives the same evaluations, no run influences the next one, any
+    budget is accepted, and failing evaluations do not end the run.
     """
     return [Finding(*found) for found in _armwright.check_optimizer(to_row(optimizer), to_options(options))]
 
@@ -329,7 +330,7 @@ def _hash(text: str) -> str:
 
 
 def hash_class(cls: type) -> str:
-    """SHA-256 of the source text of a class and those it is derived from, up to Optimizer; of the byte code where there is no text."""
+    """Returns the SHA-256 of the source text of a class and its base classes, up to Optimizer; without source text, of the byte code."""
     parts = []
     for one in cls.__mro__:
         if one is Optimizer:
@@ -347,7 +348,7 @@ def _describe_member(member: Any) -> str:
     if isinstance(member, types.FunctionType):
         try:
             return inspect.getsource(member)
-        except (OSError, TypeError):  # typed into an interpreter that keeps no text
+        except (OSError, TypeError):  # typed into an interpreter that keeps no source text
             return _describe_code(member.__code__)
     if isinstance(member, type):
         return hash_class(member)
@@ -363,7 +364,7 @@ def _describe_code(code: types.CodeType) -> str:
 
 
 def canonical_text(value: Any, what: str) -> str:
-    """Equal for equal plain data; UsageError for anything whose equality a text cannot tell."""
+    """Returns a text that is equal for equal plain data. UsageError if a text cannot represent the equality of the value."""
     if value is None or isinstance(value, (bool, int, float, str, bytes, np.generic)):
         return repr(value)
     if isinstance(value, np.ndarray) and value.dtype.kind in "biufcSU":
@@ -381,7 +382,7 @@ def canonical_text(value: Any, what: str) -> str:
 
 
 def _explain_failure(exception: BaseException) -> tuple[str, list[str]]:
-    """What an optimizer has raised and where, in one line; and the last lines of its traceback."""
+    """Returns one line that says what an optimizer raised and where, and the last lines of its traceback."""
     own = __package__ or "armwright"
     frames = [frame for frame, _ in traceback.walk_tb(exception.__traceback__) if frame.f_globals.get("__package__") != own]
     lines = {id(frame): number for frame, number in traceback.walk_tb(exception.__traceback__)}

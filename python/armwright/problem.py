@@ -1,4 +1,4 @@
-"""Problems: what they are, and evaluating points and designs on them."""
+"""Problems: their descriptions, and the evaluation of points and designs on them."""
 
 from __future__ import annotations
 
@@ -24,33 +24,33 @@ _ROLES = ("training", "validation", "test")
 
 @dataclass(frozen=True)
 class Evaluations:
-    """What came of n points. No number in it is ever NaN.
+    """The results of n evaluations. No number in them is ever NaN.
 
-    An evaluation that failed has a status, and takes for objectives what optimizers are told of it: the problem's penalty, finite and worse
-    than any design that works. Its constraints are infinite (violated beyond measure), and what else has no number is masked.
+    An evaluation that failed has a status. Its objectives are those that optimizers get: the penalty of the problem, which is finite and worse
+    than the value of any design that works. Its constraints are infinite. All its other numbers that do not exist are masked.
 
     Attributes
     ----------
     objectives : array (n, m)
-        To be minimised, in their units.
+        The values to minimise, in their units.
     values : array (n,)
-        Their weighted sum; of one objective that itself.
+        The weighted sum of the objectives; with a single objective, the objective itself.
     constraints : array (n, c)
-        g, met where at most 0.
+        The values g. A constraint is met if g is at most 0.
     metrics : dict of str to masked array (n,)
         By name, in their units.
     case_errors : masked array (n, cases)
-        Of every test case (in metres for arms).
+        The error on every test case (in metres for arms).
     ok : array of bool (n,)
         Whether the evaluation succeeded.
     status : array of str (n,)
         "ok", "diverged", "unreachable", "timed_out" or "failed".
     reasons : dict of int to str
-        By row, of the evaluations that failed.
+        The reasons of the evaluations that failed, by row.
     residuals : masked array (n, r) or None
-        If asked for: the sum of their squares is the objective, or its exponential.
+        Only on request. The sum of their squares is the objective, or its exponential.
     jacobian : masked array (n, r, d) or None
-        If asked for: their exact derivatives.
+        Only on request: the exact derivatives of the residuals.
     """
 
     objectives: FloatArray
@@ -70,23 +70,23 @@ class Evaluations:
 
 @dataclass(frozen=True)
 class DesignEvaluation:
-    """A design of an arm on test cases, with the numbers of `armwright evaluate --json`.
+    """The results of one design of an arm on test cases, with the numbers of `armwright evaluate --json`.
 
     Attributes
     ----------
     summary : dict
         mean_error_m, median_error_m, percentile_95_error_m, worst_error_m, failures, without_number, total_torque_n_m, mean_energy_j, cases,
-        design, problem, test_set. None where there is no number.
+        design, problem, test_set. A number that does not exist is None.
     errors_m : masked array (cases,)
         A case without a number is masked.
     energies_j : masked array (cases,)
     point_errors_m : masked array (cases, points)
     status : list of str
-        "ok", "diverged" or "unreachable", one a case.
+        "ok", "diverged" or "unreachable", one per case.
     reasons : list of str
-        Why a case has no number; "" if it has.
+        The reason why a case has no number; "" if it has one.
     requirements : list of dict
-        Of problems that have some: name, unit, limit, value, grade ("met", "tight", "missed", "unknown").
+        Only for problems with requirements: name, unit, limit, value, grade ("met", "tight", "missed", "unknown").
     """
 
     summary: dict[str, Any]
@@ -98,7 +98,7 @@ class DesignEvaluation:
     requirements: list[dict[str, Any]] = field(default_factory=list)
 
     def to_dict(self) -> dict[str, Any]:
-        """All of it as plain lists and numbers, None where there is none, ready for JSON."""
+        """Returns everything as plain lists and numbers, ready for JSON. A number that does not exist is None."""
         return {
             "summary": dict(self.summary),
             "errors_m": to_list(self.errors_m),
@@ -111,23 +111,23 @@ class DesignEvaluation:
 
 
 class Problem(Description):
-    """A problem, ready to be evaluated; load_problem() makes one. What a Description has, and:
+    """A problem that can be evaluated. load_problem() makes one. It has the attributes of a Description, and these:
 
     Attributes
     ----------
     title : str
     is_arm : bool
-        Whether a design is an arm's; otherwise the problem is a function.
+        True if a decision vector is the design of an arm; false if the problem is a function.
     sets : dict
-        Names of the sets "training", "validation" and "test", and how many cases the last two have.
+        The names of the sets "training", "validation" and "test", and the numbers of cases of the last two.
     budget : int
-        Training cases that a run simulates unless told otherwise.
+        The default number of training cases that a run simulates.
     optimizer : str
-        Who optimizes unless told otherwise.
+        The default optimizer.
     schedule : str
-        Which cases a run trains on unless told otherwise.
+        The default schedule, which says on which cases a run trains.
     published : dict
-        What the problem's source reports of its own winner.
+        The values that the source of the problem reports for its own winner.
     configuration : dict
         All settings, after inheritance and `set`.
     """
@@ -149,7 +149,7 @@ class Problem(Description):
         return f"<armwright.Problem {self.name}: {len(self.variables)} variables, {self.title}>"
 
     def to_dict(self) -> dict[str, Any]:
-        """All that is known of the problem, as plain lists and numbers."""
+        """Returns all data of the problem as plain lists and numbers."""
         copy: dict[str, Any] = json.loads(json.dumps(self._content))
         return copy
 
@@ -164,28 +164,29 @@ class Problem(Description):
         jobs: Optional[int] = None,
         progress: Show = None,
     ) -> Evaluations:
-        """Evaluates points on test cases, on all cores. Nothing is counted, recorded or chosen.
+        """Evaluates points on test cases, on all cores. It counts no budget, records nothing and chooses no winner.
 
         Parameters
         ----------
         X : array (n, d) or (d,)
-            Points within the bounds, in the variables' units. An array of doubles in C order is not copied.
+            Points within the bounds, in the units of the variables. An array of doubles in C order is not copied.
         cases : int or sequence of int, optional
-            The first so many of the set, or these. Default: as many as the problem trains on with fixed cases, validates or tests on.
+            The number of cases, counted from the first of the set, or the numbers of the cases. Default: the number of cases on which the
+            problem trains with fixed cases, validates or tests.
         set : str
-            "training", "validation" or "test" for the problem's own, or a name such as "train/7" or "test/3": any name generates cases.
-            In training a case is cut off at an error of 1 m, in others never.
+            "training", "validation" or "test" for the sets of the problem, or a name such as "train/7" or "test/3": any name generates cases.
+            A training case is cut off at an error of 1 m. Other cases are never cut off.
         residuals, jacobian : bool
-            Whether they are wanted.
+            Whether the result contains them.
         jobs : int, optional
-            Threads; results do not depend on it. Default: $ARMWRIGHT_JOBS or all cores.
+            The number of threads. Results do not depend on it. Default: $ARMWRIGHT_JOBS or all cores.
         progress : optional
-            As of optimize().
+            As in optimize().
 
         Raises
         ------
         UsageError
-            For a wrong shape, what is no number, a point out of bounds (clip() moves it), or derivatives that the problem has not.
+            For a wrong shape, a value that is no number, a point out of bounds (clip() moves it), or derivatives that the problem lacks.
         """
         points = to_points(X)
         role, name = self._find_set(set)
@@ -210,9 +211,9 @@ class Problem(Description):
         )
 
     def cases(self, set: str = "test", count: Optional[int] = None, *, first: int = 0) -> FloatArray:
-        """Test cases of a set: (cases, points, 3), x, y, z in metres in the robot's base frame; the first point is the start.
+        """Returns test cases of a set: (cases, points, 3), x, y, z in metres in the base frame of the robot. The first point is the start.
 
-        The same as `armwright testset export`. `set` as in evaluate(); `count` is by default as many as the problem has there.
+        They are those of `armwright testset export`. `set` is as in evaluate(). The default `count` is the number of cases of the problem.
         """
         role, name = self._find_set(set)
         numbers = self._list_numbers(count, role)
@@ -227,15 +228,15 @@ class Problem(Description):
         jobs: Optional[int] = None,
         progress: Show = None,
     ) -> DesignEvaluation:
-        """Judges one design of an arm, case by case and without any cut-off, as `armwright evaluate` does.
+        """Judges one design of an arm on every case, without any cut-off, as `armwright evaluate` does.
 
         Parameters
         ----------
         design : str, path or array (d,)
             A shipped design ("table-a10"), a design file, "start", or a point.
         cases : int or array (cases, points, 3), optional
-            The first so many of the set (default: as many as the problem tests on), or cases of your own in metres, the first point being the
-            start; a list of arrays where they are of different lengths.
+            The number of cases, counted from the first of the set (default: the number of test cases of the problem). Or cases of your own
+            in metres, where the first point is the start; a list of arrays if their lengths differ.
         set : str
             As in evaluate().
         jobs, progress : optional
@@ -265,13 +266,13 @@ class Problem(Description):
         )
 
     def write_design(self, x: npt.ArrayLike, path: Union[str, Path], *, name: Optional[str] = None) -> Path:
-        """Writes a point (d,) as a design file, for `armwright evaluate PATH` and whoever else reads designs."""
+        """Writes a point (d,) as a design file, for example for `armwright evaluate PATH`. Returns the path."""
         file = Path(path)
         file.write_text(_armwright.design_toml(self._inner, to_points(x, "x"), name or file.stem), encoding="utf-8")
         return file
 
     def _find_set(self, name: str) -> tuple[str, str]:
-        """Role and name of a set."""
+        """Returns the role and the name of a set."""
         if name in _ROLES:
             return name, self.sets[name]
         if "/" not in name:
@@ -308,11 +309,11 @@ def load_problem(
     Parameters
     ----------
     name : str or path, optional
-        A shipped problem (list_problems()) or a TOML file. Not needed with `robot`: then it is the one for any arm, "robot".
+        A shipped problem (list_problems()) or a TOML file. With `robot`, the default is the problem for any arm, "robot".
     set : mapping or list of str, optional
-        Settings to change, as the program's --set: {"physics.engine": "articulated", "task.load_kg": 20}, or KEY=VALUE texts.
+        Settings to change, as with --set of the program: {"physics.engine": "articulated", "task.load_kg": 20}, or KEY=VALUE texts.
     robot, base, tip : str, optional
-        An arm of your own: its URDF (or a shipped robot's name), and the links at which it begins and ends.
+        An arm of your own: its URDF (or the name of a shipped robot), and the links at which it begins and ends.
 
     Examples
     --------
@@ -332,10 +333,10 @@ def load_problem(
 
 
 def list_problems() -> dict[str, str]:
-    """The shipped problems: titles by name."""
+    """Returns the titles of the shipped problems by name."""
     return dict(_armwright.list_problems())
 
 
 def list_designs() -> list[str]:
-    """Names of the shipped designs, published ones and ours."""
+    """Returns the names of the shipped designs, published ones and ours."""
     return list(_armwright.list_configs("designs"))

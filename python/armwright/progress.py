@@ -1,4 +1,4 @@
-"""How a long call shows how far it is: in place in a notebook, as one line on a terminal, not at all elsewhere."""
+"""The progress display of a long call: in place in a notebook, as one line on a terminal, and nowhere else."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from .errors import ArmwrightWarning, UsageError
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a call is: cases done of cases in all.
+    """The progress of a call: the simulated cases and the total number of cases.
 
     Attributes
     ----------
     phase : str
         "training", "validation" or "test".
     done, total, replayed : int
-        Simulated cases; of those done, so many came from the journal.
+        Numbers of cases: finished, in total, and taken from the journal (a part of the finished ones).
     generation : int
         0 for optimizers without generations.
     best : float or None
-        The best objective so far; with new cases in every generation, that of the last one.
+        The best objective so far. If every generation has new cases, it is the best of the last generation.
     """
 
     phase: str
@@ -39,8 +39,8 @@ class Progress:
 
 
 Show = Union[None, bool, Callable[[Progress], Any]]
-_PATIENCE_S = 0.5  # before anything is shown: most calls are quicker
-_WIDTH = 30  # of a bar, in characters
+_DELAY_S = 0.5  # until the display begins; most calls are quicker
+_WIDTH = 30  # of the bar, in characters
 
 
 class _Screen(Protocol):
@@ -90,7 +90,7 @@ def _find_screen() -> Optional[_Screen]:
 
 
 def describe(progress: Progress, elapsed_s: float) -> str:
-    """A line with a bar: what is done, how quickly, and what is best."""
+    """Returns a line with a bar, the finished share, the speed and the best value."""
     share = progress.done / progress.total if progress.total else 1.0
     full = int(_WIDTH * share)
     text = f"{progress.phase} [{'#' * full}{'-' * (_WIDTH - full)}] {math.floor(100 * share)} % {progress.done}/{progress.total}"
@@ -103,7 +103,7 @@ def describe(progress: Progress, elapsed_s: float) -> str:
 
 
 class Listener:
-    """What the library tells: warnings become Python's, progress is shown or handed to a callable of the user's."""
+    """Receives messages from the library. Warnings become Python warnings; progress is shown or passed to a callable of the user."""
 
     def __init__(self, show: Show) -> None:
         if not (show is None or isinstance(show, bool) or callable(show)):
@@ -124,7 +124,7 @@ class Listener:
         if self._callable is not None:
             self._callable(progress)
         elapsed_s = time.monotonic() - self._begin_s
-        if self._screen is not None and elapsed_s > _PATIENCE_S:
+        if self._screen is not None and elapsed_s > _DELAY_S:
             self._screen.show(describe(progress, elapsed_s))
 
     def __enter__(self) -> Listener:

@@ -1,4 +1,4 @@
-"""Runs: one optimizer on one problem, resumable, in a folder that the program reads, too."""
+"""Runs: one optimizer on one problem. A run can be resumed, and the program can read its folder too."""
 
 from __future__ import annotations
 
@@ -24,22 +24,22 @@ _LARGEST_SEED = 2**63 - 1
 
 @dataclass(frozen=True)
 class History:
-    """Every training evaluation of a run, in the order asked for, from its journal. No number is NaN; what is not there is masked.
+    """Every training evaluation of a run, read from its journal, in the order of the requests. No number is NaN; missing numbers are masked.
 
     Attributes
     ----------
     x : array (n, d)
-        As evaluated, within the bounds.
+        The points as evaluated, within the bounds.
     objectives : masked array (n, m)
         Masked where the evaluation failed.
     constraints : masked array (n, c)
     case_errors : masked array (n, cases)
     case_numbers : masked array of int (n, cases)
-        On which cases of the training set. Of who lost a race there are fewer.
+        The numbers of the cases in the training set. A candidate that lost a race has fewer cases.
     index, generation : array of int (n,)
-        Place among the run's evaluations, and generation (0 without).
+        The position among the evaluations of the run, and the generation (0 if the optimizer has none).
     charge : array of int (n,)
-        In cases of the budget.
+        The cases of the budget that the evaluation cost.
     ok, clipped : array of bool (n,)
     status : array of str (n,)
     """
@@ -81,24 +81,24 @@ def _read_history(folder: Path) -> History:
 
 
 class Run:
-    """A run's result, as recorded in its folder.
+    """The result of a run, as recorded in its folder.
 
     Attributes
     ----------
     folder : Path
-        `armwright show`, `report` and `export` read it.
+        The folder of the run, for `armwright show`, `report` and `export`.
     finished : bool
-        False: the run was stopped; the same call goes on. Then there is a history, and no result yet.
+        False if the run was stopped. It then has a history but no result, and the same call continues it.
     problem, optimizer : str
     seed : int
     x : array (d,) or None
-        The winner: of the designs that were good in training the best on the validation set. None if there is none.
+        The winner: the design with the best validation result of those that were good in training. None if there is none.
     value : float or None
-        Its objective on the test set (of several the weighted sum).
+        The objective of the winner on the test set (the weighted sum if there are several).
     test : dict or None
-        Its evaluation on the test set: objectives, constraint_values, metrics, case_errors, ...
+        The evaluation of the winner on the test set: objectives, constraint_values, metrics, case_errors, ...
     summary : dict or None
-        Of its errors on the test set: mean, median, percentile_95, worst, failures, cases, without_number.
+        Statistics of the errors of the winner on the test set: mean, median, percentile_95, worst, failures, cases, without_number.
     candidates : list of dict
         The designs that were judged on the validation set: x, evaluation, generation, training_objective, validation.
     counts : dict
@@ -106,7 +106,7 @@ class Run:
     end_reason : str
         "budget", "optimizer finished" or "optimizer failed".
     failure : str
-        How the optimizer failed; "" if it did not.
+        The way in which the optimizer failed; "" if it did not.
     """
 
     def __init__(self, folder: Path, content: Optional[dict[str, Any]], manifest: dict[str, Any]) -> None:
@@ -140,26 +140,26 @@ class Run:
 
     @property
     def history(self) -> History:
-        """Every training evaluation; read from the journal once, when first asked for."""
+        """Every training evaluation. The first access reads them from the journal."""
         if self._history is None:
             self._history = _read_history(self.folder)
         return self._history
 
     @property
     def manifest(self) -> dict[str, Any]:
-        """What was asked for and by what it was made: configuration, build, command line, time."""
+        """The request and the program that made the run: configuration, build, command line, time."""
         return self._manifest
 
     def to_dict(self) -> dict[str, Any]:
-        """The content of result.json."""
+        """Returns the content of result.json. UsageError if the run is not finished."""
         if self._content is None:
-            raise UsageError(f"{self.folder}: this run has not come to its end; the same call goes on with it")
+            raise UsageError(f"{self.folder}: this run is not finished; the same call continues it")
         copy: dict[str, Any] = json.loads(json.dumps(self._content))
         return copy
 
 
 def load_run(folder: Union[str, Path]) -> Run:
-    """Reads a run's folder, made here or by the program, finished or not."""
+    """Reads the folder of a run that this package or the program made, finished or not."""
     path = Path(folder)
     file = path / "manifest.json"
     if not file.is_file():
@@ -173,14 +173,14 @@ def load_run(folder: Union[str, Path]) -> Run:
 
 
 def _own_command() -> list[str]:
-    """What to run again, where no command of the program's could."""
+    """Returns the command that runs this script again, for runs that no command of the program can continue."""
     main = sys.modules.get("__main__")
     script = getattr(main, "__file__", None)
     return [sys.executable, os.path.abspath(script)] if script else ["#", "the same call in Python, or in the notebook"]
 
 
 def _make_command(problem: Problem, optimizer: AnyOptimizer, settings: dict[str, Optional[str]], options: list[str]) -> list[str]:
-    """What goes on with the run: the program can do it, if the optimizer is one of its own."""
+    """Returns the command that continues the run. The program can do this if the optimizer is one of its own."""
     if not isinstance(optimizer, str):
         return _own_command()
     words = ["armwright", "optimize", problem._inner.asked_name, "--optimizer", optimizer]
@@ -210,49 +210,49 @@ def optimize(
     time_limit_s: Optional[float] = None,
     progress: Show = None,
 ) -> Run:
-    """Lets an optimizer loose on a problem, as `armwright optimize` does: the same folder, journal, judging and result, bit for bit.
+    """Runs an optimizer on a problem, as `armwright optimize` does: with the same folder, journal, judging and result, bit for bit.
 
-    Interrupted by Ctrl-C, a time limit or a crash, the same call goes on where it was. A run that is complete is read and not made again.
+    If Ctrl-C, a time limit or a crash interrupts the run, the same call continues it. If the run is complete, the call only reads it.
 
     Parameters
     ----------
     problem : Problem, str or path
-        Or its name; then `set` may change its settings.
+        The problem, or its name; with a name, `set` may change its settings.
     optimizer : str, Optimizer, or class derived from it, optional
-        Default: the problem's own.
+        Default: the optimizer of the problem.
     seed : int
-        Feeds the optimizer's random choices and nothing else.
+        The seed of the random numbers of the optimizer. Nothing else uses it.
     budget : int, optional
-        Training cases to simulate. Default: the problem's.
+        The number of training cases to simulate. Default: the budget of the problem.
     options : mapping, optional
-        Of the optimizer: {"population": 50}.
+        Options of the optimizer, for example {"population": 50}.
     schedule : str, optional
-        Which training cases: "fixed:K", "fresh:K" or "coevolution:K".
+        The schedule of training cases: "fixed:K", "fresh:K" or "coevolution:K".
     racing : str, optional
         "none", "halving:FIRST_CASES:ETA" or "abandonment:MARGIN:CHUNK_CASES".
     out : str or path, optional
-        The run's folder. Default: results/PROBLEM-OPTIMIZER-seedN in the current folder, as of the program.
+        The folder of the run. Default: results/PROBLEM-OPTIMIZER-seedN in the current folder, as with the program.
     new : bool
-        Another run beside one that is there: FOLDER-002, FOLDER-003, ...
+        Makes another run beside an existing one, in FOLDER-002, FOLDER-003, ...
     jobs : int, optional
-        Threads; the result does not depend on it. Default: $ARMWRIGHT_JOBS or all cores.
+        The number of threads. The result does not depend on it. Default: $ARMWRIGHT_JOBS or all cores.
     time_limit_s : float, optional
-        Stop, resumably, after so many seconds; the Run that is returned is then not `finished`.
+        Stops the run after this time. The returned Run is then not `finished`, and the same call continues it.
     progress : optional
-        None or True: shown in a notebook and on a terminal, not elsewhere. False: not at all. A callable is called with a Progress every
-        now and then, on the thread that called; what it raises stops the run, resumably.
+        None or True: progress is shown in a notebook and on a terminal only. False: no progress is shown. A callable is called with a
+        Progress from time to time, on the calling thread. An exception of the callable stops the run; the same call continues it.
 
     Raises
     ------
     KeyboardInterrupt
-        With how to go on.
+        After Ctrl-C. The message says how to continue the run.
     UsageError, BadDataError, BusyError, IoError
-        With the program's messages.
+        With the messages of the program.
     """
     if not isinstance(problem, Problem):
         problem = load_problem(problem, set=set)
     elif set is not None:
-        raise UsageError("set is for a problem that is given by its name; load_problem(..., set=...) takes it for this one")
+        raise UsageError("set applies only to a problem that is given by its name; for a loaded problem use load_problem(..., set=...)")
     chosen: AnyOptimizer = problem.optimizer if optimizer is None else optimizer
     row = to_row(chosen)
     texts = to_options(options)
@@ -266,6 +266,6 @@ def optimize(
             folder, _ = _armwright.optimize(problem._inner, row, texts, seed, budget, schedule, racing, None if out is None else str(out), new,
                                             to_jobs(jobs), time_limit_s, command, listener)
         except KeyboardInterrupt:
-            raise KeyboardInterrupt("interrupted; what was evaluated is recorded, and the same call of armwright.optimize() goes on "
+            raise KeyboardInterrupt("interrupted; all evaluations so far are recorded, and the same call of armwright.optimize() goes on "
                                     "from there" + (" (without new=True, and out= its folder)" if new else "")) from None
     return load_run(folder)

@@ -1,4 +1,4 @@
-"""A class as a program for the command line: the plugin protocol (docs/plugin-protocol.md) over standard input and output."""
+"""Runs an optimizer class as a plugin program, by the protocol of docs/plugin-protocol.md over standard input and output."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .problem import STATUSES
 
 
 class _Host:
-    """The program at the other end, as what is behind an Evaluator."""
+    """The connection to the program at the other end of the pipe, with the interface that an Evaluator uses."""
 
     def __init__(self, lines: TextIO, answers: TextIO) -> None:
         self._lines = lines
@@ -29,7 +29,7 @@ class _Host:
     def receive(self) -> dict[str, Any]:
         line = self._lines.readline()
         if not line:
-            os._exit(0)  # the host is gone
+            os._exit(0)  # the host has ended
         message: dict[str, Any] = json.loads(line)
         return message
 
@@ -38,7 +38,7 @@ class _Host:
             self._answers.write(json.dumps(message, allow_nan=False) + "\n")
             self._answers.flush()
         except BrokenPipeError:
-            os._exit(0)  # likewise
+            os._exit(0)  # the host has ended
 
     def begin(self, task: dict[str, Any]) -> None:
         self._problem = task["problem"]
@@ -88,7 +88,7 @@ class _Host:
 def serve(optimizer: Union[Optimizer, type[Optimizer]]) -> None:
     """Makes a script an optimizer for the command line: `armwright optimize q1-complex --optimizer 'exec:python3 SCRIPT'`.
 
-    What the optimizer prints goes to standard error, that is into the run's optimizer.log: standard output belongs to the protocol.
+    Text that the optimizer prints goes to standard error, and so into optimizer.log of the run. Standard output is only for the protocol.
 
     Examples
     --------

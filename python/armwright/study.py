@@ -1,4 +1,4 @@
-"""Comparisons: optimizers on the same footing, with statistics and a verdict, in a folder that the program reads, too."""
+"""Comparisons of optimizers under equal conditions, with statistics and a verdict. The program can read their folders too."""
 
 from __future__ import annotations
 
@@ -18,26 +18,26 @@ from .run import Run, load_run
 
 
 class Study:
-    """What a comparison has found. Values are to be minimised; one that is infinite is of a run without a winner that works.
+    """The results of a comparison. Smaller values are better. An infinite value belongs to a run without a working winner.
 
     Attributes
     ----------
     folder : Path
-        `armwright show`, `report` and `export` read it.
+        The folder of the comparison, for `armwright show`, `report` and `export`.
     finished : bool
-        False: some cells have not come to their end (`missing` names them); the same call goes on.
+        False if some cells are not finished (`missing` names them). The same call continues them.
     name, title : str
     problems, optimizers : tuple of str
         Labels, in the order of all arrays below.
     baselines : frozenset of str
-        Optimizers that take part by themselves.
+        Optimizers that take part without being named.
     replicates, budget : int
     values : array (optimizers, problems, replicates)
-        Of every run its winner's on the test set.
+        The value of every run: that of its winner on the test set.
     start_values : array (optimizers, problems, replicates)
-        Where it started from.
+        The value of the design from which the run started.
     verdict : list of str
-        Sentences that follow from the statistics and nothing else.
+        Sentences that follow only from the statistics.
     """
 
     def __init__(self, folder: Path, content: dict[str, Any]) -> None:
@@ -72,11 +72,11 @@ class Study:
         return f"<armwright.Study {self.folder}: {size}{state}>"
 
     def checkpoints(self, problem: str) -> npt.NDArray[np.int64]:
-        """Budgets, in cases, at which incumbents were tested."""
+        """Returns the budgets, in cases, at which incumbents were tested."""
         return self._checkpoints[self._check("problem", problem, self.problems)]
 
     def curves(self, problem: str, optimizer: str) -> FloatArray:
-        """(replicates, checkpoints): what the incumbents at the checkpoints are worth on the test set; infinite before there is one."""
+        """Returns the test values of the incumbents, (replicates, checkpoints). Before the first incumbent they are infinite."""
         budgets = self.checkpoints(problem)
         curves = np.full((self.replicates, len(budgets)), np.inf)
         for replicate in range(1, self.replicates + 1):
@@ -85,7 +85,7 @@ class Study:
         return curves
 
     def cell(self, problem: str, optimizer: str, replicate: int) -> dict[str, Any]:
-        """All that is recorded of one run: x, value, validation_value, objectives, metrics, test, curve, cases, failure, ..."""
+        """Returns all recorded data of one run: x, value, validation_value, objectives, metrics, test, curve, cases, failure, ..."""
         self._check("problem", problem, self.problems)
         self._check("optimizer", optimizer, self.optimizers)
         if not 1 <= replicate <= self.replicates:
@@ -94,31 +94,31 @@ class Study:
         return found
 
     def run(self, problem: str, optimizer: str, replicate: int) -> Run:
-        """The cell as a run, with its history."""
+        """Returns the cell as a run, with its history."""
         self.cell(problem, optimizer, replicate)
         return load_run(self.folder / "cells" / _escape(problem) / _escape(optimizer) / f"r{replicate:02}")
 
     def pairs(self, problem: Optional[str] = None) -> list[dict[str, Any]]:
-        """Every two optimizers compared: a, b, p, p_holm, a12 (that a run of a is better), wins (of a, ties, of b), significant.
+        """Returns the comparison of every two optimizers: a, b, p, p_holm, a12, wins (of a, ties, of b), significant.
 
-        On a problem, or over all of them.
+        a12 is the probability that a run of a is better. The comparison is on one problem, or over all problems if `problem` is None.
         """
         found: list[dict[str, Any]] = self._find(problem)["pairs"] if problem is not None else self._result["over_problems"]["pairs"]
         return found
 
     def table(self, problem: str) -> dict[str, dict[str, Any]]:
-        """By optimizer, best first: values, quartiles, median_interval, mean_rank, failed, running_times, ..."""
+        """Returns the statistics by optimizer, best first: values, quartiles, median_interval, mean_rank, failed, running_times, ..."""
         found = self._find(problem)
         return {label: found["optimizers"][label] for label in found["order"]}
 
     @property
     def mean_ranks(self) -> dict[str, float]:
-        """Over problems, by optimizer; 1 is best."""
+        """The mean rank of each optimizer over the problems; 1 is best."""
         found: dict[str, float] = self._result["over_problems"]["mean_ranks"]
         return found
 
     def to_dict(self) -> dict[str, Any]:
-        """The content of result.json."""
+        """Returns the content of result.json."""
         copy: dict[str, Any] = json.loads(json.dumps(self._result))
         return copy
 
@@ -143,7 +143,7 @@ def _escape(label: str) -> str:
 
 
 def load_study(folder: Union[str, Path]) -> Study:
-    """Reads a comparison's folder, made here or by the program, finished or not. Of cells that are missing the values are infinite."""
+    """Reads the folder of a comparison that this package or the program made, finished or not. Missing cells have infinite values."""
     return Study(Path(folder), json.loads(_armwright.load_study(str(folder))))
 
 
@@ -164,39 +164,40 @@ def compare(
     time_limit_s: Optional[float] = None,
     progress: Show = None,
 ) -> Study:
-    """Compares optimizers on the same footing, as `armwright compare` does: the same folder, cells, statistics and verdict, bit for bit.
+    """Compares optimizers under equal conditions, as `armwright compare` does: the same folder, cells, statistics and verdict.
 
-    Every optimizer gets the same budget, and in a replicate the same training cases and start. Random search and a local search take part
-    as baselines. Interrupted, the same call goes on where it was; with more replicates, problems or optimizers only what is new is run.
+    The results are the same bit for bit. Every optimizer gets the same budget. In one replicate all optimizers get the same training
+    cases and the same start. Random search and a local search take part as baselines. If the comparison is interrupted, the same call
+    continues it. A call with more replicates, problems or optimizers runs only the new cells.
 
-    Runs of classes go first, one after the other in this process on `jobs` threads; those of all others run `jobs` at a time in processes
-    of their own.
+    The runs of classes come first, one after the other in this process on `jobs` threads. All other runs have processes of their own, and
+    `jobs` of them run at a time.
 
     Parameters
     ----------
     problems : sequence of str or path
         Names or files.
     optimizers : sequence of str, Optimizer, or classes derived from it
-        With their default options; others, and schedules of their own, a study file gives them.
+        They use their default options. To give them other options, or schedules of their own, use a study file.
     study : str or path, optional
-        A study file, or a shipped one's name; what is given besides replaces what stands there.
+        A study file, or the name of a shipped one. Other arguments replace what the file says.
     replicates : int, optional
-        Runs of every optimizer on every problem (default: 15).
+        The number of runs of every optimizer on every problem (default: 15).
     budget : int
-        Training cases a run.
+        The number of training cases per run.
     set : mapping or list of str, optional
         Settings of every problem.
     schedule : str, optional
-        Which training cases: "fixed:K"; "fresh:K" or "coevolution:K" where all have generations.
+        The schedule of training cases: "fixed:K"; or "fresh:K" or "coevolution:K" if all optimizers have generations.
     seed : int, optional
-        Of the study: draws starts, training cases and the optimizers' seeds (default: 1).
+        The seed of the study. It draws starts, training cases and the seeds of the optimizers (default: 1).
     baselines : bool
-        Whether they take part; the verdict says if not.
+        Whether the baselines take part. If they do not, the verdict says so.
     out, new, jobs, time_limit_s, progress : optional
-        As of optimize(); the default folder is results/NAME.
+        As in optimize(). The default folder is results/NAME.
     """
     if problems is None and study is None:
-        raise UsageError("compare what? Give problems and optimizers, or study=FILE")
+        raise UsageError("nothing to compare; give problems and optimizers, or study=FILE")
     for name, names in (("problems", problems), ("optimizers", optimizers)):
         if isinstance(names, str):
             raise UsageError(f"{name} is the text {names!r}; it must be a list, such as [{names!r}]")
@@ -211,6 +212,6 @@ def compare(
                 schedule, None if seed is None else to_whole("seed", seed, 2**63 - 1), baselines, None if out is None else str(out), new,
                 to_jobs(jobs), time_limit_s, listener)
         except KeyboardInterrupt:
-            raise KeyboardInterrupt("interrupted; what was evaluated is recorded, and the same call of armwright.compare() goes on from "
+            raise KeyboardInterrupt("interrupted; all evaluations so far are recorded, and the same call of armwright.compare() goes on from "
                                     "there" + (" (without new=True, and out= its folder)" if new else "")) from None
     return Study(Path(folder), json.loads(text)) if text is not None else load_study(folder)

@@ -87,7 +87,7 @@ class StudyTest(FolderTest):
         study = armwright.compare(study="mine.toml")
         self.assertEqual((study.folder, study.replicates), (pathlib.Path("results/mine"), 2))
         self.assertEqual(armwright.compare(study="mine.toml", replicates=3).values.shape, (3, 1, 3))
-        for pieces, call in ((["compare what?"], lambda: armwright.compare()),
+        for pieces, call in ((["nothing to compare"], lambda: armwright.compare()),
                              (["problems is the text 'sphere'"], lambda: armwright.compare("sphere", ["ga"])),
                              (["must hold names or files"], lambda: armwright.compare([armwright.load_problem("sphere")], ["ga"])),
                              (["two optimizers of the study are called 'python:steps'"], lambda: compare(optimizers=[Steps, Steps])),

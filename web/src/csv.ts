@@ -1,5 +1,5 @@
-// Tables as CSV (RFC 4180). Text that a spreadsheet would take for a formula gets an apostrophe in
-// front, as names may come from anywhere.
+// Writes tables as CSV (RFC 4180). Text that a spreadsheet would take for a formula gets an
+// apostrophe in front, because names may contain anything.
 import type { Cell, Column, DataTable, Value } from './model';
 
 export function get_value(cell: Value | Cell): Value {

@@ -1,6 +1,6 @@
-// What the page is fed with: JSON that the program writes (src/report/page/). SI units throughout;
-// the figures convert. A number that does not exist (a case without result, an infinite value) is
-// null. Keys are those of the JSON.
+// The types of the page's data: the JSON that the program writes (src/report/page/). All values have
+// SI units; the figures convert them. A number that does not exist (a case without a result, an
+// infinite value) is null. The keys are those of the JSON.
 
 // An array of numbers, little-endian, in base64.
 export interface Packed {
@@ -33,11 +33,11 @@ export interface PageBase {
   subtitle: string;
   program: Program;
   folder: string;
-  command: string; // what made the run or study; a shell command
+  command: string; // the shell command that made the run or study
   finished: boolean;
-  progress: { done: number; total: number; unit: string } | null; // of what is unfinished
-  notes: string[]; // what the page lacks and why, what to beware of; whole sentences
-  facts: Fact[]; // what it is, in the order to show
+  progress: { done: number; total: number; unit: string } | null; // null if it is finished
+  notes: string[]; // whole sentences: missing parts of the page with their reasons, and warnings
+  facts: Fact[]; // about the run or study, in the order to show
   robots: Robot[];
   replays: ReplaySet[];
 }
@@ -53,7 +53,7 @@ export interface Shape {
   kind: 'box' | 'cylinder' | 'sphere' | 'mesh';
   size: [number, number, number]; // box: edges; cylinder: radius, length along z, 0; sphere: radius, 0, 0; mesh: scale
   mesh: number | null; // index into Robot.meshes
-  pose: Pose; // in the body's frame
+  pose: Pose; // in the frame of the body
   rgba: [number, number, number, number];
 }
 
@@ -65,22 +65,22 @@ export interface Body {
 export interface RobotJoint {
   name: string;
   kind: 'revolute' | 'prismatic';
-  origin: Pose; // in the parent body's frame, at position 0
+  origin: Pose; // in the frame of the parent body, at position 0
   axis: [number, number, number];
-  lower: number | null; // null: none
+  lower: number | null; // null: no limit
   upper: number | null;
 }
 
 export interface Mesh {
-  positions: Packed; // 3 a vertex
-  indices: Packed; // 3 a triangle
+  positions: Packed; // 3 per vertex
+  indices: Packed; // 3 per triangle
 }
 
 export interface Robot {
   name: string;
-  bodies: Body[]; // the base, then the one that each joint moves
+  bodies: Body[]; // the base, then the body that each joint moves
   joints: RobotJoint[];
-  tip: Pose; // in the last body's frame
+  tip: Pose; // in the frame of the last body
   meshes: Mesh[];
 }
 
@@ -88,7 +88,7 @@ export interface DesignInfo {
   id: string;
   name: string; // "winner", "base controllers", "thesis, Table A.5"
   total_torque_n_m: number | null;
-  effort_limits: [number, number][]; // one a joint
+  effort_limits: [number, number][]; // one per joint
 }
 
 export interface TaskInfo {
@@ -104,19 +104,19 @@ export interface TaskInfo {
 export interface Segment {
   first_step: number;
   steps: number;
-  window_start: number; // first step, within the segment, that is measured
+  window_start: number; // the first measured step, counted from the beginning of the segment
   distance_m: number;
   duration_s: number; // t_m
 }
 
-// A design's motion on a test case; row k is the state at the end of control period k.
+// The motion of a design on a test case. Row k is the state at the end of control period k.
 export interface Motion {
   design: string; // DesignInfo.id
   status: string; // "ok", "diverged", ...
   reason: string;
-  steps: number; // as far as it went
+  steps: number; // until the motion ended
   mean_error_m: number | null;
-  point_error_m: number[]; // as far as it went, from point 1
+  point_error_m: number[]; // from point 1 until the motion ended
   q: Packed; // steps x joints, rad or m
   effort: Packed; // steps x joints, N m or N
   error_m: Packed; // steps: |tip - target|
@@ -128,7 +128,7 @@ export interface ReplayCase {
   set: string;
   number: number;
   points_m: [number, number, number][]; // the start, then the trajectory points
-  segments: Segment[]; // one a point after the start
+  segments: Segment[]; // one per point after the start
   steps: number;
   target_m: Packed; // steps x 3
   target_q: Packed; // steps x joints
@@ -142,30 +142,31 @@ export interface ReplaySet {
   robot: number; // index into PageBase.robots; the load is one of its shapes
   task: TaskInfo;
   designs: DesignInfo[];
-  cases: ReplayCase[]; // the first is the one to show first
+  cases: ReplayCase[]; // the first one is shown first
 }
 
-// Average error of each trajectory point over the cases of a set, which have the same distances.
+// The average error of each trajectory point over the cases of a set. All cases have the same
+// distances.
 export interface DistanceResponse {
   id: string; // "distance-response" or "fig-6.4"
   title: string;
   thesis: string; // "Fig. 6.4" or ""
   remark: string; // whole sentences, or ""
   distances_m: number[];
-  counted: boolean[]; // whether the point counts in a case's error
+  counted: boolean[]; // whether the point counts in the error of a case
   series: ResponseSeries[];
 }
 
 export interface ResponseSeries {
   name: string;
-  cases: number; // with a number
+  cases: number; // that have a number
   failures: number;
-  mean_m: (number | null)[]; // one a point
+  mean_m: (number | null)[]; // one per point
   standard_error_m: (number | null)[]; // of the mean
   overall_mean_m: number | null;
   overall_median_m: number | null;
   published_mean_m: number | null;
-  command: string; // that makes this series anew; "" if there is none
+  command: string; // that makes this series again; "" if there is none
 }
 
 export interface SignalCurve {
@@ -176,12 +177,12 @@ export interface SignalCurve {
   acceleration_m_per_s2: number[];
 }
 
-// Reference signals over one move, and how short moves are slowed down.
+// The reference signals over one move, and the slowing down of short moves.
 export interface Signals {
   distance_m: number; // of the move
   speed_m_per_s: number; // average
   rest_s: number;
-  used: string; // the name of the one that the problem uses; "" for none
+  used: string; // the name of the signal that the problem uses; "" for none
   curves: SignalCurve[];
   reduction: { distance_m: number[]; speed_m_per_s: number[]; limit_m: number };
 }
@@ -190,7 +191,7 @@ export interface Sweep {
   parameter: string; // "task.speed_m_per_s"
   quantity: Quantity; // of the abscissa
   values: number[];
-  nominal: number | null; // the value that the design was tuned for
+  nominal: number | null; // the value for which the design was tuned
   cases: number;
   engine: string;
   command: string;
@@ -209,41 +210,42 @@ export interface RunData extends PageBase {
   kind: 'run';
   problem: string;
   optimizer: string;
-  quantity: Quantity; // the objective that is minimised, or the weighted sum of several
+  quantity: Quantity; // the minimised objective, or the weighted sum of several
   logarithmic: boolean; // the quantity is itself a logarithm
   training: Training;
   variables: VariableHistory[];
-  test: TestErrors | null; // nothing before the run has ended
-  front: RunFront | null; // of several objectives
-  requirements: RequirementLight[]; // of the winner on the test set; empty before there is one
-  arm: ArmEvidence | null; // of an arm's problem
+  test: TestErrors | null; // null before the run has ended
+  front: RunFront | null; // null if there is only one objective
+  requirements: RequirementLight[]; // for the winner on the test set; empty without a winner
+  arm: ArmEvidence | null; // null if the problem is not an arm
 }
 
-// A quantity that shall not exceed a limit on any test case, and whether it does.
+// A quantity that must not exceed a limit on any test case, and the result.
 export interface RequirementLight {
   quantity: Quantity;
   limit: number;
   value: number | null; // of the worst case
   grade: 'met' | 'tight' | 'missed' | 'unknown'; // tight: met, within 10 % of the limit
-  binds: boolean; // nearest to its limit of all, or furthest above it
+  binds: boolean; // nearest to its limit of all requirements, or furthest above it
   is_constraint: boolean;
 }
 
-// Generations, or of an optimizer without them blocks of consecutive evaluations.
+// The history by generations, or by blocks of consecutive evaluations if the optimizer has no
+// generations.
 export interface Training {
   unit: 'generation' | 'evaluations';
   schedule: string; // "fresh:1", "fixed:5", "coevolution:10"
   budget: number; // cases
-  index: number[]; // generation, or number of the block's last evaluation
-  cases: number[]; // of the budget, at its end
+  index: number[]; // the generation, or the number of the last evaluation of the block
+  cases: number[]; // spent of the budget at the end of each generation or block
   best: (number | null)[];
   mean: (number | null)[];
   worst: (number | null)[];
-  failed: number[]; // evaluations without number
+  failed: number[]; // evaluations without a number
   incumbents: Incumbents;
 }
 
-// The best designs known on the way, on the test set.
+// The incumbents of the run and their values on the test set.
 export interface Incumbents {
   index: number[]; // as in Training
   cases: number[];
@@ -262,7 +264,7 @@ export interface VariableHistory {
   start: number;
   logarithmic: boolean;
   winner: number | null;
-  best: (number | null)[]; // of each generation or block: that of its best
+  best: (number | null)[]; // the value of the best design of each generation or block
   q1: (number | null)[];
   median: (number | null)[];
   q3: (number | null)[];
@@ -272,7 +274,7 @@ export interface TestErrors {
   set: string;
   quantity: Quantity; // of the errors
   engine: string;
-  failure_error: number | null; // above it a case has failed
+  failure_error: number | null; // a case with a larger error has failed
   designs: {
     name: string;
     errors: (number | null)[];
@@ -288,9 +290,9 @@ export interface RunFront {
 
 export interface ArmEvidence {
   designs: DesignInfo[];
-  // A row a number of the design; the values are in the order of `designs`.
+  // One row per number of the design. The values are in the order of `designs`.
   parameters: { name: string; unit: string; is_variable: boolean; at_bound: string; values: (number | null)[] }[];
-  // Of each design on the test set, beside what is published.
+  // The results of each design on the test set, and the published values.
   results: {
     design: string;
     mean_m: number | null;
@@ -314,12 +316,12 @@ export interface ArmEvidence {
 export interface StudyData extends PageBase {
   kind: 'study';
   verdict: string[]; // paragraphs
-  optimizers: { label: string; name: string }[]; // in the plan's order; all lists "one an optimizer" follow it
+  optimizers: { label: string; name: string }[]; // in the order of the plan; all lists with one item per optimizer have this order
   replicates: number;
   budget: number;
-  reference: string; // the optimizer that times to fixed targets are divided by; may be empty
+  reference: string; // times to fixed targets are divided by those of this optimizer; may be empty
   problems: StudyProblem[];
-  overall: StudyOverall | null; // of at least one complete problem
+  overall: StudyOverall | null; // null while no problem is complete
 }
 
 export interface StudyCell {
@@ -327,16 +329,16 @@ export interface StudyCell {
   value: number | null; // null: infinite
   cases: number;
   evaluations: number;
-  seconds: number | null; // CPU or wall time where it was recorded: so far no run does
+  seconds: number | null; // CPU or wall time, if it was recorded; no run records it so far
   failure: string; // of the optimizer
-  failures: number; // test cases that failed
+  failures: number; // failed test cases
   x: number[]; // the winner, 9 significant digits; empty if there is none
   folder: string;
   command: string; // armwright rerun STUDY CELL
 }
 
 export interface StudyOptimizerResult {
-  cells: StudyCell[]; // those that have ended, by replicate
+  cells: StudyCell[]; // the cells that have ended, by replicate
   infinite: number;
   infeasible: number;
   failed: number;
@@ -350,34 +352,36 @@ export interface StudyOptimizerResult {
   anytime_area: number | null;
   cases: number | null; // median
   running_times: { target: number; reached: number; expected: number | null; interval: [number | null, number | null] }[];
-  // To each of the problem's fixed targets; the ratio is to the study's reference.
+  // The times to each fixed target of the problem. The ratio is to the time of the reference
+  // optimizer.
   target_times: {
     reached: number;
-    kept: number; // runs whose winner meets it
+    kept: number; // runs whose winner meets the target
     expected: number | null;
     interval: [number | null, number | null];
     ratio: number | null;
     ratio_interval: [number | null, number | null];
   }[];
   curve: { q1: (number | null)[]; median: (number | null)[]; q3: (number | null)[] }; // at the checkpoints
-  ecdf: number[]; // likewise
+  ecdf: number[]; // at the checkpoints
   final_check: { engine: string; value: number | null; failures: number; cases: number; replicate: number } | null;
 }
 
-// Iman and Davenport's F; null if it is infinite, as all rank alike: p is chi-squared's then.
+// The F statistic of Iman and Davenport. It is null if it is infinite, because all rank alike; p is
+// then that of chi-squared.
 export interface Friedman {
   statistic: number | null;
   p: number;
 }
 
 export interface StudyPair {
-  a: number; // index of the optimizer; a's median is not worse than b's
+  a: number; // index of the optimizer; the median of a is not worse than that of b
   b: number;
   p: number;
   p_holm: number;
-  a12: number; // that a run of a is better than one of b
+  a12: number; // the probability that a run of a is better than a run of b
   significant: boolean;
-  wins: number; // of a
+  wins: number; // replicates in which a is better
   ties: number;
   losses: number;
 }
@@ -393,7 +397,7 @@ export interface StudyProblem {
   targets: number[];
   fixed_targets: string[]; // in words
   variables: { name: string; unit: string; lower: number; upper: number; start: number; logarithmic: boolean }[];
-  results: StudyOptimizerResult[]; // one an optimizer
+  results: StudyOptimizerResult[]; // one per optimizer
   friedman: Friedman | null;
   pairs: StudyPair[];
   order: number[]; // best first
@@ -404,18 +408,20 @@ export interface StudyProblem {
 export interface StudyFront {
   objectives: Quantity[];
   reference_point: number[];
-  // One an optimizer: the points that none of their own replicate dominates (at most 200 of each), and
-  // what shares of the replicates attain (of two objectives; 0.25, 0.5 and 0.75). 9 significant digits.
+  // One item per optimizer: the points that no point of their own replicate dominates (at most 200 of
+  // each replicate), and, with two objectives, the areas that shares of the replicates attain (0.25,
+  // 0.5 and 0.75). 9 significant digits.
   optimizers: { points: { values: number[]; replicate: number }[]; attainment: { share: number; points: number[][] }[] }[];
 }
 
 export interface StudyOverall {
-  mean_ranks: number[]; // one an optimizer
-  rank_intervals: [number, number][] | null; // 95 %, problems resampled; null of fewer than 6 problems
+  mean_ranks: number[]; // one per optimizer
+  rank_intervals: [number, number][] | null; // 95 %, by resampling of problems; null with fewer than 6 problems
   friedman: Friedman | null;
   pairs: StudyPair[];
-  // The largest sets of optimizers, by index, none of which is told apart from another of the set; one
-  // may be in several, and a set need not be neighbours by rank. Empty of one problem, where nothing is tested.
+  // The largest sets of optimizers, by index, in which no two optimizers are told apart. An optimizer
+  // may be in several sets, and the members of a set need not be neighbours by rank. Empty with one
+  // problem, because no test is done then.
   cliques: number[][];
   kappas: number[];
   data_profiles: { tolerance: number; shares: number[][] }[];
@@ -444,7 +450,7 @@ export interface ReproductionData extends PageBase {
     torque_n_m: number;
     command: string;
   }[];
-  // What was optimized anew, as the source gives no design.
+  // The designs that were optimized again, because the thesis does not give them.
   runs: {
     name: string;
     problem: string;
@@ -458,7 +464,7 @@ export interface ReproductionData extends PageBase {
   responses: DistanceResponse[];
   signals: Signals;
   sweep: Sweep;
-  // Fig. 6.5-6.8: the momentary error of each on the training case of generation 1.
+  // Fig. 6.5-6.8: the momentary error of each design on the training case of generation 1.
   momentary: { name: string; replay: string; design: string; case: string }[];
 }
 

@@ -1,5 +1,6 @@
-// What a page is made of, before anything is drawn. Pages are pure functions of their data, and the
-// same figures serve the browser and `armwright plot`: nothing here or in figures/ may touch the DOM.
+// The parts of a page before anything is drawn. Pages are pure functions of their data, and the
+// browser and `armwright plot` use the same figures. Therefore this file and figures/ must not use
+// the DOM.
 import type { EChartsOption } from './charts/echarts';
 import type { Fact, PageBase, ReplaySet } from './data';
 import type { Look } from './charts/look';
@@ -10,15 +11,15 @@ export interface Column {
   label: string;
   unit?: string;
   numeric?: boolean;
-  digits?: number; // significant ones to show; 4 if not said
+  digits?: number; // significant digits to show; default 4
 }
 
-// Cells may carry what made them.
+// A cell may have the command that made its value.
 export interface Cell {
   value: Value;
   command?: string;
   note?: string;
-  mark?: 'good' | 'near' | 'bad' | 'none'; // a colour beside what the text says as well
+  mark?: 'good' | 'near' | 'bad' | 'none'; // a colour with the same meaning as the text
 }
 
 export interface DataTable {
@@ -26,7 +27,7 @@ export interface DataTable {
   rows: (Value | Cell)[][];
 }
 
-// Something that a reader may choose of a figure: a test case, a joint.
+// A choice that a figure offers to the reader: a test case, a joint.
 export interface Choice {
   id: string;
   label: string;
@@ -35,7 +36,7 @@ export interface Choice {
 }
 export type Picked = Record<string, string>;
 
-// A point of a figure may carry these beside its `value`: the page shows them when it is chosen.
+// The provenance of a point of a figure. The page shows it when the reader chooses the point.
 export interface Provenance {
   note?: string;
   command?: string;
@@ -43,17 +44,18 @@ export interface Provenance {
 
 export interface Figure {
   kind: 'figure';
-  id: string; // unique in the page; name of the file that `armwright plot` writes
+  id: string; // unique in the page; also the name of the file that `armwright plot` writes
   title: string;
-  caption: string; // what is shown and how to read it, whole sentences
-  thesis?: string; // "Fig. 6.4": its counterpart in the source
-  width?: 'half' | 'full'; // of the page; half if not said
-  height?: number; // pixels; 340 if not said
+  caption: string; // whole sentences: the content of the figure and how to read it
+  thesis?: string; // the corresponding figure of the thesis, such as "Fig. 6.4"
+  width?: 'half' | 'full'; // of the page; default half
+  height?: number; // pixels; default 340
   choices?: Choice[];
-  // The abscissa is the time (s) of this replay case: the cursor is shared with the replay.
+  // Present if the abscissa is the time (s) of this replay case. The figure then shares the cursor
+  // of the replay.
   time?: { replay: string; case: (picked: Picked) => string };
   draw(look: Look, picked: Picked): EChartsOption;
-  table(picked: Picked): DataTable; // the numbers drawn, in the units drawn
+  table(picked: Picked): DataTable; // the drawn numbers, in the drawn units
 }
 
 export interface TableItem {

@@ -1,11 +1,11 @@
-// Numbers as the page shows and packs them.
+// Formats and unpacks the numbers of the page.
 import type { Packed } from './data';
 
 export const kMillimetres = 1000;
 export const kDegrees = 180 / Math.PI;
 
-// A number with so many significant digits, without an exponent where that is short: "0.0741",
-// "1040562", "2.5e-7".
+// Formats a number with `digits` significant digits. It has no exponent if it is short without one:
+// "0.0741", "1040562", "2.5e-7".
 export function format_number(value: number | null | undefined, digits = 4): string {
   if (value === null || value === undefined || !isFinite(value)) {
     return '–';
@@ -13,7 +13,7 @@ export function format_number(value: number | null | undefined, digits = 4): str
   if (Math.floor(value) === value && Math.abs(value) < 1e9) {
     return String(value);
   }
-  // Of the rounded number: 0.99999 has one digit before the point.
+  // The magnitude is that of the rounded number: 0.99999 has one digit before the point.
   const magnitude = Math.floor(Math.log10(Math.abs(Number(value.toPrecision(digits)))));
   if (magnitude < -4 || magnitude > 8) {
     return value.toExponential(digits - 1);
@@ -27,7 +27,7 @@ export function scale(values: (number | null)[], factor: number): (number | null
 
 const kAlphabet = 'ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/';
 
-// By hand, as there is no atob() outside a browser.
+// Our own decoder, because there is no atob() outside a browser.
 function decode_base64(text: string): Uint8Array {
   const places: number[] = [];
   for (let i = 0; i < kAlphabet.length; ++i) {

@@ -1,10 +1,10 @@
-// The one moment that the replay and the plots over time show.
+// The moment that the replay and the plots over time show together.
 export interface Clock {
   readonly replay: string;
   readonly case_id: string;
   readonly time_s: number;
   set(replay: string, case_id: string, time_s: number): void;
-  listen(on_change: () => void): () => void; // returns what ends it
+  listen(on_change: () => void): () => void; // returns the function that removes the listener
 }
 
 export function make_clock(): Clock {

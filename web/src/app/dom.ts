@@ -1,4 +1,4 @@
-// Building the document. Text only ever becomes text: there is no way in here for markup.
+// Functions that build the document. Text always stays text; these functions cannot insert markup.
 export type Child = Node | string | null;
 
 export function make<K extends keyof HTMLElementTagNameMap>(

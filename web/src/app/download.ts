@@ -4,6 +4,6 @@ export function download(name: string, type: string, text: string): void {
   link.href = address;
   link.download = name;
   link.click();
-  // The browser has taken the address by then; some read from it a moment later.
+  // The browser has taken the address by then, but some browsers read from it a moment later.
   setTimeout(() => URL.revokeObjectURL(address), 10_000);
 }

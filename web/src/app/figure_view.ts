@@ -1,4 +1,5 @@
-// A figure in the page: its choices, the chart, what a point says of itself, the downloads.
+// The view of a figure in the page: its choices, its chart, the text of a chosen point, and the
+// downloads.
 import { echarts, type EChartsOption, type EChartsType } from '../charts/echarts';
 import { kLight, type Look } from '../charts/look';
 import { draw_svg, get_initial_picks, get_paper_size, kDefaultHeight } from '../charts/svg';
@@ -27,7 +28,7 @@ function get_provenance(data: unknown): { note?: string; command?: string } {
   return {};
 }
 
-// What a pointer over a point reads, as nodes: names are never markup.
+// Returns the text for the pointer over a point, as nodes. Names never become markup.
 function describe_point(hovered: Hovered | Hovered[], columns: Column[]): HTMLElement {
   const box = make('div', { class: 'tip' });
   for (const one of Array.isArray(hovered) ? hovered : [hovered]) {
@@ -42,13 +43,14 @@ function describe_point(hovered: Hovered | Hovered[], columns: Column[]): HTMLEl
     }
     box.append(make('div', {}, note ?? numbers.join(', ')));
     if (command) {
-      box.append(make('div', { class: 'tip-hint' }, 'Choose the point for the command that reproduces it.'));
+      box.append(make('div', { class: 'tip-hint' }, 'Choose the point to see the command that reproduces it.'));
     }
   }
   return box;
 }
 
-// Which series are switched on is the reader's choice, and survives being drawn anew.
+// Returns `option` with the series switched on that the reader has chosen, so that a new drawing
+// keeps the choice.
 function keep_selection(chart: EChartsType, option: EChartsOption): EChartsOption {
   const before = (chart.getOption() as { legend?: { selected?: Record<string, boolean> }[] } | undefined)?.legend?.[0]?.selected;
   const legend = (option as { legend?: object }).legend;
@@ -75,7 +77,8 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
       return;
     }
     const drawn = figure.draw(current_look, picked);
-    // Computing a table can take long, and pointers move often: once a drawing.
+    // Computing a table can take long and pointers move often, so the columns are computed once per
+    // drawing.
     let columns: ReturnType<typeof figure.table>['columns'] | null = null;
     chart.setOption(
       {
@@ -97,7 +100,7 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
     move_cursor();
   }
 
-  // The time under the cursor of the replay, as a line over the chart: the chart itself stays.
+  // Shows the time of the replay as a line over the chart. The chart itself does not change.
   function move_cursor(): void {
     const time = figure.time;
     const visible = chart !== null && time !== undefined && clock.replay === time.replay && clock.case_id === time.case(picked);
@@ -110,7 +113,8 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
     }
   }
 
-  // Another case in the replay is another case here, where the figure has that choice.
+  // If the replay shows another case and the figure has the choice of a case, the figure shows that
+  // case too.
   function follow_clock(): void {
     const time = figure.time;
     if (time !== undefined && clock.replay === time.replay && clock.case_id !== time.case(picked)) {
@@ -191,7 +195,7 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
       'div',
       { class: 'card-head' },
       make('h3', {}, figure.title),
-      figure.thesis ? make('span', { class: 'thesis', title: 'Its counterpart in the thesis' }, 'thesis, ' + figure.thesis) : null,
+      figure.thesis ? make('span', { class: 'thesis', title: 'The corresponding figure of the thesis' }, 'thesis, ' + figure.thesis) : null,
       buttons,
     ),
     choices.childElementCount > 0 ? choices : null,

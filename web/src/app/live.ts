@@ -1,4 +1,4 @@
-// While a study runs its page asks for newer data every few seconds. The server answers 304 where
+// While a study runs, its page asks for newer data every few seconds. The server answers 304 if
 // nothing has changed.
 import type { PageData } from '../data';
 
@@ -19,7 +19,7 @@ export function follow(on_data: (data: PageData) => void): void {
       }
       root.setAttribute('data-connection', finished ? 'finished' : 'live');
     } catch {
-      root.setAttribute('data-connection', 'lost'); // the page stays as it is, and asks again
+      root.setAttribute('data-connection', 'lost'); // the page keeps its content and asks again
     }
     if (!finished) {
       setTimeout(() => void ask(), kPeriod_ms);

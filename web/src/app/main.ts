@@ -1,5 +1,5 @@
-// The page's beginning: reads the data that stand in the document, or that the program serves while
-// a study runs, and shows them.
+// The entry point of the page. It reads the data in the document, or those that the program serves
+// while a study runs, and shows them.
 import { kDark, kLight, type Look } from '../charts/look';
 import type { PageData } from '../data';
 import { make_page } from '../figures/page';

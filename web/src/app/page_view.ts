@@ -1,4 +1,4 @@
-// The page as a whole: head, tabs, and the view of whatever tab is open.
+// The view of the whole page: the head, the tabs, and the open tab.
 import type { Look } from '../charts/look';
 import type { Fact } from '../data';
 import type { Item, Page, Tab } from '../model';
@@ -41,7 +41,7 @@ function make_replay_view(id: string, title: string, page: Page, item: Item, loo
   return {
     element: make('section', { class: 'card full', id: 'figure-' + id, 'data-figure': id }, make('h3', {}, title), host),
     set_look: (next) => replay.set_look(next),
-    update: () => true, // what was recorded stays
+    update: () => true, // a recorded motion does not change
     settle() {},
     dispose: () => {
       stop();
@@ -72,7 +72,7 @@ export interface PageView {
 
 export interface PageEvents {
   toggle_theme(): void;
-  // On paper the page is light, whatever it is on the screen.
+  // A printed page is light, whatever the theme on the screen.
   on_print(begins: boolean): void;
 }
 
@@ -119,7 +119,8 @@ export function make_page_view(host: HTMLElement, first_look: Look, events: Page
     }
   }
 
-  // Newer data of the same section go into what is there. False if it has other items now.
+  // Puts newer data of the same tab into the existing views. Returns false if the tab has other
+  // items now.
   function update_items(tab: Tab): boolean {
     const same = tab.items.length === views.length && tab.items.every((item, i) => views[i].element.dataset.figure === item.id);
     if (same) {
@@ -195,7 +196,7 @@ export function make_page_view(host: HTMLElement, first_look: Look, events: Page
     }
   });
 
-  // On paper all sections follow one another; afterwards the open one comes back.
+  // A printed page shows all tabs one after the other. After printing, the open tab is shown again.
   window.addEventListener('beforeprint', () => {
     close();
     events.on_print(true);

@@ -1,6 +1,6 @@
 import { make, make_button } from './dom';
 
-// Where a point or a row comes from, and the command that makes it again.
+// Returns a box that shows where a point or a row comes from, and the command that makes it again.
 export function make_provenance(note: string | undefined, command: string | undefined, on_close: () => void): HTMLElement {
   const box = make('div', { class: 'provenance' });
   if (note) {
@@ -13,7 +13,8 @@ export function make_provenance(note: string | undefined, command: string | unde
       range.selectNodeContents(text);
       getSelection()?.removeAllRanges();
       getSelection()?.addRange(range);
-      // Pages opened from disk may not reach the clipboard; the text is selected all the same.
+      // A page opened from disk may have no access to the clipboard. The text is selected in any
+      // case.
       navigator.clipboard?.writeText(command).then(
         () => (copy.textContent = 'Copied'),
         () => (copy.textContent = 'Selected: press Ctrl+C'),

@@ -1,4 +1,4 @@
-// Tables that sort by any column, in the page and in a dialog.
+// Tables that the reader can sort by any column, in the page and in a dialog.
 import { get_value, to_csv, get_heading } from '../csv';
 import type { Cell, DataTable, TableItem, Value } from '../model';
 import { format_number } from '../numbers';
@@ -7,10 +7,10 @@ import { download } from './download';
 import { make_provenance } from './provenance';
 import type { View } from './view';
 
-// More rows than this come in portions, so that a table of 10 000 cells opens at once.
+// A table shows this many rows at a time, so that a table of 10 000 cells opens at once.
 const kPortion = 200;
 
-// Numbers by size, text by the alphabet, what is missing last, whichever way the rest runs.
+// Compares numbers by size and texts by the alphabet. Missing values come last for both directions.
 function compare(a: Value, b: Value, direction: number): number {
   if (a === null || b === null) {
     return a === b ? 0 : a === null ? 1 : -1;
@@ -30,7 +30,7 @@ function make_cell(cell: Value | Cell, digits: number, details: HTMLElement): HT
     element.append(
       make_button(text, () => details.replaceChildren(make_provenance(note, command, () => details.replaceChildren())), {
         class: 'link',
-        title: 'Where this comes from',
+        title: 'Show the origin of this value',
       }),
     );
   } else if (cell !== null && typeof cell === 'object' && cell.mark !== undefined) {
@@ -44,8 +44,8 @@ function make_cell(cell: Value | Cell, digits: number, details: HTMLElement): HT
   return element;
 }
 
-// Sorted by `order` first: the number of a column and 1 for up, -1 for down; what the reader chooses
-// is left there.
+// The order in which a table is sorted: the index of a column, and 1 for ascending or -1 for
+// descending. The choice of the reader is stored here.
 interface Order {
   column: number;
   direction: number;
@@ -111,7 +111,7 @@ export function make_table_view(item: TableItem): View {
       'div',
       { class: 'card-head' },
       make('h3', {}, item.title),
-      item.thesis ? make('span', { class: 'thesis', title: 'Its counterpart in the thesis' }, 'thesis, ' + item.thesis) : null,
+      item.thesis ? make('span', { class: 'thesis', title: 'The corresponding table of the thesis' }, 'thesis, ' + item.thesis) : null,
       make(
         'div',
         { class: 'buttons' },
@@ -140,7 +140,7 @@ export function make_table_view(item: TableItem): View {
   };
 }
 
-// The numbers of a figure, for those who cannot or do not want to read the chart.
+// Shows the numbers of a figure, for readers who cannot or do not want to read the chart.
 export function show_table(title: string, table: DataTable): void {
   const details = make('div', { class: 'details', role: 'status' });
   const dialog = make('dialog', { 'aria-label': title });

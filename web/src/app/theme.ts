@@ -2,7 +2,7 @@ export type Theme = 'light' | 'dark';
 
 const kKey = 'armwright-theme';
 
-// Pages from disk may have no storage.
+// A page opened from disk may have no storage.
 export function load_theme(): Theme {
   try {
     const stored = localStorage.getItem(kKey);
@@ -10,7 +10,7 @@ export function load_theme(): Theme {
       return stored;
     }
   } catch {
-    // as the system says, then
+    // then the theme of the system is used
   }
   return matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light';
 }
@@ -19,6 +19,6 @@ export function store_theme(theme: Theme): void {
   try {
     localStorage.setItem(kKey, theme);
   } catch {
-    // it lasts as long as the page, then
+    // then the choice lasts as long as the page is open
   }
 }

@@ -1,5 +1,6 @@
-// Which of so many values to draw so that a line looks the same: of each of limit / 2 stretches the
-// smallest and the largest, and the first and last of all. Peaks survive, whatever the limit.
+// Returns the indices of the values to draw so that a line looks the same: the first and the last
+// value, and the smallest and the largest of each of limit / 2 stretches. Peaks are kept for every
+// limit.
 export function decimate(values: ArrayLike<number>, limit = 2000): number[] {
   const kept: number[] = [];
   const n = values.length;
@@ -22,7 +23,7 @@ export function decimate(values: ArrayLike<number>, limit = 2000): number[] {
     let low = begin;
     let high = begin;
     for (let i = begin + 1; i < end; ++i) {
-      // Comparisons with what is no number are false: it is passed over, unless a stretch begins so.
+      // A comparison with NaN is false, so NaN is skipped unless a stretch begins with it.
       if (values[i] < values[low] || values[low] !== values[low]) {
         low = i;
       }

@@ -1,6 +1,6 @@
-// ECharts with the parts that the figures use, and nothing else of it in the bundle. It was chosen
-// because one library draws lines, boxes, heat maps and parallel axes both in the browser and, as
-// text, where there is none.
+// ECharts with only the parts that the figures use, so that the bundle contains nothing else of it.
+// ECharts was chosen because one library draws lines, boxes, heat maps and parallel axes, both in
+// the browser and, as text, without one.
 import { BarChart, BoxplotChart, CustomChart, HeatmapChart, LineChart, ParallelChart, ScatterChart } from 'echarts/charts';
 import {
   AriaComponent,

@@ -1,10 +1,11 @@
-// Colours and type of the figures. The series colours are those of Okabe and Ito (2008), told apart
-// by the colour-blind, the yellow darkened on white; beyond eight, dashes and symbols change.
+// The colours and fonts of the figures. The series colours are those of Okabe and Ito (2008), which
+// colour-blind readers can distinguish; yellow is darker on white. After eight series, dashes and
+// symbols change too.
 export interface Look {
   theme: 'light' | 'dark';
   background: string;
   text: string;
-  muted: string; // axes' names, captions
+  muted: string; // names of axes, captions
   grid: string;
   accent: string;
   bad: string; // failures, limits
@@ -12,7 +13,8 @@ export interface Look {
   font: string;
 }
 
-// Without quotes, which CSS does not need here: ECharts writes the names into attributes of its SVG as they are.
+// The names have no quotes, because ECharts writes them unchanged into attributes of its SVG. CSS
+// does not need quotes here.
 const kFont = 'system-ui, DejaVu Sans, Liberation Sans, Arial, sans-serif';
 
 export const kLight: Look = {
@@ -48,7 +50,7 @@ export interface SeriesStyle {
 const kDashes: SeriesStyle['dash'][] = ['solid', 'dashed', 'dotted', [8, 3, 2, 3], [12, 4]];
 const kSymbols = ['circle', 'triangle', 'rect', 'diamond', 'emptyCircle', 'emptyTriangle', 'emptyRect', 'emptyDiamond'];
 
-// The i-th series' style; 40 of them are all different.
+// Returns the style of series `index`. 40 of them are all different.
 export function get_series_style(look: Look, index: number): SeriesStyle {
   const round = Math.floor(index / look.series.length);
   return {

@@ -1,20 +1,20 @@
-// What stands in a figure beside its curves: limits, stretches of time, panels side by side.
+// The parts of a figure beside its curves: limits, stretches of time, panels side by side.
 import type { EChartsOption } from './echarts';
 import { get_series_style, type Look, type SeriesStyle } from './look';
 import { make_axis, make_chart, type AxisOptions, type Part } from './parts';
 import { format_tick, make_scale } from './scales';
 
 export interface NumberAxisOptions extends AxisOptions {
-  values?: (number | null)[]; // what the axis is to show: a logarithmic one gets its ends and ticks from it
+  values?: (number | null)[]; // the values that the axis shows; a logarithmic axis gets its ends and ticks from them
 }
 
-// make_axis() with short numbers, and enough of them where it is logarithmic.
+// Returns make_axis() with short numbers, and with enough of them if the axis is logarithmic.
 export function make_number_axis(look: Look, direction: 'x' | 'y', name: string, options: NumberAxisOptions = {}, more: Part = {}): Part {
   const axis = make_axis(look, direction, name, options);
   const label = {
     ...(axis.axisLabel as Part),
     formatter: options.categories ? undefined : format_tick,
-    // Where the data end is no round number.
+    // An end at the first value is not a round number, so it gets no label.
     showMinLabel: options.min === 'dataMin' ? false : undefined,
     showMaxLabel: options.max === 'dataMax' ? false : undefined,
   };
@@ -32,7 +32,7 @@ export function make_number_axis(look: Look, direction: 'x' | 'y', name: string,
   };
 }
 
-// make_chart() whose legend shows lines as they are drawn.
+// Returns make_chart() with a legend that shows lines as they are drawn.
 export function make_plot(look: Look, x: Part | Part[], y: Part | Part[], series: Part[], more: Part = {}): EChartsOption {
   const shown = series.map((one) => (one.type === 'line' && one.showSymbol === false ? { ...one, symbol: 'none' } : one));
   const option = make_chart(look, x, y, shown, more);
@@ -42,11 +42,12 @@ export function make_plot(look: Look, x: Part | Part[], y: Part | Part[], series
   }
   const has_symbols = (name: string) => shown.some((one) => one.name === name && one.silent !== true && one.symbol !== 'none');
   const entries = (legend.data as string[]).map((name) => (has_symbols(name) ? { name } : { name, itemStyle: { opacity: 0 } }));
-  // Without a screen the width of texts is guessed: some more space keeps entries apart.
+  // Without a screen the width of texts is only estimated, so the entries get some more space.
   return { ...option, legend: { itemGap: 20, itemWidth: 28, ...legend, data: entries } };
 }
 
-// Of curves without symbols: all of them where the pointer is, and no bands.
+// Returns make_plot() for curves without symbols. The pointer shows all curves at its place, but no
+// bands.
 export function make_curve_plot(look: Look, x: Part | Part[], y: Part | Part[], series: Part[], more: Part = {}): EChartsOption {
   const shown = series.map((one) => (one.silent === true ? { ...one, tooltip: { show: false } } : one));
   return make_plot(look, x, y, shown, { tooltip: { trigger: 'axis', confine: true }, ...more });
@@ -54,12 +55,12 @@ export function make_curve_plot(look: Look, x: Part | Part[], y: Part | Part[], 
 
 const kDashes: SeriesStyle['dash'][] = ['solid', 'dashed', 'dotted', [8, 3, 2, 3], [12, 4]];
 
-// For curves that cross often and have no symbols: dashes tell them apart as well.
+// Returns a style for curves that cross often and have no symbols: dashes distinguish them too.
 export function get_line_style(look: Look, index: number): SeriesStyle {
   return { ...get_series_style(look, index), dash: kDashes[index % kDashes.length] };
 }
 
-// A vertical line with a word beside it, in the range of the axis that the curves make.
+// Returns a vertical line with a word beside it. Its height is the range of the axis of the curves.
 export function make_vertical(look: Look, value: number, label: string, color = look.muted, axis = 0, at_foot = false): Part {
   return {
     type: 'line',
@@ -86,7 +87,7 @@ export function make_vertical(look: Look, value: number, label: string, color = 
   };
 }
 
-// Stretches of the abscissa behind the curves.
+// Returns shaded stretches of the abscissa, behind the curves.
 export function make_stretches(look: Look, stretches: [number, number][], color: string, axis = 0, opacity = 0.1, label = ''): Part {
   return {
     type: 'line',
@@ -111,8 +112,8 @@ export function make_stretches(look: Look, stretches: [number, number][], color:
   };
 }
 
-// Grids of panels in so many columns, in percent of the figure. `height` is the figure's, in pixels,
-// on which the space for axes depends.
+// Returns the grids of panels in `columns` columns, in percent of the figure. `height` is the
+// height of the figure in pixels, on which the space for axes depends.
 export function make_panels(count: number, columns: number, height: number): Part[] {
   const rows = Math.ceil(count / columns);
   const head = (44 / height) * 100;
@@ -133,7 +134,7 @@ export function make_panels(count: number, columns: number, height: number): Par
   return grids;
 }
 
-// A heading in the panel's corner.
+// Returns a heading in the corner of a panel.
 export function make_panel_title(look: Look, grid: Part, text: string): Part {
   return {
     text,

@@ -1,9 +1,9 @@
-// Names come from users' files: they may be long, and hold anything.
+// Names come from users' files: they may be long and may contain any characters.
 
-// Control characters, and those that turn the direction of the text around them.
+// Control characters, and characters that turn the direction of the text around them.
 const kInvisible = /[\u0000-\u001f\u007f-\u009f\u200b-\u200f\u2028-\u202e\u2060-\u2069\ufeff]+/g;
 
-// At most `length` characters, the last an ellipsis where something was cut off.
+// Returns the name with at most `length` characters. If it was cut, the last one is an ellipsis.
 export function shorten(name: string, length = 40): string {
   const clean = name
     .slice(0, 4 * length)
@@ -15,12 +15,13 @@ export function shorten(name: string, length = 40): string {
   let end = length - 1;
   const last = clean.charCodeAt(end - 1);
   if (last >= 0xd800 && last <= 0xdbff) {
-    --end; // not through the middle of a character
+    --end; // do not cut through a character
   }
   return clean.slice(0, end).replace(/ +$/, '') + '…';
 }
 
-// The same for names that stand beside each other: a legend needs them all different.
+// Shortens names that stand beside each other, such as in a legend, so that they all stay
+// different.
 export function shorten_all(names: string[], length = 40): string[] {
   const taken: string[] = [];
   return names.map((name) => {

@@ -1,9 +1,9 @@
-// The pieces that figures are put together from, so that all look alike.
+// The parts of which figures are made, so that all figures look alike.
 import type { Provenance, Value } from '../model';
 import type { EChartsOption } from './echarts';
 import { get_series_style, type Look, type SeriesStyle } from './look';
 
-// ECharts' own types of options fill a megabyte and take any object all the same.
+// The option types of ECharts fill a megabyte and accept any object, so this type replaces them.
 export type Part = Record<string, unknown>;
 
 export interface AxisOptions {
@@ -12,10 +12,10 @@ export interface AxisOptions {
   max?: number | 'dataMax';
   categories?: string[];
   inverse?: boolean;
-  index?: number; // of the grid
+  index?: number; // index of the grid
 }
 
-// An axis with its name in the middle: "error (mm)".
+// Returns an axis with its name in the middle, such as "error (mm)".
 export function make_axis(look: Look, direction: 'x' | 'y', name: string, options: AxisOptions = {}): Part {
   return {
     type: options.categories ? 'category' : options.log ? 'log' : 'value',
@@ -36,7 +36,8 @@ export function make_axis(look: Look, direction: 'x' | 'y', name: string, option
   };
 }
 
-// What every figure on Cartesian axes has beside its series. Legend entries switch series off and on.
+// Returns the options that every figure on Cartesian axes has beside its series. Legend entries
+// switch series on and off.
 export function make_chart(look: Look, x: Part | Part[], y: Part | Part[], series: Part[], more: Part = {}): EChartsOption {
   const names = series.filter((one) => one.name !== undefined && one.silent !== true).map((one) => one.name as string);
   const legend_names = names.filter((name, i) => names.indexOf(name) === i);
@@ -75,7 +76,7 @@ export interface LineOptions {
   axis?: number; // index of both axes
 }
 
-// A point, with what made it where that is known.
+// A point with its provenance, if that is known.
 export type Point = [Value, Value] | ({ value: [Value, Value] } & Provenance);
 
 export function make_line(look: Look, index: number, name: string, points: Point[], options: LineOptions = {}): Part {
@@ -100,8 +101,8 @@ export function make_line(look: Look, index: number, name: string, points: Point
 
 type Coordinates = { value(dimension: number): number; coord(point: number[]): number[] };
 
-// The area between two curves: rows of [x, low, high]. It belongs to the series `name`, and goes
-// when that is switched off.
+// Returns the area between two curves, from rows of [x, low, high]. It belongs to the series `name`
+// and disappears when that series is switched off.
 export function make_band(name: string, rows: [number, number, number][], color: string, axis = 0): Part {
   const clean = rows.filter((row) => row.every((number) => isFinite(number)));
   return {
@@ -131,7 +132,7 @@ export function make_band(name: string, rows: [number, number, number][], color:
   };
 }
 
-// Vertical bars with caps: rows of [x, low, high].
+// Returns vertical bars with caps, from rows of [x, low, high].
 export function make_error_bars(name: string, rows: [number, number, number][], color: string, axis = 0): Part {
   return {
     type: 'custom',

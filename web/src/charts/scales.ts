@@ -1,13 +1,14 @@
-// Axes whose ends and ticks are ours: ECharts labels a logarithmic axis at powers of ten only, which
-// leaves most of ours with one or two numbers; and values that do not exist need a place beyond it.
+// Axes with our own ends and ticks. ECharts labels a logarithmic axis only at powers of ten, so
+// most of our axes would have one or two numbers. Values that do not exist also need a place,
+// beyond the end of the axis.
 import type { Look } from './look';
 import { make_axis, type Part } from './parts';
 
 export interface Scale {
   log: boolean;
-  low: number; // ends of what is drawn to scale
+  low: number; // ends of the range that is drawn to scale
   high: number;
-  end: number; // of the axis; beyond `high` is the place of what has no value
+  end: number; // end of the axis; the strip beyond `high` is the place of values that do not exist
   ticks: number[];
 }
 
@@ -36,8 +37,8 @@ function make_log_ticks(low: number, high: number): number[] {
   return inside.length >= 3 ? inside : make_linear_ticks(low, high);
 }
 
-// Of the finite values; logarithmic if asked for and all are positive. `strip` keeps a place for
-// what has no value.
+// Returns the scale of the finite values. It is logarithmic if `log` is true and all values are
+// positive. With `strip` it has a place for values that do not exist.
 export function make_scale(values: (number | null)[], log: boolean, strip = false): Scale {
   const finite = values.filter((value) => value !== null && isFinite(value)) as number[];
   let low = Infinity;
@@ -63,7 +64,8 @@ export function make_scale(values: (number | null)[], log: boolean, strip = fals
   return { log: false, low, high, end: strip ? high + 0.13 * (high - low) : high, ticks: make_linear_ticks(low, high) };
 }
 
-// Where what has no value is drawn: `share` of the way through the strip.
+// Returns the place where a value that does not exist is drawn, at `share` of the width of the
+// strip.
 export function get_strip_place(scale: Scale, share = 0.5): number {
   return scale.log ? scale.high * Math.pow(scale.end / scale.high, share) : scale.high + share * (scale.end - scale.high);
 }
@@ -72,7 +74,7 @@ export function place_on(scale: Scale, value: number | null, share = 0.5): numbe
   return value === null || !isFinite(value) ? get_strip_place(scale, share) : value;
 }
 
-// "20", "0.5", "1e6": ticks are short numbers.
+// Formats ticks, which are short numbers: "20", "0.5", "1e6".
 export function format_tick(value: number): string {
   if (value === 0) {
     return '0';
@@ -85,7 +87,7 @@ export function format_tick(value: number): string {
   return String(Number(value.toPrecision(6)));
 }
 
-// `strip_name` stands at the strip, if the scale has one.
+// Returns an axis for the scale. If the scale has a strip, `strip_name` is its label.
 export function make_scaled_axis(look: Look, direction: 'x' | 'y', name: string, scale: Scale, strip_name = ''): Part {
   const strip = scale.end > scale.high && strip_name !== '' ? [get_strip_place(scale)] : [];
   const base = make_axis(look, direction, name, { log: scale.log });
@@ -104,7 +106,8 @@ export function make_scaled_axis(look: Look, direction: 'x' | 'y', name: string,
   };
 }
 
-// An axis with a name at each whole number, the first on top or left; places between can be used.
+// Returns an axis with a name at each whole number; the first is at the top or at the left. Places
+// between whole numbers can be used.
 export function make_name_axis(look: Look, names: string[], width: number): Part {
   return {
     ...make_axis(look, 'y', '', {}),
@@ -127,7 +130,7 @@ export function make_name_axis(look: Look, names: string[], width: number): Part
   };
 }
 
-// Grid lines at the ticks, and the strip's shade: a series to put first.
+// Returns the grid lines at the ticks and the shade of the strip, as a series that must come first.
 export function make_grid_lines(look: Look, x: Scale | null, y: Scale | null): Part {
   const lines: Part[] = [];
   (x ? x.ticks : []).forEach((tick) => lines.push({ xAxis: tick }));
@@ -157,7 +160,8 @@ export function make_grid_lines(look: Look, x: Scale | null, y: Scale | null): P
   };
 }
 
-// About as wide as the text will be drawn: SVG is made without a screen to measure it on.
+// Returns an estimate of the width of the drawn text. SVG is made without a screen on which text
+// could be measured.
 export function estimate_width(text: string, size: number): number {
   return 0.62 * size * text.length;
 }

@@ -1,4 +1,4 @@
-// Parts of files' names out of names from data: letters, digits, dots, dashes.
+// Makes parts of file names from names in the data: they contain letters, digits, dots and dashes.
 const kLongest = 40;
 
 function make_slug(name: string): string {
@@ -11,7 +11,7 @@ function make_slug(name: string): string {
   return slug === '' ? 'unnamed' : slug;
 }
 
-// All different.
+// Returns one slug per name. All of them are different.
 export function make_slugs(names: string[]): string[] {
   const taken: string[] = [];
   names.forEach((name) => {

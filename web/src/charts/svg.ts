@@ -1,4 +1,4 @@
-// A figure as SVG text, in a browser or without one.
+// Draws a figure as SVG text, in a browser or without one.
 import type { Figure, Picked } from '../model';
 import { echarts } from './echarts';
 import type { Look } from './look';
@@ -13,7 +13,8 @@ export function get_initial_picks(figure: Figure): Picked {
   return picked;
 }
 
-// Of a figure in a paper: 640 x 400 pixels, those that are larger in the page in proportion.
+// Returns the size of a figure for a paper, in pixels: 640 x 400. Figures that are larger in the
+// page are larger in proportion.
 export function get_paper_size(figure: Figure): { width: number; height: number } {
   const width = figure.width === 'full' ? 960 : 640;
   return { width, height: Math.round(((figure.height ?? kDefaultHeight) * 400) / kDefaultHeight) };

@@ -1,4 +1,4 @@
-// The winner's numbers beside those of other designs, and what the designs achieve.
+// The numbers of the winner beside those of other designs, and the results of the designs.
 import type { ArmEvidence, RunData } from '../data';
 import type { Column, TableItem, Value } from '../model';
 import { kMillimetres } from '../numbers';
@@ -15,11 +15,9 @@ export function make_design_table(arm: ArmEvidence): TableItem | null {
     id: 'design-table',
     title: 'The design in numbers',
     caption:
-      'Every number of the winner beside the same of the other designs. Those that are no variable were not optimized. ' +
-      (some_at_bound
-        ? 'Where a number of the winner is at a bound, the optimizer wanted to go further: the bound may be too tight. '
-        : '') +
-      'The total torque is the sum over the joints of the larger magnitude of the two limits.',
+      'All numbers of the winner beside those of the other designs. Only the numbers of kind "variable" were optimized. ' +
+      (some_at_bound ? 'If a number of the winner is at a bound, the best value may be beyond it: the bound may be too tight. ' : '') +
+      'The total torque is a sum over the joints: of the two limits of each joint it takes the one with the larger magnitude.',
     table: {
       columns: [
         { label: 'number' },
@@ -54,10 +52,10 @@ export function make_results_table(data: RunData, arm: ArmEvidence): TableItem |
     id: 'results-table',
     title: 'Result',
     caption:
-      `Positional errors of each design${where}: mean, median, the error that 95 % of the cases stay below, and the worst case. ` +
+      `The positional errors of each design${where}: the mean, the median, the error below which 95 % of the cases stay, and the worst case. ` +
       (has_published
-        ? 'Published: what the source printed of the same design; the last column says where.'
-        : 'Nothing is published of these.'),
+        ? 'The published columns have the values that the thesis printed for the same design. The last column says where.'
+        : 'No results of these designs are published.'),
     table: {
       columns: [
         { label: 'design' },

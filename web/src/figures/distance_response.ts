@@ -1,4 +1,4 @@
-// Average error of the moves of each length (Fig. 5.9, 5.11, 6.4, 6.9-6.15 of the thesis).
+// The average error of the moves of each length (Fig. 5.9, 5.11, 6.4, 6.9-6.15 of the thesis).
 import { get_series_style } from '../charts/look';
 import { make_number_axis, make_plot } from '../charts/marks';
 import { shorten_all } from '../charts/names';
@@ -9,8 +9,8 @@ import { format_number, kMillimetres } from '../numbers';
 import { are_positive, count_of, find_range, flatten, times } from './quantities';
 
 const kCentimetres = 100;
-const kStacked = 8; // more series than that would leave no room for the curves
-const kWide = 20; // between largest and smallest, from where on a linear axis hides the small ones
+const kStacked = 8; // with more series the legend would leave no room for the curves
+const kWide = 20; // ratio of the largest to the smallest value from which a linear axis would hide the small ones
 
 export function make_scale_choice(initial: 'log' | 'linear'): Choice {
   return {
@@ -24,7 +24,7 @@ export function make_scale_choice(initial: 'log' | 'linear'): Choice {
   };
 }
 
-// "Complex: 5.75 mm, published 5.8 mm".
+// Returns the names of the series, such as "Complex: 5.75 mm, published 5.8 mm".
 function name_series(response: DistanceResponse): string[] {
   return shorten_all(response.series.map((one) => one.name)).map((name, i) => {
     const { overall_mean_m, published_mean_m } = response.series[i];
@@ -41,11 +41,11 @@ function describe(response: DistanceResponse): string {
   const left_out = response.counted.filter((one) => !one).length;
   const has_published = response.series.some((one) => one.published_mean_m !== null);
   return (
-    `Average positional error of the moves of each length, in the order of the trajectory, ` +
+    `The average positional error of the moves of each length, in the order of the trajectory, ` +
     `over ${same ? count_of(numbers[0] ?? 0, 'test case') : `${numbers.join(', ')} test cases, in the order of the legend`}; ` +
-    `bars: standard error of the mean. ` +
-    (left_out > 0 ? `Hollow: ${left_out === 1 ? 'a move that does' : 'moves that do'} not count in a case's error. ` : '') +
-    `The legend gives the mean over all moves that count${has_published ? ', and beside it what the thesis printed' : ''}. ` +
+    `the bars show the standard error of the mean. ` +
+    (left_out > 0 ? `A hollow point is a move that does not count in the error of a case. ` : '') +
+    `The legend has the mean over all moves that count${has_published ? ' and the value that the thesis printed' : ''}. ` +
     (failures.length > 0 ? `Failed cases: ${failures.map((one) => `${shorten_all([one.name])[0]} ${one.failures}`).join(', ')}. ` : '') +
     response.remark
   ).trim();
@@ -134,7 +134,8 @@ export function make_response_figure(response: DistanceResponse, id = response.i
   };
 }
 
-// Entries in lines of their own: with their means they are too long for one.
+// Returns a legend with one entry per line. With their means, the entries are too long for a common
+// line.
 export function make_legend_column(text: string, font: string, inactive: string, names: string[]): Part {
   return {
     top: 4,
@@ -158,7 +159,7 @@ function note_of(response: DistanceResponse, one: ResponseSeries, i: number): st
   );
 }
 
-// A bar that reaches below zero has no lower half on a logarithmic axis.
+// Returns the error bars. On a logarithmic axis, a bar that reaches below zero has no lower half.
 function make_bars(one: ResponseSeries, log: boolean): [number, number, number][] {
   const bars: [number, number, number][] = [];
   one.mean_m.forEach((mean, i) => {

@@ -1,4 +1,4 @@
-// Joint angles, errors and torques in time, with the limits of the torques.
+// Joint angles, errors and torques over time, with the limits of the torques.
 import { decimate } from '../charts/decimate';
 import { get_series_style, type Look } from '../charts/look';
 import { make_number_axis, make_curve_plot, make_stretches } from '../charts/marks';
@@ -23,13 +23,13 @@ import {
 interface JointView {
   index: number;
   name: string;
-  unit: string; // of its position
+  unit: string; // unit of the position
   effort_unit: string;
-  factor: number; // from SI to that
+  factor: number; // factor from SI to that unit
 }
 
-const kAtLimit = 1 - 1e-4; // of it; torques are packed in 16 bits
-const kStretches = 300; // of the time, the shortest gap between two that is seen
+const kAtLimit = 1 - 1e-4; // share of a limit from which a torque counts as at the limit; torques are packed in 16 bits
+const kStretches = 300; // the whole time divided by the shortest visible gap between two stretches
 
 function get_joints(robot: Robot): JointView[] {
   const names = shorten_all(
@@ -125,7 +125,8 @@ export function is_at_limit(effort: number, limits: [number, number]): boolean {
   return (limits[0] < 0 && effort <= kAtLimit * limits[0]) || (limits[1] > 0 && effort >= kAtLimit * limits[1]);
 }
 
-// Stretches of time at a limit; those closer to each other than anybody sees are one.
+// Returns the stretches of time at a limit. Stretches with an invisible gap between them are
+// joined.
 export function find_saturated(set: ReplaySet, effort: Float32Array, limits: [number, number]): [number, number][] {
   const dt = set.task.control_period_s;
   const found: [number, number][] = [];
@@ -227,8 +228,8 @@ export function make_joint_figures(set: ReplaySet, robot: Robot | undefined): Fi
     id: 'joint-angles',
     title: 'Joint angles',
     caption:
-      'Angles of the joints (solid) and what the inverse kinematics of the target asks for (dotted), over a whole case. ' +
-      'Where the two lie on each other the controllers follow; the joint errors show the difference.',
+      'The angles of the joints (solid lines) and the angles that the inverse kinematics of the target asks for (dotted lines), over a whole case. ' +
+      'If the two lines coincide, the controllers follow. The figure of the joint errors shows the difference.',
     width: 'full',
     choices: choices(kAll),
     time,
@@ -272,8 +273,8 @@ export function make_joint_figures(set: ReplaySet, robot: Robot | undefined): Fi
     id: 'joint-errors',
     title: 'Joint errors',
     caption:
-      'What the inverse kinematics of the target asks of each joint, less its angle: the error that its controller sees, over a whole case. ' +
-      'A standing difference in a rest is what the integral term has yet to remove.',
+      'The error that the controller of each joint gets, over a whole case: the angle that the inverse kinematics of the target asks for, minus the angle of the joint. ' +
+      'A constant error during a rest is one that the integral term has not yet removed.',
     width: 'full',
     choices: choices(kAll),
     time,
@@ -304,8 +305,8 @@ export function make_joint_figures(set: ReplaySet, robot: Robot | undefined): Fi
     id: 'joint-torques',
     title: 'Joint torques',
     caption:
-      'The torque of the chosen joint over a whole case; dashed: its limits, which the design sets; shaded: where it is at one of them and the controller has no say. ' +
-      'Of all joints together: the share of the limit in the direction of the torque. The legend says in which share of the control periods a joint is at a limit.',
+      'The torque of the chosen joint over a whole case. The dashed lines are its limits, which the design sets. In shaded times the torque is at a limit, so the controller has no effect. ' +
+      'With all joints together, the figure shows the torque as a share of the limit in its direction. The legend has the share of the control periods in which a joint is at a limit.',
     width: 'full',
     choices: choices(torque_initial),
     time,
@@ -325,7 +326,7 @@ export function make_joint_figures(set: ReplaySet, robot: Robot | undefined): Fi
   return [angles, errors, torques];
 }
 
-// How often each joint of each design is at its limits.
+// Returns the share of time for which each joint of each design is at its limits.
 function tabulate_saturation(set: ReplaySet, joints: JointView[]): Value[][] {
   const rows: Value[][] = [];
   set.cases.forEach((one) => {
@@ -363,8 +364,8 @@ export function make_saturation_table(set: ReplaySet, robot: Robot | undefined):
     id: 'saturation',
     title: 'Torques and their limits',
     caption:
-      'The largest torques of each joint in the recorded cases beside its limits, and in which share of the control periods it is at one of them.',
-    // Only when it is asked for: every motion has to be unpacked.
+      'The largest torques of each joint in the recorded cases, its limits, and the share of the control periods in which it is at a limit.',
+    // The table is made only on request, because every motion must be unpacked for it.
     get table(): DataTable {
       made = made ?? {
         columns: [

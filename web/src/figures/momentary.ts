@@ -1,5 +1,5 @@
-// The momentary positional error in time (Fig. 6.5-6.8 of the thesis): move by move, each with a clock
-// of its own, or a whole case.
+// The momentary positional error over time (Fig. 6.5-6.8 of the thesis): either move by move, where
+// each move has its own time axis, or a whole case.
 import { decimate } from '../charts/decimate';
 import type { Look } from '../charts/look';
 import { get_line_style, make_number_axis, make_panel_title, make_panels, make_curve_plot, make_stretches } from '../charts/marks';
@@ -21,14 +21,15 @@ export interface ErrorTrace {
 
 const kPanels = 6; // distance classes side by side, as in the thesis
 const kPointsAPanel = 600;
-const kFloor_mm = 1e-4; // of a logarithmic axis: less is not seen
+const kFloor_mm = 1e-4; // lower end of a logarithmic axis; smaller errors are not shown
 
 function to_point(time: number, error_m: number, log: boolean): Point {
   const error = error_m * kMillimetres;
   return [time, isFinite(error) ? (log ? Math.max(error, kFloor_mm) : error) : null];
 }
 
-// The part of a trace within a move, on the move's clock; `index` counts moves from 0.
+// Returns the part of a trace within a move. Its time starts with the move. `index` counts moves
+// from 0.
 function get_move(trace: ErrorTrace, index: number): Float32Array {
   const segment = trace.one.segments[index];
   return segment === undefined ? new Float32Array(0) : trace.error_m.subarray(segment.first_step, segment.first_step + segment.steps);
@@ -38,7 +39,8 @@ function name_class(one: ReplayCase, index: number): string {
   return `class ${index + 1}: ${one.segments[index].distance_m.toFixed(3)} m`;
 }
 
-// Panels of moves, one a distance class: that of the first trace's case.
+// Draws panels of moves, one panel per distance class. The classes are those of the case of the
+// first trace.
 export function draw_moves(look: Look, traces: ErrorTrace[], classes: number[], log: boolean, height: number) {
   const shown = classes.filter((index) => traces.length > 0 && traces[0].one.segments[index] !== undefined);
   const columns = shown.length > 4 ? 3 : shown.length > 1 ? 2 : 1;
@@ -146,7 +148,7 @@ function get_traces(set: ReplaySet, picked: Picked): ErrorTrace[] {
   }));
 }
 
-// "2-7" as move indices 1..6.
+// Returns the move indices of a text: "2-7" gives 1 to 6.
 function get_classes(value: string): number[] {
   const ends = value.split('-').map(Number);
   const classes: number[] = [];
@@ -156,7 +158,8 @@ function get_classes(value: string): number[] {
   return classes;
 }
 
-// The thesis's groups of six from class 2 on, then every single class.
+// Returns the choice of classes: the groups of six of the thesis from class 2 on, then every single
+// class.
 function make_class_choice(set: ReplaySet): Choice {
   let moves = 0;
   set.cases.forEach((one) => {
@@ -188,10 +191,10 @@ export function make_momentary_figure(set: ReplaySet, id = 'momentary-error'): F
     id,
     title: 'Momentary positional error',
     caption:
-      `How far the tip is from its target, at every control period of ${format_number(set.task.control_period_s * kMillimetres, 3)} ms, ` +
-      `in the moves of the distance classes chosen (class n is the move to trajectory point n) on a clock that starts with the move, or over the whole case. ` +
-      `Shaded: the time in which the error is measured, of which the mean counts. ` +
-      `The thesis shows the same of its test case of generation 1 in Fig. 6.5 to 6.8.`,
+      `The distance of the tip from its target at every control period of ${format_number(set.task.control_period_s * kMillimetres, 3)} ms. ` +
+      `The figure shows the moves of the chosen distance classes, with the time from the start of each move, or the whole case. Class n is the move to trajectory point n. ` +
+      `In shaded times the error is measured, and its mean counts. ` +
+      `Fig. 6.5 to 6.8 of the thesis show the same for its test case of generation 1.`,
     width: 'full',
     height,
     choices: [make_case_choice(set), class_choice, make_design_choice(set, true), make_scale_choice('log')],
@@ -210,7 +213,7 @@ export function make_momentary_figure(set: ReplaySet, id = 'momentary-error'): F
   };
 }
 
-// Fig. 6.5-6.8: some classes of traces that come from different sets.
+// Makes Fig. 6.5-6.8: some classes of traces from different sets.
 export function make_class_figure(traces: ErrorTrace[], first: number, last: number, id: string, thesis: string): Figure {
   const classes = get_classes(`${first}-${last}`);
   const height = 460;
@@ -222,10 +225,10 @@ export function make_class_figure(traces: ErrorTrace[], first: number, last: num
     title: `Momentary positional error, distance classes ${first} to ${last}`,
     thesis,
     caption:
-      `How far the tip is from its target in the moves of distance classes ${first} to ${last} (${distances.join(', ')} m), ` +
-      `each on a clock that starts with the move, for ${traces.length} designs, each with its own reference signal, on the same case: that of generation 1. ` +
-      `Shaded: the time in which the error is measured. ` +
-      `With a step the target is at its end at once, so that the error starts at the whole distance.`,
+      `The distance of the tip from its target in the moves of distance classes ${first} to ${last} (${distances.join(', ')} m), ` +
+      `over the time from the start of each move. The figure has ${traces.length} designs, each with its own reference signal, on the same case: that of generation 1. ` +
+      `In shaded times the error is measured. ` +
+      `With the signal Step the target is at the end of the move at once, so the error starts with the whole distance.`,
     width: 'full',
     height,
     choices: [make_scale_choice('log')],

@@ -1,4 +1,4 @@
-// The one door from data to page.
+// Makes a page from its data. This is the only entry to the figures.
 import type { PageData } from '../data';
 import type { Page, Tab } from '../model';
 import { make_reproduction_tabs } from './reproduction_page';

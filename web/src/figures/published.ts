@@ -1,4 +1,4 @@
-// All published errors against those simulated again, at a glance.
+// All published errors compared with the errors of new simulations, in one figure.
 import { get_series_style } from '../charts/look';
 import { make_number_axis, make_plot } from '../charts/marks';
 import { shorten } from '../charts/names';
@@ -22,8 +22,8 @@ export function make_published_figure(data: ReproductionData): Figure | null {
     id: 'published',
     title: 'Published errors and ours',
     caption:
-      'The average positional error of each published design as simulated here, against what the thesis printed; on the line they agree. ' +
-      'Above the line the design is worse here than there.',
+      'The average positional error of each published design, as simulated here, against the error that the thesis printed. Points on the line agree. ' +
+      'The design of a point above the line is worse here than in the thesis.',
     width: 'full',
     height: 420,
     draw: (look) => {

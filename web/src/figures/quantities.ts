@@ -1,4 +1,4 @@
-// Units as people read them: errors in millimetres, angles in degrees.
+// The units for readers: errors in millimetres, angles in degrees.
 import { shorten } from '../charts/names';
 import { kDegrees, kMillimetres } from '../numbers';
 import type { Quantity } from '../data';
@@ -6,7 +6,7 @@ import type { Quantity } from '../data';
 export interface Shown {
   name: string;
   unit: string;
-  factor: number; // from SI
+  factor: number; // factor from SI
 }
 
 export function get_shown(quantity: Quantity): Shown {
@@ -33,7 +33,7 @@ export function times(value: number | null | undefined, factor: number): number 
   return is_number(value) ? value * factor : null;
 }
 
-// Whether a logarithmic axis can show them.
+// Returns whether a logarithmic axis can show the values.
 export function are_positive(values: (number | null)[]): boolean {
   const numbers = values.filter(is_number);
   return numbers.length > 0 && numbers.every((value) => value > 0);
@@ -59,7 +59,7 @@ export function flatten<T>(lists: T[][]): T[] {
   return all;
 }
 
-// "12 cases", "1 case".
+// Returns "12 cases" or "1 case".
 export function count_of(count: number, thing: string): string {
   return `${count} ${thing}${count === 1 ? '' : 's'}`;
 }

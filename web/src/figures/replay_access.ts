@@ -1,4 +1,5 @@
-// What the figures in time have in common: cases, designs and numbers of a replay set by what was picked.
+// The common parts of the figures over time: the cases, designs and numbers of a replay set for the
+// choices of the reader.
 import { shorten, shorten_all } from '../charts/names';
 import type { DesignInfo, Motion, Packed, ReplayCase, ReplaySet, Segment } from '../data';
 import type { Choice, Picked } from '../model';
@@ -32,12 +33,12 @@ export function make_design_choice(set: ReplaySet, with_all: boolean): Choice {
 
 export interface Moved {
   design: DesignInfo;
-  index: number; // of the design, which is its colour
+  index: number; // index of the design, which selects its colour
   name: string;
   motion: Motion;
 }
 
-// The motions of the picked designs on a case.
+// Returns the motions of the chosen designs on a case.
 export function get_motions(set: ReplaySet, one: ReplayCase, picked: Picked): Moved[] {
   const names = shorten_all(set.designs.map((design) => design.name));
   const moved: Moved[] = [];
@@ -51,7 +52,7 @@ export function get_motions(set: ReplaySet, one: ReplayCase, picked: Picked): Mo
   return moved;
 }
 
-// Every `count`-th number from `offset` on: a column of what is packed by rows.
+// Returns every `count`-th number from `offset` on, which is one column of numbers packed by rows.
 export function get_column(packed: Packed, count: number, offset: number): Float32Array {
   return take_column(unpack(packed), count, offset);
 }
@@ -64,12 +65,12 @@ export function take_column(all: Float32Array, count: number, offset: number): F
   return column;
 }
 
-// Row k is the state at the end of control period k.
+// Returns the time of a row. Row k is the state at the end of control period k.
 export function get_time(set: ReplaySet, row: number): number {
   return (row + 1) * set.task.control_period_s;
 }
 
-// When the errors of a move begin to count.
+// Returns the range of time in which the errors of a move count.
 export function get_window(set: ReplaySet, segment: Segment): [number, number] {
   const dt = set.task.control_period_s;
   return [segment.window_start * dt, segment.steps * dt];

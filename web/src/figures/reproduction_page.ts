@@ -1,4 +1,4 @@
-// The page of the thesis repeated: its figures, each beside what it printed.
+// The page of the repeated thesis: its figures, each beside the published numbers.
 import { shorten_all } from '../charts/names';
 import type { DistanceResponse, ReproductionData, SignalCurve } from '../data';
 import type { Cell, Column, Figure, Item, Tab, TableItem, Value } from '../model';
@@ -12,7 +12,7 @@ import { make_reduction_figure, make_signal_figure } from './signals';
 import { make_sweep_figure } from './sweep';
 import { make_case_figure } from './trajectory';
 
-// Where the thesis has a figure.
+// The tabs of the parts of the thesis that have figures of responses.
 const kTabs: { id: string; title: string; responses: string[] }[] = [
   { id: 'initial', title: 'First experiment', responses: ['fig-5.9', 'fig-5.11'] },
   { id: 'q1', title: 'Q1: signals', responses: ['fig-6.4'] },
@@ -20,7 +20,7 @@ const kTabs: { id: string; title: string; responses: string[] }[] = [
   { id: 'q3', title: 'Q3: load', responses: ['fig-6.15'] },
 ];
 
-// Fig. 6.5-6.8 and their distance classes.
+// The figures 6.5-6.8 and their distance classes.
 const kClasses: [string, number, number][] = [
   ['6.5', 2, 7],
   ['6.6', 8, 13],
@@ -32,7 +32,7 @@ const millimetres = (label: string): Column => ({ label, unit: 'mm', numeric: tr
 const torque = (label: string): Column => ({ label, unit: 'N m', numeric: true, digits: 6 });
 const number = (label: string): Column => ({ label, numeric: true });
 
-// One alone has the page's whole width.
+// A figure that is alone in its tab has the full width of the page.
 function make_response(response: DistanceResponse, count: number): Figure {
   const figure = make_response_figure(response);
   return count === 1 ? { ...figure, width: 'full', height: 420 } : figure;
@@ -51,8 +51,8 @@ function make_results(data: ReproductionData): TableItem | null {
     id: 'results',
     title: 'Published results, simulated again',
     caption:
-      'The published designs on the published test set, which has other random numbers than in the source, beside what the source printed. ' +
-      'A ratio of 1 is agreement. Each row has the command that makes it.',
+      'The published designs on a test set like that of the thesis, with other random numbers, beside the values that the thesis printed. ' +
+      'A ratio of 1 means that both agree. Each row has the command that makes it.',
     table: {
       columns: [
         { label: 'result' },
@@ -101,7 +101,7 @@ function make_runs(data: ReproductionData): TableItem | null {
     id: 'runs',
     title: 'Optimized anew',
     caption:
-      'Experiments of which the source gives no design: they were optimized again as it describes, and the winners are shown in its place.',
+      'Experiments for which the thesis gives no design. They were optimized again as the thesis describes, and the new winners are shown.',
     table: {
       columns: [
         { label: 'run' },
@@ -127,7 +127,7 @@ function make_runs(data: ReproductionData): TableItem | null {
   };
 }
 
-// Table 6.4: what the thesis printed, and the torques of the designs here.
+// Makes Table 6.4: the torques that the thesis printed and those of the designs here.
 function make_torques(data: ReproductionData): TableItem | null {
   const rows: (Value | Cell)[][] = [];
   data.rows
@@ -161,8 +161,8 @@ function make_torques(data: ReproductionData): TableItem | null {
     title: 'Total torque',
     thesis: 'Table 6.4',
     caption:
-      'The sum over the joints of the larger magnitude of the two torque limits. That of a published design follows from its numbers; ' +
-      'a winner that was optimized anew is another one, and agrees in its size at best.',
+      'The total torque is a sum over the joints: of the two torque limits of each joint it takes the one with the larger magnitude. The torque of a published design follows from its numbers. ' +
+      'A winner that was optimized again is another design, so at best its torque has a similar size.',
     table: {
       columns: [{ label: 'experiment' }, { label: 'design' }, torque('published'), torque('here'), number('ratio')],
       rows,
@@ -203,7 +203,7 @@ function make_signal_items(data: ReproductionData): Item[] {
           id: 'fig-5.5',
           title: 'Step reference signal',
           thesis: 'Fig. 5.5',
-          remark: 'The target is at its end at once.',
+          remark: 'The target is at the end of the move at once.',
         })
       : null,
     smooth.length > 0
@@ -219,7 +219,7 @@ function make_signal_items(data: ReproductionData): Item[] {
           id: 'fig-5.7',
           title: 'Accelerations of Triangular and Complex',
           thesis: 'Fig. 5.7',
-          remark: 'Complex slows down ever more gently, so that there is no jump at the end.',
+          remark: 'Complex slows down less and less, so its acceleration has no jump at the end.',
         })
       : null,
     complex.length > 0
@@ -228,7 +228,7 @@ function make_signal_items(data: ReproductionData): Item[] {
           title: 'The Complex reference signal',
           thesis: 'Fig. 5.8',
           remark:
-            'At t_d the target begins to slow down, after 2/5 of the move; at t_m it has arrived, and the error is measured from there.',
+            'At t_d, after 2/5 of the move, the target begins to slow down. At t_m it has arrived, and from then on the error is measured.',
           marks: true,
         })
       : null,

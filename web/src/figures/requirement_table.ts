@@ -1,5 +1,5 @@
-// The traffic lights: what is required of the winner, and whether it keeps it. A sign and words say
-// what the colour says.
+// The traffic lights: the requirements for the winner, and whether it meets them. A sign and words
+// repeat the meaning of each colour.
 import type { RequirementLight } from '../data';
 import type { Cell, TableItem, Value } from '../model';
 import { get_shown, times } from './quantities';
@@ -36,9 +36,9 @@ export function make_requirement_table(lights: RequirementLight[]): TableItem | 
     id: 'requirements-table',
     title: 'Requirements',
     caption:
-      'Whether the winner keeps what is required, on the worst case of the test set. ' +
-      'The limit that binds is the one that it is nearest to, or furthest above. ' +
-      'Only constraints were known to the optimizer.',
+      'Whether the winner meets its requirements on the worst case of the test set. ' +
+      'The limit that binds is the one with the largest share in the column "of the limit". ' +
+      'The optimizer knew only the requirements that are constraints.',
     table: {
       columns: [
         { label: 'requirement' },

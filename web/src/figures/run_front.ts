@@ -1,4 +1,4 @@
-// What a run with several objectives has found: the front of what it evaluated.
+// The result of a run with several objectives: the front of its evaluations.
 import { get_series_style } from '../charts/look';
 import { make_number_axis, make_plot } from '../charts/marks';
 import { shorten } from '../charts/names';
@@ -8,7 +8,7 @@ import type { Choice, Figure, Picked, Value } from '../model';
 import { format_number } from '../numbers';
 import { are_positive, find_range, get_shown, name_axis } from './quantities';
 
-const kWide = 10; // between largest and smallest, from where on an axis is logarithmic
+const kWide = 10; // ratio of the largest to the smallest value from which an axis is logarithmic
 
 export function make_front_figure(front: RunFront, variables: VariableHistory[]): Figure | null {
   const count = front.objectives.length;
@@ -32,11 +32,11 @@ export function make_front_figure(front: RunFront, variables: VariableHistory[])
     id: 'front',
     title: 'Front of the objectives',
     caption:
-      `Designs that the run evaluated, by ${shown.map((one) => one.name).join(' and ')}; both better towards the lower left. ` +
-      `Bold: the ${on_front.length} designs on the front, of which none is better than another in everything` +
-      (count === 2 ? '; the line under them bounds what they attain. ' : '. ') +
-      (front.winner !== null ? 'Diamond: the winner by the weighted sum. ' : '') +
-      'Axes are logarithmic where the numbers spread over more than a decade.',
+      `The designs that the run evaluated, by ${shown.map((one) => one.name).join(' and ')}. Designs towards the lower left are better. ` +
+      `The ${on_front.length} bold designs are the front: none of them is better than another in all objectives. ` +
+      (count === 2 ? 'The line under them bounds the area that they attain. ' : '') +
+      (front.winner !== null ? 'The diamond is the winner by the weighted sum. ' : '') +
+      'An axis is logarithmic if its numbers spread over more than a decade.',
     width: 'full',
     height: 420,
     choices: count > 2 ? choices : undefined,

@@ -18,19 +18,19 @@ function is_there<T>(item: T | null): item is T {
   return item !== null;
 }
 
-// A tab without anything in it is left out.
+// Returns the tabs that have items. A tab without items is left out.
 export function keep_filled(tabs: { id: string; title: string; items: (Item | null)[] }[]): Tab[] {
   return tabs.map((tab) => ({ id: tab.id, title: tab.title, items: tab.items.filter(is_there) })).filter((tab) => tab.items.length > 0);
 }
 
-// The same figure for the overview, under a name of its own.
+// Returns the same figure for the overview, with its own id.
 function make_half(figure: Figure, id: string): Figure {
   return { ...figure, id, width: 'half', height: 360 };
 }
 
 export function make_run_tabs(data: RunData): Tab[] {
   const { arm, test } = data;
-  const set = data.replays[0]; // the figures in time share their cursor with this one
+  const set = data.replays[0]; // the figures over time share their cursor with this replay set
   const robot = set ? data.robots[set.robot] : undefined;
   const fitness = has_training(data) ? make_fitness_figure(data) : null;
   const has_response = arm !== null && arm.response.series.length > 0;

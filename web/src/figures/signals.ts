@@ -1,4 +1,5 @@
-// The reference signals (Fig. 5.5-5.8 of the thesis) and how short moves are slowed down (Fig. 5.10).
+// The reference signals (Fig. 5.5-5.8 of the thesis), and how short moves are slowed down (Fig.
+// 5.10).
 import { decimate } from '../charts/decimate';
 import type { Look } from '../charts/look';
 import { get_line_style, make_number_axis, make_panel_title, make_panels, make_curve_plot, make_vertical } from '../charts/marks';
@@ -40,7 +41,7 @@ function draw_curves(look: Look, signals: Signals, curves: SignalCurve[], names:
   );
 }
 
-// Its place among all, so that it keeps its colour where others are left out.
+// Returns the index of a curve among all, so that it keeps its colour if others are left out.
 function find_curve(signals: Signals, curve: SignalCurve): number {
   return Math.max(0, signals.curves.indexOf(curve));
 }
@@ -67,10 +68,10 @@ export interface SignalOptions {
   title: string;
   thesis?: string;
   remark?: string;
-  marks?: boolean; // t_d and t_m of the first curve
+  marks?: boolean; // whether t_d and t_m of the first curve are marked
 }
 
-// One panel a part; the curves in all of them.
+// Makes one panel per part. Each panel has all the curves.
 export function make_signal_figure(signals: Signals, curves: SignalCurve[], parts: SignalPart[], options: SignalOptions): Figure {
   const names = shorten_all(curves.map((curve) => curve.name));
   const used = curves.filter((curve) => curve.name === signals.used)[0];
@@ -88,7 +89,7 @@ export function make_signal_figure(signals: Signals, curves: SignalCurve[], part
       ) +
       `${format_number(signals.distance_m, 3)} m at an average speed of ${format_number(signals.speed_m_per_s, 3)} m/s, ` +
       `and while it rests for ${format_number(signals.rest_s, 2)} s. ` +
-      (used && curves.length > 1 ? `Bold: ${names[curves.indexOf(used)]}, which this problem uses. ` : '') +
+      (used && curves.length > 1 ? `The bold line is ${names[curves.indexOf(used)]}, which this problem uses. ` : '') +
       (options.remark ?? ''),
     draw: (look) => {
       const grids = make_panels(parts.length, parts.length, height);
@@ -123,7 +124,8 @@ interface Mark {
   time_s: number;
 }
 
-// When the target begins to slow down, and when it arrives: from then on errors count.
+// Returns the times at which the target begins to slow down and at which it arrives. Errors count
+// from the arrival.
 function get_marks(signals: Signals, curve: SignalCurve): Mark[] {
   let top = 0;
   curve.speed_m_per_s.forEach((speed, i) => {
@@ -144,11 +146,11 @@ export function make_signal_figures(signals: Signals): Figure[] {
   const one = (part: SignalPart, remark: string) =>
     make_signal_figure(signals, signals.curves, [part], { id: `signals-${part}`, title: `Reference signals: ${part}`, remark });
   return [
-    one('distance', 'The tip should be there at that time.'),
-    one('speed', 'The same distance in the same time takes a higher peak the smoother the signal.'),
+    one('distance', 'The tip should have moved this distance at that time.'),
+    one('speed', 'For the same distance in the same time, a smoother signal needs a higher peak speed.'),
     one(
       'acceleration',
-      'Jumps excite the arm: the fewer and the smaller, the smoother the motion. A jump of the speed has no acceleration.',
+      'Jumps excite the arm: with fewer and smaller jumps the motion is smoother. At a jump of the speed the acceleration is not defined.',
     ),
   ];
 }
@@ -161,10 +163,10 @@ export function make_reduction_figure(signals: Signals, id = 'speed-reduction', 
     title: 'Speed of short moves',
     thesis: thesis || undefined,
     caption:
-      `The average speed of a move against its distance: ` +
+      `The average speed of a move against its distance. ` +
       (reduction.limit_m > 0
-        ? `below the distance limit of ${format_number(reduction.limit_m, 3)} m (dashed) it falls in proportion to the distance, so that short moves are not the worst ones.`
-        : `there is no distance limit, and all moves have the same.`),
+        ? `Below the distance limit of ${format_number(reduction.limit_m, 3)} m (dashed line) the speed is proportional to the distance, so that short moves are not the worst ones.`
+        : `There is no distance limit, so all moves have the same speed.`),
     draw: (look) =>
       make_curve_plot(
         look,

@@ -1,4 +1,4 @@
-// What an optimizer costs against how good it gets.
+// The cost of an optimizer against the quality of its result.
 import type { EChartsOption } from '../charts/echarts';
 import type { Look } from '../charts/look';
 import type { Part } from '../charts/parts';
@@ -39,7 +39,8 @@ function overlap(a: Box, b: Box): number {
   return wide > 0 && high > 0 ? wide * high : 0;
 }
 
-// Each label where it covers least of points and other labels, near before far.
+// Places each label where it covers the fewest points and other labels. Places near its point are
+// preferred.
 export function place_labels(points: [number, number][], texts: string[], size: number, frame: Box): Box[] {
   const taken: Box[] = points.map(([x, y]) => ({ x: x - 5, y: y - 5, width: 10, height: 10 }));
   return texts.map((text, i) => {
@@ -136,7 +137,7 @@ function draw_cost(look: Look, scope: Scope, problem: StudyProblem, target: numb
     true,
     values.some((value) => value === null),
   );
-  // Those in a strip side by side.
+  // Labels in a strip stand side by side.
   const places = order.map((_, i): [number, number] => {
     const share = [0.3, 0.5, 0.7][i % 3];
     return [place_on(x, costs[i], share), place_on(y, values[i], share)];
@@ -185,7 +186,7 @@ function draw_cost(look: Look, scope: Scope, problem: StudyProblem, target: numb
   );
 }
 
-// "to 0.31 mm (1 % of the way left)"
+// Returns a text such as "to 0.31 mm (1 % of the way left)".
 function describe_target(problem: StudyProblem, target: number): string {
   const { unit } = get_curve_name(problem);
   const way = problem.start !== null && problem.best_known !== null ? problem.start - problem.best_known : 0;
@@ -211,7 +212,7 @@ export function make_cost_quality(scope: Scope): Figure | null {
   for (let t = 0; t < count; ++t) {
     const example = scope.problems[0].results[0]?.running_times[t]?.target ?? 0;
     target.options.push({ value: String(t), label: one ? describe_target(one, example) : 'target ' + (t + 1) });
-    // The tightest that at least half of the optimizers reach at all.
+    // Chooses the tightest target that at least half of the optimizers reach.
     if (2 * count_reached(scope.problems[0], t) >= scope.names.length) {
       target.initial = String(t);
     }
@@ -222,9 +223,9 @@ export function make_cost_quality(scope: Scope): Figure | null {
     id: 'cost-quality' + scope.suffix,
     title: end_title(scope, 'Cost against quality'),
     caption:
-      'A point an optimizer: how many simulated cases it would take on average to come to the chosen target, starting anew until it is reached, against the median value at the end of the budget; lower left is better. ' +
-      'Who reached the target in no run stands in the strip at the right. Running times are as coarse as the checkpoints; targets lie between the start and the best known value and depend on who takes part. ' +
-      'Neither axis shows how sure a difference is: see the pairs. ' +
+      'Each point is an optimizer. One axis has the average number of simulated cases that it needs to reach the chosen target, with a new start after each run that fails. The other axis has the median value at the end of the budget. Points towards the lower left are better. ' +
+      'An optimizer that reached the target in no run is in the strip at the right. Running times are as coarse as the checkpoints. Targets lie between the start and the best known value, and depend on the optimizers that take part. ' +
+      'Neither axis shows how certain a difference is; the figure of the pairs does. ' +
       (scope.names.length > kMostLabels ? 'The best ' + kMostLabels + ' are named. ' : '') +
       describe_size(scope),
     height: 400,

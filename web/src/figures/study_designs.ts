@@ -1,4 +1,5 @@
-// The winners' designs on parallel axes: do different optimizers end at the same place?
+// The designs of the winners on parallel axes. They show whether different optimizers end at the
+// same place.
 import type { EChartsOption } from '../charts/echarts';
 import type { Look } from '../charts/look';
 import { make_axis, make_chart, type Part } from '../charts/parts';
@@ -24,7 +25,7 @@ import {
 
 type Variable = StudyProblem['variables'][0];
 
-// Of a logarithmic variable the magnitude's logarithm counts: bounds have one sign.
+// For a logarithmic variable, the logarithm of the magnitude counts. Its bounds have one sign.
 function place(variable: Variable, value: number): number {
   const on = (one: number) => (variable.logarithmic ? Math.log(Math.abs(one)) : one);
   const [low, high] = [on(variable.lower), on(variable.upper)];
@@ -54,7 +55,7 @@ function get_lines(scope: Scope, problem: StudyProblem, which: string): Line[] {
 
 type Drawing = { coord(point: number[]): number[] };
 
-// One vertical axis a variable, with its bounds, and the start as a mark.
+// Makes one vertical axis per variable, with its bounds, and with the start as a mark.
 function make_axes(look: Look, variables: Variable[]): Part {
   const text = (x: number, y: number, value: string, color: string, more: Part = {}): Part => ({
     type: 'text',
@@ -211,11 +212,11 @@ export function make_parallel(all: Scope): Figure | null {
     id: 'parallel' + scope.suffix,
     title: end_title(scope, "The winners' designs"),
     caption:
-      'Each line is the winning design of a run, each axis a variable between its bounds; the triangle marks the nominal start. ' +
-      'Axes are logarithmic in the magnitude unless their name says linear; the sign is that of the numbers at their ends. ' +
-      'Where lines of good runs meet, the variable is determined by the problem; where they spread, it hardly matters or there are several solutions. ' +
-      'Lines that end at a bound suggest that the bound is in the way. Neighbouring axes say nothing about interactions of others. ' +
-      "What counts as an optimizer's best was chosen on the test set, after the fact. " +
+      'Each line is the winning design of a run. Each axis is a variable between its bounds, and the triangle marks the nominal start. ' +
+      'Axes are logarithmic in the magnitude unless their name says linear. The sign is that of the numbers at their ends. ' +
+      'Where the lines of good runs meet, the problem determines the variable. Where they spread, the variable hardly matters, or there are several solutions. ' +
+      'Lines that end at a bound suggest that the bound is too tight. The figure shows interactions of neighbouring axes only. ' +
+      'The best run of each optimizer was chosen by its value on the test set. ' +
       describe_size(scope),
     width: 'full',
     height: 440,

@@ -1,4 +1,5 @@
-// Several objectives: what the runs found, and what half of an optimizer's runs attain.
+// Several objectives: the points that the runs found, and the area that half of the runs of an
+// optimizer attain.
 import type { EChartsOption } from '../charts/echarts';
 import type { Look } from '../charts/look';
 import { make_line, type Part, type Point } from '../charts/parts';
@@ -21,7 +22,7 @@ import {
   type Scope,
 } from './study_parts';
 
-const kDrawnAtFirst = 4; // clouds of points hide each other sooner than curves
+const kDrawnAtFirst = 4; // clouds of points hide each other sooner than curves do
 
 function draw_front(look: Look, scope: Scope, problem: StudyProblem, front: StudyFront, first: number, second: number): EChartsOption {
   const units = front.objectives.map((objective) => get_unit(objective.unit));
@@ -45,7 +46,7 @@ function draw_front(look: Look, scope: Scope, problem: StudyProblem, front: Stud
   order.forEach((o) => {
     const style = get_style(look, scope, o);
     const name = scope.names[o];
-    // Of two objectives only; the sides of the attained area reach as far as the axes.
+    // Only two objectives have attained areas. The sides of an area reach to the ends of the axes.
     front.optimizers[o].attainment.forEach((surface) => {
       const corners = surface.points.map(at);
       if (corners.length === 0 || front.objectives.length !== 2) {
@@ -101,7 +102,7 @@ function draw_front(look: Look, scope: Scope, problem: StudyProblem, front: Stud
   );
 }
 
-// Of those problems of the scope that have fronts; nothing if none has.
+// Makes the figure of the problems of the scope that have fronts. Returns null if none has.
 export function make_front(all: Scope): Figure | null {
   const scope: Scope = {
     ...all,
@@ -128,11 +129,11 @@ export function make_front(all: Scope): Figure | null {
     id: 'front' + scope.suffix,
     title: end_title(scope, 'Fronts of the objectives'),
     caption:
-      'Points are the fronts of all replicates; lower left is better. ' +
+      'The points are the fronts of all replicates. Points towards the lower left are better. ' +
       (objectives === 2
-        ? 'The thick stepped line bounds what half of the replicates of an optimizer attain: a typical front, where the points mix lucky and unlucky runs; thin ones are of other shares of the replicates. '
-        : 'Of more than two objectives the plane shows a projection: a point that looks dominated may not be. ') +
-      'The cross is the reference point of the hypervolume, a tenth beyond the front of all runs together; points far beyond it are left out of the plane. ' +
+        ? 'The thick stepped line bounds the area that half of the replicates of an optimizer attain. It is a typical front, whereas the points mix lucky and unlucky runs. Thin lines are for other shares of the replicates. '
+        : 'With more than two objectives the plane shows a projection: a point that looks dominated may not be dominated. ') +
+      'The cross is the reference point of the hypervolume, a tenth beyond the front of all runs together. Points far beyond it are not shown. ' +
       (scope.names.length > kDrawnAtFirst ? 'The best ' + kDrawnAtFirst + ' optimizers are drawn at first. ' : '') +
       describe_size(scope),
     height: 420,

@@ -1,4 +1,4 @@
-// The page of a comparison: the verdict first, then what it rests on.
+// The page of a comparison: the verdict first, then the statistics behind it.
 import { shorten_all } from '../charts/names';
 import { make_slugs } from '../charts/slugs';
 import type { StudyData } from '../data';
@@ -20,7 +20,7 @@ import {
 } from './study_tables';
 import { make_values } from './study_values';
 
-// With more problems than these, tabs would not fit side by side: then figures have a choice.
+// With more problems, tabs would not fit side by side. Figures then have a choice instead.
 const kMostTabs = 6;
 
 function keep(items: (Item | null)[]): Item[] {
@@ -42,9 +42,9 @@ function make_unfinished(data: StudyData): TextItem | null {
         (missing > 0
           ? missing +
             (missing === 1 ? ' run has' : ' runs have') +
-            ' not ended: all numbers are of those that have, and problems that lack runs have no ranks and no tests. '
+            ' not ended. All numbers are those of the runs that have ended. Problems with missing runs have no ranks and no tests. '
           : '') +
-        'What is shown is preliminary and changes as runs end.',
+        'The results are preliminary and change as more runs end.',
     ],
   };
 }

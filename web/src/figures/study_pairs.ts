@@ -1,4 +1,4 @@
-// Every two optimizers: are they told apart, and by how much does one beat the other?
+// Every two optimizers: whether the tests tell them apart, and how often one beats the other.
 import type { EChartsOption } from '../charts/echarts';
 import type { Look } from '../charts/look';
 import { make_axis, make_chart, type Part } from '../charts/parts';
@@ -7,7 +7,7 @@ import type { DataTable, Figure } from '../model';
 import { describe_size, end_title, get_order, get_problem, make_problem_choices, type Scope } from './study_parts';
 import { estimate_width } from '../charts/scales';
 
-// "0.25", "0.044", "4e-5", "<1e-6": five characters at most.
+// Formats p in at most five characters: "0.25", "0.044", "4e-5", "<1e-6".
 export function format_p(p: number): string {
   if (p < 1e-6) {
     return '<1e-6';
@@ -37,7 +37,8 @@ function mix(from: string, to: string, share: number): string {
   return 'rgb(' + one(a.red, b.red) + ',' + one(a.green, b.green) + ',' + one(a.blue, b.blue) + ')';
 }
 
-// Black or white, whichever stands out more (relative luminance of WCAG 2, with a gamma of 2.2).
+// Returns black or white, whichever is easier to read on the fill (relative luminance of WCAG 2,
+// with a gamma of 2.2).
 function get_readable(fill: string): string {
   const light = (part: number) => Math.pow(part / 255, 2.2);
   const parts = fill.charAt(0) === '#' ? parse_color(fill) : parse_rgb(fill);
@@ -45,7 +46,7 @@ function get_readable(fill: string): string {
   return luminance > 0.18 ? '#14181d' : '#ffffff';
 }
 
-// Blue where the row is better, orange where the column is, nothing in between.
+// Returns blue if the row is better, orange if the column is better, and the background in between.
 function get_a12_color(look: Look, a12: number): string {
   return a12 >= 0.5 ? mix(look.background, look.series[0], (a12 - 0.5) * 1.7) : mix(look.background, look.series[1], (0.5 - a12) * 1.7);
 }
@@ -108,7 +109,7 @@ function draw_pairs(look: Look, scope: Scope, problem: StudyProblem): EChartsOpt
       const square = squares[item.dataIndex];
       const [x, y] = api.coord([api.value(0), api.value(1)]);
       const [width, height] = api.size([1, 1]).map(Math.abs);
-      // As much text as fits; of small squares the colours and the marks have to do.
+      // The text is as large as it fits. Small squares have only colours and marks.
       const size = width < 28 ? 0 : Math.min(11, width / 3.1, height / 1.6);
       const children: Part[] = [
         {
@@ -132,7 +133,7 @@ function draw_pairs(look: Look, scope: Scope, problem: StudyProblem): EChartsOpt
         });
       }
       if (square.marked) {
-        // A bar under the number; of small squares it is all that can be read.
+        // A bar under the number. In small squares only the bar can be read.
         const long = Math.min(width * 0.5, 16);
         const below = size >= 6.5 ? y + height * 0.3 : y;
         children.push({
@@ -163,7 +164,8 @@ function draw_pairs(look: Look, scope: Scope, problem: StudyProblem): EChartsOpt
   });
   return make_chart(look, make_side('x'), make_side('y'), [series], {
     grid: { left: width + 14, right: 92, top: 14, bottom: Math.min(width, 110) * 0.87 + 18 },
-    // Only the key: the squares are coloured above, the upper triangle alone by this scale.
+    // This is only the key. The squares above have their own colours, and only the upper triangle
+    // uses this scale.
     visualMap: {
       type: 'continuous',
       seriesIndex: [],
@@ -218,7 +220,7 @@ export function tabulate_pairs(scope: Scope, problems: StudyProblem[]): DataTabl
   return { columns: many ? [{ label: 'problem' } as (typeof columns)[0]].concat(columns) : columns, rows };
 }
 
-// Of those problems of the scope that have tests; nothing if none has.
+// Makes the figure of the problems of the scope that have tests. Returns null if none has.
 export function make_pairs(all: Scope): Figure | null {
   const scope: Scope = { ...all, problems: all.problems.filter((problem) => problem.pairs.length > 0) };
   if (scope.problems.length === 0) {
@@ -229,9 +231,9 @@ export function make_pairs(all: Scope): Figure | null {
     id: 'pairs' + scope.suffix,
     title: end_title(scope, 'Every two optimizers'),
     caption:
-      "Above the diagonal A12, the probability that a run of the row beats one of the column (0.5: neither; 0.56, 0.64, 0.71: small, medium, large); below it the p-value of Wilcoxon's signed-rank test over replicates, after Holm's correction for all pairs of the problem. " +
-      'Bold and underlined is what is significant at 0.05. Rows and columns are ordered best first. ' +
-      'A pair that is not told apart is not thereby equal: more replicates may tell. ' +
+      "Above the diagonal is A12, the probability that a run of the row beats a run of the column (0.5: no difference; 0.56, 0.64, 0.71: a small, medium, large one). Below the diagonal is the p-value of Wilcoxon's signed-rank test over replicates, after Holm's correction for all pairs of the problem. " +
+      'Values that are significant at 0.05 are bold and underlined. Rows and columns are ordered best first. ' +
+      'A pair that is not told apart need not be equal: more replicates may show a difference. ' +
       describe_size(scope),
     height: Math.max(380, 140 + 20 * scope.names.length),
     width: scope.names.length > 8 ? 'full' : 'half',

@@ -1,4 +1,5 @@
-// What the figures of a comparison share: names, units, colours, and the legend at the side.
+// The common parts of the figures of a comparison: names, units, colours, and the legend at the
+// side.
 import type { EChartsOption } from '../charts/echarts';
 import { get_series_style, type Look, type SeriesStyle } from '../charts/look';
 import { shorten, shorten_all } from '../charts/names';
@@ -8,12 +9,12 @@ import type { Quantity, StudyData, StudyProblem } from '../data';
 import type { Choice, Picked } from '../model';
 import { format_number, kMillimetres } from '../numbers';
 
-// So many optimizers are drawn at first: beyond, curves hide each other.
+// The number of optimizers that are drawn at first. More curves would hide each other.
 export const kMostAtFirst = 8;
 
 export interface Unit {
   factor: number;
-  unit: string; // "" of what has none
+  unit: string; // "" if it has no unit
 }
 
 export function get_unit(unit: string): Unit {
@@ -32,7 +33,8 @@ export function name_axis(name: string, unit: string): string {
   return unit === '' ? shorten(name) : shorten(name) + ' (' + unit + ')';
 }
 
-// What curves, targets and running times are of; of several objectives values are something else.
+// Returns the quantity of curves, targets and running times. With several objectives it differs
+// from that of the values.
 export function get_curve_name(problem: StudyProblem): { name: string; unit: Unit } {
   return problem.has_front
     ? { name: 'weighted sum of the objectives', unit: { factor: 1, unit: '' } }
@@ -44,13 +46,13 @@ export function describe_value(value: number | null, unit: Unit, quantity?: Quan
   return quantity ? shorten(quantity.name) + ' ' + text : text;
 }
 
-// What a figure or table is about: one problem, or several to choose from.
+// The problems of a figure or table: one problem, or several to choose from.
 export interface Scope {
   data: StudyData;
   problems: StudyProblem[];
-  suffix: string; // of the ids
-  names: string[]; // of the optimizers, as drawn
-  styles: number[]; // of each, for get_series_style
+  suffix: string; // suffix of the ids
+  names: string[]; // names of the optimizers, as drawn
+  styles: number[]; // one per optimizer, for get_series_style
 }
 
 export function make_scope(data: StudyData, problems: StudyProblem[], suffix: string): Scope {
@@ -59,20 +61,20 @@ export function make_scope(data: StudyData, problems: StudyProblem[], suffix: st
   const order = data.problems[0]?.order ?? [];
   const ranks = data.overall ? data.overall.mean_ranks : names.map((_, i) => (order.indexOf(i) < 0 ? names.length : order.indexOf(i)));
   if (names.length > kMostAtFirst && ranks.length === names.length) {
-    // The best ones get the colours that are easiest to tell apart.
+    // The best optimizers get the colours that are easiest to distinguish.
     sort_by(styles, (i) => ranks[i]).forEach((optimizer, place) => (styles[optimizer] = place));
   }
   return { data, problems, suffix, names, styles };
 }
 
-// Sorted anew, equal ones in their order.
+// Returns a sorted copy. Equal items keep their order.
 export function sort_by<T>(items: T[], key: (item: T) => number): T[] {
   const keyed = items.map((item, i) => ({ item, i, key: key(item) }));
   keyed.sort((a, b) => (a.key < b.key ? -1 : a.key > b.key ? 1 : a.i - b.i));
   return keyed.map((one) => one.item);
 }
 
-// Best first. What is missing in the data's order is appended.
+// Returns the optimizers, best first. Those that the data do not rank come at the end.
 export function get_order(scope: Scope, problem: StudyProblem): number[] {
   const all = scope.names.map((_, i) => i).filter((i) => problem.results[i] !== undefined);
   const ordered = problem.order.filter((i) => all.indexOf(i) >= 0);
@@ -83,7 +85,8 @@ export function get_style(look: Look, scope: Scope, optimizer: number): SeriesSt
   return get_series_style(look, scope.styles[optimizer]);
 }
 
-// ECharts fills its empty symbols white, on dark as well: here they have the page's background.
+// ECharts fills its empty symbols with white, also on a dark page. Here they get the background of
+// the page.
 export function make_symbol(look: Look, style: SeriesStyle): { symbol: string; itemStyle: Part } {
   if (style.symbol.indexOf('empty') !== 0) {
     return { symbol: style.symbol, itemStyle: { color: style.color } };
@@ -113,26 +116,29 @@ export function get_picked(choice: Choice, picked: Picked): string {
   return choice.options.filter((option) => option.value === value).length > 0 ? value : choice.initial;
 }
 
-// "15 replicates", and what is missing of them.
+// Returns "15 replicates" and the number of missing cells.
 export function describe_size(scope: Scope): string {
   const n = scope.data.replicates;
   const missing = scope.problems.reduce((sum, problem) => sum + problem.missing, 0);
   const size =
-    n === 1 ? 'One replicate an optimizer: its value is an anecdote, and nothing can be concluded.' : n + ' replicates an optimizer.';
+    n === 1
+      ? 'There is one replicate per optimizer, so nothing can be concluded from its value.'
+      : 'There are ' + n + ' replicates per optimizer.';
   return missing === 0
     ? size
     : size +
         ' Unfinished: ' +
         missing +
         (missing === 1 ? ' run has' : ' runs have') +
-        ' not ended; the numbers are of those that have, and optimizers may stand on different replicates.';
+        ' not ended. The numbers are those of the runs that have ended, so optimizers may be compared on different replicates.';
 }
 
 export function end_title(scope: Scope, title: string): string {
   return scope.problems.length === 1 && scope.data.problems.length > 1 ? title + ': ' + shorten(scope.problems[0].label) : title;
 }
 
-// A chart with its legend at the right, best first; `drawn` are switched on at first.
+// Makes a chart with its legend at the right, best first. The series in `drawn` are switched on at
+// first.
 export function make_ranked_chart(
   look: Look,
   x: Part,
@@ -173,7 +179,7 @@ export function make_ranked_chart(
   });
 }
 
-// Stretches of consecutive rows that are there.
+// Returns the stretches of consecutive rows that are not null.
 export function split_rows<T>(rows: (T | null)[]): T[][] {
   const pieces: T[][] = [[]];
   rows.forEach((row) => {

@@ -1,4 +1,5 @@
-// How far optimizers get with how much: curves over the budget, and shares of targets and problems.
+// How good optimizers become for how much budget: curves over the budget, and shares of targets and
+// problems.
 import type { EChartsOption } from '../charts/echarts';
 import type { Look } from '../charts/look';
 import { make_band, make_line, type Part, type Point } from '../charts/parts';
@@ -28,7 +29,9 @@ import {
 
 const kCasesAxis = 'simulated training cases';
 const kFirstOnes = (count: number) =>
-  count > kMostAtFirst ? ' Of ' + count + ' optimizers the best ' + kMostAtFirst + ' are drawn at first; the legend switches them.' : '';
+  count > kMostAtFirst
+    ? ' Of the ' + count + ' optimizers, the best ' + kMostAtFirst + ' are drawn at first. The legend switches them on and off.'
+    : '';
 
 function draw_convergence(look: Look, scope: Scope, problem: StudyProblem): EChartsOption {
   const { name, unit } = get_curve_name(problem);
@@ -39,10 +42,10 @@ function draw_convergence(look: Look, scope: Scope, problem: StudyProblem): ECha
   });
   const drawn = curves.slice(0, kMostAtFirst);
   const everything = (list: typeof curves) => list.reduce((all, one) => all.concat(one.q1, one.median, one.q3), [] as (number | null)[]);
-  // Room for all that can be switched on.
+  // The axis has room for all series that can be switched on.
   const y = make_scale(everything(curves.length > 2 * kMostAtFirst ? drawn : curves), true);
   const x = make_scale(problem.checkpoints, true);
-  // Lines before bands: the legend draws the first series of a name.
+  // Lines come before bands, because the legend draws the first series of a name.
   const bands: Part[] = [];
   const series: Part[] = [make_grid_lines(look, x, y)];
   order.forEach((o, place) => {
@@ -50,7 +53,7 @@ function draw_convergence(look: Look, scope: Scope, problem: StudyProblem): ECha
     const style = get_style(look, scope, o);
     const rows = problem.checkpoints.map((cases, i): [number, number, number] | null => {
       const low = q1[i] ?? null;
-      // A quartile without value is beyond any axis.
+      // A quartile without a value is beyond the end of the axis.
       return low === null ? null : [cases, low, q3[i] ?? y.high * 10];
     });
     split_rows(rows).forEach((piece) => bands.push(make_band(scope.names[o], piece, style.color)));
@@ -112,9 +115,9 @@ export function make_convergence(scope: Scope): Figure {
     id: 'convergence' + scope.suffix,
     title: end_title(scope, 'Convergence'),
     caption:
-      'What the best design known so far is worth on the test set, against the simulated training cases spent: the median over replicates, with the quartiles as a band. ' +
-      'Designs are chosen in training and simulated again on the test set, so a curve may rise; where it is missing, half of the runs have no value yet. ' +
-      'The order at one budget says nothing about another one. ' +
+      'The value of the incumbents on the test set against the number of simulated training cases. The line is the median over replicates, and the band shows the quartiles. ' +
+      'Designs are chosen in training and simulated again on the test set, so a curve may rise. Where a curve is missing, half of the runs have no value yet. ' +
+      'The order of the optimizers at one budget says nothing about another budget. ' +
       describe_size(scope) +
       kFirstOnes(scope.names.length),
     height: 400,
@@ -128,11 +131,11 @@ interface Steps {
   abscissae: number[];
   x_name: string;
   y_name: string;
-  shares: number[][]; // a row an optimizer
+  shares: number[][]; // one row per optimizer
   order: number[];
 }
 
-// Shares from 0 to 1 that only grow.
+// Draws shares from 0 to 1 that never decrease.
 function draw_steps(look: Look, scope: Scope, steps: Steps): EChartsOption {
   const x = make_scale(steps.abscissae, true);
   const y: Scale = { log: false, low: 0, high: 1, end: 1, ticks: [0, 0.2, 0.4, 0.6, 0.8, 1] };
@@ -147,7 +150,7 @@ function draw_steps(look: Look, scope: Scope, steps: Steps): EChartsOption {
       ...make_line(look, 0, scope.names[o], points, { style, step: 'end', width: 2, symbols: true }),
       ...make_symbol(look, style),
     };
-    // A mark here and there tells the steps apart; the others are there for the pointer.
+    // Marks at some points distinguish the steps. The other points are only for the pointer.
     const every = Math.ceil(points.length / 12);
     series.push({ ...line, symbolSize: (_: unknown, at: { dataIndex: number }) => (at.dataIndex % every === o % every ? 6 : 2) });
   });
@@ -187,9 +190,9 @@ export function make_runtime_ecdf(scope: Scope): Figure {
     id: 'runtime-ecdf' + scope.suffix,
     title: end_title(scope, 'Targets reached over the budget'),
     caption:
-      'The share of all pairs of a run and a target that are reached, against the simulated training cases spent: higher and further left is better. ' +
-      'Targets lie between the start and the best value that any optimizer of this study found, evenly on a logarithmic scale of what is left of the way; they depend on who takes part. ' +
-      'A target counts from the budget on from which all later designs are there too, as coarsely as the checkpoints. ' +
+      'The share of all pairs of a run and a target that are reached, against the number of simulated training cases. Curves that are higher and further left are better. ' +
+      'Targets lie between the start and the best value that any optimizer of this study found. They are spaced evenly on a logarithmic scale of the remaining way to that value, and depend on the optimizers that take part. ' +
+      'A target counts as reached from the checkpoint on from which all later incumbents reach it too. ' +
       describe_size(scope) +
       kFirstOnes(scope.names.length),
     height: 400,
@@ -239,7 +242,7 @@ function make_profile(
 }
 
 const kSolved =
-  'A (problem, replicate) pair is solved once no more than the tolerance is left of the way from the start to the best value that any optimizer found there (Moré and Wild 2009). ';
+  'A (problem, replicate) pair is solved when at most the share "tolerance" remains of the way from the start to the best value that any optimizer found there (Moré and Wild 2009). ';
 
 export function make_profiles(scope: Scope): Figure[] {
   const overall = scope.data.overall;
@@ -252,7 +255,7 @@ export function make_profiles(scope: Scope): Figure[] {
       'data-profile',
       'Data profile',
       kSolved +
-        'Shown is the share solved against the effort, in simplex gradients: as many evaluations as the problem has variables, and one. It reads absolutely: so much of these problems is solved with such a budget.',
+        'The figure shows the share of solved pairs against the effort in simplex gradients. A simplex gradient is one evaluation more than the problem has variables. A curve says directly which share of these problems is solved with a given budget.',
       'simplex gradients',
       overall.kappas,
       overall.data_profiles,
@@ -262,8 +265,8 @@ export function make_profiles(scope: Scope): Figure[] {
       'performance-profile',
       'Performance profile',
       kSolved +
-        'Shown is the share solved within a multiple of what the quickest optimizer took there. At 1 it is how often an optimizer was the quickest, ties included; at the right how often it got there at all. ' +
-        'Multiples are relative to who takes part: two optimizers that are not the quickest may change places when it leaves.',
+        'The figure shows the share of pairs that are solved within a multiple of the cost of the fastest optimizer there. The value at 1 says how often an optimizer was the fastest, ties included. The value at the right says how often it solved a pair at all. ' +
+        'The multiples depend on the optimizers that take part: if the fastest one is left out, two others may change places.',
       'cost, as a multiple of the smallest',
       overall.alphas,
       overall.performance_profiles,

@@ -1,7 +1,8 @@
-// Mean ranks with bars over what is not told apart, in the manner of Demsar, J. 2006, Statistical
-// comparisons of classifiers over multiple data sets, JMLR 7; but what bars join comes from
-// pairwise signed-rank tests with Holm's correction, since whether mean ranks of two differ depends
-// on who else takes part (Benavoli, A., Corani, G. and Mangili, F. 2016, JMLR 17(5)).
+// Mean ranks, with bars over optimizers that the tests do not tell apart, in the manner of Demsar,
+// J. 2006, Statistical comparisons of classifiers over multiple data sets, JMLR 7. Here the bars
+// come from pairwise signed-rank tests with Holm's correction. The reason is that a comparison of
+// two mean ranks depends on which other optimizers take part (Benavoli, A., Corani, G. and Mangili,
+// F. 2016, JMLR 17(5)).
 import type { EChartsOption } from '../charts/echarts';
 import type { Look } from '../charts/look';
 import { make_axis, make_chart, type Part } from '../charts/parts';
@@ -12,17 +13,17 @@ import { find_pair } from './study_pairs';
 import { describe_size, end_title, get_problem, make_problem_choices, type Scope, sort_by } from './study_parts';
 
 export interface Ranks {
-  ranks: number[]; // one an optimizer
+  ranks: number[]; // one per optimizer
   intervals: [number, number][] | null;
   cliques: number[][];
 }
 
 const kRowHeight = 19;
 const kBarHeight = 8;
-const kAbove = 46; // pixels over the axis
-const kMargin = 212; // for names of some thirty letters and a rank
+const kAbove = 46; // pixels above the axis
+const kMargin = 212; // space for names of some thirty letters and a rank
 
-// All longest stretches, in the order of ranks, of which no two are told apart.
+// Returns all longest stretches, in the order of ranks, in which no two optimizers are told apart.
 export function find_cliques(problem: StudyProblem, ranks: number[]): number[][] {
   const order = sort_by(
     ranks.map((_, i) => i),
@@ -49,7 +50,7 @@ export function find_cliques(problem: StudyProblem, ranks: number[]): number[][]
   return cliques;
 }
 
-// Levels for the bars, so that no two of a level meet.
+// Returns levels for the bars, so that no two bars of a level overlap.
 function stack(bars: { low: number; high: number }[]): number[] {
   const ends: number[] = [];
   return bars.map((bar) => {
@@ -177,7 +178,7 @@ function draw_ranks(look: Look, scope: Scope, ranks: Ranks): EChartsOption {
       const children: Part[] = [
         { type: 'rect', shape: { x: from - 3, y: y - 1.8, width: to - from + 6, height: 3.6 }, style: { fill: look.text } },
       ];
-      // Who is of the set: a bar may pass over others.
+      // Points mark the members of the set, because a bar may pass over other optimizers.
       bar.members.forEach((rank) =>
         children.push({
           type: 'circle',
@@ -245,9 +246,9 @@ function make_figure(scope: Scope, id: string, title: string, caption: string, g
 }
 
 const kBars =
-  "Bars join optimizers of which no two are told apart (Wilcoxon's signed-rank test, Holm's correction, 0.05); circles on a bar are its members. ";
+  "A bar joins optimizers of which the tests tell no two apart (Wilcoxon's signed-rank test, Holm's correction, 0.05). The circles on a bar are its members. ";
 
-// Over problems: each counts once, by its medians.
+// The ranks over problems. Each problem counts once, by its medians.
 export function make_overall_ranks(scope: Scope): Figure | null {
   const overall = scope.data.overall;
   if (!overall || scope.data.problems.length < 2) {
@@ -256,20 +257,20 @@ export function make_overall_ranks(scope: Scope): Figure | null {
   const ranks: Ranks = { ranks: overall.mean_ranks, intervals: overall.rank_intervals, cliques: overall.cliques };
   const few =
     scope.data.problems.length < 6
-      ? 'Of fewer than six problems no difference can be significant: the ranks are a description of these problems, and nothing can be concluded about others. '
-      : 'A bar is no proof of equality. ';
+      ? 'With fewer than six problems no difference can be significant. The ranks only describe these problems, and nothing can be concluded about others. '
+      : 'A bar does not prove that its members are equal. ';
   const caption =
-    'Critical-difference diagram: mean ranks over ' +
+    'Critical-difference diagram of the mean ranks over ' +
     scope.data.problems.length +
-    ' problems, each by its medians. ' +
+    ' problems. Each problem ranks the optimizers by their medians. ' +
     kBars +
     few +
-    'Mean ranks depend on who takes part. ' +
+    'Mean ranks depend on the optimizers that take part. ' +
     describe_size(scope);
   return make_figure(scope, 'ranks', 'Mean ranks over problems', caption, () => ranks, [ranks]);
 }
 
-// Over the replicates of a problem, of those that have ranks; nothing if none has.
+// The ranks over the replicates of each problem that has ranks. Returns null if none has.
 export function make_problem_ranks(all: Scope, id: string): Figure | null {
   const scope: Scope = { ...all, problems: all.problems.filter((problem) => problem.results.some((one) => one.mean_rank !== null)) };
   if (scope.problems.length === 0) {
@@ -280,9 +281,9 @@ export function make_problem_ranks(all: Scope, id: string): Figure | null {
     return { ranks, intervals: null, cliques: find_cliques(problem, ranks) };
   };
   const caption =
-    'Critical-difference diagram: ranks of the runs of a replicate, averaged over the replicates. ' +
+    'Critical-difference diagram of the ranks of the runs of a replicate, averaged over the replicates. ' +
     kBars +
-    'A bar is no proof of equality, and mean ranks depend on who takes part. ' +
+    'A bar does not prove that its members are equal, and mean ranks depend on the optimizers that take part. ' +
     describe_size(scope);
   const figure = make_figure(
     scope,

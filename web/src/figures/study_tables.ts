@@ -6,8 +6,8 @@ import { tabulate_pairs } from './study_pairs';
 
 type Row = (Value | Cell)[];
 
-// Rows of all problems under one head: of several, with the problem, and with the unit where units
-// differ.
+// Returns the rows of all problems under one head. With several problems the table has a column for
+// the problem, and one for the unit if units differ.
 function tabulate(
   scope: Scope,
   get_problem_unit: (problem: StudyProblem) => Unit,
@@ -87,11 +87,11 @@ export function make_ranking_table(scope: Scope): TableItem {
     id: 'ranking' + scope.suffix,
     title: end_title(scope, 'Ranking'),
     caption:
-      'Values on the test set, best median first. A run without value counts as the worst; a dash is a median or quartile that does not exist for that reason. ' +
-      'Intervals are bootstrapped. The best design of each optimizer, by the validation set, was simulated once more on the other engine where one is named. ' +
+      'Values on the test set, best median first. A run without a value counts as the worst. A dash is a median or quartile that does not exist for this reason. ' +
+      'Intervals are bootstrapped. If another engine is named, the best design of each optimizer, by the validation set, was simulated again on that engine. ' +
       describe_size(scope) +
       (tests.length > 0 && tests.length <= 6
-        ? " Do the optimizers differ at all? Friedman's test in Iman and Davenport's form: " + tests.join('; ') + '.'
+        ? " Friedman's test, in the form of Iman and Davenport, says whether the optimizers differ at all: " + tests.join('; ') + '.'
         : ''),
     table: tabulate(scope, get_value_unit, columns, rows),
   };
@@ -103,7 +103,7 @@ export function make_pairs_table(scope: Scope): TableItem {
     id: 'pairs-table' + scope.suffix,
     title: end_title(scope, 'Tests of every two optimizers'),
     caption:
-      "Wilcoxon's signed-rank test over the replicates, Holm's correction over all pairs of a problem, and Vargha and Delaney's A12, the probability that a run of a is better than one of b. Not told apart does not mean equal. " +
+      "Wilcoxon's signed-rank test over the replicates, with Holm's correction over all pairs of a problem, and A12 of Vargha and Delaney, the probability that a run of a is better than a run of b. Two optimizers that are not told apart need not be equal. " +
       describe_size(scope),
     table: tabulate_pairs(scope, scope.problems),
   };
@@ -147,7 +147,7 @@ export function make_cells_table(scope: Scope): TableItem {
     id: 'cells' + scope.suffix,
     title: end_title(scope, 'Every run'),
     caption:
-      "All runs that have ended, with the command that makes each anew, bit for bit. The value is the winner's on the test set; a dash is none. Times are no part of the comparison. " +
+      'All runs that have ended, each with the command that makes it again, bit for bit. The value is that of the winner on the test set; a dash means that there is none. The times are not part of the comparison. ' +
       describe_size(scope),
     table: tabulate(scope, get_value_unit, columns, rows),
   };
@@ -184,14 +184,14 @@ export function make_running_times_table(scope: Scope): TableItem {
     id: 'running-times' + scope.suffix,
     title: end_title(scope, 'Expected running times'),
     caption:
-      'How many simulated cases it would take on average to reach a target, starting anew with other random numbers until it is reached: all cases spent, divided by the number of runs that got there. ' +
-      'A dash is a target that no run reached. ' +
+      'The average number of simulated cases that reaching a target would need, with a new start and other random numbers after each run that fails. It is the number of all cases spent, divided by the number of runs that reached the target. ' +
+      'A dash means that no run reached the target. ' +
       describe_size(scope),
     table: tabulate(scope, (problem) => get_curve_name(problem).unit, columns, rows),
   };
 }
 
-// The study's own targets, if it has any for these problems.
+// The targets of the study itself, if it has any for these problems.
 export function make_targets_table(scope: Scope): TableItem | null {
   const reference = scope.data.reference;
   const times: Column[] = [
@@ -231,14 +231,14 @@ export function make_targets_table(scope: Scope): TableItem | null {
     id: 'targets' + scope.suffix,
     title: end_title(scope, 'Fixed targets'),
     caption:
-      'How many simulated cases it would take on average until the design that is best on the validation set by then meets a target on the test set: all cases spent, divided by the number of runs that got there. ' +
-      'Kept are those whose winner meets it as well. A dash is a time without a bound. ' +
+      'The average number of simulated cases until the best design so far, by the validation set, meets a target on the test set. It is the number of all cases spent, divided by the number of runs that met the target. ' +
+      'The column "kept to the end" counts the runs whose winner also meets the target. A dash is a time without a bound. ' +
       describe_size(scope),
     table: tabulate(scope, () => ({ unit: '', factor: 1 }), columns, rows),
   };
 }
 
-// Optimizers over all problems.
+// The results of the optimizers over all problems.
 export function make_overall_table(scope: Scope): TableItem | null {
   const overall = scope.data.overall;
   if (!overall) {
@@ -267,9 +267,9 @@ export function make_overall_table(scope: Scope): TableItem | null {
     id: 'overall',
     title: 'Ranking over problems',
     caption:
-      'Mean ranks of the medians, each problem counting once, and the medians on the test set; a dash is a median without value. ' +
-      (overall.rank_intervals ? 'Intervals are of the mean ranks. ' : '') +
-      'Ranks depend on who takes part. ' +
+      'The mean ranks of the medians, where each problem counts once, and the medians on the test set. A dash is a median without a value. ' +
+      (overall.rank_intervals ? 'The intervals are those of the mean ranks. ' : '') +
+      'Ranks depend on the optimizers that take part. ' +
       describe_size(scope),
     table: {
       columns,

@@ -1,4 +1,5 @@
-// Every run's value, box by box: nothing is dropped, what has no value has a place of its own.
+// The values of every run, with one box per optimizer. All runs are shown; values that do not exist
+// have their own place.
 import type { EChartsOption } from '../charts/echarts';
 import type { Look } from '../charts/look';
 import type { Part } from '../charts/parts';
@@ -21,7 +22,7 @@ import {
   type Unit,
 } from './study_parts';
 
-const kMostNames = 260; // pixels: methods have long names that differ at their ends
+const kMostNames = 260; // pixels; names of methods are long and differ at their ends
 
 export function describe_cell(scope: Scope, problem: StudyProblem, optimizer: number, cell: StudyCell, unit: Unit): string {
   const failed = cell.failures > 0 ? '; ' + cell.failures + (cell.failures === 1 ? ' test case' : ' test cases') + ' failed' : '';
@@ -42,7 +43,7 @@ export function describe_cell(scope: Scope, problem: StudyProblem, optimizer: nu
   );
 }
 
-// Between -0.5 and 0.5, far apart for consecutive numbers.
+// Returns a place between -0.5 and 0.5. The places of consecutive numbers are far apart.
 function spread_out(replicate: number): number {
   const golden = replicate * 0.6180339887498949;
   return golden - Math.floor(golden) - 0.5;
@@ -54,7 +55,8 @@ type Drawing = {
   size(extent: number[], point: number[]): number[];
 };
 
-// Box, median and whiskers of rows [row, min, q1, median, q3, max], already placed on the axis.
+// Makes boxes with medians and whiskers from rows [row, min, q1, median, q3, max], which are
+// already places on the axis.
 function make_boxes(look: Look, data: Part[], colors: string[]): Part {
   return {
     type: 'custom',
@@ -183,12 +185,12 @@ export function make_values(scope: Scope): Figure {
     id: 'values' + scope.suffix,
     title: end_title(scope, 'Value of every run'),
     caption:
-      "Each point is a run: its winner's value on the test set, which no optimizer has seen. Boxes are quartiles with the median, whiskers reach to the best and the worst run; the best median is on top. " +
-      'A run whose winner fails on a test case or violates a constraint has no value; it counts as the worst and stands beyond the axis. ' +
+      'Each point is a run. Its place is the value of the winner on the test set, which was not used for training. The boxes are quartiles with the median, and the whiskers reach to the best and the worst run. The best median is at the top. ' +
+      'A run whose winner fails on a test case or violates a constraint has no value. It counts as the worst and is shown beyond the axis. ' +
       (scope.problems.some((problem) => problem.has_front)
-        ? "Of several objectives the value is the share of the hypervolume that a run's front misses; it depends on who takes part. "
+        ? 'With several objectives the value is the share of the hypervolume that the front of a run misses. It depends on the optimizers that take part. '
         : '') +
-      'Overlapping boxes do not mean equal optimizers: runs are paired by replicate, and the tests use the pairs. ' +
+      'Optimizers with overlapping boxes need not be equal: runs are paired by replicate, and the tests use these pairs. ' +
       describe_size(scope),
     width: scope.names.length > 16 ? 'full' : 'half',
     height: Math.max(320, 70 + 24 * scope.names.length),

@@ -19,12 +19,12 @@ export function make_sweep_figure(sweep: Sweep, id = 'speed-sweep', thesis = '')
     id,
     title: `Error against ${shown_name}`,
     caption:
-      `Average positional error over ${count_of(sweep.cases, 'test case')}, simulated by ${sweep.engine}, with ${sweep.parameter} set to each value; ` +
-      `bars: standard error of the mean. ` +
+      `The average positional error over ${count_of(sweep.cases, 'test case')}, simulated by ${sweep.engine}, with ${sweep.parameter} set to each value. ` +
+      `The bars show the standard error of the mean. ` +
       (log ? 'The vertical axis is logarithmic. ' : '') +
-      (sweep.nominal !== null ? 'Dashed: the value that the design was tuned for. ' : '') +
-      (some_fail ? 'Crosses: cases failed there; the mean is that of all cases with a number. ' : 'No case failed. ') +
-      `A design that was tuned for one value should hold below it, and fail somewhere above.`,
+      (sweep.nominal !== null ? 'The dashed line is the value for which the design was tuned. ' : '') +
+      (some_fail ? 'At a cross, cases failed; the mean is that of all cases with a number. ' : 'No case failed. ') +
+      `A design that was tuned for one value should work below it, and fails at some higher value.`,
     thesis: thesis || undefined,
     height: 360,
     draw: (look) => {

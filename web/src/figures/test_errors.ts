@@ -1,4 +1,4 @@
-// How the errors of the test cases are distributed, and which cases failed.
+// The distribution of the errors of the test cases, and the cases that failed.
 import { make_number_axis, make_plot, make_vertical, get_line_style } from '../charts/marks';
 import { shorten_all } from '../charts/names';
 import { make_line, type Part, type Point } from '../charts/parts';
@@ -13,10 +13,10 @@ const kLeastBins = 12;
 
 export interface Histogram {
   edges: number[];
-  counts: number[][]; // one list a list of values
+  counts: number[][]; // one list per list of values
 }
 
-// Bins of equal width, on a logarithmic axis where `log`. Every number falls in one.
+// Returns bins of equal width, on a logarithmic axis if `log` is true. Every number is in one bin.
 export function make_histogram(lists: (number | null)[][], log: boolean): Histogram | null {
   const range = find_range(flatten(lists));
   if (range === null) {
@@ -62,19 +62,19 @@ export function make_errors_figure(test: TestErrors): Figure | null {
   );
   const { edges, counts } = histogram;
   const limit = test.failure_error === null ? null : test.failure_error * shown.factor;
-  // A limit far beyond all errors would squeeze them.
+  // A limit far above all errors would squeeze them, so it is left out.
   const has_limit = limit !== null && limit > edges[0] && limit < edges[edges.length - 1] * (log ? 5 : 1.2);
   return {
     kind: 'figure',
     id: 'test-errors',
     title: `${shown.name.replace(/^./, (letter) => letter.toUpperCase())} of the test cases`,
     caption:
-      `In how many of the ${count_of(test.designs[0].errors.length, 'case')} of ${test.set}, simulated by ${test.engine}, the error is that large; the bins are of equal width` +
+      `The number of cases with an error of each size, of the ${count_of(test.designs[0].errors.length, 'case')} of ${test.set}, simulated by ${test.engine}. The bins have equal width` +
       `${log ? ' on the logarithmic axis' : ''}. ` +
       (limit !== null
         ? has_limit
-          ? `Dashed: a case above ${format_number(limit, 3)} ${shown.unit} has failed. `
-          : `A case above ${format_number(limit, 3)} ${shown.unit}, which is beyond this axis, would have failed. `
+          ? `A case above the dashed line at ${format_number(limit, 3)} ${shown.unit} has failed. `
+          : `A case above ${format_number(limit, 3)} ${shown.unit} would have failed; this limit is beyond the axis. `
         : '') +
       (missing.some((count) => count > 0)
         ? `Cases without a number are not in the bins: ${names
@@ -82,7 +82,7 @@ export function make_errors_figure(test: TestErrors): Figure | null {
             .filter((_, i) => missing[i] > 0)
             .join(', ')}. `
         : '') +
-      `A tail to the right matters more than the mean: these are the motions to look at in the replay.`,
+      `A tail to the right matters more than the mean: look at these motions in the replay.`,
     draw: (look) => {
       const series: Part[] = counts.map((count, s) => {
         const points: Point[] = [[edges[0], 0]];
@@ -142,7 +142,7 @@ export function make_failures_table(test: TestErrors): TableItem | null {
     kind: 'table',
     id: 'failures',
     title: 'Failed test cases',
-    caption: `Cases${limit} without any number, each with the command that simulates it again.`,
+    caption: `The cases${limit} without any number. Each has the command that simulates it again.`,
     table: {
       columns: [
         { label: 'design' },

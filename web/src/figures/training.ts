@@ -1,4 +1,4 @@
-// How a run got to its winner: the objective and the design variables against generations.
+// The history of a run: the objective and the design variables over the generations.
 import { get_series_style } from '../charts/look';
 import { make_number_axis, make_curve_plot } from '../charts/marks';
 import { make_line, type Part, type Point } from '../charts/parts';
@@ -11,12 +11,13 @@ const kBest = 'best';
 const kMean = 'average';
 const kIncumbentTest = 'incumbent on the test set';
 
-// "generation", or "evaluations" for optimizers without them.
+// Returns "generation", or "evaluations" for an optimizer without generations.
 export function name_progress(data: RunData): string {
   return data.training.unit === 'generation' ? 'generation' : 'evaluations';
 }
 
-// The best of a generation or block is that of its cases only; what it is worth is seen on others.
+// The best value of a generation or block holds only for its own cases. Other cases show its real
+// quality.
 export function make_fitness_figure(data: RunData, id = 'fitness'): Figure {
   const { training } = data;
   const { incumbents } = training;
@@ -28,15 +29,17 @@ export function make_fitness_figure(data: RunData, id = 'fitness'): Figure {
     id,
     title: `Training: ${shown.name}`,
     caption:
-      `Best and average of the ${shown.name} in ${of_it}, against ${unit === 'generation' ? 'the generation' : 'the number of evaluations'}, ` +
-      `on the training cases (schedule ${training.schedule}); smaller is better. ` +
+      `The best and the average ${shown.name} in ${of_it}, against ${unit === 'generation' ? 'the generation' : 'the number of evaluations'}, ` +
+      `on the training cases (schedule ${training.schedule}). Smaller values are better. ` +
       (incumbents.index.length > 0
-        ? `Symbols: the best designs known on the way, on the ${count_of(incumbents.test_cases, 'case')} of ${incumbents.test_set}, ` +
-          `simulated by ${incumbents.engine}; these count. `
+        ? `The symbols are the incumbents on the ${count_of(incumbents.test_cases, 'case')} of ${incumbents.test_set}, ` +
+          `simulated by ${incumbents.engine}. Only these values show the quality of a design. `
         : '') +
-      (data.arm ? `The fitness of the thesis is the negative of the error, and so grows where this falls. ` : '') +
-      (training.schedule.indexOf('fixed') !== 0 ? 'Each generation meets new cases: the curves jump with how hard these are. ' : '') +
-      `Where the average is far above the best, many of the designs fail.`,
+      (data.arm ? `The fitness of the thesis is the negative of the error, so it grows when the error falls. ` : '') +
+      (training.schedule.indexOf('fixed') !== 0
+        ? 'Each generation has new cases, so the curves jump with the difficulty of the cases. '
+        : '') +
+      `Where the average is far above the best, many designs fail.`,
     width: 'full',
     height: 380,
     choices: [

@@ -1,4 +1,5 @@
-// The trajectory points of a test case (Fig. 5.12 of the thesis), from above and from the side.
+// The points of the trajectory of a test case (Fig. 5.12 of the thesis), from above and from the
+// side.
 import { get_series_style, type Look } from '../charts/look';
 import { make_number_axis, make_plot } from '../charts/marks';
 import type { Part } from '../charts/parts';
@@ -7,7 +8,8 @@ import type { Figure } from '../model';
 import { format_number } from '../numbers';
 import { get_case, make_case_choice } from './replay_access';
 
-// The same number of pixels for both axes of both panels, whatever the figure's width: one scale.
+// Both axes of both panels have the same number of pixels, whatever the width of the figure, so
+// that they have one scale.
 const kSide = 226;
 const kLefts = [60, 352];
 const kTop = 46;
@@ -21,7 +23,7 @@ interface Frame {
   half: number;
 }
 
-// A cube around all points.
+// Returns a cube around all points.
 function find_frame(one: ReplayCase): Frame {
   const low = [Infinity, Infinity, Infinity];
   const high = [-Infinity, -Infinity, -Infinity];
@@ -111,9 +113,9 @@ export function make_case_figure(set: ReplaySet, id = 'test-case', thesis = ''):
     title: 'Trajectory points of a test case',
     thesis: thesis || undefined,
     caption:
-      'The points that the tip is to visit in turn, from above and from the side, in the frame of the base and on one scale; ' +
-      'the target moves between them on straight lines. The first move goes from the centre of the workspace to its edge, the second across it, ' +
-      'and each further one is shorter than that before. Numbers that would cover each other are left out; the table has them all.',
+      'The points that the tip has to visit one after the other, from above and from the side, in the frame of the base and on one scale. ' +
+      'The target moves between them on straight lines. The first move goes from the centre of the workspace to its edge, the second move goes across it, ' +
+      'and each further move is shorter than the one before. Numbers that would cover each other are left out. The table has all points.',
     height: 340,
     choices: usable.length > 1 ? [make_case_choice(shown)] : undefined,
     draw: (look, picked) => {

@@ -1,4 +1,5 @@
-// The design variables of each generation's best: where the optimizer searches, and when it settles.
+// The design variables of the best design of each generation. They show where the optimizer
+// searches and when it settles.
 import { get_series_style, type Look } from '../charts/look';
 import { make_number_axis, make_panel_title, make_panels, make_curve_plot } from '../charts/marks';
 import { shorten } from '../charts/names';
@@ -16,7 +17,8 @@ interface Group {
 const kPanelsWithoutGroups = 6;
 const kColumns = 2;
 
-// The joint: "joint_2" of "joint_2.p". Variables without such names come in handfuls.
+// Groups variables by joint: "joint_2.p" belongs to "joint_2". Variables without such names are
+// grouped in small numbers.
 export function group_variables(variables: VariableHistory[]): Group[] {
   const groups: Group[] = [];
   variables.forEach((variable) => {
@@ -40,8 +42,8 @@ function name_group(group: Group): string {
   return group.members.length === 1 ? first : `${first} to ${shorten(group.members[group.members.length - 1].name, 18)}`;
 }
 
-// On a logarithmic axis: 1, or -1 for what is negative throughout, whose magnitude is drawn; 0 for a
-// linear axis.
+// Returns 1 for a logarithmic axis, and -1 for a logarithmic axis of the magnitudes of negative
+// values. Returns 0 for a linear axis.
 export function get_log_sign(variable: VariableHistory): number {
   if (!variable.logarithmic) {
     return 0;
@@ -126,10 +128,10 @@ export function make_variables_figure(data: RunData): Figure | null {
     id: 'variables',
     title: 'Design variables during training',
     caption:
-      `The value of the best design of each ${unit === 'generation' ? 'generation' : 'block of evaluations'} (line), and between which values ` +
-      `half of all its designs lie (band). Dashed: the bounds; dotted: where the search started; diamond: the winner. ` +
-      `A minus sign before a name says that the variable is negative and its magnitude drawn. ` +
-      `A band that narrows shows a variable that the optimizer has settled on; a line along a bound, one that wants to go further.`,
+      `The value of the best design of each ${unit === 'generation' ? 'generation' : 'block of evaluations'} (line), and the range of the ` +
+      `middle half of all its designs (band). The dashed lines are the bounds, the dotted line is the start of the search, and the diamond is the winner. ` +
+      `A minus sign before a name means that the variable is negative and its magnitude is drawn. ` +
+      `If the band becomes narrow, the optimizer has found the value of the variable. If the line runs along a bound, a better value may be beyond it.`,
     width: 'full',
     height,
     choices: groups.length > 1 ? [choice] : undefined,

@@ -1,5 +1,5 @@
 // The figures without a browser: functions that the program calls (src/report/page/plotter.cpp).
-// All arguments and results are strings.
+// All their arguments and results are strings.
 import './polyfills';
 import { draw_svg, get_initial_picks, get_paper_size } from '../charts/svg';
 import { kDark, kLight } from '../charts/look';
@@ -33,7 +33,7 @@ function get_picks(figure: Figure, picks: string): Picked {
 }
 
 const api = {
-  // Takes the data; returns a list of {id, kind, tab, title, thesis, choices} as JSON.
+  // Takes the data. Returns a list of {id, kind, tab, title, thesis, choices} as JSON.
   load(text: string): string {
     entries = [];
     make_page(JSON.parse(text) as PageData).tabs.forEach((tab) => {
@@ -54,7 +54,7 @@ const api = {
       })),
     );
   },
-  // A width or height of 0 is the figure's own.
+  // If width or height is 0, the size of the figure itself is used.
   draw(id: string, theme: string, width: string, height: string, picks: string): string {
     const figure = find(id);
     if (figure.kind !== 'figure') {

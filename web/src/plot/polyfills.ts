@@ -1,5 +1,5 @@
-// What the figures expect of their surroundings and Duktape 2.7 lacks: parts of the language newer than
-// ES5, by core-js, and what only browsers have, as far as ECharts asks for it.
+// Functions that the figures need and Duktape 2.7 lacks: parts of the language newer than ES5, from
+// core-js, and functions of browsers, as far as ECharts uses them.
 import 'core-js/es/array/fill';
 import 'core-js/es/array/find';
 import 'core-js/es/array/find-index';
@@ -20,7 +20,7 @@ import 'core-js/es/typed-array/methods';
 const world = globalThis as unknown as Record<string, unknown>;
 world.global = world;
 world.self = world;
-// Nothing happens later here: a figure is drawn in one go.
+// A figure is drawn in one call, so timers never run.
 world.setTimeout = () => 0;
 world.clearTimeout = () => undefined;
 world.console = { log() {}, warn() {}, error() {} };

@@ -1,9 +1,9 @@
-// Where the arm's bodies are for given joint positions, as src/sim/kinematics.hpp has it:
+// Computes where the bodies of the arm are for given joint positions, as src/sim/kinematics does:
 //   T_i = T_(i-1) origin_i Rot(axis_i, q_i) or T_(i-1) origin_i Trans(q_i axis_i).
-// Nothing of the DOM, so that it can be tested without a browser.
+// This file does not use the DOM, so it can be tested without a browser.
 import type { Pose, Robot } from '../data';
 
-// A rigid motion as the three rows of (R | t).
+// A rigid motion, as the three rows of (R | t).
 export type Frame = number[];
 
 export const kIdentity: Frame = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0];
@@ -60,7 +60,8 @@ export function make_chain(robot: Robot): Chain {
   return { robot, origins: robot.joints.map((joint) => make_frame(joint.origin)), tip: make_frame(robot.tip) };
 }
 
-// One frame a body in the world: the base's first. `first` is where the positions begin in `q`.
+// Returns one frame per body in the world, the base first. `first` is the index in `q` of the first
+// joint's position.
 export function calc_frames(chain: Chain, q: ArrayLike<number>, first = 0): Frame[] {
   const frames: Frame[] = [kIdentity];
   chain.robot.joints.forEach((joint, i) => {

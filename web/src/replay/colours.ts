@@ -1,5 +1,5 @@
-// Colours of errors: a logarithmic scale, ordered by lightness alone, so that it reads without
-// telling hues apart; the larger the error, the further from the background. Nothing of the DOM.
+// The colours of errors: a logarithmic scale ordered by lightness alone, so that readers need not
+// distinguish hues. A larger error is further from the background. This file does not use the DOM.
 export type Rgb = [number, number, number]; // each 0 to 1
 
 export interface ColourScale {
@@ -21,11 +21,12 @@ const kOnDark: Rgb[] = [
   [1, 0.92, 0.5],
 ];
 
-const kLeast_m = 1e-5; // what is below is the least
-const kMost_m = 1; // what is above is the most: an arm that runs away must not hide what others do
+const kLeast_m = 1e-5; // smaller errors have the colour of this one
+const kMost_m = 1; // larger errors have the colour of this one, so that an arm that runs away does not hide the others
 const kMostDecades = 4;
 
-// Whole decades around the errors, at most four, as the least ones matter least.
+// Returns a scale of whole decades around the errors. It has at most four decades, because the
+// smallest errors matter least.
 export function make_colour_scale(errors_m: ArrayLike<number>[], theme: 'light' | 'dark'): ColourScale {
   let least = Infinity;
   let most = 0;
@@ -46,7 +47,7 @@ export function make_colour_scale(errors_m: ArrayLike<number>[], theme: 'light' 
   return { lower_m: Math.pow(10, bottom), upper_m: Math.pow(10, top), stops };
 }
 
-// 0 at the lower end, 1 at the upper one and above.
+// Returns 0 at the lower end, and 1 at the upper end and above.
 export function find_share(scale: ColourScale, error_m: number): number {
   if (!(error_m > scale.lower_m)) {
     return 0;
@@ -67,7 +68,7 @@ export function to_css(colour: Rgb): string {
   return `rgb(${colour.map((part) => Math.round(255 * part)).join(', ')})`;
 }
 
-// The decades of the scale, in m.
+// Returns the decades of the scale, in m.
 export function list_decades(scale: ColourScale): number[] {
   const decades: number[] = [];
   for (let value = scale.lower_m; value < scale.upper_m * 1.001; value *= 10) {

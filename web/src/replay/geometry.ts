@@ -1,5 +1,5 @@
-// The robot's bodies as geometries: all shapes of a body in one, with their colours at the corners,
-// so that a body takes one call to draw.
+// Makes the geometries of the bodies of a robot. All shapes of a body are one geometry, with their
+// colours at the corners, so that drawing a body takes one call.
 import {
   BoxGeometry,
   BufferAttribute,
@@ -24,7 +24,7 @@ function make_mesh_geometry(mesh: Mesh, scale: [number, number, number]): Buffer
   geometry.setAttribute('position', new BufferAttribute(unpack(mesh.positions), 3));
   geometry.setIndex(new BufferAttribute(unpack_indices(mesh.indices), 1));
   geometry.scale(scale[0], scale[1], scale[2]);
-  const flat = geometry.toNonIndexed(); // no corner is shared, so that each triangle has its own normal
+  const flat = geometry.toNonIndexed(); // triangles share no corners, so each has its own normal
   flat.computeVertexNormals();
   geometry.dispose();
   return flat;
@@ -36,7 +36,7 @@ function make_shape_geometry(shape: Shape, meshes: Mesh[]): BufferGeometry | nul
     case 'box':
       return new BoxGeometry(a, b, c);
     case 'cylinder':
-      return new CylinderGeometry(a, a, b, 28).rotateX(Math.PI / 2); // along y there, along z here
+      return new CylinderGeometry(a, a, b, 28).rotateX(Math.PI / 2); // its axis is y there and z here
     case 'sphere':
       return new SphereGeometry(a, 20, 12);
     case 'mesh':
@@ -73,7 +73,7 @@ function join(parts: { geometry: BufferGeometry; rgba: number[] }[]): BufferGeom
   return joined;
 }
 
-// One a body, in its frame.
+// Returns one geometry per body, in the frame of the body.
 export function make_bodies(robot: Robot): BufferGeometry[] {
   const matrix = new Matrix4();
   return robot.bodies.map((body) => {

@@ -1,4 +1,4 @@
-// The numbers beside the view, and what its colours mean.
+// The numbers beside the view, and the meaning of its colours.
 import { make } from '../app/dom';
 import { format_number, kDegrees, kMillimetres } from '../numbers';
 import { list_decades, to_css, type ColourScale } from './colours';

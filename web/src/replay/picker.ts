@@ -1,4 +1,4 @@
-// A labelled list to choose from whose entries change with other choices.
+// A labelled list of choices. Its entries change with other choices.
 import { make } from '../app/dom';
 
 export interface Option {
@@ -19,7 +19,7 @@ export class Picker {
     return this.select.value;
   }
 
-  // A list with nothing to choose from is not shown.
+  // A list with fewer than two choices is not shown.
   set(options: Option[], value: string): void {
     this.select.replaceChildren(...options.map((option) => make('option', { value: option.value }, option.label)));
     this.select.value = value;

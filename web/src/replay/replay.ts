@@ -1,5 +1,5 @@
-// The replay: an arm that follows a test case's target, beside a second design if wanted, with its
-// error over time. It draws when something has changed and rests otherwise.
+// The replay: an arm that follows the target of a test case, with its error over time, and a second
+// design beside it if wanted. It draws only after a change.
 import { make, make_button } from '../app/dom';
 import type { Look } from '../charts/look';
 import type { ReplayCase, ReplaySet, Robot } from '../data';
@@ -17,32 +17,32 @@ export interface ReplayState {
   set: string;
   case: string;
   design: string; // "" if the case has no motion
-  ghost: string; // "" for none
+  ghost: string; // "" if there is no ghost
   time_s: number;
   step: number; // control periods since the start
   playing: boolean;
   frames: number; // drawn so far
-  last_frame_ms: number; // that the last one took
+  last_frame_ms: number; // duration of the last frame
   graphics: 'webgl' | 'lines';
 }
 
 export interface ReplayView {
-  set_time(time_s: number): void; // of the case shown, within it; calls no on_time
-  choose(set: string, case_id: string): void; // nothing happens if there is none such
+  set_time(time_s: number): void; // within the case that is shown; does not call on_time
+  choose(set: string, case_id: string): void; // does nothing if the set or case does not exist
   set_look(look: Look): void;
   dispose(): void;
   readonly state: ReplayState;
 }
 
 export interface ReplayEvents {
-  // The reader, or playing, has changed the time or the case.
+  // Called when the reader, or playing, has changed the time or the case.
   on_time?(set: string, case_id: string, time_s: number): void;
 }
 
 const kSpeeds = ['0.1', '0.25', '0.5', '1', '2', '4'];
-const kLongestFrame_s = 0.25; // a page that was in the background goes on where it was
+const kLongestFrame_s = 0.25; // a page that was in the background continues where it was
 const kSlowFrame_ms = 30;
-const kSlowFrames = 12; // so many in a row before the picture gets coarser
+const kSlowFrames = 12; // after so many slow frames in a row the picture gets coarser
 
 function make_stage(on_change: () => void): Stage {
   try {
@@ -76,7 +76,7 @@ class Replay implements ReplayView {
   private track: Track | null = null;
   private ghost: Track | null = null;
   private scale: ColourScale;
-  private request = 0; // of a frame; 0 if none is due
+  private request = 0; // number of the requested frame; 0 if none is requested
   private last_tick_ms = 0;
   private slow_frames = 0;
   private is_slow = false;
@@ -149,7 +149,7 @@ class Replay implements ReplayView {
       '1',
     );
     const traces: { value: TraceChoice; label: string }[] = [
-      { value: 'past', label: 'so far, earlier moves faint' },
+      { value: 'past', label: 'until now, with earlier moves faint' },
       { value: 'move', label: 'of this move' },
       { value: 'whole', label: 'of the whole motion' },
     ];
@@ -184,9 +184,9 @@ class Replay implements ReplayView {
       make(
         'p',
         { class: 'replay-hint' },
-        'Below the arm: the error over the whole test case, with what is measured shaded; click into it to go there. ' +
-          'Space plays and pauses, arrow keys step (with Shift by ten), Home and End go to the ends; ' +
-          'drag to turn the view, wheel to zoom, right button to move it.',
+        'The strip below the arm shows the error over the whole test case. In shaded times the error is measured. Click into the strip to go to a time. ' +
+          'The space bar plays and pauses, the arrow keys step (ten steps with Shift), and Home and End go to the ends. ' +
+          'Drag to turn the view, use the wheel to zoom and the right button to move the view.',
       ),
     );
   }
@@ -204,7 +204,7 @@ class Replay implements ReplayView {
     this.tell();
   }
 
-  // A design is not its own ghost.
+  // A design cannot be its own ghost.
   private pick_designs(design: string, ghost: string): void {
     const before = this.state.design;
     this.state.design = design;
@@ -239,7 +239,7 @@ class Replay implements ReplayView {
     this.apply();
   }
 
-  // Everything that does not change with the time.
+  // Updates everything that does not change with the time.
   private apply(): void {
     const { scenario, state, look } = this;
     if (scenario === null) {
@@ -319,7 +319,7 @@ class Replay implements ReplayView {
     switch (event.key) {
       case ' ':
         if (is_button) {
-          return; // presses it
+          return; // the space bar presses this element
         }
         this.set_playing(!this.state.playing);
         break;
@@ -379,7 +379,7 @@ class Replay implements ReplayView {
   private draw(): void {
     const { scenario, state, track, ghost } = this;
     if (scenario === null || this.root.clientWidth === 0) {
-      return; // in a tab that is not open
+      return; // the replay is in a tab that is not open
     }
     const begin_ms = performance.now();
     const moment = state.time_s / scenario.period_s;

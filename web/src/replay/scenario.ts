@@ -1,5 +1,5 @@
-// A test case made ready to be shown: its packed numbers unpacked, the tips' paths followed.
-// Nothing of the DOM.
+// A test case that is ready to be shown: its packed numbers are unpacked, and the paths of the tips
+// are computed. This file does not use the DOM.
 import type { Motion, ReplayCase, ReplaySet, Robot } from '../data';
 import { unpack } from '../numbers';
 import { calc_tip, make_chain, type Chain } from './chain';
@@ -7,19 +7,19 @@ import { clamp, interpolate_row } from './timeline';
 
 export interface Track {
   motion: Motion;
-  name: string; // of the design
-  count: number; // rows
+  name: string; // name of the design
+  count: number; // number of rows
   q: Float32Array;
-  errors_m: Float32Array; // one a moment: the start's first
-  tip_m: Float32Array; // 3 a moment
+  errors_m: Float32Array; // one per moment; the first is that of the start
+  tip_m: Float32Array; // 3 per moment
 }
 
 export interface Scenario {
   replay: ReplayCase;
   chain: Chain;
   period_s: number;
-  moments: number; // the last one
-  target_m: Float32Array; // 3 a row
+  moments: number; // index of the last moment
+  target_m: Float32Array; // 3 per row
   tracks: Track[];
 }
 
@@ -62,7 +62,7 @@ export function find_target(scenario: Scenario, moment: number): [number, number
   return [x, y, z];
 }
 
-// Nothing beyond where the motion ended.
+// Returns the error at a moment, or null after the end of the motion.
 export function find_error(track: Track, moment: number): number | null {
   return moment > track.count ? null : track.errors_m[clamp(moment, 0, track.count)];
 }

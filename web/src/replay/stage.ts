@@ -1,4 +1,5 @@
-// What draws the arm: in three dimensions where the browser can, else from the side.
+// The interface of the parts that draw the arm: in three dimensions if the browser can, otherwise
+// from the side.
 import type { Look } from '../charts/look';
 import type { ColourScale } from './colours';
 import type { Scenario, Track } from './scenario';
@@ -6,7 +7,7 @@ import type { Scenario, Track } from './scenario';
 export type TraceChoice = 'past' | 'move' | 'whole';
 export type ViewChoice = 'perspective' | 'side' | 'front';
 
-// What stays while the time goes on.
+// The data that do not change with the time.
 export interface Setting {
   scenario: Scenario;
   track: Track | null;
@@ -15,9 +16,9 @@ export interface Setting {
   look: Look;
 }
 
-// What a moment looks like.
+// The data of one moment.
 export interface Snapshot {
-  moment: number; // with a fraction
+  moment: number; // may have a fraction
   q: number[];
   ghost_q: number[] | null;
   target_m: [number, number, number];
@@ -34,9 +35,9 @@ export interface Stage {
   dispose(): void;
 }
 
-export const kGhost = '#1f9e77'; // on light and dark ground; neither errors nor arms have it
+export const kGhost = '#1f9e77'; // visible on light and dark ground; errors and arms never have this colour
 
-// Of the moments of a trace, which to draw faintly and which fully: [first, last] each.
+// Returns the moments of a trace to draw faintly and those to draw fully, as [first, last] each.
 export function find_trace_parts(setting: Setting, count: number, snapshot: Snapshot): { past: [number, number]; now: [number, number] } {
   const last = Math.min(count, Math.floor(snapshot.moment));
   const segment = setting.scenario.replay.segments[snapshot.segment];

@@ -1,4 +1,4 @@
-// The arm seen from the side or the front, in lines: for browsers without WebGL.
+// Draws the arm from the side or the front, in lines, for browsers without WebGL.
 import { make } from '../app/dom';
 import { calc_frames, find_position, multiply } from './chain';
 import { find_colour, to_css } from './colours';
@@ -15,7 +15,7 @@ export class Stage2d implements Stage {
   private place: (point: Point) => [number, number] = () => [0, 0];
 
   constructor(private readonly on_change: () => void) {
-    const message = 'This browser shows no 3D graphics (WebGL): the arm is drawn in lines, from the side or the front.';
+    const message = 'This browser has no 3D graphics (WebGL), so the arm is drawn in lines, from the side or from the front.';
     this.element = make('div', { class: 'replay-stage' }, this.canvas, make('p', { class: 'replay-message' }, message));
   }
 

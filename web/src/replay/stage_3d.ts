@@ -1,5 +1,5 @@
-// The arm in three dimensions. Nothing is drawn but when asked: the view tells through `on_change`
-// when the reader has moved the camera.
+// Draws the arm in three dimensions. It draws only on request. It calls `on_change` when the reader
+// has moved the camera.
 import {
   Box3,
   BufferGeometry,
@@ -27,16 +27,17 @@ import { Trace } from './trace';
 
 const kDirections: Record<ViewChoice, [number, number, number]> = {
   perspective: [1, -1.35, 0.62],
-  side: [0, -1, 0.02], // the arm to the right, as in the source's Fig. 6.2
+  side: [0, -1, 0.02], // the arm points to the right, as in Fig. 6.2 of the thesis
   front: [1, 0, 0.02],
 };
 
-const kMovingShare = 0.7; // of the pixels in each direction, while a processor draws a picture that moves
+const kMovingShare = 0.7; // share of the pixels in each direction while the processor draws a moving picture
 const kSharpAfter_ms = 250;
 
-const kFilling = 0.8; // the ball around the arm and its points is never full
+const kFilling = 0.8; // share of the picture that the ball around the arm and its points fills
 
-// Whether the processor has to draw: then edges stay unsmoothed, which costs it a third of its time.
+// Returns whether the processor draws. Then edges are not smoothed, because that takes a third of
+// the time.
 function is_drawn_by_processor(): boolean {
   const context = document.createElement('canvas').getContext('webgl2');
   const names = context?.getExtension('WEBGL_debug_renderer_info') ?? null;
@@ -77,7 +78,7 @@ class Arm {
   }
 }
 
-// The largest distance from the base that the test case and the arm's start need.
+// Returns the box around the base, the points of the test case and the start of the arm.
 function find_extent(setting: Setting): Box3 {
   const { chain, replay } = setting.scenario;
   const box = new Box3().expandByPoint(new Vector3(0, 0, 0));
@@ -102,7 +103,7 @@ export class Stage3d implements Stage {
   private readonly by_processor: boolean;
   private size = { width: 1, height: 1 };
   private pixel_ratio = 1;
-  private sharpening = 0; // the timer's number
+  private sharpening = 0; // number of the timer
   private setting: Setting | null = null;
   private extent = new Sphere(new Vector3(0, 0, 1), 1.5);
   private view: ViewChoice = 'perspective';
@@ -112,7 +113,7 @@ export class Stage3d implements Stage {
   private ghost: Arm | null = null;
   private traces: { main: Trace | null; ghost: Trace | null } = { main: null, ghost: null };
 
-  // Throws if there is no WebGL.
+  // Throws if WebGL is not available.
   constructor(private readonly on_change: () => void) {
     this.by_processor = is_drawn_by_processor();
     const options = { antialias: !this.by_processor, alpha: false, preserveDrawingBuffer: true };
@@ -174,7 +175,8 @@ export class Stage3d implements Stage {
     this.place_label(replay.points_m[snapshot.segment + 1], snapshot.segment + 1);
   }
 
-  // What moves need not be sharp where every pixel costs the processor time; what rests is.
+  // A moving picture may be coarse if the processor must draw every pixel. A picture at rest is
+  // sharp.
   private render(): void {
     if (this.by_processor) {
       clearTimeout(this.sharpening);
@@ -226,7 +228,7 @@ export class Stage3d implements Stage {
     this.clear_moving();
     this.geometries.bodies.forEach((geometry) => geometry.dispose());
     this.renderer.dispose();
-    this.renderer.forceContextLoss(); // browsers allow few contexts at once
+    this.renderer.forceContextLoss(); // browsers allow only few contexts at the same time
     this.element.remove();
   }
 
@@ -248,7 +250,7 @@ export class Stage3d implements Stage {
     }
     const { bodies } = this.geometries;
     this.arm = new Arm(bodies, new MeshLambertMaterial({ vertexColors: true }));
-    // Where both arms are in one place, the solid one is seen.
+    // If both arms are in the same place, the solid one must be visible.
     const pale = { color: kGhost, transparent: true, opacity: 0.38, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 4 };
     this.ghost = ghost === null ? null : new Arm(bodies, new MeshLambertMaterial(pale));
     for (const arm of [this.arm, this.ghost]) {

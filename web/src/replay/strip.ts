@@ -1,5 +1,5 @@
-// The error over the time of the whole test case, under the view: where things happen, and a way to
-// get there.
+// The error over the time of the whole test case, under the view. It shows where something happens,
+// and a click goes to that time.
 import { make } from '../app/dom';
 import type { Look } from '../charts/look';
 import { format_number } from '../numbers';
@@ -80,7 +80,8 @@ export class Strip {
     return kHeight - kBottom - find_share(scale, error_m) * (kHeight - kTop - kBottom);
   }
 
-  // What is measured is shaded; a line where the next point begins.
+  // Shades the times at which errors are measured. A line shows where the move to the next point
+  // begins.
   private draw_segments(context: CanvasRenderingContext2D, scenario: Scenario, look: Look): void {
     for (const segment of scenario.replay.segments) {
       const begin = this.find_x(segment.first_step);
@@ -120,7 +121,7 @@ export class Strip {
     }
   }
 
-  // Where many moments share a pixel, the largest and the least of them are drawn.
+  // If many moments share a pixel, draws the smallest and the largest of their errors.
   private draw_errors(
     context: CanvasRenderingContext2D,
     track: Track,

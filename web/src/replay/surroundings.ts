@@ -1,5 +1,5 @@
-// What stands still around the arm: the ground with its metres, the path through the test case's
-// points.
+// The objects around the arm that do not move: the ground with its metres, and the path through the
+// points of the test case.
 import {
   BufferGeometry,
   CanvasTexture,
@@ -24,7 +24,7 @@ import type { Look } from '../charts/look';
 
 export const kCell_m = 0.5;
 
-// Frees what an object and those below it hold on the graphics card.
+// Frees the memory on the graphics card of an object and its children.
 export function release(root: Object3D): void {
   root.traverse((object) => {
     const holder = object as Partial<{ geometry: BufferGeometry; material: Material & { map?: Texture | null } }>;
@@ -60,7 +60,8 @@ function make_label(text: string, look: Look): Sprite {
   return sprite;
 }
 
-// Squares of half a metre around the base, as far as the arm reaches; whole metres stand out.
+// Returns squares of half a metre around the base, as far as the arm reaches. Lines at whole metres
+// are stronger.
 export function make_ground(look: Look, reach_m: number): Group {
   const group = new Group();
   const cells = Math.max(2, Math.ceil(reach_m / (2 * kCell_m)) * 2);
@@ -81,7 +82,7 @@ export function make_ground(look: Look, reach_m: number): Group {
   return group;
 }
 
-// The points of the trajectory, the one on the way to which the target is standing out.
+// The points of the trajectory. The point to which the target moves is emphasised.
 export class Points {
   readonly group = new Group();
   private readonly dots: InstancedMesh;
@@ -121,7 +122,7 @@ export class Points {
   }
 }
 
-// Seen through the arm, which is where it is most of the time.
+// The target is drawn through the arm, because most of the time it is inside the arm.
 export function make_target(look: Look): Mesh {
   const material = new MeshBasicMaterial({ color: look.text, depthTest: false, transparent: true });
   const target = new Mesh(new SphereGeometry(0.02, 16, 10), material);

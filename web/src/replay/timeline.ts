@@ -1,18 +1,20 @@
-// From the time of the replay to what there is to show. A moment is counted in control periods from
-// the start: at 0 nothing has moved, at k > 0 the arm is in the state of row k - 1, which is that at
-// the end of its control period. Nothing of the DOM.
+// Converts the time of the replay to moments. A moment is a number of control periods since the
+// start. At moment 0 nothing has moved. At moment k > 0 the arm is in the state of row k - 1, which
+// is the state at the end of control period k - 1. This file does not use the DOM.
 import type { Motion, ReplayCase, Segment } from '../data';
 
 export function clamp(value: number, lower: number, upper: number): number {
   return Math.min(upper, Math.max(lower, value));
 }
 
-// The last whole moment at this time. Times are sums of periods: what is just short of one is it.
+// Returns the last whole moment at this time. Times are sums of periods, so a time just before a
+// moment counts as that moment.
 export function find_moment(time_s: number, period_s: number, moments: number): number {
   return clamp(Math.floor(time_s / period_s + 1e-6), 0, moments);
 }
 
-// Index of the segment under way at this moment; at a segment's last moment it is still that one.
+// Returns the index of the segment at this moment. The last moment of a segment still belongs to
+// it.
 export function find_segment(segments: Segment[], moment: number): number {
   let low = 0;
   let high = segments.length - 1;
@@ -27,17 +29,18 @@ export function find_segment(segments: Segment[], moment: number): number {
   return Math.max(0, low);
 }
 
-// The moment at which the segment begins.
+// Returns the moment at which the segment begins.
 export function find_previous_point(segments: Segment[], moment: number): number {
   const here = find_segment(segments, moment);
   if (segments.length === 0) {
     return 0;
   }
-  // Back from a segment's beginning means to the one before it.
+  // At the beginning of a segment, go back to the segment before it.
   return segments[here].first_step;
 }
 
-// The moment at which the segment under way ends; at its end, that at which the following one does.
+// Returns the moment at which the current segment ends. At this moment itself, returns the end of
+// the next segment.
 export function find_next_point(segments: Segment[], moment: number, moments: number): number {
   for (const segment of segments) {
     const end = segment.first_step + segment.steps;
@@ -52,7 +55,8 @@ export function is_measured(segment: Segment, moment: number): boolean {
   return moment - 1 >= segment.first_step + segment.window_start && moment - 1 < segment.first_step + segment.steps;
 }
 
-// Joint positions at a time, between the rows along a straight line; beyond the motion's end its last.
+// Returns the joint positions at a moment, interpolated linearly between rows. After the end of the
+// motion, returns the last row.
 export function interpolate_row(rows: ArrayLike<number>, width: number, count: number, start: ArrayLike<number>, moment: number): number[] {
   const place = clamp(moment, 0, count);
   const whole = Math.floor(place);
@@ -66,7 +70,8 @@ export function interpolate_row(rows: ArrayLike<number>, width: number, count: n
   return values;
 }
 
-// "" while the motion goes on; a sentence once it has ended before the test case has.
+// Returns "" during the motion. If the motion ends before the test case, returns a sentence that
+// says so.
 export function describe_end(motion: Motion, replay: ReplayCase, moment: number, period_s: number): string {
   if (motion.steps >= replay.steps || moment < motion.steps) {
     return '';

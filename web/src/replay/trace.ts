@@ -1,6 +1,6 @@
-// The path of a tip, coloured by its error. Its numbers go to the graphics card once a test case;
-// as the time goes on only the range to draw changes. Earlier moves are thin and pale, as wide lines
-// take long where the processor draws them.
+// The path of a tip, coloured by its error. Its numbers are sent to the graphics card once per test
+// case; later only the drawn range changes. Earlier moves are thin and pale, because wide lines
+// take long if the processor draws them.
 import {
   BufferAttribute,
   BufferGeometry,
@@ -18,9 +18,9 @@ import { LineGeometry } from 'three/addons/lines/LineGeometry.js';
 import { LineMaterial } from 'three/addons/lines/LineMaterial.js';
 import type { Rgb } from './colours';
 
-const kFaint = 0.4; // so far towards the background
+const kFaint = 0.4; // share of the background colour
 
-// Each piece has both its ends: the i-th goes from moment i to i + 1.
+// Each piece has both its ends: piece i goes from moment i to i + 1.
 function make_pieces(values: ArrayLike<number>, moments: number): InstancedInterleavedBuffer {
   const pieces = new Float32Array(6 * Math.max(0, moments - 1));
   for (let i = 0; i + 1 < moments; ++i) {
@@ -44,7 +44,7 @@ export class Trace {
   private readonly now: Line2;
   private first = -1;
 
-  // `tip_m` has 3 numbers a moment, `colour` gives each moment's.
+  // `tip_m` has 3 numbers per moment. `colour` gives the colour of each moment.
   constructor(tip_m: Float32Array, colour: (moment: number) => Rgb, width: number, background: string) {
     const moments = tip_m.length / 3;
     const colours = new Float32Array(3 * moments);
@@ -62,13 +62,14 @@ export class Trace {
     geometry.setAttribute('position', new BufferAttribute(tip_m, 3));
     geometry.setAttribute('color', new BufferAttribute(faint, 3));
     this.past = new Line(geometry, new LineBasicMaterial({ vertexColors: true }));
-    this.past.frustumCulled = false; // an arm that runs away has no extent worth asking for
+    this.past.frustumCulled = false; // an arm that runs away has no useful extent
 
-    // The move under way is seen through the arm and its load, which else hide the tip.
+    // The current move is drawn through the arm and its load, which otherwise hide the tip.
     const material = new LineMaterial({ linewidth: width, vertexColors: true, transparent: true, depthTest: false });
     this.now = new Line2(new LineGeometry(), material);
     this.now.renderOrder = 1;
-    // A range that begins later seems to go beyond the numbers' end, so its extent is not for three to find.
+    // A range that begins later seems to go beyond the end of the numbers, so three must not
+    // compute its extent.
     this.now.frustumCulled = false;
     this.now.geometry.boundingSphere = new Sphere(new Vector3(0, 0, 1), 5);
     this.group.add(this.past, this.now);
