@@ -29,12 +29,6 @@ std::string cell_xml() {
   return read_file(kCell, 1 << 20);
 }
 
-std::string replace(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return text.replace(at, from.size(), to);
-}
-
 RobotModel load_cell(const std::string& base = "base_link", const std::string& tip = "tool0") {
   return load_urdf(kCell, {.base = base, .tip = tip});
 }
