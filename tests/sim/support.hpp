@@ -30,12 +30,4 @@ inline std::string usage_message(const std::function<void()>& action) {
   return "(no error)";
 }
 
-// Returns `text` with the only place where `from` stands replaced by `to`.
-inline std::string replace(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  EXPECT_EQ(text.find(from, at + 1), std::string::npos) << from << " stands twice";
-  return text.replace(at, from.size(), to);
-}
-
 }  // namespace armwright

@@ -29,6 +29,13 @@ std::string cell_xml() {
   return read_file(kCell, 1 << 20);
 }
 
+// Returns `text` with the first `from` replaced by `to`.
+std::string replace_first(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
 RobotModel load_cell(const std::string& base = "base_link", const std::string& tip = "tool0") {
   return load_urdf(kCell, {.base = base, .tip = tip});
 }
@@ -74,17 +81,18 @@ TEST(UrdfChain, TakesLimitsOfZeroForNone) {
 // below 1.
 TEST(UrdfChain, HoldsJointsWhereAFixedOneWouldBe) {
   std::string xml = cell_xml();
-  xml =
-      replace(xml, "name=\"cable_joint\" type=\"revolute\"", "name=\"cable_joint\" type=\"fixed\"");
-  xml = replace(xml, "<child link=\"cable\"/>\n    <origin xyz=\"0.3 0 0.05\" rpy=\"0.1 0 0\"/>",
-                "<child link=\"turned\"/>\n    <origin xyz=\"0.3 0 0.05\" rpy=\"0.1 0 0\"/>");
-  xml = replace(xml, "<link name=\"cable\">",
-                "<link name=\"turned\"/><joint name=\"at_its_end\" type=\"fixed\"><parent "
-                "link=\"turned\"/><child link=\"cable\"/><origin rpy=\"0 0.4 0\"/></joint>"
-                "<link name=\"cable\">");
+  xml = replace_first(xml, "name=\"cable_joint\" type=\"revolute\"",
+                      "name=\"cable_joint\" type=\"fixed\"");
+  xml = replace_first(xml,
+                      "<child link=\"cable\"/>\n    <origin xyz=\"0.3 0 0.05\" rpy=\"0.1 0 0\"/>",
+                      "<child link=\"turned\"/>\n    <origin xyz=\"0.3 0 0.05\" rpy=\"0.1 0 0\"/>");
+  xml = replace_first(xml, "<link name=\"cable\">",
+                      "<link name=\"turned\"/><joint name=\"at_its_end\" type=\"fixed\"><parent "
+                      "link=\"turned\"/><child link=\"cable\"/><origin rpy=\"0 0.4 0\"/></joint>"
+                      "<link name=\"cable\">");
   for (const std::string jaw : {"left", "right"}) {
-    xml = replace(xml, "name=\"" + jaw + "_jaw_joint\" type=\"prismatic\"",
-                  "name=\"" + jaw + "_jaw_joint\" type=\"fixed\"");
+    xml = replace_first(xml, "name=\"" + jaw + "_jaw_joint\" type=\"prismatic\"",
+                        "name=\"" + jaw + "_jaw_joint\" type=\"fixed\"");
   }
   const RobotModel fixed = parse_urdf(xml, "fixed.urdf", {.base = "base_link", .tip = "tool0"});
   const RobotModel held = load_cell();
@@ -269,7 +277,7 @@ TEST_P(UrdfCellTrap, IsRefusedWithLineAndReason) {
   const CellTrap& trap = GetParam();
   std::string message = "no error";
   try {
-    parse_urdf(replace(cell_xml(), trap.from, trap.to), "cell.urdf",
+    parse_urdf(replace_first(cell_xml(), trap.from, trap.to), "cell.urdf",
                {.base = "base_link", .tip = trap.tip});
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::bad_data);

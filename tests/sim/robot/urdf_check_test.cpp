@@ -10,7 +10,6 @@
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "sim/robot/robot_model.hpp"
-#include "sim/support.hpp"
 
 namespace armwright {
 namespace {
@@ -23,6 +22,14 @@ const std::filesystem::path kValidFile =
 
 std::string valid_xml() {
   return read_file(kValidFile, 1 << 20);
+}
+
+// Returns `text` with the only place where `from` stands replaced by `to`.
+std::string replace(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  EXPECT_EQ(text.find(from, at + 1), std::string::npos) << from << " stands twice";
+  return text.replace(at, from.size(), to);
 }
 
 std::string message_of(const std::string& xml) {
