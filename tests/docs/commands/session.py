@@ -75,10 +75,14 @@ class Session:
             "CMAKE_PREFIX_PATH": os.environ.get("ARMWRIGHT_PREFIX", "")}
 
     def link(self, path):
-        """Something of the repository, where a clone has it."""
+        """Makes a link to a part of the repository, at the place where a clone has it. What the pages name build/release is the build of the
+        tested program, whatever its preset."""
         place = self.work / path
         place.parent.mkdir(parents=True, exist_ok=True)
-        place.symlink_to(self.sources / path)
+        release = pathlib.PurePath("build/release")
+        inside = pathlib.PurePath(path)
+        is_built = inside.is_relative_to(release)
+        place.symlink_to(self.program.parent.parent / inside.relative_to(release) if is_built else self.sources / path)
 
     def run(self, command):
         """What becomes of a command, where the last one left off."""
