@@ -77,12 +77,12 @@ class Session:
     def link(self, path):
         """Makes a link to a part of the repository, at the place where a clone has it. What the pages name build/release is the build of the
         tested program, whatever its preset."""
+        target = self.sources / path
+        if path == "build":
+            path, target = "build/release", self.program.parent.parent
         place = self.work / path
         place.parent.mkdir(parents=True, exist_ok=True)
-        release = pathlib.PurePath("build/release")
-        inside = pathlib.PurePath(path)
-        is_built = inside.is_relative_to(release)
-        place.symlink_to(self.program.parent.parent / inside.relative_to(release) if is_built else self.sources / path)
+        place.symlink_to(target)
 
     def run(self, command):
         """What becomes of a command, where the last one left off."""
