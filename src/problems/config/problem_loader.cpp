@@ -124,7 +124,7 @@ void settle_path(LoadedProblem& loaded, std::vector<std::string>& settled) {
 void load_analytic(const ConfigTable& table, LoadedProblem& loaded) {
   const ConfigTable function = table.get_table("function");
   const std::string name = function.get_choice("name", analytic_names());
-  const AnalyticRow& row = find_analytic(name);
+  const AnalyticFunction& row = find_analytic(name);
   const auto dimension = static_cast<int>(function.get_integer_or(
       "dimension", row.default_dimension, row.smallest_dimension, row.largest_dimension));
   loaded.problem = make_analytic(name, dimension);

@@ -77,7 +77,7 @@ TEST(Analytic, OneDimensionIsEnough) {
 class AnalyticTable : public testing::TestWithParam<std::string> {};
 
 TEST_P(AnalyticTable, DescribesItselfConsistently) {
-  const AnalyticRow& row = find_analytic(GetParam());
+  const AnalyticFunction& row = find_analytic(GetParam());
   EXPECT_FALSE(row.summary.empty());
   EXPECT_FALSE(row.source.empty());
   for (const int dimension :
