@@ -26,7 +26,7 @@ class EnginesAgree : public testing::TestWithParam<Published> {
   static std::vector<double> simulate(const std::string& engine) {
     const std::vector<std::string> overrides = {"physics.engine=" + engine};
     const LoadedProblem loaded = load_problem(GetParam().problem, overrides);
-    const TrackingProblem& problem = *loaded.tracking;
+    const TrackingProblem& problem = *loaded.tracking();
     const ArmDesign design = load_design(GetParam().design).design;
     std::vector<double> errors_m;
     for (const TrackingResult& result :

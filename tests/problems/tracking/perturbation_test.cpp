@@ -9,6 +9,7 @@
 
 #include "problems/config/config_files.hpp"
 #include "problems/config/perturbation_reader.hpp"
+#include "problems/load_tracking.hpp"
 #include "problems/problem_folder.hpp"
 
 namespace armwright {
@@ -145,7 +146,7 @@ class PerturbedProblem : public testing::Test {
  protected:
   static std::shared_ptr<const TrackingProblem> load(std::vector<std::string> overrides) {
     overrides.insert(overrides.begin(), {"physics.engine=articulated", "workspace.points=4"});
-    return load_problem("q1-complex", overrides).tracking;
+    return load_tracking("q1-complex", overrides);
   }
   static double track(const TrackingProblem& problem, std::uint64_t number) {
     return problem.track(problem.config().start, problem.get_set("test/2"), number).mean_error_m;
@@ -269,7 +270,7 @@ TEST(PerturbationTable, PresetIsReadAndKeysBesideItGoFirst) {
   folder.write("p.toml",
                "extends = \"base\"\n[perturbation]\npreset = \"mine.toml\"\ngain_sigma = 0.5\n");
   const LoadedProblem loaded = folder.load("p.toml");
-  const Perturbation& p = loaded.tracking->config().perturbation;
+  const Perturbation& p = loaded.tracking()->config().perturbation;
   EXPECT_EQ(p.mass_relative, 0.3);
   EXPECT_EQ(p.gain_sigma, 0.5);
   EXPECT_TRUE(loaded.input_hashes.contains("mine.toml"));
@@ -280,7 +281,7 @@ TEST(PerturbationTable, PresetIsReadAndKeysBesideItGoFirst) {
 
 TEST(PerturbationTable, IsNothingByDefault) {
   const LoadedProblem loaded = load_problem("q1-complex");
-  EXPECT_FALSE(loaded.tracking->config().perturbation.changes_anything());
+  EXPECT_FALSE(loaded.tracking()->config().perturbation.changes_anything());
   EXPECT_THAT(loaded.resolved_json, Not(HasSubstr("perturbation")));
 }
 
@@ -288,7 +289,7 @@ TEST(PerturbationTable, ShippedPresetsAreRead) {
   for (const std::string& name : list_configs("perturbations")) {
     const std::vector<std::string> overrides = {"perturbation.preset=" + name};
     EXPECT_TRUE(
-        load_problem("q1-complex", overrides).tracking->config().perturbation.changes_anything());
+        load_problem("q1-complex", overrides).tracking()->config().perturbation.changes_anything());
   }
 }
 
@@ -300,7 +301,8 @@ TEST(PerturbationTable, OverridesSayEverything) {
     std::vector<std::string> overrides = {"perturbation.preset=all", "perturbation.gain_sigma=1"};
     const auto keys = make_overrides(p);
     overrides.insert(overrides.end(), keys.begin(), keys.end());
-    const Perturbation read = load_problem("q1-complex", overrides).tracking->config().perturbation;
+    const Perturbation read =
+        load_problem("q1-complex", overrides).tracking()->config().perturbation;
     EXPECT_EQ(make_overrides(read), keys);
     EXPECT_EQ(read.changes_arm(), p.changes_arm());
     EXPECT_EQ(read.changes_loop(), p.changes_loop());

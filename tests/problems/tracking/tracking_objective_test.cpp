@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/expect_error.hpp"
+#include "problems/load_tracking.hpp"
 #include "problems/problem_folder.hpp"
 
 namespace armwright {
@@ -131,7 +132,7 @@ TEST(TrackingStatistics, EvaluationsCarryThemAndTheMeanAsMetric) {
   const std::vector<CaseOutcome> outcomes = {make_case(0.02, 1, 40), make_case(0.2, 1, 40),
                                              make_case(0.08, 1, 40)};
   const auto evaluate = [&](const std::vector<std::string>& overrides) {
-    const auto problem = load_problem("q1-complex", overrides).tracking;
+    const auto problem = load_tracking("q1-complex", overrides);
     EXPECT_FALSE(problem->description().has_residuals);
     const Evaluation evaluation =
         problem->aggregate(problem->make_vector(problem->config().start), outcomes);
@@ -150,10 +151,8 @@ TEST(TrackingStatistics, EvaluationsCarryThemAndTheMeanAsMetric) {
 // Of a case that diverged on its last points the error may be small; of one without number there
 // is none.
 TEST(TrackingStatistics, EveryLossOfTheTargetIsAFailure) {
-  const auto problem =
-      load_problem("q1-complex", std::vector<std::string>{"objective.statistic=mean_with_failures",
-                                                          "objective.failure_penalty_m=8"})
-          .tracking;
+  const auto problem = load_tracking(
+      "q1-complex", {"objective.statistic=mean_with_failures", "objective.failure_penalty_m=8"});
   CaseOutcome diverged = make_case(0.0625, 1, 40);
   diverged.status = EvaluationStatus::diverged;
   CaseOutcome none;
@@ -168,9 +167,7 @@ TEST(TrackingStatistics, EveryLossOfTheTargetIsAFailure) {
 
 TEST(TrackingStatistics, LimitsAreOfTheSameError) {
   const auto problem =
-      load_problem("q2-torque", std::vector<std::string>{"objective.statistic=worst",
-                                                         "objective.error_limit_m=0.1"})
-          .tracking;
+      load_tracking("q2-torque", {"objective.statistic=worst", "objective.error_limit_m=0.1"});
   EXPECT_EQ(problem->description().limits.at(0).quantity.name, "worst error");
   const std::vector<CaseOutcome> outcomes = {make_case(0.02, 1, 40), make_case(0.2, 1, 40)};
   EXPECT_THAT(
@@ -180,12 +177,9 @@ TEST(TrackingStatistics, LimitsAreOfTheSameError) {
 
 TEST(TrackingStatistics, TheSquaresOfAllResidualsAddUp) {
   const auto problem =
-      load_problem(
-          "q2-e6",
-          std::vector<std::string>{"objective.energy_weight=2", "objective.energy_scale_j=1000",
-                                   "objective.duration_weight=0.5", "objective.duration_scale_s=10",
-                                   "physics.engine=articulated"})
-          .tracking;
+      load_tracking("q2-e6", {"objective.energy_weight=2", "objective.energy_scale_j=1000",
+                              "objective.duration_weight=0.5", "objective.duration_scale_s=10",
+                              "physics.engine=articulated"});
   EXPECT_FALSE(problem->description().has_jacobian);
   EXPECT_THAT(problem->description().jacobian_advice, testing::HasSubstr("energy_weight"));
   const std::vector<CaseOutcome> outcomes = {make_case(0.25, 300, 40), make_case(0.5, 500, 40)};

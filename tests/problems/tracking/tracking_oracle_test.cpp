@@ -55,14 +55,14 @@ TEST_P(TrackingOracle, ShippedProblemGivesTheSameErrorAtEveryPoint) {
   const auto expected = find_results(GetParam().label);
   ASSERT_EQ(expected.size(), 3U);
   for (const nlohmann::json& result : expected) {
-    const TrackingTask& task = loaded.tracking->config().task;
+    const TrackingTask& task = loaded.tracking()->config().task;
     ASSERT_EQ(signal_names()[static_cast<std::size_t>(task.signal)], result.at("signal"));
     ASSERT_EQ(task.distance_limit_m, result.at("distance_limit_m").get<double>());
     ASSERT_EQ(task.ik_bug, result.at("ik_bug").get<bool>());
     ASSERT_EQ(task.load_kg, result.at("load_kg").get<double>());
 
     const TrackingResult measured =
-        loaded.tracking->track(design, cases, result.at("case").get<std::uint64_t>());
+        loaded.tracking()->track(design, cases, result.at("case").get<std::uint64_t>());
     ASSERT_EQ(measured.status, SimulationStatus::ok) << measured.reason;
     EXPECT_EQ(measured.steps, result.at("steps").get<int>());
     const auto points = result.at("point_error_m").get<std::vector<double>>();
@@ -85,8 +85,8 @@ TEST_P(TrackingOracle, OverridesMakeTheSameTaskOfAnotherProblem) {
       fmt::format("task.distance_limit_m={}", expected.at("distance_limit_m").get<double>()),
       fmt::format("task.ik_bug={}", expected.at("ik_bug").get<bool>()),
       fmt::format("task.load_kg={}", expected.at("load_kg").get<double>())};
-  const auto made = load_problem(other, overrides).tracking;
-  const auto shipped = load_problem(GetParam().problem).tracking;
+  const auto made = load_tracking(other, overrides);
+  const auto shipped = load_tracking(GetParam().problem);
   const ArmDesign design = load_design(GetParam().name).design;
   const TestSet cases = TestSet::load(kOracle);
   EXPECT_EQ(made->track(design, cases, 0).point_error_m,

@@ -24,7 +24,7 @@ using testing::StartsWith;
 
 std::shared_ptr<const TrackingProblem> load_q1(std::vector<std::string> overrides = {},
                                                const std::string& name = "q1-complex") {
-  return load_problem(name, overrides).tracking;
+  return load_tracking(name, overrides);
 }
 
 // The corner of the box where everything is as small (-1) or as large (+1) as it can be.
