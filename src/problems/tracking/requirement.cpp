@@ -215,9 +215,9 @@ void check_moves(std::span<const Requirement> requirements, const TrackingTask& 
   }
   throw Error(
       ErrorKind::bad_data,
-      fmt::format("test set {}: case {} has no move of which {} can be measured: of at "
-                  "least {} mm and longer than a control period; leave that requirement "
-                  "out, or use other test cases",
+      fmt::format("test set {}: case {} has no move long enough to measure the {}: at least "
+                  "one move must be {} mm or longer and take more than one control period; leave "
+                  "that requirement out, or use other test cases",
                   set, number, get_requirement_row(wanted->quantity).name, 1000 * kShortestMove_m));
 }
 

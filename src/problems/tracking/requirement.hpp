@@ -71,7 +71,7 @@ struct Requirement {
   bool is_constraint = false;
 };
 
-// Returns the name and unit: "peak torque of joint_2 [N m]", "settling time to 2 % of the move [s]".
+// Returns the name and unit: "peak torque of joint_2 [N m]", "settling time to 20 mm [s]".
 Quantity describe_requirement(const Requirement& requirement, const RobotModel& robot);
 // Returns one metric name per requirement: "requirement.peak_torque.joint_2". If two requirements
 // have the same name, the second one ends in ".2".
@@ -103,7 +103,7 @@ std::vector<MeasuredCase> simulate_measured(const PhysicsEngine& engine, const T
                                             std::span<const TrackingJob> jobs,
                                             std::span<const Requirement> requirements);
 
-// Throws Error{bad_data} if a requirement is measured on moves and the case has no move that counts.
+// Throws Error{bad_data} if a requirement is measured on moves and no move of the case counts.
 void check_moves(std::span<const Requirement> requirements, const TrackingTask& task,
                  const TargetTable& targets, const std::string& set, std::uint64_t number);
 

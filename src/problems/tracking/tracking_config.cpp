@@ -234,7 +234,7 @@ ProblemDescription make_tracking_description(const TrackingConfig& config) {
   description.has_residuals = objective.has_residuals() && description.limits.empty();
   if (!description.has_residuals && description.limits.empty()) {
     description.residuals_advice =
-        "only objective.statistic = \"mean\" is such a sum; choose it or another optimizer";
+        "only objective.statistic = \"mean\" has residuals; choose it or another optimizer";
   }
   return description;
 }

@@ -51,7 +51,7 @@ double calc_sum(const TrackingObjective& objective, const ObjectiveTerms& terms)
   return sum;
 }
 
-// "error, torque and energy".
+// Returns the name of the sum: "error, torque and energy".
 std::string describe_sum(const TrackingObjective& objective) {
   std::vector<std::string> parts = {describe_error(objective)};
   if (objective.has_torque()) {

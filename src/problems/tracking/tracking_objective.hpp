@@ -1,5 +1,5 @@
-// The objectives of the tracking problem: the arithmetic that turns simulated cases into objectives,
-// constraints and residuals.
+// The objectives of the tracking problem: the arithmetic that turns simulated cases into
+// objectives, constraints and residuals.
 //
 // The error e (m) is a statistic of the cases' positional errors e_1, ..., e_L:
 //   mean                their mean
@@ -33,9 +33,9 @@
 // default), as in the objectives. If no case has an error, there is no g.
 //
 // Residuals exist for the statistic `mean` and the objectives without a limit. They are, in order:
-//   sqrt(e_kl / (K_l L))      for each counted point k of each case l, with K_l counted points and L
-//                             cases; e_kl is divided by e_0 first if the objective is a sum of terms
-//                             without unit
+//   sqrt(e_kl / (K_l L))      for each counted point k of each case l, with K_l counted points and
+//                             L cases; e_kl is divided by e_0 first if the objective is a sum of
+//                             terms without unit
 //   sqrt(w tau_j / tau_0)     for each joint j, if the objective has torque
 //   sqrt(w_E E / E_0)         if w_E > 0
 //   sqrt(w_T T / T_0)         if w_T > 0
@@ -94,7 +94,8 @@ struct ObjectiveTerms {
   double duration_s = 0;  // T
 };
 
-// Returns the name of e: "error", "worst error", "error of the worst 10 %", "error with failures".
+// Returns the name of e: "error", "worst error", "error of the worst 10 %" or
+// "error with failures".
 std::string describe_error(const TrackingObjective& objective);
 // Returns the names and units of the objectives, in the order of calc_objectives().
 std::vector<Quantity> describe_objectives(const TrackingObjective& objective);
@@ -107,15 +108,15 @@ std::vector<double> calc_objectives(const TrackingObjective& objective,
                                     const ObjectiveTerms& terms);
 std::vector<double> calc_constraints(const TrackingObjective& objective,
                                      const ObjectiveTerms& terms);
-// Returns the residuals. The residuals of the outcomes must be the errors (m) of the counted points.
-// `cases` is the number of outcomes that have an error.
+// Returns the residuals. The residuals of the outcomes must be the errors (m) of the counted
+// points. `cases` is the number of outcomes that have an error.
 std::vector<double> calc_residuals(const TrackingObjective& objective, const ArmDesign& design,
                                    const ObjectiveTerms& terms,
                                    std::span<const CaseOutcome> outcomes, double cases);
-// Returns the derivatives of `residuals`, which are those of calc_residuals(), along `directions` of
+// Returns the derivatives of `residuals`, which calc_residuals() returned, along `directions` of
 // the design: one row per residual, one column per direction. Empty if the outcomes have no
-// derivatives. The directions must change neither the arm nor the task, and the objective must have
-// no energy term, whose derivatives are not available.
+// derivatives. The directions must change neither the arm nor the task. The objective must have no
+// energy term, because its derivatives are not available.
 std::vector<double> calc_jacobian(const TrackingObjective& objective, const ArmDesign& design,
                                   std::span<const ArmDesign> directions,
                                   std::span<const CaseOutcome> outcomes,

@@ -127,17 +127,18 @@ void TrackingProblem::describe_jacobian() {
     advice = "the energy in the objective has no derivatives; set objective.energy_weight to 0";
   } else if (changes_links(config_) || changes_speed(config_)) {
     advice =
-        "there are none to variables that change the arm or the task; leave length_scale, "
+        "variables that change the arm or the task have no derivatives; leave length_scale, "
         "section_scale and speed out of [variables]";
   } else if (config_.torque_per_mass_n_m_per_kg > 0 &&
              std::ranges::any_of(config_.parameters, is_effort)) {
     advice =
-        "there are none to the masses of motors; leave [motors] out, or effort_min and effort_max "
+        "the masses of motors have no derivatives; leave [motors] out, or effort_min and "
+        "effort_max "
         "out of [variables]";
   } else if (config_.perturbation.applies_to(CaseRole::training) &&
              config_.perturbation.changes_loop()) {
     advice =
-        "there are none under friction, quantisation, delay or torque ripple in training; leave "
+        "friction, quantisation, delay and torque ripple in training have no derivatives; leave "
         "these out of [perturbation] or set apply_to to judging";
   } else if (!config_.engines.training->has_derivatives()) {
     advice =
@@ -160,8 +161,8 @@ void TrackingProblem::check_design(const ArmDesign& design) const {
   if (controller.feed_forward != FeedForward::none &&
       controller.feed_forward != config_.task.feed_forward) {
     throw Error(ErrorKind::usage,
-                fmt::format("the design is for controller '{}', whose efforts in advance problem "
-                            "{} does not make; set control.controller to '{}'",
+                fmt::format("the design is for controller '{}', whose feed-forward efforts "
+                            "problem {} does not compute; set control.controller to '{}'",
                             controller.name, config_.name, controller.name));
   }
 }
@@ -429,8 +430,8 @@ std::optional<double> TrackingProblem::calc_lower_bound(std::span<const double> 
   if (description_.objectives.size() > 1 || !description_.constraints.empty()) {
     return std::nullopt;
   }
-  // Errors and costs are never negative. So a further case makes no objective smaller than a perfect
-  // case without any cost does.
+  // Errors and costs are never negative. So no further case makes an objective smaller than a
+  // perfect case without any cost does.
   CaseOutcome perfect;
   perfect.metrics.assign(
       case_metrics::first_requirement(config_.robot.joint_count()) + config_.requirements.size(),

@@ -109,10 +109,11 @@ class TrackingProblem final : public Problem {
   const CaseCache<TargetTable>& targets() const { return inputs_.targets(); }
 
  private:
-  // Returns one measured case per job. `tracking` has the engine's job of each of `jobs`; the role
-  // of its case chooses the engine.
+  // Simulates `tracking`, the engines' jobs of `jobs`. The role of each case chooses its engine.
+  // Returns one measured case per job.
   std::vector<MeasuredCase> run_engines(std::span<const CaseJob> jobs,
                                         std::span<const TrackingJob> tracking) const;
+  // Simulates the cases first, ..., first + count - 1 with the judging engine, without cut-off.
   std::vector<MeasuredCase> simulate_judged(const ArmDesign& design, const TestSet& set,
                                             std::uint64_t first, std::size_t count,
                                             RecordingOptions recording,

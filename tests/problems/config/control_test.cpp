@@ -180,8 +180,8 @@ TEST(Control, ADesignNeedsTheTablesOfItsController) {
   const ArmDesign design =
       convert_design(plain.tracking()->config().start, "pid_computed_torque", 0.01);
   EXPECT_EQ(usage_error_of([&] { plain.tracking()->check_design(design); }),
-            "the design is for controller 'pid_computed_torque', whose efforts in advance problem "
-            "q2-e6 does not make; set control.controller to 'pid_computed_torque'");
+            "the design is for controller 'pid_computed_torque', whose feed-forward efforts "
+            "problem q2-e6 does not compute; set control.controller to 'pid_computed_torque'");
   load_with_gains({"control.controller=pid_computed_torque"}).tracking()->check_design(design);
   // Another controller without tables can be judged, but is no vector of this problem.
   const ArmDesign pi2d = convert_design(plain.tracking()->config().start, "pi2d", 0.01);

@@ -1,4 +1,4 @@
-// Which engine simulates what, and what of it is recorded.
+// The choice of engines: which engine simulates which cases, and what the configuration records.
 #include "problems/tracking/engine_choice.hpp"
 
 #include <fmt/format.h>
@@ -54,7 +54,7 @@ TEST(EngineChoice, OdeAloneUnlessTheProblemSaysOtherwise) {
   EXPECT_EQ(loaded.tracking()->batch_size(CaseRole::training).largest, 1U);
 }
 
-// Runs that were begun before there was a choice can be resumed.
+// Otherwise runs that were started before engines could be chosen could not be resumed.
 TEST(EngineChoice, NothingIsAddedToTheConfigurationOfOde) {
   for (const auto& overrides :
        {std::vector<std::string>{}, {"physics.engine=ode"}, {"physics.simd=auto"}}) {
@@ -162,7 +162,7 @@ TEST(EngineChoice, WhatAnEngineDoesNotHaveIsRefused) {
   EXPECT_THAT(refusal_of({"physics.simd=" + kLevel}),
               AllOf(HasSubstr("physics.simd is"), HasSubstr("engine 'ode' has none to choose"),
                     HasSubstr("('auto' suits every engine)")));
-  // Judged is in double always, so this says nothing to the engine that has floats.
+  // The judging engine always uses double, so the setting is for the training engine, ODE.
   EXPECT_THAT(refusal_of({"physics.judging_engine=lanes", "physics.precision=float"}),
               HasSubstr("engine 'ode' always computes in double"));
   EXPECT_THAT(refusal_of({"physics.engine=lane"}), HasSubstr("'lanes'"));

@@ -1,4 +1,4 @@
-// Perturbed plants: what is drawn, and what the tracking problem makes of it.
+// Perturbed plants: how they are drawn, and how the tracking problem simulates them.
 #include "problems/tracking/perturbation.hpp"
 
 #include <gmock/gmock.h>
@@ -64,7 +64,7 @@ TEST(DrawnPlant, KindsDoNotShiftEachOther) {
   EXPECT_THAT(draw(gains, "train/1", 3).limit_factors, ElementsAre(1, 1, 1, 1));
 }
 
-// Moments of what 4000 plants hold, within five standard errors.
+// The moments of the numbers of 4000 plants are right within five standard errors.
 TEST(DrawnPlant, NumbersHaveTheirDistributions) {
   constexpr int kPlants = 4000;
   double masses = 0;
@@ -161,7 +161,7 @@ class PerturbedProblem : public testing::Test {
   }
 };
 
-// A plant's masses, load, limits and gains are what the same numbers in robot, task and design do.
+// A plant's masses, load, limits and gains act like the same numbers in robot, task and design.
 TEST_F(PerturbedProblem, SimulatesThePlantThatWasDrawn) {
   const auto problem = load({"perturbation.mass_relative=0.2", "perturbation.load_kg=[1,30]",
                              "perturbation.effort_limit_sigma=1", "perturbation.gain_sigma=0.2"});
@@ -197,7 +197,7 @@ TEST_F(PerturbedProblem, AppliesWhereItSays) {
   }
 }
 
-// Every kind alone changes the error; in lanes and in a single arm alike.
+// Every kind of perturbation alone changes the error, in lanes and in a single arm.
 TEST_F(PerturbedProblem, EveryKindCountsInEveryEngine) {
   const std::vector<std::vector<std::string>> kinds = {
       {"perturbation.mass_relative=0.3"},
@@ -240,7 +240,7 @@ TEST_F(PerturbedProblem, CountsTheDesignsOwnTorque) {
   EXPECT_EQ(evaluation.metrics.at(1), calc_total_torque_n_m(problem->config().start));
 }
 
-// Exact derivatives of a perturbed plant against central differences.
+// Compares the exact derivatives of a perturbed plant with central differences.
 TEST_F(PerturbedProblem, DerivativesAreThoseOfThePlant) {
   const auto problem = load({"perturbation.mass_relative=0.2", "perturbation.gain_sigma=0.3"});
   ASSERT_TRUE(problem->description().has_jacobian);
@@ -293,7 +293,7 @@ TEST(PerturbationTable, ShippedPresetsAreRead) {
   }
 }
 
-// All keys, read back as they were.
+// Every key of a preset survives being written as overrides and read back.
 TEST(PerturbationTable, OverridesSayEverything) {
   for (const std::string& name : list_configs("perturbations")) {
     SCOPED_TRACE(name);

@@ -1,4 +1,4 @@
-// The arithmetic of objectives by hand; tracking_problem_test.cpp has whole evaluations.
+// The arithmetic of objectives, checked by hand; tracking_problem_test.cpp tests whole evaluations.
 #include "problems/tracking/tracking_objective.hpp"
 
 #include <gmock/gmock.h>
@@ -45,12 +45,12 @@ TEST(ErrorStatistic, CvarWeighsTheCaseOnTheBorderByItsPart) {
   EXPECT_EQ(calc_cvar(0.25), 2);                  // one of four
   EXPECT_EQ(calc_cvar(0.5), 1.25);                // (2 + 0.5) / 2
   EXPECT_EQ(calc_cvar(0.375), (2 + 0.25) / 1.5);  // half of the second
-  EXPECT_EQ(calc_cvar(0.01), 2);                  // a part of the worst alone
+  EXPECT_EQ(calc_cvar(0.01), 2);                  // a part of the worst error alone
   EXPECT_EQ(calc_cvar(1), 0.71875);
 }
 
-// Rockafellar and Uryasev's definition, the least over a of a + mean(max(0, e - a)) / s, is a
-// minimum at one of the errors, as the function is convex and piecewise linear.
+// Rockafellar and Uryasev define the value as the least over a of a + mean(max(0, e - a)) / s. The
+// function is convex and piecewise linear, so the minimum lies at one of the errors.
 TEST(ErrorStatistic, CvarIsTheMinimumThatDefinesIt) {
   for (int percent = 1; percent <= 100; ++percent) {
     const double share = percent / 100.0;
@@ -71,14 +71,14 @@ TEST(ErrorStatistic, CvarFallsContinuouslyFromTheWorstToTheMean) {
   for (int i = 1; i <= 10000; ++i) {
     const double cvar = calc_cvar(i / 10000.0);
     EXPECT_LE(cvar, before + 1e-14);
-    // Its slope is nowhere steeper than (worst - best) / share, and the share is 1/4 at least where
-    // it falls: 1.875 / 0.25 / 10000.
+    // Its slope is at most (worst - best) / share, and the share is at least 1/4 where the value
+    // falls: 1.875 / 0.25 / 10000.
     EXPECT_GE(cvar, before - 7.5e-4);
     before = cvar;
   }
 }
 
-// What makes a bound of what consists of bounds.
+// Because no statistic falls if an error rises, lower bounds of errors give a lower bound.
 TEST(ErrorStatistic, NeverFallsWhereACaseRises) {
   for (const Statistic statistic :
        {Statistic::mean, Statistic::worst, Statistic::cvar, Statistic::mean_with_failures}) {
@@ -123,8 +123,9 @@ CaseOutcome make_case(double error_m, double energy_j, double duration_s) {
   CaseOutcome outcome;
   outcome.error = error_m;
   outcome.residuals = {error_m, error_m};
-  outcome.metrics = {energy_j, 0, duration_s};
-  outcome.metrics.resize(3 + 2 * 4);
+  outcome.metrics.resize(case_metrics::first_requirement(4));
+  outcome.metrics[case_metrics::kEnergy] = energy_j;
+  outcome.metrics[case_metrics::kDuration] = duration_s;
   return outcome;
 }
 
@@ -148,8 +149,7 @@ TEST(TrackingStatistics, EvaluationsCarryThemAndTheMeanAsMetric) {
       0.1 + 6 / 3.0);
 }
 
-// Of a case that diverged on its last points the error may be small; of one without number there
-// is none.
+// A case that diverged on its last points can have a small error; another case has no error.
 TEST(TrackingStatistics, EveryLossOfTheTargetIsAFailure) {
   const auto problem = load_tracking(
       "q1-complex", {"objective.statistic=mean_with_failures", "objective.failure_penalty_m=8"});

@@ -1,6 +1,6 @@
-// The tracking simulation against an independent implementation of the same task: its own inverse
-// kinematics, controllers and timeline around ODE 0.16.2. What is compared went through the public
-// path only: problem, overrides, design, file of test cases.
+// Compares the tracking simulation with an independent implementation of the same task, which has
+// its own inverse kinematics, controllers and timeline around ODE 0.16.2. Our side uses the public
+// interface only: problem, overrides, design and a file of test cases.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -18,10 +18,10 @@ namespace {
 struct OracleDesign {
   std::string label;    // in the oracle's file
   std::string name;     // of the shipped design
-  std::string problem;  // that it was made for
-  // Both sides compute in double precision from numbers of twelve digits, but a closed loop
-  // amplifies what differs in the last bits: measured are 1e-9 at most. Step (A.9) excites the arm
-  // at the edge of its stability, where another compiler or library may show more.
+  std::string problem;  // the problem that the design was made for
+  // Both sides compute in double precision from numbers of twelve digits. The closed loop amplifies
+  // differences of the last bits; the largest measured one is 1e-9. The step signal (A.9) excites
+  // the arm at the edge of its stability, where other compilers or libraries may differ more.
   double tolerance = 1e-6;
 };
 
@@ -78,7 +78,7 @@ TEST_P(TrackingOracle, ShippedProblemGivesTheSameErrorAtEveryPoint) {
 
 TEST_P(TrackingOracle, OverridesMakeTheSameTaskOfAnotherProblem) {
   const auto expected = find_results(GetParam().label).at(0);
-  // Nothing but the robot and the workspace is right from the start.
+  // Only the robot and the workspace of the other problem fit; the overrides set all the rest.
   const std::string other = GetParam().problem == "q1-step" ? "q3-load" : "q1-step";
   const std::vector<std::string> overrides = {
       fmt::format("task.signal={}", expected.at("signal").get<std::string>()),
