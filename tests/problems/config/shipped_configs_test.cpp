@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "base/hash.hpp"
@@ -10,6 +11,7 @@
 #include "problems/config/config_files.hpp"
 #include "problems/config/design_file.hpp"
 #include "problems/config/problem_loader.hpp"
+#include "problems/config/replicate.hpp"
 #include "problems/load_tracking.hpp"
 
 namespace armwright {
@@ -322,11 +324,21 @@ TEST(ShippedProblems, OnlyQ4Sweeps) {
   }
 }
 
+TEST(ShippedProblems, ReplicatesReachTheTrackingProblem) {
+  const LoadedProblem loaded = load_problem("q1-complex");
+  const LoadedProblem replicate = make_replicate(
+      loaded, "train/other", loaded.tracking()->make_vector(loaded.tracking()->config().start));
+  EXPECT_NE(replicate.problem, loaded.problem);
+  EXPECT_EQ(replicate.tracking(), loaded.tracking());
+  EXPECT_EQ(replicate.problem->description().failure_error, kFailureError_m);
+}
+
 TEST(ShippedProblems, AnalyticFunctionsHaveOneCase) {
   for (const std::string& name : analytic_names()) {
     SCOPED_TRACE(name);
     const LoadedProblem loaded = load_problem(name);
     EXPECT_EQ(loaded.tracking(), nullptr);
+    EXPECT_EQ(loaded.problem->description().failure_error, std::numeric_limits<double>::infinity());
     EXPECT_EQ(loaded.problem->description().name, name);
     EXPECT_THAT(loaded.problem->description().variables, SizeIs(name == "constrained" ? 4 : 10));
     EXPECT_FALSE(loaded.schedule.changes_cases());
