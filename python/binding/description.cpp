@@ -4,7 +4,7 @@
 #include <iterator>
 
 #include "base/text.hpp"
-#include "optimizers/interface/capability_names.hpp"
+#include "optimizers/interface/optimizer.hpp"
 
 namespace armwright::python {
 namespace {

@@ -6,7 +6,7 @@
 #include <array>
 
 #include "base/text.hpp"
-#include "optimizers/interface/capability_names.hpp"
+#include "optimizers/interface/optimizer.hpp"
 
 namespace armwright {
 namespace {

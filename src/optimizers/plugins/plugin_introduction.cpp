@@ -1,4 +1,4 @@
-// What a plugin in another process says of itself, made a row of.
+// Makes a row of the description that a plugin in another process gives.
 
 #include <fmt/format.h>
 
@@ -7,9 +7,7 @@
 #include <utility>
 
 #include "base/text.hpp"
-#include "optimizers/interface/capability_names.hpp"
-#include "optimizers/plugins/message_fields.hpp"
-#include "optimizers/plugins/plugin_limits.hpp"
+#include "optimizers/interface/optimizer.hpp"
 #include "optimizers/plugins/plugin_messages.hpp"
 #include "optimizers/plugins/plugin_process.hpp"
 

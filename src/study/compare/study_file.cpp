@@ -264,7 +264,7 @@ OptimizerRow find_row(const NamedOptimizer& named, std::span<const OptimizerRow>
   if (named.description.empty()) {
     return load_optimizer(named.name);  // what it reads says what its inputs are
   }
-  OptimizerRow recorded = read_foreign_row(named.name, named.description);
+  OptimizerRow recorded = read_host_row(named.name, named.description);
   for (const std::string& input : named.inputs) {
     const std::size_t blank = std::min(input.rfind(' '), input.size());
     recorded.input_hashes[input.substr(0, blank)] = input.substr(std::min(blank + 1, input.size()));

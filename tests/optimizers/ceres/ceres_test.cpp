@@ -1,4 +1,4 @@
-#include "optimizers/ceres/ceres.hpp"
+#include "optimizers/ceres/ceres_backend.hpp"
 
 #include <gmock/gmock.h>
 

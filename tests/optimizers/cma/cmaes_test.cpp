@@ -1,5 +1,5 @@
 // Whole runs of CMA-ES. What it is made of: cma_parts_test.cpp.
-#include "optimizers/cma/cmaes.hpp"
+#include "optimizers/cma/cma_search.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,6 +1,6 @@
 #ifdef ARMWRIGHT_WITH_NLOPT
 
-#include "optimizers/nlopt/nlopt.hpp"
+#include "optimizers/nlopt/nlopt_algorithms.hpp"
 
 #include <gmock/gmock.h>
 #include <nlopt.h>

@@ -1,6 +1,6 @@
 // The rows of pagmo: what they promise is what they do. That they do what pagmo alone would do
 // stands in pagmo_exactness_test.cpp.
-#include "optimizers/pagmo/pagmo.hpp"
+#include "optimizers/pagmo/pagmo_backend.hpp"
 
 #include <gmock/gmock.h>
 

@@ -19,7 +19,7 @@ constexpr const char* kDescription =
 
 // Described as above, and random search inside.
 OptimizerRow make_mine() {
-  OptimizerRow row = read_foreign_row("python:mine", kDescription);
+  OptimizerRow row = read_host_row("python:mine", kDescription);
   row.input_hashes = {{"class Mine", "0123"}};
   row.make = [](const Options&) {
     const OptimizerRow random = make_random_search_rows().front();
@@ -79,12 +79,12 @@ TEST_F(ForeignOptimizerTest, IsKnownAgainWhenItHasChanged) {
 }
 
 TEST_F(ForeignOptimizerTest, DescriptionsThatAreNone) {
-  EXPECT_THAT(error_of(ErrorKind::bad_data, [&] { read_foreign_row("python:mine", "{}"); }),
+  EXPECT_THAT(error_of(ErrorKind::bad_data, [&] { read_host_row("python:mine", "{}"); }),
               testing::HasSubstr("its description"));
-  EXPECT_THAT(error_of(ErrorKind::bad_data, [&] { read_foreign_row("python:mine", "{"); }),
+  EXPECT_THAT(error_of(ErrorKind::bad_data, [&] { read_host_row("python:mine", "{"); }),
               testing::HasSubstr("is no JSON"));
   EXPECT_THAT(error_of(ErrorKind::bad_data,
-                       [&] { read_foreign_row("python:mine", std::string(1000, '[')); }),
+                       [&] { read_host_row("python:mine", std::string(1000, '[')); }),
               testing::HasSubstr("nest deeper"));
   EXPECT_THAT(error_of(ErrorKind::bad_data,
                        [&] {
