@@ -11,12 +11,14 @@
 #include <new>
 #include <system_error>
 
+#include "base/build_info.hpp"
 #include "base/error.hpp"
 #include "base/file_descriptor.hpp"
 #include "base/text.hpp"
-#include "cli/commands/version.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/terminal/session.hpp"
 #include "cli/terminal/terminal.hpp"
+#include "sim/simd/simd_level.hpp"
 #include "study/executor/mpi_transport.hpp"
 
 namespace armwright {
@@ -57,6 +59,35 @@ Exit codes:
 
 Environment: ARMWRIGHT_JOBS and ARMWRIGHT_SEED stand in for --jobs and --seed; ARMWRIGHT_CONFIGS names the folder of
 the shipped configuration, ARMWRIGHT_SIMD the highest instruction set that is chosen unless --simd names one.)";
+
+// Returns what --version prints: version, commit, compiler, processor, SIMD levels and libraries.
+std::string describe_version() {
+  const auto build = describe_build();
+  std::string text = fmt::format("armwright {}\n", get_version());
+  const auto add = [&text](const std::string& what, const std::string& value) {
+    text += fmt::format("  {:<13} {}\n", what, value);
+  };
+  add("git", build.at("git"));
+  add("compiler", build.at("compiler"));
+  add("build type", build.at("build_type"));
+  add("processor", build.at("cpu"));
+  add("SIMD levels", fmt::format("{}; the best of them, {}, unless told otherwise",
+                                 join(supported_simd_names(), ", "), to_string(find_best_simd())));
+  add("host", build.at("host"));
+  text += "Libraries it was built with:\n";
+  std::vector<std::string> missing;
+  for (const LibraryVersion& library : list_libraries()) {
+    if (library.version.empty()) {
+      missing.push_back(library.name);
+    } else {
+      add(library.name, library.version);
+    }
+  }
+  if (!missing.empty()) {
+    text += fmt::format("Not in this build: {}\n", join(missing, ", "));
+  }
+  return text;
+}
 
 std::vector<std::string> list_commands(const CLI::App& app) {
   std::vector<std::string> names;
@@ -241,36 +272,6 @@ void add_all_commands(CLI::App& app, Session& session) {
   add_doctor(app, session);
   add_manual(app, session);
   add_completion(app, session);
-}
-
-std::string quote_own_command(const Session& session, std::vector<std::string> words) {
-  words.insert(words.begin(), session.command_line.front());
-  return sanitize(quote_command(words));
-}
-
-int get_stop_code(StopReason reason) {
-  return reason == StopReason::interrupted ? exit_code::kInterrupted : exit_code::kStopped;
-}
-
-const char* describe_stop(StopReason reason) {
-  switch (reason) {
-    case StopReason::interrupted:
-      return "interrupted";
-    case StopReason::terminated:
-      return "stopped by a signal";
-    case StopReason::time_limit:
-      return "stopped: the time limit is reached";
-    case StopReason::none:
-      break;
-  }
-  return "stopped";
-}
-
-int end_stopped(const Session& session, std::span<const std::string> command) {
-  const StopReason reason = session.stop.reason();
-  write_message(fmt::format("{}; nothing is lost. To go on:\n{}", describe_stop(reason),
-                            quote_command(command)));
-  return get_stop_code(reason);
 }
 
 int run_app(int argc, char** argv) {

@@ -12,11 +12,11 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/progress_bar.hpp"
 #include "cli/terminal/session.hpp"
-#include "cli/terminal/signals.hpp"
 #include "cli/terminal/terminal.hpp"
 #include "study/matrix/attempt.hpp"
 #include "study/matrix/cell_attempt.hpp"
@@ -40,8 +40,8 @@ has it: an earlier process at the same cell, forgotten by its batch system perha
 struct CellOptions {
   std::string plan;
   std::vector<std::string> cells;
-  JobsOption jobs;
-  TimeLimitOption time_limit;
+  std::string jobs;
+  std::string time_limit;
   bool quiet = false;
 };
 
@@ -79,7 +79,7 @@ class CellCommand {
       : options_(options),
         session_(session),
         study_(load_recorded_study(options.plan)),
-        jobs_(options.jobs.get_or(1)) {}
+        jobs_(parse_jobs_or_one(options.jobs)) {}
 
   int run() {
     std::vector<Cell> cells = select_cells(study_.plan, options_.cells);
@@ -186,12 +186,12 @@ void add_cell(CLI::App& app, Session& session) {
       ->add_option("CELL", options->cells,
                    "Which: a number from 0, a range 3-9, or PROBLEM/OPTIMIZER/rNN")
       ->required();
-  options->jobs.add_to(*command, "1");
-  options->time_limit.add_to(*command);
+  add_jobs_flag(*command, options->jobs, "1");
+  add_time_limit_flag(*command, options->time_limit);
   command->add_flag("--quiet,-q", options->quiet, "No progress")->group("Output");
   command->callback([options, &session] {
     session.action = [options, &session] {
-      options->time_limit.apply(session.stop);
+      apply_time_limit(options->time_limit, session.stop);
       return CellCommand(*options, session).run();
     };
   });

@@ -6,9 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/list/list_views.hpp"
 #include "cli/terminal/arguments.hpp"
-#include "cli/terminal/json.hpp"
+#include "cli/terminal/format.hpp"
 #include "cli/terminal/session.hpp"
 #include "cli/terminal/table.hpp"
 #include "cli/terminal/terminal.hpp"

@@ -9,14 +9,13 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "cli/commands/executor.hpp"
-#include "cli/commands/team.hpp"
+#include "cli/commands/commands.hpp"
+#include "cli/commands/executor_options.hpp"
+#include "cli/commands/mpi_job.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/progress_bar.hpp"
 #include "cli/terminal/session.hpp"
-#include "cli/terminal/signals.hpp"
 #include "cli/terminal/terminal.hpp"
-#include "cli/views/study_end.hpp"
 #include "cli/views/study_view.hpp"
 #include "problems/config/path_survey.hpp"
 #include "study/compare/escape.hpp"
@@ -57,8 +56,8 @@ struct CompareOptions {
   std::string seed;
   bool no_baselines = false;
   OverrideOptions overrides;
-  JobsOption jobs;
-  TimeLimitOption time_limit;
+  std::string jobs;
+  std::string time_limit;
   FolderOptions folder;
   ExecutorOptions executor;
   bool dry_run = false;
@@ -129,16 +128,16 @@ int run_compare(const CompareOptions& options, Session& session) {
                 "and --optimizers. See 'armwright compare --help'");
   }
   const bool is_elsewhere = options.executor.is_elsewhere();
-  if (is_elsewhere && (options.json || !options.time_limit.text.empty())) {
+  if (is_elsewhere && (options.json || !options.time_limit.empty())) {
     throw Error(ErrorKind::usage,
                 "--json and --time-limit are not for --executor slurm and script; give --json to "
                 "'armwright merge', and a job's time to the batch system");
   }
-  Team team(session);
-  const unsigned jobs = is_elsewhere ? options.jobs.get_or(1) : options.jobs.get();
+  MpiJob job(session);
+  const unsigned jobs = is_elsewhere ? parse_jobs_or_one(options.jobs) : parse_jobs(options.jobs);
   StudyPlan plan;
-  if (team.is_worker()) {
-    team.serve(
+  if (job.is_worker()) {
+    job.serve(
         [&] {
           plan = make_study_plan(make_request(options));
           adopt_recorded(options.folder.choose(escape_name(plan.name)), plan);
@@ -146,7 +145,7 @@ int run_compare(const CompareOptions& options, Session& session) {
         },
         jobs);
   }
-  options.time_limit.apply(session.stop);
+  apply_time_limit(options.time_limit, session.stop);
   plan = make_study_plan(make_request(options));
   const auto path = options.folder.choose(escape_name(plan.name));
   adopt_recorded(path, plan);
@@ -161,8 +160,7 @@ int run_compare(const CompareOptions& options, Session& session) {
     std::ranges::for_each(notes, write_message);
   }
   if (is_elsewhere) {
-    return hand_over(options.executor, plan,
-                     {.folder = path, .jobs = jobs, .dry_run = options.dry_run}, session);
+    return hand_over_cells(options.executor, plan, path, jobs, options.dry_run, session);
   }
   if (options.dry_run) {
     write_stdout(to_toml(plan));
@@ -176,14 +174,14 @@ int run_compare(const CompareOptions& options, Session& session) {
   ProgressBar bar(options.quiet, {});
   LockedObserver observer(bar);
   adopt_attempts(plan, path, observer);
-  auto coordinator = team.lead(list_problems(plan), jobs, observer);
+  auto coordinator = job.make_coordinator(list_problems(plan), jobs, observer);
   const CellsResult cells = run_cells(plan, path, jobs, session.stop, observer, coordinator.get());
-  team.dismiss(std::move(coordinator));
+  job.end_workers(std::move(coordinator));
   if (cells.stopped) {
     bar.clear();
     return end_stopped(session, session.command_line);
   }
-  return end_study(plan, {.folder = path, .jobs = jobs, .json = options.json}, session, bar);
+  return end_study(plan, path, jobs, options.json, session, bar);
 }
 
 }  // namespace
@@ -233,8 +231,8 @@ void add_compare(CLI::App& app, Session& session) {
                     "Leave out random search and the local search that always take part; the\n"
                     "verdict says so");
   options->overrides.add_to(*command, true);
-  options->jobs.add_to(*command);
-  options->time_limit.add_to(*command);
+  add_jobs_flag(*command, options->jobs);
+  add_time_limit_flag(*command, options->time_limit);
   options->executor.add_to(*command);
   command->add_flag("--dry-run", options->dry_run,
                     "Print the resolved plan and what it costs, or with another executor its\n"

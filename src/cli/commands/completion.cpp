@@ -1,12 +1,14 @@
 // armwright completion: the script by which a shell completes what is typed.
 
+#include "cli/manual/completion.hpp"
+
 #include <CLI/CLI.hpp>
 #include <memory>
 
 #include "base/build_info.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "cli/manual/bash_completion.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/session.hpp"
 #include "cli/terminal/terminal.hpp"

@@ -6,18 +6,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/format.hpp"
-#include "cli/terminal/json.hpp"
 #include "cli/terminal/progress_bar.hpp"
 #include "cli/terminal/session.hpp"
-#include "cli/terminal/signals.hpp"
 #include "cli/terminal/table.hpp"
 #include "cli/terminal/terminal.hpp"
-#include "cli/views/design_evaluation.hpp"
+#include "cli/views/design_and_problem.hpp"
 #include "cli/views/requirement_view.hpp"
 #include "cli/views/result_view.hpp"
 #include "problems/config/design_file.hpp"
@@ -48,7 +48,7 @@ struct EvaluateOptions {
   std::string problem;
   OverrideOptions overrides;
   CaseOptions cases;
-  JobsOption jobs;
+  std::string jobs;
   bool json = false;
   bool quiet = false;
   std::string csv;
@@ -200,7 +200,7 @@ int run_evaluate(const EvaluateOptions& options, Session& session) {
     throw Error(ErrorKind::usage,
                 "only one of --json, --csv - and --trajectory - can have standard output");
   }
-  const unsigned jobs = options.jobs.get();
+  const unsigned jobs = parse_jobs(options.jobs);
   auto [design, problem] =
       load_design_and_problem(options.design, options.overrides.choose_problem(options.problem),
                               options.overrides.get(), options.quiet);
@@ -263,7 +263,7 @@ void add_evaluate(CLI::App& app, Session& session) {
       ->type_name("PROBLEM");
   options->overrides.add_to(*command);
   options->cases.add_to(*command);
-  options->jobs.add_to(*command);
+  add_jobs_flag(*command, options->jobs);
   command->add_flag("--json", options->json, "Print everything as JSON")->group("Output");
   command->add_option("--csv", options->csv, "Write one line a case; - is standard output")
       ->type_name("FILE")

@@ -9,10 +9,11 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/session.hpp"
 #include "cli/terminal/terminal.hpp"
-#include "cli/views/design_evaluation.hpp"
+#include "cli/views/design_and_problem.hpp"
 #include "problems/config/design_file.hpp"
 
 namespace armwright {

@@ -11,6 +11,7 @@
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/manual/command_definition.hpp"
 #include "cli/manual/manual_formats.hpp"
 #include "cli/manual/manual_page.hpp"

@@ -6,12 +6,12 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/session.hpp"
-#include "cli/terminal/signals.hpp"
 #include "cli/terminal/terminal.hpp"
-#include "cli/views/study_end.hpp"
+#include "cli/views/study_view.hpp"
 #include "study/compare/cell.hpp"
 #include "study/compare/study_folder.hpp"
 #include "study/matrix/cell_selection.hpp"
@@ -33,8 +33,8 @@ folders hold different results of one cell, nothing is. See docs/clusters.md.)";
 struct MergeOptions {
   std::string study;
   std::vector<std::string> others;
-  JobsOption jobs;
-  TimeLimitOption time_limit;
+  std::string jobs;
+  std::string time_limit;
   bool json = false;
   bool quiet = false;
 };
@@ -69,8 +69,8 @@ void tell_missing(const RecordedStudy& study, const std::string& program) {
 }
 
 int run_merge(const MergeOptions& options, Session& session) {
-  const unsigned jobs = options.jobs.get();
-  options.time_limit.apply(session.stop);
+  const unsigned jobs = parse_jobs(options.jobs);
+  apply_time_limit(options.time_limit, session.stop);
   const RecordedStudy study = load_recorded_study(options.study);
   const StudyFolder folder(study.folder, study.plan);
   catch_signals(session.stop);
@@ -85,8 +85,7 @@ int run_merge(const MergeOptions& options, Session& session) {
   }
   tell_missing(study, session.command_line.front());
   remove_spent_attempts(study.plan, study.folder);
-  return end_study(study.plan, {.folder = study.folder, .jobs = jobs, .json = options.json},
-                   session, bar);
+  return end_study(study.plan, study.folder, jobs, options.json, session, bar);
 }
 
 }  // namespace
@@ -100,8 +99,8 @@ void add_merge(CLI::App& app, Session& session) {
       ->required();
   command->add_option("OTHER", options->others,
                       "Folders of the same study on other machines, to copy cells from");
-  options->jobs.add_to(*command);
-  options->time_limit.add_to(*command);
+  add_jobs_flag(*command, options->jobs);
+  add_time_limit_flag(*command, options->time_limit);
   command->add_flag("--json", options->json, "Print the result as JSON")->group("Output");
   command->add_flag("--quiet,-q", options->quiet, "No progress")->group("Output");
   command->callback([options, &session] {

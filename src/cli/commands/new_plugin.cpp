@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/manual/plugin_templates.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/session.hpp"

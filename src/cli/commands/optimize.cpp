@@ -9,12 +9,12 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "cli/commands/team.hpp"
+#include "cli/commands/commands.hpp"
+#include "cli/commands/mpi_job.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/progress_bar.hpp"
 #include "cli/terminal/session.hpp"
-#include "cli/terminal/signals.hpp"
 #include "cli/terminal/terminal.hpp"
 #include "cli/views/result_view.hpp"
 #include "optimizers/table/optimizer_table.hpp"
@@ -57,8 +57,8 @@ struct OptimizeOptions {
   std::string racing;
   OverrideOptions overrides;
   std::string validation_cases;
-  JobsOption jobs;
-  TimeLimitOption time_limit;
+  std::string jobs;
+  std::string time_limit;
   FolderOptions folder;
   bool json = false;
   bool quiet = false;
@@ -203,24 +203,24 @@ std::string describe_next(const OptimizeOptions& options, const std::string& pro
 }
 
 int run_optimize(const OptimizeOptions& options, Session& session) {
-  Team team(session);
+  MpiJob job(session);
   RunRequest request;
-  request.jobs = options.jobs.get();
-  if (team.is_worker()) {
-    team.serve(
-        [&]() -> Team::Problems {
+  request.jobs = parse_jobs(options.jobs);
+  if (job.is_worker()) {
+    job.serve(
+        [&]() -> MpiJob::Problems {
           request.plan = make_plan(options);
           return {&request.plan.problem};
         },
         request.jobs);
   }
-  options.time_limit.apply(session.stop);
+  apply_time_limit(options.time_limit, session.stop);
   request.plan = make_plan(options);
   const std::vector<std::string> notes = check_paths(request.plan.problem);
   request.folder = options.folder.choose(make_run_name(request.plan));
   request.command_line = make_command(options, session, request.folder);
   if (!options.quiet) {
-    announce(request, team.describe());
+    announce(request, job.describe());
     std::ranges::for_each(notes, write_message);
   }
 
@@ -228,10 +228,10 @@ int run_optimize(const OptimizeOptions& options, Session& session) {
   ProgressBar bar(options.quiet,
                   get_scalar_quantity(request.plan.problem.problem->description().objectives));
   LockedObserver observer(bar);
-  auto coordinator = team.lead({&request.plan.problem}, request.jobs, observer);
+  auto coordinator = job.make_coordinator({&request.plan.problem}, request.jobs, observer);
   request.executor = coordinator.get();
   const auto result = execute_run(request, session.stop, observer);
-  team.dismiss(std::move(coordinator));
+  job.end_workers(std::move(coordinator));
 
   bar.clear();
   if (result && !result->failure.empty()) {
@@ -294,8 +294,8 @@ void add_optimize(CLI::App& app, Session& session) {
                    "Cases on which the candidates for the win are judged (default: the\n"
                    "problem's)")
       ->type_name("N");
-  options->jobs.add_to(*command);
-  options->time_limit.add_to(*command);
+  add_jobs_flag(*command, options->jobs);
+  add_time_limit_flag(*command, options->time_limit);
   options->folder.add_to(*command, "run", "results/PROBLEM-OPTIMIZER-seedN");
   command->add_flag("--json", options->json, "Print the result as JSON")->group("Output");
   command->add_flag("--quiet,-q", options->quiet, "No progress")->group("Output");

@@ -5,7 +5,6 @@
 #include "base/error.hpp"
 #include "cli/terminal/progress_bar.hpp"
 #include "cli/terminal/session.hpp"
-#include "cli/terminal/signals.hpp"
 #include "report/page/page_data.hpp"
 
 namespace armwright {
@@ -23,7 +22,7 @@ void PageInput::add_to(CLI::App& command) {
           "first of training; of the test set the first, median, worst and those that fail)")
       ->type_name("SET:NUMBER")
       ->allow_extra_args(false);
-  jobs.add_to(command);
+  add_jobs_flag(command, jobs);
   command.add_flag("--quiet,-q", quiet, "No progress")->group("Output");
 }
 
@@ -37,7 +36,7 @@ std::optional<std::string> PageInput::make_data(Session& session) const {
     return read_page_data(source);
   }
   PageOptions options;
-  options.jobs = jobs.get();
+  options.jobs = parse_jobs(jobs);
   options.cases = cases;
   catch_signals(session.stop);
   ProgressBar bar(quiet, {"error", "m"});

@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/commands/page_input.hpp"
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/session.hpp"

@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/commands/page_input.hpp"
 #include "cli/terminal/session.hpp"
 #include "cli/terminal/terminal.hpp"

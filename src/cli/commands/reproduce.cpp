@@ -5,17 +5,17 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iterator>
+#include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/terminal/format.hpp"
-#include "cli/terminal/json.hpp"
 #include "cli/terminal/progress_bar.hpp"
 #include "cli/terminal/session.hpp"
-#include "cli/terminal/signals.hpp"
 #include "cli/terminal/table.hpp"
 #include "cli/terminal/terminal.hpp"
-#include "cli/views/design_evaluation.hpp"
+#include "cli/views/design_and_problem.hpp"
 #include "report/reproduction/reproduction.hpp"
 
 namespace armwright {
@@ -43,8 +43,8 @@ struct ReproduceOptions {
   std::string cases;
   std::vector<std::string> tables;
   EngineFlags engines;
-  JobsOption jobs;
-  TimeLimitOption time_limit;
+  std::string jobs;
+  std::string time_limit;
   FolderOptions folder;
   std::string csv;
   bool json = false;
@@ -249,8 +249,8 @@ int run_reproduce(const ReproduceOptions& options, Session& session) {
   }
   ReproductionWork work;
   work.program = session.command_line.front();
-  work.jobs = options.jobs.get();
-  options.time_limit.apply(session.stop);
+  work.jobs = parse_jobs(options.jobs);
+  apply_time_limit(options.time_limit, session.stop);
   ReproductionPlan plan = plan_reproduction(request);
   std::optional<ReproductionFolder> folder;
   if (is_kept) {
@@ -303,8 +303,8 @@ void add_reproduce(CLI::App& app, Session& session) {
       ->type_name("NAME")
       ->allow_extra_args(false);
   options->engines.add_to(*command, false);
-  options->jobs.add_to(*command);
-  options->time_limit.add_to(*command);
+  add_jobs_flag(*command, options->jobs);
+  add_time_limit_flag(*command, options->time_limit);
   options->folder.add_to(*command, "reproduction",
                          fmt::format("nothing is kept;\n--out alone: {}", kDefaultFolder));
   command->get_option("--out")->expected(0, 1)->default_str(kDefaultFolder);

@@ -9,11 +9,11 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/progress_bar.hpp"
 #include "cli/terminal/session.hpp"
-#include "cli/terminal/signals.hpp"
 #include "cli/terminal/terminal.hpp"
 #include "study/compare/cell.hpp"
 #include "study/compare/cell_comparison.hpp"
@@ -34,8 +34,8 @@ or as their folder is named.)";
 struct RerunOptions {
   std::string study;
   std::string cell;
-  JobsOption jobs;
-  TimeLimitOption time_limit;
+  std::string jobs;
+  std::string time_limit;
   std::string out;
   bool json = false;
   bool quiet = false;
@@ -127,8 +127,8 @@ std::string to_text(const std::filesystem::path& recorded, const std::filesystem
 }
 
 int run_rerun(const RerunOptions& options, Session& session) {
-  const unsigned jobs = options.jobs.get();
-  options.time_limit.apply(session.stop);
+  const unsigned jobs = parse_jobs(options.jobs);
+  apply_time_limit(options.time_limit, session.stop);
   const StudyPlan plan = load_study_plan(options.study);
   const Cell cell = find_cell(plan, options.cell);
   check_recorded(options, plan, cell, session.command_line.front());
@@ -168,8 +168,8 @@ void add_rerun(CLI::App& app, Session& session) {
       kRerunExamples);
   command->add_option("STUDY", options->study, "The folder of a study")->required();
   command->add_option("CELL", options->cell, "Which run: PROBLEM/OPTIMIZER/rNN")->required();
-  options->jobs.add_to(*command);
-  options->time_limit.add_to(*command);
+  add_jobs_flag(*command, options->jobs);
+  add_time_limit_flag(*command, options->time_limit);
   command
       ->add_option(
           "--out", options->out,

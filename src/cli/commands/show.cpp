@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/session.hpp"

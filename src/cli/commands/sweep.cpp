@@ -5,17 +5,17 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/terminal/format.hpp"
-#include "cli/terminal/json.hpp"
 #include "cli/terminal/progress_bar.hpp"
 #include "cli/terminal/session.hpp"
-#include "cli/terminal/signals.hpp"
 #include "cli/terminal/table.hpp"
 #include "cli/terminal/terminal.hpp"
-#include "cli/views/design_evaluation.hpp"
+#include "cli/views/design_and_problem.hpp"
 #include "problems/config/design_file.hpp"
 
 namespace armwright {
@@ -37,7 +37,7 @@ struct SweepOptions {
   std::string values;
   OverrideOptions overrides;
   CaseOptions cases;
-  JobsOption jobs;
+  std::string jobs;
   std::string csv;
   bool json = false;
   bool quiet = false;
@@ -165,7 +165,7 @@ std::string format_text(const ChosenSweep& sweep, const std::vector<SweepRow>& r
 }
 
 int run_sweep(const SweepOptions& options, Session& session) {
-  const unsigned jobs = options.jobs.get();
+  const unsigned jobs = parse_jobs(options.jobs);
   const std::vector<std::string> overrides = options.overrides.get();
   const LoadedProblem base = load_problem(options.problem, overrides);
   require_tracking(base);
@@ -252,7 +252,7 @@ void add_sweep(CLI::App& app, Session& session) {
   command->add_option("--values", options->values, "Its values")->type_name("A,B,...");
   options->overrides.add_to(*command);
   options->cases.add_to(*command);
-  options->jobs.add_to(*command);
+  add_jobs_flag(*command, options->jobs);
   auto* as_json =
       command->add_flag("--json", options->json, "Print the table as JSON")->group("Output");
   command->add_option("--csv", options->csv, "Write the table as CSV; - is standard output")

@@ -6,19 +6,19 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/format.hpp"
-#include "cli/terminal/json.hpp"
 #include "cli/terminal/progress_bar.hpp"
 #include "cli/terminal/session.hpp"
-#include "cli/terminal/signals.hpp"
 #include "cli/terminal/table.hpp"
 #include "cli/terminal/terminal.hpp"
-#include "cli/views/design_evaluation.hpp"
+#include "cli/views/design_and_problem.hpp"
 #include "cli/views/verification.hpp"
 #include "problems/config/config_files.hpp"
 #include "problems/config/design_file.hpp"
@@ -59,7 +59,7 @@ struct VerifyOptions {
   OverrideOptions overrides;
   CaseOptions cases;
   std::vector<std::string> engines, substeps, perturbations;
-  JobsOption jobs;
+  std::string jobs;
   bool json = false;
   bool quiet = false;
 };
@@ -287,7 +287,7 @@ VerifyMatrix choose_matrix(const VerifyOptions& options, const VerifySetting& ow
 }
 
 int run_verify(const VerifyOptions& options, Session& session) {
-  const unsigned jobs = options.jobs.get();
+  const unsigned jobs = parse_jobs(options.jobs);
   const std::string named = options.overrides.choose_problem(options.problem);
   const auto [design, base] =
       load_design_and_problem(options.design, named, options.overrides.get(), options.quiet);
@@ -305,7 +305,7 @@ int run_verify(const VerifyOptions& options, Session& session) {
   std::vector<LoadedProblem> problems;
   for (const VerifySetting& setting : settings) {
     overrides.push_back(list_overrides(options, setting, tracking.config()));
-    problems.push_back(load_its_problem(design, named, overrides.back(), true));
+    problems.push_back(load_problem_of_design(design, named, overrides.back(), true));
   }
 
   catch_signals(session.stop);
@@ -372,7 +372,7 @@ void add_verify(CLI::App& app, Session& session) {
           "heavier, and all shipped ones but weak)")
       ->delimiter(',')
       ->type_name("NAMES");
-  options->jobs.add_to(*command);
+  add_jobs_flag(*command, options->jobs);
   command->add_flag("--json", options->json, "Print everything as JSON")->group("Output");
   command->add_flag("--quiet,-q", options->quiet, "No progress")->group("Output");
   command->callback([options, &session] {

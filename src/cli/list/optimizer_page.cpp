@@ -5,12 +5,18 @@
 #include <algorithm>
 
 #include "base/text.hpp"
-#include "cli/list/optimizer_words.hpp"
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/markdown.hpp"
+#include "optimizers/interface/capability_table.hpp"
 
 namespace armwright {
 namespace {
+
+// 1e+12 rather than a row of noughts.
+std::string format_bound(double value) {
+  const std::string brief = fmt::format("{:g}", value);
+  return parse_finite(brief) == value ? brief : format_exact(value);
+}
 
 std::string format_sentence(const std::string& text) {
   return escape_markdown(text) + (text.ends_with('.') ? "" : ".");
@@ -89,10 +95,10 @@ std::string format_calls(const OptimizerRow& row) {
 
 std::string format_capabilities(const OptimizerRow& row) {
   std::string text = "## Capabilities\n\n| capability | | what that means |\n|---|---|---|\n";
-  for (const CapabilityWords& words : capability_words()) {
-    text +=
-        fmt::format("| {} | {} | {} |\n", words.name, row.capabilities.*words.member ? "yes" : "no",
-                    escape_markdown(describe_capability(row, words)));
+  for (const CapabilityRow& capability : kCapabilityTable) {
+    text += fmt::format("| {} | {} | {} |\n", capability.name,
+                        row.capabilities.*capability.member ? "yes" : "no",
+                        escape_markdown(describe_capability(row, capability)));
   }
   return text + "\n";
 }
@@ -123,6 +129,67 @@ std::string format_source(const OptimizerRow& row) {
 }
 
 }  // namespace
+
+std::vector<std::string> list_capabilities(const Capabilities& capabilities) {
+  std::vector<std::string> names;
+  for (const CapabilityRow& capability : kCapabilityTable) {
+    if (capabilities.*capability.member) {
+      names.emplace_back(capability.name);
+    }
+  }
+  return names;
+}
+
+std::string describe_capability(const OptimizerRow& row, const CapabilityRow& capability) {
+  const bool has = row.capabilities.*capability.member;
+  if (capability.member == &Capabilities::constraints && !has) {
+    const bool weighs = std::ranges::count(row.options, "constraint_weight", &OptionSpec::name) > 0;
+    return weighs ? "does not know the constraints: their violation, times constraint_weight, is "
+                    "added to the objective"
+                  : "does not know the constraints and ignores them";
+  }
+  return has ? capability.with : capability.without;
+}
+
+std::vector<std::string> list_requirements(const Requirements& requirements) {
+  std::vector<std::string> list;
+  if (requirements.objectives > 1) {
+    list.push_back(fmt::format("at least {} objectives", requirements.objectives));
+  }
+  if (requirements.variables > 1) {
+    list.push_back(fmt::format("at least {} decision variables", requirements.variables));
+  }
+  if (requirements.residuals) {
+    list.emplace_back("residuals (all robot problems have them)");
+  }
+  return list;
+}
+
+std::string describe_isolation(const OptimizerRow& row) {
+  if (row.isolated.empty()) {
+    return "in armwright's own process";
+  }
+  constexpr const char* kElsewhere =
+      "in a process of its own, where a hang or a crash costs this run and nothing else";
+  return row.isolated == "always"
+             ? kElsewhere
+             : fmt::format("{} {}, otherwise in armwright's own", row.isolated, kElsewhere);
+}
+
+const char* get_option_type(const OptionValue& value) {
+  constexpr const char* kNames[] = {"true or false", "integer", "number", "text"};
+  return kNames[value.index()];
+}
+
+std::string describe_range(const OptionSpec& option) {
+  if (std::holds_alternative<std::int64_t>(option.fallback)) {
+    return fmt::format("{:.0f} to {:.0f}", option.lower, option.upper);
+  }
+  if (std::holds_alternative<double>(option.fallback)) {
+    return fmt::format("{} to {}", format_bound(option.lower), format_bound(option.upper));
+  }
+  return "";
+}
 
 std::string get_page_name(const std::string& optimizer) {
   std::string name = optimizer + ".md";
@@ -157,9 +224,9 @@ std::string format_optimizer_index(std::span<const OptimizerRow> rows) {
       "problem is checked before a run begins.\n\n"
       "## How to read the capabilities\n\n"
       "| capability | an optimizer with it | one without |\n|---|---|---|\n";
-  for (const CapabilityWords& words : capability_words()) {
-    text += fmt::format("| {} | {} | {} |\n", words.name, escape_markdown(words.with),
-                        escape_markdown(words.without));
+  for (const CapabilityRow& capability : kCapabilityTable) {
+    text += fmt::format("| {} | {} | {} |\n", capability.name, escape_markdown(capability.with),
+                        escape_markdown(capability.without));
   }
   return text;
 }

@@ -43,10 +43,10 @@ class MarkdownWriter {
   void operator()(const PageReferences& references) {
     end_list();
     std::vector<std::string> links;
-    std::ranges::transform(references.pages, std::back_inserter(links),
-                           [](const PageReference& page) {
-                             // A section's title makes the same name of itself.
-                             return fmt::format("[{}](#{})", page.title, page.name);
+    std::ranges::transform(references.titles, std::back_inserter(links),
+                           [](const std::string& title) {
+                             // Markdown makes the same anchor of a section's title.
+                             return fmt::format("[{}](#{})", title, get_manual_name(title));
                            });
     text += join(links, ", ") + "\n\n";
   }

@@ -93,9 +93,9 @@ class RoffWriter {
   }
   void operator()(const PageReferences& references) {
     separate();
-    for (const PageReference& page : references.pages) {
-      text += fmt::format(".BR {} (1){}\n", escape_roff(page.name),
-                          &page == &references.pages.back() ? "" : ",");
+    for (const std::string& title : references.titles) {
+      text += fmt::format(".BR {} (1){}\n", escape_roff(get_manual_name(title)),
+                          &title == &references.titles.back() ? "" : ",");
     }
   }
 

@@ -46,8 +46,8 @@ class TextWriter {
   }
   void operator()(const PageReferences& references) {
     std::vector<std::string> pages;
-    std::ranges::transform(references.pages, std::back_inserter(pages),
-                           [](const PageReference& page) { return page.name + "(1)"; });
+    std::ranges::transform(references.titles, std::back_inserter(pages),
+                           [](const std::string& title) { return get_manual_name(title) + "(1)"; });
     add_wrapped(join(pages, ", "), kTextIndent);
     text += "\n";
   }

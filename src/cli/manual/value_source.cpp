@@ -1,10 +1,9 @@
-#include "cli/manual/value_source.hpp"
-
 #include <algorithm>
 #include <span>
 
 #include "base/text.hpp"
 #include "cli/list/list_views.hpp"
+#include "cli/manual/completion.hpp"
 #include "cli/manual/manual_formats.hpp"
 #include "cli/manual/plugin_templates.hpp"
 #include "problems/config/config_files.hpp"

@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
-#include <iterator>
 #include <thread>
 
 #include "base/error.hpp"
@@ -81,9 +80,9 @@ CLI::App* add_command(CLI::App& parent, Session& session, const std::string& nam
   return command;
 }
 
-void JobsOption::add_to(CLI::App& command, const std::string& fallback) {
+void add_jobs_flag(CLI::App& command, std::string& jobs, const std::string& fallback) {
   command
-      .add_option("--jobs,-j", text,
+      .add_option("--jobs,-j", jobs,
                   fmt::format("Threads that simulate; the results do not depend on it\n"
                               "(default: {})",
                               fallback))
@@ -91,7 +90,7 @@ void JobsOption::add_to(CLI::App& command, const std::string& fallback) {
       ->envname("ARMWRIGHT_JOBS");
 }
 
-unsigned JobsOption::get() const {
+unsigned parse_jobs(std::string_view text) {
   if (text.empty()) {
     const auto place = find_rank_place();
     return place ? count_rank_cores(*place) : std::max(1U, std::thread::hardware_concurrency());
@@ -99,14 +98,20 @@ unsigned JobsOption::get() const {
   return static_cast<unsigned>(parse_count("--jobs (ARMWRIGHT_JOBS)", text, 1, kMostJobs));
 }
 
-void TimeLimitOption::add_to(CLI::App& command) {
-  command.add_option("--time-limit", text, "Stop, resumably, after a time: 90, 90s, 10m, 2h")
+unsigned parse_jobs_or_one(std::string_view text) {
+  return text.empty() ? 1 : parse_jobs(text);
+}
+
+void add_time_limit_flag(CLI::App& command, std::string& time_limit) {
+  command
+      .add_option("--time-limit", time_limit,
+                  "Stop after this time, so that the command can be resumed: 90, 90s, 10m, 2h")
       ->type_name("DURATION");
 }
 
-void TimeLimitOption::apply(StopSignal& stop) const {
-  if (!text.empty()) {
-    const std::chrono::duration<double> limit(parse_duration_s("--time-limit", text));
+void apply_time_limit(std::string_view time_limit, StopSignal& stop) {
+  if (!time_limit.empty()) {
+    const std::chrono::duration<double> limit(parse_duration_s("--time-limit", time_limit));
     stop.set_deadline(StopSignal::Clock::now() +
                       std::chrono::duration_cast<StopSignal::Clock::duration>(limit));
   }
@@ -204,39 +209,32 @@ void OverrideOptions::add_to(CLI::App& command, bool with_training) {
   command
       .add_option("--set", set,
                   "Change a setting of the problem, as in task.speed_m_per_s=2; repeatable.\n"
-                  "'armwright list problems NAME' shows its own, 'list settings' what they mean")
+                  "'armwright list problems NAME' shows the problem's settings, and\n"
+                  "'armwright list settings' explains them")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   engines.add_to(command, with_training);
-  robot.add_to(command);
-}
-
-std::string OverrideOptions::choose_problem(const std::string& typed) const {
-  return typed.empty() && !robot.robot.empty() ? "robot" : typed;
-}
-
-void RobotFlags::add_to(CLI::App& command) {
   command
       .add_option("--robot", robot,
-                  "An arm of your own, a URDF, or a shipped one (armwright list robots); the same\n"
-                  "as --set robot.urdf=FILE, on the problem 'robot' if none is named")
+                  "An arm of your own, a URDF file, or a shipped one (armwright list robots); the\n"
+                  "same as --set robot.urdf=FILE. Without a problem, the problem is 'robot'")
       ->type_name("FILE");
   command
       .add_option("--base", base,
-                  "The link at which the arm begins (default: the robot's root), the same as\n"
+                  "The link at which the arm begins (default: the robot's root); the same as\n"
                   "--set robot.base=LINK")
       ->type_name("LINK");
   command
       .add_option("--tip", tip,
-                  "The link whose frame is the tool centre point (default: the only one at the\n"
-                  "end of the chain), the same as --set robot.tip=LINK")
+                  "The link whose frame is the tool centre point (default: the end of the chain,\n"
+                  "if there is only one); the same as --set robot.tip=LINK")
       ->type_name("LINK");
 }
 
-std::vector<std::string> RobotFlags::get() const {
-  std::vector<std::string> overrides;
+std::vector<std::string> OverrideOptions::list_flag_overrides() const {
+  std::vector<std::string> overrides = engines.get();
   if (!robot.empty()) {
-    // As it is from everywhere, so that a run's folder can be reported on from another one.
+    // The path is absolute, so that a report of the run can be made from any folder.
     const std::filesystem::path file = resolve_config("robots", robot);
     overrides.push_back("robot.urdf=" + quote_toml(std::filesystem::absolute(file).string()));
   }
@@ -251,9 +249,7 @@ std::vector<std::string> RobotFlags::get() const {
 
 std::vector<std::string> OverrideOptions::get() const {
   std::vector<std::string> overrides = set;
-  std::vector<std::string> flags = engines.get();
-  std::ranges::move(robot.get(), std::back_inserter(flags));
-  for (std::string& flag : flags) {
+  for (std::string& flag : list_flag_overrides()) {
     const std::string_view key = get_override_key(flag);
     const auto same = std::ranges::find(set, key, get_override_key);
     if (same != set.end()) {
@@ -265,6 +261,10 @@ std::vector<std::string> OverrideOptions::get() const {
     overrides.push_back(std::move(flag));
   }
   return overrides;
+}
+
+std::string OverrideOptions::choose_problem(const std::string& typed) const {
+  return typed.empty() && !robot.empty() ? "robot" : typed;
 }
 
 void CaseOptions::add_to(CLI::App& command) {

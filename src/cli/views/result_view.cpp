@@ -141,7 +141,7 @@ std::string format_constraints(const RunResult& result, const Style& style) {
 std::string format_winner_requirements(const RunResult& result, const Style& style) {
   std::vector<ShownRequirement> shown;
   for (JudgedRequirement& judged : judge_requirements(result.requirements, result.test)) {
-    shown.push_back({std::move(judged), {}});
+    shown.push_back({.judged = std::move(judged)});
   }
   return format_requirements(shown, style);
 }

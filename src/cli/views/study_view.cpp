@@ -8,6 +8,8 @@
 #include "base/text.hpp"
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/table.hpp"
+#include "study/analysis/final_check.hpp"
+#include "study/analysis/study_tables.hpp"
 #include "study/analysis/verdict.hpp"
 #include "study/analysis/verdict_targets.hpp"
 
@@ -254,6 +256,25 @@ std::string describe_study(const StudyPlan& plan, const StudyResult& result,
              "start to the best known is left. Cases failed: mean share of test cases with an "
              "error above\n100 mm.\nTables: {}\n",
              kSignificance, sanitize((folder / "tables").string()));
+}
+
+int end_study(const StudyPlan& plan, const std::filesystem::path& folder, unsigned jobs,
+              bool as_json, Session& session, ProgressBar& bar) {
+  StudyResult result = analyze_study(plan, folder);
+  if (!add_final_checks(plan, folder, jobs, session.stop, bar, result)) {
+    bar.clear();
+    return end_stopped(session, session.command_line);
+  }
+  bar.clear();
+  write_study_tables(plan, result, folder);
+  if (as_json) {
+    write_stdout(to_json(plan, result));
+  } else {
+    write_stdout(describe_study(plan, result, folder, make_style(Stream::out, session.color)));
+  }
+  const bool failed = std::ranges::any_of(
+      result.cells, [](const CellOutcome& cell) { return !cell.failure.empty(); });
+  return failed || !result.missing.empty() ? exit_code::kFailed : exit_code::kDone;
 }
 
 }  // namespace armwright

@@ -6,12 +6,11 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "cli/manual/bash_completion.hpp"
+#include "cli/app.hpp"
 #include "cli/manual/command_definition.hpp"
+#include "cli/manual/completion.hpp"
 #include "cli/manual/manual_formats.hpp"
 #include "cli/manual/manual_page.hpp"
-#include "cli/manual/notes.hpp"
-#include "cli/manual/value_source.hpp"
 #include "cli/terminal/session.hpp"
 
 namespace armwright {
@@ -108,20 +107,25 @@ TEST_F(Manual, OffersOnlyChoicesThatTheHelpNames) {
   }
 }
 
-TEST(Notes, ReadsListsTitlesAndParagraphs) {
-  const CommandNotes notes = read_notes(
-      "Examples:\n  armwright do      # it\n\nTwo lines\nof text.\n\ndone   it is\nleft   it is "
-      "not\n"
-      "\nExit codes:\n  0    done\n  130  interrupted\n\nEnvironment: A stands\nfor b.");
-  ASSERT_EQ(notes.text.size(), 3U);
-  EXPECT_EQ(std::get<Paragraph>(notes.text[0]).text, "Two lines of text.");
-  EXPECT_EQ(std::get<ManualItem>(notes.text[2]).text, "it is not");
-  ASSERT_EQ(notes.sections.size(), 3U);
-  EXPECT_THAT(std::get<Verbatim>(notes.sections[0].blocks[0]).lines,
+TEST_F(Manual, ReadsListsTitlesAndParagraphsBelowTheFlags) {
+  const CommandDefinition command = {
+      .words = {"armwright", "do"},
+      .summary = "Do it",
+      .notes = "Examples:\n  armwright do      # it\n\nTwo lines\nof text.\n\ndone   it is\n"
+               "left   it is not\n\nExit codes:\n  0    done\n  130  interrupted\n\n"
+               "Environment: A stands\nfor b."};
+  const ManualPage page = make_manual_page(command, program_);
+  const auto find_blocks = [&page](const std::string& title) {
+    return std::ranges::find(page.sections, title, &ManualSection::title)->blocks;
+  };
+  const auto description = find_blocks("Description");
+  ASSERT_EQ(description.size(), 4U);  // the summary is the first
+  EXPECT_EQ(std::get<Paragraph>(description[1]).text, "Two lines of text.");
+  EXPECT_EQ(std::get<ManualItem>(description[3]).text, "it is not");
+  EXPECT_THAT(std::get<Verbatim>(find_blocks("Examples").at(0)).lines,
               ElementsAre("armwright do      # it"));
-  EXPECT_EQ(notes.sections[1].title, "Exit status");
-  EXPECT_EQ(notes.sections[1].blocks.size(), 2U);
-  EXPECT_EQ(std::get<Paragraph>(notes.sections[2].blocks[0]).text, "A stands for b.");
+  EXPECT_EQ(find_blocks("Exit status").size(), 2U);
+  EXPECT_EQ(std::get<Paragraph>(find_blocks("Environment").at(0)).text, "A stands for b.");
 }
 
 TEST_F(Manual, SetsRoffThatCanBeCopied) {

@@ -35,7 +35,7 @@ TEST(OptimizerPage, HoldsWhatTheRowSays) {
   EXPECT_THAT(page, AllOf(HasSubstr("\n# `lib:demo`\n\nDemo: a\\|b \\*stars\\*.\n"),
                           HasSubstr("\n- Doe 1999, A paper.\n- Roe 2001, Another.\n"),
                           HasSubstr("\n    armwright optimize q1-complex --optimizer lib:demo\n"),
-                          HasSubstr("\n| stochastic | yes | draws by chance"),
+                          HasSubstr("\n| stochastic | yes | uses random numbers"),
                           HasSubstr("\n| bounds | yes |"), HasSubstr("\n| paced | no |")));
   EXPECT_THAT(page, AllOf(HasSubstr("\n| `size` | `3` | integer, 0 to 9 | of f\\|g |\n"),
                           HasSubstr("\n| `rate` | `0.5` | number, 1e-09 to 1e+12 | r |\n"),
@@ -64,7 +64,7 @@ TEST(OptimizerPage, SaysWhatTheOptimizerNeeds) {
 TEST(OptimizerPage, SaysWhatBecomesOfConstraints) {
   OptimizerRow row = make_row();
   EXPECT_THAT(format_optimizer_page(row),
-              HasSubstr("| constraints | no | knows no constraints and ignores them |"));
+              HasSubstr("| constraints | no | does not know the constraints and ignores them |"));
   row.options.push_back({.name = "constraint_weight", .description = "c", .fallback = 1.0});
   EXPECT_THAT(format_optimizer_page(row), HasSubstr("times constraint_weight, is added"));
   row.capabilities.constraints = true;

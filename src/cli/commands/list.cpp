@@ -9,12 +9,12 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/list/list_views.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/session.hpp"
 #include "cli/terminal/table.hpp"
 #include "cli/terminal/terminal.hpp"
-#include "sim/tracking/reference_signal.hpp"
 
 namespace armwright {
 namespace {
@@ -35,59 +35,6 @@ constexpr const char* kListExamples = R"(Examples:
 Terms: a problem is a robot with a task, or a function, to be minimised; an optimizer minimises it; a design is what
 comes out: the gains and effort limits of all joints. An engine does the physics, a signal says how the target moves
 between two points, a controller turns joint errors into efforts.)";
-
-// Kinds whose members are a name and a sentence.
-ListKind make_plain_kind(const std::string& name, std::vector<ListItem> (*list)()) {
-  const std::string what = name.substr(0, name.size() - 1);  // "engines" -> "engine"
-  const auto find = [what, list](const std::string& wanted) {
-    std::vector<std::string> names;
-    for (const ListItem& item : list()) {
-      if (item.name == wanted) {
-        return item;
-      }
-      names.push_back(item.name);
-    }
-    throw Error(ErrorKind::usage, describe_unknown(what, wanted, names));
-  };
-  const auto explain = [find](const std::string& wanted, const Style& style) {
-    const ListItem item = find(wanted);
-    return format_title(style, item.name, item.summary);
-  };
-  const auto explain_as_json = [find](const std::string& wanted) {
-    const ListItem item = find(wanted);
-    return json{{"name", item.name}, {"summary", item.summary}};
-  };
-  return {name, list, explain, explain_as_json};
-}
-
-std::vector<ListItem> list_signals() {
-  // In the order of the names; physics and formulas are with the signals themselves.
-  constexpr const char* kMeanings[] = {
-      "the target jumps to the next point at once, and counts as reached after distance / speed",
-      "constant speed",
-      "constant acceleration, constant speed, constant deceleration",
-      "accelerates half of the time, decelerates the other half",
-      "the speed rises linearly to 2.5 times the average in 0.4 of the time, then decays "
-      "quadratically",
-  };
-  std::vector<ListItem> items;
-  for (std::size_t i = 0; i < signal_names().size(); ++i) {
-    items.push_back({signal_names()[i], i < std::size(kMeanings) ? kMeanings[i] : ""});
-  }
-  return items;
-}
-
-std::vector<ListKind> list_kinds() {
-  return {make_problem_kind(),
-          make_optimizer_kind(),
-          make_robot_kind(),
-          make_engine_kind(),
-          make_design_kind(),
-          make_study_kind(),
-          make_plain_kind("signals", list_signals),
-          make_controller_kind(),
-          make_setting_kind()};
-}
 
 struct ListOptions {
   std::string kind;
@@ -201,18 +148,6 @@ int run_list(const ListOptions& options, const Session& session) {
 }
 
 }  // namespace
-
-std::vector<std::string> list_kind_names() {
-  std::vector<std::string> names;
-  for (const ListKind& kind : list_kinds()) {
-    names.push_back(kind.name);
-  }
-  return names;
-}
-
-std::string format_title(const Style& style, const std::string& name, const std::string& summary) {
-  return style.bold(sanitize(name)) + (summary.empty() ? "" : ": " + sanitize(summary)) + "\n";
-}
 
 void add_list(CLI::App& app, Session& session) {
   auto options = std::make_shared<ListOptions>();
