@@ -24,8 +24,8 @@ namespace {
 constexpr const char* kDefaultChunk = "60s";
 
 struct Work {
-  std::size_t cells = 0;  // of the plan
-  std::size_t left = 0;
+  std::size_t cells = 0;  // all cells of the study
+  std::size_t left = 0;   // those that have not ended
   std::vector<Chunk> chunks;
 };
 
@@ -70,13 +70,12 @@ std::string describe_work(const ExecutorOptions& options, const StudyPlan& plan,
       "chunks   {}, of {} cells\n", work.chunks.size(),
       describe_range(std::to_string(fewest->cells.size()), std::to_string(most->cells.size())));
   text += fmt::format(
-      "time     about {} a chunk, {} in all (measured here on a few simulations;\n"
-      "         optimizers that think long take longer)\n",
+      "time     about {} per chunk, {} in all (measured here on a few simulations;\n"
+      "         optimizers with much computation of their own take longer)\n",
       describe_range(format_duration(shortest->expected_s), format_duration(longest->expected_s)),
       format_duration(total_s));
   text += fmt::format(
-      "memory   about {:.0f} MiB a task at most, besides what optimizers remember and plugins "
-      "take\n",
+      "memory   about {:.0f} MiB per task at most, without the memory of optimizers and plugins\n",
       estimate_cell_memory_mib(plan));
   if (options.name == "slurm") {
     const auto words = make_sbatch_words(plan, work.chunks, {folder, jobs, options.sbatch},
@@ -105,7 +104,7 @@ int submit(const StudyPlan& plan, const SlurmRequest& request, const Work& work,
       fmt::format("job {0}: {1} of cells\n"
                   "  squeue -j {0}\n"
                   "  {2}\n"
-                  "When all has ended:\n"
+                  "When all jobs have ended:\n"
                   "  {3}\n",
                   submission.job, format_count(work.chunks.size(), "chunk"),
                   quote_own_command(session, {"status", request.study.string()}),
@@ -118,20 +117,20 @@ int submit(const StudyPlan& plan, const SlurmRequest& request, const Work& work,
 void ExecutorOptions::add_to(CLI::App& command) {
   command
       .add_option("--executor", name,
-                  "Where the work is done: local, by processes of this machine; mpi, by the ranks\n"
-                  "of an mpirun; slurm, cells as a job array; script, cells by whatever runs the\n"
-                  "bash script that is printed (default: mpi under mpirun, else local)")
+                  "Where the cells run: local, in processes of this machine; mpi, on the ranks of\n"
+                  "an mpirun; slurm, as a job array; script, by a bash script that is printed\n"
+                  "(default: mpi under mpirun, otherwise local)")
       ->type_name("NAME");
   command
       .add_option(
           "--chunk", chunk,
-          fmt::format("For slurm and script: cells in a row of at least this expected time\n"
+          fmt::format("For slurm and script: a chunk has as many cells as take at least this time\n"
                       "(default: {})",
                       kDefaultChunk))
       ->type_name("DURATION");
   command
       .add_option("--sbatch", sbatch,
-                  "For slurm: a further word of sbatch's, as in --sbatch=--partition=short;\n"
+                  "For slurm: another word for sbatch, as in --sbatch=--partition=short;\n"
                   "repeatable")
       ->type_name("WORD")
       ->allow_extra_args(false);
@@ -145,18 +144,18 @@ bool ExecutorOptions::is_elsewhere() const {
   const bool has_ranks = find_rank_place().has_value();
   if (has_ranks && !name.empty() && name != "mpi") {
     throw Error(ErrorKind::usage,
-                fmt::format("mpirun has started several ranks, and --executor is {}; start it "
-                            "without mpirun, or leave the executor out",
+                fmt::format("mpirun has started several ranks, but --executor is {}; start the "
+                            "program without mpirun, or leave --executor out",
                             name));
   }
   if (name == "mpi" && !has_ranks) {
     throw Error(ErrorKind::usage,
-                "--executor mpi needs the ranks of an mpirun: 'mpirun --enable-recovery -n 4 "
+                "--executor mpi needs ranks that mpirun starts: 'mpirun --enable-recovery -n 4 "
                 "armwright compare ...'; see docs/clusters.md");
   }
   const auto refuse_flag = [&](const char* flag, const char* executors) {
     throw Error(ErrorKind::usage,
-                fmt::format("{} is for --executor {}, and the executor is {}", flag, executors,
+                fmt::format("{} is for --executor {}, but the executor is {}", flag, executors,
                             !name.empty() ? name
                             : has_ranks   ? "mpi"
                                           : "local"));
@@ -183,10 +182,10 @@ int hand_over_cells(const ExecutorOptions& options, const StudyPlan& plan,
     for (const std::string& addition : folder.additions()) {
       write_message("new in the plan: " + addition);
     }
-  }  // the jobs must find it free
+  }  // releases the folder's lock, which the jobs need
   const Work work = plan_work(options, plan, path, jobs);
   if (work.chunks.empty()) {
-    write_message("all cells are done. Tables and verdict:\n" +
+    write_message("all cells are done. To make tables and verdict:\n" +
                   quote_own_command(session, {"merge", path.string()}));
     return exit_code::kDone;
   }

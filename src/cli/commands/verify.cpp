@@ -225,7 +225,7 @@ std::string make_replay(const VerifyOptions& options, std::span<const std::strin
     add("--set", assignment);
   }
   add("--cases", "1");
-  add("--case", fmt::format("{}", number));
+  add("--trajectory-case", fmt::format("{}", number));
   add("--trajectory", fmt::format("case-{}.csv", number));
   return quote_command(words);
 }

@@ -125,7 +125,7 @@ void FolderOptions::add_to(CLI::App& command, const std::string& what,
   command
       .add_flag(
           "--new", another,
-          fmt::format("Another {} beside one that is there: FOLDER-002, FOLDER-003, ...", what))
+          fmt::format("Begin a new {} if the folder exists: FOLDER-002, FOLDER-003, ...", what))
       ->group("Output");
 }
 
@@ -144,8 +144,8 @@ void add_design_argument(CLI::App& command, std::string& design) {
   command
       .add_option(
           "DESIGN", design,
-          "A design file, the name of a shipped one (armwright list designs), or \"start\":\n"
-          "where the problem's optimization starts")
+          "A design file, the name of a shipped design (armwright list designs), or \"start\"\n"
+          "for the design from which the problem's optimization starts")
       ->required();
 }
 
@@ -155,25 +155,26 @@ void EngineFlags::add_to(CLI::App& command, bool with_training) {
       .add_option("--engine", engine,
                   trains ? "Physics engine, the same as --set physics.engine=NAME\n"
                            "(armwright list engines; default: the problem's)"
-                         : "Physics engine (armwright list engines; default: the one that the\n"
-                           "problem is judged with)")
+                         : "Physics engine (armwright list engines; default: the problem's judging\n"
+                           "engine)")
       ->type_name("NAME");
   if (trains) {
     command
         .add_option("--judging-engine", judging_engine,
-                    "Another engine for validation and test, the same as\n"
-                    "--set physics.judging_engine=NAME (default: that of training)")
+                    "Engine for the validation and test sets, the same as\n"
+                    "--set physics.judging_engine=NAME (default: the engine of training)")
         ->type_name("NAME");
     command
         .add_option("--precision", precision,
-                    "double (default) or float, the latter quicker and in training only; for\n"
+                    "double (default) or float, which is faster and used in training only; for\n"
                     "engines with SIMD, the same as --set physics.precision=NAME")
         ->type_name("NAME");
   }
   command
       .add_option("--simd", simd,
-                  "Instruction set of engines with SIMD, on which the last digits of results\n"
-                  "depend; the same as physics.simd (default: auto, the best of this machine)")
+                  "Instruction set of engines with SIMD; the last digits of results depend on\n"
+                  "it; the same as --set physics.simd=LEVEL (default: auto, the best of this\n"
+                  "machine)")
       ->type_name("LEVEL");
 }
 
@@ -270,18 +271,18 @@ std::string OverrideOptions::choose_problem(const std::string& typed) const {
 void CaseOptions::add_to(CLI::App& command) {
   auto* set = command
                   .add_option("--test-set", test_set,
-                              "Generated test set: 2 is short for test/2 (default: the problem's)")
+                              "Generated test set; 2 means test/2 (default: the problem's)")
                   ->type_name("ID");
   command
       .add_option("--test-cases", test_cases,
-                  "Test cases from a file instead: JSON {\"cases\": [[[x,y,z], ...], ...]} in\n"
+                  "Test cases from a file: JSON {\"cases\": [[[x,y,z], ...], ...]} in\n"
                   "metres, or CSV case,point,x_m,y_m,z_m")
       ->type_name("FILE")
       ->excludes(set);
   command
       .add_option("--cases", cases,
-                  "Use the first N cases (default: as many as the problem says, or all in\n"
-                  "the file)")
+                  "Use the first N cases (default: the problem's number of test cases, or all\n"
+                  "cases of the file)")
       ->type_name("N");
 }
 

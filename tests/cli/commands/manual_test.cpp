@@ -1,4 +1,4 @@
-// The commands as data, and what is made of them: manual pages, completion, the reference.
+// The commands as data, and the manual pages, completion and reference made from them.
 #include <gmock/gmock.h>
 
 #include <CLI/CLI.hpp>
@@ -75,7 +75,7 @@ TEST_F(Manual, RefusesUnknownCommands) {
             "'armwright list' has no commands of its own: 'problems' is one too many");
 }
 
-// What is new must say where its values come from, if only that nobody can guess them.
+// Every flag and argument has a row that says where its values come from.
 TEST_F(Manual, KnowsWhereEveryValueComesFrom) {
   for (const CommandDefinition* command : list_all_commands(program_)) {
     for (const auto* group : {&command->arguments, &command->flags}) {
@@ -91,14 +91,14 @@ TEST_F(Manual, KnowsWhereEveryValueComesFrom) {
   }
 }
 
-// Choices that are words in a table are those that --help names.
+// The help of a flag names each choice that completion offers.
 TEST_F(Manual, OffersOnlyChoicesThatTheHelpNames) {
   for (const CommandDefinition* command : list_all_commands(program_)) {
     for (const ArgumentDefinition& flag : command->flags) {
       const auto source = find_value_source(*command, flag).value_or(ValueSource{});
       if (flag.value.empty() || flag.get_key() == "--simd" || flag.get_key() == "--perturbations" ||
           flag.value == "DESIGN") {
-        continue;  // those name a command that lists them, or a folder
+        continue;  // their help names a command or a page that lists the choices
       }
       for (const std::string& choice : source.choices) {
         EXPECT_THAT(flag.description, HasSubstr(choice)) << command->get_title();
@@ -108,12 +108,13 @@ TEST_F(Manual, OffersOnlyChoicesThatTheHelpNames) {
 }
 
 TEST_F(Manual, ReadsListsTitlesAndParagraphsBelowTheFlags) {
-  const CommandDefinition command = {
-      .words = {"armwright", "do"},
-      .summary = "Do it",
-      .notes = "Examples:\n  armwright do      # it\n\nTwo lines\nof text.\n\ndone   it is\n"
+  CommandDefinition command;
+  command.words = {"armwright", "do"};
+  command.summary = "Do it";
+  command.notes =
+      "Examples:\n  armwright do      # it\n\nTwo lines\nof text.\n\ndone   it is\n"
                "left   it is not\n\nExit codes:\n  0    done\n  130  interrupted\n\n"
-               "Environment: A stands\nfor b."};
+               "Environment: A stands\nfor b.";
   const ManualPage page = make_manual_page(command, program_);
   const auto find_blocks = [&page](const std::string& title) {
     return std::ranges::find(page.sections, title, &ManualSection::title)->blocks;
