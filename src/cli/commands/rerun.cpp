@@ -1,4 +1,4 @@
-// armwright rerun: one run of a comparison once more, compared to the last bit.
+// armwright rerun: repeats one run of a study and compares all bits of the results.
 
 #include "study/compare/rerun.hpp"
 
@@ -26,10 +26,10 @@ constexpr const char* kRerunExamples = R"(Examples:
   armwright rerun results/q1 q1-complex/ga/r03
   armwright rerun results/q1 q1-complex/ga/r03 --jobs 1 --json
 
-Runs what the study recorded: the same training cases, start, seed and options. Then every evaluation, the judgements,
-the result and the winner are compared with the study's, to the last bit. Exit code 0: identical; 3: they differ. The
-study itself stays as it is. Labels with other characters than letters, digits, '_', '-' and '.' can be given as they are
-or as their folder is named.)";
+The command repeats the recorded run with the same training cases, start, seed and options. Then it compares all
+evaluations, the judgements, the result and the winner with those of the study, bit for bit. The exit code is 0 if they
+are identical and 3 if they differ. The study is not changed. A label with characters other than letters, digits, '_',
+'-' and '.' can be given as it is or as its folder is named.)";
 
 struct RerunOptions {
   std::string study;
@@ -57,7 +57,7 @@ void check_recorded(const RerunOptions& options, const StudyPlan& plan, const Ce
   throw Error(
       ErrorKind::usage,
       fmt::format("{}: {} has not ended in this study, so there is nothing to compare with. "
-                  "To go on with the study:\n{}",
+                  "To resume the study:\n{}",
                   sanitize(options.study), describe_cell(plan, cell),
                   sanitize(quote_command(words))));
 }
@@ -119,7 +119,7 @@ std::string to_text(const std::filesystem::path& recorded, const std::filesystem
   const CellDifference& found = *comparison.difference;
   std::string text = fmt::format("different: {}, {}: recorded {}, now {}\n", found.where,
                                  found.field, found.recorded, found.now);
-  text += fmt::format("Before that {} are the same.\n", describe_same(comparison)) + folders;
+  text += fmt::format("Before that, {} are the same.\n", describe_same(comparison)) + folders;
   for (const std::string& cause : causes) {
     text += cause + "\n";
   }
@@ -164,21 +164,21 @@ int run_rerun(const RerunOptions& options, Session& session) {
 void add_rerun(CLI::App& app, Session& session) {
   auto options = std::make_shared<RerunOptions>();
   CLI::App* command = add_command(
-      app, session, "rerun", "Run one cell of a comparison anew and compare it, to the last bit",
+      app, session, "rerun", "Repeat one cell of a study and compare all bits of the results",
       kRerunExamples);
   command->add_option("STUDY", options->study, "The folder of a study")->required();
-  command->add_option("CELL", options->cell, "Which run: PROBLEM/OPTIMIZER/rNN")->required();
+  command->add_option("CELL", options->cell, "The run: PROBLEM/OPTIMIZER/rNN")->required();
   add_jobs_flag(*command, options->jobs);
   add_time_limit_flag(*command, options->time_limit);
   command
       ->add_option(
           "--out", options->out,
           "The new run's folder (default: STUDY/reruns/PROBLEM/OPTIMIZER/rNN, or the first\n"
-          "free of rNN-002, ...); nothing is overwritten")
+          "of rNN-002, ... that does not exist); nothing is overwritten")
       ->type_name("FOLDER")
       ->group("Output");
   command->add_flag("--json", options->json, "Print the comparison as JSON")->group("Output");
-  command->add_flag("--quiet,-q", options->quiet, "No progress")->group("Output");
+  command->add_flag("--quiet,-q", options->quiet, "Show no progress")->group("Output");
   command->callback([options, &session] {
     session.action = [options, &session] { return run_rerun(*options, session); };
   });

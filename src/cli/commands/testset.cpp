@@ -1,4 +1,4 @@
-// armwright testset: test cases as files, for other programs and from them.
+// armwright testset: writes test cases to files and reads them from files.
 
 #include <fmt/format.h>
 
@@ -25,8 +25,8 @@ constexpr const char* kTestsetExamples = R"(Examples:
   armwright testset hash test/2 --cases 500
   armwright evaluate table-a5 --problem q1-complex --test-cases mine.json
 
-Terms: a test case is a start point and the points that the arm's tip has to reach after it. A generated set is a
-name and nothing else: case N of test/2 is the same everywhere. train/ID, validation/ID and test/ID are its names.)";
+Terms: a test case is a start point and the points that the arm's tip has to reach after it. A generated set is defined
+by its name only: case N of test/2 is the same on every machine. The names are train/ID, validation/ID and test/ID.)";
 
 constexpr const char* kExportExamples = R"(Examples:
   armwright testset export test/2 --cases 500 --out test-2.json
@@ -34,7 +34,7 @@ constexpr const char* kExportExamples = R"(Examples:
   armwright testset export test/1 --cases 100 --problem mine.toml    # in that problem's workspace)";
 
 constexpr const char* kImportExamples = R"(Examples:
-  armwright testset import mine.csv                # is it usable? how many cases, and their hash
+  armwright testset import mine.csv                # check the file; print the number of cases and their hash
   armwright testset import mine.csv --out mine.json
   armwright testset import mine.json --out - --format csv)";
 
@@ -42,10 +42,10 @@ constexpr const char* kHashExamples = R"(Examples:
   armwright testset hash test/2 --cases 500
   armwright testset hash mine.json
 
-The hash is SHA-256 over the coordinates: equal cases have equal hashes, whatever file or name they come from.)";
+The hash is SHA-256 over the coordinates. Equal cases have equal hashes, whatever their file or name is.)";
 
 struct TestsetOptions {
-  std::string name;  // of a set or a file
+  std::string name;  // of a set, or of a file
   std::string cases;
   std::string format;
   std::string out;
@@ -59,8 +59,8 @@ void check_set_name(const std::string& name) {
       std::find(kinds.begin(), kinds.end(), parts[0]) == kinds.end()) {
     throw Error(
         ErrorKind::usage,
-        fmt::format("'{}' is no test set; a generated set is named train/ID, validation/ID or "
-                    "test/ID, as in test/2",
+        fmt::format("'{}' is no test set; the name of a generated set is train/ID, "
+                    "validation/ID or test/ID, as in test/2",
                     sanitize(name)));
   }
 }
@@ -114,7 +114,7 @@ int run_export(const TestsetOptions& options) {
 
 int run_import(const TestsetOptions& options) {
   if (options.out.empty() && !options.format.empty()) {
-    throw Error(ErrorKind::usage, "--format says how to write the cases; it needs --out FILE");
+    throw Error(ErrorKind::usage, "--format is the format of the file that --out names; give --out FILE, too");
   }
   const auto cases = load_cases(options.name);
   const std::string summary = describe_cases(cases, options.name);
@@ -132,7 +132,7 @@ int run_import(const TestsetOptions& options) {
 int run_hash(const TestsetOptions& options) {
   const bool a_file = std::filesystem::is_regular_file(options.name);
   if (a_file && !options.cases.empty()) {
-    throw Error(ErrorKind::usage, "--cases belongs to generated sets; a file is hashed as a whole");
+    throw Error(ErrorKind::usage, "--cases works with generated sets only; a file is hashed as a whole");
   }
   TestsetOptions with_count = options;
   if (with_count.cases.empty()) {
@@ -145,7 +145,7 @@ int run_hash(const TestsetOptions& options) {
 
 void add_format(CLI::App& command, TestsetOptions& options, const char* out_help) {
   command
-      .add_option("--format", options.format, "json or csv (default: by the file's name, or json)")
+      .add_option("--format", options.format, "json or csv (default: csv for a file named *.csv, otherwise json)")
       ->type_name("FORMAT");
   command.add_option("--out", options.out, out_help)->type_name("FILE");
 }
@@ -163,10 +163,10 @@ void add_testset(CLI::App& app, Session& session) {
   exporting->add_option("NAME", options->name, "The set: train/ID, validation/ID or test/ID")
       ->required();
   exporting->add_option("--cases", options->cases, "The first N cases")->type_name("N")->required();
-  add_format(*exporting, *options, "Where to (default: standard output)");
+  add_format(*exporting, *options, "The file (default: standard output)");
   exporting
       ->add_option("--problem,-p", options->problem,
-                   "Generate in this problem's workspace (default: the thesis's sphere)")
+                   "Generate the cases in this problem's workspace (default: the thesis's sphere)")
       ->type_name("PROBLEM");
   exporting->callback(
       [options, &session] { session.action = [options] { return run_export(*options); }; });
@@ -174,7 +174,7 @@ void add_testset(CLI::App& app, Session& session) {
   CLI::App* importing = add_command(*command, session, "import",
                                     "Check a file of cases, and convert it", kImportExamples);
   importing->add_option("FILE", options->name, "JSON or CSV")->required();
-  add_format(*importing, *options, "Write the cases there; - is standard output");
+  add_format(*importing, *options, "Write the cases to this file; - is standard output");
   importing->callback(
       [options, &session] { session.action = [options] { return run_import(*options); }; });
 

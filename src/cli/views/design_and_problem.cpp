@@ -40,14 +40,14 @@ LoadedProblem load_problem_of_design(const DesignFile& design, const std::string
   if (design.published.empty()) {
     throw Error(
         ErrorKind::usage,
-        fmt::format("--problem is missing, and design '{}' does not say what it was made for; "
-                    "name one (armwright list problems)",
+        fmt::format("--problem is missing, and design '{}' does not name the problem it was made "
+                    "for; name one (armwright list problems)",
                     sanitize(design.name)));
   }
   const PublishedResult& published = design.published.front();
   overrides.insert(overrides.begin(), published.overrides.begin(), published.overrides.end());
   if (!quiet) {
-    write_message(fmt::format("no --problem given: using {}, which {} was published for",
+    write_message(fmt::format("--problem is not given; using {}, which {} was published for",
                               published.problem, design.name));
   }
   return load_problem(published.problem, overrides);
@@ -64,8 +64,8 @@ std::pair<DesignFile, LoadedProblem> load_design_and_problem(const std::string& 
   }
   if (problem.empty()) {
     throw Error(ErrorKind::usage,
-                "design 'start' is where a problem's optimization starts; name the problem with "
-                "--problem, or an arm of your own with --robot");
+                "design 'start' is the one from which a problem's optimization starts; name the "
+                "problem with --problem, or an arm of your own with --robot");
   }
   LoadedProblem loaded = load_problem(problem, overrides);
   const TrackingConfig& config = require_tracking(loaded).config();
