@@ -71,8 +71,8 @@ std::string describe_version() {
   add("compiler", build.at("compiler"));
   add("build type", build.at("build_type"));
   add("processor", build.at("cpu"));
-  add("SIMD levels", fmt::format("{}; the best of them, {}, unless told otherwise",
-                                 join(supported_simd_names(), ", "), to_string(find_best_simd())));
+  add("SIMD levels", fmt::format("{}; default {}", join(supported_simd_names(), ", "),
+                                 to_string(find_best_simd())));
   add("host", build.at("host"));
   text += "Libraries it was built with:\n";
   std::vector<std::string> missing;
@@ -234,8 +234,7 @@ int run_command(Session& session, int argc, char** argv) {
     write_message("error: no memory left; use fewer --jobs or a smaller problem");
     return exit_code::kInternal;
   } catch (const std::exception& error) {
-    write_message(std::string("error: a bug in armwright, please report it: ") +
-                  error.what());
+    write_message(std::string("error: a bug in armwright, please report it: ") + error.what());
     return exit_code::kInternal;
   }
 }

@@ -57,10 +57,11 @@ void wait_for_study(const std::filesystem::path& folder, StopSignal& stop) {
       return;
     }
     if (tries == kTries) {
-      throw Error(ErrorKind::busy,
-                  fmt::format("{} is in use by {}, which runs its cells itself; wait until it ends, "
-                              "or stop it",
-                              sanitize(folder.string()), writer));
+      throw Error(
+          ErrorKind::busy,
+          fmt::format("{} is in use by {}, which runs its cells itself; wait until it ends, "
+                      "or stop it",
+                      sanitize(folder.string()), writer));
     }
     std::this_thread::sleep_for(kPause);
   }
@@ -180,8 +181,8 @@ class CellCommand {
 void add_cell(CLI::App& app, Session& session) {
   auto options = std::make_shared<CellOptions>();
   CLI::App* command =
-      add_command(app, session, "cell",
-                  "Run some cells of a study, as the jobs of a cluster do", kCellExamples);
+      add_command(app, session, "cell", "Run some cells of a study, as the jobs of a cluster do",
+                  kCellExamples);
   command->add_option("PLAN", options->plan, "The folder of a study, or its study.toml")
       ->required();
   command

@@ -83,9 +83,9 @@ int run_check_plugin(const CheckPluginOptions& options, Session& session) {
 
 void add_check_plugin(CLI::App& app, Session& session) {
   auto options = std::make_shared<CheckPluginOptions>();
-  CLI::App* command = add_command(app, session, "check-plugin",
-                                  "Check whether an optimizer keeps the promises of every optimizer",
-                                  kCheckPluginExamples);
+  CLI::App* command = add_command(
+      app, session, "check-plugin",
+      "Check whether an optimizer keeps the promises of every optimizer", kCheckPluginExamples);
   command
       ->add_option("OPTIMIZER", options->optimizer,
                    "A name, a shared library (./libmine.so) or a process ('exec:COMMAND')")

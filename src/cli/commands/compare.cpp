@@ -188,10 +188,10 @@ int run_compare(const CompareOptions& options, Session& session) {
 
 void add_compare(CLI::App& app, Session& session) {
   auto options = std::make_shared<CompareOptions>();
-  CLI::App* command =
-      add_command(app, session, "compare",
-                  "Compare optimizers in a study: runs under equal conditions, statistics, a verdict",
-                  kCompareExamples);
+  CLI::App* command = add_command(
+      app, session, "compare",
+      "Compare optimizers in a study: runs under equal conditions, statistics, a verdict",
+      kCompareExamples);
   command->add_option("STUDY", options->file,
                       "A study file, or the name of a shipped study (armwright list studies)");
   command->add_option("--preset", options->preset, "A shipped study by its name: smoke, q1, ...")

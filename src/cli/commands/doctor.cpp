@@ -139,7 +139,8 @@ int repair(const DoctorOptions& options, Session& session) {
 
 int run_doctor(const DoctorOptions& options, Session& session) {
   if (!options.out.empty() && !options.repair) {
-    throw Error(ErrorKind::usage, "--out names the copy that --repair makes; give both flags or neither");
+    throw Error(ErrorKind::usage,
+                "--out names the copy that --repair makes; give both flags or neither");
   }
   if (!options.folder.empty()) {
     return options.repair ? repair(options, session) : check_store(options, session);
@@ -165,7 +166,8 @@ void add_doctor(CLI::App& app, Session& session) {
   command->add_flag("--repair", options->repair,
                     "Make a copy without the damaged records, which can be resumed");
   command
-      ->add_option("--out", options->out, "The folder of the copy that --repair makes (default: FOLDER.repaired)")
+      ->add_option("--out", options->out,
+                   "The folder of the copy that --repair makes (default: FOLDER.repaired)")
       ->type_name("FOLDER")
       ->group("Output");
   command->add_flag("--json", options->json, "Print it as JSON")->group("Output");

@@ -212,7 +212,8 @@ int run_evaluate(const EvaluateOptions& options, Session& session) {
   std::uint64_t traced = 0;
   if (!options.trajectory.empty()) {
     const auto most = static_cast<std::int64_t>(cases.set.size().value_or(1'000'000'000)) - 1;
-    traced = static_cast<std::uint64_t>(parse_count("--trajectory-case", options.trajectory_case, 0, most));
+    traced = static_cast<std::uint64_t>(
+        parse_count("--trajectory-case", options.trajectory_case, 0, most));
   }
 
   const std::vector<std::string> notes = check_paths(problem);

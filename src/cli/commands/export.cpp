@@ -61,8 +61,9 @@ int run_export(const ExportOptions& options) {
 
 void add_export(CLI::App& app, Session& session) {
   auto options = std::make_shared<ExportOptions>();
-  CLI::App* command = add_command(app, session, "export",
-                                  "Write the runs of a folder in the formats of other programs", kExportExamples);
+  CLI::App* command =
+      add_command(app, session, "export",
+                  "Write the runs of a folder in the formats of other programs", kExportExamples);
   std::string formats = "The format:";
   for (const ExportFormat& format : export_formats()) {
     formats += fmt::format("\n{:<13} {}", format.name, format.title);

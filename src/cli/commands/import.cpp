@@ -89,13 +89,16 @@ int run_import(const ImportOptions& options) {
 
 void add_import(CLI::App& app, Session& session) {
   auto options = std::make_shared<ImportOptions>();
-  CLI::App* command = add_command(
-      app, session, "import", "Make a design file from the best decision vector of an export", kImportExamples);
-  command->add_option("EXPORT", options->folder, "An export that armwright wrote as csv, json or ioh")
+  CLI::App* command =
+      add_command(app, session, "import",
+                  "Make a design file from the best decision vector of an export", kImportExamples);
+  command
+      ->add_option("EXPORT", options->folder, "An export that armwright wrote as csv, json or ioh")
       ->required();
   command->add_option("--problem,-p", options->problem, "Use only runs on this problem")
       ->type_name("PROBLEM");
-  command->add_option("--optimizer", options->label, "Use only runs with this label")->type_name("LABEL");
+  command->add_option("--optimizer", options->label, "Use only runs with this label")
+      ->type_name("LABEL");
   command->add_option("--replicate", options->replicate, "Use only this replicate")->type_name("N");
   command
       ->add_option("--config", options->config,

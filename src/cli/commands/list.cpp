@@ -108,7 +108,8 @@ std::string format_list(const ListKind& kind, const Style& style) {
     table.add_row(
         {sanitize(item.name) + (item.unavailable.empty() ? "" : " *"), sanitize(item.summary)});
   }
-  const std::string hint = fmt::format("\n'armwright list {} NAME' explains one of them.\n", kind.name);
+  const std::string hint =
+      fmt::format("\n'armwright list {} NAME' explains one of them.\n", kind.name);
   return table.format(style, 0, width) + explain_unavailable(items, get_text_width(Stream::out)) +
          (is_terminal(Stream::out) ? hint : "");
 }
@@ -118,9 +119,10 @@ int run_list(const ListOptions& options, const Session& session) {
   const Style style = make_style(Stream::out, session.color);
   if (options.names) {
     if (options.json || options.markdown || !options.name.empty()) {
-      throw Error(ErrorKind::usage,
-                  "--names prints only the names of a kind; leave out NAME, --json and --markdown, or "
-                  "leave out --names");
+      throw Error(
+          ErrorKind::usage,
+          "--names prints only the names of a kind; leave out NAME, --json and --markdown, or "
+          "leave out --names");
     }
     write_stdout(format_names(kind));
     return exit_code::kDone;
@@ -158,7 +160,8 @@ void add_list(CLI::App& app, Session& session) {
   command->add_option("NAME", options->name, "The item to explain");
   command->add_flag("--json", options->json, "Print as JSON")->group("Output");
   command
-      ->add_flag("--names", options->names, "Print only the names of the items that can be used here, one per line")
+      ->add_flag("--names", options->names,
+                 "Print only the names of the items that can be used here, one per line")
       ->group("Output");
   command
       ->add_flag("--markdown", options->markdown,

@@ -159,7 +159,8 @@ void check_limits(Checks& checks) {
   check_limit(checks, "processes", RLIMIT_NPROC, 64, "u", "too few for --jobs and for plugins");
   check_limit(checks, "size of a file", RLIMIT_FSIZE, RLIM_INFINITY, "f",
               "a run ends when its journal exceeds this");
-  check_limit(checks, "address space", RLIMIT_AS, RLIM_INFINITY, "v", "a run ends when it needs more");
+  check_limit(checks, "address space", RLIMIT_AS, RLIM_INFINITY, "v",
+              "a run ends when it needs more");
 }
 
 void check_locale(Checks& checks) {
@@ -228,11 +229,12 @@ void check_results_folder(Checks& checks) {
   }
   const double free = static_cast<double>(disk.f_bavail) * static_cast<double>(disk.f_bsize);
   const bool is_little = free < kLittle_bytes;
-  checks.push_back({kGroup, "free space", is_little ? CheckState::bad : CheckState::good,
-                    fmt::format("{} of {}", format_bytes(free),
-                                format_bytes(static_cast<double>(disk.f_blocks) *
-                                             static_cast<double>(disk.f_bsize))),
-                    is_little ? "free some space, or name a folder on another disk with --out" : ""});
+  checks.push_back(
+      {kGroup, "free space", is_little ? CheckState::bad : CheckState::good,
+       fmt::format(
+           "{} of {}", format_bytes(free),
+           format_bytes(static_cast<double>(disk.f_blocks) * static_cast<double>(disk.f_bsize))),
+       is_little ? "free some space, or name a folder on another disk with --out" : ""});
 }
 
 }  // namespace armwright

@@ -94,8 +94,8 @@ int run_merge(const MergeOptions& options, Session& session) {
 void add_merge(CLI::App& app, Session& session) {
   auto options = std::make_shared<MergeOptions>();
   CLI::App* command = add_command(
-      app, session, "merge", "Make the tables and the verdict of a study whose cells were run elsewhere",
-      kMergeExamples);
+      app, session, "merge",
+      "Make the tables and the verdict of a study whose cells were run elsewhere", kMergeExamples);
   command->add_option("STUDY", options->study, "The folder of a study, or its study.toml")
       ->required();
   command->add_option("OTHER", options->others,

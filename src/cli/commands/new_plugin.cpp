@@ -95,8 +95,10 @@ int run_new_plugin(const NewPluginOptions& options) {
 void add_new_plugin(CLI::App& app, Session& session) {
   auto options = std::make_shared<NewPluginOptions>();
   CLI::App* command =
-      add_command(app, session, "new-plugin", "Create the files of an optimizer of your own", kNewPluginExamples);
-  command->add_option("NAME", options->name, "The name of the optimizer and of its folder")->required();
+      add_command(app, session, "new-plugin", "Create the files of an optimizer of your own",
+                  kNewPluginExamples);
+  command->add_option("NAME", options->name, "The name of the optimizer and of its folder")
+      ->required();
   command
       ->add_option("--language,-l", options->language,
                    fmt::format("{} (default: c++)", join(plugin_languages(), ", ")))

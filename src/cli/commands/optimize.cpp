@@ -178,7 +178,8 @@ std::string describe_way_out(const OptimizeOptions& options, const RunRequest& r
   const bool is_watched = request.plan.options.values().contains("silence_s");
   return fmt::format(
       "{} is marked as failed; its evaluations are kept and judged.{}\nTo look for the fault:\n"
-      "{}\nThe same command tries again from there{}. With a changed optimizer, begin a new run:\n{}",
+      "{}\nThe same command tries again from there{}. With a changed optimizer, begin a new "
+      "run:\n{}",
       request.folder.string(), log.empty() ? "" : " The output of the optimizer: " + log,
       quote_command(check), is_watched ? " (silence_s, memory_mib and log may change)" : "",
       quote_command(anew));

@@ -29,9 +29,10 @@ void PageInput::add_to(CLI::App& command) {
 std::optional<std::string> PageInput::make_data(Session& session) const {
   if (std::filesystem::is_regular_file(source)) {
     if (!cases.empty()) {
-      throw Error(ErrorKind::usage,
-                  "--case needs the folder that the page was made from, as it simulates; a page holds "
-                  "only the cases that were simulated for it");
+      throw Error(
+          ErrorKind::usage,
+          "--case needs the folder that the page was made from, as it simulates; a page holds "
+          "only the cases that were simulated for it");
     }
     return read_page_data(source);
   }

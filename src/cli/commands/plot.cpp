@@ -196,8 +196,8 @@ int run_plot(const PlotOptions& options, Session& session) {
 
 void add_plot(CLI::App& app, Session& session) {
   auto options = std::make_shared<PlotOptions>();
-  CLI::App* command = add_command(
-      app, session, "plot", "Write the figures of a run or a study as SVG", kPlotExamples);
+  CLI::App* command = add_command(app, session, "plot",
+                                  "Write the figures of a run or a study as SVG", kPlotExamples);
   options->input.add_to(*command);
   command->add_option("--figure", options->figures, "Write only this figure or table; repeatable")
       ->type_name("NAME")
@@ -214,8 +214,7 @@ void add_plot(CLI::App& app, Session& session) {
       ->add_option("--size", options->size,
                    "Size of a figure in pixels (default: that of the figure, mostly 640x400)")
       ->type_name("WIDTHxHEIGHT");
-  command->add_flag("--list", options->list, "List the figures and draw none")
-      ->group("Output");
+  command->add_flag("--list", options->list, "List the figures and draw none")->group("Output");
   command
       ->add_option("--out", options->out,
                    "The folder for the figures (default: FOLDER/figures); files of these names are "

@@ -75,9 +75,9 @@ int run_report(const ReportOptions& options, Session& session) {
 
 void add_report(CLI::App& app, Session& session) {
   auto options = std::make_shared<ReportOptions>();
-  CLI::App* command = add_command(
-      app, session, "report", "Write a page about a run or a study: figures and motion",
-      kReportExamples);
+  CLI::App* command =
+      add_command(app, session, "report", "Write a page about a run or a study: figures and motion",
+                  kReportExamples);
   options->input.add_to(*command);
   auto* out = command
                   ->add_option("--out", options->out,

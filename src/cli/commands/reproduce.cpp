@@ -295,14 +295,16 @@ int run_reproduce(const ReproduceOptions& options, Session& session) {
 
 void add_reproduce(CLI::App& app, Session& session) {
   auto options = std::make_shared<ReproduceOptions>();
-  CLI::App* command = add_command(app, session, "reproduce",
-                                  "Evaluate every published design and compare it with its published result",
-                                  kReproduceExamples);
+  CLI::App* command =
+      add_command(app, session, "reproduce",
+                  "Evaluate every published design and compare it with its published result",
+                  kReproduceExamples);
   command
       ->add_option("--cases", options->cases,
                    "Use the first N test cases (default: the number of each problem, 500)")
       ->type_name("N");
-  command->add_option("--table", options->tables, "Evaluate only this design, as in A.10; repeatable")
+  command
+      ->add_option("--table", options->tables, "Evaluate only this design, as in A.10; repeatable")
       ->type_name("NAME")
       ->allow_extra_args(false);
   options->engines.add_to(*command, false);

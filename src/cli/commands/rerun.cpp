@@ -163,9 +163,9 @@ int run_rerun(const RerunOptions& options, Session& session) {
 
 void add_rerun(CLI::App& app, Session& session) {
   auto options = std::make_shared<RerunOptions>();
-  CLI::App* command = add_command(
-      app, session, "rerun", "Repeat one cell of a study and compare all bits of the results",
-      kRerunExamples);
+  CLI::App* command =
+      add_command(app, session, "rerun",
+                  "Repeat one cell of a study and compare all bits of the results", kRerunExamples);
   command->add_option("STUDY", options->study, "The folder of a study")->required();
   command->add_option("CELL", options->cell, "The run: PROBLEM/OPTIMIZER/rNN")->required();
   add_jobs_flag(*command, options->jobs);

@@ -133,8 +133,7 @@ void add_show(CLI::App& app, Session& session) {
   auto options = std::make_shared<ShowOptions>();
   CLI::App* command = add_command(
       app, session, "show", "Show the result of a run or a study, or how far it is", kShowExamples);
-  command->add_option("FOLDER", options->folder, "The folder of a run or a study")
-      ->required();
+  command->add_option("FOLDER", options->folder, "The folder of a run or a study")->required();
   command->add_flag("--json", options->json, "Print as JSON")->group("Output");
   command->callback([options, &session] {
     session.action = [options, &session] { return run_show(*options, session); };

@@ -96,7 +96,8 @@ std::string describe_next(const RecordedStudy& study, const StudyStatus& status,
            quote_own_command(session, {"merge", folder}) + "\n";
   }
   const std::string plan = (study.folder / "study.toml").string();
-  return "\nTo run the remaining cells here or on a cluster (when no cell is running any more):\n  " +
+  return "\nTo run the remaining cells here or on a cluster (when no cell is running any more):\n "
+         " " +
          quote_own_command(session, {"compare", plan, "--out", folder}) + "\n  " +
          quote_own_command(session, {"compare", plan, "--out", folder, "--executor", "slurm"}) +
          "\n";
@@ -128,7 +129,7 @@ std::string to_text(const RecordedStudy& study, const StudyStatus& status, const
     text += describe_notable(study.plan, status, state, style);
   }
   if (!status.writer.empty()) {
-    text += fmt::format("\nA process on this machine runs the study: {}\n", status.writer);
+    text += fmt::format("\nOne process runs the whole study: {}\n", status.writer);
   }
   return text + describe_next(study, status, session);
 }
@@ -198,9 +199,9 @@ int run_status(const StatusOptions& options, const Session& session) {
 
 void add_status(CLI::App& app, Session& session) {
   auto options = std::make_shared<StatusOptions>();
-  CLI::App* command =
-      add_command(app, session, "status", "Show the state of a study's cells, and the processes that run them",
-                  kStatusExamples);
+  CLI::App* command = add_command(
+      app, session, "status", "Show the state of a study's cells, and the processes that run them",
+      kStatusExamples);
   command->add_option("STUDY", options->study, "The folder of a study, or its study.toml")
       ->required();
   command->add_flag("--json", options->json, "Print as JSON")->group("Output");

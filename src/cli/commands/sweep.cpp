@@ -172,10 +172,11 @@ int run_sweep(const SweepOptions& options, Session& session) {
   const ChosenSweep sweep = choose_sweep(options, base);
   const DesignFile design = load_design(sweep.design);
   if (design.design.speed_m_per_s && sweep.parameter == "task.speed_m_per_s") {
-    throw Error(ErrorKind::usage,
-                fmt::format("the design {} has a speed of its own, which replaces task.speed_m_per_s; "
-                            "remove speed_m_per_s from its file to sweep the speed",
-                            sanitize(sweep.design)));
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("the design {} has a speed of its own, which replaces task.speed_m_per_s; "
+                    "remove speed_m_per_s from its file to sweep the speed",
+                    sanitize(sweep.design)));
   }
   // All values are validated before the first is simulated.
   std::vector<LoadedProblem> problems;
@@ -183,10 +184,11 @@ int run_sweep(const SweepOptions& options, Session& session) {
     auto all = overrides;
     for (const std::string& flag : options.overrides.engines.get()) {
       if (get_override_key(flag) == sweep.parameter) {
-        throw Error(ErrorKind::usage,
-                    fmt::format("--parameter {} takes several values, but a flag means --set {}; leave "
-                                "the flag out",
-                                sanitize(sweep.parameter), flag));
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("--parameter {} takes several values, but a flag means --set {}; leave "
+                        "the flag out",
+                        sanitize(sweep.parameter), flag));
       }
     }
     all.push_back(sweep.parameter + "=" + value);

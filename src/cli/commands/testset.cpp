@@ -57,11 +57,10 @@ void check_set_name(const std::string& name) {
   const std::vector<std::string> kinds = {"train", "validation", "test"};
   if (parts.size() != 2 || parts[1].empty() ||
       std::find(kinds.begin(), kinds.end(), parts[0]) == kinds.end()) {
-    throw Error(
-        ErrorKind::usage,
-        fmt::format("'{}' is no test set; the name of a generated set is train/ID, "
-                    "validation/ID or test/ID, as in test/2",
-                    sanitize(name)));
+    throw Error(ErrorKind::usage,
+                fmt::format("'{}' is no test set; the name of a generated set is train/ID, "
+                            "validation/ID or test/ID, as in test/2",
+                            sanitize(name)));
   }
 }
 
@@ -114,7 +113,8 @@ int run_export(const TestsetOptions& options) {
 
 int run_import(const TestsetOptions& options) {
   if (options.out.empty() && !options.format.empty()) {
-    throw Error(ErrorKind::usage, "--format is the format of the file that --out names; give --out FILE, too");
+    throw Error(ErrorKind::usage,
+                "--format is the format of the file that --out names; give --out FILE, too");
   }
   const auto cases = load_cases(options.name);
   const std::string summary = describe_cases(cases, options.name);
@@ -132,7 +132,8 @@ int run_import(const TestsetOptions& options) {
 int run_hash(const TestsetOptions& options) {
   const bool a_file = std::filesystem::is_regular_file(options.name);
   if (a_file && !options.cases.empty()) {
-    throw Error(ErrorKind::usage, "--cases works with generated sets only; a file is hashed as a whole");
+    throw Error(ErrorKind::usage,
+                "--cases works with generated sets only; a file is hashed as a whole");
   }
   TestsetOptions with_count = options;
   if (with_count.cases.empty()) {
@@ -145,7 +146,8 @@ int run_hash(const TestsetOptions& options) {
 
 void add_format(CLI::App& command, TestsetOptions& options, const char* out_help) {
   command
-      .add_option("--format", options.format, "json or csv (default: csv for a file named *.csv, otherwise json)")
+      .add_option("--format", options.format,
+                  "json or csv (default: csv for a file named *.csv, otherwise json)")
       ->type_name("FORMAT");
   command.add_option("--out", options.out, out_help)->type_name("FILE");
 }

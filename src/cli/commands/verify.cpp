@@ -179,7 +179,8 @@ std::vector<std::string> list_plant_overrides(const VerifySetting& setting,
   }
   if (config.perturbation.changes_anything()) {
     Perturbation plants = load_perturbation(setting.perturbation, config.robot.joint_count());
-    plants.where = Perturbation::Where::everywhere;  // also a preset that is meant for training only
+    plants.where =
+        Perturbation::Where::everywhere;  // also a preset that is meant for training only
     return make_overrides(plants);
   }
   return {"perturbation.preset=" + setting.perturbation, "perturbation.apply_to=everywhere"};

@@ -65,10 +65,9 @@ int run_watch(const WatchOptions& options, Session& session) {
 void add_watch(CLI::App& app, Session& session) {
   auto options = std::make_shared<WatchOptions>();
   CLI::App* command = add_command(
-      app, session, "watch",
-      "Serve the page of a run or a study to this machine while it runs", kWatchExamples);
-  command
-      ->add_option("FOLDER", options->folder, "The folder of a run, a study or a reproduction")
+      app, session, "watch", "Serve the page of a run or a study to this machine while it runs",
+      kWatchExamples);
+  command->add_option("FOLDER", options->folder, "The folder of a run, a study or a reproduction")
       ->required();
   command->add_option("--port", options->port, "Port of 127.0.0.1 (default: 0, any free port)")
       ->type_name("N");

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-// Kinds whose members are a name and a sentence.
+// Makes a kind whose items have only a name and a summary.
 ListKind make_plain_kind(const std::string& name, std::vector<ListItem> (*list)()) {
   const std::string what = name.substr(0, name.size() - 1);  // "engines" -> "engine"
   const auto find = [what, list](const std::string& wanted) {
@@ -38,12 +38,12 @@ ListKind make_plain_kind(const std::string& name, std::vector<ListItem> (*list)(
 }
 
 std::vector<ListItem> list_signals() {
-  // In the order of the names; physics and formulas are with the signals themselves.
+  // In the order of signal_names(). The formulas are with the signals in sim/tracking.
   constexpr const char* kMeanings[] = {
       "the target jumps to the next point at once, and counts as reached after distance / speed",
       "constant speed",
       "constant acceleration, constant speed, constant deceleration",
-      "accelerates half of the time, decelerates the other half",
+      "acceleration during half of the time, deceleration during the other half",
       "the speed rises linearly to 2.5 times the average in 0.4 of the time, then decays "
       "quadratically",
   };

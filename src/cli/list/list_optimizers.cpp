@@ -22,7 +22,7 @@ std::vector<ListItem> list_known_optimizers() {
   return items;
 }
 
-// A row of the table, available or not, or a plugin.
+// Returns a row of the table, also of an unavailable optimizer, or the row of a plugin.
 OptimizerRow get_row(const std::string& name) {
   const bool listed = std::ranges::count(optimizer_table(), name, &OptimizerRow::name) > 0;
   return listed ? find_optimizer(name) : load_optimizer(name);

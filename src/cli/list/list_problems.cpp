@@ -32,7 +32,7 @@ std::string get_key(std::string pointer) {
   return pointer;
 }
 
-// Tables one below the other, lists on one line.
+// Adds one row per setting. A list is one row.
 void collect_settings(const json& value, const std::string& pointer, Table& table) {
   if (value.is_object()) {
     for (const auto& [key, inner] : value.items()) {
@@ -46,7 +46,7 @@ void collect_settings(const json& value, const std::string& pointer, Table& tabl
   }
 }
 
-// What is required of a design; nothing of most problems.
+// Returns a table of the requirements, or an empty text if the problem has none.
 std::string format_required(const ProblemDescription& description, const Style& style) {
   if (description.requirements.empty()) {
     return "";
@@ -128,7 +128,8 @@ std::string list_quantities(const std::vector<Quantity>& quantities) {
   return join(texts, ", ");
 }
 
-// "joint_1.p, joint_1.i, ..." of four joints as "p, i, ... of joint_1, ..., joint_4".
+// Returns the names of the variables. "joint_1.p, joint_1.i, ..." of four joints becomes "p, i, ... of
+// joint_1, ..., joint_4".
 std::string describe_variables(const std::vector<DecisionVariable>& variables) {
   std::vector<std::string> owners, kinds;
   const auto add = [](std::vector<std::string>& names, const std::string& name) {
@@ -177,7 +178,7 @@ std::string format_problem(const std::string& name, const LoadedProblem& loaded)
     text += fmt::format("- Constraints: {}\n", escape_markdown(describe_limits(description)));
   }
   text += fmt::format(
-      "- Unless told otherwise: `{}`, a budget of {} {}s, schedule `{}`; {} validation and {} test "
+      "- Defaults: `{}`, a budget of {} {}s, schedule `{}`; {} validation and {} test "
       "cases\n",
       loaded.optimizer, loaded.budget, description.cost_unit, to_text(loaded.schedule),
       loaded.sets.validation_cases, loaded.sets.test_cases);
@@ -190,9 +191,9 @@ std::string format_problem(const std::string& name, const LoadedProblem& loaded)
 std::string format_problem_page() {
   std::string text = fmt::format(
       "{}# Problems\n\n"
-      "What `armwright list problems` lists: the problems that are shipped. `armwright list "
-      "problems NAME` shows one with every variable and setting; what the settings mean is in "
-      "[configuration.md](configuration.md).\n\n| problem | |\n|---|---|\n",
+      "The shipped problems, which `armwright list problems` lists. `armwright list problems NAME` "
+      "shows one of them with all variables and settings. [configuration.md](configuration.md) "
+      "explains the settings.\n\n| problem | |\n|---|---|\n",
       kGeneratedPage);
   std::string sections;
   for (const ProblemTitle& problem : list_problems()) {
@@ -212,7 +213,7 @@ ListKind make_problem_kind() {
           .explain_as_markdown = [](const std::string& name) {
             if (!name.empty()) {
               throw Error(ErrorKind::usage,
-                          "the page of problems has all of them; leave out the name");
+                          "the page of problems contains all problems; leave out the name");
             }
             return format_problem_page();
           }};

@@ -12,7 +12,7 @@
 namespace armwright {
 namespace {
 
-// 1e+12 rather than a row of noughts.
+// Returns 1e+12 instead of a number with many zeros.
 std::string format_bound(double value) {
   const std::string brief = fmt::format("{:g}", value);
   return parse_finite(brief) == value ? brief : format_exact(value);
@@ -56,8 +56,8 @@ std::string format_facts(const OptimizerRow& row) {
     text += fmt::format("- **Not offered:** {}\n", format_sentence(row.unfit));
   }
   text += row.backend.empty()
-              ? "- **Build:** every one has it.\n"
-              : fmt::format("- **Build:** one with {}, as every build is by default.\n",
+              ? "- **Build:** part of every build.\n"
+              : fmt::format("- **Build:** needs {}, which a build has by default.\n",
                             escape_markdown(row.backend));
   const std::vector<std::string> required = list_requirements(row.requirements);
   text += required.empty() ? "- **Problem:** any.\n"
@@ -105,7 +105,7 @@ std::string format_capabilities(const OptimizerRow& row) {
 
 std::string format_options(const OptimizerRow& row) {
   if (row.options.empty()) {
-    return "## Options\n\nIt has none.\n\n";
+    return "## Options\n\nIt has no options.\n\n";
   }
   std::string text = "## Options\n\n| option | default | allowed | meaning |\n|---|---|---|---|\n";
   for (const OptionSpec& option : row.options) {
@@ -116,7 +116,7 @@ std::string format_options(const OptimizerRow& row) {
   return text + "\n";
 }
 
-// Papers stand in a row's source one behind the other.
+// A row's source lists its papers, separated by "; ".
 std::string format_source(const OptimizerRow& row) {
   std::string text = "## Source\n\n";
   std::string rest = row.source;
@@ -200,30 +200,28 @@ std::string get_page_name(const std::string& optimizer) {
 std::string format_optimizer_index(std::span<const OptimizerRow> rows) {
   std::string text = fmt::format(
       "{}# Optimizers\n\n"
-      "What `--optimizer` takes, in the order of `armwright list optimizers`. Two more ways to "
-      "name "
-      "one:\n\n"
-      "- `multistart:NAME` runs a *local* one from the start and then from random points, until "
-      "the budget ends.\n"
-      "- `./libmine.so` and `exec:COMMAND` are [optimizers of your "
-      "own](../plugins.md).\n\n"
-      "Every optimizer gets the same budget, the same training cases and the same judging of its "
-      "winner. All are repeatable: the same seed gives the same run. Where options speak of a "
-      "share of "
-      "the box, they mean the distance between a variable's bounds, or between their logarithms "
-      "where "
-      "the variable is logarithmic.\n\n"
+      "The values of `--optimizer`, in the order of `armwright list optimizers`. There are two "
+      "more "
+      "ways to name an optimizer:\n\n"
+      "- `multistart:NAME` runs a *local* optimizer from the start and then from random points, "
+      "until the budget ends.\n"
+      "- `./libmine.so` and `exec:COMMAND` are [optimizers of your own](../plugins.md).\n\n"
+      "All optimizers get the same budget and the same training cases, and their winners are "
+      "judged "
+      "in the same way. The same seed gives the same run. If an option is a share of the box, it "
+      "is "
+      "a share of the distance between a variable's bounds. For a logarithmic variable, it is a "
+      "share of the distance between the logarithms of the bounds.\n\n"
       "| optimizer | what it is | capabilities | needs |\n|---|---|---|---|\n",
       kGeneratedPage);
   for (const OptimizerRow& row : rows) {
     text += format_index_row(row);
   }
   text +=
-      "\nWhat *needs* names a library is missing in a build without it. What *needs* demands of "
-      "the "
-      "problem is checked before a run begins.\n\n"
+      "\nIf *needs* names a library, a build without this library does not have the optimizer. If "
+      "*needs* names a demand on the problem, it is checked before a run begins.\n\n"
       "## How to read the capabilities\n\n"
-      "| capability | an optimizer with it | one without |\n|---|---|---|\n";
+      "| capability | an optimizer with it | an optimizer without it |\n|---|---|---|\n";
   for (const CapabilityRow& capability : kCapabilityTable) {
     text += fmt::format("| {} | {} | {} |\n", capability.name, escape_markdown(capability.with),
                         escape_markdown(capability.without));

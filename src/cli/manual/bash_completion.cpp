@@ -9,10 +9,11 @@
 namespace armwright {
 namespace {
 
-// Needs bash 4.4 and nothing else, not even the package bash-completion.
+// The part of the script that is the same for all programs. It needs bash 4.4, but not the package
+// bash-completion.
 constexpr const char* kBashCompletionText = R"--(
-# The words up to the cursor, in `words`, the last of them perhaps empty. Readline also breaks words at ':' and '=', as in
-# nlopt:bobyqa; they are put together again where no blank stands between them.
+# Sets `words` to the words up to the cursor; the last one may be empty. Readline also breaks words at ':' and '=', as in
+# nlopt:bobyqa. Parts without a blank between them are joined again.
 _armwright_join_words() {
   local rest=$COMP_LINE i word blanks
   if ((COMP_POINT < ${#rest})); then
@@ -35,11 +36,12 @@ _armwright_join_words() {
   done
 }
 
-# Adds to COMPREPLY what begins with $2 of the sources $1, with $3 in front. Sees `program`, `command` and `arguments` of its caller.
+# Adds to COMPREPLY all values of the sources $1 that begin with $2, with $3 in front. Uses `program`, `command` and
+# `arguments` of its caller.
 _armwright_values() {
   local value=$2 prefix=$3 source kind name
   local -a names=() found=()
-  # Quotes and backslashes are not part of the name; readline adds its own again.
+  # Quotes and backslashes are not part of the name; readline adds them again.
   value=${value#[\'\"]}
   value=${value//\\/}
   if [[ " $1 " == *' separated '* && $value == *,* ]]; then
@@ -71,7 +73,7 @@ _armwright_values() {
       COMPREPLY+=("$prefix$name")
     fi
   done
-  # Names of files get what their characters need, and folders a slash; other names must be left alone.
+  # With this option, readline escapes names of files and adds a slash to folders. Other names must not be changed.
   if ((${#COMPREPLY[@]} == 0)); then
     compopt -o filenames 2>/dev/null
   fi
@@ -93,7 +95,7 @@ _armwright() {
   _armwright_join_words
   current=${words[-1]}
 
-  # Where on the line the cursor is: behind which command, which flag, how many arguments.
+  # Finds the command, the flag and the number of arguments before the cursor.
   for word in "${words[@]:1:${#words[@]}-2}"; do
     _armwright_commands "$command"
     if [[ -n $flag && $word != --* ]]; then
@@ -130,7 +132,7 @@ _armwright() {
     _armwright_values "$REPLY" "$current" ''
   fi
 
-  # Of a word with ':' or '=' readline replaces only what stands behind the last of them.
+  # Readline replaces only the part of a word after its last ':' or '='.
   local breaks=''
   if [[ $COMP_WORDBREAKS == *=* ]]; then breaks+='='; fi
   if [[ $COMP_WORDBREAKS == *:* ]]; then breaks+=':'; fi
@@ -154,7 +156,7 @@ std::vector<std::string> list_flag_names(const ArgumentDefinition& flag) {
   return names;
 }
 
-// One word for each place that values come from, as the script's _armwright_values reads them.
+// Returns one word per place that values come from, as _armwright_values in the script reads them.
 std::string format_source(const CommandDefinition& command, const ArgumentDefinition& argument) {
   const ValueSource source = find_value_source(command, argument).value_or(ValueSource{});
   std::vector<std::string> words;
@@ -176,7 +178,7 @@ std::string format_source(const CommandDefinition& command, const ArgumentDefini
   return "REPLY='" + join(words, " ") + "'";
 }
 
-// A function that sets REPLY to one text a command.
+// Returns a shell function that sets REPLY to one text per command.
 template <typename Make>
 std::string make_function(const char* name, const CommandDefinition& program, Make make) {
   std::string text = fmt::format("{}() {{\n  REPLY=\n  case $1 in\n", name);
@@ -204,7 +206,8 @@ std::string make_flags(const CommandDefinition& command) {
   return fmt::format("      REPLY='{}'\n", join(names, " "));
 }
 
-// By flag, and by an argument's place from 1; what repeats stands for all places behind it.
+// Returns the rows for a command: one per flag, and one per argument by its place from 1. The row of an
+// argument that repeats serves all later places.
 std::string make_values(const CommandDefinition& command) {
   std::string rows;
   for (const ArgumentDefinition& flag : command.flags) {
@@ -226,13 +229,14 @@ std::string make_values(const CommandDefinition& command) {
 std::string make_bash_completion(const CommandDefinition& program, const std::string& version) {
   return fmt::format(
              "# Completion of armwright {} for bash, written by 'armwright completion bash'.\n\n"
-             "# The commands below a command, in REPLY.\n",
+             "# Sets REPLY to the commands below a command.\n",
              version) +
          make_function("_armwright_commands", program, make_commands) +
-         "# The flags of a command, in REPLY.\n" +
+         "# Sets REPLY to the flags of a command.\n" +
          make_function("_armwright_flags", program, make_flags) +
-         "# Where the values come from that a flag of a command takes, or an argument by its place "
-         "from 1, in REPLY.\n# Fails if the flag takes none.\n" +
+         "# Sets REPLY to the sources of the values of a flag, or of an argument by its place from "
+         "1.\n"
+         "# Fails if the flag has no value.\n" +
          make_function("_armwright_sources", program, make_values) + kBashCompletionText;
 }
 

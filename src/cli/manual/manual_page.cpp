@@ -113,7 +113,7 @@ Synopsis make_synopsis(const CommandDefinition& command) {
     line.push_back(placeholder(name));
     line.push_back({Emphasis::none, std::string(repeats ? " ..." : "") + (is_required ? "" : "]")});
   };
-  // Flags without which the command does nothing are part of how it is called.
+  // The synopsis shows required flags.
   for (const ArgumentDefinition& flag : command.flags) {
     if (flag.is_required) {
       line.push_back(literal(" " + flag.get_key()));
@@ -129,7 +129,8 @@ Synopsis make_synopsis(const CommandDefinition& command) {
   return {line};
 }
 
-// Lines of a description that are "NAME   what it is" become a list, all others one paragraph.
+// Makes an item of a flag, an argument or a command. Lines "NAME   text" of the description become a
+// list, and all other lines one paragraph.
 ManualItem make_item(std::vector<SpanLine> names, const std::string& description) {
   ManualItem item = {std::move(names), "", {}};
   for (const std::string& line : split(description, '\n')) {
@@ -172,8 +173,8 @@ ManualItem make_argument_item(const ArgumentDefinition& argument) {
     item.text += fmt::format(" Not together with {}.", join(argument.excludes, ", "));
   }
   if (!argument.environment.empty()) {
-    item.text +=
-        fmt::format(" The environment variable {} stands in for it.", argument.environment);
+    item.text += fmt::format(" The environment variable {} is used if it is not given.",
+                             argument.environment);
   }
   return item;
 }
@@ -199,7 +200,7 @@ std::vector<ManualSection> make_argument_sections(const CommandDefinition& comma
   return sections;
 }
 
-// Do the notes name it, as 'armwright NAME'?
+// Returns whether the notes contain the other command, as 'armwright NAME'.
 bool mentions(const CommandDefinition& command, const CommandDefinition& other) {
   constexpr std::string_view kEnds = " '\n.,";
   const std::string& notes = command.notes;
@@ -218,7 +219,7 @@ bool is_below(const CommandDefinition& above, const CommandDefinition& command) 
          std::ranges::equal(above.words, std::span(command.words).first(above.words.size()));
 }
 
-// The commands below and above it, the program, and those that the notes name.
+// Returns references to the commands below and above it, the program, and the commands in the notes.
 PageReferences make_references(const CommandDefinition& command, const CommandDefinition& program) {
   PageReferences references;
   for (const CommandDefinition* other : list_all_commands(program)) {
@@ -233,17 +234,16 @@ PageReferences make_references(const CommandDefinition& command, const CommandDe
 ManualSection make_files_section() {
   return {"Files",
           {ManualItem{{{literal("results/")}},
-                      "Where runs and comparisons go, below the folder that the program is called "
-                      "in, unless --out names another.",
+                      "Runs and studies, in the current folder, unless --out names another "
+                      "folder.",
                       {}},
            ManualItem{{{literal("PREFIX/share/armwright/configs/")}},
                       "The shipped problems, designs, robots, perturbations and studies.",
                       {}},
            ManualItem{{{literal("PREFIX/lib/armwright/plugins/")}},
-                      "Where optimizers of your own are looked for by their name.",
+                      "Plugins, which can be named without a path.",
                       {}},
-           Paragraph{"PREFIX is where the program is installed: the folder above that of the "
-                     "program itself, as /usr."}}};
+           Paragraph{"PREFIX is the folder above that of the program itself, for example /usr."}}};
 }
 
 }  // namespace
@@ -272,8 +272,8 @@ ManualPage make_manual_page(const CommandDefinition& command, const CommandDefin
     } else if (&command != &program && title == std::string("Exit status")) {
       page.sections.push_back(
           {title,
-           {Paragraph{"0 if all is done; armwright(1) has the others, which are the same "
-                      "for all commands."}}});
+           {Paragraph{"0 if the command succeeds; armwright(1) lists the other codes, which are "
+                      "the same for all commands."}}});
     }
   }
   if (&command == &program) {

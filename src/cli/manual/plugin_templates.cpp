@@ -5,13 +5,13 @@
 namespace armwright {
 namespace {
 
-// The same method in each language. In all texts below, @NAME@ is the plugin's name, @CLASS@ its name in
+// The same optimizer in each language. In all texts, @NAME@ is the plugin's name, @CLASS@ its name in
 // PascalCase, @PLUGIN@ the value for --optimizer, @LANGUAGE@ the language, @SOURCE@ the source file
-// and @STEPS@ the step that builds it.
+// and @STEPS@ the build step.
 
 constexpr const char* kCppPlugin =
-    R"raw(// @NAME@: an optimizer for armwright. Normally distributed steps from the best point so far, longer
-// after a success and shorter after a failure. Replace minimize() by your own method.
+    R"raw(// @NAME@: an optimizer for armwright. It takes normally distributed steps from the best point so far.
+// Steps get longer after a success and shorter after a failure. Replace minimize() by your own method.
 #include <cmath>
 #include <random>
 
@@ -31,7 +31,7 @@ class @CLASS@ {
 
   void minimize(plugin::Evaluator& evaluate, const plugin::Options& options, std::uint64_t seed) {
     const plugin::Problem& problem = evaluate.problem();
-    std::mt19937_64 random(seed);  // the seed is the only source of chance: runs can be resumed
+    std::mt19937_64 random(seed);  // only the seed determines random numbers: runs can be resumed
     double step = options.get_number("step");
     std::vector<double> best = problem.start();
     double least = evaluate(best);
@@ -40,7 +40,7 @@ class @CLASS@ {
       for (std::size_t i = 0; i < x.size(); ++i) {
         const plugin::Variable& v = problem.variables[i];
         std::normal_distribution<double> normal;
-        if (v.is_logarithmic) {  // a factor means the same everywhere in the range
+        if (v.is_logarithmic) {  // a step is a factor, the same in the whole range
           x[i] *= std::exp(step * std::abs(std::log(v.upper / v.lower)) * normal(random));
         } else {
           x[i] += step * (v.upper - v.lower) * normal(random);
@@ -62,8 +62,8 @@ ARMWRIGHT_PLUGIN(@CLASS@)
 )raw";
 
 constexpr const char* kCPlugin =
-    R"raw(/* @NAME@: an optimizer for armwright. Random steps from the best point so far, longer after a
- * success and shorter after a failure. Replace minimize() by your own method. */
+    R"raw(/* @NAME@: an optimizer for armwright. It takes random steps from the best point so far. Steps get
+ * longer after a success and shorter after a failure. Replace minimize() by your own method. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -71,7 +71,7 @@ constexpr const char* kCPlugin =
 
 #include "armwright/plugin.h"
 
-/* Uniform between -1 and 1. The seed is the only source of chance: runs can be resumed. */
+/* Returns a number between -1 and 1. Only the seed determines it: runs can be resumed. */
 static double draw(uint64_t* state) {
   *state = *state * 6364136223846793005u + 1442695040888963407u;
   return (double)(*state >> 11) * 0x1p-52 - 1;
@@ -96,7 +96,7 @@ static int minimize(const struct armwright_problem* problem,
     return 1;
   }
   memcpy(x, problem->start, n * sizeof(double));
-  /* 0 points come back when the budget is spent. */
+  /* evaluate() returns 0 when the budget is spent. */
   while (evaluator->evaluate(evaluator->context, x, 1, objectives, NULL, NULL) == 1) {
     const int is_better = objectives[0] < least;
     size_t i;
@@ -108,7 +108,7 @@ static int minimize(const struct armwright_problem* problem,
     for (i = 0; i < n; ++i) {
       const double lower = problem->lower[i];
       const double upper = problem->upper[i];
-      if (problem->is_logarithmic[i]) { /* a factor means the same everywhere in the range */
+      if (problem->is_logarithmic[i]) { /* a step is a factor, the same in the whole range */
         x[i] = best[i] * exp(step * fabs(log(upper / lower)) * draw(&state));
       } else {
         x[i] = best[i] + step * (upper - lower) * draw(&state);
@@ -140,10 +140,10 @@ ARMWRIGHT_PLUGIN_EXPORT const struct armwright_plugin* armwright_plugin(void) { 
 )raw";
 
 constexpr const char* kPythonPlugin =
-    R"raw("""@NAME@: an optimizer for armwright. Random steps from the best point so far, longer after a success
-and shorter after a failure. Replace minimize() by your own method.
+    R"raw("""@NAME@: an optimizer for armwright. It takes random steps from the best point so far. Steps get longer
+after a success and shorter after a failure. Replace minimize() by your own method.
 
-Standard output belongs to the protocol; notes go to standard error: print(..., file=sys.stderr)
+Standard output is used by the protocol. Print notes to standard error: print(..., file=sys.stderr)
 """
 import json
 import math
@@ -163,7 +163,7 @@ DESCRIPTION = {
 
 
 class Stopped(Exception):
-    """The budget is spent, or the user has had enough."""
+    """The budget is spent, or the user has stopped the run."""
 
 
 def send(message):
@@ -173,12 +173,12 @@ def send(message):
 def receive():
     line = sys.stdin.readline()
     if not line:
-        sys.exit(0)  # armwright is gone
+        sys.exit(0)  # armwright has ended
     return json.loads(line)
 
 
 def evaluate(points):
-    """The points' scores. Ask for many at a time where you can: they are evaluated in parallel."""
+    """Returns the scores of the points. Evaluate many points per call if you can: they are simulated in parallel."""
     send({"type": "ask", "points": points})
     answer = receive()
     if answer["stopped"]:
@@ -187,7 +187,7 @@ def evaluate(points):
 
 
 def minimize(variables, options, seed):
-    generator = random.Random(seed)  # the only source of chance: runs can be resumed
+    generator = random.Random(seed)  # only the seed determines random numbers: runs can be resumed
     step = options["step"]
     best = [v["start"] for v in variables]
     least = evaluate([best])[0]["objectives"][0]
@@ -195,7 +195,7 @@ def minimize(variables, options, seed):
         x = []
         for v, value in zip(variables, best):
             lower, upper = v["lower"], v["upper"]
-            if v["scale"] == "logarithmic":  # a factor means the same everywhere in the range
+            if v["scale"] == "logarithmic":  # a step is a factor, the same in the whole range
                 value *= math.exp(step * abs(math.log(upper / lower)) * generator.uniform(-1, 1))
             else:
                 value += step * (upper - lower) * generator.uniform(-1, 1)
@@ -245,7 +245,7 @@ target_link_libraries(@NAME@ PRIVATE armwright::plugin m)
 
 constexpr const char* kReadme = R"raw(# @NAME@
 
-An optimizer for armwright, begun with `armwright new-plugin --language @LANGUAGE@ @NAME@`.
+An optimizer for armwright, created by `armwright new-plugin --language @LANGUAGE@ @NAME@`.
 
 - `@SOURCE@` is the optimizer; replace its minimize().
 - `./test.sh` @STEPS@ checks it and runs it on the sphere.
@@ -256,8 +256,8 @@ Then:
 )raw";
 
 constexpr const char* kTestBegin = R"raw(#!/bin/sh
-# Is the plugin all right? ARMWRIGHT names another program than the armwright on the PATH,
-# CMAKE_PREFIX_PATH another place where it is installed.
+# Tests the plugin. ARMWRIGHT names another program than the armwright on the PATH. CMAKE_PREFIX_PATH names
+# another folder where armwright is installed.
 set -eu
 cd "$(dirname "$0")"
 armwright=${ARMWRIGHT:-armwright}
@@ -278,8 +278,8 @@ struct Language {
   const char* name;
   const char* suffix;
   const char* source;
-  const char* cmake;   // nullptr: there is nothing to build
-  const char* plugin;  // as --optimizer takes it, in the plugin's folder
+  const char* cmake;   // nullptr if there is nothing to build
+  const char* plugin;  // the value of --optimizer in the plugin's folder
 };
 
 const Language kLanguages[] = {

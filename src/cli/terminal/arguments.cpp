@@ -153,10 +153,11 @@ void EngineFlags::add_to(CLI::App& command, bool with_training) {
   trains = with_training;
   command
       .add_option("--engine", engine,
-                  trains ? "Physics engine, the same as --set physics.engine=NAME\n"
-                           "(armwright list engines; default: the problem's)"
-                         : "Physics engine (armwright list engines; default: the problem's judging\n"
-                           "engine)")
+                  trains
+                      ? "Physics engine, the same as --set physics.engine=NAME\n"
+                        "(armwright list engines; default: the problem's)"
+                      : "Physics engine (armwright list engines; default: the problem's judging\n"
+                        "engine)")
       ->type_name("NAME");
   if (trains) {
     command

@@ -243,10 +243,9 @@ std::string describe_result(const RunResult& result, const std::filesystem::path
   text += fmt::format("; {} failed, {} clipped to the bounds; ended by: {}\n\n", counts.failed,
                       counts.clipped, sanitize(result.end_reason));
   if (!result.failure.empty()) {
-    text +=
-        style.red("The optimizer failed: " + sanitize(result.failure)) +
-        "\nIts evaluations until then are kept and judged. The same command tries again from "
-        "there.\n\n";
+    text += style.red("The optimizer failed: " + sanitize(result.failure)) +
+            "\nIts evaluations until then are kept and judged. The same command tries again from "
+            "there.\n\n";
   }
   if (!result.winner) {
     text += style.red(describe_no_winner(result)) + "\n\n";

@@ -211,7 +211,7 @@ std::string describe_kept(const RunRepair& run) {
                         format_count(run.journal.bytes_dropped, "damaged byte"));
   }
   if (!run.made_again.empty()) {
-    text += "; left out, as it will be made again: " + join(run.made_again, ", ");
+    text += "; left out, as it is made again: " + join(run.made_again, ", ");
   }
   if (!run.kept_aside.empty()) {
     text += "; kept as NAME.damaged: " + sanitize(join(run.kept_aside, ", "));
@@ -259,7 +259,8 @@ std::string describe_survey(const StoreSurvey& survey, const std::string& progra
   }
   const auto steps = list_steps(survey, program);
   if (!steps.empty()) {
-    text += survey.is_damaged() ? "To resume from the intact records, in a copy:\n" : "To resume:\n";
+    text +=
+        survey.is_damaged() ? "To resume from the intact records, in a copy:\n" : "To resume:\n";
     for (const std::string& step : steps) {
       text += step.empty() ? "  the command that began it, with --out FOLDER for the copy\n"
                            : fmt::format("  {}\n", step);
@@ -302,8 +303,9 @@ std::string describe_repair(const StoreRepair& repair, const StoreSurvey& copy,
   }
   text += table.format(Style(false), 2, get_text_width(Stream::out));
   const std::string command = quote(make_command(copy, program, repair.copy));
-  return text + (command.empty() ? "To resume: the command that began it, with --out FOLDER for the copy\n"
-                                 : fmt::format("To resume:\n  {}\n", command));
+  return text + (command.empty()
+                     ? "To resume: the command that began it, with --out FOLDER for the copy\n"
+                     : fmt::format("To resume:\n  {}\n", command));
 }
 
 json to_json(const StoreRepair& repair, const StoreSurvey& copy, const std::string& program) {

@@ -250,7 +250,8 @@ std::string describe_study(const StudyPlan& plan, const StudyResult& result,
   }
   return text +
          fmt::format(
-             "\nA12: share of the pairs of runs in which the first optimizer of the table is better "
+             "\nA12: share of the pairs of runs in which the first optimizer of the table is "
+             "better "
              "than this one.\np: p-value of the paired difference (Wilcoxon, after Holm); * below "
              "{}. Cases to 1 %: expected number,\nwith restarts, until 1 % of the way from the "
              "start to the best known value is left. Cases failed: mean\nshare of test cases "

@@ -113,8 +113,8 @@ TEST_F(Manual, ReadsListsTitlesAndParagraphsBelowTheFlags) {
   command.summary = "Do it";
   command.notes =
       "Examples:\n  armwright do      # it\n\nTwo lines\nof text.\n\ndone   it is\n"
-               "left   it is not\n\nExit codes:\n  0    done\n  130  interrupted\n\n"
-               "Environment: A stands\nfor b.";
+      "left   it is not\n\nExit codes:\n  0    done\n  130  interrupted\n\n"
+      "Environment: A stands\nfor b.";
   const ManualPage page = make_manual_page(command, program_);
   const auto find_blocks = [&page](const std::string& title) {
     return std::ranges::find(page.sections, title, &ManualSection::title)->blocks;
@@ -144,8 +144,7 @@ TEST_F(Manual, SetsTextAsManDoes) {
   const std::string page = to_text(make_manual_page(find("export"), program_), Style(false), 80);
   EXPECT_THAT(page,
               HasSubstr("SYNOPSIS\n       armwright export [OPTIONS] --format FORMAT FOLDER\n"));
-  EXPECT_THAT(page,
-              HasSubstr("       --format FORMAT\n              Required. How to write them:"));
+  EXPECT_THAT(page, HasSubstr("       --format FORMAT\n              Required. The format:"));
   // The formats are a list of their own.
   EXPECT_THAT(page, HasSubstr("\n              coco   COCO's bbob-new2"));
   EXPECT_THAT(page, HasSubstr("\n              ros2-control\n                     one arm:"));

@@ -22,9 +22,8 @@ TEST(ListEngines, SaysWhatCanBeChosenHere) {
   ASSERT_EQ(items.size(), 2U);
   EXPECT_EQ(items[0].name, "ode");
   EXPECT_THAT(items[0].summary, Not(HasSubstr("SIMD")));
-  EXPECT_EQ(items[1].summary,
-            "made up by a test; SIMD here: " + join(supported_simd_names(), ", ") +
-                "; unless told otherwise " + kBest);
+  EXPECT_EQ(items[1].summary, "made up by a test; SIMD here: " +
+                                  join(supported_simd_names(), ", ") + "; default " + kBest);
 }
 
 TEST(ListEngines, ExplainsOne) {
