@@ -135,7 +135,7 @@ TEST_F(Cli, RefusesWrongValuesAndSaysWhatIsAllowed) {
   expect_refused({"evaluate", "table-a5", "--precision", "float"}, 2, {"unknown flag"});
   expect_refused({"sweep", "q1-complex", "--design", "table-a5", "--engine", "ode", "--parameter",
                   "physics.engine", "--values", "ode"},
-                 2, {"--parameter physics.engine is what varies"});
+                 2, {"--parameter physics.engine takes several values"});
   refuse({"--color", "pink"}, {"unknown --color 'pink'", "auto, always, never"});
   expect_refused({"optimize", "sphere"}, 2, {"ARMWRIGHT_SEED", "'one'"},
                  {{{"ARMWRIGHT_SEED", "one"}}, ""});
@@ -284,7 +284,10 @@ TEST_F(Cli, WritesCasesAndATrajectoryAsCsv) {
   EXPECT_THAT(read_text(folder_.path() / "cases.csv"),
               AllOf(StartsWith("case,status,mean_error_m,"), HasSubstr("\n1,ok,")));
   EXPECT_THAT(read_text(folder_.path() / "arm.csv"), StartsWith("time_s,"));
-  expect_refused({"evaluate", "table-a10", "--trajectory", "arm.csv"}, 2, {"belong together"});
+  expect_refused({"evaluate", "table-a10", "--trajectory", "arm.csv"}, 2,
+                 {"must be given together"});
+  // The former name of --trajectory-case.
+  expect_refused({"evaluate", "table-a10", "--case", "7"}, 2, {"must be given together"});
 }
 
 TEST_F(Cli, BadTestCasesAreBadData) {

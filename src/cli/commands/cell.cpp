@@ -46,8 +46,8 @@ struct CellOptions {
   bool quiet = false;
 };
 
-// Waits up to 3 s for a command that holds the study only briefly, as merge does. Throws Error{busy}
-// after that.
+// Waits up to 3 s for a command that holds the study only briefly, as merge does. Throws
+// Error{busy} after that.
 void wait_for_study(const std::filesystem::path& folder, StopSignal& stop) {
   constexpr std::chrono::milliseconds kPause{100};
   constexpr int kTries = 30;
@@ -151,7 +151,8 @@ class CellCommand {
     }
   }
 
-  // A full disk or a locked folder would stop every other cell, too, so these errors end the command.
+  // A full disk or a locked folder would stop every other cell, too, so these errors end the
+  // command.
   void note_broken(const Cell& cell, const Error& error) {
     if (error.kind() == ErrorKind::io || error.kind() == ErrorKind::busy) {
       throw error;

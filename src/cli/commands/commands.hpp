@@ -1,5 +1,5 @@
-// The subcommands, each in a file of its own. Each function adds one subcommand to the parser. If the
-// user chooses the subcommand, the parser stores its work in Session::action.
+// The subcommands, each in a file of its own. Each function adds one subcommand to the parser. If
+// the user chooses the subcommand, the parser stores its work in Session::action.
 #pragma once
 
 namespace CLI {

@@ -1,5 +1,5 @@
-// armwright doctor: checks whether stored files are intact, or whether this machine meets armwright's
-// requirements.
+// armwright doctor: checks whether stored files are intact, or whether this machine meets
+// armwright's requirements.
 
 #include <fmt/format.h>
 

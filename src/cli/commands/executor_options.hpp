@@ -23,14 +23,15 @@ struct ExecutorOptions {
 
   void add_to(CLI::App& command);
   // Returns whether a script or a batch system runs the cells. Throws Error{usage} for an unknown
-  // executor, for flags that belong to another executor, and if the executor does not fit to mpirun.
+  // executor, for flags that belong to another executor, and if the executor does not fit to
+  // mpirun.
   bool is_elsewhere() const;
 };
 
 // Creates the study's folder and gives its unfinished cells to the executor: submits them to slurm,
-// or prints the script. Each cell gets `jobs` threads. With `dry_run`, it only prints the chunks and
-// the command that would submit them. Returns the exit code. Throws Error{usage} if the folder holds
-// another study, Error{busy} and Error{io}.
+// or prints the script. Each cell gets `jobs` threads. With `dry_run`, it only prints the chunks
+// and the command that would submit them. Returns the exit code. Throws Error{usage} if the folder
+// holds another study, Error{busy} and Error{io}.
 int hand_over_cells(const ExecutorOptions& options, const StudyPlan& plan,
                     const std::filesystem::path& folder, unsigned jobs, bool dry_run,
                     Session& session);

@@ -60,7 +60,8 @@ std::string name_file_system(long type) {
   return fmt::format("file system {:#x}", static_cast<unsigned long>(type));
 }
 
-// Does with a file what a run does with the files of its folder. Returns the error, or an empty text.
+// Does with a file what a run does with the files of its folder. Returns the error, or an empty
+// text.
 std::string try_writing(const std::filesystem::path& folder) {
   std::string name = (folder / ".armwright-doctor-XXXXXX").string();
   FileDescriptor file(::mkostemp(name.data(), O_CLOEXEC));

@@ -39,8 +39,8 @@ struct MergeOptions {
   bool quiet = false;
 };
 
-// Prints the first few cells that have not ended and the command that runs them. Throws Error{usage}
-// if no cell has ended.
+// Prints the first few cells that have not ended and the command that runs them. Throws
+// Error{usage} if no cell has ended.
 void tell_missing(const RecordedStudy& study, const std::string& program) {
   constexpr std::size_t kMostShown = 10;
   std::vector<std::string> names;

@@ -32,7 +32,8 @@ class MpiJob {
 
   bool is_worker() const { return place_ && place_->rank > 0; }
   // Simulates for rank 0 with `threads` threads until rank 0 ends the workers, then ends the
-  // process. `load` must return the same problems that rank 0 has. If it throws, rank 0 is told why.
+  // process. `load` must return the same problems that rank 0 has. If it throws, rank 0 is told
+  // why.
   [[noreturn]] void serve(const std::function<Problems()>& load, unsigned threads);
 
   // Call it once, on rank 0. Returns the coordinator of all ranks, with `threads` threads of this

@@ -104,8 +104,8 @@ RunPlan make_plan(const OptimizeOptions& options) {
   return plan;
 }
 
-// Returns the command that resumes this run. It is the typed command without --new, and with --out and
-// --seed where the typed command would choose another folder or seed the next time.
+// Returns the command that resumes this run. It is the typed command without --new, and with --out
+// and --seed where the typed command would choose another folder or seed the next time.
 std::vector<std::string> make_command(const OptimizeOptions& options, const Session& session,
                                       const std::filesystem::path& folder) {
   std::vector<std::string> words;

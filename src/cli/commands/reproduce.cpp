@@ -184,7 +184,8 @@ std::string format_runs(const std::vector<PartResult>& results, const Style& sty
   return any ? "\n" + table.format(style) : "";
 }
 
-// Speeds of ODE and of the engine of the runs on one core of 2020. They serve only the notice below.
+// Speeds of ODE and of the engine of the runs on one core of 2020. They serve only the notice
+// below.
 constexpr double kCasesPerJobAndSecond = 70;
 constexpr double kRunCasesPerJobAndSecond = 4000;
 

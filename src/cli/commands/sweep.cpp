@@ -138,8 +138,8 @@ std::string format_text(const ChosenSweep& sweep, const std::vector<SweepRow>& r
       most = std::max(most, *mean);
     }
   }
-  // A bar has at least one character. Its full length stands for the range of the values, but for at
-  // least one decade.
+  // A bar has at least one character. Its full length stands for the range of the values, but for
+  // at least one decade.
   const double decades = std::max(1.0, std::log10(most / least));
   const auto make_bar = [&](std::optional<double> mean) {
     if (!mean || *mean <= 0) {

@@ -231,8 +231,8 @@ std::string make_replay(const VerifyOptions& options, std::span<const std::strin
   return quote_command(words);
 }
 
-// Returns the presets that a design should hold with. Presets for training only are left out. So are
-// presets for another number of joints, which is reported on stderr unless `quiet`.
+// Returns the presets that a design should hold with. Presets for training only are left out. So
+// are presets for another number of joints, which is reported on stderr unless `quiet`.
 std::vector<std::string> list_usual_presets(std::size_t joints, bool quiet) {
   std::vector<std::string> presets;
   std::vector<std::string> of_others;

@@ -19,8 +19,8 @@ namespace {
 
 using nlohmann::json;
 
-// A robot as it is loaded without options. If the user must name a tip, the model ends at the tip with
-// the fewest joints.
+// A robot as it is loaded without options. If the user must name a tip, the model ends at the tip
+// with the fewest joints.
 struct ListedRobot {
   RobotModel model;
   std::vector<std::string> tips;  // the possible tips if the user must name one; otherwise empty

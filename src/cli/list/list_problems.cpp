@@ -128,8 +128,8 @@ std::string list_quantities(const std::vector<Quantity>& quantities) {
   return join(texts, ", ");
 }
 
-// Returns the names of the variables. "joint_1.p, joint_1.i, ..." of four joints becomes "p, i, ... of
-// joint_1, ..., joint_4".
+// Returns the names of the variables. "joint_1.p, joint_1.i, ..." of four joints becomes "p, i, ...
+// of joint_1, ..., joint_4".
 std::string describe_variables(const std::vector<DecisionVariable>& variables) {
   std::vector<std::string> owners, kinds;
   const auto add = [](std::vector<std::string>& names, const std::string& name) {

@@ -206,8 +206,8 @@ std::string make_flags(const CommandDefinition& command) {
   return fmt::format("      REPLY='{}'\n", join(names, " "));
 }
 
-// Returns the rows for a command: one per flag, and one per argument by its place from 1. The row of an
-// argument that repeats serves all later places.
+// Returns the rows for a command: one per flag, and one per argument by its place from 1. The row
+// of an argument that repeats serves all later places.
 std::string make_values(const CommandDefinition& command) {
   std::string rows;
   for (const ArgumentDefinition& flag : command.flags) {

@@ -129,8 +129,8 @@ Synopsis make_synopsis(const CommandDefinition& command) {
   return {line};
 }
 
-// Makes an item of a flag, an argument or a command. Lines "NAME   text" of the description become a
-// list, and all other lines one paragraph.
+// Makes an item of a flag, an argument or a command. Lines "NAME   text" of the description become
+// a list, and all other lines one paragraph.
 ManualItem make_item(std::vector<SpanLine> names, const std::string& description) {
   ManualItem item = {std::move(names), "", {}};
   for (const std::string& line : split(description, '\n')) {
@@ -219,7 +219,8 @@ bool is_below(const CommandDefinition& above, const CommandDefinition& command) 
          std::ranges::equal(above.words, std::span(command.words).first(above.words.size()));
 }
 
-// Returns references to the commands below and above it, the program, and the commands in the notes.
+// Returns references to the commands below and above it, the program, and the commands in the
+// notes.
 PageReferences make_references(const CommandDefinition& command, const CommandDefinition& program) {
   PageReferences references;
   for (const CommandDefinition* other : list_all_commands(program)) {

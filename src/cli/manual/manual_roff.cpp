@@ -9,8 +9,8 @@
 namespace armwright {
 namespace {
 
-// Escapes text so that man shows it unchanged and it can be copied. Without this, a '-' would become a
-// hyphen, and quotes would become typographic quotes.
+// Escapes text so that man shows it unchanged and it can be copied. Without this, a '-' would
+// become a hyphen, and quotes would become typographic quotes.
 std::string escape_roff(std::string_view text) {
   std::string escaped;
   for (const char c : text) {

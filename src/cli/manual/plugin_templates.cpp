@@ -5,13 +5,14 @@
 namespace armwright {
 namespace {
 
-// The same optimizer in each language. In all texts, @NAME@ is the plugin's name, @CLASS@ its name in
-// PascalCase, @PLUGIN@ the value for --optimizer, @LANGUAGE@ the language, @SOURCE@ the source file
-// and @STEPS@ the build step.
+// The same optimizer in each language. In all texts, @NAME@ is the plugin's name, @CLASS@ its name
+// in PascalCase, @PLUGIN@ the value for --optimizer, @LANGUAGE@ the language, @SOURCE@ the source
+// file and @STEPS@ the build step.
 
 constexpr const char* kCppPlugin =
     R"raw(// @NAME@: an optimizer for armwright. It takes normally distributed steps from the best point so far.
-// Steps get longer after a success and shorter after a failure. Replace minimize() by your own method.
+// Steps get longer after a success and shorter after a failure. Replace minimize() by your own
+// method.
 #include <cmath>
 #include <random>
 

@@ -41,8 +41,8 @@ inline constexpr std::string_view kSeeExitCodes =
 CLI::App* add_command(CLI::App& parent, Session& session, const std::string& name,
                       const std::string& description, const std::string& examples);
 
-// Adds --jobs, which $ARMWRIGHT_JOBS can replace. `jobs` must live as long as the parser. `fallback`
-// is the default as the help names it.
+// Adds --jobs, which $ARMWRIGHT_JOBS can replace. `jobs` must live as long as the parser.
+// `fallback` is the default as the help names it.
 void add_jobs_flag(CLI::App& command, std::string& jobs, const std::string& fallback = "all cores");
 // Returns the number of threads that --jobs names, or all cores of this process if the flag was not
 // given. Throws Error{usage}.

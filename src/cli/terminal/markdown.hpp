@@ -1,5 +1,5 @@
-// Text as Markdown, for the documentation pages that the program writes about itself (scripts/docs).
-// These pages say nothing about the build, so that every build writes the same.
+// Text as Markdown, for the documentation pages that the program writes about itself
+// (scripts/docs). These pages say nothing about the build, so that every build writes the same.
 #pragma once
 
 #include <string>

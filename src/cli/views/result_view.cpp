@@ -97,7 +97,8 @@ std::string format_function_test(const RunResult& result, const Style& style) {
   return table.format(style, 2);
 }
 
-// Returns the value of a constraint: the limited quantity if the constraint is a limit, otherwise g.
+// Returns the value of a constraint: the limited quantity if the constraint is a limit, otherwise
+// g.
 std::string format_constraint(const RunResult& result, std::size_t i, double g) {
   if (result.limits.empty()) {
     return format_quantity(g, result.constraints[i].unit) + (g > 0 ? " (violated)" : " (met)");

@@ -24,8 +24,8 @@ std::string describe_study(const StudyPlan& plan, const StudyResult& result,
 
 // Ends a command that has all cells of a study: analyzes them, simulates the final checks with
 // `jobs` threads, writes the tables and prints the result (`as_json`: as JSON). The caller holds
-// the folder's lock. A cell that has not ended counts as a run that found nothing. Returns the exit code. Throws
-// Error{bad_data} or Error{io} if a cell cannot be read or a table cannot be written.
+// the folder's lock. A cell that has not ended counts as a run that found nothing. Returns the exit
+// code. Throws Error{bad_data} or Error{io} if a cell cannot be read or a table cannot be written.
 int end_study(const StudyPlan& plan, const std::filesystem::path& folder, unsigned jobs,
               bool as_json, Session& session, ProgressBar& bar);
 

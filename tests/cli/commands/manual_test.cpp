@@ -134,7 +134,7 @@ TEST_F(Manual, SetsRoffThatCanBeCopied) {
       to_roff(make_manual_page(find("check-plugin"), program_), "1.2.3", "2026-01-02");
   EXPECT_THAT(page,
               HasSubstr(".TH ARMWRIGHT\\-CHECK\\-PLUGIN 1 2026\\-01\\-02 \"armwright 1.2.3\""));
-  EXPECT_THAT(page, HasSubstr("\narmwright\\-check\\-plugin \\- Try whether"));
+  EXPECT_THAT(page, HasSubstr("\narmwright\\-check\\-plugin \\- Check whether"));
   EXPECT_THAT(page, HasSubstr("\\fB\\-\\-opt\\fR \\fIKEY=VALUE\\fR\n"));
   EXPECT_THAT(page, HasSubstr("check\\-plugin \\(aqexec:python3 mine.py\\(aq\n"));
   EXPECT_THAT(page, HasSubstr(".BR armwright (1)\n"));
@@ -145,7 +145,7 @@ TEST_F(Manual, SetsTextAsManDoes) {
   EXPECT_THAT(page,
               HasSubstr("SYNOPSIS\n       armwright export [OPTIONS] --format FORMAT FOLDER\n"));
   EXPECT_THAT(page, HasSubstr("       --format FORMAT\n              Required. The format:"));
-  // The formats are a list of their own.
+  // The formats are a list within the item.
   EXPECT_THAT(page, HasSubstr("\n              coco   COCO's bbob-new2"));
   EXPECT_THAT(page, HasSubstr("\n              ros2-control\n                     one arm:"));
   EXPECT_THAT(page, Not(HasSubstr("\n\n\n")));
@@ -161,7 +161,7 @@ TEST_F(Manual, NamesEveryCommandInTheReference) {
     EXPECT_THAT(reference, AllOf(HasSubstr("\n## " + page.title + "\n"),
                                  HasSubstr("| [" + page.title + "](#" + page.name + ") |")));
   }
-  EXPECT_THAT(reference, HasSubstr("- `-o`, `--optimizer NAME`: Who optimizes"));
+  EXPECT_THAT(reference, HasSubstr("- `-o`, `--optimizer NAME`: The optimizer"));
 }
 
 TEST_F(Manual, CompletionKnowsFlagsAndWhereValuesComeFrom) {

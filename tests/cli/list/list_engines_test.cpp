@@ -32,7 +32,7 @@ TEST(ListEngines, ExplainsOne) {
               AllOf(HasSubstr("ode: "), HasSubstr("it computes in double")));
   EXPECT_THAT(kind.explain("lanes", Style(false)),
               AllOf(HasSubstr("lanes: made up by a test"), HasSubstr("--simd LEVEL"),
-                    HasSubstr("unless told otherwise " + kBest), HasSubstr("double, float")));
+                    HasSubstr("default " + kBest), HasSubstr("double, float")));
   EXPECT_THAT(usage_error_of([&] { kind.explain("lane", Style(false)); }),
               HasSubstr("unknown engine 'lane'; did you mean 'lanes'?"));
 }

@@ -110,7 +110,7 @@ TEST(OptimizerIndex, LinksEveryRowInTheOrderOfTheTable) {
   EXPECT_EQ(get_page_name("nlopt:direct_l"), "nlopt-direct_l.md");
 }
 
-// Every line of a table has as many cells as its head: nothing in the rows breaks out of a cell.
+// Every line of a table has as many cells as its head, so no text of a row ends its cell.
 TEST(OptimizerPages, TablesAreWhole) {
   std::vector<std::string> pages = {format_optimizer_index(optimizer_table())};
   for (const OptimizerRow& row : optimizer_table()) {

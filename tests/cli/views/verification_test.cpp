@@ -1,4 +1,4 @@
-// What `verify` tries, how it judges and what it concludes, on numbers made by hand.
+// The settings that `verify` tries, its verdicts and its conclusions, on hand-made numbers.
 #include "cli/views/verification.hpp"
 
 #include <gmock/gmock.h>
@@ -63,8 +63,8 @@ TEST(VerifySettings, PresetsAreCombinedOrTriedUnderItsOwnAlone) {
   EXPECT_EQ(std::ranges::count(settings, VerifySetting{"a", 10, 1, "friction"}), 1);
 }
 
-// A problem with perturbed plants of its own: its masses change on these, and the nominal plant is
-// a setting like others.
+// In a problem with perturbed plants of its own, the masses of these plants change, and the nominal
+// plant is a setting like others.
 TEST(VerifySettings, TellItsOwnPlantsFromTheNominalOne) {
   const VerifySetting own{"a", 1, 1, ""};
   const auto settings = list_verify_settings(own, {{"a"}, {1}, kUsualPlants, {}});
@@ -99,7 +99,8 @@ TEST(VerifyVerdict, HasARatioWhereThereAreTwoMedians) {
   EXPECT_FALSE(judge_setting({}, make_summary({0.002}), make_summary({kNone})).ratio);
 }
 
-// A design whose median is its own, but for what `errors_m` says of a setting.
+// Returns the conclusion on a design with a median error of 2 mm in its own setting and of
+// errors_m(setting) in each setting.
 template <class Errors>
 std::string conclude_on(const std::vector<std::string>& engines, const Errors& errors_m) {
   std::vector<VerifyRow> rows;
@@ -117,7 +118,7 @@ TEST(VerifyConclusion, SaysThatEverythingHolds) {
                           HasSubstr("Engines: It holds in b."),
                           HasSubstr("It holds with 2 substeps, 5 substeps and 10 substeps."),
                           HasSubstr("Masses: It holds with -10 % and +10 %."),
-                          HasSubstr("it holds in 17 of 17."), Not(HasSubstr("relies"))));
+                          HasSubstr("it holds in 17 of 17."), Not(HasSubstr("depends on"))));
 }
 
 TEST(VerifyConclusion, NamesWhatDoesNotHold) {
