@@ -108,8 +108,8 @@ std::string describe_same(const CellComparison& comparison) {
   return join(parts, ", ") + " and " + last;
 }
 
-std::string to_text(const std::filesystem::path& recorded, const std::filesystem::path& folder,
-                    const CellComparison& comparison, const std::vector<std::string>& causes) {
+std::string format_text(const std::filesystem::path& recorded, const std::filesystem::path& folder,
+                        const CellComparison& comparison, const std::vector<std::string>& causes) {
   const std::string folders =
       fmt::format("study  {}\nrerun  {}\n", sanitize(recorded.string()), sanitize(folder.string()));
   if (!comparison.difference) {
@@ -155,7 +155,7 @@ int run_rerun(const RerunOptions& options, Session& session) {
     causes = list_likely_causes(recorded, folder);
   }
   write_stdout(options.json ? to_json(options.cell, recorded, folder, comparison, causes)
-                            : to_text(recorded, folder, comparison, causes));
+                            : format_text(recorded, folder, comparison, causes));
   return comparison.difference ? exit_code::kFailed : exit_code::kDone;
 }
 

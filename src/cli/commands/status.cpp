@@ -103,7 +103,8 @@ std::string describe_next(const RecordedStudy& study, const StudyStatus& status,
          "\n";
 }
 
-std::string to_text(const RecordedStudy& study, const StudyStatus& status, const Session& session) {
+std::string format_text(const RecordedStudy& study, const StudyStatus& status,
+                        const Session& session) {
   const Style style = make_style(Stream::out, session.color);
   std::vector<Column> columns = {{"problem", false}, {"optimizer", false}};
   for (std::size_t state = 0; state < kCellStates; ++state) {
@@ -191,7 +192,7 @@ std::string to_json(const RecordedStudy& study, const StudyStatus& status) {
 int run_status(const StatusOptions& options, const Session& session) {
   const RecordedStudy study = load_recorded_study(options.study);
   const StudyStatus status = read_study_status(study.plan, study.folder);
-  write_stdout(options.json ? to_json(study, status) : to_text(study, status, session));
+  write_stdout(options.json ? to_json(study, status) : format_text(study, status, session));
   return exit_code::kDone;
 }
 

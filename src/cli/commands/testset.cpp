@@ -28,17 +28,17 @@ constexpr const char* kTestsetExamples = R"(Examples:
 Terms: a test case is a start point and the points that the arm's tip has to reach after it. A generated set is defined
 by its name only: case N of test/2 is the same on every machine. The names are train/ID, validation/ID and test/ID.)";
 
-constexpr const char* kExportExamples = R"(Examples:
+constexpr const char* kTestsetExportExamples = R"(Examples:
   armwright testset export test/2 --cases 500 --out test-2.json
   armwright testset export train/1 --cases 3 --format csv
   armwright testset export test/1 --cases 100 --problem mine.toml    # in that problem's workspace)";
 
-constexpr const char* kImportExamples = R"(Examples:
+constexpr const char* kTestsetImportExamples = R"(Examples:
   armwright testset import mine.csv                # check the file; print the number of cases and their hash
   armwright testset import mine.csv --out mine.json
   armwright testset import mine.json --out - --format csv)";
 
-constexpr const char* kHashExamples = R"(Examples:
+constexpr const char* kTestsetHashExamples = R"(Examples:
   armwright testset hash test/2 --cases 500
   armwright testset hash mine.json
 
@@ -87,7 +87,7 @@ std::vector<TestCase> load_cases(const std::string& file) {
   return cases;
 }
 
-std::string format_cases(const std::vector<TestCase>& cases, const TestsetOptions& options) {
+std::string format_case_file(const std::vector<TestCase>& cases, const TestsetOptions& options) {
   const std::vector<std::string> formats = {"json", "csv"};
   std::string format = options.format;
   if (format.empty()) {
@@ -106,7 +106,7 @@ std::string describe_cases(const std::vector<TestCase>& cases, const std::string
 
 int run_export(const TestsetOptions& options) {
   const auto cases = make_cases(options);
-  const std::string text = format_cases(cases, options);
+  const std::string text = format_case_file(cases, options);
   write_output(options.out.empty() ? "-" : options.out, text);
   return exit_code::kDone;
 }
@@ -119,7 +119,7 @@ int run_import(const TestsetOptions& options) {
   const auto cases = load_cases(options.name);
   const std::string summary = describe_cases(cases, options.name);
   if (!options.out.empty()) {
-    write_output(options.out, format_cases(cases, options));
+    write_output(options.out, format_case_file(cases, options));
   }
   if (options.out == "-") {
     write_stderr(summary);
@@ -161,7 +161,7 @@ void add_testset(CLI::App& app, Session& session) {
   command->require_subcommand(1);
 
   CLI::App* exporting = add_command(*command, session, "export",
-                                    "Write the cases of a generated set", kExportExamples);
+                                    "Write the cases of a generated set", kTestsetExportExamples);
   exporting->add_option("NAME", options->name, "The set: train/ID, validation/ID or test/ID")
       ->required();
   exporting->add_option("--cases", options->cases, "The first N cases")->type_name("N")->required();
@@ -173,15 +173,16 @@ void add_testset(CLI::App& app, Session& session) {
   exporting->callback(
       [options, &session] { session.action = [options] { return run_export(*options); }; });
 
-  CLI::App* importing = add_command(*command, session, "import",
-                                    "Check a file of cases, and convert it", kImportExamples);
+  CLI::App* importing = add_command(
+      *command, session, "import", "Check a file of cases, and convert it", kTestsetImportExamples);
   importing->add_option("FILE", options->name, "JSON or CSV")->required();
   add_format(*importing, *options, "Write the cases to this file; - is standard output");
   importing->callback(
       [options, &session] { session.action = [options] { return run_import(*options); }; });
 
-  CLI::App* hashing = add_command(*command, session, "hash",
-                                  "Hash the cases of a generated set or a file", kHashExamples);
+  CLI::App* hashing =
+      add_command(*command, session, "hash", "Hash the cases of a generated set or a file",
+                  kTestsetHashExamples);
   hashing->add_option("NAME", options->name, "The set, or a file")->required();
   hashing
       ->add_option("--cases", options->cases, "The first N cases of a generated set (default: 500)")
