@@ -4,7 +4,7 @@
 #include <iterator>
 
 #include "base/text.hpp"
-#include "optimizers/interface/optimizer.hpp"
+#include "optimizers/interface/capability_table.hpp"
 
 namespace armwright::python {
 namespace {
@@ -113,7 +113,7 @@ json describe(const LoadedProblem& problem) {
 
 json describe(const OptimizerRow& row) {
   json capabilities = json::array();
-  for (const CapabilityName& one : kCapabilityNames) {
+  for (const CapabilityRow& one : kCapabilityTable) {
     if (row.capabilities.*one.member) {
       capabilities.push_back(one.name);
     }

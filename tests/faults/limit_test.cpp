@@ -84,8 +84,9 @@ TEST_F(Limits, WithoutMemoryARunEndsWithAMessageAndGoesOnLater) {
                          "--quiet",     "--jobs", "2"};
   const Outcome outcome = run_limited({"--as=300000000"}, command);
   EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("armwright: error: no memory left; fewer --jobs or a smaller "
-                                     "problem need less"));
+  EXPECT_THAT(outcome.err,
+              HasSubstr("armwright: error: no memory left; use fewer --jobs or a smaller "
+                        "problem"));
   EXPECT_EQ(read_journal(folder_ / "run/journal").torn_bytes, 0u);
   EXPECT_EQ(run(command).exit_code, 0);
 }
@@ -198,7 +199,7 @@ TEST_F(Limits, OfFileSizeAndProcessorTimeEndARunResumably) {
                          "10000000", "--out",      "long",     "--quiet"};
   const Outcome outcome = run_limited({"--cpu=1:30"}, endless);
   EXPECT_EQ(outcome.exit_code, 75);
-  EXPECT_THAT(outcome.err, HasSubstr("stopped by a signal; nothing is lost. To go on:"));
+  EXPECT_THAT(outcome.err, HasSubstr("stopped by a signal; nothing is lost. To resume:"));
   EXPECT_GT(read_journal(folder_ / "long/journal").training.size(), 0u);
 }
 

@@ -25,7 +25,7 @@ class Plugins : public testing::Test {
   void expect_failed(const Outcome& outcome, const std::string& message) {
     EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
     EXPECT_THAT(outcome.err, AllOf(HasSubstr("armwright: error: optimizer '"), HasSubstr(message),
-                                   HasSubstr("what was evaluated is kept and judged")));
+                                   HasSubstr("its evaluations are kept and judged")));
     EXPECT_EQ(json::parse(read_text(folder_ / "run/result.json"))["end_reason"],
               "optimizer failed");
     EXPECT_TRUE(wait_until([] { return list_processes("plugin").empty(); }));

@@ -57,8 +57,9 @@ TEST_F(Signals, EachEndsARunSoonWithItsOwnCodeAndTheSameCommandGoesOn) {
     const Outcome outcome = program.wait();
     EXPECT_LT(Clock::now() - begin, kSoon);
     EXPECT_EQ(outcome.exit_code, code);
-    EXPECT_THAT(outcome.err, AllOf(HasSubstr("armwright: " + word + "; nothing is lost. To go on:"),
-                                   HasSubstr("optimize q1-complex"), HasSubstr("--out stopped")));
+    EXPECT_THAT(outcome.err,
+                AllOf(HasSubstr("armwright: " + word + "; nothing is lost. To resume:"),
+                      HasSubstr("optimize q1-complex"), HasSubstr("--out stopped")));
     EXPECT_EQ(read_journal(folder_ / "stopped/journal").torn_bytes, 0u);
   }
   EXPECT_EQ(run(make_long_run("stopped")).exit_code, 0);
@@ -88,7 +89,7 @@ TEST_F(Signals, TheSecondOneEndsAtOnce) {
     return false;
   };
   program.send(SIGINT);
-  ASSERT_TRUE(wait_until([&] { return says("once more stops at once"); }));
+  ASSERT_TRUE(wait_until([&] { return says("press Ctrl-C again to stop at once"); }));
   const auto begin = Clock::now();
   program.send(SIGINT);
   EXPECT_EQ(program.wait().exit_code, 130);
@@ -145,7 +146,7 @@ TEST_F(Signals, DuringJudging) {
   const Outcome outcome = program.wait();
   EXPECT_EQ(outcome.exit_code, 130);
   EXPECT_LT(Clock::now() - begin, kSoon);
-  EXPECT_THAT(outcome.err, HasSubstr("nothing is lost. To go on:"));
+  EXPECT_THAT(outcome.err, HasSubstr("nothing is lost. To resume:"));
   EXPECT_EQ(read_journal(folder_ / "stopped/journal").training.size(), trained);
   const Outcome resumed = run(make("stopped"));
   EXPECT_EQ(resumed.exit_code, 0);
@@ -181,7 +182,7 @@ TEST_F(Signals, AComparisonEndsWithItsWorkers) {
     EXPECT_EQ(outcome.exit_code, code);
     EXPECT_LT(Clock::now() - begin, kSoon);
     EXPECT_THAT(outcome.err,
-                AllOf(HasSubstr("nothing is lost. To go on:"), HasSubstr("--out stopped")));
+                AllOf(HasSubstr("nothing is lost. To resume:"), HasSubstr("--out stopped")));
     EXPECT_TRUE(wait_until([] { return list_processes("signalled").empty(); }));
   }
   EXPECT_EQ(run(make("stopped")).exit_code, 0);

@@ -19,11 +19,12 @@ namespace {
 
 using nlohmann::json;
 
-// A robot as it is without options, or up to the nearest of the tips that can be named.
+// A robot as it is loaded without options. If the user must name a tip, the model ends at the tip
+// with the fewest joints.
 struct ListedRobot {
   RobotModel model;
-  std::vector<std::string> tips;  // where one must be named
-  std::string tip;                // which of them the model ends at
+  std::vector<std::string> tips;  // the possible tips if the user must name one; otherwise empty
+  std::string tip;                // the tip at which the model ends
 };
 
 ListedRobot load_listed(const std::filesystem::path& file) {
@@ -39,7 +40,7 @@ ListedRobot load_listed(const std::filesystem::path& file) {
           robot.tip = leaf;
         }
         robot.tips.push_back(leaf);
-      } catch (const Error&) {  // what makes this leaf no tip, a joint that follows another, say
+      } catch (const Error&) {  // this leaf cannot be a tip, for example if a joint mimics another
       }
     }
     if (robot.tips.empty()) {

@@ -23,7 +23,7 @@ const char* describe(FeedForward feed_forward) {
   return "?";
 }
 
-// What bounds a gain as a decision variable.
+// Returns the bounds of a gain as a decision variable.
 std::string describe_bounds(const GainSpec& gain) {
   return gain.range == 0
              ? "start / bounds_factor to start x bounds_factor"
@@ -43,7 +43,7 @@ std::string explain(const std::string& name, const Style& style) {
   }
   text += row.feed_forward == FeedForward::none
               ? ""
-              : fmt::format("  Efforts in advance: {}, of the problem's arm.\n",
+              : fmt::format("  Feed-forward: {}, computed for the problem's arm.\n",
                             describe(row.feed_forward));
   return text + "\n" + table.format(style);
 }

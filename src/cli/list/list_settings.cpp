@@ -1,4 +1,4 @@
-// The kind "settings": every key of a problem's, a study's and a design's file.
+// The kind "settings": all keys of the files of problems, studies and designs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 using nlohmann::json;
 
 struct SettingFile {
-  std::string prefix;  // of names; none for problems, whose keys --set takes as they are
+  std::string prefix;  // of the names; empty for problems, whose keys are those of --set
   std::string title;
   std::string words;  // Markdown
   std::vector<Setting> settings;
@@ -27,17 +27,18 @@ struct SettingFile {
 std::vector<SettingFile> list_setting_files() {
   return {
       {"", "Problems",
-       "`configs/problems/NAME.toml`, or a file of your own. `--set KEY=VALUE` changes any of them "
-       "on the command line. `extends = \"NAME\"` takes over another problem's file, beside this "
-       "one or a shipped one, and changes it.",
+       "`configs/problems/NAME.toml`, or a file of your own. `--set KEY=VALUE` changes a setting "
+       "on the command line. `extends = \"NAME\"` starts from another problem and changes it; NAME "
+       "is a file beside this one or a shipped problem.",
        list_problem_settings()},
       {"study:", "Studies",
        "`configs/studies/NAME.toml`, or a file of your own, for `armwright compare` "
        "([comparing.md](../comparing.md)). `extends` works as in problems.",
        list_study_settings()},
       {"design:", "Designs",
-       "`configs/designs/NAME.toml`, or the `winner.toml` of a run. Which gains there are depends "
-       "on the controller.",
+       "`configs/designs/NAME.toml`, or the `winner.toml` of a run. The controller determines "
+       "which "
+       "gains there are.",
        list_design_settings()},
   };
 }
@@ -46,7 +47,8 @@ std::string describe_allowed(const Setting& setting) {
   return join(setting.allowed, "; or ");
 }
 
-// More than two say only that it depends on something else, which the meaning tells.
+// Returns the defaults. With more than two, the default depends on another setting, as the meaning
+// says, and the result is empty.
 std::vector<std::string> list_defaults(const Setting& setting) {
   return setting.fallbacks.size() > 2 ? std::vector<std::string>{} : setting.fallbacks;
 }
@@ -61,7 +63,8 @@ std::vector<ListItem> list_known_settings() {
   return items;
 }
 
-// Names that hold what was typed, a key without its unit, say; else the nearest.
+// Suggests the names that contain the typed text, for example a key without its unit, or else the
+// nearest name.
 std::string suggest(const std::string& typed, const std::vector<std::string>& names) {
   constexpr std::size_t kMostSuggested = 5;
   std::vector<std::string> holding;
@@ -123,7 +126,7 @@ json list_settings_as_json() {
   return all;
 }
 
-// In few words, for a narrow column of a table.
+// Returns the allowed values in few words, for a narrow column of a table.
 std::string shorten_allowed(const Setting& setting) {
   constexpr std::pair<std::string_view, std::string_view> kShorter[] = {
       {"an array, each element of it a finite number", "numbers, each"},
@@ -166,7 +169,7 @@ std::string format_row(const Setting& setting) {
                      escape_markdown(setting.unit), join(defaults, " or "));
 }
 
-// A table of Markdown for each of the file's tables.
+// Returns one Markdown table for each table of the file.
 std::string format_tables(const std::vector<Setting>& settings) {
   std::string text, heading = "none yet";
   for (const Setting& setting : settings) {
@@ -180,16 +183,16 @@ std::string format_tables(const std::vector<Setting>& settings) {
   return text;
 }
 
-std::string format_page(const std::string& name) {
+std::string format_setting_page(const std::string& name) {
   if (!name.empty()) {
-    throw Error(ErrorKind::usage, "the page of settings has all of them; leave out the name");
+    throw Error(ErrorKind::usage, "the page of settings contains all settings; leave out the name");
   }
   std::string text = fmt::format(
       "{}# Settings\n\n"
-      "Every key of the configuration files, as `armwright list settings` prints them. Units are "
-      "SI, and a key's name ends with its unit. Without a default a key is required, or what its "
-      "absence means stands beside it. Unknown keys are refused, with the nearest valid one. In "
-      "`--set` a key is named with its table: `task.speed_m_per_s`.\n",
+      "All keys of the configuration files, as `armwright list settings` prints them. Units are "
+      "SI, and a key's name ends with its unit. A key without a default is required, unless its "
+      "meaning says what its absence means. Unknown keys are refused, and the nearest valid key is "
+      "suggested. In `--set`, a key is named with its table: `task.speed_m_per_s`.\n",
       kGeneratedPage);
   for (const SettingFile& file : list_setting_files()) {
     text += fmt::format("\n## {}\n\n{}\n", file.title, file.words) + format_tables(file.settings);
@@ -206,7 +209,7 @@ ListKind make_setting_kind() {
       .explain = explain_setting,
       .explain_as_json = [](const std::string& name) { return to_json(name, find_setting(name)); },
       .list_as_json = list_settings_as_json,
-      .explain_as_markdown = format_page};
+      .explain_as_markdown = format_setting_page};
 }
 
 }  // namespace armwright

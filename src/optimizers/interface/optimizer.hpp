@@ -4,7 +4,6 @@
 // it gets and returns nothing. With the same seed it is deterministic, for any number of threads.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -36,26 +35,6 @@ struct Capabilities {
   bool paced =
       false;  // plans with the whole budget: another budget changes the run from its beginning
 };
-
-// A capability by its name, as plugins declare it and lists show it.
-struct CapabilityName {
-  const char* name;
-  bool Capabilities::*member;
-};
-
-inline constexpr std::array<CapabilityName, 11> kCapabilityNames{{
-    {"bounds", &Capabilities::bounds},
-    {"constraints", &Capabilities::constraints},
-    {"multi_objective", &Capabilities::multi_objective},
-    {"batch", &Capabilities::batch},
-    {"noisy", &Capabilities::noisy},
-    {"residuals", &Capabilities::residuals},
-    {"stochastic", &Capabilities::stochastic},
-    {"generations", &Capabilities::generations},
-    {"local", &Capabilities::local},
-    {"sampling", &Capabilities::sampling},
-    {"paced", &Capabilities::paced},
-}};
 
 // The least that a problem must have for an optimizer.
 struct Requirements {

@@ -1,4 +1,4 @@
-#include "cli/commands/team.hpp"
+#include "cli/commands/mpi_job.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -14,10 +14,10 @@
 namespace armwright {
 namespace {
 
-// Of workers that are there, and must only say goodbye.
-constexpr double kPatience_s = 2;
+// The time for workers that are connected to confirm that they end.
+constexpr double kEndTimeout_s = 2;
 
-std::vector<const Problem*> get_simulated(const Team::Problems& problems) {
+std::vector<const Problem*> get_simulated(const MpiJob::Problems& problems) {
   std::vector<const Problem*> simulated;
   for (const LoadedProblem* problem : problems) {
     simulated.push_back(problem->problem.get());
@@ -27,51 +27,51 @@ std::vector<const Problem*> get_simulated(const Team::Problems& problems) {
 
 }  // namespace
 
-Team::Team(Session& session) : session_(session), place_(find_rank_place()) {
+MpiJob::MpiJob(Session& session) : session_(session), place_(find_rank_place()) {
   if (place_) {
     links_ = open_mpi_links();
     begun_ = std::chrono::steady_clock::now();
   }
 }
 
-Team::~Team() {
-  // Somebody may still be reading the configuration.
+MpiJob::~MpiJob() {
+  // A worker may still be reading the configuration.
   constexpr double kBeginning_s = 10;
   const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begun_;
-  end(std::max(kPatience_s, kBeginning_s - passed.count()));
+  end(std::max(kEndTimeout_s, kBeginning_s - passed.count()));
 }
 
-void Team::dismiss(std::unique_ptr<Coordinator> coordinator) {
+void MpiJob::end_workers(std::unique_ptr<Coordinator> coordinator) {
   if (coordinator && !coordinator->expects_workers()) {
     coordinator.reset();
-    end(kPatience_s);
+    end(kEndTimeout_s);
   }
 }
 
-void Team::end(double patience_s) {
+void MpiJob::end(double timeout_s) {
   if (!links_) {
     return;
   }
-  constexpr double kStopped_s = 0.3;  // mpirun kills one second after it has asked
+  constexpr double kStopped_s = 0.3;  // mpirun kills one second after its signal
   const StopReason stopped = session_.stop.reason();
   const bool is_asked = stopped == StopReason::interrupted || stopped == StopReason::terminated;
-  patience_s = is_asked ? kStopped_s : patience_s;
-  if (end_workers(*links_, patience_s)) {
+  timeout_s = is_asked ? kStopped_s : timeout_s;
+  if (armwright::end_workers(*links_, timeout_s)) {
     close_mpi();
     links_.reset();
     return;
   }
-  // MPI still has these messages, and what it would do at the end needs all ranks.
+  // MPI still holds messages for the missing rank, and ending MPI needs all ranks.
   [[maybe_unused]] const Links* kept = links_.release();
   session_.must_abort_ranks = true;
   if (!is_asked) {
     write_message(
-        "note: a rank is missing, so that MPI cannot end in order. The command is done; what "
-        "mpirun says now about errors and about ending all processes is of no consequence");
+        "note: a rank is missing, so MPI cannot end in order. The command is done; ignore the "
+        "messages of mpirun about errors and about ending all processes");
   }
 }
 
-void Team::serve(const std::function<Problems()>& load, unsigned threads) {
+void MpiJob::serve(const std::function<Problems()>& load, unsigned threads) {
   WorkerIntroduction introduction = make_introduction(threads);
   Problems problems;
   try {
@@ -85,21 +85,21 @@ void Team::serve(const std::function<Problems()>& load, unsigned threads) {
     if (worker.serve() == Worker::End::finalize) {
       close_mpi();
     }
-    ::_exit(exit_code::kDone);  // whatever its threads are still at, for ever perhaps
+    ::_exit(exit_code::kDone);  // does not wait for threads that may never end
   } catch (const std::exception&) {
-    ::_exit(exit_code::kInternal);  // rank 0 does its work and says that it is missing
+    ::_exit(exit_code::kInternal);  // rank 0 does its work and reports that it is missing
   }
 }
 
-std::unique_ptr<Coordinator> Team::lead(const Problems& problems, unsigned threads,
-                                        RunObserver& observer) {
+std::unique_ptr<Coordinator> MpiJob::make_coordinator(const Problems& problems, unsigned threads,
+                                                      RunObserver& observer) {
   if (!place_) {
     return nullptr;
   }
   if (!place_->survives) {
     observer.on_message(
-        "note: started without mpirun's --enable-recovery: should a rank die, all end with it "
-        "(nothing is lost; the same command goes on)");
+        "note: started without mpirun's --enable-recovery, so all ranks end if one of them dies "
+        "(nothing is lost; the same command resumes)");
   }
   return std::make_unique<Coordinator>(
       *links_, get_simulated(problems), make_rank_identity(problems),
@@ -107,7 +107,7 @@ std::unique_ptr<Coordinator> Team::lead(const Problems& problems, unsigned threa
       [&observer](const std::string& message) { observer.on_message(message); });
 }
 
-std::string Team::describe() const {
+std::string MpiJob::describe() const {
   return place_ ? format_count(place_->size, "rank") : "";
 }
 

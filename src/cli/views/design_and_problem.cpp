@@ -1,4 +1,4 @@
-#include "cli/views/design_evaluation.hpp"
+#include "cli/views/design_and_problem.hpp"
 
 #include <fmt/format.h>
 
@@ -27,10 +27,11 @@ TestSet choose_set(const LoadedProblem& problem, const CaseOptions& options) {
 
 }  // namespace
 
-LoadedProblem load_its_problem(const DesignFile& design, const std::string& problem,
-                               std::vector<std::string> overrides, bool quiet) {
+LoadedProblem load_problem_of_design(const DesignFile& design, const std::string& problem,
+                                     std::vector<std::string> overrides, bool quiet) {
   if (find_controller(design.design.controller).feed_forward != FeedForward::none) {
-    // Its efforts in advance are made along with the problem's targets.
+    // The problem's target tables hold the feed-forward efforts, so the problem must know the
+    // controller.
     overrides.insert(overrides.begin(), "control.controller=" + design.design.controller);
   }
   if (!problem.empty()) {
@@ -39,30 +40,32 @@ LoadedProblem load_its_problem(const DesignFile& design, const std::string& prob
   if (design.published.empty()) {
     throw Error(
         ErrorKind::usage,
-        fmt::format("--problem is missing, and design '{}' does not say what it was made for; "
-                    "name one (armwright list problems)",
+        fmt::format("--problem is missing, and design '{}' does not name the problem it was made "
+                    "for; name one (armwright list problems)",
                     sanitize(design.name)));
   }
   const PublishedResult& published = design.published.front();
   overrides.insert(overrides.begin(), published.overrides.begin(), published.overrides.end());
   if (!quiet) {
-    write_message(fmt::format("no --problem given: using {}, which {} was published for",
+    write_message(fmt::format("--problem is not given; using {}, which {} was published for",
                               published.problem, design.name));
   }
   return load_problem(published.problem, overrides);
 }
 
-DesignAndProblem load_design_and_problem(const std::string& design, const std::string& problem,
-                                         std::vector<std::string> overrides, bool quiet) {
+std::pair<DesignFile, LoadedProblem> load_design_and_problem(const std::string& design,
+                                                             const std::string& problem,
+                                                             std::vector<std::string> overrides,
+                                                             bool quiet) {
   if (design != kStartDesign) {
     DesignFile file = load_design(design);
-    LoadedProblem loaded = load_its_problem(file, problem, std::move(overrides), quiet);
+    LoadedProblem loaded = load_problem_of_design(file, problem, std::move(overrides), quiet);
     return {std::move(file), std::move(loaded)};
   }
   if (problem.empty()) {
     throw Error(ErrorKind::usage,
-                "design 'start' is where a problem's optimization starts; name the problem with "
-                "--problem, or an arm of your own with --robot");
+                "design 'start' is the one from which a problem's optimization starts; name the "
+                "problem with --problem, or an arm of your own with --robot");
   }
   LoadedProblem loaded = load_problem(problem, overrides);
   const TrackingConfig& config = require_tracking(loaded).config();

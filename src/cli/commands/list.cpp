@@ -1,4 +1,4 @@
-// armwright list: what there is to choose from, and one thing explained in full.
+// armwright list: lists problems, optimizers and so on, and explains one of them.
 
 #include <fmt/format.h>
 
@@ -9,12 +9,12 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/list/list_views.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/session.hpp"
 #include "cli/terminal/table.hpp"
 #include "cli/terminal/terminal.hpp"
-#include "sim/tracking/reference_signal.hpp"
 
 namespace armwright {
 namespace {
@@ -22,72 +22,19 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kListExamples = R"(Examples:
-  armwright list problems                          # what can be optimized
+  armwright list problems                          # the problems that can be optimized
   armwright list problems q1-complex               # its variables, bounds and settings (for --set)
-  armwright list optimizers ga                     # what it is, can do, and its options (for --opt)
-  armwright list optimizers ga --markdown          # the same as a page, as under docs/optimizers
+  armwright list optimizers ga                     # its capabilities and its options (for --opt)
+  armwright list optimizers ga --markdown          # the same as a page of docs/optimizers
   armwright list settings task.rest_s              # a key of the configuration: unit, range, default, meaning
   armwright list controllers pi2d                  # its formula, and its gains (for variables.optimize)
   armwright list designs --json
-  armwright list designs --names | head -1         # names alone, for scripts
-  armwright list studies q1                        # a comparison of optimizers: who, on what, at what cost
+  armwright list designs --names | head -1         # only the names, for scripts
+  armwright list studies q1                        # a study: its optimizers, its problems and its cost
 
-Terms: a problem is a robot with a task, or a function, to be minimised; an optimizer minimises it; a design is what
-comes out: the gains and effort limits of all joints. An engine does the physics, a signal says how the target moves
-between two points, a controller turns joint errors into efforts.)";
-
-// Kinds whose members are a name and a sentence.
-ListKind make_plain_kind(const std::string& name, std::vector<ListItem> (*list)()) {
-  const std::string what = name.substr(0, name.size() - 1);  // "engines" -> "engine"
-  const auto find = [what, list](const std::string& wanted) {
-    std::vector<std::string> names;
-    for (const ListItem& item : list()) {
-      if (item.name == wanted) {
-        return item;
-      }
-      names.push_back(item.name);
-    }
-    throw Error(ErrorKind::usage, describe_unknown(what, wanted, names));
-  };
-  const auto explain = [find](const std::string& wanted, const Style& style) {
-    const ListItem item = find(wanted);
-    return format_title(style, item.name, item.summary);
-  };
-  const auto explain_as_json = [find](const std::string& wanted) {
-    const ListItem item = find(wanted);
-    return json{{"name", item.name}, {"summary", item.summary}};
-  };
-  return {name, list, explain, explain_as_json};
-}
-
-std::vector<ListItem> list_signals() {
-  // In the order of the names; physics and formulas are with the signals themselves.
-  constexpr const char* kMeanings[] = {
-      "the target jumps to the next point at once, and counts as reached after distance / speed",
-      "constant speed",
-      "constant acceleration, constant speed, constant deceleration",
-      "accelerates half of the time, decelerates the other half",
-      "the speed rises linearly to 2.5 times the average in 0.4 of the time, then decays "
-      "quadratically",
-  };
-  std::vector<ListItem> items;
-  for (std::size_t i = 0; i < signal_names().size(); ++i) {
-    items.push_back({signal_names()[i], i < std::size(kMeanings) ? kMeanings[i] : ""});
-  }
-  return items;
-}
-
-std::vector<ListKind> list_kinds() {
-  return {make_problem_kind(),
-          make_optimizer_kind(),
-          make_robot_kind(),
-          make_engine_kind(),
-          make_design_kind(),
-          make_study_kind(),
-          make_plain_kind("signals", list_signals),
-          make_controller_kind(),
-          make_setting_kind()};
-}
+Terms: a problem is a robot with a task, or a function, that an optimizer minimises. A design is the result: the gains
+and effort limits of all joints. An engine simulates the physics. A signal describes how the target moves between two
+points. A controller computes efforts from joint errors.)";
 
 struct ListOptions {
   std::string kind;
@@ -125,7 +72,7 @@ json list_as_json(const ListKind& kind) {
   return list;
 }
 
-// What is marked with a star in the list: names by reason.
+// Returns why the items marked with a star are unavailable: for each reason, the names.
 std::string explain_unavailable(const std::vector<ListItem>& items, int width) {
   std::vector<std::pair<std::string, std::vector<std::string>>> reasons;
   for (const ListItem& item : items) {
@@ -154,14 +101,15 @@ std::string explain_unavailable(const std::vector<ListItem>& items, int width) {
 
 std::string format_list(const ListKind& kind, const Style& style) {
   const std::vector<ListItem> items = kind.list();
-  // Into a pipe one line a row, for grep.
+  // In a pipe, each row is one line, for grep.
   const int width = is_terminal(Stream::out) ? get_width(Stream::out) : kUnlimited;
   Table table({{kind.name, false}, {"", false, true}});
   for (const ListItem& item : items) {
     table.add_row(
         {sanitize(item.name) + (item.unavailable.empty() ? "" : " *"), sanitize(item.summary)});
   }
-  const std::string hint = fmt::format("\n'armwright list {} NAME' explains one.\n", kind.name);
+  const std::string hint =
+      fmt::format("\n'armwright list {} NAME' explains one of them.\n", kind.name);
   return table.format(style, 0, width) + explain_unavailable(items, get_text_width(Stream::out)) +
          (is_terminal(Stream::out) ? hint : "");
 }
@@ -171,9 +119,10 @@ int run_list(const ListOptions& options, const Session& session) {
   const Style style = make_style(Stream::out, session.color);
   if (options.names) {
     if (options.json || options.markdown || !options.name.empty()) {
-      throw Error(ErrorKind::usage,
-                  "--names prints the names of a kind and nothing else; leave out NAME, --json and "
-                  "--markdown, or --names");
+      throw Error(
+          ErrorKind::usage,
+          "--names prints only the names of a kind; leave out NAME, --json and --markdown, or "
+          "leave out --names");
     }
     write_stdout(format_names(kind));
     return exit_code::kDone;
@@ -184,8 +133,8 @@ int run_list(const ListOptions& options, const Session& session) {
     }
     if (!kind.explain_as_markdown) {
       throw Error(ErrorKind::usage,
-                  fmt::format("--markdown is for problems, optimizers and settings, not for {}; "
-                              "--json is for all kinds",
+                  fmt::format("--markdown works for problems, optimizers and settings, not for {}; "
+                              "--json works for all kinds",
                               kind.name));
     }
     write_stdout(kind.explain_as_markdown(options.name));
@@ -202,33 +151,21 @@ int run_list(const ListOptions& options, const Session& session) {
 
 }  // namespace
 
-std::vector<std::string> list_kind_names() {
-  std::vector<std::string> names;
-  for (const ListKind& kind : list_kinds()) {
-    names.push_back(kind.name);
-  }
-  return names;
-}
-
-std::string format_title(const Style& style, const std::string& name, const std::string& summary) {
-  return style.bold(sanitize(name)) + (summary.empty() ? "" : ": " + sanitize(summary)) + "\n";
-}
-
 void add_list(CLI::App& app, Session& session) {
   auto options = std::make_shared<ListOptions>();
   CLI::App* command =
       add_command(app, session, "list", "List problems, optimizers, robots, engines, designs, ...",
                   kListExamples);
   command->add_option("KIND", options->kind, join(list_kind_names(), ", "))->required();
-  command->add_option("NAME", options->name, "Explain this one in full");
-  command->add_flag("--json", options->json, "Print it as JSON")->group("Output");
+  command->add_option("NAME", options->name, "The item to explain");
+  command->add_flag("--json", options->json, "Print as JSON")->group("Output");
   command
-      ->add_flag("--names", options->names, "Only the names, one a line, of what can be used here")
+      ->add_flag("--names", options->names,
+                 "Print only the names of the items that can be used here, one per line")
       ->group("Output");
   command
       ->add_flag("--markdown", options->markdown,
-                 "Print it as a page of documentation (problems,\n"
-                 "optimizers, settings)")
+                 "Print a page of documentation (problems, optimizers, settings)")
       ->group("Output");
   command->callback([options, &session] {
     session.action = [options, &session] { return run_list(*options, session); };
