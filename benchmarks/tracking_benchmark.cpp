@@ -57,7 +57,7 @@ void replay_in_bare_ode(const RobotModel& model, std::span<const double> start_r
   }
   for (const TrajectorySample& sample : recorded) {
     for (std::size_t i = 0; i < hinges.size(); ++i) {
-      dJointAddHingeTorque(hinges[i], sample.effort_n_m[i]);
+      dJointAddHingeTorque(hinges[i], sample.effort[i]);
     }
     dWorldStep(world, dt_s);
   }
@@ -84,7 +84,7 @@ void BM_WholeTrackingAgainstBareOde(benchmark::State& state) {
       benchmark::DoNotOptimize(engine->simulate(setup, {&job, 1}));
     }));
     bare.push_back(measure_s([&] {
-      replay_in_bare_ode(setup.robot(), targets.start_rad, recorded.trajectory,
+      replay_in_bare_ode(setup.robot(), targets.start_positions, recorded.trajectory,
                          setup.task().control_period_s);
     }));
     ratio.push_back(whole.back() / bare.back());

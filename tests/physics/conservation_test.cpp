@@ -48,7 +48,7 @@ TYPED_TEST(SwingingArm, EnergiesAreThoseOfTheEquationsOfMotion) {
                 1e-12 * 100);  // rounding of some 100 J
     step(arm, VectorXd::Constant(a.start.size(), 7.7), 0.01);
     const VectorXd rates = read_rates(arm, a.model.joint_count());
-    const VectorXd after = read_angles(arm, a.model.joint_count());
+    const VectorXd after = read_positions(arm, a.model.joint_count());
     const double expected_j =
         oracle.calc_kinetic_energy_j(ArmTraits<TypeParam>::select_posture(a.start, after), rates);
     EXPECT_GT(expected_j, 0.005);
@@ -100,7 +100,7 @@ TYPED_TEST(SwingingArm, WorkInIsEnergyChange) {
       VectorXd q = a.start;
       for (int k = 0; k < steps; ++k) {
         step(arm, tau, 1.0 / steps);
-        q += calc_motion(a.model, q, read_angles(arm, a.model.joint_count()));
+        q += calc_motion(a.model, q, read_positions(arm, a.model.joint_count()));
       }
       work_j = tau.dot(q - a.start);
       return VectorXd::Constant(1, calc_energy_j(arm) - start_j - work_j);
@@ -151,7 +151,7 @@ double measure_momentum_error(const MomentumCase& a, double gravity, bool pushed
                      a.efforts[1] * std::sin(5 * t_s + 0.3), a.efforts[2] * std::cos(3 * t_s)});
     step(arm, tau, 1.0 / steps);
     impulse += tau[0] / steps;
-    const VectorXd q = read_angles(arm, 3), qd = read_rates(arm, 3);
+    const VectorXd q = read_positions(arm, 3), qd = read_rates(arm, 3);
     moved += calc_motion(a.model, moved, q);
     farthest = farthest.cwiseMax((moved - kThreeAngles).cwiseAbs());
     error = std::max(error, std::abs((oracle.calc(q, qd).mass * qd)[0] - impulse));

@@ -11,7 +11,7 @@
 #include "base/expect_error.hpp"
 #include "sim/engines/articulated/articulated_arm.hpp"
 #include "sim/kinematics/kinematics.hpp"
-#include "sim/tracking/design_conversion.hpp"
+#include "sim/tracking/design.hpp"
 #include "sim/tracking/tracking_loop.hpp"
 #include "tracking_arms.hpp"
 
@@ -62,7 +62,7 @@ TEST_P(UnderController, EnginesAgree) {
 TEST_P(UnderController, LanesAgreeWithALoop) {
   const TargetTable targets = setup_.make_targets(make_case(4, 8));
   const TrackingJob job = make_job(design_, targets);
-  ArticulatedArm arm(setup_.robot(), targets.start_rad, setup_.task().physics);
+  ArticulatedArm arm(setup_.robot(), targets.start_positions, setup_.task().physics);
   const TrackingResult alone = TrackingLoop(setup_, job).run(arm);
   for (const std::string& level : supported_simd_names()) {
     const TrackingResult lane = make_engine("articulated", {.simd = parse_simd(level)})
@@ -72,7 +72,7 @@ TEST_P(UnderController, LanesAgreeWithALoop) {
       EXPECT_NEAR(lane.point_error_m[k], alone.point_error_m[k], 1e-9) << level;
     }
     for (std::size_t i = 0; i < 4; ++i) {
-      EXPECT_NEAR(lane.rms_effort_n_m[i] / alone.rms_effort_n_m[i], 1, 1e-6) << level;
+      EXPECT_NEAR(lane.rms_effort[i] / alone.rms_effort[i], 1, 1e-6) << level;
       EXPECT_NEAR(lane.saturated_share[i], alone.saturated_share[i], 1e-3) << level;
     }
   }
@@ -117,17 +117,17 @@ TEST(FeedForwardTable, TakesTheModelToItsTargets) {
   task.feed_forward = FeedForward::inverse_dynamics;
   const TrackingSetup setup(load_irb4600(), task);
   const TargetTable targets = setup.make_targets(make_case(3, 4));
-  ASSERT_EQ(targets.feed_forward_n_m.size(), targets.angles_rad.size());
-  ArticulatedArm arm(setup.robot(), targets.start_rad, task.physics);
+  ASSERT_EQ(targets.feed_forward_effort.size(), targets.joint_positions.size());
+  ArticulatedArm arm(setup.robot(), targets.start_positions, task.physics);
   std::vector<double> q(4);
   double moved = 0;
   for (int step = 0; step < targets.steps; ++step) {
     arm.step(targets.feed_forward(step), task.control_period_s);
-    arm.read_angles(q);
+    arm.read_positions(q);
     for (std::size_t i = 0; i < 4; ++i) {
-      ASSERT_NEAR(calc_displacement(JointKind::revolute, targets.angles(step)[i], q[i]), 0, 1e-7)
+      ASSERT_NEAR(calc_displacement(JointKind::revolute, targets.positions(step)[i], q[i]), 0, 1e-7)
           << "step " << step;
-      moved = std::max(moved, std::abs(q[i] - targets.start_rad[i]));
+      moved = std::max(moved, std::abs(q[i] - targets.start_positions[i]));
     }
   }
   EXPECT_GT(moved, 0.3);
@@ -141,7 +141,7 @@ TEST(FeedForwardTable, HoldsTheModelWhereItsTargetIs) {
   // The posture before step k is the target at the end of step k - 1.
   for (const int step : {0, 20, 60, 130}) {
     const auto posture =
-        step == 0 ? std::span<const double>(targets.start_rad) : targets.angles(step - 1);
+        step == 0 ? std::span<const double>(targets.start_positions) : targets.positions(step - 1);
     ArticulatedArm arm(setup.robot(), posture, task.physics);
     const Eigen::VectorXd bias = arm.calc_bias();
     arm.step(targets.feed_forward(step), 0.01);
@@ -162,9 +162,9 @@ TEST(FeedForwardTable, IsThereOnlyWhereItIsAskedForAndCounted) {
   const TrackingSetup with(load_irb4600(), task);
   const TargetTable plain = without.make_targets(make_case(3, 4));
   const TargetTable full = with.make_targets(make_case(3, 4));
-  EXPECT_TRUE(plain.feed_forward_n_m.empty());
-  EXPECT_EQ(plain.angles_rad, full.angles_rad);
-  EXPECT_EQ(full.size_bytes(), plain.size_bytes() + full.angles_rad.size() * sizeof(double));
+  EXPECT_TRUE(plain.feed_forward_effort.empty());
+  EXPECT_EQ(plain.joint_positions, full.joint_positions);
+  EXPECT_EQ(full.size_bytes(), plain.size_bytes() + full.joint_positions.size() * sizeof(double));
   const ArmDesign design = convert_design(kTableA1, "pid_gravity", 0.01);
   const TrackingJob job = make_job(design, plain);
   for (const std::string& engine : engine_names()) {

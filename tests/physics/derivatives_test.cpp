@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "sim/tracking/design_conversion.hpp"
+#include "sim/tracking/design.hpp"
 #include "tracking_arms.hpp"
 
 namespace armwright::physics_test {
@@ -17,7 +17,7 @@ double& get_number(ArmDesign& design, std::size_t which) {
   const std::size_t gains = design.joints.front().gains.size();
   JointDrive& joint = design.joints[which / (gains + 2)];
   const std::size_t k = which % (gains + 2);
-  return k < gains ? joint.gains[k] : k == gains ? joint.limits.min_n_m : joint.limits.max_n_m;
+  return k < gains ? joint.gains[k] : k == gains ? joint.limits.min : joint.limits.max;
 }
 std::size_t count_numbers(const ArmDesign& design) {
   return design.joints.size() * (design.joints.front().gains.size() + 2);
@@ -180,7 +180,7 @@ TEST_F(Derivatives, AreTheLimitsOfDifferencesForEveryController) {
     const TargetTable targets = setup.make_targets(make_case(7, 8));
     ArmDesign design = convert_design(kTableA1, row.name, task.control_period_s);
     for (JointDrive& joint : design.joints) {
-      joint.limits.min_n_m *= 0.97;  // both limits alike: a kink of the larger one
+      joint.limits.min *= 0.97;  // both limits alike: a kink of the larger one
       for (std::size_t k = 0; k < joint.gains.size(); ++k) {
         joint.gains[k] += row.gains[k].any_sign    ? 0.01 * std::cos(static_cast<double>(k))
                           : row.gains[k].range > 0 ? -0.1

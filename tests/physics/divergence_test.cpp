@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "sim/tracking/tracking_result.hpp"
+#include "sim/tracking/engine_support.hpp"
 #include "test_arms.hpp"
 #include "tracking_arms.hpp"
 
@@ -56,8 +56,8 @@ VectorXd simulate_half_a_second() {
     step(arm, VectorXd::LinSpaced(3, std::sin(k), -2), 0.01);
   }
   VectorXd all(11);
-  all << read_angles(arm, 3), read_rates(arm, 3), arm.tip_position_m(), arm.calc_kinetic_energy_j(),
-      arm.calc_potential_energy_j();
+  all << read_positions(arm, 3), read_rates(arm, 3), arm.tip_position_m(),
+      arm.calc_kinetic_energy_j(), arm.calc_potential_energy_j();
   return all;
 }
 
@@ -226,8 +226,8 @@ TEST(DivergedSimulation, CountsAsTheCutOffErrorWhereThereIsOne) {
   EXPECT_THAT(result.point_error_m, Each(cutoff_m));
   EXPECT_EQ(result.mean_error_m, cutoff_m);
   for (std::size_t i = 0; i < 4; ++i) {
-    EXPECT_TRUE(std::isfinite(result.peak_effort_n_m[i])) << i;
-    EXPECT_TRUE(std::isfinite(result.rms_effort_n_m[i])) << i;
+    EXPECT_TRUE(std::isfinite(result.peak_effort[i])) << i;
+    EXPECT_TRUE(std::isfinite(result.rms_effort[i])) << i;
   }
   EXPECT_TRUE(std::isfinite(result.energy_j));
 }

@@ -50,7 +50,7 @@ double measure_period_s(const Pendulum& pendulum, double amplitude_rad, double h
   double before = amplitude_rad;
   for (int k = 1; passes_s.size() < 3 && k * h_s < 10; ++k) {
     step(arm, VectorXd::Zero(1), h_s);
-    const double angle = std::remainder(read_angles(arm, 1)[0] - pendulum.rest_rad, 2 * kPi);
+    const double angle = std::remainder(read_positions(arm, 1)[0] - pendulum.rest_rad, 2 * kPi);
     if (angle * before < 0 && std::abs(angle) < 1.5) {  // not the jump from pi to -pi
       passes_s.push_back(h_s * (k - angle / (angle - before)));
     }

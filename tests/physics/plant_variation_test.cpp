@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/tracking/arm_plant.hpp"
 #include "sim/tracking/tracking_loop.hpp"
 #include "test_arms.hpp"
 #include "tracking_arms.hpp"
@@ -17,8 +16,8 @@ namespace {
 
 PlantVariation make_variation(std::size_t joints) {
   PlantVariation variation;
-  variation.viscous_friction_n_m_s_per_rad.resize(joints);
-  variation.coulomb_friction_n_m.resize(joints);
+  variation.viscous_friction.resize(joints);
+  variation.coulomb_friction.resize(joints);
   variation.torque_ripple.resize(joints);
   variation.ripple_phase_rad.resize(joints);
   return variation;
@@ -38,9 +37,9 @@ class Turnstile : public testing::Test {
   static constexpr double kStep_s = 0.001;
 
   void step(double effort_n_m) {
-    q_ = read_angles(arm_, 1);
+    q_ = read_positions(arm_, 1);
     rate_ = read_rates(arm_, 1);
-    const auto torque = plant_.calc_torque({&effort_n_m, 1}, {q_.data(), 1}, {rate_.data(), 1});
+    const auto torque = plant_.calc_effort({&effort_n_m, 1}, {q_.data(), 1}, {rate_.data(), 1});
     arm_.step(torque, kStep_s);
   }
   double rate() const { return read_rates(arm_, 1)[0]; }
@@ -61,7 +60,7 @@ TYPED_TEST(Turnstile, ViscousFrictionLetsTheRateDecay) {
   const double fastest = this->rate();
   EXPECT_NEAR(fastest, 0.2 * effort_n_m / calc_inertia_kg_m2(), 1e-6);
   const double b = 0.6;
-  this->variation_.viscous_friction_n_m_s_per_rad = {b};
+  this->variation_.viscous_friction = {b};
   const int steps = 1000;
   for (int k = 0; k < steps; ++k) {
     this->step(0);
@@ -75,8 +74,8 @@ TYPED_TEST(Turnstile, ViscousFrictionLetsTheRateDecay) {
 
 // Below c the joint creeps, and no faster than v_s tau / c; above it, it gets away.
 TYPED_TEST(Turnstile, CoulombFrictionHoldsItBelowItsTorque) {
-  this->variation_.coulomb_friction_n_m = {2};
-  this->variation_.friction_transition_rad_per_s = 0.05;
+  this->variation_.coulomb_friction = {2};
+  this->variation_.friction_transition_rate = 0.05;
   const double tau_n_m = 1.5;
   for (int k = 0; k < 2000; ++k) {
     this->step(tau_n_m);
@@ -111,7 +110,7 @@ struct RecordingArm {
     torques_n_m.emplace_back(torque_n_m.begin(), torque_n_m.end());
     ++steps;
   }
-  void read_angles(std::span<double> q) const {
+  void read_positions(std::span<double> q) const {
     for (std::size_t i = 0; i < q.size(); ++i) {
       q[i] = angle(i, steps);
     }
@@ -138,7 +137,7 @@ class ScriptedPlant : public testing::Test {
 // Three substeps late, in steps of 7 mrad; what is measured before the start is the start.
 TEST_F(ScriptedPlant, ControllersSeeLateAndRoundedAngles) {
   variation_.delay_substeps = 3;
-  variation_.quantisation_rad = 0.007;
+  variation_.quantum = 0.007;
   TrackingJob job = make_job(design_, targets_);
   job.variation = &variation_;
   RecordingArm arm;
@@ -150,7 +149,7 @@ TEST_F(ScriptedPlant, ControllersSeeLateAndRoundedAngles) {
       const double gain = 10 * (static_cast<double>(i) + 1);
       for (const int substep : {0, 3}) {
         EXPECT_NEAR(arm.torques_n_m[static_cast<std::size_t>(4 * period + substep)][i],
-                    gain * (targets_.angles(period)[i] - seen), 1e-12)
+                    gain * (targets_.positions(period)[i] - seen), 1e-12)
             << "period " << period << ", joint " << i;
       }
     }
@@ -159,15 +158,15 @@ TEST_F(ScriptedPlant, ControllersSeeLateAndRoundedAngles) {
 
 TEST_F(ScriptedPlant, EffortsAreMeasuredAsTheyWereAskedFor) {
   variation_.torque_ripple.assign(4, 0.5);
-  variation_.viscous_friction_n_m_s_per_rad.assign(4, 3);
-  variation_.coulomb_friction_n_m = {1, 2, 3, 4};
+  variation_.viscous_friction.assign(4, 3);
+  variation_.coulomb_friction = {1, 2, 3, 4};
   TrackingJob job = make_job(design_, targets_);
   RecordingArm nominal;
   const TrackingResult expected = TrackingLoop(setup_, job).run(nominal);
   job.variation = &variation_;
   RecordingArm arm;
   const TrackingResult result = TrackingLoop(setup_, job).run(arm);
-  EXPECT_EQ(result.peak_effort_n_m, expected.peak_effort_n_m);
+  EXPECT_EQ(result.peak_effort, expected.peak_effort);
   EXPECT_EQ(result.energy_j, expected.energy_j);
   // Sliding faster than v_s: all of the Coulomb friction.
   for (std::size_t i = 0; i < 4; ++i) {
@@ -190,10 +189,10 @@ TEST(PlantVariationInEngines, FrictionSetsTheRate) {
   const ArmDesign pushed =
       make_design({{0, 0, 0, tau_n_m, tau_n_m}, {0, 0, 0, 0, 0}, {0, 0, 0, 0, 0}, {0, 0, 0, 0, 0}});
   PlantVariation viscous = make_variation(4);
-  viscous.viscous_friction_n_m_s_per_rad = {4000, 40, 40, 4};
+  viscous.viscous_friction = {4000, 40, 40, 4};
   PlantVariation sticking = make_variation(4);
-  sticking.coulomb_friction_n_m = {50, 1, 1, 0.1};
-  sticking.friction_transition_rad_per_s = 0.02;
+  sticking.coulomb_friction = {50, 1, 1, 0.1};
+  sticking.friction_transition_rate = 0.02;
   for (const std::string& name : engine_names()) {
     SCOPED_TRACE(name);
     const auto engine = make_engine(name);
@@ -202,7 +201,7 @@ TEST(PlantVariationInEngines, FrictionSetsTheRate) {
       job.variation = variation;
       const auto motion = std::move(engine->simulate(setup, {&job, 1}).at(0).trajectory);
       ASSERT_GT(motion.size(), 300U);
-      const double rate = (motion.back().q_rad[0] - motion[motion.size() - 101].q_rad[0]) / 1.0;
+      const double rate = (motion.back().q[0] - motion[motion.size() - 101].q[0]) / 1.0;
       const double expected = variation == &viscous ? tau_n_m / 4000 : 0.02 * tau_n_m / 50;
       EXPECT_NEAR(rate, expected, 1e-3 * expected);
     }
@@ -215,10 +214,10 @@ TEST(PlantVariationInEngines, AgreeUnderEverythingAtOnce) {
   task.physics.substeps = 10;
   const TrackingSetup setup(load_irb4600(), task);
   PlantVariation variation = make_variation(4);
-  variation.viscous_friction_n_m_s_per_rad = {60, 120, 40, 0.5};
-  variation.coulomb_friction_n_m = {100, 200, 60, 0.2};
-  variation.friction_transition_rad_per_s = 0.1;
-  variation.quantisation_rad = 1e-4;
+  variation.viscous_friction = {60, 120, 40, 0.5};
+  variation.coulomb_friction = {100, 200, 60, 0.2};
+  variation.friction_transition_rate = 0.1;
+  variation.quantum = 1e-4;
   variation.delay_substeps = 2;
   variation.torque_ripple = {0.02, 0.01, 0.02, 0.015};
   variation.ripple_phase_rad = {1, 2, 3, 4};

@@ -53,8 +53,8 @@ TEST(SixAxes, AnglesAreThoseOfTheReducedArm) {
   ASSERT_EQ(found.steps, expected.steps);
   double worst = 0;
   for (int step = 0; step < found.steps; ++step) {
-    const auto q = found.angles(step);
-    const auto p = expected.angles(step);
+    const auto q = found.positions(step);
+    const auto p = expected.positions(step);
     worst = std::max({worst, std::abs(q[3]), std::abs(q[5]), std::abs(q[0] - p[0]),
                       std::abs(q[1] - p[1]), std::abs(q[2] - p[2]), std::abs(q[4] - p[3])});
   }
@@ -192,7 +192,7 @@ TEST(PoseTracking, TurnsAlongTheShortestWayWithThePath) {
   const Segment& segment = targets.segments.front();
   double before = 0;
   for (int step = 0; step < segment.steps; ++step) {
-    const ToolPose pose = kinematics->calc_pose(targets.angles(step));
+    const ToolPose pose = kinematics->calc_pose(targets.positions(step));
     const double share = (pose.position_m.y() - 0) / 0.5;
     const double turned = down.angularDistance(Eigen::Quaterniond(pose.turn));
     EXPECT_NEAR(turned, share * 0.4, 1e-7) << "step " << step;
@@ -285,7 +285,7 @@ TEST(ContinuousPath, EverySampleCounts) {
         make_engine("ode")->simulate(setup, std::vector{make_job(kTableA10, targets)}).front();
     EXPECT_NEAR(ode.mean_error_m / result.mean_error_m, 1, 0.02);
     for (std::size_t k = 0; k < targets.segments.size(); ++k) {
-      EXPECT_LT((calc_tip_position(setup.robot(), targets.angles(static_cast<int>(k))) -
+      EXPECT_LT((calc_tip_position(setup.robot(), targets.positions(static_cast<int>(k))) -
                  its.points_m[k + 1])
                     .norm(),
                 1e-8);

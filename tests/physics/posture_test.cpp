@@ -63,7 +63,7 @@ TYPED_TEST(Irb4600, StandsStillUnderTheEffortsComputedByHand) {
       step(arm, tau, 0.01);
       fastest = std::max(fastest, read_rates(arm, 4).norm());
     }
-    EXPECT_LT(calc_motion(model, q, read_angles(arm, 4)).norm(), 1e-9);
+    EXPECT_LT(calc_motion(model, q, read_positions(arm, 4)).norm(), 1e-9);
     EXPECT_LT(fastest, 1e-8);
   }
 }
@@ -79,7 +79,7 @@ TYPED_TEST(Irb4600, MovesUnderAnyOtherEffort) {
     double farthest = 0;
     for (int k = 0; k < 100; ++k) {
       step(arm, tau, 0.01);
-      farthest = std::max(farthest, calc_motion(model, q, read_angles(arm, 4)).norm());
+      farthest = std::max(farthest, calc_motion(model, q, read_positions(arm, 4)).norm());
     }
     EXPECT_GT(farthest, 1e-3) << "joint " << i + 1;
   }
@@ -120,7 +120,7 @@ TYPED_TEST(AnyArm, APositiveEffortMovesItsJointPositively) {
         tau[joint] = sign * 3.3;
         step(arm, tau, 0.01);
         const VectorXd rates = read_rates(arm, joints);
-        const double moved = (read_angles(arm, joints) - q)[joint];
+        const double moved = (read_positions(arm, joints) - q)[joint];
         EXPECT_GT(sign * rates[joint], 0);
         // Semi-implicit: moved by h times the new rate, but for the square of the turn in a step.
         const double turn_rad = calc_turn_rad(model, rates, 0.01);
@@ -142,7 +142,7 @@ TYPED_TEST(AnyArm, StartsAtRestInThePostureAskedFor) {
           make_vector({kPi, -kPi, -kPi, kPi}), make_vector({4.5, -7.7, 11.2, -3.3})}) {
       const VectorXd q = take(posture, model);
       const auto arm = make_arm<TypeParam>(model, q);
-      const VectorXd measured = read_angles(arm, model.joint_count());
+      const VectorXd measured = read_positions(arm, model.joint_count());
       EXPECT_LT(calc_motion(model, q, measured).norm(), 1e-14) << q.transpose();
       for (Eigen::Index i = 0; i < q.size(); ++i) {
         EXPECT_TRUE(is_prismatic(model, i) || std::abs(measured[i]) <= kPi) << measured[i];
@@ -169,9 +169,9 @@ TYPED_TEST(AnyArm, AnglesWrapAtPi) {
     double expected = sign * 3.1, largest = 0;
     int wraps = 0;
     for (int k = 0; k < 4000; ++k) {
-      const double before = read_angles(arm, 1)[0];
+      const double before = read_positions(arm, 1)[0];
       step(arm, VectorXd::Constant(1, sign * 2.5), h_s);
-      const double angle = read_angles(arm, 1)[0], rate = read_rates(arm, 1)[0];
+      const double angle = read_positions(arm, 1)[0], rate = read_rates(arm, 1)[0];
       ASSERT_LE(std::abs(angle), kPi);
       largest = std::max(largest, std::abs(angle));
       wraps += std::abs(angle - before) > kPi ? 1 : 0;
@@ -201,7 +201,7 @@ TYPED_TEST(AnyArm, ItsJointsHoldOverAThousandStepsOfFreeMotion) {
       double worst_m = 0, fastest = 0, turn_rad = 0, farthest_m = 0;
       for (int k = 0; k < 1000; ++k) {
         step(arm, VectorXd::Zero(start.size()), h_s);
-        const VectorXd q = read_angles(arm, joints), qd = read_rates(arm, joints);
+        const VectorXd q = read_positions(arm, joints), qd = read_rates(arm, joints);
         fastest = std::max(fastest, qd.cwiseAbs().sum());
         turn_rad = std::max(turn_rad, calc_turn_rad(model, qd, h_s));
         double slid_m = 0;

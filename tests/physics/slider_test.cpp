@@ -34,7 +34,7 @@ TYPED_TEST(Slider, FallsAlongItsAxis) {
         step(arm, make_vector({force_n}), h_s);
         const double moved_m = acceleration * h_s * h_s * k * (k + 1) / 2;
         ASSERT_NEAR(read_rates(arm, 1)[0], k * h_s * acceleration, 1e-11) << "step " << k;
-        ASSERT_NEAR(read_angles(arm, 1)[0], 0.37 + moved_m, 1e-11) << "step " << k;
+        ASSERT_NEAR(read_positions(arm, 1)[0], 0.37 + moved_m, 1e-11) << "step " << k;
         const Vector3d way_m = moved_m * model.joints[0].axis;
         ASSERT_LT((arm.com_position_m(0) - com_m - way_m).norm(), 1e-11) << "step " << k;
         ASSERT_LT((arm.tip_position_m() - tip_m - way_m).norm(), 1e-11) << "step " << k;
@@ -48,11 +48,11 @@ TYPED_TEST(Slider, GoesOnPastPi) {
   for (const double start_m : {3.0, -3.0, 40.0}) {
     const RobotModel model = make_slider({0, 1, 0});  // level
     auto arm = make_arm<TypeParam>(model, make_vector({start_m}));
-    double before_m = read_angles(arm, 1)[0];
+    double before_m = read_positions(arm, 1)[0];
     EXPECT_EQ(before_m, start_m);
     for (int k = 0; k < 300; ++k) {
       step(arm, make_vector({std::copysign(80, start_m)}), 0.01);
-      const double position_m = read_angles(arm, 1)[0];
+      const double position_m = read_positions(arm, 1)[0];
       ASSERT_NEAR(position_m - before_m, 0.01 * read_rates(arm, 1)[0], 1e-11) << k;
       before_m = position_m;
     }

@@ -32,7 +32,7 @@ VectorXd simulate(const RobotModel& model, const VectorXd& start, const VectorXd
   VectorXd q = start;
   for (int k = 0; k < steps; ++k) {
     step(arm, calc_drive(amplitude, k * h_s), h_s);
-    q += calc_motion(model, q, read_angles(arm, joints));
+    q += calc_motion(model, q, read_positions(arm, joints));
   }
   VectorXd state(2 * start.size());
   state << q, read_rates(arm, joints);

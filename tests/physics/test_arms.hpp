@@ -128,9 +128,9 @@ inline RobotModel make_random_arm(std::size_t joints, RandomStream& random) {
 }
 
 template <class Arm>
-VectorXd read_angles(const Arm& arm, std::size_t joints) {
+VectorXd read_positions(const Arm& arm, std::size_t joints) {
   VectorXd q(static_cast<Eigen::Index>(joints));
-  arm.read_angles({q.data(), joints});
+  arm.read_positions({q.data(), joints});
   return q;
 }
 

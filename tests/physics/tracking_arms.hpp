@@ -10,8 +10,8 @@
 
 #include "sim/engines/engine_table.hpp"
 #include "sim/robot/robot_model.hpp"
+#include "sim/tracking/simulation.hpp"
 #include "sim/tracking/test_case.hpp"
-#include "sim/tracking/tracking.hpp"
 
 namespace armwright::physics_test {
 
@@ -88,17 +88,17 @@ inline void expect_identical(const TrackingResult& a, const TrackingResult& b) {
   EXPECT_EQ(a.steps, b.steps);
   EXPECT_EQ(a.point_error_m, b.point_error_m);
   EXPECT_EQ(a.mean_error_m, b.mean_error_m);
-  EXPECT_EQ(a.peak_effort_n_m, b.peak_effort_n_m);
-  EXPECT_EQ(a.rms_effort_n_m, b.rms_effort_n_m);
+  EXPECT_EQ(a.peak_effort, b.peak_effort);
+  EXPECT_EQ(a.rms_effort, b.rms_effort);
   EXPECT_EQ(a.saturated_share, b.saturated_share);
   EXPECT_EQ(a.energy_j, b.energy_j);
   EXPECT_EQ(a.error_series_m, b.error_series_m);
   ASSERT_EQ(a.trajectory.size(), b.trajectory.size());
   for (std::size_t i = 0; i < a.trajectory.size(); ++i) {
     EXPECT_EQ(a.trajectory[i].time_s, b.trajectory[i].time_s);
-    EXPECT_EQ(a.trajectory[i].q_rad, b.trajectory[i].q_rad);
-    EXPECT_EQ(a.trajectory[i].target_rad, b.trajectory[i].target_rad);
-    EXPECT_EQ(a.trajectory[i].effort_n_m, b.trajectory[i].effort_n_m);
+    EXPECT_EQ(a.trajectory[i].q, b.trajectory[i].q);
+    EXPECT_EQ(a.trajectory[i].target_q, b.trajectory[i].target_q);
+    EXPECT_EQ(a.trajectory[i].effort, b.trajectory[i].effort);
     EXPECT_EQ(a.trajectory[i].tip_m, b.trajectory[i].tip_m);
     EXPECT_EQ(a.trajectory[i].target_m, b.trajectory[i].target_m);
   }

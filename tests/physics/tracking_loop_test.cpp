@@ -48,7 +48,9 @@ struct ScriptedArm {
     efforts_n_m.emplace_back(effort_n_m.begin(), effort_n_m.end());
     steps_s.push_back(dt_s);
   }
-  void read_angles(std::span<double> q) const { std::copy(q_rad.begin(), q_rad.end(), q.begin()); }
+  void read_positions(std::span<double> q) const {
+    std::copy(q_rad.begin(), q_rad.end(), q.begin());
+  }
   void read_rates(std::span<double> qd) const { std::ranges::fill(qd, 0.0); }
   Eigen::Vector3d tip_position_m() const { return tip_m(static_cast<int>(steps_s.size())); }
   Eigen::Vector3d tool_point_m(std::size_t /*point*/) const { return tip_position_m(); }

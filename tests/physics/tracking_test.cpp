@@ -67,14 +67,14 @@ TEST_F(Tracking, TheTrajectoryIsConsistent) {
   ASSERT_EQ(result.status, SimulationStatus::ok) << result.reason;
   ASSERT_EQ(result.trajectory.size(), static_cast<std::size_t>(result.steps));
   const ChainOracle oracle(setup_.robot(), kGravity_m_per_s2);
-  VectorXd before = Eigen::Map<const VectorXd>(targets_.start_rad.data(), 4);
+  VectorXd before = Eigen::Map<const VectorXd>(targets_.start_positions.data(), 4);
   double turn = 0;  // the fastest within the last steps, in which the drift has gathered
   for (std::size_t k = 0; k < result.trajectory.size(); ++k) {
     const TrajectorySample& sample = result.trajectory[k];
     EXPECT_NEAR(sample.time_s, 0.01 * static_cast<double>(k + 1), 1e-9);
-    const auto target = targets_.angles(static_cast<int>(k));
-    EXPECT_EQ(sample.target_rad, std::vector<double>(target.begin(), target.end()));
-    const VectorXd q = Eigen::Map<const VectorXd>(sample.q_rad.data(), 4);
+    const auto target = targets_.positions(static_cast<int>(k));
+    EXPECT_EQ(sample.target_q, std::vector<double>(target.begin(), target.end()));
+    const VectorXd q = Eigen::Map<const VectorXd>(sample.q.data(), 4);
     turn = std::max(0.9 * turn, calc_motion(setup_.robot(), before, q).cwiseAbs().sum());
     before = q;
     EXPECT_LT((oracle.calc(q, VectorXd::Zero(4)).tip_m - sample.tip_m).norm(),
@@ -82,9 +82,9 @@ TEST_F(Tracking, TheTrajectoryIsConsistent) {
         << k;
     EXPECT_EQ((sample.tip_m - sample.target_m).norm(), result.error_series_m[k]);
     for (std::size_t i = 0; i < 4; ++i) {
-      EXPECT_GE(sample.effort_n_m[i], kTableA10.joints[i].limits.min_n_m);
-      EXPECT_LE(sample.effort_n_m[i], kTableA10.joints[i].limits.max_n_m);
-      EXPECT_LE(std::abs(sample.q_rad[i]), kPi);
+      EXPECT_GE(sample.effort[i], kTableA10.joints[i].limits.min);
+      EXPECT_LE(sample.effort[i], kTableA10.joints[i].limits.max);
+      EXPECT_LE(std::abs(sample.q[i]), kPi);
     }
   }
   // The tip follows the target: the angles asked for put it there.
@@ -100,19 +100,19 @@ TEST_F(Tracking, TheMeasuresOfEffortFollowFromTheTrajectory) {
   const TrackingResult result =
       simulate_one(fast, make_job(kTableA10, targets, kNever, kEverything));
   ASSERT_EQ(result.status, SimulationStatus::ok) << result.reason;
-  std::vector<double> q = targets.start_rad;
+  std::vector<double> q = targets.start_positions;
   double energy_j = 0;
   std::vector<double> peak(4), squares(4), saturated(4);
   for (const TrajectorySample& sample : result.trajectory) {
     for (std::size_t i = 0; i < 4; ++i) {
-      const double effort = sample.effort_n_m[i];
+      const double effort = sample.effort[i];
       const EffortLimits& limits = kTableA10.joints[i].limits;
-      energy_j += std::max(0.0, effort * std::remainder(sample.q_rad[i] - q[i], 2 * kPi));
+      energy_j += std::max(0.0, effort * std::remainder(sample.q[i] - q[i], 2 * kPi));
       peak[i] = std::max(peak[i], std::abs(effort));
       squares[i] += effort * effort;
-      saturated[i] += effort == limits.min_n_m || effort == limits.max_n_m ? 1 : 0;
+      saturated[i] += effort == limits.min || effort == limits.max ? 1 : 0;
     }
-    q = sample.q_rad;
+    q = sample.q;
   }
   const double steps = result.steps;
   EXPECT_GT(energy_j, 100);
@@ -121,8 +121,8 @@ TEST_F(Tracking, TheMeasuresOfEffortFollowFromTheTrajectory) {
   EXPECT_GT(*std::max_element(saturated.begin(), saturated.end()), 0) << "no test of saturation";
   for (std::size_t i = 0; i < 4; ++i) {
     const double rms = std::sqrt(squares[i] / steps);
-    EXPECT_EQ(result.peak_effort_n_m[i], peak[i]);
-    EXPECT_NEAR(result.rms_effort_n_m[i], rms, 1e-12 * rms);
+    EXPECT_EQ(result.peak_effort[i], peak[i]);
+    EXPECT_NEAR(result.rms_effort[i], rms, 1e-12 * rms);
     EXPECT_EQ(result.saturated_share[i], saturated[i] / steps);
   }
 }
@@ -139,8 +139,8 @@ TEST_F(Tracking, ThePositiveWorkCoversWhatIsLifted) {
   const auto potential_j = [&](const double* q) {
     return oracle.calc(Eigen::Map<const VectorXd>(q, 4), VectorXd::Zero(4)).potential_energy_j;
   };
-  const double gain_j =
-      potential_j(targets.angles(targets.steps - 1).data()) - potential_j(targets.start_rad.data());
+  const double gain_j = potential_j(targets.positions(targets.steps - 1).data()) -
+                        potential_j(targets.start_positions.data());
   EXPECT_GT(gain_j, 1000);
   EXPECT_GT(result.energy_j, gain_j);
   EXPECT_LT(result.energy_j, 10 * gain_j);

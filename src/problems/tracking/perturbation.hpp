@@ -24,8 +24,9 @@
 #include <vector>
 
 #include "problems/interface/problem.hpp"
+#include "sim/tracking/design.hpp"
 #include "sim/tracking/plant_variation.hpp"
-#include "sim/tracking/tracking.hpp"
+#include "sim/tracking/task.hpp"
 
 namespace armwright {
 

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "problems/tracking/case_cache.hpp"
-#include "sim/tracking/tracking.hpp"
+#include "sim/tracking/tracking_setup.hpp"
 
 namespace armwright {
 

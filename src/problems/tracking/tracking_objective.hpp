@@ -43,7 +43,7 @@
 #include <vector>
 
 #include "problems/interface/problem.hpp"
-#include "sim/tracking/tracking.hpp"
+#include "sim/tracking/design.hpp"
 
 namespace armwright {
 

@@ -54,8 +54,8 @@ CaseOutcome make_outcome(TrackingResult result, const TrackingTask& task, CaseRo
       // would be the best.
       result.mean_error_m = job.cutoff_m;
       result.point_error_m.assign(targets.segments.size(), job.cutoff_m);
-      result.peak_effort_n_m.assign(targets.joints, 0);
-      result.rms_effort_n_m.assign(targets.joints, 0);
+      result.peak_effort.assign(targets.joints, 0);
+      result.rms_effort.assign(targets.joints, 0);
       result.saturated_share.assign(targets.joints, 0);
       break;
   }
@@ -69,11 +69,11 @@ CaseOutcome make_outcome(TrackingResult result, const TrackingTask& task, CaseRo
   for (const double share : result.saturated_share) {
     saturation += share / joints;
   }
-  outcome.metrics.reserve(kFirstJointMetric + 2 * result.peak_effort_n_m.size());
+  outcome.metrics.reserve(kFirstJointMetric + 2 * result.peak_effort.size());
   outcome.metrics.assign({result.energy_j, saturation, targets.steps * task.control_period_s});
-  for (std::size_t i = 0; i < result.peak_effort_n_m.size(); ++i) {
-    outcome.metrics.push_back(result.peak_effort_n_m[i]);
-    outcome.metrics.push_back(result.rms_effort_n_m[i]);
+  for (std::size_t i = 0; i < result.peak_effort.size(); ++i) {
+    outcome.metrics.push_back(result.peak_effort[i]);
+    outcome.metrics.push_back(result.rms_effort[i]);
   }
   return outcome;
 }
@@ -388,7 +388,7 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
   ObjectiveTerms terms;
   terms.error_m =
       calc_error_statistic(objective, errors_m, lost / static_cast<double>(outcomes.size()));
-  terms.torque_n_m = calc_total_torque_n_m(design);
+  terms.torque_n_m = calc_total_effort(design);
   terms.energy_j = sums[kEnergy] / numbers;
   terms.duration_s = sums[kDuration] / numbers;
   evaluation.objectives = calc_objectives(objective, terms);
@@ -454,7 +454,7 @@ std::vector<double> TrackingProblem::penalty_objectives() const {
   if (changes_speed(config_)) {
     slowest.speed_m_per_s /= config_.speed_bounds_factor;
   }
-  const double torque_n_m = calc_total_torque_n_m(strongest);
+  const double torque_n_m = calc_total_effort(strongest);
   const bool is_torque = objective.kind == TrackingObjective::Kind::torque_with_error_limit;
   ObjectiveTerms terms;
   terms.error_m = 10 * config_.cutoff_error_m;

@@ -1,7 +1,7 @@
 // The thesis's problem: tune the controllers and effort limits of an arm so that its tip follows a
 // moving target; what it is judged by is in tracking_objective.hpp. Decision variables: any of the
 // controllers' gains and effort limits of any joints, in natural units, bounded by a factor around
-// the start values, sign kept, or by a range to either side where the gain has one (GainSpec); and
+// the start values, sign kept, or by a range to either side where the gain has one (Gain); and
 // of how long and wide links are, and of the task's speed. What is not a variable keeps its start
 // value. Where a design or its motors change the arm or the task (sim/designed_arm.hpp), it is
 // simulated with a setup of its own, and its targets are its own where they differ. A training case

@@ -25,8 +25,8 @@ TEST_F(TargetCacheTest, TableIsTheOneThatTheSetupMakes) {
   TargetCache cache(10 * table_bytes_);
   const TargetTable made = setup_.make_targets(set_.make_case(7));
   const auto cached = cache.get(setup_, set_, 7);
-  EXPECT_EQ(cached->angles_rad, made.angles_rad);
-  EXPECT_EQ(cached->start_rad, made.start_rad);
+  EXPECT_EQ(cached->joint_positions, made.joint_positions);
+  EXPECT_EQ(cached->start_positions, made.start_positions);
   EXPECT_EQ(cached->steps, made.steps);
   EXPECT_EQ(cache.get(setup_, set_, 7).get(), cached.get());
   EXPECT_EQ(cache.computed(), 1U);
@@ -35,8 +35,9 @@ TEST_F(TargetCacheTest, TableIsTheOneThatTheSetupMakes) {
 TEST_F(TargetCacheTest, CasesAreToldApartBySetAndNumber) {
   TargetCache cache(10 * table_bytes_);
   const auto train = cache.get(setup_, set_, 0);
-  EXPECT_NE(cache.get(setup_, set_, 1)->angles_rad, train->angles_rad);
-  EXPECT_NE(cache.get(setup_, problem_->get_set("train/3"), 0)->angles_rad, train->angles_rad);
+  EXPECT_NE(cache.get(setup_, set_, 1)->joint_positions, train->joint_positions);
+  EXPECT_NE(cache.get(setup_, problem_->get_set("train/3"), 0)->joint_positions,
+            train->joint_positions);
   EXPECT_EQ(cache.computed(), 3U);
 }
 
@@ -47,15 +48,15 @@ TEST_F(TargetCacheTest, OldestTablesGoAtTheLimit) {
   }
   EXPECT_EQ(cache.computed(), 3U);
   const auto held = cache.get(setup_, set_, 0);
-  const std::vector<double> angles = held->angles_rad;
+  const std::vector<double> angles = held->joint_positions;
   cache.get(setup_, set_, 3);  // 0 goes
   EXPECT_EQ(cache.computed(), 4U);
   for (const std::uint64_t number : {1, 2, 3}) {
     cache.get(setup_, set_, number);
   }
   EXPECT_EQ(cache.computed(), 4U);
-  EXPECT_EQ(held->angles_rad, angles);  // it lives on for whoever holds it
-  EXPECT_EQ(cache.get(setup_, set_, 0)->angles_rad, angles);
+  EXPECT_EQ(held->joint_positions, angles);  // it lives on for whoever holds it
+  EXPECT_EQ(cache.get(setup_, set_, 0)->joint_positions, angles);
   EXPECT_EQ(cache.computed(), 5U);
   cache.get(setup_, set_, 1);  // went when 0 came back
   EXPECT_EQ(cache.computed(), 6U);
@@ -109,7 +110,7 @@ TEST_F(TargetCacheTest, ThreadsGetTheRightTablesWhileOthersAreEvicted) {
   constexpr std::uint64_t kCases = 6;
   std::vector<std::vector<double>> expected;
   for (std::uint64_t number = 0; number < kCases; ++number) {
-    expected.push_back(setup_.make_targets(set_.make_case(number)).angles_rad);
+    expected.push_back(setup_.make_targets(set_.make_case(number)).joint_positions);
   }
   TargetCache cache(2 * table_bytes_);
   std::vector<int> wrong(8);
@@ -118,7 +119,8 @@ TEST_F(TargetCacheTest, ThreadsGetTheRightTablesWhileOthersAreEvicted) {
     threads.emplace_back([&, thread] {
       for (std::uint64_t i = 0; i < 30; ++i) {
         const std::uint64_t number = (i * (2 * thread + 1)) % kCases;
-        wrong[thread] += cache.get(setup_, set_, number)->angles_rad == expected[number] ? 0 : 1;
+        wrong[thread] +=
+            cache.get(setup_, set_, number)->joint_positions == expected[number] ? 0 : 1;
       }
     });
   }
@@ -136,9 +138,9 @@ TEST_F(TargetCacheTest, WhatIsForgottenIsMadeAgainAlikeAndLivesWhileItIsHeld) {
 
   TargetCache cache(2 * table_bytes_);
   const auto held = cache.get(setup_, set_, 0);
-  const std::vector<double> angles_rad = held->angles_rad;
+  const std::vector<double> angles_rad = held->joint_positions;
   cache.clear();
-  EXPECT_EQ(held->angles_rad, angles_rad);
+  EXPECT_EQ(held->joint_positions, angles_rad);
   EXPECT_NE(cache.get(setup_, set_, 0), held);
 }
 

@@ -155,15 +155,15 @@ TEST(ControllerTable, HasThePidWithItsGains) {
   const ControllerRow& row = find_controller("pid");
   EXPECT_FALSE(row.summary.empty());
   ASSERT_EQ(row.gains.size(), 3u);
-  EXPECT_EQ(row.gains[0].name, "p");
-  EXPECT_EQ(row.gains[0].key, "p_n_m_per_rad");
-  EXPECT_EQ(row.gains[0].unit, "N m/rad");
-  EXPECT_EQ(row.gains[1].name, "i");
-  EXPECT_EQ(row.gains[1].key, "i_n_m_per_rad_s");
-  EXPECT_EQ(row.gains[1].unit, "N m/(rad s)");
-  EXPECT_EQ(row.gains[2].name, "d");
-  EXPECT_EQ(row.gains[2].key, "d_n_m_s_per_rad");
-  EXPECT_EQ(row.gains[2].unit, "N m s/rad");
+  EXPECT_STREQ(row.gains[0].name, "p");
+  EXPECT_STREQ(row.gains[0].key, "p_n_m_per_rad");
+  EXPECT_STREQ(row.gains[0].unit, "N m/rad");
+  EXPECT_STREQ(row.gains[1].name, "i");
+  EXPECT_STREQ(row.gains[1].key, "i_n_m_per_rad_s");
+  EXPECT_STREQ(row.gains[1].unit, "N m/(rad s)");
+  EXPECT_STREQ(row.gains[2].name, "d");
+  EXPECT_STREQ(row.gains[2].key, "d_n_m_s_per_rad");
+  EXPECT_STREQ(row.gains[2].unit, "N m s/rad");
 }
 
 TEST(ControllerTable, MakesTheControllerItNames) {

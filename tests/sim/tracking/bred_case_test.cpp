@@ -1,5 +1,4 @@
 // Cases of a set "coevolved/ID": a pure function of set and genome, cut into quarters by its keys.
-#include "sim/tracking/bred_case.hpp"
 
 #include <gtest/gtest.h>
 

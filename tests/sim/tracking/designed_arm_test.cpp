@@ -167,7 +167,7 @@ double measure_period_s(const RobotModel& model, double h_s) {
   for (int k = 1; passes_s.size() < 3; ++k) {
     const double before = q[0];
     arm.step(none, h_s);
-    arm.read_angles(q);
+    arm.read_positions(q);
     if (before * q[0] < 0) {
       passes_s.push_back(h_s * (k - q[0] / (q[0] - before)));
     }

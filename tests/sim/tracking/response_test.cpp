@@ -151,14 +151,14 @@ TEST(JointSpeeds, AreTheLargestOfAnyStepTheShortWayRound) {
   robot.joints.resize(2);
   robot.joints[1].kind = JointKind::prismatic;
   TargetTable table = make_table(1, 2);
-  table.start_rad = {3.1, 0};
+  table.start_positions = {3.1, 0};
   TrackingResult result;
   // A turn over the half circle by 0.083 rad; a slide by 7 m is no turn.
-  result.angles_rad = {-3.1, 7, -3.09, 7.01, -3.08, 7.0};
+  result.joint_positions = {-3.1, 7, -3.09, 7.01, -3.08, 7.0};
   EXPECT_THAT(calc_joint_speeds(robot, table, result, kSamplePeriod_s),
               ElementsAre(testing::DoubleNear((2 * std::numbers::pi - 6.2) / kSamplePeriod_s, 1e-9),
                           testing::DoubleNear(700, 1e-9)));
-  result.angles_rad = {};
+  result.joint_positions = {};
   EXPECT_THAT(calc_joint_speeds(robot, table, result, kSamplePeriod_s), ElementsAre(0, 0));
 }
 

@@ -1,4 +1,3 @@
-#include "sim/tracking/test_case_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

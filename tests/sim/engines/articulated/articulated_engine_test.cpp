@@ -21,7 +21,7 @@ using testing::Each;
 using testing::MatchesRegex;
 
 TrackingResult simulate_in_loop(const TrackingSetup& setup, const TrackingJob& job) {
-  ArticulatedArm arm(setup.robot(), job.targets->start_rad, setup.task().physics);
+  ArticulatedArm arm(setup.robot(), job.targets->start_positions, setup.task().physics);
   return TrackingLoop(setup, job).run(arm);
 }
 
@@ -38,8 +38,8 @@ void expect_close(const TrackingResult& a, const TrackingResult& b, double relat
   EXPECT_EQ(a.steps, b.steps);
   expect_near(a.point_error_m, b.point_error_m, relative);
   EXPECT_NEAR(a.mean_error_m, b.mean_error_m, relative * b.mean_error_m);
-  expect_near(a.peak_effort_n_m, b.peak_effort_n_m, relative);
-  expect_near(a.rms_effort_n_m, b.rms_effort_n_m, relative);
+  expect_near(a.peak_effort, b.peak_effort, relative);
+  expect_near(a.rms_effort, b.rms_effort, relative);
   EXPECT_EQ(a.saturated_share, b.saturated_share);
   EXPECT_NEAR(a.energy_j, b.energy_j, relative * b.energy_j);
 }
@@ -133,13 +133,13 @@ TEST(ArticulatedEngine, RecordsWhatTheLoopRecords) {
     for (std::size_t k = 0; k < found.trajectory.size(); ++k) {
       const TrajectorySample &a = found.trajectory[k], &b = expected.trajectory[k];
       EXPECT_NEAR(a.time_s, b.time_s, 1e-12);
-      EXPECT_EQ(a.target_rad, b.target_rad);
+      EXPECT_EQ(a.target_q, b.target_q);
       EXPECT_EQ(a.target_m, b.target_m);
       EXPECT_LT((a.tip_m - b.tip_m).norm(), 1e-10);
       EXPECT_NEAR(found.error_series_m[k], expected.error_series_m[k], 1e-10);
       for (std::size_t i = 0; i < 4; ++i) {
-        EXPECT_NEAR(a.q_rad[i], b.q_rad[i], 1e-10);
-        EXPECT_NEAR(a.effort_n_m[i], b.effort_n_m[i], 1e-3);  // gains of up to 3e6 N m/rad
+        EXPECT_NEAR(a.q[i], b.q[i], 1e-10);
+        EXPECT_NEAR(a.effort[i], b.effort[i], 1e-3);  // gains of up to 3e6 N m/rad
       }
     }
   }
@@ -151,14 +151,14 @@ void expect_finite(const TrackingResult& result) {
                        [](double number) { return std::isfinite(number); });
   };
   EXPECT_TRUE(check(result.point_error_m));
-  EXPECT_TRUE(check(result.peak_effort_n_m));
-  EXPECT_TRUE(check(result.rms_effort_n_m));
+  EXPECT_TRUE(check(result.peak_effort));
+  EXPECT_TRUE(check(result.rms_effort));
   EXPECT_TRUE(check(result.saturated_share));
   EXPECT_TRUE(check(result.error_series_m));
   EXPECT_TRUE(std::isfinite(result.mean_error_m));
   EXPECT_TRUE(std::isfinite(result.energy_j));
   for (const TrajectorySample& sample : result.trajectory) {
-    EXPECT_TRUE(check(sample.q_rad) && check(sample.effort_n_m) && sample.tip_m.allFinite());
+    EXPECT_TRUE(check(sample.q) && check(sample.effort) && sample.tip_m.allFinite());
   }
 }
 

@@ -101,7 +101,7 @@ Outcome simulate_one_arm(const LaneCase& one, const Timeline& time) {
             VectorXd::Zero(size),
             0,
             0};
-  VectorXd q = physics_test::read_angles(arm, n), effort(size);
+  VectorXd q = physics_test::read_positions(arm, n), effort(size);
   for (int step = 0; step < time.steps; ++step) {
     for (std::size_t i = 0; i < n; ++i) {
       const auto joint = static_cast<Eigen::Index>(i);
@@ -112,7 +112,7 @@ Outcome simulate_one_arm(const LaneCase& one, const Timeline& time) {
     for (int substep = 0; substep < time.substeps; ++substep) {
       physics_test::step(arm, effort, kPeriod_s / time.substeps);
     }
-    const VectorXd after = physics_test::read_angles(arm, n);
+    const VectorXd after = physics_test::read_positions(arm, n);
     const VectorXd way = calc_motion(one.model, q, after);
     o.energy_j += effort.cwiseProduct(way).cwiseMax(0).sum();
     q = after;
@@ -172,8 +172,8 @@ std::vector<Outcome> simulate_lanes(SimdLevel level, const std::vector<LaneCase>
       for (std::size_t gain = 0; gain < 3; ++gain) {
         set(first_gain + gain * n, drive.gains[gain]);
       }
-      set(kEffortMin * n + i, drive.limits.min_n_m);
-      set(kEffortMax * n + i, drive.limits.max_n_m);
+      set(kEffortMin * n + i, drive.limits.min);
+      set(kEffortMax * n + i, drive.limits.max);
     }
     const Vector3d point = chain.base_pose().inverse() * one.point_m;
     for (int axis = 0; axis < 3; ++axis) {

@@ -12,7 +12,7 @@
 #include "base/expect_error.hpp"
 #include "base/random.hpp"
 #include "sim/controllers/controller.hpp"
-#include "sim/controllers/tanh.hpp"
+#include "sim/controllers/neural.hpp"
 #include "sim/engines/articulated/kernels.hpp"
 #include "sim/engines/articulated/lane_block.hpp"
 #include "sim/support.hpp"
@@ -168,10 +168,11 @@ TEST_P(EveryController, SaysWhatItIs) {
   EXPECT_FALSE(row().summary.empty());
   EXPECT_THAT(row().formula, testing::HasSubstr("u = "));
   std::set<std::string> names;
-  for (const GainSpec& gain : row().gains) {
+  for (const controllers::Gain& gain : row().gains) {
     EXPECT_TRUE(names.insert(gain.name).second) << gain.name;
-    EXPECT_TRUE(names.insert(gain.key).second || gain.key == gain.name) << gain.key;
-    EXPECT_FALSE(gain.unit.empty());
+    EXPECT_TRUE(names.insert(gain.key).second || std::string_view(gain.key) == gain.name)
+        << gain.key;
+    EXPECT_STRNE(gain.unit, "");
     EXPECT_GE(gain.range, 0);
     EXPECT_TRUE(gain.range > 0 || !gain.any_sign) << "a factor keeps the sign";
   }
@@ -180,7 +181,7 @@ TEST_P(EveryController, SaysWhatItIs) {
 TEST_P(EveryController, StartsWithUsableGains) {
   const auto gains = make_gains();
   for (std::size_t k = 0; k < gains.size(); ++k) {
-    const GainSpec& spec = row().gains[k];
+    const controllers::Gain& spec = row().gains[k];
     EXPECT_TRUE(std::isfinite(gains[k])) << spec.name;
     EXPECT_TRUE(spec.any_sign || gains[k] >= 0) << spec.name;
     EXPECT_TRUE(spec.range > 0 || gains[k] > 0) << spec.name;
@@ -321,8 +322,8 @@ double compare_lanes(const ControllerRow& row, const std::vector<double>& gains,
     }
     for (int joint = 0; joint < kJoints; ++joint) {
       number(kIntegrating * kJoints + joint, lane) = 1;
-      number(kEffortMin * kJoints + joint, lane) = static_cast<T>(limits.min_n_m);
-      number(kEffortMax * kJoints + joint, lane) = static_cast<T>(limits.max_n_m);
+      number(kEffortMin * kJoints + joint, lane) = static_cast<T>(limits.min);
+      number(kEffortMax * kJoints + joint, lane) = static_cast<T>(limits.max);
       for (int k = 0; k < gain_count; ++k) {
         number(calc_state_packs(kJoints) + (row.states + k) * kJoints + joint, lane) =
             static_cast<T>(own[static_cast<std::size_t>(k)]);

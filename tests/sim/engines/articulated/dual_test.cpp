@@ -1,8 +1,8 @@
-#include "sim/engines/articulated/dual.hpp"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
+
+#include "sim/engines/articulated/number_simulation.hpp"
 
 namespace armwright {
 namespace {

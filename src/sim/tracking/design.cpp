@@ -1,12 +1,25 @@
-#include "sim/tracking/design_conversion.hpp"
+#include "sim/tracking/design.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.hpp"
 
 namespace armwright {
+
+double calc_largest_effort(const JointDrive& joint) {
+  return std::max(-joint.limits.min, joint.limits.max);
+}
+
+double calc_total_effort(const ArmDesign& design) {
+  double total = 0;
+  for (const JointDrive& joint : design.joints) {
+    total += calc_largest_effort(joint);
+  }
+  return total;
+}
 
 ArmDesign convert_design(const ArmDesign& design, std::string_view controller, double period_s) {
   if (design.controller == controller) {
@@ -19,14 +32,14 @@ ArmDesign convert_design(const ArmDesign& design, std::string_view controller, d
                             "be turned into one for '{}'; name another start",
                             design.controller, row.name));
   }
-  ArmDesign converted = design;  // arm, limits and speed stay
+  ArmDesign converted = design;  // links, limits and speed stay
   converted.controller = row.name;
   for (std::size_t joint = 0; joint < design.joints.size(); ++joint) {
     const JointDrive& pid = design.joints[joint];
     JointDrive& drive = converted.joints[joint];
     drive.gains.assign(row.gains.size(), 0.0);
     row.convert(
-        {pid.gains.at(0), pid.gains.at(1), pid.gains.at(2), calc_largest_torque_n_m(pid), period_s},
+        {pid.gains.at(0), pid.gains.at(1), pid.gains.at(2), calc_largest_effort(pid), period_s},
         drive.gains.data());
     for (std::size_t gain = 0; gain < drive.gains.size(); ++gain) {
       if (!std::isfinite(drive.gains[gain])) {
@@ -36,7 +49,7 @@ ArmDesign convert_design(const ArmDesign& design, std::string_view controller, d
                         "i = {}, d = {} and an effort limit of {} N m: {} would be {}; "
                         "name another start",
                         row.name, joint + 1, pid.gains[0], pid.gains[1], pid.gains[2],
-                        calc_largest_torque_n_m(pid), row.gains[gain].key, drive.gains[gain]));
+                        calc_largest_effort(pid), row.gains[gain].key, drive.gains[gain]));
       }
     }
   }
