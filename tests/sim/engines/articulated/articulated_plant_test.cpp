@@ -1,5 +1,5 @@
-// Perturbed plants in the lanes of the engine `articulated`: against a single arm of the same
-// dynamics, and each lane by itself.
+// Compares perturbed plants in the lanes of the engine `articulated` with a single arm of the same
+// dynamics, and each lane with the same job alone.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -58,8 +58,8 @@ class PlantLanes : public testing::Test {
   std::vector<TrackingJob> jobs_;
 };
 
-// The last bits decide which of two encoder steps an angle in the middle belongs to: under
-// quantisation of up to a milliradian they agree to far less than without.
+// The last bits of an angle half-way between two encoder steps decide which step it gets. With a
+// quantum of up to a milliradian, results therefore agree far less closely than without.
 TEST_F(PlantLanes, AgreeWithASingleArm) {
   for (const EngineOptions& options : make_double_options()) {
     SCOPED_TRACE(describe(options));
@@ -101,7 +101,7 @@ TEST_F(PlantLanes, HaveTheSameResultsAloneAndInAnyCompany) {
   }
 }
 
-// Nothing of everything is the nominal plant, up to what the compiler makes of more terms.
+// A variation whose sizes are all zero is the nominal plant, up to rounding in other code.
 TEST_F(PlantLanes, WithoutAnySizeAreNominal) {
   PlantVariation none = variations_[0];
   for (auto* sizes : {&none.viscous_friction, &none.coulomb_friction, &none.torque_ripple}) {
