@@ -1,5 +1,5 @@
-// Measures how many evaluations CMA-ES needs: ours, pagmo's and the published ones. Prints the table
-// of docs/cmaes.md as Markdown and takes two minutes.
+// Measures how many evaluations CMA-ES needs: ours, pagmo's and the published ones. Prints the
+// table of docs/cmaes.md as Markdown and takes two minutes.
 //
 //   build/release/bin/cmaes_benchmark > table.md
 #include <fmt/format.h>
@@ -181,8 +181,8 @@ struct PagmoFunction {
   }
 };
 
-// Runs pagmo's CMA-ES without any help. The initial population is sampled around the start as pagmo's
-// strategy would do it, and the mean begins at its best member.
+// Runs pagmo's CMA-ES without any help. The initial population is sampled around the start as
+// pagmo's strategy would do it, and the mean begins at its best member.
 Outcome run_pagmo(const Setting& setting, int seed) {
   PagmoFunction::Shared shared{.setting = &setting, .count = 0, .hit_at = {}};
   const int population = setting.population > 0

@@ -59,8 +59,8 @@ class CrowdLinks final : public Links {
     return message;
   }
 
-  // Chunks so far, their bytes in both directions, and the time that the simulated ranks have used on
-  // the coordinator's thread. Call it only between batches.
+  // Chunks so far, their bytes in both directions, and the time that the simulated ranks have used
+  // on the coordinator's thread. Call it only between batches.
   double chunks() const { return chunks_; }
   double bytes() const { return bytes_; }
   double spent_s() const { return spent_s_; }

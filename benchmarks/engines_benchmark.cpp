@@ -1,7 +1,8 @@
-// Measures the cost of a step of the thesis's arm in every engine, on the same task: four controllers,
-// the dynamics and the measures of 64 test cases. Times are CPU times of the thread, without the
-// target tables, which all engines share. Every ratio compares with ODE on some of the same cases.
-// Both sides run alternately, so that a slower machine slows down both. The errors are reported too.
+// Measures the cost of a step of the thesis's arm in every engine, on the same task: four
+// controllers, the dynamics and the measures of 64 test cases. Times are CPU times of the thread,
+// without the target tables, which all engines share. Every ratio compares with ODE on some of the
+// same cases. Both sides run alternately, so that a slower machine slows down both. The errors are
+// reported too.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

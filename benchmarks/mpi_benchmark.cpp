@@ -3,10 +3,10 @@
 //
 //     mpirun.openmpi --enable-recovery -n 2 build/release/bin/mpi_benchmark
 //
-// (--oversubscribe for more ranks than cores.) Rank 0 measures, the others work for it. Requirements
-// with as many ranks as cores: an efficiency of 0.9 for batches of at least 40 pairs of 5 ms, and a
-// speedup of at least 1 for any batch of pairs of 50 us, minus 0.05 for the machine's noise.
-// docs/scaling.md explains the output.
+// (--oversubscribe for more ranks than cores.) Rank 0 measures, the others work for it.
+// Requirements with as many ranks as cores: an efficiency of 0.9 for batches of at least 40 pairs
+// of 5 ms, and a speedup of at least 1 for any batch of pairs of 50 us, minus 0.05 for the
+// machine's noise. docs/scaling.md explains the output.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <unistd.h>

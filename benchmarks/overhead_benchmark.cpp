@@ -1,8 +1,8 @@
-// Measures the overhead of armwright between an optimizer and a function, compared with the same work
-// without it. The function is the sphere in 20 variables, evaluated as `armwright optimize` does it
-// (run folder, journal, budget, incumbents, progress): in batches of 100, as for a population, and one
-// at a time under NLopt's Nelder-Mead. The requirements are 500 000 evaluations per second in batches
-// and 300 000 one at a time. docs/overhead.md explains the output.
+// Measures the overhead of armwright between an optimizer and a function, compared with the same
+// work without it. The function is the sphere in 20 variables, evaluated as `armwright optimize`
+// does it (run folder, journal, budget, incumbents, progress): in batches of 100, as for a
+// population, and one at a time under NLopt's Nelder-Mead. The requirements are 500 000 evaluations
+// per second in batches and 300 000 one at a time. docs/overhead.md explains the output.
 #include <benchmark/benchmark.h>
 #ifdef ARMWRIGHT_WITH_NLOPT
 #include <nlopt.h>
@@ -113,8 +113,8 @@ double calc_sphere(const double* x, const double* minimiser, std::size_t dimensi
   return sum;
 }
 
-// Measures processor time of all threads, including the journal's. Other work on the machine disturbs
-// it less than wall-clock time.
+// Measures processor time of all threads, including the journal's. Other work on the machine
+// disturbs it less than wall-clock time.
 class ProcessorWatch {
  public:
   void start() { start_ = std::clock(); }

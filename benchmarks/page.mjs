@@ -1,5 +1,5 @@
-// Measures the size of the page of a large comparison, the time to open it, and how smoothly a replay
-// can be scrubbed, in headless Chromium with software rendering.
+// Measures the size of the page of a large comparison, the time to open it, and how smoothly a
+// replay can be scrubbed, in headless Chromium with software rendering.
 //   node benchmarks/page.mjs STUDY.html RUN.html
 import { statSync } from 'node:fs';
 import { list_tabs, open_browser, open_page, open_tab } from '../tests/page/browser.mjs';

@@ -1,5 +1,5 @@
-// Compares the cost of a tracking simulation with that of the physics engine alone, and measures how
-// evaluations scale over cores. Every ratio is measured within one run, with both sides running
+// Compares the cost of a tracking simulation with that of the physics engine alone, and measures
+// how evaluations scale over cores. Every ratio is measured within one run, with both sides running
 // alternately, so that a slower machine slows down both.
 #include <benchmark/benchmark.h>
 #include <ode/ode.h>

@@ -1,6 +1,6 @@
-// Measures parts of a step of the engine `articulated` alone, in double precision. The controllers and
-// the sums of efforts are not measured; they are the rest of the whole step. Parts overlap in the
-// processor, so they need not add up exactly.
+// Measures parts of a step of the engine `articulated` alone, in double precision. The controllers
+// and the sums of efforts are not measured; they are the rest of the whole step. Parts overlap in
+// the processor, so they need not add up exactly.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Whole simulations under every controller: engines beside each other, lanes beside neighbours, and
-// feed-forward on an arm that is what the model says.
+// Whole simulations under every controller: engines agree, lanes do not affect each other, and
+// feed-forward moves an arm that equals its model exactly.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -33,9 +33,9 @@ class UnderController : public testing::TestWithParam<std::string> {
   ArmDesign design_ = convert_design(kTableA1, GetParam(), 0.01);
 };
 
-// Maximal coordinates with corrected joints against joint coordinates: a percent, as for the
-// published designs, and 50 um, in which ODE's plant is not the one that efforts in advance are
-// for.
+// Compares maximal coordinates with corrected joints and joint coordinates. Tolerance: a percent,
+// as for the published designs, and 50 um, because feed-forward efforts do not fit ODE's plant
+// exactly.
 TEST_P(UnderController, EnginesAgree) {
   std::vector<TargetTable> targets;
   std::vector<TrackingJob> jobs;
@@ -58,7 +58,8 @@ TEST_P(UnderController, EnginesAgree) {
   }
 }
 
-// The engine's single lane and a loop around one arm: the same equations in another order.
+// Compares the engine's single lane with a loop around one arm: the same equations in another
+// order.
 TEST_P(UnderController, LanesAgreeWithALoop) {
   const TargetTable targets = setup_.make_targets(make_case(4, 8));
   const TrackingJob job = make_job(design_, targets);
@@ -78,11 +79,11 @@ TEST_P(UnderController, LanesAgreeWithALoop) {
   }
 }
 
-// Under other controllers, with other gains, on other cases, cut off and diverging: the lanes
-// beside it change nothing of a job.
+// The other lanes do not change a job's result, even if they have other controllers, gains and
+// cases, are cut off or diverge.
 TEST_P(UnderController, NeighboursDoNotMatter) {
   TrackingTask task = make_task();
-  task.feed_forward = FeedForward::inverse_dynamics;  // serves those that want none, too
+  task.feed_forward = FeedForward::inverse_dynamics;  // some controllers do not use it
   if (find_controller(GetParam()).feed_forward == FeedForward::gravity) {
     task.feed_forward = FeedForward::gravity;
   }
@@ -109,9 +110,9 @@ TEST_P(UnderController, NeighboursDoNotMatter) {
 INSTANTIATE_TEST_SUITE_P(Table, UnderController, testing::ValuesIn(controller_names()),
                          [](const auto& test) { return test.param; });
 
-// No feedback at all: with one step a period the model's efforts take the model to its targets,
-// exactly; what rounding leaves grows on an arm without feedback, over some hundred steps by a few
-// powers of ten.
+// Without any feedback and with one step per period, the model's efforts take the model exactly to
+// its targets. On an arm without feedback, rounding errors grow by a few powers of ten over some
+// hundred steps.
 TEST(FeedForwardTable, TakesTheModelToItsTargets) {
   TrackingTask task = make_e6_task();
   task.feed_forward = FeedForward::inverse_dynamics;

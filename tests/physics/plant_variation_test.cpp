@@ -1,5 +1,5 @@
-// What perturbed plants do to a joint, against closed forms and by hand, and that the engines agree
-// on it.
+// Checks the perturbations of a joint against closed forms and numbers computed by hand, and that
+// the engines agree.
 #include "sim/tracking/plant_variation.hpp"
 
 #include <gmock/gmock.h>
@@ -23,7 +23,7 @@ PlantVariation make_variation(std::size_t joints) {
   return variation;
 }
 
-// A link on an upright hinge, which gravity does not turn, and its moment of inertia.
+// A link on a vertical hinge, which gravity does not turn, and its moment of inertia.
 const RobotModel kTurnstile = make_pendulum({0, 0, 1});
 double calc_inertia_kg_m2() {
   const Inertial& body = kTurnstile.links[0].inertial;
@@ -51,7 +51,7 @@ class Turnstile : public testing::Test {
 };
 TYPED_TEST_SUITE(Turnstile, ArmTypes, ArmNames);
 
-// Under viscous friction b a rate decays as exp(-b t / J): in steps, as (1 - h b / J)^k.
+// Under viscous friction b, a rate decays as exp(-b t / J), and in steps as (1 - h b / J)^k.
 TYPED_TEST(Turnstile, ViscousFrictionLetsTheRateDecay) {
   const double effort_n_m = 0.5;
   for (int k = 0; k < 200; ++k) {
@@ -67,12 +67,12 @@ TYPED_TEST(Turnstile, ViscousFrictionLetsTheRateDecay) {
   }
   const double share = b * this->kStep_s / calc_inertia_kg_m2();
   EXPECT_NEAR(this->rate() / fastest, std::pow(1 - share, steps), 1e-5);
-  // The explicit steps themselves are off by (b t / J) (h b / J) / 2, relative.
+  // The relative error of the explicit steps is (b t / J) (h b / J) / 2.
   const double exact = std::exp(-share * steps);
   EXPECT_NEAR(this->rate() / fastest, exact, exact * steps * share * share / 2 * 1.1);
 }
 
-// Below c the joint creeps, and no faster than v_s tau / c; above it, it gets away.
+// Under an effort below c, the joint creeps no faster than v_s tau / c; above c, it accelerates.
 TYPED_TEST(Turnstile, CoulombFrictionHoldsItBelowItsTorque) {
   this->variation_.coulomb_friction = {2};
   this->variation_.friction_transition_rate = 0.05;
@@ -98,7 +98,7 @@ TYPED_TEST(Turnstile, TorqueRipplesWithTheAngle) {
   EXPECT_NEAR(this->rate(), this->kStep_s * tau_n_m * share / calc_inertia_kg_m2(), 1e-12);
 }
 
-// Turns its joints by 1 mrad a step, whatever acts on them.
+// An arm that turns its joints by 1 mrad per step under any effort.
 struct RecordingArm {
   int steps = 0;
   std::vector<std::vector<double>> torques_n_m;
@@ -134,7 +134,7 @@ class ScriptedPlant : public testing::Test {
   PlantVariation variation_ = make_variation(4);
 };
 
-// Three substeps late, in steps of 7 mrad; what is measured before the start is the start.
+// Measured three substeps late, with a quantum of 7 mrad. Before the start, the start is measured.
 TEST_F(ScriptedPlant, ControllersSeeLateAndRoundedAngles) {
   variation_.delay_substeps = 3;
   variation_.quantum = 0.007;
@@ -168,7 +168,7 @@ TEST_F(ScriptedPlant, EffortsAreMeasuredAsTheyWereAskedFor) {
   const TrackingResult result = TrackingLoop(setup_, job).run(arm);
   EXPECT_EQ(result.peak_effort, expected.peak_effort);
   EXPECT_EQ(result.energy_j, expected.energy_j);
-  // Sliding faster than v_s: all of the Coulomb friction.
+  // The joint is faster than v_s, so Coulomb friction has its full size.
   for (std::size_t i = 0; i < 4; ++i) {
     const double ripple = 1 + 0.5 * std::sin(12 * arm.angle(i, 5));
     EXPECT_NEAR(arm.torques_n_m[5][i],
@@ -176,9 +176,9 @@ TEST_F(ScriptedPlant, EffortsAreMeasuredAsTheyWereAskedFor) {
   }
 }
 
-// The upright joint of the whole arm, in every engine: under a constant torque it turns at tau / b
-// in the end, and creeps at v_s tau / c where that is less than c. There is no gravity, and all
-// other joints are free but for friction.
+// The vertical joint of the whole arm, in every engine. Under a constant torque it finally turns at
+// tau / b, and it creeps at v_s tau / c if tau < c. There is no gravity, and all other joints are
+// free except for friction.
 TEST(PlantVariationInEngines, FrictionSetsTheRate) {
   TrackingTask task;
   task.physics.gravity_m_per_s2 = 0;
@@ -208,7 +208,7 @@ TEST(PlantVariationInEngines, FrictionSetsTheRate) {
   }
 }
 
-// A design under everything at once: the same error in every engine, to about a percent.
+// A design under all perturbations at once has the same error in every engine, to about a percent.
 TEST(PlantVariationInEngines, AgreeUnderEverythingAtOnce) {
   TrackingTask task;
   task.physics.substeps = 10;
@@ -227,7 +227,7 @@ TEST(PlantVariationInEngines, AgreeUnderEverythingAtOnce) {
     const double nominal_m = simulate_one(setup, job).mean_error_m;
     job.variation = &variation;
     const double expected_m = simulate_one(setup, job).mean_error_m;
-    EXPECT_GT(std::abs(expected_m / nominal_m - 1), 0.005);  // it does something
+    EXPECT_GT(std::abs(expected_m / nominal_m - 1), 0.005);  // the perturbations have an effect
     for (const std::string& name : engine_names()) {
       const TrackingResult result = make_engine(name)->simulate(setup, {&job, 1}).at(0);
       EXPECT_EQ(result.status, SimulationStatus::ok) << result.reason;

@@ -1,4 +1,4 @@
-// The thesis's arm, three of its designs and ways to run them, for the tests of whole simulations.
+// The thesis's arm, three of its designs and functions to run them, for tests of whole simulations.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -43,13 +43,13 @@ inline const ArmDesign kTableA10 = make_design({{864048, 202279, 10876.1, -7246.
                                                 {2810730, 7338360, 24059, -14943.4, 12499},
                                                 {1531200, 1426490, 4394.7, -5713.1, 4836.06},
                                                 {601.378, 13600.6, 3.48375, -946.889, 573.647}});
-// A last joint far beyond the edge of stability (P h^2 / J is about 2e5; 4 is the limit) that
-// nothing limits: its efforts grow without bound.
+// The last joint is far beyond the limit of stability (P h^2 / J is about 2e5; the limit is 4) and
+// has no effort limits, so its efforts grow without bound.
 inline const ArmDesign kExploding = make_design({{45000, 150000, 7500, -20000, 20000},
                                                  {270000, 700000, 30000, -45000, 45000},
                                                  {30000, 100000, 5000, -20000, 20000},
                                                  {1e8, 2000, 5, -1e300, 1e300}});
-// Too weak to carry itself.
+// A design that is too weak to carry the arm.
 inline const ArmDesign kLimp = make_design({{450, 1500, 75, -200, 200},
                                             {2700, 7000, 300, -450, 450},
                                             {300, 1000, 50, -200, 200},
@@ -81,7 +81,7 @@ inline TrackingResult simulate_one(const TrackingSetup& setup, const TrackingJob
   return std::move(results.at(0));
 }
 
-// Everything a result has, to the last bit.
+// Compares all members of two results, to the last bit.
 inline void expect_identical(const TrackingResult& a, const TrackingResult& b) {
   EXPECT_EQ(a.status, b.status);
   EXPECT_EQ(a.reason, b.reason);

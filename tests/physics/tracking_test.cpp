@@ -1,4 +1,4 @@
-// Whole simulations of the thesis's arm with the ODE engine: what is recorded and measured.
+// Whole simulations of the thesis's arm with the engine `ode`: recordings and measures.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -32,13 +32,14 @@ TEST_F(Tracking, TheErrorSeriesHasThePointErrorsAsTheMaximaOfItsWindows) {
   double sum_m = 0;
   for (std::size_t k = 0; k < 25; ++k) {
     const Segment& segment = targets_.segments[k];
-    // By the task's definition: t_m = ds / v', v' = 1.5 ds / 1.6, or as it is on the longest moves.
+    // The task's definition: t_m = ds / v' with v' = 1.5 ds / 1.6, or v' = 1.5 on the longest
+    // moves.
     const double move_m = (segment.to_m - segment.from_m).norm();
     const double duration_s = move_m / (1.5 * std::min(1.0, move_m / 1.6));
     const auto first = result.error_series_m.begin() + segment.first_step;
     double worst_m = 0;
     for (int step = 0; step < segment.steps; ++step) {
-      // A hair of tolerance where a move ends at the end of a period.
+      // A small tolerance for moves that end at the end of a period.
       if ((step + 1) * 0.01 >= duration_s - 1e-9) {
         worst_m = std::max(worst_m, first[step]);
       }
@@ -59,7 +60,7 @@ TEST_F(Tracking, RecordingChangesNothing) {
   expect_identical(recorded, plain);
 }
 
-// The tip is where the kinematics of the recorded angles put it, up to the hinges' drift: at most 4
+// The tip agrees with the kinematics of the recorded positions, up to the hinges' drift: at most 4
 // joints x (w h)^2 r / (2 ERP), r = 2.8 m, w the sum of the joints' rates (posture_test.cpp).
 TEST_F(Tracking, TheTrajectoryIsConsistent) {
   const TrackingResult result =
@@ -68,7 +69,7 @@ TEST_F(Tracking, TheTrajectoryIsConsistent) {
   ASSERT_EQ(result.trajectory.size(), static_cast<std::size_t>(result.steps));
   const ChainOracle oracle(setup_.robot(), kGravity_m_per_s2);
   VectorXd before = Eigen::Map<const VectorXd>(targets_.start_positions.data(), 4);
-  double turn = 0;  // the fastest within the last steps, in which the drift has gathered
+  double turn = 0;  // the fastest within the last steps, in which the drift has grown
   for (std::size_t k = 0; k < result.trajectory.size(); ++k) {
     const TrajectorySample& sample = result.trajectory[k];
     EXPECT_NEAR(sample.time_s, 0.01 * static_cast<double>(k + 1), 1e-9);
@@ -87,13 +88,13 @@ TEST_F(Tracking, TheTrajectoryIsConsistent) {
       EXPECT_LE(std::abs(sample.q[i]), kPi);
     }
   }
-  // The tip follows the target: the angles asked for put it there.
+  // The kinematics of the setpoints put the tip at the target.
   const TrajectorySample& last = result.trajectory.back();
   EXPECT_EQ(last.target_m, targets_.segments.back().to_m);
   EXPECT_LT((last.tip_m - last.target_m).norm(), 1e-3);
 }
 
-// At Q1's speeds, where the limits of a design for Q2 are reached.
+// At Q1's speeds, at which a design for Q2 reaches its effort limits.
 TEST_F(Tracking, TheMeasuresOfEffortFollowFromTheTrajectory) {
   const TrackingSetup fast(load_irb4600(), {});
   const TargetTable targets = fast.make_targets(make_case(7));
@@ -127,7 +128,7 @@ TEST_F(Tracking, TheMeasuresOfEffortFollowFromTheTrajectory) {
   }
 }
 
-// Positive work alone: at least what the arm's energy has gained, and of the size of lifting and
+// The positive work is at least the gain of the arm's energy, and has the size of lifting and
 // accelerating a ton.
 TEST_F(Tracking, ThePositiveWorkCoversWhatIsLifted) {
   TestCase up;
@@ -157,8 +158,8 @@ TEST_F(Tracking, CountFirstPointAddsItToTheMean) {
   EXPECT_GT(std::abs(with.mean_error_m - without.mean_error_m), 1e-6);
 }
 
-// Cut off somewhere in the middle: what came before is untouched, what comes after counts as the
-// cut-off.
+// A cut-off in the middle does not change the points before; the points after it get the cut-off
+// error.
 TEST_F(Tracking, ACutOffEndsTheSimulationAndCountsForTheRest) {
   const TrackingResult whole = simulate_one(setup_, make_job(kTableA1, targets_));
   ASSERT_EQ(whole.status, SimulationStatus::ok) << whole.reason;
@@ -193,8 +194,8 @@ TEST_F(Tracking, ACutOffThatIsNotReachedChangesNothing) {
   expect_identical(simulate_one(setup_, make_job(kTableA10, targets_, 1.0)), free);
 }
 
-// The thesis's gains need its integrator: table A.10 (published: 0.083 mm) sits at the edge of
-// stability of one step a period and beyond that of two (about 130 mm).
+// The thesis's gains need its integrator. Table A.10 (published: 0.083 mm) is at the limit of
+// stability with one step per period, and beyond it with two (about 130 mm).
 TEST_F(Tracking, TableA10HoldsWithOneStepAPeriodAndFailsWithTwo) {
   TrackingTask task = make_e6_task();
   task.physics.substeps = 2;
@@ -215,7 +216,7 @@ TEST_F(Tracking, TableA10HoldsWithOneStepAPeriodAndFailsWithTwo) {
     one_m += one.mean_error_m / kCases;
     two_m += two.mean_error_m / kCases;
   }
-  EXPECT_GT(one_m, 0.00004);  // the published size, not a perfect arm
+  EXPECT_GT(one_m, 0.00004);  // as large as published; the arm is not perfect
 }
 
 // With the thesis's load the last link is heavier by the load, and the same design fails.

@@ -8,6 +8,7 @@
 
 #include "problems/tracking/case_cache.hpp"
 #include "problems/tracking/perturbation.hpp"
+#include "sim/tracking/tracking_setup.hpp"
 
 namespace armwright {
 

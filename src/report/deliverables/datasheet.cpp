@@ -15,6 +15,7 @@
 #include "report/deliverables/html_table.hpp"
 #include "report/formats/html_text.hpp"
 #include "sim/tracking/designed_arm.hpp"
+#include "sim/tracking/reference_signal.hpp"
 
 namespace armwright {
 namespace {

@@ -24,7 +24,8 @@ class Controller {
  public:
   virtual ~Controller() = default;
   // Returns the effort (N m or N) for setpoint and measurement (rad or m) in this control period of
-  // length dt_s. `feed_forward` (N m or N) is the effort that the target table holds for the period.
+  // length dt_s. `feed_forward` (N m or N) is the effort that the target table holds for the
+  // period.
   virtual double step(double setpoint, double measurement, double dt_s, double feed_forward) = 0;
   double step(double setpoint, double measurement, double dt_s) {
     return step(setpoint, measurement, dt_s, 0);

@@ -55,8 +55,8 @@ struct LawInput {
   }
 };
 
-// Returns the change of a value since the step before (0 in the first step), and stores the value as
-// the previous one.
+// Returns the change of a value since the step before (0 in the first step), and stores the value
+// as the previous one.
 template <class In, class V = typename In::Value>
 ARMWRIGHT_INLINE V update_change(const In& in, V value, V& previous) {
   if (in.first) {

@@ -1,5 +1,5 @@
-// The table of control laws: one row per law. controller_table(), the SIMD lanes and the derivatives
-// are all made from it.
+// The table of control laws: one row per law. controller_table(), the SIMD lanes and the
+// derivatives are all made from it.
 #pragma once
 
 #include "sim/controllers/cascade.hpp"

@@ -1,10 +1,11 @@
 // PIDs that add a share of efforts that are known in advance:
 //   u = PID + share f,
-// f being the effort of the step. They start with share = 1 and differ in f (kFeedForward), which is
-// computed for the nominal arm of the problem (sim/tracking/feed_forward.cpp has the discrete form).
+// f being the effort of the step. They start with share = 1 and differ in f (kFeedForward), which
+// is computed for the nominal arm of the problem (sim/tracking/feed_forward.cpp has the discrete
+// form).
 //   pid_gravity          f = g(q_target), which holds the arm in the posture that the target has at
 //                        the start of the period
-//   pid_computed_torque  f = M(q_d) a_d + C(q_d, v_d) + g(q_d), which moves the arm along its target
+//   pid_computed_torque  f = M(q_d) a_d + C(q_d, v_d) + g(q_d), which moves it along the target
 // Luh, Walker and Paul 1980 put the measured state into the same equations. Here they depend on the
 // target alone, as in drives with a table.
 #pragma once

@@ -1,8 +1,9 @@
-// The memory layout of a chain's model. Its numbers lie in packs: a pack has one number per SIMD lane,
-// side by side. Every ModelField has one pack per joint, every ModelSingle one pack per chain.
+// The memory layout of a chain's model. Its numbers lie in packs: a pack has one number per SIMD
+// lane, side by side. Every ModelField has one pack per joint, every ModelSingle one pack per
+// chain.
 //
-// This header is compiled for every instruction set (lane_pack.hpp), so it must not use templates of
-// the standard library.
+// This header is compiled for every instruction set (lane_pack.hpp), so it must not use templates
+// of the standard library.
 #pragma once
 
 #include <cstdint>

@@ -10,9 +10,10 @@
 //   K               becomes L S A K A', and the inertia is tr(K) 1 - K
 // The next joint, and everything that it carries, moves with the link's end and is not turned.
 //
-// Motors. A motor of torque per mass k weighs tau / k, with tau the larger of its joint's two effort
-// limits. It is a point mass at its joint's origin, carried by the link before. The motor of joint 1
-// stands on the base and moves nothing. Motors are added to the masses that the robot's file has.
+// Motors. A motor of torque per mass k weighs tau / k, with tau the larger of its joint's two
+// effort limits. It is a point mass at its joint's origin, carried by the link before. The motor of
+// joint 1 stands on the base and moves nothing. Motors are added to the masses that the robot's
+// file has.
 #pragma once
 
 #include "sim/robot/robot_model.hpp"

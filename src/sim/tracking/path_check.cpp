@@ -29,8 +29,8 @@ struct Worst {
   }
 };
 
-// Returns by how much a joint is beyond its range (negative inside). If `wrapped`, an angle is replaced
-// by the turn nearest to the middle of the range.
+// Returns by how much a joint is beyond its range (negative inside). If `wrapped`, an angle is
+// replaced by the turn nearest to the middle of the range.
 double calc_excess(const Joint& joint, bool wrapped, double& position) {
   if (!std::isfinite(joint.lower) || !std::isfinite(joint.upper)) {
     return 0;

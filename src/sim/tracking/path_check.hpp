@@ -1,5 +1,5 @@
-// Checks, before any simulation, whether an arm's joints can follow a target's path. The whole table
-// of target positions is searched for these faults:
+// Checks, before any simulation, whether an arm's joints can follow a target's path. The whole
+// table of target positions is searched for these faults:
 //
 //   position  q_i outside [lower_i, upper_i]; of an angle, the turn nearest to the range counts
 //   speed     |q_i(k + 1) - q_i(k)| / h above the joint's speed limit

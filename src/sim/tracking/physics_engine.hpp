@@ -1,5 +1,5 @@
-// The interface of physics engines. An engine simulates a batch of (design, test case) jobs. Results
-// do not depend on the batch that a job is in, on the thread, or on earlier calls.
+// The interface of physics engines. An engine simulates a batch of (design, test case) jobs.
+// Results do not depend on the batch that a job is in, on the thread, or on earlier calls.
 #pragma once
 
 #include <cstdint>
@@ -27,9 +27,9 @@ class PhysicsEngine {
                                                std::span<const TrackingJob> jobs) const = 0;
   // Returns whether calc_derivatives() works.
   virtual bool has_derivatives() const { return false; }
-  // Returns the exact derivatives of the errors (m) of the job's points as simulate() computes them:
-  // one row per point of the timeline, one column per direction, row-major. A direction is a design
-  // whose gains and limits are the derivatives of the job's with respect to some variable.
+  // Returns the exact derivatives of the errors (m) of the job's points as simulate() computes
+  // them: one row per point of the timeline, one column per direction, row-major. A direction is a
+  // design whose gains and limits are the derivatives of the job's with respect to some variable.
   //
   // Where a simulation has a kink (a limit, the largest of several numbers, a turn that is left
   // out), the derivatives are those of the branch that it took. They are 0 for a point that was not

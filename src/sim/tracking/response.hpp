@@ -11,8 +11,8 @@
 //   settling time (s)           from t_m to the time after which a <= band until the segment's end;
 //                               0 if that time is before t_m, and the segment's time after t_m if
 //                               a > band at its end
-// A joint's speed between two recorded positions is |dq| / h, with h the control period and dq taken
-// the short way round for revolute joints.
+// A joint's speed between two recorded positions is |dq| / h, with h the control period and dq
+// taken the short way round for revolute joints.
 //
 // Source: overshoot, rise and settling time as of step responses, Franklin, Powell and Emami-Naeini
 // (2019), Feedback Control of Dynamic Systems, section 3.4; IEC 60050-351. Two things differ from
@@ -21,8 +21,9 @@
 // Limits of validity: the tip is known at the ends of control periods only. Times between two of
 // them are interpolated linearly; a peak is missed by at most |s''| h^2 / 8.
 //
-// A segment is no move, and has no response, if it is shorter than kShortestMove_m, or if it ends or
-// is first measured within its first control period. The samples of a continuous path are no moves.
+// A segment is no move, and has no response, if it is shorter than kShortestMove_m, or if it ends
+// or is first measured within its first control period. The samples of a continuous path are no
+// moves.
 #pragma once
 
 #include <optional>

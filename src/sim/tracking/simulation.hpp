@@ -34,9 +34,9 @@ struct TrackingJob {
   // and all later ones get this error.
   double cutoff_m = std::numeric_limits<double>::infinity();
   RecordingOptions recording;
-  // The simulation is abandoned after the first point at which the case's error is certain to exceed
-  // this value: the sum of the errors so far, divided by the number of all points that count,
-  // exceeds it already. After the last point it is not abandoned.
+  // The simulation is abandoned after the first point at which the case's error is certain to
+  // exceed this value: the sum of the errors so far, divided by the number of all points that
+  // count, exceeds it already. After the last point it is not abandoned.
   double abandon_above_m = std::numeric_limits<double>::infinity();
   // Not null if the design or the case changes the arm itself. The setup must have the same task
   // (except speed and load) and the same number of joints as the batch's.

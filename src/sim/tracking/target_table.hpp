@@ -26,7 +26,7 @@ struct Segment {
   bool is_sample = false;
 };
 
-// Joint positions are in rad for a revolute joint and in m for a prismatic one, efforts in N m or N.
+// Positions are in rad and efforts in N m for a revolute joint, in m and N for a prismatic one.
 struct TargetTable {
   std::vector<Segment> segments;
   std::size_t joints = 0;

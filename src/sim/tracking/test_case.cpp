@@ -15,9 +15,9 @@
 namespace armwright {
 namespace {
 
-// A move of length ds from a point on the surface ends inside with probability (1 - ds/2r) / 2. With
-// the largest ratio, one point needs some thousand draws; with the published 0.05 m and 25 points it
-// needs about fourteen.
+// A move of length ds from a point on the surface ends inside with probability (1 - ds/2r) / 2.
+// With the largest ratio, one point needs some thousand draws; with the published 0.05 m and 25
+// points it needs about fourteen.
 constexpr double kLargestRatio = 0.999;  // of one move to the one before
 constexpr int kMostPoints = 1000;
 // As a share of the coordinates' size. Shorter moves would be lost in the coordinates' rounding.
@@ -127,8 +127,8 @@ double WorkspaceSphere::calc_move_m(int k) const {
   if (k == 1) {
     return radius_m;
   }
-  // The power of doubles differs in the last bit between libraries. The power of long doubles, rounded
-  // to double, does not.
+  // The power of doubles differs in the last bit between libraries. The power of long doubles,
+  // rounded to double, does not.
   const double exponent = static_cast<double>(k - 2) / (points - 2);
   const double ratio = shortest_move_m / (2 * radius_m);
   return 2 * radius_m * static_cast<double>(std::pow(static_cast<long double>(ratio), exponent));

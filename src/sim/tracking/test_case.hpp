@@ -8,11 +8,11 @@
 //   ds_1 = r,   ds_k = 2r (s_min / 2r)^((k-2)/(n-2))
 //
 // Bred cases belong to a set named "coevolved/ID". The number of a bred case is its genome: four
-// keys of 15 bits, the first key in the lowest bits. Each key determines the directions of a quarter
-// of the points. A child with keys of two parents therefore moves like one parent in some quarters
-// and like the other parent in the rest. A direction is drawn again only if it leads out of the
-// sphere, which depends on where the quarter starts. A bred case, too, depends on the name of its
-// set and its number alone.
+// keys of 15 bits, the first key in the lowest bits. Each key determines the directions of a
+// quarter of the points. A child with keys of two parents therefore moves like one parent in some
+// quarters and like the other parent in the rest. A direction is drawn again only if it leads out
+// of the sphere, which depends on where the quarter starts. A bred case, too, depends on the name
+// of its set and its number alone.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -51,7 +51,8 @@ struct WorkspaceSphere {
   double radius_m = 0.8;          // r
   double shortest_move_m = 0.05;  // s_min
   int points = 25;                // n, without the start
-  // If set, a unit vector: points lie in the disc perpendicular to it, for arms that move in a plane.
+  // If set, a unit vector: points lie in the disc perpendicular to it, for arms that move in a
+  // plane.
   std::optional<Eigen::Vector3d> normal = std::nullopt;
 
   double calc_move_m(int k) const;  // ds_k, k = 1..n

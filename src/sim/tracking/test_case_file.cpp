@@ -150,7 +150,8 @@ class JsonCases final : public nlohmann::json_sax<nlohmann::json> {
     return true;
   }
 
-  // Handles every value but a number at its place: refuses it within the cases, ignores it elsewhere.
+  // Handles every value but a number at its place: refuses it within the cases, ignores it
+  // elsewhere.
   bool handle_other(const std::string& found) {
     if (depth_ == 0) {
       refuse(name_, fmt::format("is {}; it must be an object with the key \"cases\"", found));

@@ -53,8 +53,8 @@ class TrackingLoop {
   // Steps a perturbed plant by one substep.
   template <class Arm>
   void step_perturbed(Arm& arm);
-  // Returns the squared error (m^2) at the end of a segment's move: that of the tip, or the mean over
-  // the tool points.
+  // Returns the squared error (m^2) at the end of a segment's move: that of the tip, or the mean
+  // over the tool points.
   template <class Arm>
   double calc_squared_error(const Arm& arm, const Segment& segment) const;
   template <class Arm>

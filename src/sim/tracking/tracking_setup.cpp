@@ -13,8 +13,8 @@
 namespace armwright {
 namespace {
 
-// Tolerance for times that are multiples of the control period up to rounding: t_m + rest = 1.1 s is
-// 110 periods of 0.01 s, not 111.
+// Tolerance for times that are multiples of the control period up to rounding: t_m + rest = 1.1 s
+// is 110 periods of 0.01 s, not 111.
 constexpr double kTimeTolerance = 1e-9;  // in control periods
 
 int calc_steps_covering(double duration_s, double period_s) {
@@ -35,8 +35,8 @@ int count_moving_steps(const Segment& segment, double period_s) {
 
 constexpr int kJoints = 4;  // of an arm that the closed form can solve
 
-// The rate at which joints move towards the middle of their ranges if the task leaves them free. It is
-// slow compared with moves, which take about a second.
+// The rate at which joints move towards the middle of their ranges if the task leaves them free. It
+// is slow compared with moves, which take about a second.
 constexpr double kCentringRate_hz = 0.5;
 
 // Copies the row before `begin` into all rows from `begin` to `end`.
@@ -245,8 +245,9 @@ void TrackingSetup::solve_numerically(const TestCase& test_case, TargetTable& ta
       double* const row =
           table.joint_positions.data() + static_cast<std::size_t>(segment.first_step + step) * n;
       if (step < distinct) {
-        // The search starts where the joints would be at their present speed, so it needs only one or
-        // two iterations. Motion that the task leaves free goes towards the middle of the ranges.
+        // The search starts where the joints would be at their present speed, so it needs only one
+        // or two iterations. Motion that the task leaves free goes towards the middle of the
+        // ranges.
         for (std::size_t i = 0; i < n; ++i) {
           const double carried = q[i] - before[i];
           const double drawn = numeric_->has_middle(i) ? kCentringRate_hz * task_.control_period_s *

@@ -1,4 +1,5 @@
-// The robot with its load, together with the task: makes target tables and is what engines simulate.
+// The robot with its load, together with the task: makes target tables and is what engines
+// simulate.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,5 @@
-// Cases of a set "coevolved/ID": they depend only on set and genome, one key per quarter of the case.
+// Cases of a set "coevolved/ID": they depend only on set and genome, one key per quarter of the
+// case.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// Checks stretched links against bodies whose inertia has a closed form, motors against a pendulum's
-// period, and the arm's kinematics after both.
+// Checks stretched links against bodies whose inertia has a closed form, motors against a
+// pendulum's period, and the arm's kinematics after both.
 #include "sim/tracking/designed_arm.hpp"
 
 #include <gmock/gmock.h>
@@ -67,8 +67,8 @@ TEST(StretchedLink, WorksAlongAnyDirection) {
   EXPECT_LT((body.inertia_kg_m2 - expected.inertia_kg_m2).norm(), 1e-12);
 }
 
-// The inertia of a thin rod about its end is m L^2 / 3, so it grows with the cube of the length scale
-// at the same section.
+// The inertia of a thin rod about its end is m L^2 / 3, so it grows with the cube of the length
+// scale at the same section.
 TEST(StretchedLink, OfARodTurnsWithTheCubeOfItsLength) {
   const double mass_kg = 3, rod_m = 0.8;
   const Inertial rod = make_box({rod_m, 1e-9, 1e-9}, mass_kg, {rod_m / 2, 0, 0});

@@ -197,7 +197,7 @@ TEST(ReferenceSignal, TrapezoidByHand) {
 
 TEST(ReferenceSignal, TriangularByHand) {
   const ReferenceSignal signal(SignalShape::triangular, 0.6, 1.5,
-                               1e-9);                            // the given acceleration is not used
+                               1e-9);                            // acceleration not used
   EXPECT_NEAR(signal.calc_distance(0.1), 0.075, rounding(0.6));  // 4 ds / t_m^2 = 15 m/s^2
   EXPECT_NEAR(signal.calc_distance(0.2), 0.3, rounding(0.6));
   EXPECT_NEAR(signal.calc_distance(0.3), 0.525, rounding(0.6));
@@ -275,7 +275,7 @@ TEST(ReferenceSignal, RefusesImpossibleMotions) {
                           " m; it must be finite and > 0"));
     EXPECT_THAT(refusal(SignalShape::complex, 0.5, bad, 15), HasSubstr("the speed is "));
     EXPECT_THAT(refusal(SignalShape::trapezoid, 0.5, 1.5, bad), HasSubstr("the acceleration is "));
-    EXPECT_EQ(refusal(SignalShape::complex, 0.5, 1.5, bad), "(no error)");  // this shape does not use the parameter
+    EXPECT_EQ(refusal(SignalShape::complex, 0.5, 1.5, bad), "(no error)");  // not used
   }
   EXPECT_THAT(refusal(SignalShape::ramp, 1e200, 1e-200, 15),
               HasSubstr("the duration (distance / speed) is inf s; it must be finite and > 0"));

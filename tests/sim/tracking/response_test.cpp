@@ -33,8 +33,8 @@ TargetTable make_table(int moving, int resting, const Vector3d& way_m = kWay_m) 
   return table;
 }
 
-// Returns the tip's positions from two functions of time: the share of the move that is covered, and
-// the distance beside the move, at right angles.
+// Returns the tip's positions from two functions of time: the share of the move that is covered,
+// and the distance beside the move, at right angles.
 TipMove make_motion(const TargetTable& table, const std::function<double(double)>& along,
                     double beside_m = 0) {
   const Vector3d beside = beside_m * kWay_m.cross(Vector3d::UnitZ()).normalized();

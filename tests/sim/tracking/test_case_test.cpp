@@ -67,9 +67,9 @@ TEST(TestCases, MoveByTheDistancesOfTheThesis) {
   }
 }
 
-// The expected numbers were computed with 60 decimal digits; the power was rounded to double once and
-// then multiplied by 2r. Of the 25 powers, the one nearest to a rounding boundary is 0.03 ulp away from
-// it, so any long double with at least 64 bits of mantissa gives the same numbers.
+// The expected numbers were computed with 60 decimal digits; the power was rounded to double once
+// and then multiplied by 2r. Of the 25 powers, the one nearest to a rounding boundary is 0.03 ulp
+// away from it, so any long double with at least 64 bits of mantissa gives the same numbers.
 TEST(TestCases, MovesAreTheSameBitsEverywhere) {
   const WorkspaceSphere sphere;
   EXPECT_EQ(sphere.calc_move_m(1), 0.8);
@@ -122,9 +122,9 @@ TEST(TestCases, DependOnNameAndNumberOnly) {
   EXPECT_NO_THROW(set.make_case(std::numeric_limits<std::uint64_t>::max()));
 }
 
-// If the generator changed, an old name would stand for other test cases, and results would no longer
-// be comparable. The expected numbers come from a second implementation (Philox, the directions, the
-// hash) in Python.
+// If the generator changed, an old name would stand for other test cases, and results would no
+// longer be comparable. The expected numbers come from a second implementation (Philox, the
+// directions, the hash) in Python.
 TEST(TestCases, AreTheOnesOfAllEarlierResults) {
   const auto points_m = make_test_case("train/1", 0, {}).points_m;
   EXPECT_EQ(points_m[1],
@@ -223,8 +223,8 @@ TEST(TestCases, AnImpossibleSphereIsRefused) {
               HasSubstr("workspace sphere: the shortest move is 1.6 m; "));
 }
 
-// With the largest moves allowed, only a thousandth of the directions stays inside, and the generator
-// finds one.
+// With the largest moves allowed, only a thousandth of the directions stays inside, and the
+// generator finds one.
 TEST(TestCases, TheLongestMovesAllowedCanBeMade) {
   const WorkspaceSphere sphere{{0, 0, 0}, 1.0, 2 * std::pow(0.999, 98) * (1 - 1e-12), 100};
   EXPECT_EQ(make_test_case("train/1", 0, sphere).points_m.size(), 101u);

@@ -1,6 +1,6 @@
-// A single serial arm in joint coordinates, with any number of revolute and prismatic joints. It has
-// the dynamics that the engine `articulated` computes in lanes (chain_dynamics.hpp), and the interface
-// with which a TrackingLoop and the physics tests drive an arm.
+// A single serial arm in joint coordinates, with any number of revolute and prismatic joints. It
+// has the dynamics that the engine `articulated` computes in lanes (chain_dynamics.hpp), and the
+// interface with which a TrackingLoop and the physics tests drive an arm.
 //
 // Semi-implicit Euler: qd += h M^-1 (tau - b), then q += h qd.
 //

@@ -1,7 +1,8 @@
-// The engine `articulated`: joint coordinates, batches of simulations in SIMD lanes. Each lane is one
-// (design, test case) pair. A lane's results depend neither on the other lanes nor on its place. They
-// are therefore the same for any batch and any number of threads, with one build and one SIMD level.
-// The integrator is semi-implicit Euler, with the same order of steps as in the engine `ode`.
+// The engine `articulated`: joint coordinates, batches of simulations in SIMD lanes. Each lane is
+// one (design, test case) pair. A lane's results depend neither on the other lanes nor on its
+// place. They are therefore the same for any batch and any number of threads, with one build and
+// one SIMD level. The integrator is semi-implicit Euler, with the same order of steps as in the
+// engine `ode`.
 #pragma once
 
 #include <memory>

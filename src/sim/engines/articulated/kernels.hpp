@@ -4,8 +4,8 @@
 // All numbers lie in packs: a pack has one number per lane, side by side. A field has one pack per
 // joint, a single number one pack.
 //
-// This header is compiled for every instruction set (lane_pack.hpp), so it must not use templates of
-// the standard library.
+// This header is compiled for every instruction set (lane_pack.hpp), so it must not use templates
+// of the standard library.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
-// A block of simulations on one timeline. It gives its packs of lanes to a kernel segment by segment,
-// reads the results of simulations that end, and closes gaps when lanes have become free. It
-// allocates all memory before the first step.
+// A block of simulations on one timeline. It gives its packs of lanes to a kernel segment by
+// segment, reads the results of simulations that end, and closes gaps when lanes have become free.
+// It allocates all memory before the first step.
 #pragma once
 
 #include <memory>
@@ -34,9 +34,9 @@ class AlignedNumbers {
 template <class T>
 class LaneBlock {
  public:
-  // `chosen` has the numbers of the block's jobs. They must all have the same timeline, shape of the
-  // arm and controller, and either all or none of them a PlantVariation. The result of jobs[i] is
-  // results[i]. All arguments must outlive the block.
+  // `chosen` has the numbers of the block's jobs. They must all have the same timeline, shape of
+  // the arm and controller, and either all or none of them a PlantVariation. The result of jobs[i]
+  // is results[i]. All arguments must outlive the block.
   LaneBlock(const TrackingSetup& setup, const Kernel<T>& kernel, std::span<const TrackingJob> jobs,
             std::span<const std::size_t> chosen, std::vector<TrackingResult>& results);
   // Simulates all jobs of the block. Call it once.

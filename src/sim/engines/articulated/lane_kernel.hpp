@@ -1,7 +1,7 @@
 // One segment of the tracking timeline for a pack of lanes, with the order of steps of TrackingLoop
-// (tracking_loop.hpp). In each control period, the controllers compute efforts from the positions at
-// its start, the plant takes its steps with the efforts held (semi-implicit Euler:
-// qd += h qdd(q, qd); q += h qd), and the measures are taken at its end.
+// (tracking_loop.hpp). In each control period, the controllers compute efforts from the positions
+// at its start, the plant takes its steps with the efforts held (semi-implicit Euler: qd += h
+// qdd(q, qd); q += h qd), and the measures are taken at its end.
 #pragma once
 
 #include <type_traits>
@@ -174,8 +174,8 @@ class SegmentKernel {
     out[2 * joints() + 2] = tip.z;
   }
 
-  // Recomputes the posture after lanes were taken out. For the remaining lanes it is the same to the
-  // last bit; a test with two hundred jobs in different batches checks this.
+  // Recomputes the posture after lanes were taken out. For the remaining lanes it is the same to
+  // the last bit; a test with two hundred jobs in different batches checks this.
   ARMWRIGHT_INLINE bool refresh() {
     dynamics_.set_posture(field(kQ), true);
     return true;
@@ -215,8 +215,8 @@ class SegmentKernel {
   PackList<V, Chain::kJoints> effort_, acceleration_, way_;
 };
 
-// With the address sanitizer, straight-line code becomes so long that the compiler needs half an hour
-// for it. Then chains of known lengths use the code for any length: the same code, with loops.
+// With the address sanitizer, straight-line code becomes so long that the compiler needs half an
+// hour for it. Then chains of known lengths use the code for any length: the same code, with loops.
 #ifdef __SANITIZE_ADDRESS__
 inline constexpr bool kHasKnownLengths = false;
 #else

@@ -2,8 +2,8 @@
 // everything else, so the derivatives are those of the engine's results, step by step. They are not
 // the derivatives of the continuous motion.
 //
-// The file has, in this order, a lane of such numbers (NumberLane), one type of such numbers (Dual),
-// and the simulation. Another type, such as ceres::Jet, works as well if it has a Carrier.
+// The file has, in this order, a lane of such numbers (NumberLane), one type of such numbers
+// (Dual), and the simulation. Another type, such as ceres::Jet, works as well if it has a Carrier.
 #pragma once
 
 #include <vector>
@@ -172,7 +172,8 @@ struct NumberDrive {
 };
 
 // Returns the squared errors (m^2) of the job's points. They end at the first point that is cut off
-// or diverges. Gains and limits are those of `drives`, one per joint, not those of the job's design.
+// or diverges. Gains and limits are those of `drives`, one per joint, not those of the job's
+// design.
 template <class Number>
 std::vector<Number> calc_squared_errors(const TrackingSetup& setup, const TrackingJob& job,
                                         const std::vector<NumberDrive<Number>>& drives) {

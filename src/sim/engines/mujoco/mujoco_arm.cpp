@@ -45,8 +45,8 @@ using FilesHandle = std::unique_ptr<mjVFS, MujocoDeleter<delete_files>>;
 }
 void ignore_warning(const char* /*message*/) {}  // each step checks the counter that matters
 
-// Sets the handlers. Without them MuJoCo writes a log file into the current folder, and an error ends
-// the process.
+// Sets the handlers. Without them MuJoCo writes a log file into the current folder, and an error
+// ends the process.
 void prepare_mujoco() {
   [[maybe_unused]] static const bool prepared = [] {
     mju_user_error = throw_mujoco_message;
@@ -85,8 +85,8 @@ PrincipalInertia calc_principal_inertia(const Eigen::Matrix3d& inertia_kg_m2) {
 }
 
 // Returns the chain in MuJoCo's own format, without names: bodies and joints are found by their
-// number. The masses are placeholders. MuJoCo's compiler rejects moments of inertia that violate the
-// triangle inequality by a rounding error; the URDF reader has checked that inequality already.
+// number. The masses are placeholders. MuJoCo's compiler rejects moments of inertia that violate
+// the triangle inequality by a rounding error; the URDF reader has checked that inequality already.
 std::string make_mjcf(const RobotModel& robot, const PhysicsSettings& physics) {
   std::string text = fmt::format(
       R"(<mujoco><compiler angle="radian" inertiafromgeom="false"/><size njmax="0" nconmax="0"/>)"

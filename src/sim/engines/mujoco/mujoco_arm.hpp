@@ -1,6 +1,6 @@
-// A serial arm in MuJoCo: an independent engine to check the others with. It has reduced coordinates,
-// one degree of freedom per joint (position q in rad, or in m for a prismatic joint), and MuJoCo's
-// own semi-implicit Euler:
+// A serial arm in MuJoCo: an independent engine to check the others with. It has reduced
+// coordinates, one degree of freedom per joint (position q in rad, or in m for a prismatic joint),
+// and MuJoCo's own semi-implicit Euler:
 //
 //   v += h M(q)^-1 (tau - b(q, v));  q += h v
 //
@@ -22,8 +22,8 @@
 
 namespace armwright {
 
-// A robot in MuJoCo's form, compiled once (half a millisecond) for any number of arms. Immutable, so
-// several threads may make arms from one object.
+// A robot in MuJoCo's form, compiled once (half a millisecond) for any number of arms. Immutable,
+// so several threads may make arms from one object.
 class MujocoModel {
  public:
   // The robot must outlive the model. Throws Error{bad_data} if MuJoCo rejects the robot.
@@ -47,9 +47,9 @@ class MujocoArm {
   MujocoArm(const MujocoArm&) = delete;
   MujocoArm& operator=(const MujocoArm&) = delete;
 
-  // Advances by dt_s with one effort per joint (N m or N). Throws DivergenceError, naming the joint,
-  // in the same cases as OdeArm. It also throws if a joint moves less than 1e-15 kg m^2 (or kg),
-  // which MuJoCo replaces by another inertia.
+  // Advances by dt_s with one effort per joint (N m or N). Throws DivergenceError, naming the
+  // joint, in the same cases as OdeArm. It also throws if a joint moves less than 1e-15 kg m^2 (or
+  // kg), which MuJoCo replaces by another inertia.
   void step(std::span<const double> effort, double dt_s);
 
   void read_positions(std::span<double> q) const;  // rad in [-pi, pi], or m

@@ -17,8 +17,8 @@ namespace {
 constexpr double kFarthest_m = 1e3;
 constexpr double kFastest_rad_per_s = 1e6;
 
-// ODE reports errors through process-wide handlers and then aborts the process. These handlers throw
-// instead, and the owner discards the world that was being stepped.
+// ODE reports errors through process-wide handlers and then aborts the process. These handlers
+// throw instead, and the owner discards the world that was being stepped.
 [[noreturn]] void throw_ode_message(int number, const char* format, va_list arguments) {
   char text[512];
   std::vsnprintf(text, sizeof text, format, arguments);
@@ -59,13 +59,13 @@ struct OdeDeleter {
   void operator()(auto* object) const { kFree(object); }
 };
 // All worlds share one default threading implementation without locks, and stepping two worlds in
-// two threads would corrupt its job list. Therefore each world gets a single-threaded one of its own,
-// which must outlive the world.
+// two threads would corrupt its job list. Therefore each world gets a single-threaded one of its
+// own, which must outlive the world.
 using OdeThreading =
     std::unique_ptr<dxThreadingImplementation, OdeDeleter<dThreadingFreeImplementation>>;
 // A step that ODE abandons leaves its jobs in the list of its threading implementation. Freeing the
-// implementation would fail an assertion, which throws in a destructor; using it again would run the
-// old jobs. So this function keeps it (some hundred bytes) until the process ends.
+// implementation would fail an assertion, which throws in a destructor; using it again would run
+// the old jobs. So this function keeps it (some hundred bytes) until the process ends.
 void abandon(dxThreadingImplementation* threading) {
   static std::mutex mutex;
   static auto* const abandoned = new std::vector<dxThreadingImplementation*>;

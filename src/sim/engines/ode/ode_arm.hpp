@@ -1,6 +1,6 @@
-// A serial arm in an ODE world of its own: one body per link, one hinge or slider per joint, the base
-// fixed. It steps with dWorldStep (semi-implicit Euler in maximal coordinates). Results are the same
-// bit for bit in every run, and do not depend on the simulations of other threads.
+// A serial arm in an ODE world of its own: one body per link, one hinge or slider per joint, the
+// base fixed. It steps with dWorldStep (semi-implicit Euler in maximal coordinates). Results are
+// the same bit for bit in every run, and do not depend on the simulations of other threads.
 //
 // Positions, rates and efforts are in rad, rad/s and N m for a revolute joint, in m, m/s and N for
 // a prismatic one.

@@ -71,8 +71,8 @@ struct CaseRun {
   std::vector<TrackingJob> jobs;
 };
 
-// Rounding errors are 1e-16 m or rad, and these designs do not magnify them much. The position errors
-// are 1e-5 m and more.
+// Rounding errors are 1e-16 m or rad, and these designs do not magnify them much. The position
+// errors are 1e-5 m and more.
 TEST(ArticulatedEngine, LevelsAgreeWithEachOtherAndWithOneArmInTheLoop) {
   for (const Published& one : kPublished) {
     const CaseRun run(one, 20);
@@ -162,8 +162,8 @@ void expect_finite(const TrackingResult& result) {
   }
 }
 
-// Divergence ends as with one arm alone, and all numbers are finite. The second design gives its first
-// joint the largest double as efforts, so that the first step overflows.
+// Divergence ends as with one arm alone, and all numbers are finite. The second design gives its
+// first joint the largest double as efforts, so that the first step overflows.
 TEST(ArticulatedEngine, ADivergenceIsAStatusWithAReasonAndFiniteNumbers) {
   constexpr double kLargest = std::numeric_limits<double>::max();
   ArmDesign overflowing = kTableA5;
@@ -230,8 +230,8 @@ TEST(ArticulatedEngine, CutsOffWhereTheLoopDoes) {
   EXPECT_GE(std::count(seen.begin(), seen.end(), true), 3);
 }
 
-// Returns the bound that is exceeded from point k on: the sum of the errors of the points that count,
-// up to k, divided by the number of all points that count.
+// Returns the bound that is exceeded from point k on: the sum of the errors of the points that
+// count, up to k, divided by the number of all points that count.
 TEST(ArticulatedEngine, AbandonsAfterThePointThatMakesItCertain) {
   for (const bool count_first : {false, true}) {
     TrackingTask task = make_e6_task();

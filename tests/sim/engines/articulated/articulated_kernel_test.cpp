@@ -230,8 +230,8 @@ void expect_same(const RobotModel& model, const Outcome& found, const Outcome& e
   EXPECT_NEAR(found.worst_squared, expected.worst_squared, tolerance * expected.worst_squared);
 }
 
-// Arms that move freely magnify rounding errors: about 1e-16 per step, times e^(10 t) at most, for a
-// second.
+// Arms that move freely magnify rounding errors: about 1e-16 per step, times e^(10 t) at most, for
+// a second.
 constexpr double kTolerance = 1e-9;
 
 template <class T>
@@ -317,8 +317,8 @@ std::vector<LaneCase> make_palletiser_cases(int lanes, const Timeline& time) {
   return cases;
 }
 
-// Compares the kernel for this shape with the general ones, which run if one of the shape's flags is
-// removed.
+// Compares the kernel for this shape with the general ones, which run if one of the shape's flags
+// is removed.
 TEST(Kernels, OfThePalletiserDoAsThoseOfAnyShape) {
   const Timeline time;
   for (const SimdLevel level : find_levels()) {

@@ -1,5 +1,5 @@
-// Tests every control law: against numbers computed by hand, for the properties that all laws share,
-// and in SIMD lanes.
+// Tests every control law: against numbers computed by hand, for the properties that all laws
+// share, and in SIMD lanes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -287,8 +287,8 @@ TEST_P(EveryController, RefusesWhatCannotWork) {
 }
 
 // Compares each law on one number with the same law in lanes. One lane without fused operations has
-// the same arithmetic and therefore the same bits. articulated_kernel_test compares the PID, which the
-// kernels have inlined.
+// the same arithmetic and therefore the same bits. articulated_kernel_test compares the PID, which
+// the kernels have inlined.
 template <class T>
 double compare_lanes(const ControllerRow& row, const std::vector<double>& gains, SimdLevel level,
                      EffortLimits limits) {
