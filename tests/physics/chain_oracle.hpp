@@ -7,7 +7,7 @@
 //   b = sum over the bodies of  m Jv' (a0 - g) + Jw' (I alpha0 + w x I w)
 //
 //   Jv, Jw      Jacobians of the velocity of the centre of mass c and of the body's spin. Their
-//               columns are a x (c - p) and a for a revolute joint at p with the axis a, and a and 0
+//               columns are a x (c - p) and a for a revolute joint at p with axis a, and a and 0
 //               for a prismatic joint.
 //   a0, alpha0  their accelerations at qdd = 0, with 2 w x a qd of a prismatic joint (Coriolis)
 //   I           inertia about the centre of mass, along the world's axes

@@ -47,7 +47,7 @@ ARMWRIGHT_INLINE V calc_tanh(V x) {
 struct Neural {
   static constexpr const char* kName = "neural";
   static constexpr const char* kSummary =
-      "a network of three tanh units a joint, which sees the error, its integral and its rate";
+      "a network of three tanh units per joint, from the error, its integral and its rate";
   static constexpr const char* kFormula =
       "u = L (v_bias + sum_j vj tanh(wj_error e / 0.1 rad + wj_integral sum(e) h / 0.1 rad s + "
       "wj_rate (e - e_prev) / h / 1 rad/s + wj_bias)), L the larger effort limit";

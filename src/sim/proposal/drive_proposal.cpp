@@ -11,6 +11,7 @@
 #include "base/text.hpp"
 #include "sim/engines/articulated/articulated_arm.hpp"
 #include "sim/proposal/workspace_proposal.hpp"
+#include "sim/tracking/tracking_setup.hpp"
 
 namespace armwright {
 namespace {

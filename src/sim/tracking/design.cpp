@@ -28,8 +28,8 @@ ArmDesign convert_design(const ArmDesign& design, std::string_view controller, d
   const ControllerRow& row = find_controller(controller);
   if (design.controller != "pid") {
     throw Error(ErrorKind::usage,
-                fmt::format("the start design is for controller '{}', and only one for 'pid' can "
-                            "be turned into one for '{}'; name another start",
+                fmt::format("the start design is for controller '{}'; only a design for 'pid' can "
+                            "be converted to '{}'; name another start",
                             design.controller, row.name));
   }
   ArmDesign converted = design;  // links, limits and speed stay
@@ -45,10 +45,10 @@ ArmDesign convert_design(const ArmDesign& design, std::string_view controller, d
       if (!std::isfinite(drive.gains[gain])) {
         throw Error(
             ErrorKind::usage,
-            fmt::format("'{}' cannot be made of the start's joint {}, whose PID has p = {}, "
-                        "i = {}, d = {} and an effort limit of {} N m: {} would be {}; "
+            fmt::format("joint {} of the start cannot be converted to '{}': its PID has p = {}, "
+                        "i = {}, d = {} and an effort limit of {} N m, so {} would be {}; "
                         "name another start",
-                        row.name, joint + 1, pid.gains[0], pid.gains[1], pid.gains[2],
+                        joint + 1, row.name, pid.gains[0], pid.gains[1], pid.gains[2],
                         calc_largest_effort(pid), row.gains[gain].key, drive.gains[gain]));
       }
     }

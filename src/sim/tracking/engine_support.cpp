@@ -35,8 +35,8 @@ void check_feed_forward(const TrackingJob& job) {
   if (row.feed_forward != FeedForward::none && targets.unreachable.empty() &&
       targets.feed_forward_effort.size() != targets.joint_positions.size()) {
     throw Error(ErrorKind::usage,
-                fmt::format("controller '{}' needs feed-forward efforts, which the targets of this "
-                            "task do not come with; set control.controller to '{}'",
+                fmt::format("controller '{}' needs feed-forward efforts, which the target tables "
+                            "of this task do not have; set control.controller to '{}'",
                             row.name, row.name));
   }
 }

@@ -120,7 +120,7 @@ TEST_P(EveryControl, DesignsSurviveTheirFile) {
                        "variables.start=" + path});
                 }),
                 HasSubstr("the start design is for controller '" + GetParam() +
-                          "', and only one for 'pid' can be turned into one for"));
+                          "'; only a design for 'pid' can be converted to"));
   }
 }
 
@@ -169,9 +169,9 @@ TEST(Control, RefusesAStartThatMakesNoController) {
                    make_joint("p_n_m_per_rad = 300", "i_n_m_per_rad_s = 0", "d_n_m_s_per_rad = 0"));
   EXPECT_EQ(folder.refusal_of_base_with(
                 "[control]\ncontroller = 'cascade'\n[variables]\nstart = 'd.toml'"),
-            "p.toml:3: control.controller is 'cascade'; 'cascade' cannot be made of the start's "
-            "joint 4, whose PID has p = 300, i = 0, d = 0 and an effort limit of 200 N m: kp_per_s "
-            "would be inf; name another start");
+            "p.toml:3: control.controller is 'cascade'; joint 4 of the start cannot be converted to "
+            "'cascade': its PID has p = 300, i = 0, d = 0 and an effort limit of 200 N m, so "
+            "kp_per_s would be inf; name another start");
 }
 
 TEST(Control, ADesignNeedsTheTablesOfItsController) {

@@ -138,9 +138,9 @@ TEST_F(TargetCacheTest, WhatIsForgottenIsMadeAgainAlikeAndLivesWhileItIsHeld) {
 
   TargetCache cache(2 * table_bytes_);
   const auto held = cache.get(setup_, set_, 0);
-  const std::vector<double> angles_rad = held->joint_positions;
+  const std::vector<double> positions = held->joint_positions;
   cache.clear();
-  EXPECT_EQ(held->joint_positions, angles_rad);
+  EXPECT_EQ(held->joint_positions, positions);
   EXPECT_NE(cache.get(setup_, set_, 0), held);
 }
 
