@@ -1,7 +1,7 @@
-// The coordinator's own work, without MPI: the real one, with ranks that are not there. A rank here
-// is an entry in a table: it answers after the time that its pairs would take, and costs next to
-// nothing, so that thousands of them fit into one process. What is left is what one coordinator
-// can do: chunks and pairs a second, and how many ranks it keeps at work.
+// Measures the coordinator's own work without MPI: the real coordinator with simulated ranks. A
+// simulated rank is an entry in a table that answers after the time that its pairs would take. It
+// costs almost nothing, so thousands of ranks fit into one process. The benchmark reports what one
+// coordinator can do: chunks and pairs per second, and how many ranks it keeps busy.
 #include <benchmark/benchmark.h>
 #include <unistd.h>
 
@@ -25,7 +25,7 @@ namespace {
 
 constexpr const char* kIdentity = R"("coordinator_benchmark")";
 
-// Ranks as a table of when they answer.
+// Links to simulated ranks: a table of the times at which they answer.
 class CrowdLinks final : public Links {
  public:
   CrowdLinks(std::size_t ranks, std::size_t threads, double pair_s)
@@ -59,8 +59,8 @@ class CrowdLinks final : public Links {
     return message;
   }
 
-  // Chunks so far, their bytes both ways, and what these ranks have taken of the coordinator's
-  // thread. When no batch is under way.
+  // Chunks so far, their bytes in both directions, and the time that the simulated ranks have used
+  // on the coordinator's thread. Call it only between batches.
   double chunks() const { return chunks_; }
   double bytes() const { return bytes_; }
   double spent_s() const { return spent_s_; }
@@ -75,7 +75,7 @@ class CrowdLinks final : public Links {
 
   static double now_s() { return read_clock_s(CLOCK_MONOTONIC); }
 
-  // The message's size says how many pairs it holds, as points are all alike (put_jobs()).
+  // All points have the same size (put_jobs()), so the message's size gives the number of pairs.
   static std::size_t count_pairs(const std::string& message) {
     constexpr std::size_t kPair = (1 + SyntheticProblem::kVariables) * sizeof(double) + 16;
     return message.size() / kPair;
@@ -111,7 +111,7 @@ class CrowdLinks final : public Links {
   double chunks_ = 0, bytes_ = 0, spent_s_ = 0;
 };
 
-// What encoding and decoding take of `pairs` pairs, by themselves.
+// Measures the encoding and decoding of `pairs` pairs alone.
 void packets(benchmark::State& state) {
   const auto pairs = static_cast<std::size_t>(state.range(0));
   const SyntheticProblem problem({});
@@ -127,7 +127,7 @@ void packets(benchmark::State& state) {
   }
 }
 
-// The coordinator's thread that computes takes part with pairs of the same cost.
+// The coordinator has one computing thread, which simulates pairs of the same cost.
 void crowd(benchmark::State& state) {
   constexpr double kAll_s = 1.0;
   const auto ranks = static_cast<std::size_t>(state.range(0));
@@ -145,7 +145,7 @@ void crowd(benchmark::State& state) {
     while (coordinator.expects_workers()) {
       ::usleep(1000);
     }
-    coordinator.run(batch.get(), stop);  // learns the cost
+    coordinator.run(batch.get(), stop);  // measures the cost per pair
     for (auto _ : state) {
       const double start_s = read_clock_s(CLOCK_MONOTONIC);
       const double cpu_before_s = read_clock_s(CLOCK_PROCESS_CPUTIME_ID);
@@ -169,8 +169,8 @@ void crowd(benchmark::State& state) {
   const double all_threads = 1 + static_cast<double>((ranks - 1) * threads);
   state.counters["chunks"] = chunks;
   state.counters["bytes"] = bytes;
-  state.counters["communication_s"] = processor_s;  // of the thread that communicates, a batch
-  state.counters["links_s"] = links_s;  // what the ranks that are not there take of that thread
+  state.counters["communication_s"] = processor_s;  // of the communicating thread, per batch
+  state.counters["links_s"] = links_s;  // the simulated ranks' share of that thread
   state.counters["efficiency"] =
       static_cast<double>(pairs) * pair_s / calc_median(times_s) / all_threads;
 }

@@ -1,7 +1,8 @@
-// What a step of the thesis's arm costs in every engine, on the same task: its four controllers,
-// the dynamics and the measures of 64 test cases. Times are those of the thread's CPU, without the
-// target tables, which all engines share. Every ratio is to ODE on some of the same cases within
-// the same run, by turns, so that a machine that slows down slows down both; errors stand beside.
+// Measures the cost of a step of the thesis's arm in every engine, on the same task: four
+// controllers, the dynamics and the measures of 64 test cases. Times are CPU times of the thread,
+// without the target tables, which all engines share. Every ratio compares with ODE on some of the
+// same cases. Both sides run alternately, so that a slower machine slows down both. The errors are
+// reported too.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -94,8 +95,8 @@ void run_part(benchmark::State& state, SimdLevel level, benchmarks::Part part) {
   state.counters["ns_per_step"] = 1e9 * calc_median(seconds) / kRounds / lanes;
 }
 
-// The same number of simulations on one thread and on two, and shared out in two ways; target
-// tables made before. By the wall's clock.
+// Runs the same number of simulations on one thread and on two, and as many designs on one case as
+// cases of one design. Target tables exist before. Measures wall-clock time.
 void run_sharing(benchmark::State& state) {
   const std::vector<std::string> overrides = {"physics.engine=articulated"};
   const LoadedProblem problem = load_problem("q1-complex", overrides);
@@ -111,7 +112,7 @@ void run_sharing(benchmark::State& state) {
         .run(candidates, block, false, [](std::size_t, Evaluation) {});
   };
   std::vector<double> speedup, ratio;
-  evaluate(one, 1, kCases);  // the tables
+  evaluate(one, 1, kCases);  // makes the target tables
   for (auto _ : state) {
     const double serial = measure_s([&] { evaluate(one, 16, kCases); });
     const double parallel = measure_s([&] { evaluate(two, 16, kCases); });

@@ -1,12 +1,12 @@
-// Batches shared out over ranks beside the same batches on one thread of one process, and what a
-// message takes. Started by mpirun, with one thread a rank:
+// Compares batches shared out over ranks with the same batches on one thread of one process, and
+// measures the cost of a message. Start it with mpirun, with one thread per rank:
 //
 //     mpirun.openmpi --enable-recovery -n 2 build/release/bin/mpi_benchmark
 //
-// (--oversubscribe for more ranks than cores.) Rank 0 measures, the others work for it. The figures
-// to hold with as many ranks as cores: an efficiency of 0.9 for batches of 40 pairs and more of 5
-// ms, and a speedup of at least 1 for any batch of pairs of 50 us, less what the machine's noise
-// takes (0.05). docs/scaling.md reads the output.
+// (--oversubscribe for more ranks than cores.) Rank 0 measures, the others work for it.
+// Requirements with as many ranks as cores: an efficiency of 0.9 for batches of at least 40 pairs
+// of 5 ms, and a speedup of at least 1 for any batch of pairs of 50 us, minus 0.05 for the
+// machine's noise. docs/scaling.md explains the output.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -32,15 +32,15 @@ namespace {
 
 constexpr BatchSize kOde{}, kLanes{.granularity = 8, .largest = 64};
 constexpr const char* kIdentity = R"("mpi_benchmark")";
-constexpr char kBegin = '!';  // an end of echoes: now the worker's life begins
+constexpr char kBegin = '!';  // ends the echoes and starts the worker
 
-// Both sides' problems, in the same order.
+// The problems of both sides, in the same order.
 struct Problems {
   SyntheticProblem ode{kOde}, lanes{kLanes};
   std::vector<const Problem*> list() const { return {&ode, &lanes}; }
 };
 
-// What ranks above 0 do: they send back whatever comes, without pauses, and then work.
+// The work of ranks above 0: they return every message without pauses until kBegin, then simulate.
 int serve(Links& links) {
   while (true) {
     auto message = links.receive();
@@ -60,13 +60,13 @@ int serve(Links& links) {
     in_order = worker.serve() == Worker::End::finalize;
   }
   if (!in_order) {
-    ::_exit(1);  // MPI could only end with all ranks
+    ::_exit(1);  // a regular end would wait for all ranks
   }
   close_mpi();
   return 0;
 }
 
-// Counts what goes through.
+// Links that count the messages that pass through them.
 class CountingLinks final : public Links {
  public:
   explicit CountingLinks(Links& links) : links_(links) {}
@@ -90,11 +90,11 @@ class CountingLinks final : public Links {
   std::atomic<std::uint64_t> sent_ = 0, bytes_ = 0;
 };
 
-// Rank 0's side of everything.
+// Rank 0's side: the coordinator and its measurements.
 class Leader {
  public:
   explicit Leader(Links& links) : links_(links) {}
-  // Whether all ranks have ended in order.
+  // Returns whether all ranks have ended in order.
   bool end() {
     begin_work();
     coordinator_.reset();
@@ -135,7 +135,7 @@ class Leader {
   std::unique_ptr<Coordinator> coordinator_;
 };
 
-// A message there and back between two ranks that do nothing but look for messages.
+// Sends a message to a rank and back, while both ranks only wait for messages.
 void round_trip(benchmark::State& state, Leader& leader) {
   if (leader.has_workers()) {
     state.SkipWithError("the other ranks are at work already");
@@ -149,7 +149,7 @@ void round_trip(benchmark::State& state, Leader& leader) {
   }
 }
 
-// Both sides by turns: what disturbs the machine disturbs both.
+// Runs both sides alternately, so that any disturbance of the machine affects both.
 void batch(benchmark::State& state, Leader& leader) {
   constexpr double kTurn_s = 0.04, kAll_s = 1.2;
   constexpr int kLeastRounds = 3;
@@ -161,7 +161,7 @@ void batch(benchmark::State& state, Leader& leader) {
   ThreadExecutor one(1);
   Coordinator& ranks = leader.coordinator();
   for (int i = 0; i < 3; ++i) {
-    ranks.run(batch.get(), stop);  // learns the costs
+    ranks.run(batch.get(), stop);  // measures the costs
   }
   const double first_s = measure_s([&] { one.run(batch.get(), stop); });
   const int repeats = std::max(1, static_cast<int>(kTurn_s / first_s));
@@ -174,7 +174,7 @@ void batch(benchmark::State& state, Leader& leader) {
            repeats;
   };
   std::vector<double> times_one_s, times_ranks_s, ratios;
-  // Of rounds with ranks, beside the pairs.
+  // The cost of rounds with ranks, without that of the pairs.
   double chunks = 0, bytes = 0, communication_s = 0;
   const auto count = [&](double sign) {
     chunks += sign * leader.links().sent();
@@ -201,7 +201,7 @@ void batch(benchmark::State& state, Leader& leader) {
   const double batches = static_cast<double>(ratios.size()) * repeats;
   state.counters["chunks"] = chunks / batches;
   state.counters["bytes"] = bytes / batches;
-  state.counters["communication_s"] = communication_s / batches;  // of the thread that does it
+  state.counters["communication_s"] = communication_s / batches;  // of the communicating thread
   state.counters["rounds"] = static_cast<double>(ratios.size());
 }
 

@@ -1,6 +1,6 @@
-// What the tracking simulation costs beside the physics engine alone, and how evaluations scale
-// over cores. Every ratio is measured within one run, both sides by turns, so that a machine that
-// slows down slows down both.
+// Compares the cost of a tracking simulation with that of the physics engine alone, and measures
+// how evaluations scale over cores. Every ratio is measured within one run, with both sides running
+// alternately, so that a slower machine slows down both.
 #include <benchmark/benchmark.h>
 #include <ode/ode.h>
 
@@ -17,15 +17,15 @@
 namespace armwright {
 namespace {
 
-// The same bodies and hinges in plain ODE, driven by recorded efforts and nothing else.
-void replay_in_bare_ode(const RobotModel& model, std::span<const double> start_rad,
+// Replays recorded efforts on the same bodies and hinges in plain ODE, and does nothing else.
+void replay_in_bare_ode(const RobotModel& model, std::span<const double> start_positions,
                         const std::vector<TrajectorySample>& recorded, double dt_s) {
   const dWorldID world = dWorldCreate();
   dWorldSetGravity(world, 0, 0, -9.80665);
   dWorldSetERP(world, 0.25);
   dWorldSetCFM(world, 0);
   dWorldSetAutoDisableFlag(world, 0);
-  const auto poses = calc_link_poses(model, start_rad);
+  const auto poses = calc_link_poses(model, start_positions);
   std::vector<dJointID> hinges;
   dBodyID parent = nullptr;
   for (std::size_t i = 0; i < model.joint_count(); ++i) {
@@ -57,7 +57,7 @@ void replay_in_bare_ode(const RobotModel& model, std::span<const double> start_r
   }
   for (const TrajectorySample& sample : recorded) {
     for (std::size_t i = 0; i < hinges.size(); ++i) {
-      dJointAddHingeTorque(hinges[i], sample.effort_n_m[i]);
+      dJointAddHingeTorque(hinges[i], sample.effort[i]);
     }
     dWorldStep(world, dt_s);
   }
@@ -84,7 +84,7 @@ void BM_WholeTrackingAgainstBareOde(benchmark::State& state) {
       benchmark::DoNotOptimize(engine->simulate(setup, {&job, 1}));
     }));
     bare.push_back(measure_s([&] {
-      replay_in_bare_ode(setup.robot(), targets.start_rad, recorded.trajectory,
+      replay_in_bare_ode(setup.robot(), targets.start_positions, recorded.trajectory,
                          setup.task().control_period_s);
     }));
     ratio.push_back(whole.back() / bare.back());
@@ -113,7 +113,8 @@ void BM_InverseKinematicsOfOneCase(benchmark::State& state) {
 }
 BENCHMARK(BM_InverseKinematicsOfOneCase)->Unit(benchmark::kMicrosecond);
 
-// A generation of the genetic algorithm: 35 designs on one new case, on one thread and on two.
+// Evaluates a generation of the genetic algorithm, 35 designs on one new case, on one thread and on
+// two.
 void BM_GenerationOnTwoCoresAgainstOne(benchmark::State& state) {
   const LoadedProblem problem = load_problem("q1-complex");
   const auto x = problem.tracking()->make_vector(load_design("table-a5").design);

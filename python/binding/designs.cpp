@@ -12,7 +12,7 @@
 #include "problems/config/design_file.hpp"
 #include "problems/tracking/requirement_grade.hpp"
 #include "sim/controllers/controller.hpp"
-#include "sim/tracking/test_case_file.hpp"
+#include "sim/tracking/test_case.hpp"
 #include "study/run/design_evaluation.hpp"
 #include "study/run/json_values.hpp"
 

@@ -4,7 +4,7 @@
 
 #include "fuzz/harness.hpp"
 #include "problems/config/path_file.hpp"
-#include "sim/tracking/test_case_file.hpp"
+#include "sim/tracking/test_case.hpp"
 
 namespace armwright::fuzz {
 

@@ -12,7 +12,7 @@
 
 #include "base/random.hpp"
 #include "optimizers/table/optimizer_table.hpp"
-#include "sim/tracking/bred_case.hpp"
+#include "sim/tracking/test_case.hpp"
 #include "study/run_support.hpp"
 
 namespace armwright {

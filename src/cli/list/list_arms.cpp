@@ -175,8 +175,8 @@ json explain_design_as_json(const std::string& name) {
   for (std::size_t i = 0; i < file.design.joints.size(); ++i) {
     const JointDrive& drive = file.design.joints[i];
     json joint = {{"name", sanitize(file.joint_names.at(i))},
-                  {"effort_min_n_m", drive.limits.min_n_m},
-                  {"effort_max_n_m", drive.limits.max_n_m}};
+                  {"effort_min_n_m", drive.limits.min},
+                  {"effort_max_n_m", drive.limits.max}};
     for (std::size_t g = 0; g < drive.gains.size(); ++g) {
       joint[controller.gains[g].key] = drive.gains[g];
     }
@@ -193,7 +193,7 @@ json explain_design_as_json(const std::string& name) {
           {"title", sanitize(file.title)},
           {"source", sanitize(file.source)},
           {"controller", file.design.controller},
-          {"total_torque_n_m", calc_total_torque_n_m(file.design)},
+          {"total_torque_n_m", calc_total_effort(file.design)},
           {"joints", joints},
           {"published", published}};
 }

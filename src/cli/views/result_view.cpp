@@ -170,7 +170,7 @@ std::string format_published(const RunResult& result, const Style& style) {
 std::string format_design(const DesignFile& design, const Style& style) {
   const ControllerRow& controller = find_controller(design.design.controller);
   std::vector<Column> columns = {{"joint", false}};
-  for (const GainSpec& gain : controller.gains) {
+  for (const controllers::Gain& gain : controller.gains) {
     columns.push_back({fmt::format("{} [{}]", gain.name, gain.unit)});
   }
   columns.push_back({"min [N m]"});
@@ -187,8 +187,8 @@ std::string format_design(const DesignFile& design, const Style& style) {
     for (const double gain : joint.gains) {
       cells.push_back(format_significant(gain, 6));
     }
-    cells.push_back(format_significant(joint.limits.min_n_m, 6));
-    cells.push_back(format_significant(joint.limits.max_n_m, 6));
+    cells.push_back(format_significant(joint.limits.min, 6));
+    cells.push_back(format_significant(joint.limits.max, 6));
     if (stretched) {
       cells.push_back(format_significant(joint.length_scale, 4));
       cells.push_back(format_significant(joint.section_scale, 4));

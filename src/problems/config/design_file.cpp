@@ -71,7 +71,7 @@ DesignFile read_design(const ConfigTable& table, const std::string& name) {
     file.joint_names.push_back(joint.get_string("name", ""));
     // Every key is known before one is missed: a hint at a mistyped one then never names a right
     // one.
-    for (const GainSpec& gain : controller.gains) {
+    for (const controllers::Gain& gain : controller.gains) {
       joint.has(gain.key);
     }
     joint.has("effort_min_n_m");
@@ -79,12 +79,12 @@ DesignFile read_design(const ConfigTable& table, const std::string& name) {
     joint.has("length_scale");
     joint.has("section_scale");
     JointDrive drive;
-    for (const GainSpec& gain : controller.gains) {
+    for (const controllers::Gain& gain : controller.gains) {
       drive.gains.push_back(
           joint.get_number(gain.key, gain.any_sign ? Range{} : Range{.lower = 0}));
     }
-    drive.limits.min_n_m = joint.get_number("effort_min_n_m", {.upper = 0});
-    drive.limits.max_n_m = joint.get_number("effort_max_n_m", {.lower = 0});
+    drive.limits.min = joint.get_number("effort_min_n_m", {.upper = 0});
+    drive.limits.max = joint.get_number("effort_max_n_m", {.lower = 0});
     drive.length_scale = joint.get_number_or("length_scale", 1, kScale);
     drive.section_scale = joint.get_number_or("section_scale", 1, kScale);
     file.design.joints.push_back(std::move(drive));
@@ -114,7 +114,7 @@ std::string to_toml(const DesignFile& file) {
       text += fmt::format("{} = {}\n", controller.gains[g].key, format_exact(joint.gains.at(g)));
     }
     text += fmt::format("effort_min_n_m = {}\neffort_max_n_m = {}\n",
-                        format_exact(joint.limits.min_n_m), format_exact(joint.limits.max_n_m));
+                        format_exact(joint.limits.min), format_exact(joint.limits.max));
     if (joint.length_scale != 1) {
       text += fmt::format("length_scale = {}\n", format_exact(joint.length_scale));
     }

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/config.hpp"
-#include "sim/tracking/tracking.hpp"
+#include "sim/tracking/design.hpp"
 
 namespace armwright {
 

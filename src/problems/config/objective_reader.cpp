@@ -98,7 +98,7 @@ void check_limits(const ConfigTable& table, const TrackingConfig& config) {
       changes_torque = true;
     }
   }
-  const double least_n_m = calc_total_torque_n_m(weakest);
+  const double least_n_m = calc_total_effort(weakest);
   if (config.objective.kind == Kind::torque_with_error_limit && !changes_torque) {
     table.refuse(
         "kind", fmt::format("no effort limit is optimized, so that the total torque is always {:g} "

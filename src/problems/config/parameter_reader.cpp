@@ -14,7 +14,7 @@ std::vector<DesignParameter> read_parameters(const ConfigTable& table,
                                              const TrackingConfig& config) {
   const ControllerRow& controller = find_controller(config.start.controller);
   std::vector<std::string> valid;
-  for (const GainSpec& gain : controller.gains) {
+  for (const controllers::Gain& gain : controller.gains) {
     valid.push_back(gain.name);
   }
   const std::vector<std::string> gains = valid;

@@ -5,7 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "sim/tracking/tracking.hpp"
+#include "sim/tracking/task.hpp"
+#include "sim/tracking/test_case.hpp"
 
 namespace armwright {
 

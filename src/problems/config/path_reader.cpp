@@ -11,7 +11,7 @@
 #include "problems/config/path_file.hpp"
 #include "problems/config/task_reader.hpp"
 #include "sim/tracking/reference_signal.hpp"
-#include "sim/tracking/test_case_file.hpp"
+#include "sim/tracking/test_case.hpp"
 
 namespace armwright {
 namespace {

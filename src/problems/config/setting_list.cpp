@@ -176,8 +176,8 @@ std::vector<Setting> list_design_settings() {
   std::vector<std::vector<AskedKey>> documents;
   for (const ControllerRow& controller : controller_table()) {
     documents.push_back(ask_design(controller));
-    for (const GainSpec& gain : controller.gains) {
-      const std::string path = "joint[]." + gain.key;
+    for (const controllers::Gain& gain : controller.gains) {
+      const std::string path = std::string("joint[].") + gain.key;
       const auto found = std::ranges::find(words, path, &SettingWords::path);
       if (found == words.end()) {
         words.push_back({path, "gain of controller " + controller.name});
@@ -188,8 +188,9 @@ std::vector<Setting> list_design_settings() {
   }
   std::vector<Setting> settings = make_settings(documents, words);
   for (const ControllerRow& controller : controller_table()) {
-    for (const GainSpec& gain : controller.gains) {
-      std::ranges::find(settings, "joint[]." + gain.key, &Setting::path)->unit = gain.unit;
+    for (const controllers::Gain& gain : controller.gains) {
+      std::ranges::find(settings, std::string("joint[].") + gain.key, &Setting::path)->unit =
+          gain.unit;
     }
   }
   return settings;

@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "problems/tracking/tracking_config.hpp"
+#include "sim/tracking/reference_signal.hpp"
 
 namespace armwright {
 namespace {

@@ -21,7 +21,7 @@
 #include "problems/config/task_reader.hpp"
 #include "problems/tracking/tracking_config.hpp"
 #include "sim/robot/mesh_file.hpp"
-#include "sim/tracking/design_conversion.hpp"
+#include "sim/tracking/design.hpp"
 #include "sim/tracking/designed_arm.hpp"
 
 namespace armwright {

@@ -55,8 +55,8 @@ void Plant::change_design(ArmDesign& design) const {
     for (std::size_t k = 0; k < joint.gains.size(); ++k) {
       joint.gains[k] *= gain_factors[i][k];
     }
-    joint.limits.min_n_m *= limit_factors[i];
-    joint.limits.max_n_m *= limit_factors[i];
+    joint.limits.min *= limit_factors[i];
+    joint.limits.max *= limit_factors[i];
   }
 }
 
@@ -77,10 +77,9 @@ Plant draw_plant(const Perturbation& perturbation, std::size_t joints, double su
   PlantVariation variation;
   for (std::size_t i = 0; i < joints; ++i) {
     plant.mass_factors.push_back(1 + p.mass_relative * (2 * random.uniform() - 1));
-    variation.viscous_friction_n_m_s_per_rad.push_back(
-        get_size(p.viscous_friction_n_m_s_per_rad, i) * random.uniform());
-    variation.coulomb_friction_n_m.push_back(get_size(p.coulomb_friction_n_m, i) *
-                                             random.uniform());
+    variation.viscous_friction.push_back(get_size(p.viscous_friction_n_m_s_per_rad, i) *
+                                         random.uniform());
+    variation.coulomb_friction.push_back(get_size(p.coulomb_friction_n_m, i) * random.uniform());
     variation.torque_ripple.push_back(p.torque_ripple_relative * random.uniform());
     variation.ripple_phase_rad.push_back(2 * std::numbers::pi * random.uniform());
   }
@@ -99,8 +98,8 @@ Plant draw_plant(const Perturbation& perturbation, std::size_t joints, double su
     plant.load_kg = lower + (upper - lower) * load_share;
   }
   if (p.changes_loop()) {
-    variation.friction_transition_rad_per_s = p.friction_transition_rad_per_s;
-    variation.quantisation_rad = p.quantisation_rad;
+    variation.friction_transition_rate = p.friction_transition_rad_per_s;
+    variation.quantum = p.quantisation_rad;
     variation.delay_substeps = static_cast<int>(std::lround(p.delay_s * delay_share / substep_s));
     variation.ripple_cycles_per_turn = p.ripple_cycles_per_turn;
     plant.variation = std::move(variation);

@@ -24,8 +24,10 @@
 #include <vector>
 
 #include "problems/interface/problem.hpp"
+#include "sim/tracking/design.hpp"
 #include "sim/tracking/plant_variation.hpp"
-#include "sim/tracking/tracking.hpp"
+#include "sim/tracking/task.hpp"
+#include "sim/tracking/tracking_setup.hpp"
 
 namespace armwright {
 

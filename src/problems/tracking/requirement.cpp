@@ -54,9 +54,9 @@ RequiredValue measure_one(const Requirement& requirement, const TrackingSetup& s
   RequiredValue worst;
   switch (requirement.quantity) {
     case Q::peak_torque:
-      return choose_joint(requirement, result.peak_effort_n_m);
+      return choose_joint(requirement, result.peak_effort);
     case Q::rms_torque:
-      return choose_joint(requirement, result.rms_effort_n_m);
+      return choose_joint(requirement, result.rms_effort);
     case Q::joint_speed:
       return choose_joint(requirement,
                           calc_joint_speeds(setup.robot(), targets, result, task.control_period_s));
@@ -89,7 +89,7 @@ MeasuredCase measure(const TrackingSetup& setup, const TrackingJob& job, Trackin
   }
   if (!job.recording.motion) {
     result.tips_m = {};
-    result.angles_rad = {};
+    result.joint_positions = {};
   }
   measured.result = std::move(result);
   return measured;

@@ -13,9 +13,9 @@ double& get_parameter(ArmDesign& design, const DesignParameter& parameter) {
   JointDrive& joint = design.joints[parameter.joint];
   switch (parameter.kind) {
     case DesignParameter::Kind::effort_min:
-      return joint.limits.min_n_m;
+      return joint.limits.min;
     case DesignParameter::Kind::effort_max:
-      return joint.limits.max_n_m;
+      return joint.limits.max;
     case DesignParameter::Kind::length_scale:
       return joint.length_scale;
     case DesignParameter::Kind::section_scale:
@@ -109,7 +109,8 @@ DecisionVariable make_variable(const TrackingConfig& config, const DesignParamet
   variable.start = get_parameter(start, parameter);
   switch (parameter.kind) {
     case DesignParameter::Kind::gain: {
-      const GainSpec& gain = find_controller(config.start.controller).gains[parameter.gain];
+      const controllers::Gain& gain =
+          find_controller(config.start.controller).gains[parameter.gain];
       variable.name = joint + "." + gain.name;
       variable.unit = get_joint_unit(gain.unit, kind);
       if (gain.range > 0) {

@@ -10,7 +10,9 @@
 #include "problems/tracking/perturbation.hpp"
 #include "problems/tracking/requirement.hpp"
 #include "problems/tracking/tracking_objective.hpp"
-#include "sim/tracking/tracking.hpp"
+#include "sim/tracking/design.hpp"
+#include "sim/tracking/task.hpp"
+#include "sim/tracking/test_case.hpp"
 
 namespace armwright {
 

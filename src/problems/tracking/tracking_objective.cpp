@@ -186,7 +186,7 @@ std::vector<double> calc_residuals(const TrackingObjective& objective, const Arm
   }
   if (objective.has_torque()) {
     for (const JointDrive& joint : design.joints) {
-      residuals.push_back(std::sqrt(objective.torque_weight * calc_largest_torque_n_m(joint) /
+      residuals.push_back(std::sqrt(objective.torque_weight * calc_largest_effort(joint) /
                                     objective.torque_scale_n_m));
     }
   }
@@ -229,11 +229,10 @@ std::vector<double> calc_jacobian(const TrackingObjective& objective, const ArmD
   const std::size_t drives = objective.has_torque() ? design.joints.size() : 0;
   for (std::size_t joint = 0; joint < drives; ++joint, ++row) {
     const EffortLimits& limits = design.joints[joint].limits;
-    const double share = calc_share(residuals[row], calc_largest_torque_n_m(design.joints[joint]));
+    const double share = calc_share(residuals[row], calc_largest_effort(design.joints[joint]));
     for (const ArmDesign& direction : directions) {
       const EffortLimits& change = direction.joints[joint].limits;
-      jacobian.push_back(share *
-                         (-limits.min_n_m < limits.max_n_m ? change.max_n_m : -change.min_n_m));
+      jacobian.push_back(share * (-limits.min < limits.max ? change.max : -change.min));
     }
   }
   jacobian.resize(residuals.size() * n, 0.0);  // the duration does not depend on the gains

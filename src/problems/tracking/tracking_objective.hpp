@@ -47,7 +47,7 @@
 #include <vector>
 
 #include "problems/interface/problem.hpp"
-#include "sim/tracking/tracking.hpp"
+#include "sim/tracking/design.hpp"
 
 namespace armwright {
 

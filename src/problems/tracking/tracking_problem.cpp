@@ -49,8 +49,8 @@ CaseOutcome make_outcome(TrackingResult result, const TrackingTask& task, CaseRo
       // easy cases only.
       result.mean_error_m = job.cutoff_m;
       result.point_error_m.assign(targets.segments.size(), job.cutoff_m);
-      result.peak_effort_n_m.assign(targets.joints, 0);
-      result.rms_effort_n_m.assign(targets.joints, 0);
+      result.peak_effort.assign(targets.joints, 0);
+      result.rms_effort.assign(targets.joints, 0);
       result.saturated_share.assign(targets.joints, 0);
       break;
   }
@@ -59,7 +59,7 @@ CaseOutcome make_outcome(TrackingResult result, const TrackingTask& task, CaseRo
     outcome.residuals.assign(result.point_error_m.begin() + (task.count_first_point ? 0 : 1),
                              result.point_error_m.end());
   }
-  const std::size_t joints = result.peak_effort_n_m.size();
+  const std::size_t joints = result.peak_effort.size();
   double saturation = 0;
   for (const double share : result.saturated_share) {
     saturation += share / static_cast<double>(result.saturated_share.size());
@@ -69,8 +69,8 @@ CaseOutcome make_outcome(TrackingResult result, const TrackingTask& task, CaseRo
   outcome.metrics[case_metrics::kSaturatedShare] = saturation;
   outcome.metrics[case_metrics::kDuration] = targets.steps * task.control_period_s;
   for (std::size_t i = 0; i < joints; ++i) {
-    outcome.metrics[case_metrics::peak_effort(i)] = result.peak_effort_n_m[i];
-    outcome.metrics[case_metrics::rms_effort(i)] = result.rms_effort_n_m[i];
+    outcome.metrics[case_metrics::peak_effort(i)] = result.peak_effort[i];
+    outcome.metrics[case_metrics::rms_effort(i)] = result.rms_effort[i];
   }
   return outcome;
 }
@@ -390,7 +390,7 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
   ObjectiveTerms terms;
   terms.error_m =
       calc_error_statistic(objective, errors_m, lost / static_cast<double>(outcomes.size()));
-  terms.torque_n_m = calc_total_torque_n_m(design);
+  terms.torque_n_m = calc_total_effort(design);
   terms.energy_j = energy_sum_j / numbers;
   terms.duration_s = duration_sum_s / numbers;
   evaluation.objectives = calc_objectives(objective, terms);
@@ -458,7 +458,7 @@ std::vector<double> TrackingProblem::penalty_objectives() const {
   if (changes_speed(config_)) {
     slowest.speed_m_per_s /= config_.speed_bounds_factor;
   }
-  const double torque_n_m = calc_total_torque_n_m(strongest);
+  const double torque_n_m = calc_total_effort(strongest);
   const bool is_torque = objective.kind == TrackingObjective::Kind::torque_with_error_limit;
   ObjectiveTerms terms;
   terms.error_m = 10 * config_.cutoff_error_m;

@@ -4,7 +4,7 @@
 // Decision variables: any of the controllers' gains and effort limits of any joints in natural
 // units, the lengths and widths of links, and the task's speed. A variable is bounded by a factor
 // around its start value, with the same sign, or by a range to either side if the gain has one
-// (GainSpec). A number that is not a variable keeps its start value.
+// (controllers::Gain). A number that is not a variable keeps its start value.
 //
 // If a design or its motors change the arm or the task (sim/tracking/designed_arm.hpp), the design
 // is simulated with its own setup and, where they differ, its own targets. If such an arm cannot

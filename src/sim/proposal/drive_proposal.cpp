@@ -11,6 +11,7 @@
 #include "base/text.hpp"
 #include "sim/engines/articulated/articulated_arm.hpp"
 #include "sim/proposal/workspace_proposal.hpp"
+#include "sim/tracking/tracking_setup.hpp"
 
 namespace armwright {
 namespace {
@@ -41,7 +42,7 @@ Demand calc_demand(const TrackingSetup& setup, const std::vector<TargetTable>& t
   const std::size_t n = setup.robot().joint_count();
   const std::vector<double> nothing(n, 0);
   Demand demand{nothing, nothing, nothing};
-  ArticulatedArm arm(setup.robot(), tables.front().start_rad, setup.task().physics);
+  ArticulatedArm arm(setup.robot(), tables.front().start_positions, setup.task().physics);
   const std::vector<double> rest(n, 0);
   for (const TargetTable& table : tables) {
     for (int step = 0; step < table.steps; ++step) {
@@ -50,7 +51,7 @@ Demand calc_demand(const TrackingSetup& setup, const std::vector<TargetTable>& t
         demand.efforts[i] = std::max(demand.efforts[i], std::abs(efforts[i]));
       }
       if (step % kStepsBetween == 0) {
-        arm.set_state(table.angles(step), rest);
+        arm.set_state(table.positions(step), rest);
         const Eigen::MatrixXd mass = arm.calc_mass_matrix();
         const Eigen::MatrixXd inverse = mass.inverse();
         for (std::size_t i = 0; i < n; ++i) {
@@ -106,14 +107,14 @@ double propose_speed(const RobotModel& robot, TrackingTask task,
     const std::vector<TargetTable> tables = make_tables(robot, setup, cases);
     std::vector<double> speeds(n, 0);
     for (const TargetTable& table : tables) {
-      std::span<const double> before = table.start_rad;
+      std::span<const double> before = table.start_positions;
       for (int step = 0; step < table.steps; ++step) {
         for (std::size_t i = 0; i < n; ++i) {
           const double way =
-              calc_displacement(robot.joints[i].kind, before[i], table.angles(step)[i]);
+              calc_displacement(robot.joints[i].kind, before[i], table.positions(step)[i]);
           speeds[i] = std::max(speeds[i], std::abs(way) / task.control_period_s);
         }
-        before = table.angles(step);
+        before = table.positions(step);
       }
     }
     const double fastest = find_busiest(n, [&](std::size_t i) {

@@ -15,7 +15,9 @@
 
 #include <vector>
 
-#include "sim/tracking/tracking.hpp"
+#include "sim/tracking/design.hpp"
+#include "sim/tracking/task.hpp"
+#include "sim/tracking/test_case.hpp"
 
 namespace armwright {
 

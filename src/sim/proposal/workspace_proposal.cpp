@@ -183,7 +183,7 @@ bool has_good_tables(const RobotModel& robot, TrackingTask task, const Workspace
       return false;
     }
     for (int step = 0; step < table.steps; ++step) {
-      if (touches_an_end(*kinematics, robot, table.angles(step))) {
+      if (touches_an_end(*kinematics, robot, table.positions(step))) {
         return false;
       }
     }

@@ -15,7 +15,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/tracking/tracking.hpp"
+#include "sim/tracking/task.hpp"
+#include "sim/tracking/test_case.hpp"
 
 namespace armwright {
 

@@ -13,7 +13,7 @@
 #include "base/text.hpp"
 #include "optimizers/interface/search_space.hpp"
 #include "problems/config/replicate.hpp"
-#include "sim/tracking/design_conversion.hpp"
+#include "sim/tracking/design.hpp"
 #include "study/compare/escape.hpp"
 
 namespace armwright {

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "sim/tracking/bred_case.hpp"
+#include "sim/tracking/test_case.hpp"
 
 namespace armwright {
 namespace {

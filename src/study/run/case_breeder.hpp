@@ -1,6 +1,6 @@
 // Test cases bred against the designs (schedule `coevolution`): hosts and parasites as in Hillis
 // (1990), "Co-evolving parasites improve simulated evolution as an optimization procedure", Physica
-// D 42. The parasites are K test cases, genomes of sim/bred_case.hpp.
+// D 42. The parasites are K test cases, genomes of sim/tracking/test_case.hpp.
 //
 // After a generation, a case j is as hard as the better half of the designs find it:
 //   h_j = mean_i clamp(log e_ij - mean_l log e_il, -c, c),   c = log 10,

@@ -87,7 +87,7 @@ std::optional<DesignEvaluation> evaluate_with_progress(const TrackingProblem& pr
     numbers += error ? 1 : 0;
   }
   evaluation.summary = summarize(errors, kFailureError_m);
-  evaluation.total_torque_n_m = calc_total_torque_n_m(design);
+  evaluation.total_torque_n_m = calc_total_effort(design);
   if (numbers > 0) {
     evaluation.mean_energy_j = energy_j / numbers;
   }

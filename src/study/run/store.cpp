@@ -155,8 +155,8 @@ std::string make_trajectory_csv(const TrackingProblem& problem, const TrackingRe
   csv += ",tip_x_m,tip_y_m,tip_z_m,target_x_m,target_y_m,target_z_m,error_m\n";
   for (const TrajectorySample& sample : result.trajectory) {
     csv += format_exact(sample.time_s);
-    for (std::size_t i = 0; i < sample.q_rad.size(); ++i) {
-      csv += fmt::format(",{},{},{}", sample.q_rad[i], sample.target_rad[i], sample.effort_n_m[i]);
+    for (std::size_t i = 0; i < sample.q.size(); ++i) {
+      csv += fmt::format(",{},{},{}", sample.q[i], sample.target_q[i], sample.effort[i]);
     }
     csv += fmt::format(",{},{},{},{},{},{},{}\n", sample.tip_m.x(), sample.tip_m.y(),
                        sample.tip_m.z(), sample.target_m.x(), sample.target_m.y(),

@@ -8,7 +8,7 @@
 #include "base/temporary_folder.hpp"
 #include "problems/config/recorded_problem.hpp"
 #include "problems/problem_folder.hpp"
-#include "sim/tracking/design_conversion.hpp"
+#include "sim/tracking/design.hpp"
 
 namespace armwright {
 namespace {
@@ -51,12 +51,12 @@ TEST_P(EveryControl, TakesTheStartOver) {
   ASSERT_EQ(variables.size(), joints * (row.gains.size() + 2));
   for (std::size_t joint = 0; joint < joints; ++joint) {
     const JointDrive& before = plain.tracking()->config().start.joints[joint];
-    EXPECT_EQ(config.start.joints[joint].limits.min_n_m, before.limits.min_n_m);
-    EXPECT_EQ(config.start.joints[joint].limits.max_n_m, before.limits.max_n_m);
+    EXPECT_EQ(config.start.joints[joint].limits.min, before.limits.min);
+    EXPECT_EQ(config.start.joints[joint].limits.max, before.limits.max);
     for (std::size_t k = 0; k < row.gains.size(); ++k) {
       const DecisionVariable& variable = variables[joint * (row.gains.size() + 2) + k];
-      const GainSpec& gain = row.gains[k];
-      EXPECT_TRUE(variable.name.ends_with("." + gain.name)) << variable.name;
+      const controllers::Gain& gain = row.gains[k];
+      EXPECT_TRUE(variable.name.ends_with(std::string(".") + gain.name)) << variable.name;
       EXPECT_EQ(variable.unit, gain.unit);
       EXPECT_EQ(variable.start, config.start.joints[joint].gains[k]);
       EXPECT_EQ(variable.scale, gain.range > 0 ? Scale::linear : Scale::logarithmic);
@@ -121,7 +121,7 @@ TEST_P(EveryControl, DesignsSurviveTheirFile) {
                        "variables.start=" + path});
                 }),
                 HasSubstr("the start design is for controller '" + GetParam() +
-                          "', and only one for 'pid' can be turned into one for"));
+                          "'; only a design for 'pid' can be converted to"));
   }
 }
 
@@ -168,11 +168,12 @@ TEST(Control, RefusesAStartThatMakesNoController) {
   folder.write("d.toml",
                "name = 'd'\n" + make_joint() + make_joint() + make_joint() +
                    make_joint("p_n_m_per_rad = 300", "i_n_m_per_rad_s = 0", "d_n_m_s_per_rad = 0"));
-  EXPECT_EQ(folder.refusal_of_base_with(
-                "[control]\ncontroller = 'cascade'\n[variables]\nstart = 'd.toml'"),
-            "p.toml:3: control.controller is 'cascade'; 'cascade' cannot be made of the start's "
-            "joint 4, whose PID has p = 300, i = 0, d = 0 and an effort limit of 200 N m: kp_per_s "
-            "would be inf; name another start");
+  EXPECT_EQ(
+      folder.refusal_of_base_with(
+          "[control]\ncontroller = 'cascade'\n[variables]\nstart = 'd.toml'"),
+      "p.toml:3: control.controller is 'cascade'; joint 4 of the start cannot be converted to "
+      "'cascade': its PID has p = 300, i = 0, d = 0 and an effort limit of 200 N m, so "
+      "kp_per_s would be inf; name another start");
 }
 
 TEST(Control, ADesignNeedsTheTablesOfItsController) {
@@ -200,7 +201,7 @@ TEST(Control, AConvertedStartKeepsItsArmAndItsSpeed) {
   EXPECT_EQ(converted.joints[1].length_scale, 1.1);
   EXPECT_EQ(converted.joints[2].section_scale, 0.9);
   EXPECT_EQ(converted.speed_m_per_s, 1.25);
-  EXPECT_EQ(converted.joints[3].limits.max_n_m, start.joints[3].limits.max_n_m);
+  EXPECT_EQ(converted.joints[3].limits.max, start.joints[3].limits.max);
 }
 
 // What runs recorded before the control period had a table of its own.

@@ -40,8 +40,8 @@ TEST(RobotProposal, TheJointsCanDoWhatIsProposed) {
     EXPECT_GT(config.workspace.radius_m, 0.02);
     for (std::size_t i = 0; i < config.robot.joint_count(); ++i) {
       const EffortLimits& limits = config.start.joints[i].limits;
-      EXPECT_GT(limits.max_n_m, 0);
-      EXPECT_LE(limits.max_n_m, config.robot.joints[i].effort_limit);
+      EXPECT_GT(limits.max, 0);
+      EXPECT_LE(limits.max, config.robot.joints[i].effort_limit);
     }
   }
 }
@@ -63,8 +63,8 @@ TEST(RobotProposal, WhatIsRecordedMakesTheSameProblem) {
   EXPECT_EQ(a.task.tool.turn, b.task.tool.turn);
   EXPECT_EQ(first.tracking()->make_vector(a.start), again.tracking()->make_vector(b.start));
   const TestCase its = first.tracking()->get_set("test/2").make_case(0);
-  EXPECT_EQ(first.tracking()->setup().make_targets(its).angles_rad,
-            again.tracking()->setup().make_targets(its).angles_rad);
+  EXPECT_EQ(first.tracking()->setup().make_targets(its).joint_positions,
+            again.tracking()->setup().make_targets(its).joint_positions);
 }
 
 TEST(RobotProposal, WhatTheFileSaysHolds) {

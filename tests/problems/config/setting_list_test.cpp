@@ -87,8 +87,8 @@ TEST(SettingList, GainsAreThoseOfAllControllers) {
   EXPECT_THAT(find(settings, "joint[].p_n_m_per_rad").meaning,
               testing::StartsWith("gain of controller pid, "));
   for (const ControllerRow& controller : controller_table()) {
-    for (const GainSpec& gain : controller.gains) {
-      find(settings, "joint[]." + gain.key);
+    for (const controllers::Gain& gain : controller.gains) {
+      find(settings, std::string("joint[].") + gain.key);
     }
   }
 }

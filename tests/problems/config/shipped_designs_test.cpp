@@ -33,9 +33,9 @@ TEST(ShippedDesigns, HaveTheTotalTorqueOfTheThesis) {
   const std::map<std::string, double> published = {
       {"table-a1", 85200}, {"table-a5", 963686}, {"table-a10", 28927}, {"table-a11", 21603}};
   for (const auto& [name, torque] : published) {
-    EXPECT_NEAR(calc_total_torque_n_m(load_design(name).design), torque, 0.5) << name;
+    EXPECT_NEAR(calc_total_effort(load_design(name).design), torque, 0.5) << name;
   }
-  EXPECT_EQ(calc_total_torque_n_m(load_design("table-a1").design), 85200);
+  EXPECT_EQ(calc_total_effort(load_design("table-a1").design), 85200);
 }
 
 std::vector<std::string> list_designs(bool of_the_thesis) {
@@ -60,8 +60,8 @@ TEST(ShippedDesigns, AreThoseOfTheAppendixForThisArm) {
     load_problem("q1-complex").tracking()->check_design(file.design);
     for (const JointDrive& joint : file.design.joints) {
       EXPECT_THAT(joint.gains, SizeIs(3));
-      EXPECT_LT(joint.limits.min_n_m, 0);
-      EXPECT_GT(joint.limits.max_n_m, 0);
+      EXPECT_LT(joint.limits.min, 0);
+      EXPECT_GT(joint.limits.max, 0);
     }
   }
 }
@@ -97,8 +97,7 @@ TEST(ShippedDesigns, PublishedResultsNameProblemsThatLoad) {
         EXPECT_EQ(loaded.published.error_m, published.error_m);
       }
       if (published.total_torque_n_m) {
-        EXPECT_NEAR(calc_total_torque_n_m(load_design(name).design), *published.total_torque_n_m,
-                    0.5);
+        EXPECT_NEAR(calc_total_effort(load_design(name).design), *published.total_torque_n_m, 0.5);
       }
     }
   }
@@ -125,8 +124,8 @@ void expect_same_bits(const ArmDesign& a, const ArmDesign& b) {
       for (const double gain : joint.gains) {
         bits.push_back(std::bit_cast<std::uint64_t>(gain));
       }
-      bits.push_back(std::bit_cast<std::uint64_t>(joint.limits.min_n_m));
-      bits.push_back(std::bit_cast<std::uint64_t>(joint.limits.max_n_m));
+      bits.push_back(std::bit_cast<std::uint64_t>(joint.limits.min));
+      bits.push_back(std::bit_cast<std::uint64_t>(joint.limits.max));
     }
     return bits;
   };

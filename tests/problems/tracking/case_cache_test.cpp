@@ -32,8 +32,8 @@ TEST_F(CaseCacheTest, TableIsTheOneThatTheSetupMakes) {
   CaseCache<TargetTable> cache(10 * table_bytes_);
   const TargetTable made = setup_.make_targets(set_.make_case(7));
   const auto cached = get(cache, set_, 7);
-  EXPECT_EQ(cached->angles_rad, made.angles_rad);
-  EXPECT_EQ(cached->start_rad, made.start_rad);
+  EXPECT_EQ(cached->joint_positions, made.joint_positions);
+  EXPECT_EQ(cached->start_positions, made.start_positions);
   EXPECT_EQ(cached->steps, made.steps);
   EXPECT_EQ(get(cache, set_, 7).get(), cached.get());
   EXPECT_EQ(cache.computed(), 1U);
@@ -42,8 +42,8 @@ TEST_F(CaseCacheTest, TableIsTheOneThatTheSetupMakes) {
 TEST_F(CaseCacheTest, CasesAreToldApartBySetAndNumber) {
   CaseCache<TargetTable> cache(10 * table_bytes_);
   const auto train = get(cache, set_, 0);
-  EXPECT_NE(get(cache, set_, 1)->angles_rad, train->angles_rad);
-  EXPECT_NE(get(cache, problem_->get_set("train/3"), 0)->angles_rad, train->angles_rad);
+  EXPECT_NE(get(cache, set_, 1)->joint_positions, train->joint_positions);
+  EXPECT_NE(get(cache, problem_->get_set("train/3"), 0)->joint_positions, train->joint_positions);
   EXPECT_EQ(cache.computed(), 3U);
 }
 
@@ -54,15 +54,15 @@ TEST_F(CaseCacheTest, OldestTablesAreDroppedAtTheLimit) {
   }
   EXPECT_EQ(cache.computed(), 3U);
   const auto held = get(cache, set_, 0);
-  const std::vector<double> angles = held->angles_rad;
+  const std::vector<double> angles = held->joint_positions;
   get(cache, set_, 3);  // drops 0
   EXPECT_EQ(cache.computed(), 4U);
   for (const std::uint64_t number : {1, 2, 3}) {
     get(cache, set_, number);
   }
   EXPECT_EQ(cache.computed(), 4U);
-  EXPECT_EQ(held->angles_rad, angles);  // it lives as long as `held`
-  EXPECT_EQ(get(cache, set_, 0)->angles_rad, angles);
+  EXPECT_EQ(held->joint_positions, angles);  // it lives as long as `held`
+  EXPECT_EQ(get(cache, set_, 0)->joint_positions, angles);
   EXPECT_EQ(cache.computed(), 5U);
   get(cache, set_, 1);  // was dropped when 0 came back
   EXPECT_EQ(cache.computed(), 6U);
@@ -116,7 +116,7 @@ TEST_F(CaseCacheTest, ThreadsGetTheRightTablesWhileOthersAreEvicted) {
   constexpr std::uint64_t kCases = 6;
   std::vector<std::vector<double>> expected;
   for (std::uint64_t number = 0; number < kCases; ++number) {
-    expected.push_back(setup_.make_targets(set_.make_case(number)).angles_rad);
+    expected.push_back(setup_.make_targets(set_.make_case(number)).joint_positions);
   }
   CaseCache<TargetTable> cache(2 * table_bytes_);
   std::vector<int> wrong(8);
@@ -125,7 +125,7 @@ TEST_F(CaseCacheTest, ThreadsGetTheRightTablesWhileOthersAreEvicted) {
     threads.emplace_back([&, thread] {
       for (std::uint64_t i = 0; i < 30; ++i) {
         const std::uint64_t number = (i * (2 * thread + 1)) % kCases;
-        wrong[thread] += get(cache, set_, number)->angles_rad == expected[number] ? 0 : 1;
+        wrong[thread] += get(cache, set_, number)->joint_positions == expected[number] ? 0 : 1;
       }
     });
   }
@@ -143,9 +143,9 @@ TEST_F(CaseCacheTest, DroppedTablesAreMadeAgainAlikeAndLiveWhileHeld) {
 
   CaseCache<TargetTable> cache(2 * table_bytes_);
   const auto held = get(cache, set_, 0);
-  const std::vector<double> angles_rad = held->angles_rad;
+  const std::vector<double> joint_positions = held->joint_positions;
   cache.clear();
-  EXPECT_EQ(held->angles_rad, angles_rad);
+  EXPECT_EQ(held->joint_positions, joint_positions);
   EXPECT_NE(get(cache, set_, 0), held);
 }
 

@@ -45,7 +45,7 @@ TEST(DrawnPlant, IsAFunctionOfTheNamesAndTheNumber) {
   EXPECT_EQ(again.load_kg, plant.load_kg);
   EXPECT_EQ(again.limit_factors, plant.limit_factors);
   EXPECT_EQ(again.gain_factors, plant.gain_factors);
-  EXPECT_EQ(again.variation->coulomb_friction_n_m, plant.variation->coulomb_friction_n_m);
+  EXPECT_EQ(again.variation->coulomb_friction, plant.variation->coulomb_friction);
   EXPECT_EQ(again.variation->ripple_phase_rad, plant.variation->ripple_phase_rad);
   EXPECT_NE(draw(p, "train/1", 8).mass_factors, plant.mass_factors);
   EXPECT_NE(draw(p, "test/2", 7).mass_factors, plant.mass_factors);
@@ -88,11 +88,11 @@ TEST(DrawnPlant, NumbersHaveTheirDistributions) {
     EXPECT_LE(*plant.load_kg, 40);
     loads += *plant.load_kg / kPlants;
     const PlantVariation& variation = *plant.variation;
-    EXPECT_EQ(variation.quantisation_rad, 1e-4);
+    EXPECT_EQ(variation.quantum, 1e-4);
     EXPECT_GE(variation.delay_substeps, 0);
     EXPECT_LE(variation.delay_substeps, 10);
     delays += static_cast<double>(variation.delay_substeps) / kPlants;
-    friction += variation.coulomb_friction_n_m[3] / kPlants;
+    friction += variation.coulomb_friction[3] / kPlants;
     ripple += variation.torque_ripple[1] / kPlants;
     for (std::size_t joint = 0; joint < 4; ++joint) {
       EXPECT_LE(plant.limit_factors[joint], 1);
@@ -137,8 +137,8 @@ TEST(DrawnPlant, ChangesGainsAndLimitsOfEveryJoint) {
     const JointDrive& joint = design.joints[i];
     const std::vector<double>& factors = plant.gain_factors[i];
     EXPECT_THAT(joint.gains, ElementsAre(2 * factors[0], 3 * factors[1], 5 * factors[2]));
-    EXPECT_EQ(joint.limits.min_n_m, -7 * plant.limit_factors[i]);
-    EXPECT_EQ(joint.limits.max_n_m, 11 * plant.limit_factors[i]);
+    EXPECT_EQ(joint.limits.min, -7 * plant.limit_factors[i]);
+    EXPECT_EQ(joint.limits.max, 11 * plant.limit_factors[i]);
   }
 }
 
@@ -237,7 +237,7 @@ TEST_F(PerturbedProblem, CountsTheDesignsOwnTorque) {
   const auto problem = load({"perturbation.effort_limit_sigma=1"});
   const std::vector<double> x = problem->make_vector(problem->config().start);
   const Evaluation evaluation = problem->evaluate(x, {CaseRole::training, "train/1", {0, 1}});
-  EXPECT_EQ(evaluation.metrics.at(1), calc_total_torque_n_m(problem->config().start));
+  EXPECT_EQ(evaluation.metrics.at(1), calc_total_effort(problem->config().start));
 }
 
 // Compares the exact derivatives of a perturbed plant with central differences.

@@ -170,14 +170,14 @@ TEST(Requirements, AreWhatTheRecordedTrajectoryShows) {
     }
     double speed = 0;
     double speed_2 = 0;
-    std::vector<double> before = targets.start_rad;
+    std::vector<double> before = targets.start_positions;
     for (const TrajectorySample& sample : recorded.trajectory) {
       for (std::size_t i = 0; i < before.size(); ++i) {
-        const double one = std::abs(wrap_angle(sample.q_rad[i] - before[i])) / 0.01;
+        const double one = std::abs(wrap_angle(sample.q[i] - before[i])) / 0.01;
         speed = std::max(speed, one);
         speed_2 = i == 1 ? std::max(speed_2, one) : speed_2;
       }
-      before = sample.q_rad;
+      before = sample.q;
     }
     const auto& required = measured.required;
     const auto value = [&](std::size_t i) { return required[i].value.value(); };
@@ -188,14 +188,14 @@ TEST(Requirements, AreWhatTheRecordedTrajectoryShows) {
     EXPECT_NEAR(value(2), rise_s, 0.0101);
     EXPECT_EQ(value(3), *std::ranges::max_element(recorded.point_error_m.begin() + 1,
                                                   recorded.point_error_m.end()));
-    EXPECT_EQ(value(4), std::ranges::max(recorded.peak_effort_n_m));
-    EXPECT_EQ(value(5), std::ranges::max(recorded.rms_effort_n_m));
+    EXPECT_EQ(value(4), std::ranges::max(recorded.peak_effort));
+    EXPECT_EQ(value(5), std::ranges::max(recorded.rms_effort));
     EXPECT_EQ(value(6), recorded.energy_j);
     EXPECT_NEAR(value(7), speed, 1e-9);
     EXPECT_NEAR(value(8), speed_2, 1e-9);
     EXPECT_EQ(required[8].joint, 1u);
-    EXPECT_EQ(required[4].joint, std::ranges::max_element(recorded.peak_effort_n_m) -
-                                     recorded.peak_effort_n_m.begin());
+    EXPECT_EQ(required[4].joint,
+              std::ranges::max_element(recorded.peak_effort) - recorded.peak_effort.begin());
     EXPECT_EQ(recorded.point_error_m.at(required[3].point.value() - 1), value(3));
   }
 }
@@ -232,8 +232,8 @@ TEST(Requirements, ALostTrainingCaseIsWorseThanAnyThatWorksAndLessBadTheFurtherI
   const auto calc_g = [&](double torque_factor, CaseRole role) {
     ArmDesign design = problem->config().start;
     for (JointDrive& joint : design.joints) {
-      joint.limits.min_n_m *= torque_factor;
-      joint.limits.max_n_m *= torque_factor;
+      joint.limits.min *= torque_factor;
+      joint.limits.max *= torque_factor;
     }
     return problem->evaluate(problem->make_vector(design), {role, "train/1", {0}});
   };

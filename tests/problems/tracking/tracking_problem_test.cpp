@@ -124,8 +124,8 @@ TEST(TrackingVariables, VectorAndDesignAreTheSameThing) {
     for (std::size_t joint = 0; joint < 4; ++joint) {
       EXPECT_THAT(design.joints[joint].gains,
                   ElementsAre(x[5 * joint], x[5 * joint + 1], x[5 * joint + 2]));
-      EXPECT_EQ(design.joints[joint].limits.min_n_m, x[5 * joint + 3]);
-      EXPECT_EQ(design.joints[joint].limits.max_n_m, x[5 * joint + 4]);
+      EXPECT_EQ(design.joints[joint].limits.min, x[5 * joint + 3]);
+      EXPECT_EQ(design.joints[joint].limits.max, x[5 * joint + 4]);
     }
   }
 }
@@ -141,17 +141,17 @@ TEST(TrackingVariables, WhatIsNoVariableKeepsItsStartValue) {
                           "joint_2.effort_min", "joint_3.d", "joint_3.effort_max"));
   const ArmDesign design = problem->make_design(std::vector<double>{1, 2, 3, 4, -5, 6, 7});
   EXPECT_THAT(design.joints[0].gains, ElementsAre(45000, 150000, 1));
-  EXPECT_EQ(design.joints[0].limits.min_n_m, -20000);
-  EXPECT_EQ(design.joints[0].limits.max_n_m, 2);
+  EXPECT_EQ(design.joints[0].limits.min, -20000);
+  EXPECT_EQ(design.joints[0].limits.max, 2);
   EXPECT_THAT(design.joints[1].gains, ElementsAre(3, 4, 30000));
-  EXPECT_EQ(design.joints[1].limits.min_n_m, -5);
-  EXPECT_EQ(design.joints[1].limits.max_n_m, 45000);
+  EXPECT_EQ(design.joints[1].limits.min, -5);
+  EXPECT_EQ(design.joints[1].limits.max, 45000);
   EXPECT_THAT(design.joints[2].gains, ElementsAre(30000, 100000, 6));
-  EXPECT_EQ(design.joints[2].limits.min_n_m, -20000);
-  EXPECT_EQ(design.joints[2].limits.max_n_m, 7);
+  EXPECT_EQ(design.joints[2].limits.min, -20000);
+  EXPECT_EQ(design.joints[2].limits.max, 7);
   EXPECT_THAT(design.joints[3].gains, ElementsAre(300, 2000, 5));
-  EXPECT_EQ(design.joints[3].limits.min_n_m, -200);
-  EXPECT_EQ(design.joints[3].limits.max_n_m, 200);
+  EXPECT_EQ(design.joints[3].limits.min, -200);
+  EXPECT_EQ(design.joints[3].limits.max, 200);
 
   // Only the variables of another design (Table A.10) are used.
   EXPECT_THAT(problem->make_vector(load_design("table-a10").design),

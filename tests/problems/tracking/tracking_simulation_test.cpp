@@ -78,9 +78,9 @@ TEST(TrackingSimulation, EvaluationIsWhatTrackingTheDesignGives) {
   for (std::size_t joint = 0; joint < 4; ++joint) {
     saturation += (four.saturated_share[joint] + zero.saturated_share[joint]) / 8;
     EXPECT_EQ(evaluation.metrics[5 + 2 * joint],
-              std::max(four.peak_effort_n_m[joint], zero.peak_effort_n_m[joint]));
+              std::max(four.peak_effort[joint], zero.peak_effort[joint]));
     EXPECT_EQ(evaluation.metrics[6 + 2 * joint],
-              (four.rms_effort_n_m[joint] + zero.rms_effort_n_m[joint]) / 2);
+              (four.rms_effort[joint] + zero.rms_effort[joint]) / 2);
   }
   EXPECT_NEAR(evaluation.metrics[4], saturation, 1e-15);
 }

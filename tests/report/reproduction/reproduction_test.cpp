@@ -218,7 +218,7 @@ TEST(Reproduction, PublishedTorquesAreThoseOfThePublishedDesigns) {
   for (const PlannedPart& part : plan_reproduction(request).parts) {
     if (!part.part.design.empty() && part.part.published_torque_n_m) {
       // The thesis prints six digits of the limits and rounds their sum to 1 N m.
-      EXPECT_NEAR(calc_total_torque_n_m(part.design), *part.part.published_torque_n_m, 1)
+      EXPECT_NEAR(calc_total_effort(part.design), *part.part.published_torque_n_m, 1)
           << part.part.label;
       ++compared;
     }

@@ -10,7 +10,7 @@
 #include "base/random.hpp"
 #include "sim/simd/simd_level.hpp"
 #include "sim/support.hpp"
-#include "sim/tracking/tracking.hpp"
+#include "sim/tracking/tracking_setup.hpp"
 
 namespace armwright {
 namespace {
@@ -176,12 +176,12 @@ TEST(TargetTable, IsTheKinematicsOfTheTargetsPositions) {
       const ElbowUpKinematics kinematics(load_irb4600(), task.ik_bug);
       const TargetTable table = setup.make_targets(test_case);
       ASSERT_EQ(table.unreachable, "");
-      ASSERT_EQ(table.angles_rad.size(), static_cast<std::size_t>(4 * table.steps));
+      ASSERT_EQ(table.joint_positions.size(), static_cast<std::size_t>(4 * table.steps));
       for (const Segment& segment : table.segments) {
         for (int step = 0; step < segment.steps; ++step) {
           std::array<double, 4> q{};
           ASSERT_TRUE(kinematics.solve(setup.calc_target_position(segment, step), q));
-          ASSERT_THAT(table.angles(segment.first_step + step), testing::ElementsAreArray(q))
+          ASSERT_THAT(table.positions(segment.first_step + step), testing::ElementsAreArray(q))
               << step << " of " << segment.steps;
         }
       }
@@ -207,8 +207,9 @@ TEST(TargetTable, EndsAtTheFirstTargetOutOfReach) {
   EXPECT_EQ(table.unreachable,
             "on the way to point 2: " +
                 kinematics.describe_unreachable(setup.calc_target_position(segment, step)));
-  EXPECT_EQ(table.angles_rad.size(), static_cast<std::size_t>(4 * (segment.first_step + step)));
-  EXPECT_THAT(table.angles(segment.first_step + step - 1).front(), 0.0);
+  EXPECT_EQ(table.joint_positions.size(),
+            static_cast<std::size_t>(4 * (segment.first_step + step)));
+  EXPECT_THAT(table.positions(segment.first_step + step - 1).front(), 0.0);
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "base/expect_error.hpp"
-#include "sim/tracking/design_conversion.hpp"
+#include "sim/tracking/design.hpp"
 #include "study/analysis/verdict.hpp"
 #include "study/compare/study_support.hpp"
 

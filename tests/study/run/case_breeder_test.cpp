@@ -10,7 +10,7 @@
 
 #include "base/expect_error.hpp"
 #include "problems/config/problem_loader.hpp"
-#include "sim/tracking/bred_case.hpp"
+#include "sim/tracking/test_case.hpp"
 #include "study/run_support.hpp"
 
 namespace armwright {

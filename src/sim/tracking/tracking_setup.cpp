@@ -1,28 +1,27 @@
-#include "sim/tracking/tracking.hpp"
+#include "sim/tracking/tracking_setup.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.hpp"
 #include "sim/dynamics/chain_model.hpp"
 #include "sim/simd/simd_level.hpp"
-#include "sim/tracking/feed_forward.hpp"
 #include "sim/tracking/path_check.hpp"
+#include "sim/tracking/reference_signal.hpp"
 
 namespace armwright {
 namespace {
 
-// Times are multiples of the control period up to rounding: t_m + rest = 1.1 s is 110 periods of
-// 0.01 s, not 111.
+// Tolerance for times that are multiples of the control period up to rounding: t_m + rest = 1.1 s
+// is 110 periods of 0.01 s, not 111.
 constexpr double kTimeTolerance = 1e-9;  // in control periods
 
 int calc_steps_covering(double duration_s, double period_s) {
   return static_cast<int>(std::ceil(duration_s / period_s - kTimeTolerance));
 }
 
-// How many of a segment's steps end before the target has arrived, without any tolerance.
+// Returns how many of a segment's steps end before the target has arrived, without any tolerance.
 int count_moving_steps(const Segment& segment, double period_s) {
   int steps = segment.window_start;
   while ((steps + 1) * period_s < segment.duration_s) {
@@ -36,12 +35,12 @@ int count_moving_steps(const Segment& segment, double period_s) {
 
 constexpr int kJoints = 4;  // of an arm that the closed form can solve
 
-// How quickly joints that are free to go to the middle of their ranges do: slowly beside moves,
-// which take about a second.
+// The rate at which joints move towards the middle of their ranges if the task leaves them free. It
+// is slow compared with moves, which take about a second.
 constexpr double kCentringRate_hz = 0.5;
 
-// Fills whole rows from `begin` to `end` with the one before them, if there are any to fill.
-void repeat_angles(double* begin, const double* end) {
+// Copies the row before `begin` into all rows from `begin` to `end`.
+void repeat_row(double* begin, const double* end) {
   if (begin == end) {
     return;
   }
@@ -59,38 +58,11 @@ void repeat_angles(double* begin, const double* end) {
 
 }  // namespace
 
-double calc_largest_torque_n_m(const JointDrive& joint) {
-  return std::max(-joint.limits.min_n_m, joint.limits.max_n_m);
-}
-
-double calc_total_torque_n_m(const ArmDesign& design) {
-  double total = 0;
-  for (const JointDrive& joint : design.joints) {
-    total += calc_largest_torque_n_m(joint);
-  }
-  return total;
-}
-
 std::size_t TargetTable::size_bytes() const {
   return sizeof *this + segments.size() * sizeof(Segment) +
-         (start_rad.size() + angles_rad.size() + feed_forward_n_m.size()) * sizeof(double) +
+         (start_positions.size() + joint_positions.size() + feed_forward_effort.size()) *
+             sizeof(double) +
          tool_points_m.size() * sizeof(Eigen::Vector3d) + unreachable.size();
-}
-
-const char* to_string(SimulationStatus status) {
-  switch (status) {
-    case SimulationStatus::ok:
-      return "ok";
-    case SimulationStatus::cut_off:
-      return "cut_off";
-    case SimulationStatus::diverged:
-      return "diverged";
-    case SimulationStatus::unreachable:
-      return "unreachable";
-    case SimulationStatus::abandoned:
-      return "abandoned";
-  }
-  return "?";
 }
 
 const std::vector<std::string>& kinematics_names() {
@@ -129,7 +101,7 @@ std::shared_ptr<const NumericKinematics> TrackingSetup::get_kinematics() const {
     return numeric_;
   }
   ToolTask tool = task_.tool;
-  if (closed_form_) {  // keeps the last link, which ends in the tip, pointing down
+  if (closed_form_) {  // the closed form keeps the last link, which ends in the tip, pointing down
     tool.orientation = ToolOrientation::pointing;
     tool.axis = robot_.tip_pose.linear().transpose() * robot_.tip_pose.translation().normalized();
   }
@@ -178,7 +150,7 @@ ToolPose TrackingSetup::calc_target_pose(const TestCase& test_case, const Target
   pose.position_m = calc_target_position(its, step);
   const double time_s = (step + 1) * task_.control_period_s;
   if (!its.is_sample && !test_case.turns.empty() && time_s < its.duration_s) {
-    // It turns evenly with the way that it has covered (Shoemake 1985, Animating rotation with
+    // The tool turns in proportion to the distance covered (Shoemake 1985, Animating rotation with
     // quaternion curves, SIGGRAPH 19).
     const double distance_m = (its.to_m - its.from_m).norm();
     const double share = make_signal(distance_m).calc_distance(time_s) / distance_m;
@@ -225,14 +197,14 @@ void TrackingSetup::solve_closed_form(const TestCase& test_case, TargetTable& ta
     table.unreachable = "start: " + closed_form_->describe_unreachable(start);
     return;
   }
-  table.start_rad.assign(q.begin(), q.end());
-  table.angles_rad.resize(static_cast<std::size_t>(table.steps) * table.joints);
+  table.start_positions.assign(q.begin(), q.end());
+  table.joint_positions.resize(static_cast<std::size_t>(table.steps) * table.joints);
   const targets::SolveMove solve_move = targets::get_solve_move(find_best_simd());
   for (std::size_t k = 0; k < table.segments.size(); ++k) {
     const Segment& segment = table.segments[k];
     const std::size_t first = static_cast<std::size_t>(segment.first_step) * table.joints;
-    double* const angles = table.angles_rad.data() + first;
-    // Once arrived the target stays, and so do the angles.
+    double* const angles = table.joint_positions.data() + first;
+    // After its arrival the target stays, and so do the joint positions.
     const int distinct = count_distinct_steps(segment);
     int reached = 0;
     if (segment.is_sample) {
@@ -244,10 +216,10 @@ void TrackingSetup::solve_closed_form(const TestCase& test_case, TargetTable& ta
       table.unreachable =
           fmt::format("on the way to point {}: {}", k + 1,
                       closed_form_->describe_unreachable(calc_target_position(segment, reached)));
-      table.angles_rad.resize(first + static_cast<std::size_t>(reached) * table.joints);
+      table.joint_positions.resize(first + static_cast<std::size_t>(reached) * table.joints);
       return;
     }
-    repeat_angles(angles + distinct * kJoints, angles + segment.steps * kJoints);
+    repeat_row(angles + distinct * kJoints, angles + segment.steps * kJoints);
   }
 }
 
@@ -262,8 +234,8 @@ void TrackingSetup::solve_numerically(const TestCase& test_case, TargetTable& ta
     table.unreachable = "start: " + describe(start, q);
     return;
   }
-  table.start_rad = q;
-  table.angles_rad.resize(static_cast<std::size_t>(table.steps) * n);
+  table.start_positions = q;
+  table.joint_positions.resize(static_cast<std::size_t>(table.steps) * n);
   std::vector<double> before = q;  // a step earlier
   std::vector<double> wish(n);
   for (std::size_t k = 0; k < table.segments.size(); ++k) {
@@ -271,10 +243,11 @@ void TrackingSetup::solve_numerically(const TestCase& test_case, TargetTable& ta
     const int distinct = count_distinct_steps(segment);
     for (int step = 0; step < segment.steps; ++step) {
       double* const row =
-          table.angles_rad.data() + static_cast<std::size_t>(segment.first_step + step) * n;
+          table.joint_positions.data() + static_cast<std::size_t>(segment.first_step + step) * n;
       if (step < distinct) {
-        // A search that begins where the joints would be at the speed they have is at its end
-        // after an iteration or two. What the task leaves free is to move towards the middle.
+        // The search starts where the joints would be at their present speed, so it needs only one
+        // or two iterations. Motion that the task leaves free goes towards the middle of the
+        // ranges.
         for (std::size_t i = 0; i < n; ++i) {
           const double carried = q[i] - before[i];
           const double drawn = numeric_->has_middle(i) ? kCentringRate_hz * task_.control_period_s *
@@ -289,7 +262,8 @@ void TrackingSetup::solve_numerically(const TestCase& test_case, TargetTable& ta
         if (!numeric_->follow(pose, wish, q)) {
           table.unreachable =
               fmt::format("on the way to point {}: {}", k + 1, describe(pose, from));
-          table.angles_rad.resize(static_cast<std::size_t>(row - table.angles_rad.data()));
+          table.joint_positions.resize(
+              static_cast<std::size_t>(row - table.joint_positions.data()));
           return;
         }
       } else {
@@ -319,20 +293,8 @@ TargetTable TrackingSetup::make_targets(const TestCase& test_case) const {
       return table;
     }
   }
-  articulated::fill_feed_forward(*chain_, task_.feed_forward, task_.control_period_s, table);
+  fill_feed_forward(table);
   return table;
-}
-
-void check_feed_forward(const TrackingJob& job) {
-  const ControllerRow& row = find_controller(job.design->controller);
-  const TargetTable& targets = *job.targets;
-  if (row.feed_forward != FeedForward::none && targets.unreachable.empty() &&
-      targets.feed_forward_n_m.size() != targets.angles_rad.size()) {
-    throw Error(ErrorKind::usage,
-                fmt::format("controller '{}' needs feed-forward efforts, which the targets of this "
-                            "task do not come with; set control.controller to '{}'",
-                            row.name, row.name));
-  }
 }
 
 }  // namespace armwright

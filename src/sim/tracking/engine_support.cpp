@@ -1,14 +1,16 @@
-#include "sim/tracking/tracking_result.hpp"
+#include "sim/tracking/engine_support.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.hpp"
+
 namespace armwright {
 namespace {
 
-// The case's error if the points that are still missing had none; over the points that count.
+// Returns the case's error over the points that count, as if the points not yet reached had none.
 double calc_mean_error(const TrackingTask& task, const TrackingJob& job,
                        const TrackingResult& result) {
   const std::size_t first = task.count_first_point ? 0 : 1;
@@ -26,6 +28,18 @@ void fill_points(const TrackingJob& job, TrackingResult& result) {
 }
 
 }  // namespace
+
+void check_feed_forward(const TrackingJob& job) {
+  const ControllerRow& row = find_controller(job.design->controller);
+  const TargetTable& targets = *job.targets;
+  if (row.feed_forward != FeedForward::none && targets.unreachable.empty() &&
+      targets.feed_forward_effort.size() != targets.joint_positions.size()) {
+    throw Error(ErrorKind::usage,
+                fmt::format("controller '{}' needs feed-forward efforts, which the target tables "
+                            "of this task do not have; set control.controller to '{}'",
+                            row.name, row.name));
+  }
+}
 
 bool apply_unreachable(const TrackingJob& job, TrackingResult& result) {
   if (job.targets->unreachable.empty()) {
@@ -68,7 +82,7 @@ bool apply_abandonment(const TrackingTask& task, const TrackingJob& job, Trackin
 
 void complete_result(const TrackingTask& task, const TrackingJob& job, TrackingResult& result) {
   const double steps = std::max(1, result.steps);
-  for (double& squares : result.rms_effort_n_m) {
+  for (double& squares : result.rms_effort) {
     squares = std::sqrt(squares / steps);
   }
   for (double& count : result.saturated_share) {
