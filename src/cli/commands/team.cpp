@@ -7,7 +7,7 @@
 
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/terminal.hpp"
-#include "study/executor/rank_identity.hpp"
+#include "study/executor/rank_messages.hpp"
 #include "study/executor/worker.hpp"
 #include "study/run/run_observer.hpp"
 
@@ -29,7 +29,7 @@ std::vector<const Problem*> get_simulated(const Team::Problems& problems) {
 
 Team::Team(Session& session) : session_(session), place_(find_rank_place()) {
   if (place_) {
-    links_ = open_mpi_links();
+    transport_ = open_mpi_transport();
     begun_ = std::chrono::steady_clock::now();
   }
 }
@@ -49,20 +49,20 @@ void Team::dismiss(std::unique_ptr<Coordinator> coordinator) {
 }
 
 void Team::end(double patience_s) {
-  if (!links_) {
+  if (!transport_) {
     return;
   }
   constexpr double kStopped_s = 0.3;  // mpirun kills one second after it has asked
   const StopReason stopped = session_.stop.reason();
   const bool is_asked = stopped == StopReason::interrupted || stopped == StopReason::terminated;
   patience_s = is_asked ? kStopped_s : patience_s;
-  if (end_workers(*links_, patience_s)) {
+  if (end_workers(*transport_, patience_s)) {
     close_mpi();
-    links_.reset();
+    transport_.reset();
     return;
   }
   // MPI still has these messages, and what it would do at the end needs all ranks.
-  [[maybe_unused]] const Links* kept = links_.release();
+  [[maybe_unused]] const MessageTransport* kept = transport_.release();
   session_.must_abort_ranks = true;
   if (!is_asked) {
     write_message(
@@ -81,7 +81,7 @@ void Team::serve(const std::function<Problems()>& load, unsigned threads) {
     introduction.failure = error.what();
   }
   try {
-    Worker worker(*links_, get_simulated(problems), introduction);
+    Worker worker(*transport_, get_simulated(problems), introduction);
     if (worker.serve() == Worker::End::finalize) {
       close_mpi();
     }
@@ -102,7 +102,7 @@ std::unique_ptr<Coordinator> Team::lead(const Problems& problems, unsigned threa
         "(nothing is lost; the same command goes on)");
   }
   return std::make_unique<Coordinator>(
-      *links_, get_simulated(problems), make_rank_identity(problems),
+      *transport_, get_simulated(problems), make_rank_identity(problems),
       CoordinatorSettings{.threads = threads, .cpu = make_introduction(threads).cpu},
       [&observer](const std::string& message) { observer.on_message(message); });
 }

@@ -48,7 +48,7 @@ class Team {
 
   Session& session_;
   std::optional<RankPlace> place_;
-  std::unique_ptr<Links> links_;
+  std::unique_ptr<MessageTransport> transport_;
   std::chrono::steady_clock::time_point begun_;
 };
 

@@ -34,7 +34,7 @@ double calc_share(const Progress& progress) {
 }
 
 bool has_generations(const Progress& progress) {
-  return progress.generation > 0 && progress.phase == Progress::Phase::training;
+  return progress.generation > 0 && progress.phase == CaseRole::training;
 }
 
 // A piece of the bar's line; where it is too narrow, those with the highest rank go first.

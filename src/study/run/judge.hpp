@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "study/executor/case_runner.hpp"
+#include "study/executor/case_executor.hpp"
 #include "study/journal/journal.hpp"
 #include "study/run/run_observer.hpp"
 #include "study/run/run_result.hpp"

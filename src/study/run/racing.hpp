@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "problems/interface/schedule.hpp"
-#include "study/executor/case_runner.hpp"
+#include "study/executor/case_executor.hpp"
 
 namespace armwright {
 

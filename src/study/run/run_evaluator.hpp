@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "optimizers/interface/evaluator.hpp"
-#include "study/executor/case_runner.hpp"
+#include "study/executor/case_executor.hpp"
 #include "study/journal/journal.hpp"
 #include "study/run/candidate_pool.hpp"
 #include "study/run/case_breeder.hpp"

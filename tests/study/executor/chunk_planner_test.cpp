@@ -74,12 +74,12 @@ TEST(ChunkPlanner, GoesCarefullyWhereCostsAreUnknown) {
 TEST(PairCost, FollowsWhatIsMeasured) {
   PairCost cost;
   EXPECT_FALSE(cost.get_s());
-  cost.learn(1, 0);
+  cost.add(1, 0);
   EXPECT_FALSE(cost.get_s());
-  cost.learn(1, 100);
+  cost.add(1, 100);
   EXPECT_DOUBLE_EQ(*cost.get_s(), 0.01);
   for (int i = 0; i < 30; ++i) {
-    cost.learn(2, 100);
+    cost.add(2, 100);
   }
   EXPECT_NEAR(*cost.get_s(), 0.02, 1e-5);
 }
@@ -87,13 +87,13 @@ TEST(PairCost, FollowsWhatIsMeasured) {
 TEST(WorkerLatency, ASlowAnswerIsSoonForgotten) {
   WorkerLatency latency;
   for (int i = 0; i < 20; ++i) {
-    latency.learn(2e-4);
+    latency.add(2e-4);
   }
   EXPECT_NEAR(latency.get_s(0), 2e-4, 1e-5);
-  latency.learn(5);  // a machine that was suspended
+  latency.add(5);  // a machine that was suspended
   EXPECT_LT(latency.get_s(0), 5e-4);
   for (int i = 0; i < 100; ++i) {
-    latency.learn(0.05);  // it has moved to another continent
+    latency.add(0.05);  // it has moved to another continent
   }
   EXPECT_NEAR(latency.get_s(0), 0.05, 1e-3);
   EXPECT_LT(latency.get_s(100), 1e-3);

@@ -87,7 +87,6 @@ class RaceTest : public testing::Test {
   const CaseBlock block_{CaseRole::training, "train/1", {0, 1, 2, 3}};
   StopSignal stop_;
   ThreadExecutor executor_{2};
-  CaseRunner runner_{problem_, executor_, stop_};
   std::vector<std::vector<double>> points_ = {{0}, {1}, {2}, {3}, {4}, {5}};
   std::vector<std::span<const double>> candidates_{points_.begin(), points_.end()};
 };
@@ -96,7 +95,7 @@ TEST_F(RaceTest, HalvingByHand) {
   const Racing racing = make_racing("halving:1:2");
   std::atomic<std::size_t> simulated = 0;
   const auto results =
-      Racer(racing, problem_, runner_).halve(candidates_, block_, 1e6, [&](std::size_t cases) {
+      Racer(racing, problem_, executor_, stop_).halve(candidates_, block_, 1e6, [&](std::size_t cases) {
         simulated += cases;
       });
   ASSERT_TRUE(results);
@@ -122,7 +121,7 @@ TEST_F(RaceTest, AbandonmentByHand) {
   std::atomic<std::size_t> simulated = 0;
   std::vector<RacedCandidate> results(6);
   // Sums of two cases 10, 4, 4, 8, 5, 6: given up are those above 4 times the threshold, 6.
-  Racer(racing, problem_, runner_)
+  Racer(racing, problem_, executor_, stop_)
       .abandon(
           candidates_, block_, 1.5, [&](std::size_t cases) { simulated += cases; },
           [&](std::size_t candidate, RacedCandidate result) {
@@ -143,7 +142,7 @@ TEST_F(RaceTest, AbandonmentByHand) {
 TEST_F(RaceTest, AStopLeavesNoHalfRace) {
   stop_.request(StopReason::interrupted);
   const Racing racing = make_racing("halving:1:2");
-  Racer racer(racing, problem_, runner_);
+  Racer racer(racing, problem_, executor_, stop_);
   EXPECT_FALSE(racer.halve(candidates_, block_, 1e6, [](std::size_t) {}));
   racer.abandon(
       candidates_, block_, 1, [](std::size_t) {},

@@ -108,7 +108,7 @@ TEST_F(RunTest, AnAttemptThatFailsSoonerTakesNothingAway) {
       RunResult recorded = load_result(temporary_ / folder);
       recorded.failure = first->failure;
       EXPECT_EQ(to_json(recorded), to_json(*first));
-      EXPECT_EQ(observer_.last.phase, Progress::Phase::test);
+      EXPECT_EQ(observer_.last.phase, CaseRole::test);
       EXPECT_EQ(read(folder).training.size(), 10u);
       // The attempt that failed sooner leaves nothing behind, either.
       run(make_plan(-1, ""), folder);

@@ -68,7 +68,7 @@ TEST_F(RunTest, DerivativesAreChargedExactlyAndInWholeCandidates) {
     EXPECT_EQ(result->counts.cases, cases) << budget;
     EXPECT_EQ(result->counts.evaluations, evaluations) << budget;
     EXPECT_EQ(result->end_reason, "budget");
-    EXPECT_EQ(observer_.last.phase == Progress::Phase::training ? observer_.last.done : cases,
+    EXPECT_EQ(observer_.last.phase == CaseRole::training ? observer_.last.done : cases,
               cases);
   }
 }
