@@ -23,7 +23,7 @@ void show(CaseBreeder& breeder, double objective, std::vector<double> errors) {
   record.cases.numbers = breeder.genomes();
   record.evaluation.objectives = {objective};
   record.evaluation.case_errors = std::move(errors);
-  breeder.learn(record, objective);
+  breeder.add(record, objective);
 }
 
 std::vector<std::uint64_t> pick(const std::vector<std::uint64_t>& genomes,
@@ -185,7 +185,7 @@ TEST_F(RunTest, CoevolvedGenerationsTrainOnWhatWasBred) {
     }
     EXPECT_EQ(record.cases.set, "coevolved/1");
     EXPECT_EQ(record.cases.numbers, breeder.genomes());
-    breeder.learn(record, record.evaluation.objectives.front());
+    breeder.add(record, record.evaluation.objectives.front());
   }
   for (const EvaluationRecord& record : read("a").judgements) {
     EXPECT_THAT(record.cases.set, testing::AnyOf("validation/1", "test/2"));
