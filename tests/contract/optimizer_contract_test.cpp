@@ -1,4 +1,4 @@
-// The optimizer contract (study/contract.hpp) over every row of the table: new rows are covered by
+// The optimizer contract (study/contract/contract.hpp) over every row of the table: new rows are covered by
 // being there. Beside it, that the suite itself can fail.
 #include <gmock/gmock.h>
 
@@ -9,7 +9,6 @@
 
 #include "optimizers/table/optimizer_table.hpp"
 #include "study/contract/contract.hpp"
-#include "study/contract/contract_problems.hpp"
 
 namespace armwright {
 namespace {

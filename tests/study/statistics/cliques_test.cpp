@@ -1,11 +1,10 @@
-#include "study/statistics/cliques.hpp"
-
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <stdexcept>
 
 #include "base/random.hpp"
+#include "study/statistics/ranking.hpp"
 
 namespace armwright {
 namespace {

@@ -12,17 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "study/statistics/bootstrap.hpp"
-#include "study/statistics/effect_size.hpp"
-#include "study/statistics/friedman.hpp"
-#include "study/statistics/holm.hpp"
 #include "study/statistics/pareto.hpp"
-#include "study/statistics/profiles.hpp"
 #include "study/statistics/ranking.hpp"
-#include "study/statistics/ranks.hpp"
 #include "study/statistics/running_time.hpp"
-#include "study/statistics/spread.hpp"
-#include "study/statistics/wilcoxon.hpp"
+#include "study/statistics/significance.hpp"
+#include "study/statistics/summary.hpp"
 
 namespace armwright {
 namespace {

@@ -6,7 +6,6 @@
 #include <numeric>
 #include <vector>
 
-#include "study/statistics/profiles.hpp"
 #include "study/statistics/support.hpp"
 
 namespace armwright {

@@ -1,13 +1,11 @@
+#include "study/statistics/significance.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "study/statistics/effect_size.hpp"
-#include "study/statistics/friedman.hpp"
-#include "study/statistics/holm.hpp"
 #include "study/statistics/support.hpp"
-#include "study/statistics/wilcoxon.hpp"
 
 namespace armwright {
 namespace {

@@ -1,5 +1,3 @@
-#include "study/statistics/spread.hpp"
-
 #include <gtest/gtest.h>
 
 #include <numeric>
@@ -7,8 +5,8 @@
 #include <vector>
 
 #include "base/random.hpp"
-#include "study/statistics/bootstrap.hpp"
-#include "study/statistics/ranks.hpp"
+#include "study/statistics/ranking.hpp"
+#include "study/statistics/summary.hpp"
 #include "study/statistics/support.hpp"
 
 namespace armwright {
