@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "study/executor/case_executor.hpp"
-
 namespace armwright {
 
 void PageSimulator::report(std::uint64_t more_cases) {

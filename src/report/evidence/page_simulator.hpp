@@ -9,7 +9,7 @@
 
 #include "base/stop_signal.hpp"
 #include "problems/tracking/tracking_problem.hpp"
-#include "study/executor/thread_pool.hpp"
+#include "study/executor/case_executor.hpp"
 #include "study/run/run_observer.hpp"
 
 namespace armwright {

@@ -216,7 +216,7 @@ TEST(RacingPlan, WhatCannotBeRankedIsRefused) {
   EXPECT_THAT(
       check("constrained", "halving"),
       AllOf(HasSubstr("racing halving ranks candidates by one number"), HasSubstr("constraints")));
-  EXPECT_THAT(check("sphere", "abandonment"), HasSubstr("cannot tell; use racing halving"));
+  EXPECT_THAT(check("sphere", "abandonment"), HasSubstr("not have; use racing halving"));
 }
 
 TEST(RacingPlan, OfWhichNothingComesIsRefusedOrSaid) {
