@@ -1,4 +1,4 @@
-// The coordinator's exchange of messages with workers. All of it runs on one thread, the only one that
+// The coordinator's exchange of messages with workers. All of it runs on one thread, which alone
 // uses the transport.
 #include <fmt/format.h>
 

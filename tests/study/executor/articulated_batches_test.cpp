@@ -1,5 +1,5 @@
-// The engine in SIMD lanes behind the evaluator: what a population is evaluated to does not depend
-// on how it is split into batches, on the threads, or on who else is in the batch.
+// Tests the engine in SIMD lanes through an executor: the evaluations of a population do not depend
+// on batches, threads, or the other candidates in a batch.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace armwright {
 namespace {
 
-// Designs as a search meets them: near the start and far from it, so that some are cut off.
+// Returns designs near the start and far from it, as in a search, so that some are cut off.
 std::vector<std::vector<double>> make_population(const ProblemDescription& problem, int size) {
   RandomStream random("test/articulated-batches", 1);
   std::vector<std::vector<double>> population;

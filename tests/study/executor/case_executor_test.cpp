@@ -1,4 +1,4 @@
-// How pairs of candidates and cases are shared out, on a problem that notes what it is handed.
+// Tests how pairs of candidates and cases are distributed, on a problem that stores its jobs.
 #include "study/executor/case_executor.hpp"
 
 #include <gmock/gmock.h>
@@ -17,7 +17,7 @@ using testing::IsEmpty;
 using testing::Le;
 using testing::SizeIs;
 
-// Errors are x + 1000 case; residuals, where asked for, the error twice.
+// The error is x + 1000 case; the residuals, where asked for, are the error twice.
 class NotingProblem : public Problem {
  public:
   explicit NotingProblem(BatchSize size) : size_(size) {}
@@ -85,7 +85,8 @@ struct NotedRun {
   explicit NotedRun(BatchSize size, unsigned threads = 1) : problem(size), executor(threads) {
     problem.stop = &stop;
   }
-  // Candidates 0, 1, ... on the cases 7, 8, ...; what on_done is told, by candidate.
+  // Evaluates the candidates 0, 1, ... on the cases 7, 8, ... and returns the evaluations by
+  // candidate.
   std::map<std::size_t, Evaluation> operator()(std::size_t candidates, std::size_t cases,
                                                CaseRole role = CaseRole::training,
                                                bool residuals = false) {
@@ -114,11 +115,11 @@ struct NotedRun {
   StopSignal stop;
   NotingProblem problem;
   ThreadExecutor executor;
-  std::vector<std::size_t> order;         // of the candidates, as they were done
+  std::vector<std::size_t> order;         // in which the candidates finished
   std::vector<std::size_t> calls_before;  // calls of simulate() until then; on one thread
 };
 
-// So that lanes side by side follow the same targets.
+// Neighbouring lanes must follow the same targets.
 TEST(CaseExecutor, HandsOutTheCasesOfAsManyCandidatesAsThereAreLanes) {
   NotedRun run({.granularity = 2, .largest = 4});
   run(3, 3);
@@ -177,7 +178,8 @@ TEST(CaseExecutor, AStopCountsBetweenBatches) {
   run.problem.stop_at = 1 + 1000 * 9;  // candidate 1, third case: in the second batch
   const auto done = run(4, 3);
   EXPECT_THAT(run.problem.calls(), SizeIs(2));
-  EXPECT_THAT(run.order, ElementsAre(0, 1));  // that batch ends, and 1 with it; 2 has begun
+  EXPECT_THAT(run.order,
+              ElementsAre(0, 1));  // the batch ends, and candidate 1 with it; 2 has begun
 }
 
 TEST(CaseExecutor, ThrowsWhatTheProblemThrows) {

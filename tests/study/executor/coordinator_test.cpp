@@ -1,4 +1,5 @@
-// Ranks that are threads: the same outcomes whatever happens to whom.
+// Tests the coordinator with ranks that are threads: the outcomes are the same whatever happens to
+// the workers.
 #include "study/executor/coordinator.hpp"
 
 #include <gmock/gmock.h>
@@ -26,7 +27,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-// The error is sin(x + number). Takes as long as it is told.
+// The error is sin(x + number). A simulation takes the given time.
 class SlowSine final : public Problem {
  public:
   explicit SlowSine(microseconds cost, BatchSize size = {}) : cost_(cost), size_(size) {}
@@ -81,7 +82,7 @@ class SlowSine final : public Problem {
 
 constexpr const char* kIdentity = R"({"problems": ["sine"]})";
 
-// Every rank has a problem of its own, as in processes.
+// Every rank has its own problem object, as processes do.
 class Ranks {
  public:
   explicit Ranks(std::size_t count, microseconds cost = milliseconds(1), std::size_t threads = 1,
@@ -99,7 +100,7 @@ class Ranks {
     }
   }
 
-  // All that is not told otherwise introduce themselves like this.
+  // The introduction of workers that a test does not change.
   WorkerIntroduction introduction() const {
     return {
         .host = "host", .cpu = "cpu", .threads = threads_, .identity = kIdentity, .failure = ""};
@@ -107,7 +108,7 @@ class Ranks {
   void start_worker(std::size_t rank, const WorkerIntroduction& introduction) {
     workers_.emplace_back([this, rank, introduction] {
       MemoryTransport transport(network, rank);
-      constexpr double kSilence_s = 3;  // of a coordinator that a dead rank does not hear any more
+      constexpr double kSilence_s = 3;  // after which a cut-off worker ends by itself
       Worker worker(transport, {problems[rank].get()}, introduction, kSilence_s);
       worker.serve();
     });
@@ -144,7 +145,7 @@ class Ranks {
 
   MemoryNetwork network;
   std::vector<std::unique_ptr<SlowSine>> problems;
-  // Far longer than a busy machine keeps a thread from running.
+  // Far longer than a busy machine delays a thread.
   double late_after_s = 10;
 
  private:
@@ -164,7 +165,7 @@ CaseBlock make_block(std::size_t cases) {
   return block;
 }
 
-// One evaluation a candidate, as evaluated by `executor`; those that a stop leaves out are empty.
+// Returns one evaluation per candidate; those that a stop leaves out are empty.
 std::vector<Evaluation> evaluate(CaseExecutor& executor, const Problem& problem,
                                  std::size_t candidates, std::size_t cases, StopSignal& stop) {
   std::vector<std::vector<double>> points;
@@ -233,7 +234,7 @@ TEST(Coordinator, GivesWorkersWhatTakesLong) {
   }));
 }
 
-// A batch that is over before a message has gone and come is the coordinator's own.
+// A batch that ends before a message could go and return stays with the coordinator.
 TEST(Coordinator, KeepsWhatIsDoneSoonerHere) {
   Ranks team(2, microseconds(0));
   team.start();
@@ -270,7 +271,7 @@ TEST(Coordinator, DoesTheWorkOfRanksThatDie) {
                                              HasSubstr("others do its work"))));
 }
 
-// Both answers are there then, and one counts.
+// Both answers arrive then, and one of them counts.
 TEST(Coordinator, TakesBackARankThatWasLate) {
   const auto expected = evaluate_alone(60, 1);
   Ranks team(2, milliseconds(2));
@@ -324,7 +325,8 @@ TEST(Coordinator, SaysWhenARankHasAnotherProcessor) {
               ElementsAre(HasSubstr("another processor (an older one; here: cpu)")));
 }
 
-// The pair is tried here; if it fails here as well, it is a fault as without ranks.
+// The coordinator simulates the pair itself. If that fails as well, the error is the same as without
+// ranks.
 TEST(Coordinator, DoesTheWorkOfARankThatCannot) {
   Ranks team(2, milliseconds(1));
   team.problems[1]->throw_for = 2.5;
@@ -345,7 +347,7 @@ TEST(Coordinator, ThrowsWhatTheProblemThrowsHere) {
                           evaluate_alone(40, 1));
 }
 
-TEST(Coordinator, ThrowsWhatIsThrownByWhoeverTakesTheOutcomes) {
+TEST(Coordinator, RethrowsWhatTheReceiverOfOutcomesThrows) {
   Ranks team(3, milliseconds(1));
   team.start();
   const std::vector<double> x = {1};
@@ -379,7 +381,7 @@ TEST(Coordinator, StopsBetweenChunks) {
   EXPECT_LT(done, 1000);
 }
 
-// As a comparison does with several cells under way.
+// A comparison does this with several cells at a time.
 TEST(Coordinator, ServesSeveralBatchesAtOnce) {
   const auto expected = evaluate_alone(30, 2);
   Ranks team(3, microseconds(300), 2);

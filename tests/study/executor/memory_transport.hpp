@@ -1,4 +1,4 @@
-// Links between ranks that are threads of one process, and what can befall them.
+// A transport between ranks that are threads of one process, with faults on request.
 #pragma once
 
 #include <deque>
@@ -14,7 +14,7 @@
 
 namespace armwright {
 
-// The network of a job: messages lie here until they are received.
+// The network of a job. It keeps messages until they are received.
 class MemoryNetwork {
  public:
   explicit MemoryNetwork(std::size_t ranks) : arrived_(ranks) {}
@@ -36,12 +36,12 @@ class MemoryNetwork {
     return message;
   }
 
-  // Nothing goes to it or comes from it any more.
+  // Loses all messages to and from the rank from now on.
   void kill(std::size_t rank) {
     const std::lock_guard lock(mutex_);
     dead_.insert(rank);
   }
-  // What it sends is kept back until it is let go again.
+  // Holds back the messages that the rank sends, until let_go().
   void hold(std::size_t rank) {
     const std::lock_guard lock(mutex_);
     held_.insert(rank);
@@ -57,7 +57,7 @@ class MemoryNetwork {
  private:
   std::mutex mutex_;
   std::vector<std::deque<MessageTransport::Message>> arrived_;  // by receiver
-  std::deque<MessageTransport::Message> kept_;                  // of workers: for the coordinator
+  std::deque<MessageTransport::Message> kept_;                  // held back, for the coordinator
   std::set<std::size_t> dead_;
   std::set<std::size_t> held_;
 };

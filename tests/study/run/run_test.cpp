@@ -1,4 +1,4 @@
-// Whole runs in one process: exact budgets, schedules, results that do not depend on threads.
+// Tests whole runs in one process: exact budgets, schedules, results that do not depend on threads.
 // Interrupted and repeated runs: run_resume_test.cpp; failures and fronts: run_failure_test.cpp.
 #include "study/run/run.hpp"
 
@@ -11,6 +11,7 @@
 #include "base/text.hpp"
 #include "optimizers/table/optimizer_table.hpp"
 #include "problems/lanes_engine.hpp"
+#include "study/run/design_evaluation.hpp"
 #include "study/run/run_folder.hpp"
 #include "study/run/winner_selection.hpp"
 #include "study/run_support.hpp"
