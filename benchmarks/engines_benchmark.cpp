@@ -107,7 +107,8 @@ void run_sharing(benchmark::State& state) {
     CaseBlock block{CaseRole::training, "train/1", std::vector<std::uint64_t>(cases)};
     std::iota(block.numbers.begin(), block.numbers.end(), 0);
     const std::vector<std::span<const double>> candidates(designs, x);
-    executor.evaluate(*problem.problem, candidates, block, {}, stop, [](std::size_t, Evaluation) {});
+    executor.evaluate(*problem.problem, candidates, block, {}, stop,
+                      [](std::size_t, Evaluation) {});
   };
   std::vector<double> speedup, ratio;
   evaluate(one, 1, kCases);  // the tables

@@ -124,7 +124,8 @@ void BM_GenerationOnTwoCoresAgainstOne(benchmark::State& state) {
   const auto evaluate_generation = [&](ThreadExecutor& executor) {
     const CaseBlock block{CaseRole::training, "train/1", {number++}};
     const std::vector<std::span<const double>> candidates(35, x);
-    executor.evaluate(*problem.problem, candidates, block, {}, stop, [](std::size_t, Evaluation) {});
+    executor.evaluate(*problem.problem, candidates, block, {}, stop,
+                      [](std::size_t, Evaluation) {});
   };
   std::vector<double> speedup, serial, parallel;
   const std::uint64_t computed_before = problem.tracking->targets().computed();
