@@ -1,5 +1,5 @@
 """How batches spread over ranks, simulated by discrete events: the policy of src/study/executor/chunk_planner.cpp and the ways of
-coordinator_links.cpp and worker.cpp, in a time of its own.
+coordinator_messages.cpp and worker.cpp, in a time of its own.
 
 A model has few parameters, all of them times in seconds:
 
@@ -28,7 +28,7 @@ LATEST = 0.3
 FIRST_LATENCY_S = 1e-3
 FORGETTING_S = 1.0
 MOST_RISE = 4
-# coordinator_links.cpp: a pause of the thread that communicates; messages that it takes in a row
+# coordinator_messages.cpp: a pause of the thread that communicates; messages that it takes in a row
 SHORTEST_S, LONGEST_S = 50e-6, 1e-3
 AT_ONCE = 256
 # worker.cpp: pauses while there is something to do, and while there is not

@@ -1,5 +1,5 @@
-// Tests cells of a comparison that are run one by one, as on a cluster, and are killed or fail at any
-// moment. The next attempt ends with the same bytes, and a published cell is always complete.
+// Tests cells of a comparison that are run one by one, as on a cluster, and are killed or fail at
+// any moment. The next attempt ends with the same bytes, and a published cell is always complete.
 #include "faults/support.hpp"
 
 namespace armwright::faults {

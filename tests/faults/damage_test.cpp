@@ -136,8 +136,8 @@ TEST_F(Damage, AChangedByteOfTheJournalIsNamedByItsPlace) {
   expect_same_run(folder_ / "whole", folder_ / "end");
 }
 
-// Damaged derived files are rebuilt, or the message names them and says how to rebuild them. Crashes
-// or careless edits can cause each of these damages.
+// Damaged derived files are rebuilt, or the message names them and says how to rebuild them.
+// Crashes or careless edits can cause each of these damages.
 TEST_F(Damage, DerivedFilesAreRebuiltOrNamed) {
   for (const char* name : {"result.json", "manifest.json"}) {
     const std::string text = read_text(folder_ / "whole" / name);

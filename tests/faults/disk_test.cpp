@@ -160,8 +160,8 @@ class SmallDisk {
   bool is_there_ = false;
 };
 
-// A real full disk, on which a file leaves only some pages free: from too few for the manifest to too
-// few for the last page of SQLite's tables.
+// A real full disk, on which a file leaves only some pages free: from too few for the manifest to
+// too few for the last page of SQLite's tables.
 TEST_F(Disk, FullAtEveryPageAndThenWithRoomAgain) {
   const SmallDisk disk(folder_ / "disk", "2m");
   if (!disk.is_there()) {
@@ -240,8 +240,8 @@ TEST_F(Disk, FullBelowTheStandardStreams) {
   expect_same_run(folder_ / "whole", folder_ / "err");
 }
 
-// Otherwise the first file that is opened would get the number of a closed stream, and would receive
-// the printed text.
+// Otherwise the first file that is opened would get the number of a closed stream, and would
+// receive the printed text.
 TEST_F(Disk, ClosedStandardStreamsAreNoFileOfTheRun) {
   ASSERT_EQ(run(make_run("whole")).exit_code, 0);
   for (const auto& [streams, code] :

@@ -1,5 +1,5 @@
-// Tests SIGKILL at any moment: a resumed run or comparison ends with the same bits as an undisturbed
-// one.
+// Tests SIGKILL at any moment: a resumed run or comparison ends with the same bits as an
+// undisturbed one.
 #include "base/random.hpp"
 #include "faults/support.hpp"
 
@@ -90,8 +90,8 @@ std::size_t count_records(const std::filesystem::path& journal) {
 
 class KillAHundredTimes : public testing::TestWithParam<Setting> {};
 
-// Four of five lives end during a write, one of the first of the journal. The others end at a random
-// time, which may be before the first write.
+// Four of five lives end during a write, one of the first of the journal. The others end at a
+// random time, which may be before the first write.
 TEST_P(KillAHundredTimes, AndResumeEachTime) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "runs");

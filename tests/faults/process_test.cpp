@@ -286,7 +286,8 @@ TEST_F(Processes, ASuspendedRunBlamesNobodyForTheSilence) {
       return get_size(folder_ / ("suspended-" + name) / "journal") > 2000 || !program.is_running();
     }));
     ASSERT_TRUE(program.is_running());
-    // The parent is resumed last, as by a debugger or a batch system: its child is then late already.
+    // The parent is resumed last, as by a debugger or a batch system: its child is then late
+    // already.
     auto processes = list_processes("suspended");
     for (auto pid = processes.rbegin(); pid != processes.rend(); ++pid) {
       ::kill(*pid, SIGSTOP);

@@ -62,7 +62,8 @@ void open_to_all(const std::filesystem::path& folder);
 // Returns the words of a short run of q1-complex that has every kind of derived file.
 Words make_run(const std::string& out, const std::string& budget = "105");
 
-// Lets the n-th call of one kind on files below a folder fail, or kill the process (failing_files.c).
+// Lets the n-th call of one kind on files below a folder fail, or kill the process
+// (failing_files.c).
 class FailingFiles {
  public:
   // `folder` must exist.
@@ -82,7 +83,8 @@ inline std::vector<int> list_processes(const std::string& mark) {
   return list_processes_with("FAULTS_MARK=" + mark);
 }
 
-// Expects that both journals hold the same evaluations, and that the derived files are the same bytes.
+// Expects that both journals hold the same evaluations, and that the derived files are the same
+// bytes.
 void expect_same_run(const std::filesystem::path& a, const std::filesystem::path& b);
 // Expects that every record of `part` is one of `whole`, bit by bit.
 void expect_part_of(const JournalContent& part, const JournalContent& whole);

@@ -1,7 +1,8 @@
-// An Evaluator without a journal, for tests of optimizers and for the contract suite (contract.hpp).
-// It keeps the budget exactly, cuts the last batch, clips points to the bounds, and records a trace
-// of all requests. On request, evaluations fail or throw, or the run is stopped. It is as strict as
-// the interface allows: a failed evaluation has the penalty as objectives and no constraint values.
+// An Evaluator without a journal, for tests of optimizers and for the contract suite
+// (contract.hpp). It keeps the budget exactly, cuts the last batch, clips points to the bounds, and
+// records a trace of all requests. On request, evaluations fail or throw, or the run is stopped. It
+// is as strict as the interface allows: a failed evaluation has the penalty as objectives and no
+// constraint values.
 #pragma once
 
 #include <algorithm>

@@ -6,8 +6,8 @@
 
 namespace armwright {
 
-Coordinator::Coordinator(MessageTransport& transport, std::vector<const Problem*> problems, std::string identity,
-                         CoordinatorSettings settings, Notify notify)
+Coordinator::Coordinator(MessageTransport& transport, std::vector<const Problem*> problems,
+                         std::string identity, CoordinatorSettings settings, Notify notify)
     : transport_(transport),
       problems_(std::move(problems)),
       identity_(std::move(identity)),
@@ -99,8 +99,9 @@ void Coordinator::forget(const Problem& problem) {
 
 bool Coordinator::expects_workers() const {
   const std::lock_guard lock(mutex_);
-  return std::any_of(workers_.begin() + 1, workers_.end(),
-                     [](const RemoteWorker& worker) { return worker.state == WorkerState::unknown; });
+  return std::any_of(workers_.begin() + 1, workers_.end(), [](const RemoteWorker& worker) {
+    return worker.state == WorkerState::unknown;
+  });
 }
 
 std::size_t Coordinator::count_untaken(const Batch& batch) const {

@@ -182,8 +182,9 @@ void Coordinator::admit_worker(std::size_t rank, WorkerIntroduction introduction
   }
   const auto differences = describe_differences(identity_, worker.introduction.identity);
   if (!differences.empty()) {
-    exclude_worker(rank, "it has another program or other problems (recorded: here, now: there):\n  " +
-                      join(differences, "\n  "));
+    exclude_worker(rank,
+                   "it has another program or other problems (recorded: here, now: there):\n  " +
+                       join(differences, "\n  "));
     return;
   }
   worker.state = WorkerState::ready;

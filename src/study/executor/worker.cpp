@@ -42,8 +42,8 @@ struct Worker::Chunk {
   std::string failure;
 };
 
-Worker::Worker(MessageTransport& transport, std::vector<const Problem*> problems, WorkerIntroduction introduction,
-               double silence_s)
+Worker::Worker(MessageTransport& transport, std::vector<const Problem*> problems,
+               WorkerIntroduction introduction, double silence_s)
     : transport_(transport), problems_(std::move(problems)), longest_silence_s_(silence_s) {
   try {
     while (introduction.failure.empty() && threads_.size() < introduction.threads) {

@@ -73,8 +73,8 @@ void RememberedCandidates::add(const Candidate& candidate) {
   }
 }
 
-// With constraints, the last improvements of a long run all lie close to a limit. All of them exceed
-// it if the validation cases are a little harder, so earlier candidates are judged as well.
+// With constraints, the last improvements of a long run all lie close to a limit. All of them
+// exceed it if the validation cases are a little harder, so earlier candidates are judged as well.
 std::vector<Candidate> RememberedCandidates::spread(std::size_t count) const {
   std::vector<Candidate> candidates = some_;
   if (newest_ && (count_ - 1) % stride_ != 0) {

@@ -122,10 +122,11 @@ void check_plan(const RunPlan& plan) {
   if (plan.racing.kind == Racing::Kind::abandonment &&
       !plan.problem.problem->calc_lower_bound(std::vector<double>(problem.variables.size()), {},
                                               1)) {
-    throw Error(ErrorKind::usage,
-                fmt::format("racing abandonment needs a lower bound of the objective, which {} does "
-                            "not have; use racing halving or none",
-                            plan.problem.name));
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("racing abandonment needs a lower bound of the objective, which {} does "
+                    "not have; use racing halving or none",
+                    plan.problem.name));
   }
   check_size(plan);
   if (plan.budget < 0) {

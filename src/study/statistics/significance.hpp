@@ -15,8 +15,8 @@ namespace armwright {
 //   chi^2 = 12 sum_j (R_j - n(k+1)/2)^2 / (n k (k+1) - T / (k-1)),  k - 1 degrees of freedom
 //
 // where R_j is the sum of the ranks of treatment j, and T is the sum of t^3 - t over the groups of
-// t ties within blocks. The chi^2 approximation is conservative. A better one is that of Iman, R. L.
-// and Davenport, J. M. 1980, Approximations of the critical region of the Friedman statistic,
+// t ties within blocks. The chi^2 approximation is conservative. A better one is that of Iman, R.
+// L. and Davenport, J. M. 1980, Approximations of the critical region of the Friedman statistic,
 // Communications in Statistics A 9(6):
 //
 //   F = (n-1) chi^2 / (n (k-1) - chi^2),  k - 1 and (k-1)(n-1) degrees of freedom.

@@ -12,9 +12,9 @@ namespace armwright {
 
 // Returns the p-quantile by linear interpolation between order statistics: type 7 of Hyndman, R. J.
 // and Fan, Y. 1996, Sample quantiles in statistical packages, The American Statistician 50(4). In
-// the n sorted values x_0, ..., it lies at h = p (n - 1), between x_floor(h) and the next. If one of
-// these two is infinite the quantile is infinite, unless h is a whole number: the median of
-// 1, 2, inf, inf is inf. p is from 0 to 1; throws std::invalid_argument for others.
+// the n sorted values x_0, ..., it lies at h = p (n - 1), between x_floor(h) and the next. If one
+// of these two is infinite the quantile is infinite, unless h is a whole number: the median of 1,
+// 2, inf, inf is inf. p is from 0 to 1; throws std::invalid_argument for others.
 double calc_quantile(std::span<const double> values, double p);
 
 struct Spread {

@@ -325,8 +325,8 @@ TEST(Coordinator, SaysWhenARankHasAnotherProcessor) {
               ElementsAre(HasSubstr("another processor (an older one; here: cpu)")));
 }
 
-// The coordinator simulates the pair itself. If that fails as well, the error is the same as without
-// ranks.
+// The coordinator simulates the pair itself. If that fails as well, the error is the same as
+// without ranks.
 TEST(Coordinator, DoesTheWorkOfARankThatCannot) {
   Ranks team(2, milliseconds(1));
   team.problems[1]->throw_for = 2.5;

@@ -32,7 +32,8 @@ TEST(ThreadPool, RunsEveryJobOnce) {
   }
 }
 
-// The caller sees the results of the workers over many short batches. A lost wake-up would hang here.
+// The caller sees the results of the workers over many short batches. A lost wake-up would hang
+// here.
 TEST(ThreadPool, SurvivesManyShortBatches) {
   ThreadPool pool(4);
   std::vector<std::size_t> squares(5);

@@ -44,8 +44,8 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-// Keeps files of this process from growing beyond `bytes` as long as it lives: writes are cut short,
-// then fail with EFBIG. A full disk does the same with ENOSPC.
+// Keeps files of this process from growing beyond `bytes` as long as it lives: writes are cut
+// short, then fail with EFBIG. A full disk does the same with ENOSPC.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) {
@@ -76,8 +76,8 @@ TEST(JournalFaults, RecordsReachTheSystemWithoutFlush) {
   const auto file = folder / "journal";
   JournalContent content;
   Journal journal(file, content);
-  // append() itself writes only if the last write is 5 ms ago, so most of these records wait for the
-  // background thread.
+  // append() itself writes only if the last write is 5 ms ago, so most of these records wait for
+  // the background thread.
   for (std::uint64_t i = 0; i < 50; ++i) {
     journal.append(make_record(i));
   }
@@ -151,8 +151,8 @@ TEST(JournalFaults, RecordsReachTheSystemDuringASlowSyncAndItsErrorIsTold) {
   }
   EXPECT_TRUE(wait_until([&] { return read_journal(file).training.size() == 50; }));
 
-  // Records in the buffer at the time of the error must not keep the writing thread, and with it the
-  // lock, busy.
+  // Records in the buffer at the time of the error must not keep the writing thread, and with it
+  // the lock, busy.
   for (std::uint64_t i = 50; i < 60; ++i) {
     journal.append(make_record(i));
   }

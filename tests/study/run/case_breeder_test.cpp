@@ -115,9 +115,9 @@ TEST(CaseBreeder, ChildrenHaveTheirParentsKeys) {
   std::iota(errors.rbegin(), errors.rend(), 1.0);
   show(breeder, 1, errors);
   breeder.breed();
-  // 40 cases stay, 30 are children, 10 are new. The 30 children have 120 keys, of which an eighth is
-  // new: 105 are expected from parents, standard deviation 3.6. New cases share keys by chance only:
-  // 40 keys in 2^15 values against 40 parents.
+  // 40 cases stay, 30 are children, 10 are new. The 30 children have 120 keys, of which an eighth
+  // is new: 105 are expected from parents, standard deviation 3.6. New cases share keys by chance
+  // only: 40 keys in 2^15 values against 40 parents.
   const auto& genomes = breeder.genomes();
   const auto count_inherited = [&](std::size_t first, std::size_t end) {
     int inherited = 0;

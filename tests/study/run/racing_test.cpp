@@ -110,7 +110,8 @@ TEST_F(RaceTest, HalvingByHand) {
     EXPECT_EQ(result.evaluation.status == EvaluationStatus::ok, result.cases == 4);
   }
   EXPECT_THAT(cases, ElementsAre(2, 4, 4, 1, 1, 1));
-  // Candidate 0 has its own 5. Candidate 3 has 4 and counts as 5, the worst of those that got further.
+  // Candidate 0 has its own 5. Candidate 3 has 4 and counts as 5, the worst of those that got
+  // further.
   EXPECT_THAT(objectives, ElementsAre(5, 2, 1.5, 5, 5, 6));
   EXPECT_THAT((*results)[3].evaluation.reason, HasSubstr("dropped out after 1 of 4 cases"));
 }
@@ -119,7 +120,8 @@ TEST_F(RaceTest, AbandonmentByHand) {
   const Racing racing = make_racing("abandonment:1:2");
   std::atomic<std::size_t> simulated = 0;
   std::vector<RacedCandidate> results(6);
-  // The sums of two cases are 10, 4, 4, 8, 5, 6. Those above 4 times the threshold, 6, are abandoned.
+  // The sums of two cases are 10, 4, 4, 8, 5, 6. Those above 4 times the threshold, 6, are
+  // abandoned.
   Racer(racing, problem_, executor_, stop_)
       .abandon(
           candidates_, block_, 1.5, [&](std::size_t cases) { simulated += cases; },

@@ -15,8 +15,8 @@ namespace {
 
 using testing::HasSubstr;
 
-// Moves outwards and back again, in generations of four. Fails after the given number of evaluations,
-// unless the number is negative.
+// Moves outwards and back again, in generations of four. Fails after the given number of
+// evaluations, unless the number is negative.
 class FailingOptimizer : public Optimizer {
  public:
   FailingOptimizer(int evaluations, std::string message)
@@ -84,8 +84,8 @@ TEST_F(RunTest, AFailedRunIsTriedAgainFromWhereItFailed) {
   EXPECT_EQ(read_result("a"), read_result("whole"));
 }
 
-// The evaluations of an earlier attempt are kept and judged, even if the next attempt fails earlier:
-// at once, within a generation, at its end, or at the same place.
+// The evaluations of an earlier attempt are kept and judged, even if the next attempt fails
+// earlier: at once, within a generation, at its end, or at the same place.
 TEST_F(RunTest, AnAttemptThatFailsSoonerTakesNothingAway) {
   for (const bool fresh : {false, true}) {
     for (const int sooner : {0, 2, 4, 5, 8, 10}) {

@@ -119,8 +119,8 @@ TEST(RunningTimeRatio, DrawsPairsTogether) {
   EXPECT_DOUBLE_EQ(same.interval.upper, 0.1);
 }
 
-// The second trial of the reference fails. Resamples: twice the first pair, 10 / 100; one of each in
-// two orders, 20 / 400; twice the second pair, 30 / infinite.
+// The second trial of the reference fails. Resamples: twice the first pair, 10 / 100; one of each
+// in two orders, 20 / 400; twice the second pair, 30 / infinite.
 TEST(RunningTimeRatio, OfAReferenceThatFailsSometimes) {
   const std::vector<Trial> trials = {{10, true}, {30, true}};
   const std::vector<Trial> reference = {{100, true}, {300, false}};

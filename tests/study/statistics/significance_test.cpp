@@ -37,8 +37,8 @@ TEST(SignedRank, AllOnOneSideHasTheSmallestP) {
 }
 
 TEST(SignedRank, CountsTheSetsOfRanksWithASumAsSmall) {
-  // Of 10 pairs, those with the ranks 1, 2 and 5 are positive. The numbers of sets of different ranks
-  // with the sums 0, ..., 8 are 1, 1, 1, 2, 2, 3, 4, 5 and 6, together 25.
+  // Of 10 pairs, those with the ranks 1, 2 and 5 are positive. The numbers of sets of different
+  // ranks with the sums 0, ..., 8 are 1, 1, 1, 2, 2, 3, 4, 5 and 6, together 25.
   std::vector<double> a = make_steps(10);
   for (const int rank : {3, 4, 6, 7, 8, 9, 10}) {
     a[rank - 1] = -rank;
