@@ -56,7 +56,7 @@ void save_torn_end(int fd, std::uint64_t offset, const std::filesystem::path& fi
         fail_io(name, "close it", errno);
       }
     } catch (...) {
-      ::unlink(name.c_str());  // the journal is still complete, so half a copy is of no use
+      ::unlink(name.c_str());  // the journal is still complete, so half a copy is removed
       throw;
     }
     return;
