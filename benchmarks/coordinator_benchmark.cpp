@@ -26,9 +26,9 @@ namespace {
 constexpr const char* kIdentity = R"("coordinator_benchmark")";
 
 // Links to simulated ranks: a table of the times at which they answer.
-class CrowdLinks final : public Links {
+class CrowdTransport final : public MessageTransport {
  public:
-  CrowdLinks(std::size_t ranks, std::size_t threads, double pair_s)
+  CrowdTransport(std::size_t ranks, std::size_t threads, double pair_s)
       : pair_s_(pair_s), threads_(threads), free_at_s_(ranks + 1, 0) {
     const std::string ready = make_rank_message(WorkerIntroduction{
         .host = "crowd", .cpu = "", .threads = threads, .identity = kIdentity, .failure = ""});
@@ -136,12 +136,12 @@ void crowd(benchmark::State& state) {
   const auto pairs = static_cast<std::size_t>(state.range(3));
   const SyntheticProblem problem({});
   const SyntheticBatch batch(problem, pairs, pair_s * measure_iterations_per_s());
-  CrowdLinks links(ranks - 1, threads, pair_s);
+  CrowdTransport transport(ranks - 1, threads, pair_s);
   StopSignal stop;
   std::vector<double> times_s;
-  double chunks = 0, bytes = 0, processor_s = 0, links_s = 0;
+  double chunks = 0, bytes = 0, processor_s = 0, transport_s = 0;
   {
-    Coordinator coordinator(links, {&problem}, kIdentity, {}, [](const std::string&) {});
+    Coordinator coordinator(transport, {&problem}, kIdentity, {}, [](const std::string&) {});
     while (coordinator.expects_workers()) {
       ::usleep(1000);
     }
@@ -149,20 +149,20 @@ void crowd(benchmark::State& state) {
     for (auto _ : state) {
       const double start_s = read_clock_s(CLOCK_MONOTONIC);
       const double cpu_before_s = read_clock_s(CLOCK_PROCESS_CPUTIME_ID);
-      const double links_before_s = links.spent_s();
-      const double chunks_before = links.chunks(), bytes_before = links.bytes();
+      const double transport_before_s = transport.spent_s();
+      const double chunks_before = transport.chunks(), bytes_before = transport.bytes();
       while (times_s.size() < 3 || read_clock_s(CLOCK_MONOTONIC) - start_s < kAll_s) {
         const double cpu_s = read_clock_s(CLOCK_THREAD_CPUTIME_ID);
         times_s.push_back(measure_s([&] { coordinator.run(batch.get(), stop); }));
         processor_s -= read_clock_s(CLOCK_THREAD_CPUTIME_ID) - cpu_s;
       }
-      links_s = links.spent_s() - links_before_s;
-      processor_s += read_clock_s(CLOCK_PROCESS_CPUTIME_ID) - cpu_before_s - links_s;
+      transport_s = transport.spent_s() - transport_before_s;
+      processor_s += read_clock_s(CLOCK_PROCESS_CPUTIME_ID) - cpu_before_s - transport_s;
       const auto batches = static_cast<double>(times_s.size());
-      chunks = (links.chunks() - chunks_before) / batches;
-      bytes = (links.bytes() - bytes_before) / batches;
+      chunks = (transport.chunks() - chunks_before) / batches;
+      bytes = (transport.bytes() - bytes_before) / batches;
       processor_s /= batches;
-      links_s /= batches;
+      transport_s /= batches;
       state.SetIterationTime(calc_median(times_s));
     }
   }
@@ -170,7 +170,7 @@ void crowd(benchmark::State& state) {
   state.counters["chunks"] = chunks;
   state.counters["bytes"] = bytes;
   state.counters["communication_s"] = processor_s;  // of the communicating thread, per batch
-  state.counters["links_s"] = links_s;  // the simulated ranks' share of that thread
+  state.counters["links_s"] = transport_s;          // the simulated ranks' share of that thread
   state.counters["efficiency"] =
       static_cast<double>(pairs) * pair_s / calc_median(times_s) / all_threads;
 }

@@ -16,7 +16,7 @@
 #include "problems/config/design_file.hpp"
 #include "problems/config/problem_loader.hpp"
 #include "sim/dynamics/chain_model.hpp"
-#include "study/executor/case_runner.hpp"
+#include "study/executor/case_executor.hpp"
 
 namespace armwright {
 namespace {
@@ -108,8 +108,8 @@ void run_sharing(benchmark::State& state) {
     CaseBlock block{CaseRole::training, "train/1", std::vector<std::uint64_t>(cases)};
     std::iota(block.numbers.begin(), block.numbers.end(), 0);
     const std::vector<std::span<const double>> candidates(designs, x);
-    CaseRunner(*problem.problem, executor, stop)
-        .run(candidates, block, false, [](std::size_t, Evaluation) {});
+    executor.evaluate(*problem.problem, candidates, block, {}, stop,
+                      [](std::size_t, Evaluation) {});
   };
   std::vector<double> speedup, ratio;
   evaluate(one, 1, kCases);  // makes the target tables

@@ -41,21 +41,21 @@ struct Problems {
 };
 
 // The work of ranks above 0: they return every message without pauses until kBegin, then simulate.
-int serve(Links& links) {
+int serve(MessageTransport& transport) {
   while (true) {
-    auto message = links.receive();
+    auto message = transport.receive();
     if (!message) {
       continue;
     }
     if (message->bytes == std::string(1, kBegin)) {
       break;
     }
-    links.send(0, std::move(message->bytes));
+    transport.send(0, std::move(message->bytes));
   }
   const Problems problems;
   bool in_order = false;
   {
-    Worker worker(links, problems.list(),
+    Worker worker(transport, problems.list(),
                   {.host = "here", .cpu = "", .threads = 1, .identity = kIdentity, .failure = ""});
     in_order = worker.serve() == Worker::End::finalize;
   }
@@ -67,18 +67,18 @@ int serve(Links& links) {
 }
 
 // Links that count the messages that pass through them.
-class CountingLinks final : public Links {
+class CountingTransport final : public MessageTransport {
  public:
-  explicit CountingLinks(Links& links) : links_(links) {}
-  std::size_t rank() const override { return links_.rank(); }
-  std::size_t size() const override { return links_.size(); }
+  explicit CountingTransport(MessageTransport& transport) : transport_(transport) {}
+  std::size_t rank() const override { return transport_.rank(); }
+  std::size_t size() const override { return transport_.size(); }
   void send(std::size_t to, std::string message) override {
     ++sent_;
     bytes_ += message.size();
-    links_.send(to, std::move(message));
+    transport_.send(to, std::move(message));
   }
   std::optional<Message> receive() override {
-    auto message = links_.receive();
+    auto message = transport_.receive();
     bytes_ += message ? message->bytes.size() : 0;
     return message;
   }
@@ -86,27 +86,27 @@ class CountingLinks final : public Links {
   double bytes() const { return static_cast<double>(bytes_); }
 
  private:
-  Links& links_;
+  MessageTransport& transport_;
   std::atomic<std::uint64_t> sent_ = 0, bytes_ = 0;
 };
 
 // Rank 0's side: the coordinator and its measurements.
 class Leader {
  public:
-  explicit Leader(Links& links) : links_(links) {}
+  explicit Leader(MessageTransport& transport) : transport_(transport) {}
   // Returns whether all ranks have ended in order.
   bool end() {
     begin_work();
     coordinator_.reset();
-    return end_workers(links_, 5);
+    return end_workers(transport_, 5);
   }
 
-  CountingLinks& links() { return links_; }
+  CountingTransport& transport() { return transport_; }
   bool has_workers() const { return coordinator_ != nullptr; }
   const Problems& problems() const { return problems_; }
   double iterations(double seconds) const { return seconds * iterations_per_s_; }
   std::size_t cores() const {
-    return std::min<std::size_t>(links_.size(), std::thread::hardware_concurrency());
+    return std::min<std::size_t>(transport_.size(), std::thread::hardware_concurrency());
   }
   Coordinator& coordinator() {
     begin_work();
@@ -118,18 +118,18 @@ class Leader {
     if (coordinator_) {
       return;
     }
-    for (std::size_t rank = 1; rank < links_.size(); ++rank) {
-      links_.send(rank, std::string(1, kBegin));
+    for (std::size_t rank = 1; rank < transport_.size(); ++rank) {
+      transport_.send(rank, std::string(1, kBegin));
     }
     coordinator_ = std::make_unique<Coordinator>(
-        links_, problems_.list(), kIdentity, CoordinatorSettings{},
+        transport_, problems_.list(), kIdentity, CoordinatorSettings{},
         [](const std::string& message) { fmt::print(stderr, "mpi_benchmark: {}\n", message); });
     while (coordinator_->expects_workers()) {
       ::usleep(1000);
     }
   }
 
-  CountingLinks links_;
+  CountingTransport transport_;
   const Problems problems_;
   const double iterations_per_s_ = measure_iterations_per_s();
   std::unique_ptr<Coordinator> coordinator_;
@@ -143,8 +143,8 @@ void round_trip(benchmark::State& state, Leader& leader) {
   }
   const std::string message(static_cast<std::size_t>(state.range(0)), 'x');
   for (auto _ : state) {
-    leader.links().send(1, message);
-    while (!leader.links().receive()) {
+    leader.transport().send(1, message);
+    while (!leader.transport().receive()) {
     }
   }
 }
@@ -177,8 +177,8 @@ void batch(benchmark::State& state, Leader& leader) {
   // The cost of rounds with ranks, without that of the pairs.
   double chunks = 0, bytes = 0, communication_s = 0;
   const auto count = [&](double sign) {
-    chunks += sign * leader.links().sent();
-    bytes += sign * leader.links().bytes();
+    chunks += sign * leader.transport().sent();
+    bytes += sign * leader.transport().bytes();
     communication_s +=
         sign * (read_clock_s(CLOCK_PROCESS_CPUTIME_ID) - read_clock_s(CLOCK_THREAD_CPUTIME_ID));
   };
@@ -227,9 +227,9 @@ void add_benchmarks(Leader& leader) {
       ->Unit(benchmark::kMillisecond);
 }
 
-int lead(Links& links, int argc, char** argv) {
-  Leader leader(links);
-  benchmark::AddCustomContext("ranks", std::to_string(links.size()));
+int lead(MessageTransport& transport, int argc, char** argv) {
+  Leader leader(transport);
+  benchmark::AddCustomContext("ranks", std::to_string(transport.size()));
   benchmark::AddCustomContext("cores", std::to_string(std::thread::hardware_concurrency()));
   add_benchmarks(leader);
   benchmark::Initialize(&argc, argv);
@@ -258,6 +258,6 @@ int main(int argc, char** argv) {
                argc > 0 ? argv[0] : "mpi_benchmark");
     return 1;
   }
-  const auto links = open_mpi_links();
-  return place->rank == 0 ? lead(*links, argc, argv) : serve(*links);
+  const auto transport = open_mpi_transport();
+  return place->rank == 0 ? lead(*transport, argc, argv) : serve(*transport);
 }

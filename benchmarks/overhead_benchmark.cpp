@@ -76,8 +76,7 @@ struct Run {
       : run_folder(folder.path(), plan, {}),
         journal(run_folder.journal(), recorded),
         executor(jobs),
-        runner(*plan.problem.problem, executor, stop),
-        evaluator(plan, runner, stop, journal, std::move(recorded), observer) {}
+        evaluator(plan, executor, stop, journal, recorded, observer) {}
 
   Folder folder;
   RunFolder run_folder;
@@ -85,7 +84,6 @@ struct Run {
   Journal journal;
   StopSignal stop;
   ThreadExecutor executor;
-  CaseRunner runner;
   ClockReader observer;
   RunEvaluator evaluator;
 };

@@ -11,7 +11,7 @@
 
 #include "base/stop_signal.hpp"
 #include "measure.hpp"
-#include "study/executor/case_batch.hpp"
+#include "study/executor/case_executor.hpp"
 
 namespace armwright {
 

@@ -12,7 +12,7 @@
 #include "problems/config/design_file.hpp"
 #include "problems/config/problem_loader.hpp"
 #include "sim/engines/ode/ode_arm.hpp"
-#include "study/executor/case_runner.hpp"
+#include "study/executor/case_executor.hpp"
 
 namespace armwright {
 namespace {
@@ -125,8 +125,8 @@ void BM_GenerationOnTwoCoresAgainstOne(benchmark::State& state) {
   const auto evaluate_generation = [&](ThreadExecutor& executor) {
     const CaseBlock block{CaseRole::training, "train/1", {number++}};
     const std::vector<std::span<const double>> candidates(35, x);
-    CaseRunner(*problem.problem, executor, stop)
-        .run(candidates, block, false, [](std::size_t, Evaluation) {});
+    executor.evaluate(*problem.problem, candidates, block, {}, stop,
+                      [](std::size_t, Evaluation) {});
   };
   std::vector<double> speedup, serial, parallel;
   const std::uint64_t computed_before = problem.tracking()->targets().computed();

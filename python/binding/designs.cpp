@@ -147,7 +147,7 @@ py::tuple evaluate_design(const ProblemHandle& handle, const DesignQuestion& que
   Host host(listener);
   host.run([&] {
     evaluation = evaluate_with_progress(tracking, file.design, cases, question.jobs, host.stop(),
-                                        host, {0, cases.count});
+                                        host, {.total = cases.count});
   });
   if (!evaluation) {
     throw Error(ErrorKind::usage, "the evaluation was stopped");  // by whom has been thrown already

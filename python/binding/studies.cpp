@@ -30,7 +30,7 @@ class CellObserver final : public RunObserver {
  public:
   CellObserver(RunObserver& study, Progress done) : study_(study), done_(done) {}
   void on_progress(const Progress& progress) override {
-    if (progress.phase == Progress::Phase::training) {
+    if (progress.phase == CaseRole::training) {
       Progress all = done_;
       all.done += progress.done;
       all.replayed += progress.replayed;

@@ -22,7 +22,7 @@
 #include "study/compare/study_runner.hpp"
 #include "study/matrix/cell_duration.hpp"
 #include "study/matrix/earlier_state.hpp"
-#include "study/run/locked_observer.hpp"
+#include "study/run/run_observer.hpp"
 
 namespace armwright {
 namespace {

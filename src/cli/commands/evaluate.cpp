@@ -22,7 +22,7 @@
 #include "cli/views/result_view.hpp"
 #include "problems/config/design_file.hpp"
 #include "problems/config/path_survey.hpp"
-#include "study/run/store.hpp"
+#include "study/run/derived_files.hpp"
 
 namespace armwright {
 namespace {
@@ -223,7 +223,7 @@ int run_evaluate(const EvaluateOptions& options, Session& session) {
   catch_signals(session.stop);
   ProgressBar bar(options.quiet, {"error", "m"});
   auto evaluation = evaluate_with_progress(tracking, design.design, cases, jobs, session.stop, bar,
-                                           {0, cases.count});
+                                           {.total = cases.count});
   bar.clear();
   if (!evaluation) {
     write_message(fmt::format("{}; nothing was written", describe_stop(session.stop.reason())));

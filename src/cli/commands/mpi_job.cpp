@@ -7,7 +7,7 @@
 
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/terminal.hpp"
-#include "study/executor/rank_identity.hpp"
+#include "study/executor/rank_messages.hpp"
 #include "study/executor/worker.hpp"
 #include "study/run/run_observer.hpp"
 
@@ -29,7 +29,7 @@ std::vector<const Problem*> get_simulated(const MpiJob::Problems& problems) {
 
 MpiJob::MpiJob(Session& session) : session_(session), place_(find_rank_place()) {
   if (place_) {
-    links_ = open_mpi_links();
+    transport_ = open_mpi_transport();
     begun_ = std::chrono::steady_clock::now();
   }
 }
@@ -49,20 +49,20 @@ void MpiJob::end_workers(std::unique_ptr<Coordinator> coordinator) {
 }
 
 void MpiJob::end(double timeout_s) {
-  if (!links_) {
+  if (!transport_) {
     return;
   }
   constexpr double kStopped_s = 0.3;  // mpirun kills one second after its signal
   const StopReason stopped = session_.stop.reason();
   const bool is_asked = stopped == StopReason::interrupted || stopped == StopReason::terminated;
   timeout_s = is_asked ? kStopped_s : timeout_s;
-  if (armwright::end_workers(*links_, timeout_s)) {
+  if (armwright::end_workers(*transport_, timeout_s)) {
     close_mpi();
-    links_.reset();
+    transport_.reset();
     return;
   }
   // MPI still holds messages for the missing rank, and ending MPI needs all ranks.
-  [[maybe_unused]] const Links* kept = links_.release();
+  [[maybe_unused]] const MessageTransport* kept = transport_.release();
   session_.must_abort_ranks = true;
   if (!is_asked) {
     write_message(
@@ -81,7 +81,7 @@ void MpiJob::serve(const std::function<Problems()>& load, unsigned threads) {
     introduction.failure = error.what();
   }
   try {
-    Worker worker(*links_, get_simulated(problems), introduction);
+    Worker worker(*transport_, get_simulated(problems), introduction);
     if (worker.serve() == Worker::End::finalize) {
       close_mpi();
     }
@@ -102,7 +102,7 @@ std::unique_ptr<Coordinator> MpiJob::make_coordinator(const Problems& problems, 
         "(nothing is lost; the same command resumes)");
   }
   return std::make_unique<Coordinator>(
-      *links_, get_simulated(problems), make_rank_identity(problems),
+      *transport_, get_simulated(problems), make_rank_identity(problems),
       CoordinatorSettings{.threads = threads, .cpu = make_introduction(threads).cpu},
       [&observer](const std::string& message) { observer.on_message(message); });
 }

@@ -51,7 +51,7 @@ class MpiJob {
 
   Session& session_;
   std::optional<RankPlace> place_;
-  std::unique_ptr<Links> links_;
+  std::unique_ptr<MessageTransport> transport_;
   std::chrono::steady_clock::time_point begun_;
 };
 

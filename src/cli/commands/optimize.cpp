@@ -19,9 +19,9 @@
 #include "cli/views/result_view.hpp"
 #include "optimizers/table/optimizer_table.hpp"
 #include "problems/config/path_survey.hpp"
-#include "study/run/locked_observer.hpp"
 #include "study/run/run.hpp"
 #include "study/run/run_folder.hpp"
+#include "study/run/run_observer.hpp"
 
 namespace armwright {
 namespace {

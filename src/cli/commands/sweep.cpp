@@ -200,22 +200,22 @@ int run_sweep(const SweepOptions& options, Session& session) {
   catch_signals(session.stop);
   ProgressBar bar(options.quiet, {"error", "m"});
   std::vector<SweepRow> rows;
-  BarShare share;
+  Progress progress;
   for (const LoadedProblem& problem : problems) {
-    share.total += choose_cases(problem, options.cases).count;
+    progress.total += choose_cases(problem, options.cases).count;
   }
   for (std::size_t i = 0; i < problems.size(); ++i) {
     // The swept setting may change the cases, for example by the workspace, and the target tables.
     const ChosenCases cases = choose_cases(problems[i], options.cases);
     auto evaluation = evaluate_with_progress(*problems[i].tracking(), design.design, cases, jobs,
-                                             session.stop, bar, share);
+                                             session.stop, bar, progress);
     problems[i] = {};
     if (!evaluation) {
       bar.clear();
       write_message(fmt::format("{}; nothing was written", describe_stop(session.stop.reason())));
       return get_stop_code(session.stop.reason());
     }
-    share.done_before += cases.count;
+    progress.done += cases.count;
     rows.push_back({sweep.values[i], std::move(*evaluation)});
   }
   bar.clear();

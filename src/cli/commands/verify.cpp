@@ -312,17 +312,18 @@ int run_verify(const VerifyOptions& options, Session& session) {
   catch_signals(session.stop);
   ProgressBar bar(options.quiet, {"error", "m"});
   VerifiedDesign verified{design.name, base.name, cases, {}, {}, {}};
-  BarShare share{0, cases.count * settings.size()};
+  Progress progress;
+  progress.total = cases.count * settings.size();
   for (std::size_t i = 0; i < settings.size(); ++i) {
     auto survey = survey_with_progress(*problems[i].tracking(), design.design, cases, jobs,
-                                       session.stop, bar, share);
+                                       session.stop, bar, progress);
     problems[i] = {};  // frees its target tables
     if (!survey) {
       bar.clear();
       write_message(fmt::format("{}; nothing was written", describe_stop(session.stop.reason())));
       return get_stop_code(session.stop.reason());
     }
-    share.done_before += cases.count;
+    progress.done += cases.count;
     const ErrorSummary& own =
         verified.rows.empty() ? survey->summary : verified.rows.front().summary;
     verified.rows.push_back(judge_setting(settings[i], survey->summary, own));

@@ -39,7 +39,7 @@ double calc_left_s(const Progress& progress, double cases_per_s) {
 }
 
 bool has_generations(const Progress& progress) {
-  return progress.generation > 0 && progress.phase == Progress::Phase::training;
+  return progress.generation > 0 && progress.phase == CaseRole::training;
 }
 
 // A piece of the bar's line. If the line is too long, the pieces with the highest rank are left out

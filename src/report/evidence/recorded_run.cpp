@@ -12,8 +12,8 @@
 #include "problems/config/recorded_problem.hpp"
 #include "sim/simd/simd_level.hpp"
 #include "study/compare/incumbents.hpp"
-#include "study/run/record_files.hpp"
 #include "study/run/run.hpp"
+#include "study/run/run_folder.hpp"
 
 namespace armwright {
 namespace {

@@ -7,7 +7,7 @@
 #include "report/evidence/page_json.hpp"
 #include "report/page/study_parts.hpp"
 #include "study/analysis/verdict_targets.hpp"
-#include "study/statistics/spread.hpp"
+#include "study/statistics/summary.hpp"
 
 namespace armwright {
 namespace {

@@ -12,7 +12,7 @@
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "study/compare/escape.hpp"
-#include "study/executor/case_runner.hpp"
+#include "study/executor/case_executor.hpp"
 #include "study/run/json_values.hpp"
 
 namespace armwright {
@@ -138,7 +138,7 @@ bool add_final_checks(const StudyPlan& plan, const std::filesystem::path& study,
                  missing.push_back({cell, &best, file, &check});
                });
   Progress progress;
-  progress.phase = Progress::Phase::test;
+  progress.phase = CaseRole::test;
   for (const Missing& one : missing) {
     progress.total +=
         static_cast<std::uint64_t>(plan.problems[one.cell.problem].loaded.sets.test_cases);
@@ -153,9 +153,8 @@ bool add_final_checks(const StudyPlan& plan, const std::filesystem::path& study,
     std::iota(block.numbers.begin(), block.numbers.end(), std::uint64_t{0});
     Evaluation evaluation;
     const std::span<const double> x = one.best->x;
-    CaseRunner(*judged.problem, executor, stop)
-        .run({&x, 1}, block, false,
-             [&](std::size_t, Evaluation done) { evaluation = std::move(done); });
+    executor.evaluate(*judged.problem, {&x, 1}, block, {}, stop,
+                      [&](std::size_t, Evaluation done) { evaluation = std::move(done); });
     if (stop.requested()) {
       return false;
     }

@@ -5,7 +5,7 @@
 
 #include "study/analysis/study_result.hpp"
 #include "study/analysis/study_values.hpp"
-#include "study/statistics/profiles.hpp"
+#include "study/statistics/running_time.hpp"
 #include "study/statistics/values.hpp"
 
 namespace armwright {

@@ -8,9 +8,9 @@
 
 #include "study/analysis/study_result.hpp"
 #include "study/analysis/study_values.hpp"
-#include "study/statistics/holm.hpp"
 #include "study/statistics/pareto.hpp"
-#include "study/statistics/profiles.hpp"
+#include "study/statistics/running_time.hpp"
+#include "study/statistics/significance.hpp"
 #include "study/statistics/values.hpp"
 
 namespace armwright {

@@ -21,13 +21,10 @@
 #include <vector>
 
 #include "study/compare/cell.hpp"
-#include "study/statistics/bootstrap.hpp"
-#include "study/statistics/effect_size.hpp"
-#include "study/statistics/friedman.hpp"
 #include "study/statistics/ranking.hpp"
 #include "study/statistics/running_time.hpp"
-#include "study/statistics/spread.hpp"
-#include "study/statistics/wilcoxon.hpp"
+#include "study/statistics/significance.hpp"
+#include "study/statistics/summary.hpp"
 
 namespace armwright {
 

@@ -12,7 +12,7 @@
 #include "study/compare/choices.hpp"
 #include "study/compare/incumbents.hpp"
 #include "study/run/json_values.hpp"
-#include "study/run/record_files.hpp"
+#include "study/run/run_folder.hpp"
 #include "study/statistics/values.hpp"
 
 namespace armwright {

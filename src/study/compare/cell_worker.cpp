@@ -35,7 +35,7 @@ class Reporter final : public RunObserver {
   void on_progress(const Progress& progress) override {
     constexpr std::chrono::milliseconds kInterval{200};
     const auto now = Clock::now();
-    if (progress.phase == Progress::Phase::training && now - last_ >= kInterval) {
+    if (progress.phase == CaseRole::training && now - last_ >= kInterval) {
       last_ = now;
       parent_.send(make_note(Note::progress, "", progress.done));
     }
@@ -81,7 +81,7 @@ class ParentExecutor final : public CaseExecutor {
       const auto first = answer.get<std::uint64_t>();
       try {
         if (!failure) {
-          batch.take(first, get_outcomes(answer));
+          batch.deliver(first, get_outcomes(answer));
         }
       } catch (...) {
         failure = std::current_exception();

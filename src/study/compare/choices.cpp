@@ -5,7 +5,7 @@
 
 #include "base/bits.hpp"
 #include "study/run/candidate_pool.hpp"
-#include "study/run/judge.hpp"
+#include "study/run/winner_selection.hpp"
 #include "study/statistics/summary.hpp"
 
 namespace armwright {
@@ -44,7 +44,7 @@ std::vector<std::vector<Candidate>> select_along(const RunPlan& run,
 
 DesignBench::DesignBench(const LoadedProblem& problem, CaseRole role, CaseExecutor& executor,
                          StopSignal& stop)
-    : stop_(stop), runner_(*problem.problem, executor, stop) {
+    : problem_(*problem.problem), executor_(executor), stop_(stop) {
   const bool is_test = role == CaseRole::test;
   block_.role = role;
   block_.set = is_test ? problem.sets.test : problem.sets.validation;
@@ -66,9 +66,10 @@ bool DesignBench::add(std::span<const std::vector<double>> designs) {
     designs_.emplace_back(x.begin(), x.end());
   }
   evaluations_.resize(designs_.size());
-  runner_.run(candidates, block_, false, [&](std::size_t candidate, Evaluation evaluation) {
-    evaluations_[first + candidate] = std::move(evaluation);
-  });
+  executor_.evaluate(problem_, candidates, block_, {}, stop_,
+                     [&](std::size_t candidate, Evaluation evaluation) {
+                       evaluations_[first + candidate] = std::move(evaluation);
+                     });
   return !stop_.requested();
 }
 
@@ -113,7 +114,7 @@ std::optional<std::vector<Choice>> make_choices(const RunPlan& run,
     if (i + 1 == budgets.size() && result.winner) {
       judged.push_back(result.judged[*result.winner]);
     }
-    const auto best = Judge::choose_winner(run.problem.problem->description(), judged);
+    const auto best = choose_winner(run.problem.problem->description(), judged);
     choices.push_back({budgets[i], best ? std::optional(judged[*best]) : std::nullopt});
   }
   return choices;

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "study/executor/case_runner.hpp"
+#include "study/executor/case_executor.hpp"
 #include "study/journal/journal.hpp"
 #include "study/run/run_plan.hpp"
 #include "study/run/run_result.hpp"
@@ -30,8 +30,9 @@ class DesignBench {
  private:
   const Evaluation* find(std::span<const double> x) const;
 
+  const Problem& problem_;
+  CaseExecutor& executor_;
   StopSignal& stop_;
-  CaseRunner runner_;
   CaseBlock block_;
   std::vector<std::vector<double>> designs_;
   std::vector<Evaluation> evaluations_;

@@ -24,7 +24,7 @@ class CountingObserver final : public RunObserver {
  public:
   explicit CountingObserver(RunObserver& next) : next_(next) {}
   void on_progress(const Progress& progress) override {
-    if (progress.phase == Progress::Phase::training) {
+    if (progress.phase == CaseRole::training) {
       cases_ = progress.done;
     }
     next_.on_progress(progress);

@@ -14,7 +14,7 @@
 #include "study/compare/cell.hpp"
 #include "study/journal/journal.hpp"
 #include "study/matrix/attempt.hpp"
-#include "study/run/record_files.hpp"
+#include "study/run/run_folder.hpp"
 
 namespace armwright {
 namespace {

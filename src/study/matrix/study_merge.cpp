@@ -16,7 +16,7 @@
 #include "study/matrix/attempt.hpp"
 #include "study/matrix/cell_selection.hpp"
 #include "study/matrix/publication.hpp"
-#include "study/run/record_files.hpp"
+#include "study/run/run_folder.hpp"
 #include "study/survey/folder_copy.hpp"
 
 namespace armwright {

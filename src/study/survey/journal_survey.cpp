@@ -14,7 +14,7 @@
 #include "base/file_descriptor.hpp"
 #include "study/journal/journal_file.hpp"
 #include "study/journal/journal_format.hpp"
-#include "study/journal/journal_window.hpp"
+#include "study/journal/journal_reader.hpp"
 
 namespace armwright {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "study/journal/journal.hpp"
-#include "study/run/run_counts.hpp"
+#include "study/run/run_result.hpp"
 #include "study/survey/index_set.hpp"
 
 namespace armwright {

@@ -12,7 +12,7 @@
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "study/compare/cell.hpp"
-#include "study/run/record_files.hpp"
+#include "study/run/run_folder.hpp"
 #include "study/run/run_lock.hpp"
 #include "study/survey/derived_survey.hpp"
 #include "study/survey/result_survey.hpp"

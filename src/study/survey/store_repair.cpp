@@ -57,7 +57,7 @@ class Repair {
     const auto found = damaged_runs_.find(name.lexically_normal());
     const RunSurvey* run = found != damaged_runs_.end() ? found->second : nullptr;
     // A run's files are read while nobody writes them, be it a cell's process that outlives a kill.
-    const ReadLock lock(survey_.folder / name);
+    const RunLock lock = RunLock::for_reading(survey_.folder / name);
     if (run != nullptr && run->is_manifest_lost) {
       copy_as_it_is(name, choose_aside(survey_.folder, name));
       report_.runs.push_back(
@@ -174,9 +174,9 @@ void check_target(const fs::path& folder, const fs::path& target) {
 std::optional<StoreRepair> repair_store(const fs::path& folder, const fs::path& target,
                                         StopSignal& stop) {
   // From before it is looked at until the copy is made.
-  std::optional<ReadLock> lock;
+  std::optional<RunLock> lock;
   if (fs::is_directory(folder)) {
-    lock.emplace(folder);
+    lock.emplace(RunLock::for_reading(folder));
     check_target(folder, target);
   }
   const StoreSurvey survey = survey_store(folder);

@@ -25,7 +25,7 @@ class Interrupter final : public RunObserver {
  public:
   Interrupter(StopSignal& stop, int at) : stop_(stop), at_(at) {}
   void on_progress(const Progress& progress) override {
-    heard_training_ = heard_training_ || progress.phase == Progress::Phase::training;
+    heard_training_ = heard_training_ || progress.phase == CaseRole::training;
     if (++calls_ == at_) {
       stop_.request(StopReason::interrupted);
     }

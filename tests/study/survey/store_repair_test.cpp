@@ -86,7 +86,7 @@ TEST_P(StoreRepairOf, ARunGoesOnToTheSameResult) {
   EXPECT_EQ(read("copy").training.size(), done.evaluations_kept);
 
   ASSERT_TRUE(run(plan, "copy"));
-  EXPECT_EQ(observer_.last.phase, Progress::Phase::test);
+  EXPECT_EQ(observer_.last.phase, CaseRole::test);
   expect_same_evaluations(read("whole"), read("copy"));
   EXPECT_EQ(read_derived(temporary_ / "whole"), read_derived(temporary_ / "copy"));
   EXPECT_FALSE(survey_store(temporary_ / "copy").is_damaged());

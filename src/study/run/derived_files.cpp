@@ -1,4 +1,4 @@
-#include "study/run/store.hpp"
+#include "study/run/derived_files.hpp"
 
 #include <fmt/format.h>
 
@@ -10,13 +10,13 @@
 #include "base/file.hpp"
 #include "base/text.hpp"
 #include "problems/config/design_file.hpp"
-#include "study/run/database.hpp"
 #include "study/run/run.hpp"
 
 namespace armwright {
 namespace {
 
-// With generations one row each, otherwise one row an improvement; feasible evaluations only.
+// Writes one row per generation or, for optimizers without generations, one row per improvement.
+// Only feasible evaluations count.
 void write_convergence_csv(const std::filesystem::path& path, const ProblemDescription& problem,
                            const RecordedEvaluations& training) {
   struct Row {
@@ -59,8 +59,9 @@ void write_convergence_csv(const std::filesystem::path& path, const ProblemDescr
   file.commit();
 }
 
-// The judged designs of a problem with several objectives, by the first of them on the validation
-// set; `on_front` tells those that no other one with as few failed cases is at least as good as.
+// Returns the judged designs of a problem with several objectives, sorted by the first objective on
+// the validation set. `on_front` is 0 if another design has no more failed cases and is at least as
+// good in every objective, else 1.
 std::string make_front_csv(const RunResult& result) {
   std::vector<const JudgedCandidate*> rows;
   for (const JudgedCandidate& judged : result.judged) {
@@ -119,8 +120,8 @@ std::string make_winner_toml(const RunPlan& plan, const RunResult& result,
   return toml;
 }
 
-// A run that failed and was tried again may have judged designs that are no candidates any more:
-// they are left out, and the others numbered as in the result.
+// Returns the validation and test records of the result's candidates, numbered as in the result. A
+// run that failed and was started again may have judged designs that are no candidates any more.
 std::vector<EvaluationRecord> select_judgements(const JournalContent& journal,
                                                 const RunResult& result) {
   std::vector<EvaluationRecord> selected;
@@ -136,7 +137,7 @@ std::vector<EvaluationRecord> select_judgements(const JournalContent& journal,
     record.index = is_test ? 0 : place;
     selected.push_back(std::move(record));
   }
-  // Not as they happened to finish: the same tables for any number of threads.
+  // The journal has them in the order of completion; the tables must not depend on threads.
   std::ranges::stable_sort(selected, {}, [](const EvaluationRecord& record) {
     return std::pair(record.cases.role, record.index);
   });

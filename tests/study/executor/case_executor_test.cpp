@@ -1,5 +1,5 @@
-// How pairs of candidates and cases are shared out, on a problem that notes what it is handed.
-#include "study/executor/case_runner.hpp"
+// Tests how pairs of candidates and cases are distributed, on a problem that stores its jobs.
+#include "study/executor/case_executor.hpp"
 
 #include <gmock/gmock.h>
 
@@ -17,7 +17,7 @@ using testing::IsEmpty;
 using testing::Le;
 using testing::SizeIs;
 
-// Errors are x + 1000 case; residuals, where asked for, the error twice.
+// The error is x + 1000 case; the residuals, where asked for, are the error twice.
 class NotingProblem : public Problem {
  public:
   explicit NotingProblem(BatchSize size) : size_(size) {}
@@ -85,7 +85,8 @@ struct NotedRun {
   explicit NotedRun(BatchSize size, unsigned threads = 1) : problem(size), executor(threads) {
     problem.stop = &stop;
   }
-  // Candidates 0, 1, ... on the cases 7, 8, ...; what on_done is told, by candidate.
+  // Evaluates the candidates 0, 1, ... on the cases 7, 8, ... and returns the evaluations by
+  // candidate.
   std::map<std::size_t, Evaluation> operator()(std::size_t candidates, std::size_t cases,
                                                CaseRole role = CaseRole::training,
                                                bool residuals = false) {
@@ -100,25 +101,26 @@ struct NotedRun {
     }
     std::mutex mutex;
     std::map<std::size_t, Evaluation> done;
-    CaseRunner(problem, executor, stop)
-        .run(spans, block, residuals, [&](std::size_t candidate, Evaluation evaluation) {
-          const std::lock_guard lock(mutex);
-          order.push_back(candidate);
-          calls_before.push_back(problem.count_calls());
-          EXPECT_TRUE(done.emplace(candidate, std::move(evaluation)).second) << candidate;
-        });
+    executor.evaluate(problem, spans, block, {.residuals = residuals}, stop,
+                      [&](std::size_t candidate, Evaluation evaluation) {
+                        const std::lock_guard lock(mutex);
+                        order.push_back(candidate);
+                        calls_before.push_back(problem.count_calls());
+                        EXPECT_TRUE(done.emplace(candidate, std::move(evaluation)).second)
+                            << candidate;
+                      });
     return done;
   }
 
   StopSignal stop;
   NotingProblem problem;
   ThreadExecutor executor;
-  std::vector<std::size_t> order;         // of the candidates, as they were done
+  std::vector<std::size_t> order;         // in which the candidates finished
   std::vector<std::size_t> calls_before;  // calls of simulate() until then; on one thread
 };
 
-// So that lanes side by side follow the same targets.
-TEST(CaseRunner, HandsOutTheCasesOfAsManyCandidatesAsThereAreLanes) {
+// Neighbouring lanes must follow the same targets.
+TEST(CaseExecutor, HandsOutTheCasesOfAsManyCandidatesAsThereAreLanes) {
   NotedRun run({.granularity = 2, .largest = 4});
   run(3, 3);
   using Pair = NotingProblem::Pair;
@@ -128,27 +130,27 @@ TEST(CaseRunner, HandsOutTheCasesOfAsManyCandidatesAsThereAreLanes) {
                           ElementsAre(Pair(2, 9))));
 }
 
-TEST(CaseRunner, WithoutBatchesEveryPairIsOnItsOwn) {
+TEST(CaseExecutor, WithoutBatchesEveryPairIsOnItsOwn) {
   NotedRun run({});
   run(3, 2);
   EXPECT_THAT(run.problem.calls(), SizeIs(6));
   EXPECT_THAT(run.problem.calls(), Each(SizeIs(1)));
 }
 
-TEST(CaseRunner, TheBatchSizeIsThatOfTheBlocksRole) {
+TEST(CaseExecutor, TheBatchSizeIsThatOfTheBlocksRole) {
   NotedRun run({.granularity = 4, .largest = 8});
   run(2, 3, CaseRole::validation);
   EXPECT_THAT(run.problem.calls(), Each(SizeIs(1)));
 }
 
-TEST(CaseRunner, TellsOfACandidateAsSoonAsItsLastCaseIsDone) {
+TEST(CaseExecutor, TellsOfACandidateAsSoonAsItsLastCaseIsDone) {
   NotedRun run({.granularity = 2, .largest = 4});
   run(3, 3);
   EXPECT_THAT(run.order, ElementsAre(0, 1, 2));
   EXPECT_THAT(run.calls_before, ElementsAre(2, 2, 3));
 }
 
-TEST(CaseRunner, ResultsDoNotDependOnBatchesAndThreads) {
+TEST(CaseExecutor, ResultsDoNotDependOnBatchesAndThreads) {
   const auto expected = NotedRun({})(35, 5);
   ASSERT_EQ(expected.size(), 35U);
   for (const BatchSize size : {BatchSize{1, 1}, BatchSize{1, 3}, BatchSize{4, 16}, BatchSize{8, 64},
@@ -171,21 +173,22 @@ TEST(CaseRunner, ResultsDoNotDependOnBatchesAndThreads) {
   }
 }
 
-TEST(CaseRunner, AStopCountsBetweenBatches) {
+TEST(CaseExecutor, AStopCountsBetweenBatches) {
   NotedRun run({.granularity = 2, .largest = 4});
   run.problem.stop_at = 1 + 1000 * 9;  // candidate 1, third case: in the second batch
   const auto done = run(4, 3);
   EXPECT_THAT(run.problem.calls(), SizeIs(2));
-  EXPECT_THAT(run.order, ElementsAre(0, 1));  // that batch ends, and 1 with it; 2 has begun
+  EXPECT_THAT(run.order,
+              ElementsAre(0, 1));  // the batch ends, and candidate 1 with it; 2 has begun
 }
 
-TEST(CaseRunner, ThrowsWhatTheProblemThrows) {
+TEST(CaseExecutor, ThrowsWhatTheProblemThrows) {
   NotedRun run({.granularity = 2, .largest = 4}, 2);
   run.problem.throw_for = 2;
   EXPECT_THROW(run(4, 3), std::runtime_error);
 }
 
-TEST(CaseRunner, ResidualsOnlyIfAskedFor) {
+TEST(CaseExecutor, ResidualsOnlyIfAskedFor) {
   NotedRun run({.granularity = 2, .largest = 4});
   EXPECT_THAT(run(1, 3, CaseRole::training, true).at(0).residuals,
               ElementsAre(7000, 7000, 8000, 8000, 9000, 9000));
@@ -194,7 +197,7 @@ TEST(CaseRunner, ResidualsOnlyIfAskedFor) {
   EXPECT_THAT(run(1, 3, CaseRole::training, false).at(0).residuals, IsEmpty());
 }
 
-TEST(CaseRunner, NothingToDo) {
+TEST(CaseExecutor, NothingToDo) {
   NotedRun run({.granularity = 2, .largest = 4}, 2);
   EXPECT_THAT(run(0, 3), IsEmpty());
   EXPECT_THAT(run.problem.calls(), IsEmpty());
