@@ -61,7 +61,7 @@ struct Document {
   std::vector<std::filesystem::path> files;
   std::deque<Source> sources;  // a deque, since places point into it
   Value root;
-  mutable std::map<std::string, AskedKey, std::less<>> asked;  // by path
+  mutable Value settled;  // what readers settled (ConfigTable::settle), a table
 };
 
 std::shared_ptr<const Document> load_document(const std::filesystem::path& file,

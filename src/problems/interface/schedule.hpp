@@ -6,8 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
-
-#include "base/config.hpp"
+#include <vector>
 
 namespace armwright {
 
@@ -44,8 +43,13 @@ struct Racing {
   int chunk_cases = 4;  // abandonment: simulated between two questions whether it is worth going on
 };
 
+inline constexpr int kLargestEta = 1000;
+inline constexpr double kLargestMargin = 1e6;
+
 const char* to_string(Schedule::Kind kind);
 const char* to_string(Racing::Kind kind);
+std::vector<std::string> schedule_kind_names();  // in the order of the enum
+std::vector<std::string> racing_kind_names();    // in the order of the enum
 std::optional<Schedule::Kind> find_schedule_kind(std::string_view name);
 
 // Where the training cases of this set come from: bred ones are "coevolved/ID" instead of
@@ -66,9 +70,5 @@ std::string to_text(const Racing& racing);
 inline constexpr std::string_view kRacingForms =
     "none, halving:FIRST_CASES:ETA (whole numbers >= 1 and >= 2) or abandonment:MARGIN:CHUNK_CASES "
     "(a number >= 1 and a whole number >= 1); what is left out has its default: 1, 2, 1, 4";
-
-// The tables [schedule] and [racing] of a problem file. Error{usage} names file, line and key.
-Schedule read_schedule_table(const ConfigTable& table);
-Racing read_racing_table(const ConfigTable& table);
 
 }  // namespace armwright

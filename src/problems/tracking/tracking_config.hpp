@@ -1,17 +1,32 @@
 // All that a tracking problem is made of, as a problem's file says it.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "problems/tracking/engine_choice.hpp"
+#include "problems/interface/problem.hpp"
 #include "problems/tracking/perturbation.hpp"
 #include "problems/tracking/requirement.hpp"
 #include "problems/tracking/tracking_objective.hpp"
+#include "sim/tracking/physics_engine.hpp"
 #include "sim/tracking/tracking.hpp"
 
 namespace armwright {
+
+// The engines of a problem. Training may use another engine, or another precision, than validation,
+// test and every evaluation of a given design.
+struct EnginePair {
+  std::shared_ptr<const PhysicsEngine> training;
+  std::shared_ptr<const PhysicsEngine> judging;  // may be the same
+  std::string training_name;
+  std::string judging_name;
+
+  const PhysicsEngine& get(CaseRole role) const {
+    return role == CaseRole::training ? *training : *judging;
+  }
+};
 
 // One number of the design that is optimized.
 struct DesignParameter {
@@ -34,7 +49,7 @@ struct TrackingConfig {
   TrackingTask task;
   WorkspaceSphere workspace;
   std::optional<TestCase> path;  // in place of cases generated in the workspace
-  EnginePair engines;            // both must be there (choose_engines)
+  EnginePair engines;            // both must be there
   double cutoff_error_m = 1.0;   // training only
   TrackingObjective objective;
   Perturbation perturbation;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "problems/config/path_file.hpp"
+#include "problems/config/problem_readers.hpp"
 #include "problems/config/path_survey.hpp"
 #include "problems/problem_folder.hpp"
 

@@ -1,11 +1,10 @@
 // Which engine simulates what, and what of it is recorded.
-#include "problems/tracking/engine_choice.hpp"
-
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
 
+#include "base/config.hpp"
 #include "base/expect_error.hpp"
 #include "problems/config/config_files.hpp"
 #include "problems/config/problem_loader.hpp"
