@@ -378,8 +378,7 @@ std::vector<double> read(const Node& node, const Setting<std::vector<double>>& s
   return numbers;
 }
 
-std::vector<std::string> read(const Node& node,
-                              const Setting<std::vector<std::string>>& setting) {
+std::vector<std::string> read(const Node& node, const Setting<std::vector<std::string>>& setting) {
   const Value& array = require_kind(node, setting.key, Kind::array, setting.describe_allowed());
   const std::string path = config::join_path(node.path, setting.key);
   std::vector<std::string> strings;
@@ -474,25 +473,31 @@ template int ConfigTable::get_or(const Setting<int>&, const int&) const;
 template std::int64_t ConfigTable::get_or(const Setting<std::int64_t>&, const std::int64_t&) const;
 template double ConfigTable::get_or(const Setting<double>&, const double&) const;
 template std::string ConfigTable::get_or(const Setting<std::string>&, const std::string&) const;
-template std::vector<double> ConfigTable::get_or(const Setting<std::vector<double>>&, const std::vector<double>&) const;
-template std::vector<std::string> ConfigTable::get_or(const Setting<std::vector<std::string>>&, const std::vector<std::string>&) const;
+template std::vector<double> ConfigTable::get_or(const Setting<std::vector<double>>&,
+                                                 const std::vector<double>&) const;
+template std::vector<std::string> ConfigTable::get_or(const Setting<std::vector<std::string>>&,
+                                                      const std::vector<std::string>&) const;
 template std::optional<bool> ConfigTable::find(const Setting<bool>&) const;
 template std::optional<int> ConfigTable::find(const Setting<int>&) const;
 template std::optional<std::int64_t> ConfigTable::find(const Setting<std::int64_t>&) const;
 template std::optional<double> ConfigTable::find(const Setting<double>&) const;
 template std::optional<std::string> ConfigTable::find(const Setting<std::string>&) const;
-template std::optional<std::vector<double>> ConfigTable::find(const Setting<std::vector<double>>&) const;
-template std::optional<std::vector<std::string>> ConfigTable::find(const Setting<std::vector<std::string>>&) const;
+template std::optional<std::vector<double>> ConfigTable::find(
+    const Setting<std::vector<double>>&) const;
+template std::optional<std::vector<std::string>> ConfigTable::find(
+    const Setting<std::vector<std::string>>&) const;
 template void ConfigTable::settle(const Setting<int>&, const int&) const;
 template void ConfigTable::settle(const Setting<std::int64_t>&, const std::int64_t&) const;
 template void ConfigTable::settle(const Setting<double>&, const double&) const;
 template void ConfigTable::settle(const Setting<std::string>&, const std::string&) const;
-template void ConfigTable::settle(const Setting<std::vector<double>>&, const std::vector<double>&) const;
+template void ConfigTable::settle(const Setting<std::vector<double>>&,
+                                  const std::vector<double>&) const;
 
 ConfigTable ConfigTable::get_table(const SettingTable& table) const {
   const SettingTable* declared = check_declared(*node_, table);
   const std::string path = config::join_path(node_->path, table.key);
-  const Value& value = require_kind(*node_, table.key, Kind::table, fmt::format("a table, [{}]", path));
+  const Value& value =
+      require_kind(*node_, table.key, Kind::table, fmt::format("a table, [{}]", path));
   return ConfigTable(make_child(*node_, value, path, declared));
 }
 
@@ -518,9 +523,9 @@ ConfigTable ConfigTable::get_table_or_empty(const SettingTable& table) const {
   }
   const auto empty = std::make_shared<Value>();
   empty->place = node_->table->place;
-  return ConfigTable(std::make_shared<Node>(Node{node_->document, empty,
-                                                 config::join_path(node_->path, table.key),
-                                                 check_declared(*node_, table)}));
+  return ConfigTable(
+      std::make_shared<Node>(Node{node_->document, empty, config::join_path(node_->path, table.key),
+                                  check_declared(*node_, table)}));
 }
 
 std::vector<ConfigTable> ConfigTable::get_tables_or_empty(const SettingTable& array) const {

@@ -22,7 +22,8 @@ constexpr AnySetting::Kind find_kind() {
   } else if constexpr (std::is_same_v<Value, std::string>) {
     return AnySetting::Kind::text;
   } else {
-    return std::is_same_v<Value, std::vector<double>> ? AnySetting::Kind::numbers : AnySetting::Kind::texts;
+    return std::is_same_v<Value, std::vector<double>> ? AnySetting::Kind::numbers
+                                                      : AnySetting::Kind::texts;
   }
 }
 

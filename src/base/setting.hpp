@@ -74,8 +74,8 @@ struct Setting : AnySetting {
 // One table of a configuration file, or the file itself. Refers to declarations that live as long
 // as the program.
 struct SettingTable {
-  std::string key;         // "task", without the table that it stands in; empty: the file itself
-  bool is_array = false;   // true: an array of tables, [[KEY]]
+  std::string key;        // "task", without the table that it stands in; empty: the file itself
+  bool is_array = false;  // true: an array of tables, [[KEY]]
   std::vector<const AnySetting*> settings = {};
   std::vector<const SettingTable*> tables = {};
 };

@@ -21,7 +21,8 @@ using nlohmann::json;
 
 // One kind of configuration file.
 struct SettingFile {
-  std::string prefix;  // of names in the list; empty for problems, whose keys --set takes as they are
+  std::string
+      prefix;  // of names in the list; empty for problems, whose keys --set takes as they are
   std::string title;
   std::string words;  // Markdown
   std::vector<ListedSetting> settings;

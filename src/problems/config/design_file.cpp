@@ -131,8 +131,8 @@ PublishedResult read_published(const ConfigTable& table) {
 }
 
 JointDrive read_drive(const ConfigTable& joint, const ControllerRow& controller) {
-  // Every key counts as known before the first value is read. So a message about a missing key never
-  // takes a right key for its mistyped name.
+  // Every key counts as known before the first value is read. So a message about a missing key
+  // never takes a right key for its mistyped name.
   for (const GainSpec& gain : controller.gains) {
     joint.has(find_gain_setting(gain));
   }

@@ -1,7 +1,7 @@
-// Designs as TOML files. A design has the controllers' gains and the effort limits of every joint. If
-// it changes the robot it has the scales of links (length_scale, section_scale; default 1), and if it
-// changes the task the speed (speed_m_per_s; default: the task's). Files of published designs also
-// have the results that were reported for them, each with its conditions.
+// Designs as TOML files. A design has the controllers' gains and the effort limits of every joint.
+// If it changes the robot it has the scales of links (length_scale, section_scale; default 1), and
+// if it changes the task the speed (speed_m_per_s; default: the task's). Files of published designs
+// also have the results that were reported for them, each with its conditions.
 #pragma once
 
 #include <filesystem>
@@ -34,12 +34,12 @@ struct DesignFile {
   std::vector<PublishedResult> published;
 };
 
-// Reads a shipped design by name, or a file by path. Throws Error{usage} that names file, line, field,
-// value and what is allowed, Error{io} for a file that cannot be read.
+// Reads a shipped design by name, or a file by path. Throws Error{usage} that names file, line,
+// field, value and what is allowed, Error{io} for a file that cannot be read.
 DesignFile load_design(std::string_view name_or_path);
 
-// Returns the design as a file that load_design() reads back bit for bit, without what was published
-// about it.
+// Returns the design as a file that load_design() reads back bit for bit, without what was
+// published about it.
 std::string to_toml(const DesignFile& file);
 
 // Returns the declarations of every setting of a design's file, with the gains of all controllers.

@@ -82,8 +82,7 @@ const SettingTable kPhysicsSettings{
                  &kPhysicsGravity, &kPhysicsSubsteps, &kPhysicsErp, &kPhysicsCfm}};
 
 EnginePair read_engines(const ConfigTable& physics, std::span<const EngineRow> table) {
-  const EngineRow& training =
-      read_engine(physics, kPhysicsEngine, *kPhysicsEngine.fallback, table);
+  const EngineRow& training = read_engine(physics, kPhysicsEngine, *kPhysicsEngine.fallback, table);
   const EngineRow& judging = read_engine(physics, kPhysicsJudgingEngine, training.name, table);
   EngineOptions options;
   options.precision = parse_precision(physics.get(kPhysicsPrecision));

@@ -133,10 +133,11 @@ void check_limits(const ConfigTable& table, const TrackingConfig& config) {
   }
   const double least_n_m = calc_total_torque_n_m(weakest);
   if (config.objective.kind == Kind::torque_with_error_limit && !changes_torque) {
-    table.refuse(kObjectiveKind,
-                 fmt::format("no effort limit is optimized, so that the total torque is always {:g} "
-                             "N m; add effort_min and effort_max to variables.optimize",
-                             least_n_m));
+    table.refuse(
+        kObjectiveKind,
+        fmt::format("no effort limit is optimized, so that the total torque is always {:g} "
+                    "N m; add effort_min and effort_max to variables.optimize",
+                    least_n_m));
   }
   if (config.objective.kind == Kind::error_with_torque_limit &&
       least_n_m > config.objective.total_torque_limit_n_m) {

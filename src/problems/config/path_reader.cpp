@@ -17,8 +17,7 @@ constexpr std::size_t kPathLimit_bytes = std::size_t{64} << 20;
 constexpr Range kAnyPlace{.lower = -kFarthestPlace_m, .upper = kFarthestPlace_m};
 
 const Setting<std::string> kPathKind{"kind", one_of({"points", "line", "circle", "file"}),
-                                     kNoDefault,
-                                     "a path of your own in place of generated cases"};
+                                     kNoDefault, "a path of your own in place of generated cases"};
 const Setting<std::vector<double>> kPathFrom{"from_m", kAnyPlace, kNoDefault,
                                              "for the kind line: one end, three numbers"};
 const Setting<std::vector<double>> kPathTo{"to_m", kAnyPlace, kNoDefault,
@@ -56,7 +55,8 @@ TestCase make_points(const ConfigTable& table) {
   TestCase path;
   const auto points = table.get_tables_or_empty(kPointSettings);
   if (points.size() < 2) {
-    table.refuse(kPointSettings.key, "a path needs two [[path.point]] tables or more, the start first");
+    table.refuse(kPointSettings.key,
+                 "a path needs two [[path.point]] tables or more, the start first");
   }
   for (const ConfigTable& point : points) {
     path.points_m.push_back(read_vector(point, kPointPosition, "x, y and z in metres"));
@@ -102,7 +102,8 @@ TestCase make_circle(const ConfigTable& table, const TrackingTask& task) {
   first.normalize();
   const Eigen::Vector3d second = normal.cross(first);
   if (task.signal == SignalShape::step) {
-    table.refuse(kPathKind, "a circle needs a reference signal that moves; task.signal is \"step\"");
+    table.refuse(kPathKind,
+                 "a circle needs a reference signal that moves; task.signal is \"step\"");
   }
   const double length_m = 2 * std::numbers::pi * radius_m * repeats;
   const ReferenceSignal signal(task.signal, length_m, task.speed_m_per_s,
@@ -110,8 +111,8 @@ TestCase make_circle(const ConfigTable& table, const TrackingTask& task) {
   const double steps = std::ceil(signal.duration_s() / task.control_period_s - 1e-9);
   if (steps > kMostPathPoints) {
     table.refuse(kPathRadius, fmt::format("the circle would take {:.3g} control periods, possible "
-                                         "are {}; raise task.speed_m_per_s",
-                                         steps, kMostPathPoints));
+                                          "are {}; raise task.speed_m_per_s",
+                                          steps, kMostPathPoints));
   }
   TestCase path;
   path.continuous = true;
@@ -151,7 +152,7 @@ std::optional<ReadPath> read_path(const ConfigTable& table, const TrackingTask& 
     path.file = std::filesystem::is_regular_file(beside, ignored) ? beside : named;
     if (!std::filesystem::is_regular_file(*path.file, ignored)) {
       table.refuse(kPathFile, fmt::format("there is no such file, in {} or in the current folder",
-                                       sanitize(table.file().parent_path().string())));
+                                          sanitize(table.file().parent_path().string())));
     }
     path.the_case =
         parse_path(read_file(*path.file, kPathLimit_bytes), sanitize(path.file->string()), task);

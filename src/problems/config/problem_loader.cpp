@@ -70,8 +70,7 @@ const Setting<double> kWinnerTorque{"total_torque_n_m", kAboveZero, kNoDefault,
 const Setting<std::string> kWinnerDesign{"design", kNoDefault, "design file of that winner"};
 const Setting<std::string> kWinnerWhere{"where", "", "place in the source that reports it"};
 const SettingTable kWinnerSettings{
-    .key = "published",
-    .settings = {&kWinnerError, &kWinnerTorque, &kWinnerDesign, &kWinnerWhere}};
+    .key = "published", .settings = {&kWinnerError, &kWinnerTorque, &kWinnerDesign, &kWinnerWhere}};
 
 const Setting<std::string> kFunctionName{"name", analytic_names, kNoDefault,
                                          "for the kind analytic: the function"};
@@ -159,7 +158,8 @@ std::string read_name(const ConfigTable& table, const std::filesystem::path& pat
                             sanitize(path.string())));
   }
   if (name.empty() || name.find('/') != std::string::npos || name.front() == '.') {
-    table.refuse(kProblemName, "it names folders: it must not be empty, begin with '.' or hold '/'");
+    table.refuse(kProblemName,
+                 "it names folders: it must not be empty, begin with '.' or hold '/'");
   }
   return name;
 }
@@ -198,8 +198,8 @@ const SettingTable& problem_settings() {
       .tables = {&kRobotSettings, &kTaskSettings, &kControlSettings, &kWorkspaceSettings,
                  &kPathSettings, &kPhysicsSettings, &kTrainingSettings, &kScheduleSettings,
                  &kRacingSettings, &kSetsSettings, &kRunSettings, &kObjectiveSettings,
-                 &kVariableSettings, &kMotorSettings, &kRequirementSettings,
-                 &kPerturbationSettings, &kSweepSettings, &kWinnerSettings, &kFunctionSettings}};
+                 &kVariableSettings, &kMotorSettings, &kRequirementSettings, &kPerturbationSettings,
+                 &kSweepSettings, &kWinnerSettings, &kFunctionSettings}};
   return settings;
 }
 
@@ -257,9 +257,9 @@ LoadedProblem read_problem(const ConfigTable& table, const std::filesystem::path
 LoadedProblem load_problem(std::string_view name_or_path, std::span<const std::string> overrides,
                            std::span<const EngineRow> engines) {
   const auto path = resolve_config("problems", name_or_path);
-  return read_problem(ConfigTable::load(problem_settings(), path, overrides,
-                                        find_config_folder() / "problems"),
-                      path, engines);
+  return read_problem(
+      ConfigTable::load(problem_settings(), path, overrides, find_config_folder() / "problems"),
+      path, engines);
 }
 
 std::vector<ProblemTitle> list_problems() {

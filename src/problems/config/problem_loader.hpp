@@ -1,7 +1,7 @@
-// Loads problems: from a shipped name, a TOML file or the record of a run to a problem that is ready
-// to run, with the settings that belong to it. Every setting is checked here, before the first
-// evaluation. Messages name file, line, field, value and what is allowed. Files that a problem names
-// by a relative path are looked for beside the problem's file first.
+// Loads problems: from a shipped name, a TOML file or the record of a run to a problem that is
+// ready to run, with the settings that belong to it. Every setting is checked here, before the
+// first evaluation. Messages name file, line, field, value and what is allowed. Files that a
+// problem names by a relative path are looked for beside the problem's file first.
 #pragma once
 
 #include <filesystem>
@@ -68,8 +68,8 @@ struct LoadedProblem {
 
 // Loads a shipped problem by name, or a file. `overrides` are KEY=VALUE texts that replace values
 // of the file ("task.speed_m_per_s=2"). `engines` are the engines to choose from. Throws
-// Error{usage} for a wrong setting, Error{bad_data} for a wrong file that a setting names, Error{io}
-// for a file that cannot be read.
+// Error{usage} for a wrong setting, Error{bad_data} for a wrong file that a setting names,
+// Error{io} for a file that cannot be read.
 LoadedProblem load_problem(std::string_view name_or_path,
                            std::span<const std::string> overrides = {},
                            std::span<const EngineRow> engines = engine_table());

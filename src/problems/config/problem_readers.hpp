@@ -161,7 +161,8 @@ void add_rest(const TrackingTask& task, TestCase& path);
 
 extern const SettingTable kObjectiveSettings;
 TrackingObjective read_objective(const ConfigTable& table);
-// Refuses, in `table`, limits that no design within the bounds can meet, or that every design meets.
+// Refuses, in `table`, limits that no design within the bounds can meet, or that every design
+// meets.
 void check_limits(const ConfigTable& table, const TrackingConfig& config);
 
 // variables_reader.cpp: [variables]
@@ -187,8 +188,7 @@ Perturbation load_perturbation(const std::string& preset, std::size_t joints);
 // Returns all keys as KEY=VALUE texts, which replace every key of a problem's table.
 std::vector<std::string> make_overrides(const Perturbation& perturbation);
 // Settles the values of a preset, and no preset. Records the preset's file as an input of `loaded`.
-Perturbation read_perturbation(const ConfigTable& table, std::size_t joints,
-                               LoadedProblem& loaded);
+Perturbation read_perturbation(const ConfigTable& table, std::size_t joints, LoadedProblem& loaded);
 
 // requirement_reader.cpp: [[requirement]] (requirement.hpp)
 

@@ -67,8 +67,8 @@ LoadedProblem load_recorded_problem(const std::string& resolved_json, const std:
                             sanitize(name), sanitize(error.what())));
   }
   const auto path = beside / (name + ".toml");
-  LoadedProblem loaded = read_problem(
-      ConfigTable::parse(problem_settings(), toml, path.string()), path, engine_table());
+  LoadedProblem loaded = read_problem(ConfigTable::parse(problem_settings(), toml, path.string()),
+                                      path, engine_table());
   if (!start.empty()) {
     if (start.size() != loaded.problem->description().variables.size()) {
       throw Error(ErrorKind::bad_data,

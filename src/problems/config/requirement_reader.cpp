@@ -68,8 +68,8 @@ std::optional<std::size_t> read_joint(const ConfigTable& table, const Requiremen
   return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
 }
 
-// Returns whether the requirement is about joints that slide. Refuses a requirement about joints that
-// turn and joints that slide.
+// Returns whether the requirement is about joints that slide. Refuses a requirement about joints
+// that turn and joints that slide.
 bool check_kind(const ConfigTable& table, const RequirementRow& row,
                 std::optional<std::size_t> joint, const RobotModel& robot) {
   if (!row.of_joints) {
@@ -134,8 +134,8 @@ double calc_shortest_segment_s(const TrackingConfig& config) {
   return shortest_m / speed_m_per_s + task.rest_s;
 }
 
-// A tip that never settles or never arrives counts as the whole time of the segment. So no limit may
-// be above that time.
+// A tip that never settles or never arrives counts as the whole time of the segment. So no limit
+// may be above that time.
 void check_time(const ConfigTable& table, const RequirementRow& row, double limit_s,
                 const TrackingConfig& config) {
   const TrackingTask& task = config.task;
@@ -166,9 +166,10 @@ Requirement read_one(const ConfigTable& table, const TrackingConfig& config) {
   check_time(table, row, requirement.limit, config);
   if (table.has(kRequirementBand)) {
     if (row.quantity != RequiredQuantity::settling_time) {
-      table.refuse(kRequirementBand, fmt::format("only settling_time has a band, and this is {}; leave it "
-                                         "out",
-                                         row.key));
+      table.refuse(kRequirementBand,
+                   fmt::format("only settling_time has a band, and this is {}; leave it "
+                               "out",
+                               row.key));
     }
     requirement.band_m = table.get(kRequirementBand);
   }
@@ -207,7 +208,8 @@ std::vector<Requirement> read_requirements(std::span<const ConfigTable> tables,
     const Requirement requirement = read_one(table, config);
     if (std::ranges::any_of(requirements,
                             [&](const Requirement& one) { return is_same(one, requirement); })) {
-      table.refuse(kRequirementQuantity, "another [[requirement]] before it has the same; keep one of them");
+      table.refuse(kRequirementQuantity,
+                   "another [[requirement]] before it has the same; keep one of them");
     }
     requirements.push_back(requirement);
   }

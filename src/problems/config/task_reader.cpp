@@ -41,10 +41,8 @@ const Setting<std::vector<double>> kWorkspaceCentre{
     {.lower = -1000, .upper = 1000},
     kNoDefault,
     "centre of the sphere in which test cases lie, three numbers"};
-const Setting<double> kWorkspaceRadius{"radius_m",
-                                       {.lower = 1e-3, .upper = 100},
-                                       WorkspaceSphere{}.radius_m,
-                                       "radius of that sphere"};
+const Setting<double> kWorkspaceRadius{
+    "radius_m", {.lower = 1e-3, .upper = 100}, WorkspaceSphere{}.radius_m, "radius of that sphere"};
 const Setting<std::vector<double>> kWorkspaceNormal{
     "normal", kDirectionRange, kNoDefault,
     "test cases lie in the disc of the sphere across this direction, three numbers"};

@@ -151,8 +151,7 @@ void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
   config.perturbation = read_perturbation(table.get_table_or_empty(kPerturbationSettings),
                                           config.robot.joint_count(), loaded);
   check_limits(table.get_table_or_empty(kObjectiveSettings), config);
-  config.requirements =
-      read_requirements(table.get_tables_or_empty(kRequirementSettings), config);
+  config.requirements = read_requirements(table.get_tables_or_empty(kRequirementSettings), config);
   loaded.tracking = make_tracking(std::move(config), variables, urdf);
   loaded.problem = loaded.tracking;
 }

@@ -33,27 +33,25 @@ const Setting<double> kVariablesBounds{
     {.lower = 1, .upper = 1e9, .lower_open = true},
     TrackingConfig{}.bounds_factor,
     "bounds of gains and effort limits: the start divided by this, and times this"};
-const Setting<double> kVariablesLengthBounds{"length_bounds_factor", kFactor,
-                                             TrackingConfig{}.length_bounds_factor,
-                                             "bounds of length_scale: the start divided by this, and times this"};
+const Setting<double> kVariablesLengthBounds{
+    "length_bounds_factor", kFactor, TrackingConfig{}.length_bounds_factor,
+    "bounds of length_scale: the start divided by this, and times this"};
 const Setting<double> kVariablesSectionBounds{
     "section_bounds_factor", kFactor, TrackingConfig{}.section_bounds_factor,
     "bounds of section_scale: the start divided by this, and times this"};
 const Setting<double> kVariablesSpeedBounds{
     "speed_bounds_factor", kFactor, TrackingConfig{}.speed_bounds_factor,
     "bounds of the speed: the start divided by this, and times this"};
-const Setting<bool> kVariablesWithinEffort{
-    "within_effort_limits", TrackingConfig{}.within_effort_limits,
-    "whether effort limits stay within those of the URDF"};
+const Setting<bool> kVariablesWithinEffort{"within_effort_limits",
+                                           TrackingConfig{}.within_effort_limits,
+                                           "whether effort limits stay within those of the URDF"};
 
 const Setting<std::string> kJointVariablesName{
     "name", kNoDefault, "name of a joint of the robot that has a list of its own"};
 const Setting<std::vector<std::string>> kJointVariablesOptimize{
     "optimize", kNoDefault, "decision variables of this joint, in place of variables.optimize"};
 const SettingTable kJointVariableSettings{
-    .key = "joint",
-    .is_array = true,
-    .settings = {&kJointVariablesName, &kJointVariablesOptimize}};
+    .key = "joint", .is_array = true, .settings = {&kJointVariablesName, &kJointVariablesOptimize}};
 
 // Sets the start of the speed, which is a decision variable. Refuses bounds at whose lowest speed a
 // test case is too long.
@@ -71,8 +69,8 @@ void set_start_speed(const ConfigTable& variables, TrackingConfig& config) {
   }
 }
 
-// Converts the start to the controller that the problem names, and asks for the feed-forward that the
-// controller needs.
+// Converts the start to the controller that the problem names, and asks for the feed-forward that
+// the controller needs.
 void apply_controller(const ConfigTable& control, TrackingConfig& config) {
   if (const auto name = control.find(kControlController)) {
     try {
@@ -84,8 +82,8 @@ void apply_controller(const ConfigTable& control, TrackingConfig& config) {
   config.task.feed_forward = find_controller(config.start.controller).feed_forward;
 }
 
-// Returns the numbers of the design that are decision variables, in the order of the decision vector:
-// joint by joint the gains, effort limits and scales, last the speed.
+// Returns the numbers of the design that are decision variables, in the order of the decision
+// vector: joint by joint the gains, effort limits and scales, last the speed.
 std::vector<DesignParameter> read_parameters(const ConfigTable& table,
                                              const TrackingConfig& config) {
   const ControllerRow& controller = find_controller(config.start.controller);
@@ -118,10 +116,8 @@ std::vector<DesignParameter> read_parameters(const ConfigTable& table,
     return names;
   };
   const std::size_t joints = config.robot.joint_count();
-  std::vector<std::vector<std::string>> chosen(joints,
-                                               table.has(kVariablesOptimize)
-                                                   ? read_names(table, kVariablesOptimize)
-                                                   : drives);
+  std::vector<std::vector<std::string>> chosen(
+      joints, table.has(kVariablesOptimize) ? read_names(table, kVariablesOptimize) : drives);
   std::vector<std::string> joint_names;
   for (const Joint& joint : config.robot.joints) {
     joint_names.push_back(joint.name);
@@ -130,11 +126,12 @@ std::vector<DesignParameter> read_parameters(const ConfigTable& table,
   for (const ConfigTable& joint : table.get_tables_or_empty(kJointVariableSettings)) {
     const std::string name = joint.get(kJointVariablesName.among(joint_names));
     if (std::find(named.begin(), named.end(), name) != named.end()) {
-      joint.refuse(kJointVariablesName, "another [[variables.joint]] has that name; put them together");
+      joint.refuse(kJointVariablesName,
+                   "another [[variables.joint]] has that name; put them together");
     }
     named.push_back(name);
     const auto found = std::find(joint_names.begin(), joint_names.end(), name);
-    chosen[static_cast<std::size_t>(found - joint_names.begin())] = 
+    chosen[static_cast<std::size_t>(found - joint_names.begin())] =
         read_names(joint, kJointVariablesOptimize);
   }
   std::vector<DesignParameter> parameters;
@@ -162,7 +159,8 @@ std::vector<DesignParameter> read_parameters(const ConfigTable& table,
     parameters.push_back(speed);
   }
   if (parameters.empty()) {
-    table.refuse(kVariablesOptimize, "at least one design parameter of one joint must be optimized");
+    table.refuse(kVariablesOptimize,
+                 "at least one design parameter of one joint must be optimized");
   }
   return parameters;
 }

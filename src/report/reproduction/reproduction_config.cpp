@@ -6,8 +6,8 @@
 namespace armwright {
 namespace {
 
-// These files are not on the page of settings, so that the declarations have no meanings. The header
-// explains what the values are for.
+// These files are not on the page of settings, so that the declarations have no meanings. The
+// header explains what the values are for.
 const Setting<std::string> kReproLabel("label", kNoDefault, "");
 const Setting<std::string> kReproDesign("design", kNoDefault, "");
 const Setting<std::string> kReproProblem("problem", kNoDefault, "");
@@ -78,16 +78,14 @@ ReproductionConfig load_reproduction_config(const std::string& name_or_path) {
   config.sweep = table.get(kReproSweep);
   for (const ConfigTable& again : table.get_tables_or_empty(kReproReevaluationTable)) {
     config.reevaluations.push_back({again.get(kReproLabel), again.get(kReproRun),
-                                    again.get_or(kReproSet, {}),
-                                    again.get(kReproWhere)});
+                                    again.get_or(kReproSet, {}), again.get(kReproWhere)});
   }
   for (const ConfigTable& figure : table.get_tables_or_empty(kReproFigureTable)) {
     config.figures.push_back(read_figure(figure));
   }
   for (const ConfigTable& replay : table.get_tables_or_empty(kReproReplayTable)) {
-    config.replays.push_back({replay.get(kReproId), replay.get(kReproTitle),
-                              replay.get(kReproOf), replay.get_or(kReproBeside, {}),
-                              replay.get(kReproTrainingCase)});
+    config.replays.push_back({replay.get(kReproId), replay.get(kReproTitle), replay.get(kReproOf),
+                              replay.get_or(kReproBeside, {}), replay.get(kReproTrainingCase)});
   }
   for (const ConfigTable& momentary : table.get_tables_or_empty(kReproMomentaryTable)) {
     config.momentary.push_back({momentary.get(kReproName), momentary.get(kReproReplay)});

@@ -23,8 +23,8 @@ namespace {
 constexpr std::size_t kMostNamed = 200;          // problems, and optimizers
 constexpr std::uint64_t kMostCells = 1'000'000;  // problems x optimizers x replicates
 
-// Refuses numbers that are each allowed, but together make a plan that takes hours to check and more
-// memory than there is. It runs before anything is loaded.
+// Refuses numbers that are each allowed, but together make a plan that takes hours to check and
+// more memory than there is. It runs before anything is loaded.
 void check_size(const RawPlan& raw, const StudyPlan& plan) {
   const auto refuse = [](std::string_view what, std::uint64_t count, std::uint64_t most) {
     throw Error(ErrorKind::usage, fmt::format("the study has {} {}; at most {} are possible: make "
@@ -186,7 +186,8 @@ void load_optimizers(const RawPlan& raw, std::span<const OptimizerRow> rows, Stu
   }
   const auto add = [&](std::string_view name) {
     try {
-      plan.optimizers.push_back(load_study_optimizer({.name = std::string(name), .baseline = true}));
+      plan.optimizers.push_back(
+          load_study_optimizer({.name = std::string(name), .baseline = true}));
     } catch (const Error& error) {
       throw Error(error.kind(),
                   fmt::format("{} (it stands in every comparison as a baseline; name another local "

@@ -89,12 +89,11 @@ void check_method_settings(const ConfigTable& optimizer, const AnySetting& set,
     if (key != kController &&
         std::ranges::find(kMethodTables, get_table(setting)) == std::end(kMethodTables)) {
       optimizer.refuse(
-          set,
-          fmt::format("{} is the same for every optimizer of a comparison. Of an optimizer's "
-                      "own may be how its budget is spent in training and what controls its "
-                      "designs: schedule = \"KIND:K\", and in `set` racing.*, schedule.*, "
-                      "perturbation.* and {}",
-                      sanitize(key), kController));
+          set, fmt::format("{} is the same for every optimizer of a comparison. Of an optimizer's "
+                           "own may be how its budget is spent in training and what controls its "
+                           "designs: schedule = \"KIND:K\", and in `set` racing.*, schedule.*, "
+                           "perturbation.* and {}",
+                           sanitize(key), kController));
     }
     if (key == "schedule.kind" || key == "schedule.cases" || key == "schedule.fixed_cases") {
       optimizer.refuse(set, fmt::format("for {} write schedule = \"KIND:K\"", key));

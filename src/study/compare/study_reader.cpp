@@ -21,8 +21,8 @@ const Setting<std::vector<std::string>> kStudyProblems{
     "problems", kNoDefault, "names of problems, in place of [[problem]]"};
 const Setting<std::vector<std::string>> kStudyOptimizers{
     "optimizers", kNoDefault, "names of optimizers, in place of [[optimizer]]"};
-const Setting<std::vector<std::string>> kStudySet{
-    "set", kNoDefault, "changes to every problem, a list of KEY=VALUE"};
+const Setting<std::vector<std::string>> kStudySet{"set", kNoDefault,
+                                                  "changes to every problem, a list of KEY=VALUE"};
 const Setting<std::int64_t> kStudyBudget{
     "budget", kBudgetRange, 0,
     "training cases that every run may simulate; required, here or by --budget"};
@@ -106,9 +106,9 @@ const Setting<std::string> kProblemEntryTest{"test_set", "",
 const SettingTable kProblemEntrySettings{
     .key = "problem",
     .is_array = true,
-    .settings = {&kProblemEntryName, &kProblemEntryLabel, &kProblemEntrySet,
-                 &kProblemEntrySchedule, &kProblemEntryHash, &kProblemEntryTraining,
-                 &kProblemEntryValidation, &kProblemEntryTest}};
+    .settings = {&kProblemEntryName, &kProblemEntryLabel, &kProblemEntrySet, &kProblemEntrySchedule,
+                 &kProblemEntryHash, &kProblemEntryTraining, &kProblemEntryValidation,
+                 &kProblemEntryTest}};
 
 const Setting<std::string> kOptimizerEntryName{"name", kNoDefault, "optimizer, as --optimizer"};
 const Setting<std::string> kOptimizerEntryLabel{
@@ -138,8 +138,10 @@ const Setting<std::string> kTargetLabel{"label", kNoDefault, "name of a fixed ta
 const Setting<std::vector<std::string>> kTargetProblems{
     "problems", kNoDefault, "labels of the problems that it holds for (default: all)"};
 const Setting<double> kTargetValue{"value", kNoDefault, "largest objective on the test set"};
-const Setting<std::int64_t> kTargetFailures{
-    "failures", {.lower = 0, .upper = 1'000'000}, kNoDefault, "largest number of failing test cases"};
+const Setting<std::int64_t> kTargetFailures{"failures",
+                                            {.lower = 0, .upper = 1'000'000},
+                                            kNoDefault,
+                                            "largest number of failing test cases"};
 const SettingTable kTargetSettings{
     .key = "target",
     .is_array = true,
@@ -193,8 +195,7 @@ NamedProblem read_problem_entry(const ConfigTable& table) {
                        .settings = table.get_or(kProblemEntrySet, {}),
                        .schedule = read_schedule_key(table, kProblemEntrySchedule),
                        .configuration_sha256 = table.get(kProblemEntryHash)};
-  for (const auto* set :
-       {&kProblemEntryTraining, &kProblemEntryValidation, &kProblemEntryTest}) {
+  for (const auto* set : {&kProblemEntryTraining, &kProblemEntryValidation, &kProblemEntryTest}) {
     table.get(*set);  // the rest of the plan determines them
   }
   return problem;

@@ -36,7 +36,7 @@ struct NamedProblem {
 struct RawPlan {
   std::vector<NamedProblem> problems;
   std::vector<NamedOptimizer> optimizers;
-  std::vector<std::string> settings;       // of every problem; a problem's own settings replace them
+  std::vector<std::string> settings;  // of every problem; a problem's own settings replace them
   std::vector<std::string> last_settings;  // of every problem; they replace all others
   std::optional<Schedule> schedule;
 };
