@@ -135,11 +135,12 @@ double read_number(const Value& value, const std::string& path, const Range& ran
   return number;
 }
 
+// A key that no reader read.
 struct Unknown {
-  const Value* value;  // where it stands
+  const Value* value;
   std::string path;
   std::string key;
-  const Value* table;
+  const Value* table;  // that holds the key
 };
 
 std::string describe_unknown_key(const Unknown& unknown) {

@@ -68,8 +68,8 @@ std::optional<std::size_t> read_joint(const ConfigTable& table, const Requiremen
   return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
 }
 
-// Returns whether the requirement is about joints that slide. Refuses a requirement about joints
-// that turn and joints that slide.
+// Returns whether the requirement is about joints that slide. Refuses a requirement about joints of
+// both kinds.
 bool check_kind(const ConfigTable& table, const RequirementRow& row,
                 std::optional<std::size_t> joint, const RobotModel& robot) {
   if (!row.of_joints) {

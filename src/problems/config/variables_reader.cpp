@@ -53,8 +53,8 @@ const Setting<std::vector<std::string>> kJointVariablesOptimize{
 const SettingTable kJointVariableSettings{
     .key = "joint", .is_array = true, .settings = {&kJointVariablesName, &kJointVariablesOptimize}};
 
-// Sets the start of the speed, which is a decision variable. Refuses bounds at whose lowest speed a
-// test case is too long.
+// Sets the start of the speed, which is a decision variable. Refuses bounds if a test case at the
+// lowest speed is longer than kMostPeriods.
 void set_start_speed(const ConfigTable& variables, TrackingConfig& config) {
   TrackingTask slowest = make_task(config.task, config.start);
   config.start.speed_m_per_s = slowest.speed_m_per_s;

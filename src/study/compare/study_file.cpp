@@ -20,7 +20,7 @@
 namespace armwright {
 namespace {
 
-constexpr std::size_t kMostNamed = 200;          // problems, and optimizers
+constexpr std::size_t kMostNamed = 200;          // of problems, and of optimizers
 constexpr std::uint64_t kMostCells = 1'000'000;  // problems x optimizers x replicates
 
 // Refuses numbers that are each allowed, but together make a plan that takes hours to check and
@@ -53,7 +53,9 @@ std::string make_study_name(const StudyPlan& plan) {
   return name.substr(0, kLongest);
 }
 
-// Only the same cases for all make a pair: of fresh ones, optimizers without generations see none.
+// Returns the schedule that was asked for, else a fixed one: runs are compared in pairs, which need
+// the same training cases for every optimizer. An optimizer without generations cannot have fresh
+// cases.
 Schedule choose_study_schedule(const LoadedProblem& problem, const std::optional<Schedule>& asked) {
   if (asked) {
     return *asked;
@@ -69,7 +71,7 @@ void refuse_repeated(std::string_view what, std::span<const std::string> labels)
       throw Error(ErrorKind::usage,
                   fmt::format("{} label '{}' is not printable text", what, sanitize(*label)));
     }
-    // A cell's folder is named after it, and names may have 255 bytes.
+    // A cell's folder has this name, and a name may have 255 bytes.
     constexpr std::size_t kLongestName = 250;
     if (escape_name(*label).size() > kLongestName) {
       throw Error(ErrorKind::usage,
@@ -87,8 +89,8 @@ void refuse_repeated(std::string_view what, std::span<const std::string> labels)
   }
 }
 
-// A plan made where "auto" came to another SIMD level is the same plan on that level, if this
-// machine has it. False if none of its levels gives what is recorded.
+// Loads the problem on the SIMD level that the plan was made with: "auto" may choose another level
+// on this machine. Returns false if no level of this machine gives the recorded configuration.
 bool load_on_recorded_simd(const NamedProblem& named, StudyProblem& problem) {
   for (const std::string& level : supported_simd_names()) {
     std::vector<std::string> settings = problem.settings;
@@ -100,7 +102,7 @@ bool load_on_recorded_simd(const NamedProblem& named, StudyProblem& problem) {
         return true;
       }
     } catch (const Error&) {
-      return false;  // of a function, or its engine has no SIMD
+      return false;  // the problem is a function, or its engine has no SIMD
     }
   }
   return false;
@@ -147,7 +149,7 @@ OptimizerRow find_row(const NamedOptimizer& named, std::span<const OptimizerRow>
     return *row;
   }
   if (named.description.empty()) {
-    return load_optimizer(named.name);  // what it reads says what its inputs are
+    return load_optimizer(named.name);  // loading it also finds its inputs
   }
   OptimizerRow recorded = read_foreign_row(named.name, named.description);
   for (const std::string& input : named.inputs) {
