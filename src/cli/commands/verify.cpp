@@ -22,7 +22,7 @@
 #include "cli/views/verification.hpp"
 #include "problems/config/config_files.hpp"
 #include "problems/config/design_file.hpp"
-#include "problems/config/perturbation_reader.hpp"
+#include "problems/config/problem_readers.hpp"
 #include "sim/engines/engine_table.hpp"
 
 namespace armwright {

@@ -21,7 +21,7 @@ struct Found {
   std::uint64_t number = 0;
 };
 
-// The worst of every joint and kind comes first; that of all cases is kept.
+// The worst fault per joint and kind, over all cases.
 class Findings {
  public:
   void add(const PathFault& fault, const std::string& set, std::uint64_t number) {
@@ -60,7 +60,7 @@ std::vector<std::string> check_paths(const LoadedProblem& problem) {
   if (policy == LimitPolicy::ignore) {
     return lines;
   }
-  // Tables are made without looking: the survey itself does, and tells all that it sees.
+  // With "warn", tables are made without an error, so that the survey can report every fault.
   TrackingTask task = setup.task();
   task.limits = LimitPolicy::warn;
   const TrackingSetup looking(problem.tracking()->config().robot, task);
@@ -86,7 +86,7 @@ std::vector<std::string> check_paths(const LoadedProblem& problem) {
       }
     }
     if (is_path) {
-      break;  // the same in all sets
+      break;  // every set has the same path
     }
   }
   for (std::string& line : findings.describe_all(setup.robot())) {

@@ -1,12 +1,13 @@
-#include "problems/config/replicate.hpp"
-
 #include <cassert>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "problems/config/problem_loader.hpp"
+
 namespace armwright {
 namespace {
 
+// A problem with another start.
 class StartedElsewhere final : public Problem {
  public:
   StartedElsewhere(std::shared_ptr<const Problem> problem, const std::vector<double>& start)

@@ -6,8 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
-
-#include "base/config.hpp"
+#include <vector>
 
 namespace armwright {
 
@@ -46,8 +45,13 @@ struct Racing {
   int chunk_cases = 4;  // abandonment: the number of cases between two comparisons
 };
 
+inline constexpr int kLargestEta = 1000;
+inline constexpr double kLargestMargin = 1e6;
+
 const char* to_string(Schedule::Kind kind);
 const char* to_string(Racing::Kind kind);
+std::vector<std::string> schedule_kind_names();  // in the order of the enum
+std::vector<std::string> racing_kind_names();    // in the order of the enum
 // Returns nothing for an unknown name.
 std::optional<Schedule::Kind> find_schedule_kind(std::string_view name);
 
@@ -69,10 +73,5 @@ std::string to_text(const Racing& racing);
 inline constexpr std::string_view kRacingForms =
     "none, halving:FIRST_CASES:ETA (whole numbers >= 1 and >= 2) or abandonment:MARGIN:CHUNK_CASES "
     "(a number >= 1 and a whole number >= 1); the defaults of the numbers are 1, 2, 1 and 4";
-
-// Read the tables [schedule] and [racing] of a problem file. Throw Error{usage} with the file, the
-// line and the key for a wrong value.
-Schedule read_schedule_table(const ConfigTable& table);
-Racing read_racing_table(const ConfigTable& table);
 
 }  // namespace armwright

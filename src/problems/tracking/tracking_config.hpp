@@ -2,19 +2,34 @@
 // variables with their bounds, and the names and units of objectives, constraints and metrics.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "problems/tracking/engine_choice.hpp"
+#include "problems/interface/problem.hpp"
 #include "problems/tracking/perturbation.hpp"
 #include "problems/tracking/requirement.hpp"
 #include "problems/tracking/tracking_objective.hpp"
 #include "sim/tracking/design.hpp"
+#include "sim/tracking/physics_engine.hpp"
 #include "sim/tracking/task.hpp"
 #include "sim/tracking/test_case.hpp"
 
 namespace armwright {
+
+// The engines of a problem. Training may use another engine, or another precision, than validation,
+// test and every evaluation of a given design.
+struct EnginePair {
+  std::shared_ptr<const PhysicsEngine> training;
+  std::shared_ptr<const PhysicsEngine> judging;  // may be the same
+  std::string training_name;
+  std::string judging_name;
+
+  const PhysicsEngine& get(CaseRole role) const {
+    return role == CaseRole::training ? *training : *judging;
+  }
+};
 
 // A number of the design that is a decision variable.
 struct DesignParameter {
@@ -38,7 +53,7 @@ struct TrackingConfig {
   TrackingTask task;
   WorkspaceSphere workspace;
   std::optional<TestCase> path;  // replaces the cases that are generated in the workspace
-  EnginePair engines;            // both must be set (choose_engines)
+  EnginePair engines;            // both must be set
   double cutoff_error_m = 1.0;   // training only
   TrackingObjective objective;
   Perturbation perturbation;

@@ -9,7 +9,7 @@
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "problems/config/config_files.hpp"
-#include "problems/config/recorded_problem.hpp"
+#include "problems/config/problem_loader.hpp"
 #include "sim/simd/simd_level.hpp"
 #include "study/compare/incumbents.hpp"
 #include "study/run/run.hpp"

@@ -83,28 +83,23 @@ LoadedProblem load_method(const StudyProblem& problem, const StudyOptimizer& opt
 
 }  // namespace
 
-std::vector<std::string> read_method_settings(const ConfigTable& optimizer) {
-  if (!optimizer.has("set")) {
-    return {};
-  }
-  const std::vector<std::string> settings = optimizer.get_strings("set");
+void check_method_settings(const ConfigTable& optimizer, const AnySetting& set,
+                           const std::vector<std::string>& settings) {
   for (const std::string& setting : settings) {
     const std::string key = get_key(setting);
     if (key != kController &&
         std::ranges::find(kMethodTables, get_table(setting)) == std::end(kMethodTables)) {
       optimizer.refuse(
-          "set",
-          fmt::format("{} is the same for every optimizer of a comparison. Of an optimizer's "
-                      "own may be how its budget is spent in training and what controls its "
-                      "designs: schedule = \"KIND:K\", and in `set` racing.*, schedule.*, "
-                      "perturbation.* and {}",
-                      sanitize(key), kController));
+          set, fmt::format("{} is the same for every optimizer of a comparison. Of an optimizer's "
+                           "own may be how its budget is spent in training and what controls its "
+                           "designs: schedule = \"KIND:K\", and in `set` racing.*, schedule.*, "
+                           "perturbation.* and {}",
+                           sanitize(key), kController));
     }
     if (key == "schedule.kind" || key == "schedule.cases" || key == "schedule.fixed_cases") {
-      optimizer.refuse("set", fmt::format("for {} write schedule = \"KIND:K\"", key));
+      optimizer.refuse(set, fmt::format("for {} write schedule = \"KIND:K\"", key));
     }
   }
-  return settings;
 }
 
 void load_methods(StudyPlan& plan) {
@@ -114,33 +109,6 @@ void load_methods(StudyPlan& plan) {
         optimizer.loaded.insert_or_assign(problem.label, load_method(problem, optimizer));
       }
     }
-  }
-}
-
-void read_targets(const ConfigTable& table, StudyPlan& plan) {
-  constexpr std::int64_t kMostFailures = 1'000'000;
-  const std::vector<std::string> values = {"objective", "failures"};
-  plan.value = table.get_choice("value", values, "objective") == "failures" ? StudyValue::failures
-                                                                            : StudyValue::objective;
-  plan.reference = table.get_string("reference", "");
-  for (const ConfigTable& one : table.get_tables_or_empty("target")) {
-    StudyTarget target;
-    target.label = one.get_string("label");
-    if (one.has("problems")) {
-      target.problems = one.get_strings("problems");
-    }
-    if (one.has("value")) {
-      target.value = one.get_number("value");
-    }
-    if (one.has("failures")) {
-      target.failures = one.get_integer("failures", 0, kMostFailures);
-    }
-    if (!target.value && !target.failures) {
-      one.refuse("label",
-                 "it must have a value (the objective on the test set at most), failures (the most "
-                 "test cases with an error above 100 mm), or both");
-    }
-    plan.targets.push_back(std::move(target));
   }
 }
 

@@ -9,14 +9,13 @@
 
 namespace armwright {
 
-// `value`, `reference` and [[target]] of a study file.
-void read_targets(const ConfigTable& table, StudyPlan& plan);
-// Completes and checks them, once problems and optimizers are loaded. Error{usage}.
+// Completes and checks the targets, once problems and optimizers are loaded. Throws Error{usage}.
 void check_targets(StudyPlan& plan);
 
-// `set` of an [[optimizer]]. Error{usage} for a key that would change what is asked of a
-// design.
-std::vector<std::string> read_method_settings(const ConfigTable& optimizer);
+// Refuses, at the key of `set`, settings of an [[optimizer]] that would change what a design is
+// worth. Throws Error{usage}.
+void check_method_settings(const ConfigTable& optimizer, const AnySetting& set,
+                           const std::vector<std::string>& settings);
 // Loads every problem anew for the optimizers with settings of their own. Error{usage} if one would
 // be judged in another way than the others.
 void load_methods(StudyPlan& plan);

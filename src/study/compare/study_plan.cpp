@@ -12,7 +12,7 @@
 #include "base/random.hpp"
 #include "base/text.hpp"
 #include "optimizers/interface/search_space.hpp"
-#include "problems/config/replicate.hpp"
+#include "problems/config/problem_loader.hpp"
 #include "sim/tracking/design.hpp"
 #include "study/compare/escape.hpp"
 

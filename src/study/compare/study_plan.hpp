@@ -22,7 +22,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/config.hpp"
+#include "base/setting.hpp"
 #include "study/run/run_plan.hpp"
 
 namespace armwright {
@@ -120,11 +120,11 @@ void check_plan_hash(const std::filesystem::path& path);
 // kind, stay in it.
 void keep_baselines(const std::filesystem::path& recorded, StudyPlan& plan);
 
-// Of a study's file alone, without loading what it names.
+// Returns the title in a study's file, without loading what the file names.
 std::string read_study_title(const std::string& file);
 
-// What is asked of a study's file as far as its table goes, without loading what it names.
-std::vector<AskedKey> ask_study_keys(const ConfigTable& table);
+// Returns the declarations of every setting of a study's file.
+const SettingTable& study_settings();
 
 struct Cell {
   std::size_t problem = 0;

@@ -6,7 +6,7 @@
 
 #include "base/expect_error.hpp"
 #include "base/temporary_folder.hpp"
-#include "problems/config/recorded_problem.hpp"
+#include "problems/config/problem_loader.hpp"
 #include "problems/problem_folder.hpp"
 #include "sim/tracking/design.hpp"
 

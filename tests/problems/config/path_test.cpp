@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "problems/config/path_file.hpp"
 #include "problems/config/path_survey.hpp"
+#include "problems/config/problem_readers.hpp"
 #include "problems/problem_folder.hpp"
 
 namespace armwright {

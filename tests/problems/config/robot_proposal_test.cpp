@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "problems/config/path_survey.hpp"
-#include "problems/config/recorded_problem.hpp"
+#include "problems/config/problem_loader.hpp"
 #include "problems/problem_folder.hpp"
 #include "sim/generated_arm.hpp"
 #include "sim/tracking/path_check.hpp"

@@ -11,7 +11,6 @@
 #include "problems/config/config_files.hpp"
 #include "problems/config/design_file.hpp"
 #include "problems/config/problem_loader.hpp"
-#include "problems/config/replicate.hpp"
 #include "problems/load_tracking.hpp"
 
 namespace armwright {

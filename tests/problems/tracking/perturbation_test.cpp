@@ -8,7 +8,7 @@
 #include <set>
 
 #include "problems/config/config_files.hpp"
-#include "problems/config/perturbation_reader.hpp"
+#include "problems/config/problem_readers.hpp"
 #include "problems/load_tracking.hpp"
 #include "problems/problem_folder.hpp"
 

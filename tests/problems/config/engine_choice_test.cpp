@@ -1,11 +1,10 @@
 // The choice of engines: which engine simulates which cases, and what the configuration records.
-#include "problems/tracking/engine_choice.hpp"
-
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
 
+#include "base/config.hpp"
 #include "base/expect_error.hpp"
 #include "problems/config/config_files.hpp"
 #include "problems/config/problem_loader.hpp"
