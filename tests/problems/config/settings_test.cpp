@@ -153,7 +153,8 @@ TEST(Settings, AProblemsReaderReadsTheLimitsOfAllQuantities) {
 
 const ControllerRow& find_controller_with(const std::string& gain) {
   for (const ControllerRow& controller : controller_table()) {
-    if (std::ranges::find(controller.gains, gain, &controllers::Gain::key) != controller.gains.end()) {
+    if (std::ranges::find(controller.gains, gain, &controllers::Gain::key) !=
+        controller.gains.end()) {
       return controller;
     }
   }
@@ -225,7 +226,7 @@ TEST(Settings, GainsAreThoseOfAllControllers) {
   EXPECT_THAT(p.meaning, testing::StartsWith("gain of the controllers pid, "));
   for (const ControllerRow& controller : controller_table()) {
     for (const controllers::Gain& gain : controller.gains) {
-      EXPECT_EQ(find(design_settings(), "joint[]." + gain.key).unit, gain.unit);
+      EXPECT_EQ(find(design_settings(), std::string("joint[].") + gain.key).unit, gain.unit);
     }
   }
 }

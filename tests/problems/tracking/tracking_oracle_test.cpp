@@ -11,6 +11,7 @@
 #include "problems/config/design_file.hpp"
 #include "problems/config/problem_loader.hpp"
 #include "problems/load_tracking.hpp"
+#include "sim/tracking/reference_signal.hpp"
 
 namespace armwright {
 namespace {

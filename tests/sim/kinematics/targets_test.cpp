@@ -10,6 +10,7 @@
 #include "base/random.hpp"
 #include "sim/simd/simd_level.hpp"
 #include "sim/support.hpp"
+#include "sim/tracking/reference_signal.hpp"
 #include "sim/tracking/tracking_setup.hpp"
 
 namespace armwright {
