@@ -9,7 +9,6 @@
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/table.hpp"
 #include "study/analysis/verdict.hpp"
-#include "study/analysis/verdict_targets.hpp"
 
 namespace armwright {
 namespace {

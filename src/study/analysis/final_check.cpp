@@ -11,7 +11,7 @@
 #include "base/file.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
-#include "study/compare/escape.hpp"
+#include "study/compare/study_plan.hpp"
 #include "study/executor/case_runner.hpp"
 #include "study/run/json_values.hpp"
 

@@ -4,7 +4,6 @@
 #include <iterator>
 
 #include "study/analysis/study_result.hpp"
-#include "study/analysis/study_values.hpp"
 #include "study/statistics/profiles.hpp"
 #include "study/statistics/values.hpp"
 

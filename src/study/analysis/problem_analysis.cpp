@@ -7,7 +7,6 @@
 #include <tuple>
 
 #include "study/analysis/study_result.hpp"
-#include "study/analysis/study_values.hpp"
 #include "study/statistics/holm.hpp"
 #include "study/statistics/pareto.hpp"
 #include "study/statistics/profiles.hpp"

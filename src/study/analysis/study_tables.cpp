@@ -9,7 +9,6 @@
 #include "base/file.hpp"
 #include "base/text.hpp"
 #include "study/analysis/final_check.hpp"
-#include "study/analysis/target_tables.hpp"
 #include "study/analysis/verdict.hpp"
 #include "study/compare/case_sets.hpp"
 #include "study/compare/study_folder.hpp"

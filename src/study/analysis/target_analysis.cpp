@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "study/analysis/study_values.hpp"
+#include "study/analysis/study_result.hpp"
 #include "study/statistics/values.hpp"
 
 namespace armwright {

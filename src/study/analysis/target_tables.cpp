@@ -1,4 +1,4 @@
-#include "study/analysis/target_tables.hpp"
+#include "study/analysis/study_tables.hpp"
 
 #include <fmt/format.h>
 

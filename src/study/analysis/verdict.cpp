@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "base/text.hpp"
-#include "study/analysis/verdict_targets.hpp"
 
 namespace armwright {
 namespace {

@@ -1,4 +1,4 @@
-#include "study/analysis/verdict_targets.hpp"
+#include "study/analysis/verdict.hpp"
 
 #include <fmt/format.h>
 

@@ -7,7 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "study/compare/escape.hpp"
+#include "study/compare/study_plan.hpp"
 
 namespace armwright {
 namespace {

@@ -11,7 +11,7 @@
 #include "base/hash.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
-#include "study/compare/escape.hpp"
+#include "study/compare/study_plan.hpp"
 
 namespace armwright {
 namespace {

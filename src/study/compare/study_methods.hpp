@@ -1,4 +1,4 @@
-// What a study file says of targets and of methods. Internal to study/compare.
+// Reads and checks the parts of a study file about targets and methods. Internal to study/compare.
 #pragma once
 
 #include <string>
@@ -9,16 +9,16 @@
 
 namespace armwright {
 
-// `value`, `reference` and [[target]] of a study file.
+// Reads `value`, `reference` and every [[target]] of a study file. Throws Error{usage}.
 void read_targets(const ConfigTable& table, StudyPlan& plan);
-// Completes and checks them, once problems and optimizers are loaded. Error{usage}.
+// Completes and checks the targets after problems and optimizers are loaded. Throws Error{usage}.
 void check_targets(StudyPlan& plan);
 
-// `set` of an [[optimizer]]. Error{usage} for a key that would change what is asked of a
-// design.
+// Reads `set` of an [[optimizer]]. Throws Error{usage} for a key that would change the requirements
+// on a design.
 std::vector<std::string> read_method_settings(const ConfigTable& optimizer);
-// Loads every problem anew for the optimizers with settings of their own. Error{usage} if one would
-// be judged in another way than the others.
+// Loads every problem again for each optimizer that has settings of its own. Throws Error{usage} if
+// the settings would change how the optimizer's designs are judged.
 void load_methods(StudyPlan& plan);
 
 }  // namespace armwright

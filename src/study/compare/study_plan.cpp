@@ -14,7 +14,6 @@
 #include "optimizers/interface/search_space.hpp"
 #include "problems/config/replicate.hpp"
 #include "sim/tracking/design_conversion.hpp"
-#include "study/compare/escape.hpp"
 
 namespace armwright {
 namespace {
@@ -207,6 +206,21 @@ StudyCost calc_cost(const StudyPlan& plan) {
     }
   }
   return cost;
+}
+
+std::string escape_name(std::string_view name) {
+  std::string escaped;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const char c = name[i];
+    const bool is_letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+    const bool is_digit = c >= '0' && c <= '9';
+    if (is_letter || is_digit || c == '_' || c == '-' || (c == '.' && i > 0)) {
+      escaped += c;
+    } else {
+      escaped += fmt::format("%{:02X}", static_cast<unsigned char>(c));
+    }
+  }
+  return escaped;
 }
 
 }  // namespace armwright

@@ -13,8 +13,6 @@
 #include "base/error.hpp"
 #include "study/compare/cell.hpp"
 #include "study/matrix/attempt.hpp"
-#include "study/matrix/earlier_state.hpp"
-#include "study/matrix/publication.hpp"
 
 namespace armwright {
 namespace {

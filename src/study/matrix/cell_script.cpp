@@ -1,4 +1,4 @@
-#include "study/matrix/cell_script.hpp"
+#include "study/matrix/chunks.hpp"
 
 #include <fmt/format.h>
 

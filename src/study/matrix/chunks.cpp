@@ -1,9 +1,27 @@
 #include "study/matrix/chunks.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <numeric>
 
 namespace armwright {
 namespace {
+
+double measure_case_s(const StudyProblem& problem, CaseRole role, const std::string& set) {
+  constexpr int kCases = 32;
+  std::vector<double> x;
+  for (const DecisionVariable& variable : problem.loaded.problem->description().variables) {
+    x.push_back(variable.start);
+  }
+  CaseBlock block{role, set, std::vector<std::uint64_t>(kCases)};
+  std::iota(block.numbers.begin(), block.numbers.end(), std::uint64_t{0});
+  problem.loaded.problem->evaluate(x, block);  // makes the targets, which are kept
+  const auto start = std::chrono::steady_clock::now();
+  problem.loaded.problem->evaluate(x, block);
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  return taken.count() / kCases;
+}
 
 std::vector<Chunk> cut_chunks(std::span<const Cell> cells, std::span<const double> durations_s,
                               double least_s) {
@@ -28,6 +46,39 @@ std::vector<Chunk> cut_chunks(std::span<const Cell> cells, std::span<const doubl
 }
 
 }  // namespace
+
+std::vector<double> measure_cell_durations_s(const StudyPlan& plan) {
+  constexpr double kOverhead_s = 0.03;  // files and a process's own work
+  std::vector<double> durations_s;
+  for (const StudyProblem& problem : plan.problems) {
+    StudyPlan one = plan;
+    one.problems = {problem};
+    const StudyCost cost = calc_cost(one);
+    const CaseSets& sets = problem.loaded.sets;
+    const double all_s = static_cast<double>(cost.training) *
+                             measure_case_s(problem, CaseRole::training, sets.training) +
+                         static_cast<double>(cost.validation + cost.test) *
+                             measure_case_s(problem, CaseRole::test, sets.test);
+    durations_s.push_back(kOverhead_s + all_s / static_cast<double>(cost.cells));
+  }
+  return durations_s;
+}
+
+double estimate_cell_memory_mib(const StudyPlan& plan) {
+  constexpr double kProgram_mib = 96;
+  constexpr double kTargets_mib = 128;  // the cache of test cases, which arms fill
+  constexpr double kEvaluation_mib = 32.0 / (1 << 20);
+  const bool has_arm = std::ranges::any_of(plan.problems, [](const StudyProblem& problem) {
+    return problem.loaded.tracking() != nullptr;
+  });
+  int fewest_cases = plan.problems.front().schedule.cases;
+  for (const StudyProblem& problem : plan.problems) {
+    fewest_cases = std::min(fewest_cases, problem.schedule.cases);
+  }
+  const double evaluations =
+      static_cast<double>(plan.budget) / static_cast<double>(std::max(1, fewest_cases));
+  return kProgram_mib + (has_arm ? kTargets_mib : 0) + kEvaluation_mib * evaluations;
+}
 
 std::vector<Chunk> plan_chunks(std::span<const Cell> cells, std::span<const double> durations_s,
                                double least_s, std::size_t most) {

@@ -1,4 +1,4 @@
-#include "study/matrix/earlier_state.hpp"
+#include "study/matrix/cell_attempt.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "study/matrix/publication.hpp"
+#include "study/matrix/attempt.hpp"
 
 #include <fmt/format.h>
 #include <stdio.h>

@@ -15,8 +15,8 @@
 #include "base/file.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
-#include "study/compare/escape.hpp"
 #include "study/compare/study_folder.hpp"
+#include "study/compare/study_plan.hpp"
 #include "study/matrix/command_output.hpp"
 
 namespace armwright {

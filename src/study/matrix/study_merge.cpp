@@ -15,7 +15,6 @@
 #include "study/compare/study_folder.hpp"
 #include "study/matrix/attempt.hpp"
 #include "study/matrix/cell_selection.hpp"
-#include "study/matrix/publication.hpp"
 #include "study/run/record_files.hpp"
 #include "study/survey/folder_copy.hpp"
 

@@ -1,4 +1,4 @@
-#include "study/survey/result_survey.hpp"
+#include "study/survey/derived_survey.hpp"
 
 #include <fmt/format.h>
 

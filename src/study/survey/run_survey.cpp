@@ -15,7 +15,6 @@
 #include "study/run/record_files.hpp"
 #include "study/run/run_lock.hpp"
 #include "study/survey/derived_survey.hpp"
-#include "study/survey/result_survey.hpp"
 
 namespace armwright {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "study/survey/finding.hpp"
 #include "study/survey/journal_survey.hpp"
+#include "study/survey/run_survey.hpp"
 
 namespace armwright {
 

@@ -8,7 +8,6 @@
 #include "base/config.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "study/compare/escape.hpp"
 #include "study/compare/study_plan.hpp"
 #include "study/run/run_lock.hpp"
 #include "study/survey/derived_survey.hpp"

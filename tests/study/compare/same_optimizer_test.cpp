@@ -2,7 +2,7 @@
 // alarm, and of those there may be as many as the level says.
 #include <gtest/gtest.h>
 
-#include "study/analysis/study_values.hpp"
+#include "study/analysis/study_result.hpp"
 #include "study/compare/study_plan.hpp"
 #include "study/contract/memory_evaluator.hpp"
 

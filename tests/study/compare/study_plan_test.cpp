@@ -7,7 +7,6 @@
 
 #include "base/expect_error.hpp"
 #include "study/compare/case_sets.hpp"
-#include "study/compare/escape.hpp"
 #include "study/compare/study_support.hpp"
 
 namespace armwright {

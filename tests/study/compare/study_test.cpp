@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "base/expect_error.hpp"
-#include "study/analysis/study_values.hpp"
+#include "study/analysis/study_result.hpp"
 #include "study/analysis/verdict.hpp"
 #include "study/compare/study_support.hpp"
 #include "study/run/run_observer.hpp"

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/expect_error.hpp"
-#include "study/analysis/study_values.hpp"
+#include "study/analysis/study_result.hpp"
 #include "study/analysis/verdict.hpp"
 #include "study/compare/choices.hpp"
 #include "study/compare/study_support.hpp"

@@ -12,9 +12,8 @@
 #include <set>
 #include <thread>
 
-#include "study/matrix/earlier_state.hpp"
+#include "study/matrix/cell_attempt.hpp"
 #include "study/matrix/matrix_support.hpp"
-#include "study/matrix/publication.hpp"
 #include "study/run/run_observer.hpp"
 
 namespace armwright {

@@ -3,11 +3,9 @@
 
 #include <numeric>
 
-#include "study/matrix/cell_duration.hpp"
-#include "study/matrix/cell_script.hpp"
+#include "study/matrix/cell_selection.hpp"
 #include "study/matrix/command_output.hpp"
 #include "study/matrix/matrix_support.hpp"
-#include "study/matrix/recorded_study.hpp"
 #include "study/matrix/slurm.hpp"
 
 namespace armwright {
