@@ -29,12 +29,13 @@ void move_aside(const std::filesystem::path& target, const std::filesystem::path
   }
   const bool had_record = std::filesystem::exists(target / "cell.json");
   if (::rename(target.c_str(), free.c_str()) != 0) {
-    if (errno != ENOENT) {  // whoever does the same at this moment may have it first
+    if (errno != ENOENT) {  // ENOENT: another process has moved it at the same moment
       fail_io(target, "move it aside to " + free.string(), errno);
     }
     return;
   }
-  // And may have put a finished one there, which goes back unless the next has come already.
+  // Another process may have put a finished cell there just before the rename. Move it back, unless
+  // a further one is in its place already.
   if (!had_record && std::filesystem::exists(free / "cell.json") &&
       ::rename(free.c_str(), target.c_str()) != 0 && errno != ENOTEMPTY && errno != EEXIST) {
     fail_io(free, "move it back to " + target.string(), errno);
@@ -43,26 +44,25 @@ void move_aside(const std::filesystem::path& target, const std::filesystem::path
 
 }  // namespace
 
-Publication publish_cell(const StudyPlan& plan, const Cell& cell,
-                         const std::filesystem::path& study, const std::filesystem::path& run,
-                         const std::filesystem::path& aside) {
+bool publish_cell(const StudyPlan& plan, const Cell& cell, const std::filesystem::path& study,
+                  const std::filesystem::path& run, const std::filesystem::path& aside) {
   const auto target = study / make_cell_path(plan, cell);
   make_folder(target.parent_path());
-  // In each round what lies there is moved aside, by us or another; no more come than there are
-  // processes at this cell.
+  // In each round this or another process moves the unfinished cell aside. There are at most as many
+  // rounds as processes that run this cell.
   constexpr int kMostRounds = 1000;
   for (int round = 0; round < kMostRounds; ++round) {
     if (load_cell(plan, cell, study)) {
-      return Publication::superfluous;
+      return false;
     }
     if (::rename(run.c_str(), target.c_str()) == 0) {
       sync_folder_of(target);
-      return Publication::published;
+      return true;
     }
     const int error = errno;
-    // A network file system may have done it and lost the answer.
+    // A network file system may have renamed the folder and then lost the reply.
     if (error == ENOENT && load_cell(plan, cell, study)) {
-      return Publication::published;
+      return true;
     }
     if (error != ENOTEMPTY && error != EEXIST) {
       fail_io(target, "put the finished cell in place", error);

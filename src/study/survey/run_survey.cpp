@@ -21,7 +21,7 @@ namespace {
 
 using nlohmann::json;
 
-// What a check says of a file, and what keeps it from saying anything.
+// Returns the fault that `check` finds in a file, or the error that prevents the check.
 std::string find_fault(const std::filesystem::path& file,
                        const std::function<std::string()>& check) {
   std::error_code error;
@@ -45,17 +45,17 @@ class RunSurveyor {
   }
 
   RunSurvey run() {
-    look_at_manifest();
+    check_manifest();
     load_result();
-    look_at_journal();
-    look_at_leftovers();
-    // While a run is being written, what is derived from it may be of an earlier state.
+    check_journal();
+    check_leftovers();
+    // While a process writes the run, its derived files may belong to an earlier state.
     if (survey_.writer.empty()) {
       compare_result();
       if (result_) {
-        look_at_tables();
+        check_tables();
       }
-      look_at_cell();
+      check_cell();
     }
     return std::move(survey_);
   }
@@ -70,7 +70,7 @@ class RunSurveyor {
     survey_.damaged_files.push_back(file);
   }
 
-  void look_at_manifest() {
+  void check_manifest() {
     const auto file = folder_ / "manifest.json";
     std::string fault = "it is missing";
     if (is_there(file)) {
@@ -123,7 +123,7 @@ class RunSurveyor {
     survey_.made_by = sanitize(quote_command(words));
   }
 
-  void look_at_journal() {
+  void check_journal() {
     const auto file = folder_ / "journal";
     if (!is_there(file)) {
       if (result_) {
@@ -136,7 +136,7 @@ class RunSurveyor {
     const std::string fault = find_fault(file, [&] {
       survey_.journal = survey_journal(file, [&](const EvaluationRecord& record) {
         if (result_) {
-          result_->look(record);
+          result_->add(record);
         }
       });
       return "";
@@ -204,7 +204,7 @@ class RunSurveyor {
     }
   }
 
-  // Where they differ, the journal is right if it is whole.
+  // If they differ and the journal is complete, the journal is right.
   void compare_result() {
     if (!result_) {
       if (survey_.journal && survey_.journal->end) {
@@ -234,7 +234,7 @@ class RunSurveyor {
     }
   }
 
-  void look_at_tables() {
+  void check_tables() {
     const RunResult& result = result_->result();
     const auto check = [&](const std::string& name, const auto& find) {
       const auto file = folder_ / name;
@@ -249,19 +249,16 @@ class RunSurveyor {
     const auto find_row_fault = [](const auto& file) { return find_csv_fault(file); };
     check("front.csv", find_row_fault);
     check("winner-trajectory.csv", find_row_fault);
-    // A run that failed and is being tried again has more evaluations by now.
+    // If a failed run is tried again, its journal may have more evaluations than its result.
     const bool is_known =
         survey_.journal && !survey_.journal->is_damaged() && result.failure.empty();
     const auto last = is_known ? result_->calc_last_row() : std::nullopt;
     check("convergence.csv", [&](const auto& file) { return find_csv_fault(file, last); });
-    const DatabaseRows rows{.training = result.counts.evaluations,
-                            .validation = result.judged.size(),
-                            .test = result.winner ? std::uint64_t{1} : 0};
     check("results.sqlite",
-          [&](const std::filesystem::path& file) { return find_database_fault(file, rows); });
+          [&](const std::filesystem::path& file) { return find_database_fault(file, result); });
   }
 
-  void look_at_cell() {
+  void check_cell() {
     const auto file = folder_ / "cell.json";
     if (!is_there(file)) {
       return;
@@ -281,7 +278,7 @@ class RunSurveyor {
     }
   }
 
-  void look_at_leftovers() {
+  void check_leftovers() {
     std::set<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
       names.insert(entry.path().filename().string());
