@@ -16,7 +16,7 @@ namespace {
 
 using Visitor = std::function<void(UsedSet& set, const std::vector<TestCase>& cases)>;
 
-// Those of a problem's cells: of every kind the one with the most cases.
+// Returns the schedules of a problem's cells: for every kind the one with the most cases.
 std::vector<Schedule> list_schedules(const StudyPlan& plan, std::size_t problem) {
   std::map<Schedule::Kind, Schedule> largest;
   for (std::size_t o = 0; o < plan.optimizers.size(); ++o) {
@@ -31,11 +31,11 @@ std::vector<Schedule> list_schedules(const StudyPlan& plan, std::size_t problem)
   return schedules;
 }
 
-// Of a replicate's training set itself: methods share its beginning.
+// Returns the number of cases of a replicate's training set. All methods use its beginning.
 std::int64_t count_training_cases(const StudyPlan& plan, std::span<const Schedule> schedules) {
   std::int64_t cases = 0;
   for (const Schedule& schedule : schedules) {
-    // Of fresh cases no more than the budget pays for.
+    // Fresh cases: at most as many as the budget pays for.
     constexpr std::int64_t kMostHashed = 10'000;
     if (schedule.kind == Schedule::Kind::fresh) {
       cases = std::max(cases, std::min(plan.budget, kMostHashed));
@@ -46,7 +46,7 @@ std::int64_t count_training_cases(const StudyPlan& plan, std::span<const Schedul
   return cases;
 }
 
-// They are all made, and their hashes kept, before anything runs.
+// Limits the number of cases: all are generated and hashed before any cell runs.
 void check_count(const StudyPlan& plan) {
   constexpr std::int64_t kMostCompared = 1'000'000;
   std::int64_t count = 0;
@@ -99,7 +99,7 @@ void visit_sets(const StudyPlan& plan, const Visitor& visit) {
       }
       for (const Schedule& schedule : schedules) {
         if (schedule.kind == Schedule::Kind::coevolution) {
-          // What they will be bred into is nobody's to know; they come from a space of their own.
+          // The cases that breeding will produce are unknown, but they come from a separate space.
           const std::string bred = get_training_set(name, schedule);
           meet_numbers("training", bred, CaseBreeder(bred, schedule.cases).genomes());
         }

@@ -21,7 +21,7 @@ using nlohmann::json;
 constexpr const char* kPlanFile = "study.toml";
 constexpr std::size_t kPlanLimit_bytes = std::size_t{16} << 20;
 
-// A JSON string is a TOML string.
+// Returns the text as a JSON string, which is also a TOML string.
 std::string quote(const std::string& text) {
   return json(text).dump(-1, ' ', true, json::error_handler_t::replace);
 }
@@ -50,7 +50,7 @@ std::string format_toml_number(double value) {
   return digits.find_first_of(".e") == std::string::npos ? digits + ".0" : digits;
 }
 
-// What is asked of the cells, besides; plans that ask nothing say nothing of it.
+// Returns `value`, `reference` and the targets as TOML; keys with their default are left out.
 std::string make_questions(const StudyPlan& plan) {
   std::string text;
   if (plan.value == StudyValue::failures) {
@@ -135,7 +135,7 @@ std::filesystem::path get_problem_file(const std::filesystem::path& folder,
   return folder / "problems" / (escape_name(label) + ".json");
 }
 
-// What differs between a problem's recorded configuration and the present one.
+// Returns the differences between a problem's recorded configuration and the present one.
 std::vector<std::string> describe_problem_change(const std::filesystem::path& folder,
                                                  const StudyProblem& problem) {
   const auto file = get_problem_file(folder, problem.label);
@@ -235,7 +235,7 @@ void StudyFolder::extend(const StudyPlan& plan, const std::string& text) {
   json now = json::parse(ConfigTable::parse(text, file.string()).to_json());
   std::vector<std::string> differences;
   for (const char* key : {"problem", "optimizer"}) {
-    // Which file a problem came from and who asked for a baseline do not matter.
+    // The file of a problem and the origin of a baseline may differ.
     const char* ignored = key == std::string_view("problem") ? "name" : "baseline";
     const json before = index_by_label(recorded.at(key), ignored);
     const json after = index_by_label(now.at(key), ignored);
@@ -270,8 +270,7 @@ void StudyFolder::extend(const StudyPlan& plan, const std::string& text) {
   if (replicates <= plan.replicates) {
     now["replicates"] = replicates;
   }
-  // What is asked of the cells may change: what they lack for the answer is made from their
-  // journals.
+  // These keys may change: values that the cells lack are computed from their journals.
   constexpr const char* kQuestions[] = {"value", "reference", "target"};
   if (std::ranges::any_of(kQuestions, [&](const char* key) {
         return recorded.value(key, json()) != now.value(key, json());
