@@ -31,7 +31,7 @@ std::optional<FinalCheck> load_check(const std::filesystem::path& file, const St
     const json j = json::parse(read_json_file(file, kCheckLimit_bytes));
     if (j.at("engine") != plan.final_engine ||
         !same_bits(j.at("x").get<std::vector<double>>(), cell.x)) {
-      return std::nullopt;  // check of another design, from before the plan grew
+      return std::nullopt;  // another design or engine, from an earlier plan
     }
     return FinalCheck{cell.replicate, plan.final_engine, value_from_json(j.at("value")),
                       summary_from_json(j.at("test"))};

@@ -45,7 +45,7 @@ Costs calc_costs(const StudyPlan& plan, std::span<const CellOutcome> cells, doub
       double best = kInfinity;
       double start = kInfinity;
       for (std::size_t o = 0; o < optimizers; ++o) {
-        start = std::min(start, get_cell(o).start_value);  // equal for all; infinite for missing cells
+        start = std::min(start, get_cell(o).start_value);  // infinite for missing cells
         for (const CurvePoint& point : get_cell(o).curve) {
           best = std::min(best, point.value);
         }

@@ -122,8 +122,8 @@ struct ProblemResult {
   Quantity quantity;  // name and unit of the values
   bool has_front = false;
   std::vector<double> reference_point;  // of the hypervolume
-  double best_known = 0;  // best value on the test set in all curves; may be infinite
-  double start = 0;       // median value of the start points
+  double best_known = 0;                // best value on the test set in all curves; may be infinite
+  double start = 0;                     // median value of the start points
   std::vector<std::int64_t> checkpoints;
   std::vector<double> targets;
   std::vector<OptimizerResult> optimizers;

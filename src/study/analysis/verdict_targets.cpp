@@ -1,11 +1,10 @@
-#include "study/analysis/verdict.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/text.hpp"
+#include "study/analysis/verdict.hpp"
 
 namespace armwright {
 namespace {

@@ -100,7 +100,7 @@ Cell find_cell(const StudyPlan& plan, std::string_view name) {
   if (readings.size() > 1) {
     throw Error(
         ErrorKind::usage,
-        fmt::format("'{}' can be read as two cells; name it as its folder: {}", sanitize(name),
+        fmt::format("'{}' fits two cells; name the cell as its folder is named: {}", sanitize(name),
                     make_cell_path(plan, readings[0]).lexically_relative("cells").string()));
   }
   if (*replicate < 1 || *replicate > plan.replicates) {

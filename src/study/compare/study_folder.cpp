@@ -184,8 +184,8 @@ void check_study_folder(const std::filesystem::path& folder) {
               std::filesystem::exists(folder, ignored)
                   ? fmt::format("{} is not the folder of a study: it has no {}",
                                 sanitize(folder.string()), kPlanFile)
-                  : fmt::format("there is no folder '{}'; name that of a study, results/NAME "
-                                "unless --out said otherwise",
+                  : fmt::format("there is no folder '{}'; name the folder of a study, "
+                                "results/NAME or the one given to --out",
                                 sanitize(folder.string())));
 }
 
@@ -242,7 +242,7 @@ void StudyFolder::extend(const StudyPlan& plan, const std::string& text) {
     for (const auto& [label, entry] : before.items()) {
       if (!after.contains(label)) {
         differences.push_back(
-            fmt::format("{} {} is recorded, and the plan leaves it out", key, sanitize(label)));
+            fmt::format("{} {} is recorded, but the plan lacks it", key, sanitize(label)));
         continue;
       }
       for (const std::string& difference :
@@ -288,9 +288,9 @@ void StudyFolder::extend(const StudyPlan& plan, const std::string& text) {
   if (!differences.empty()) {
     throw Error(
         ErrorKind::usage,
-        fmt::format("{} holds a study whose cells would not compare with those of this "
-                    "plan:\n  {}\nA plan may only grow. Go on with the recorded one, or use "
-                    "--new or --out for another folder",
+        fmt::format("{} holds a study whose cells could not be compared with those of "
+                    "this plan:\n  {}\nA plan may only grow. Use the recorded plan, or choose "
+                    "another folder with --new or --out",
                     path_.string(), join(differences, "\n  ")));
   }
   if (!additions_.empty()) {

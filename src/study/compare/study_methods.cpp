@@ -69,13 +69,13 @@ LoadedProblem load_method(const StudyProblem& problem, const StudyOptimizer& opt
   if (get_judged_perturbation(loaded) != get_judged_perturbation(problem.loaded)) {
     throw Error(ErrorKind::usage,
                 fmt::format("optimizer {} on {}: its designs would be judged on other plants than "
-                            "those of the others; a perturbation of its own must have "
+                            "the designs of other optimizers; a perturbation in `set` needs "
                             "perturbation.apply_to=training",
                             optimizer.label, problem.label));
   }
   if (leave_method_out(loaded) != leave_method_out(problem.loaded)) {
     throw Error(ErrorKind::usage,
-                fmt::format("optimizer {} on {}: its settings change what is asked of a design",
+                fmt::format("optimizer {} on {}: its settings change the requirements on a design",
                             optimizer.label, problem.label));
   }
   return loaded;
@@ -93,12 +93,11 @@ std::vector<std::string> read_method_settings(const ConfigTable& optimizer) {
     if (key != kController &&
         std::ranges::find(kMethodTables, get_table(setting)) == std::end(kMethodTables)) {
       optimizer.refuse(
-          "set",
-          fmt::format("{} is the same for every optimizer of a comparison. Of an optimizer's "
-                      "own may be how its budget is spent in training and what controls its "
-                      "designs: schedule = \"KIND:K\", and in `set` racing.*, schedule.*, "
-                      "perturbation.* and {}",
-                      sanitize(key), kController));
+          "set", fmt::format("{} is the same for every optimizer of a comparison. An optimizer may "
+                             "only set how it spends its budget in training, and its controller: "
+                             "schedule = \"KIND:K\", and in `set` racing.*, schedule.*, "
+                             "perturbation.* and {}",
+                             sanitize(key), kController));
     }
     if (key == "schedule.kind" || key == "schedule.cases" || key == "schedule.fixed_cases") {
       optimizer.refuse("set", fmt::format("for {} write schedule = \"KIND:K\"", key));
@@ -184,8 +183,8 @@ void check_targets(StudyPlan& plan) {
       if (!problem.loaded.tracking() ||
           problem.loaded.problem->description().objectives.size() > 1) {
         throw Error(ErrorKind::usage,
-                    fmt::format("value is \"failures\": that compares arms by the share of test "
-                                "cases in which they fail, and {} is {}",
+                    fmt::format("value is \"failures\", which compares arms by their share of "
+                                "failing test cases, but {} is {}",
                                 problem.label,
                                 problem.loaded.tracking() ? "judged by its front" : "a function"));
       }
@@ -205,8 +204,8 @@ void check_targets(StudyPlan& plan) {
   }
   if (plan.targets.empty()) {
     throw Error(ErrorKind::usage,
-                "reference names an optimizer whose expected running times to targets those of the "
-                "others are divided by, and the study has no [[target]]");
+                "reference is set, but the study has no [[target]]; the expected running times to "
+                "targets are divided by those of the reference");
   }
 }
 

@@ -24,8 +24,8 @@ std::filesystem::path find_study_folder(const std::filesystem::path& name) {
   }
   throw Error(ErrorKind::usage,
               fmt::format("{}: is neither the folder of a study nor the study.toml in one; "
-                          "'armwright compare' makes such a folder, --executor script without "
-                          "running anything",
+                          "'armwright compare' makes such a folder, and with --executor script it "
+                          "runs nothing",
                           sanitize(name.string())));
 }
 
@@ -33,8 +33,8 @@ std::size_t parse_cell_number(std::string_view text, std::string_view word, std:
   const auto number = parse_integer(text);
   if (!number || *number < 0 || static_cast<std::size_t>(*number) >= count) {
     throw Error(ErrorKind::usage,
-                fmt::format("'{}' is no cell of the study; its cells have the numbers 0 to {}, or "
-                            "names as PROBLEM/OPTIMIZER/rNN",
+                fmt::format("'{}' is not a cell of the study; name a cell by its number, 0 to {}, "
+                            "or as PROBLEM/OPTIMIZER/rNN",
                             sanitize(word), count - 1));
   }
   return static_cast<std::size_t>(*number);
@@ -51,8 +51,8 @@ RecordedStudy load_recorded_study(const std::filesystem::path& name) {
   const auto differences = describe_differences(recorded.to_json(), now.to_json());
   if (!differences.empty()) {
     throw Error(ErrorKind::usage,
-                fmt::format("{}: comes out as another plan here than where it was made, so that "
-                            "cells would not compare:\n  {}",
+                fmt::format("{}: gives another plan here than where it was made, so cells could "
+                            "not be compared:\n  {}",
                             sanitize(file.string()), join(differences, "\n  ")));
   }
   return study;

@@ -1,5 +1,3 @@
-#include "study/matrix/attempt.hpp"
-
 #include <fmt/format.h>
 #include <stdio.h>
 
@@ -11,6 +9,7 @@
 #include "base/text.hpp"
 #include "study/compare/cell.hpp"
 #include "study/journal/journal_file.hpp"
+#include "study/matrix/attempt.hpp"
 #include "study/run/run_lock.hpp"
 
 namespace armwright {
@@ -19,8 +18,8 @@ namespace {
 void move_aside(const std::filesystem::path& target, const std::filesystem::path& aside) {
   if (const std::string writer = find_writer(target); !writer.empty()) {
     throw Error(ErrorKind::busy,
-                fmt::format("{} is being written by {}, which will finish it; what was made here "
-                            "is kept and not needed",
+                fmt::format("{} is being written by {}, which will finish it; the cell of this "
+                            "attempt is kept but not needed",
                             sanitize(target.string()), writer));
   }
   std::filesystem::path free = aside;
@@ -48,8 +47,8 @@ bool publish_cell(const StudyPlan& plan, const Cell& cell, const std::filesystem
                   const std::filesystem::path& run, const std::filesystem::path& aside) {
   const auto target = study / make_cell_path(plan, cell);
   make_folder(target.parent_path());
-  // In each round this or another process moves the unfinished cell aside. There are at most as many
-  // rounds as processes that run this cell.
+  // In each round this or another process moves the unfinished cell aside. There are at most as
+  // many rounds as processes that run this cell.
   constexpr int kMostRounds = 1000;
   for (int round = 0; round < kMostRounds; ++round) {
     if (load_cell(plan, cell, study)) {
@@ -71,8 +70,9 @@ bool publish_cell(const StudyPlan& plan, const Cell& cell, const std::filesystem
       move_aside(target, aside);
     }
   }
-  throw Error(ErrorKind::busy, fmt::format("{}: others keep putting unfinished cells there",
-                                           sanitize(target.string())));
+  throw Error(ErrorKind::busy,
+              fmt::format("{}: other processes keep putting unfinished cells there",
+                          sanitize(target.string())));
 }
 
 }  // namespace armwright

@@ -179,10 +179,9 @@ std::string find_database_fault(const std::filesystem::path& file, const RunResu
   const struct {
     const char* role;
     std::uint64_t wanted;
-  } expected[] = {
-      {"training", result.counts.evaluations},
-      {"validation", result.judged.size()},
-      {"test", result.winner ? std::uint64_t{1} : 0}};
+  } expected[] = {{"training", result.counts.evaluations},
+                  {"validation", result.judged.size()},
+                  {"test", result.winner ? std::uint64_t{1} : 0}};
   for (const auto& [role, wanted] : expected) {
     const std::uint64_t found = count_rows(counts, role);
     if (found != wanted) {

@@ -1,11 +1,10 @@
-#include "study/survey/derived_survey.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/bits.hpp"
+#include "study/survey/derived_survey.hpp"
 
 namespace armwright {
 namespace {
@@ -107,11 +106,11 @@ std::string ResultSurvey::find_difference(const JournalSurvey& journal) const {
                          result_.judged[i].candidate.evaluation);
     }
     if (!validated_[i]) {
-      return fmt::format("what it says of {} on the validation set is not in the journal", who);
+      return fmt::format("its values of {} on the validation set are not in the journal", who);
     }
   }
   if (result_.winner && !tested_) {
-    return "what it says of the winner on the test set is not in the journal";
+    return "its values of the winner on the test set are not in the journal";
   }
   return "";
 }

@@ -26,7 +26,7 @@ std::string find_fault(const std::filesystem::path& file,
                        const std::function<std::string()>& check) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) {
-    return error ? fmt::format("it cannot be looked at: {}", error.message())
+    return error ? fmt::format("it cannot be read: {}", error.message())
                  : "it is not a regular file";
   }
   try {
@@ -170,7 +170,7 @@ class RunSurveyor {
     for (const std::uint64_t index : journal.contradictory) {
       damage(
           fmt::format("evaluation {} is recorded more than once with different content; none "
-                      "of it can be believed",
+                      "of its records is used",
                       index));
     }
     if (journal.records_behind_end > 0) {
@@ -185,19 +185,20 @@ class RunSurveyor {
     }
     if (const auto gaps = journal.list_gaps(); !gaps.empty() && survey_.writer.empty()) {
       add(Finding::Kind::note, "journal",
-          fmt::format("evaluations {} are not in it, as an interruption or a repair leaves it; "
+          fmt::format("evaluations {} are not in it, because of an interruption or a repair; "
                       "they are made again",
                       describe(gaps)));
     }
     if (journal.repeated > 0) {
       add(Finding::Kind::note, "journal",
-          fmt::format("{} evaluations are there more than once, alike", journal.repeated));
+          fmt::format("{} evaluations are recorded more than once with equal content",
+                      journal.repeated));
     }
     if (journal.torn_bytes > 0) {
       add(Finding::Kind::note, "journal",
           survey_.writer.empty()
-              ? fmt::format("byte {}, {} bytes at its end are no whole record: what a kill or a "
-                            "power cut leaves; going on with the run cuts them off",
+              ? fmt::format("byte {}, {} bytes at its end are an incomplete record, as a kill or a "
+                            "power cut leaves it; resuming the run removes them",
                             journal.torn_offset, journal.torn_bytes)
               : fmt::format("byte {}, {} bytes at its end are being written", journal.torn_offset,
                             journal.torn_bytes));
@@ -287,7 +288,7 @@ class RunSurveyor {
       if (name.ends_with(".new")) {
         if (survey_.writer.empty()) {
           add(Finding::Kind::note, name,
-              "a file that was being written when a process was killed; it may be removed");
+              "a file of a process that was killed while it wrote; it may be removed");
         }
       } else if (name.starts_with("journal.torn-")) {
         add(Finding::Kind::note, name, "what was cut off the journal's end; it may be removed");

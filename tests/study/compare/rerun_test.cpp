@@ -74,7 +74,7 @@ TEST(FindCell, RefusesWhatIsNoneAndSaysWhatIsNear) {
   const auto expect = [&](const std::string& name, const std::string& message) {
     EXPECT_THAT(usage_error_of([&] { find_cell(plan, name); }), HasSubstr(message));
   };
-  expect("a/b/c/r01", "'a/b/c/r01' can be read as two cells; name it as its folder: a%2Fb/c");
+  expect("a/b/c/r01", "'a/b/c/r01' fits two cells; name the cell as its folder is named: a%2Fb/c");
   expect("ab/c/r01", "unknown problem 'ab'; did you mean 'a/b'?");
   expect("a/my own (50%)/r01", "did you mean 'my 'own' (50%)'?");
   expect("a/c/r13", "the study has no replicate r13; it has r01 to r12");

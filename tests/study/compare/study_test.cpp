@@ -87,7 +87,7 @@ TEST_F(StudyTest, WhatWouldMakeCellsIncomparableIsRefusedWithTheDifference) {
   expect(changed, "replicates: recorded 6, now 5");
   changed = request;
   changed.optimizers = {"ga"};
-  expect(changed, "optimizer cmaes is recorded, and the plan leaves it out");
+  expect(changed, "optimizer cmaes is recorded, but the plan lacks it");
   changed = request;
   changed.settings = {"function.dimension=4"};
   expect(changed, "problem sphere: function.dimension: recorded 3, now 4");

@@ -115,7 +115,7 @@ TEST_F(AttemptTest, PassesOverAJournalThatIsDamaged) {
   SilentObserver observer;
   EXPECT_EQ(attempt_cell(plan_, cell_, {.study = study_, .command_line = {}}, stop, observer).end,
             CellAttempt::End::done);
-  EXPECT_THAT(observer.messages, Contains(HasSubstr("001/run holds cannot be gone on with")));
+  EXPECT_THAT(observer.messages, Contains(HasSubstr("001/run cannot be resumed")));
 }
 
 TEST_F(AttemptTest, TakesOverFromALocalComparisonAndTheOtherWayRound) {
@@ -201,8 +201,7 @@ TEST_F(AttemptTest, TheFirstOfManyThatFinishAtOnceIsPublished) {
     for (const auto& folder : folders) {
       threads.emplace_back([&] {
         start.arrive_and_wait();
-        const bool is_ours =
-            publish_cell(plan_, cell_, study_, folder / "run", folder / "aside");
+        const bool is_ours = publish_cell(plan_, cell_, study_, folder / "run", folder / "aside");
         published += is_ours ? 1 : 0;
       });
     }

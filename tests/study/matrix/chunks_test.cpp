@@ -84,7 +84,7 @@ TEST_F(CellNames, AreNumbersRangesAndNames) {
   for (const std::string word : {"8", "-1", "5-8", "1-", "-", "99999999999999999999"}) {
     EXPECT_THAT(
         usage_error_of([&] { select({word}); }),
-        HasSubstr("'" + word + "' is no cell of the study; its cells have the numbers 0 to 7"));
+        HasSubstr("'" + word + "' is not a cell of the study; name a cell by its number, 0 to 7,"));
   }
   EXPECT_THAT(usage_error_of([&] { select({"5-3"}); }), HasSubstr("ends before it begins"));
   EXPECT_THAT(usage_error_of([&] { select({"sphere/gaa/r01"}); }), HasSubstr("did you mean 'ga'"));
