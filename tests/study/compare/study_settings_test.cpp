@@ -27,7 +27,7 @@ TEST(StudySettings, AreThoseThatTheReaderAsksFor) {
       EXPECT_TRUE(is_table || known.contains(key.path)) << name << ": " << key.path;
     }
   }
-  EXPECT_FALSE(known.contains("optimizer[].budget"));  // asked for only to be refused
+  EXPECT_FALSE(known.contains("optimizer[].budget"));  // looked up only to refuse it
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Attempts at a cell: their tokens, what they take over from each other, and which of them gets its
-// result in place.
+// Attempts at a cell: their tokens, the state that one takes over from another, and which attempt
+// publishes its result.
 #include "study/matrix/attempt.hpp"
 
 #include <stdlib.h>
@@ -88,7 +88,7 @@ TEST_F(AttemptTest, GoesOnWithWhatTheFurthestHasEvaluated) {
   const CellAttempt first =
       attempt_cell(plan_, cell_, {.study = study_, .command_line = {}}, stop, stopping);
   EXPECT_EQ(first.end, CellAttempt::End::stopped);
-  // One that has evaluated nothing, and one that holds no journal at all.
+  // One attempt without evaluations, and one without a journal.
   std::filesystem::create_directories(attempts_ / "002/run");
   std::ofstream(attempts_ / "002/run/manifest.json") << "{}";
   std::ofstream(attempts_ / "002/run/journal") << "AWJRNL01";
@@ -147,7 +147,7 @@ TEST_F(AttemptTest, TakesOverFromALocalComparisonAndTheOtherWayRound) {
 
 TEST_F(AttemptTest, IsStoppedByANewerOneAndPublishesNothing) {
   StopSignal stop;
-  // The newer one comes in the midst, and the run would never end by itself.
+  // The newer attempt begins during the run, which would not end by itself.
   class Successor final : public RunObserver {
    public:
     Successor(std::filesystem::path attempts, StopSignal& ends)

@@ -1,4 +1,4 @@
-// Which cells go together, how they are named, and what is submitted.
+// Chunks of cells, names of cells, and the script and commands that are submitted.
 #include "study/matrix/chunks.hpp"
 
 #include <numeric>
