@@ -69,8 +69,8 @@ void check_count(const StudyPlan& plan) {
 void visit_sets(const StudyPlan& plan, const Visitor& visit) {
   for (std::size_t p = 0; p < plan.problems.size(); ++p) {
     const StudyProblem& problem = plan.problems[p];
-    const auto meet_numbers = [&](const char* role, const std::string& name,
-                                  std::span<const std::uint64_t> numbers) {
+    const auto visit_numbers = [&](const char* role, const std::string& name,
+                                   std::span<const std::uint64_t> numbers) {
       UsedSet set{problem.label, role, name, static_cast<int>(numbers.size()), ""};
       std::vector<TestCase> cases;
       if (problem.loaded.tracking()) {
@@ -82,26 +82,26 @@ void visit_sets(const StudyPlan& plan, const Visitor& visit) {
       }
       visit(set, cases);
     };
-    const auto meet = [&](const char* role, const std::string& name, int count) {
+    const auto visit_first = [&](const char* role, const std::string& name, int count) {
       std::vector<std::uint64_t> numbers(static_cast<std::size_t>(count));
       std::iota(numbers.begin(), numbers.end(), std::uint64_t{0});
-      meet_numbers(role, name, numbers);
+      visit_numbers(role, name, numbers);
     };
     const CaseSets& sets = problem.loaded.sets;
-    meet("test", sets.test, sets.test_cases);
-    meet("validation", sets.validation, sets.validation_cases);
+    visit_first("test", sets.test, sets.test_cases);
+    visit_first("validation", sets.validation, sets.validation_cases);
     for (int replicate = 1; replicate <= plan.replicates; ++replicate) {
       const std::string name = make_training_set_name(plan, {p, 0, replicate});
       const auto schedules = list_schedules(plan, p);
       const std::int64_t cases = count_training_cases(plan, schedules);
       if (cases > 0) {
-        meet("training", name, static_cast<int>(cases));
+        visit_first("training", name, static_cast<int>(cases));
       }
       for (const Schedule& schedule : schedules) {
         if (schedule.kind == Schedule::Kind::coevolution) {
           // The cases that breeding will produce are unknown, but they come from a separate space.
           const std::string bred = get_training_set(name, schedule);
-          meet_numbers("training", bred, CaseBreeder(bred, schedule.cases).genomes());
+          visit_numbers("training", bred, CaseBreeder(bred, schedule.cases).genomes());
         }
       }
     }

@@ -14,7 +14,7 @@ struct UsedSet {
   std::string role;     // "training", "validation", "test"
   std::string name;
   // Number of cases at the beginning of the set that the study uses. For a fresh schedule: as many
-  // as the budget can pay for. For bred cases: those that breeding begins with.
+  // as the budget can pay for, but at most 10 000. For bred cases: those that breeding begins with.
   int cases = 0;
   std::string sha256;  // of the cases' points; empty for a function, which has no points
 };
