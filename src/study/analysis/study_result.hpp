@@ -2,15 +2,15 @@
 // the cells alone; the same cells give the same bytes.
 //
 // Each optimizer has one value per replicate. For one objective it is the winner's value on the
-// test set (calc_test_value()), or the share of test cases in which the winner fails if the plan
-// asks for that. For several objectives it is the share of the hypervolume that the optimizer's
-// front misses. A pair of values belongs to one replicate: both runs had the same training cases
-// and start.
+// test set (calc_test_value()). If the plan asks for failures, it is the share of test cases in
+// which the winner fails. For several objectives it is the share of the hypervolume that the
+// optimizer's front misses. A pair of values belongs to one replicate: both runs had the same
+// training cases and start.
 //
 // Running times come from curves on the test set. The running time to a target is the budget from
-// which on every incumbent, simulated again on the test set, is at the target or below. Running
-// times are as coarse as the checkpoints. For several objectives, curves, running times and
-// profiles use the weighted sum of the objectives.
+// which on every incumbent is at the target or below. The incumbents are simulated again on the
+// test set. Running times are as coarse as the checkpoints. For several objectives, curves, running
+// times and profiles use the weighted sum of the objectives.
 //
 // Fixed targets are evaluated differently. They model a user who stops a run early and takes the
 // design that is best on the validation set at that time (choices.hpp). A run reaches a fixed
@@ -176,8 +176,8 @@ StudyResult analyze_study(const StudyPlan& plan, const std::filesystem::path& st
 
 // Returns the share of test cases in which the winner fails; infinite if there is no winner.
 double calc_failure_share(const CellOutcome& cell);
-// Returns the cell as needed by a study that compares failures: all objectives, those of the curve
-// included, are replaced by shares of failing test cases.
+// Returns the cell as needed by a study that compares failures. Shares of failing test cases
+// replace all objectives, those of the curve included.
 CellOutcome count_failures_only(CellOutcome cell, const CaseSets& sets);
 
 // Returns the trial of one run to reach a fixed target: its cost in simulated cases and whether it

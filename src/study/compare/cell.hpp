@@ -16,8 +16,8 @@
 namespace armwright {
 
 // Returns the value of a design on the test set, to be minimised: the (scalar) objective. The value
-// is infinite if the design has no objective, if one of its cases failed, or if a constraint is
-// violated by more than `tolerance`.
+// is infinite without an objective, with a failed case, or with a constraint violation above
+// `tolerance`.
 double calc_test_value(const ProblemDescription& problem, const Evaluation& evaluation,
                        double tolerance);
 
@@ -84,8 +84,9 @@ std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
                                     const CellRequest& where, StopSignal& stop,
                                     RunObserver& observer);
 
-// Returns the recorded outcome of a cell. Returns nothing if the cell has not ended, or if its
-// record lacks values that the plan asks for now; run_cell() then adds them from the journal.
+// Returns the recorded outcome of a cell. Returns nothing if the cell has not ended, or if
+// its record lacks values that the plan asks for now. In the latter case run_cell() adds them from
+// the journal.
 // Throws Error{bad_data} if the record belongs to another cell or cannot be read.
 std::optional<CellOutcome> load_cell(const StudyPlan& plan, const Cell& cell,
                                      const std::filesystem::path& study);

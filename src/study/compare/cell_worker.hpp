@@ -22,8 +22,8 @@ enum class Note : std::uint8_t {
   io_error  // text: the error that ends the whole study
 };
 
-// Kind of the parent's replies to a batch: any number of `outcomes`, each with the outcomes of some
-// pairs, then `end`, or `failure` with the reason why no more outcomes follow.
+// Kind of the parent's replies to a batch. Any number of `outcomes` come first, each with the
+// outcomes of some pairs. The last reply is `end`, or `failure` with the reason.
 enum class Answer : std::uint8_t { outcomes, end, failure };
 
 // Runs the cells that the parent orders, one after the other, until the parent asks it to end. The

@@ -1,5 +1,5 @@
-// Finds the incumbents of a run in its journal: the designs that were the best known for a while,
-// and the budget from which on they were. The journal holds the designs themselves.
+// Finds the incumbents of a run in its journal. An incumbent was the best known design from a
+// certain budget on, until a better one was found. The journal holds the designs themselves.
 #pragma once
 
 #include <cstdint>

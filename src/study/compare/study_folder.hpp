@@ -24,8 +24,8 @@ namespace armwright {
 class StudyFolder {
  public:
   // Creates the folder, or opens it to resume the study, and takes its lock. Throws Error{busy} if
-  // another process has the lock, Error{io}, Error{bad_data} if the recorded plan is damaged, or
-  // Error{usage} with every difference that would make recorded cells incomparable.
+  // another process has the lock, Error{bad_data} if the recorded plan is damaged, or Error{io}.
+  // Throws Error{usage} with every difference that would make recorded cells incomparable.
   StudyFolder(const std::filesystem::path& path, const StudyPlan& plan);
 
   const std::filesystem::path& path() const { return path_; }

@@ -153,8 +153,8 @@ Schedule get_schedule(const StudyPlan& plan, const Cell& cell);
 std::string make_training_set_name(const StudyPlan& plan, const Cell& cell);
 // Returns how many candidates are judged on the validation set. For one objective without
 // constraints this is the plan's selection. Otherwise it is at least the number that `optimize`
-// judges: the last few candidates may hold neither a front nor a design that keeps a limit on
-// unseen cases.
+// judges. The last few candidates may hold no front, and no design that keeps a limit on unseen
+// cases.
 Selection choose_selection(const StudyPlan& plan, const StudyProblem& problem);
 // Returns the plan of the cell's run.
 RunPlan make_run_plan(const StudyPlan& plan, const Cell& cell);

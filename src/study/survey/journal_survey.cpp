@@ -27,8 +27,8 @@ struct Place {
   std::uint64_t end = 0;
 };
 
-// Visits a journal from begin to end. `on_record` gets each intact record and its place, `on_gap`
-// each stretch between them with its fault, and `on_end` the stretch behind the last record.
+// Visits a journal from begin to end. `on_record` gets each intact record and its place. `on_gap`
+// gets each stretch between records with its fault. `on_end` gets the stretch behind the last one.
 template <class OnRecord, class OnGap, class OnEnd>
 void visit_records(JournalWindow& window, OnRecord on_record, OnGap on_gap, OnEnd on_end) {
   const auto begin_bytes = std::min<std::uint64_t>(window.size(), kMagic.size());
