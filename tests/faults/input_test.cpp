@@ -160,7 +160,7 @@ TEST_F(ChangedInputs, AByteOfAStudysProblem) {
   replace_in(folder_ / "arm.urdf", "229.6", "229.7");
   const Outcome outcome = run(command);
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("study holds a study whose cells would not compare"),
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("study holds a study whose cells could not be compared"),
                                  HasSubstr("recorded")));
   EXPECT_EQ(read_all(folder_ / "study"), before);
 }

@@ -21,7 +21,6 @@
 #include "study/matrix/attempt.hpp"
 #include "study/matrix/cell_attempt.hpp"
 #include "study/matrix/cell_selection.hpp"
-#include "study/matrix/recorded_study.hpp"
 #include "study/run/run_lock.hpp"
 
 namespace armwright {

@@ -18,10 +18,10 @@
 #include "cli/terminal/terminal.hpp"
 #include "cli/views/study_view.hpp"
 #include "problems/config/path_survey.hpp"
-#include "study/compare/escape.hpp"
+#include "study/compare/study_plan.hpp"
 #include "study/compare/study_runner.hpp"
-#include "study/matrix/cell_duration.hpp"
-#include "study/matrix/earlier_state.hpp"
+#include "study/matrix/cell_attempt.hpp"
+#include "study/matrix/chunks.hpp"
 #include "study/run/run_observer.hpp"
 
 namespace armwright {

@@ -14,8 +14,7 @@
 #include "study/compare/cell.hpp"
 #include "study/compare/study_folder.hpp"
 #include "study/executor/mpi_transport.hpp"
-#include "study/matrix/cell_duration.hpp"
-#include "study/matrix/cell_script.hpp"
+#include "study/matrix/chunks.hpp"
 #include "study/matrix/slurm.hpp"
 
 namespace armwright {

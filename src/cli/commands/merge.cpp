@@ -15,7 +15,6 @@
 #include "study/compare/cell.hpp"
 #include "study/compare/study_folder.hpp"
 #include "study/matrix/cell_selection.hpp"
-#include "study/matrix/recorded_study.hpp"
 #include "study/matrix/study_merge.hpp"
 
 namespace armwright {

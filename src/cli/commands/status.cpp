@@ -14,7 +14,6 @@
 #include "cli/terminal/table.hpp"
 #include "cli/terminal/terminal.hpp"
 #include "study/matrix/cell_selection.hpp"
-#include "study/matrix/recorded_study.hpp"
 #include "study/matrix/study_status.hpp"
 
 namespace armwright {

@@ -11,7 +11,6 @@
 #include "study/analysis/final_check.hpp"
 #include "study/analysis/study_tables.hpp"
 #include "study/analysis/verdict.hpp"
-#include "study/analysis/verdict_targets.hpp"
 
 namespace armwright {
 namespace {

@@ -11,7 +11,7 @@
 namespace armwright {
 namespace {
 
-// The candidates that would have been judged at each of the budgets.
+// Returns per budget the candidates that would be judged if the run ended there.
 std::vector<std::vector<Candidate>> select_along(const RunPlan& run,
                                                  const RecordedEvaluations& training,
                                                  std::span<const std::int64_t> budgets) {
@@ -86,11 +86,9 @@ ErrorSummary summarize_errors(const LoadedProblem& problem, const Evaluation& ev
   return summarize(evaluation.case_errors, problem.problem->description().failure_error);
 }
 
-std::optional<std::vector<Choice>> make_choices(const RunPlan& run,
-                                                const RecordedEvaluations& training,
-                                                const RunResult& result,
-                                                std::span<const std::int64_t> budgets,
-                                                CaseExecutor& executor, StopSignal& stop) {
+std::optional<std::vector<std::optional<JudgedCandidate>>> make_choices(
+    const RunPlan& run, const RecordedEvaluations& training, const RunResult& result,
+    std::span<const std::int64_t> budgets, CaseExecutor& executor, StopSignal& stop) {
   const auto selections = select_along(run, training, budgets);
   std::vector<std::vector<double>> designs;
   for (const auto& selection : selections) {
@@ -102,11 +100,11 @@ std::optional<std::vector<Choice>> make_choices(const RunPlan& run,
   if (!bench.add(designs)) {
     return std::nullopt;
   }
-  std::vector<Choice> choices;
+  std::vector<std::optional<JudgedCandidate>> choices;
   for (std::size_t i = 0; i < budgets.size(); ++i) {
     std::vector<JudgedCandidate> judged;
-    if (i > 0 && choices.back().chosen) {
-      judged.push_back(*choices.back().chosen);
+    if (i > 0 && choices.back()) {
+      judged.push_back(*choices.back());
     }
     for (const Candidate& candidate : selections[i]) {
       judged.push_back({candidate, bench.get(candidate.x)});
@@ -115,7 +113,7 @@ std::optional<std::vector<Choice>> make_choices(const RunPlan& run,
       judged.push_back(result.judged[*result.winner]);
     }
     const auto best = choose_winner(run.problem.problem->description(), judged);
-    choices.push_back({budgets[i], best ? std::optional(judged[*best]) : std::nullopt});
+    choices.push_back(best ? std::optional(judged[*best]) : std::nullopt);
   }
   return choices;
 }

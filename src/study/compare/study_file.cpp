@@ -12,7 +12,6 @@
 #include "problems/config/config_files.hpp"
 #include "sim/simd/simd_level.hpp"
 #include "study/compare/case_sets.hpp"
-#include "study/compare/escape.hpp"
 #include "study/compare/study_methods.hpp"
 #include "study/compare/study_plan.hpp"
 #include "study/compare/study_reader.hpp"

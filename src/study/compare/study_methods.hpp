@@ -1,4 +1,4 @@
-// What a study file says of targets and of methods. Internal to study/compare.
+// Reads and checks the parts of a study file about targets and methods. Internal to study/compare.
 #pragma once
 
 #include <string>
@@ -16,8 +16,8 @@ void check_targets(StudyPlan& plan);
 // worth. Throws Error{usage}.
 void check_method_settings(const ConfigTable& optimizer, const AnySetting& set,
                            const std::vector<std::string>& settings);
-// Loads every problem anew for the optimizers with settings of their own. Error{usage} if one would
-// be judged in another way than the others.
+// Loads every problem again for each optimizer that has settings of its own. Throws Error{usage} if
+// the settings would change how the optimizer's designs are judged.
 void load_methods(StudyPlan& plan);
 
 }  // namespace armwright
