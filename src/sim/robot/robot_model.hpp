@@ -1,7 +1,6 @@
-// A robot arm as the rest of the program sees it: a serial chain of revolute and prismatic joints
-// on a fixed base, read from URDF behind our own strict validation (urdfdom 3.0.1 takes mass "nan",
-// "1.5kg" and the like as 0, accepts negative masses and inertia tensors that no body can have, and
-// crashes on deep nesting).
+// A robot arm as the rest of the program sees it: a serial chain of revolute and prismatic joints on a
+// fixed base. It is read from URDF with a strict validation of everything that is used: numbers that are
+// not numbers, negative masses and inertia tensors that no body can have are refused.
 //
 // Frames: a link's frame is its joint's frame (URDF's convention); that of a prismatic joint moves
 // with the link. Links joined by fixed joints are lumped into the link that carries them. SI units,
@@ -131,8 +130,8 @@ class RobotOptionError final : public Error {
 // without mass; mass <= 0; an inertia that is not symmetric positive definite or violates the
 // triangle inequality of principal moments (all zero, with mass 0: no mass); a zero axis; on the
 // chain a revolute or prismatic joint without limits, lower > upper, speed or effort limits < 0,
-// mimic, and any type but revolute, continuous, prismatic and fixed; a mesh that gives no mass; all
-// that urdfdom itself refuses. load_urdf(): Error{io} if the file cannot be read.
+// mimic, and any type but revolute, continuous, prismatic and fixed; a mesh that gives no mass; a
+// version other than 1.0. load_urdf(): Error{io} if the file cannot be read.
 RobotModel load_urdf(const std::filesystem::path& file, const RobotOptions& options = {});
 RobotModel parse_urdf(std::string_view xml, const std::string& name,
                       const RobotOptions& options = {});

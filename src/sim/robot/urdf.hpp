@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,7 +20,7 @@ inline constexpr std::size_t kUrdfElementLimit = 50'000;
 inline constexpr std::size_t kUrdfAttributeLimit = 64;     // of one element
 inline constexpr std::size_t kUrdfTextLimit_bytes = 4096;  // of a name or the path of a mesh
 inline constexpr std::size_t kUrdfLinkLimit =
-    1'000;  // urdfdom frees a chain recursively, link by link
+    1'000;  // build_model() recurses once per link of a branch
 
 // What to do about a file that xacro has yet to work on.
 inline constexpr std::string_view kXacroAdvice =
@@ -51,29 +52,39 @@ struct UrdfChain {
 UrdfChain choose_chain(const std::vector<UrdfLink>& links, const std::vector<UrdfJoint>& joints,
                        const RobotOptions& options, const std::string& name);
 
-// A joint that is not part of the chain and stays where it is.
-struct HeldJoint {
-  int line = 0;
-  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();  // of its child, from its origin
-  std::string place;                                         // "0 m", for a note
+// A link as the file describes it, checked.
+struct UrdfBody {
+  std::optional<Inertial> inertial;  // in the link's frame
+  std::vector<VisualShape> shapes;   // likewise
 };
 
-// A URDF that has been validated.
+// How a joint is placed, and how it moves if it is part of the chain.
+struct UrdfPlacement {
+  Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();  // in the parent link's frame
+  // Of a joint of the chain: its kind, axis and limits, as in RobotModel. Its origin stays empty.
+  Joint motion;
+  // Of a joint beside the chain that could move: the pose in which it is held, from its origin on, and that
+  // position in words ("0 m").
+  Eigen::Isometry3d held_pose = Eigen::Isometry3d::Identity();
+  std::string held_at;  // empty: it is fixed, or part of the chain
+};
+
+// A URDF that has been validated: links and joints in the file's order.
 struct CheckedUrdf {
-  std::string xml;  // the same robot as plain XML: only elements and attributes that were checked,
-                    // every number in its shortest exact form, so that a second parser cannot read
-                    // it differently; joints that are held are fixed ones
+  std::string name;  // the robot's
   UrdfChain chain;
-  std::map<std::string, HeldJoint> held;  // by joint
+  std::vector<UrdfLink> links;
+  std::vector<UrdfBody> bodies;  // one per link
+  std::vector<UrdfJoint> joints;
+  std::vector<UrdfPlacement> placements;  // one per joint
   std::vector<std::string> notes;
 };
 
-// Calls scan_urdf(), then validates all that is used of the file.
+// Calls scan_urdf(), then reads and validates all that is used of the file.
 CheckedUrdf check_urdf(std::string_view xml, const std::string& name, const RobotOptions& options);
 
-// Builds the model with urdfdom: lumps links that do not move against each other, gives mass at a
-// density. Refuses a moving link without mass. Meshes are looked for from the folder of the file
-// `name`.
+// Builds the model: joins links that do not move against each other, and gives links mass at a density.
+// Refuses a moving link without mass. Searches meshes from the folder of the file `name`.
 RobotModel build_model(const CheckedUrdf& checked, const std::string& name,
                        const RobotOptions& options);
 

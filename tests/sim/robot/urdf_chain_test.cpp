@@ -77,8 +77,8 @@ TEST(UrdfChain, TakesLimitsOfZeroForNone) {
 }
 
 // A joint that is held is as good as one that was written as fixed there: 0.4 rad about y is what
-// <origin> calls pitch. Tolerance: urdfdom makes quaternions of angles, a few roundings of numbers
-// below 1.
+// <origin> calls pitch. Tolerance: angles go through
+// quaternions, a few roundings of numbers below 1.
 TEST(UrdfChain, HoldsJointsWhereAFixedOneWouldBe) {
   std::string xml = cell_xml();
   xml = replace_first(xml, "name=\"cable_joint\" type=\"revolute\"",
