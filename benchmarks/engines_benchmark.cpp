@@ -31,9 +31,9 @@ struct Task {
 
   explicit Task(const char* problem_name)
       : problem(load_problem(problem_name)), design(load_design(problem.published.design).design) {
-    const TestSet set = problem.tracking->get_set("test/2");
+    const TestSet set = problem.tracking()->get_set("test/2");
     for (std::size_t i = 0; i < kCases; ++i) {
-      targets.push_back(problem.tracking->setup().make_targets(set.make_case(i)));
+      targets.push_back(problem.tracking()->setup().make_targets(set.make_case(i)));
     }
     for (const TargetTable& table : targets) {
       TrackingJob& job = jobs.emplace_back();
@@ -50,7 +50,7 @@ Measured simulate(const PhysicsEngine& engine, const Task& task, std::size_t cas
   Measured measured;
   std::vector<TrackingResult> results;
   measured.seconds = measure_cpu_s([&] {
-    results = engine.simulate(task.problem.tracking->setup(), std::span(task.jobs).first(cases));
+    results = engine.simulate(task.problem.tracking()->setup(), std::span(task.jobs).first(cases));
   });
   for (const TrackingResult& result : results) {
     measured.steps += result.steps;
@@ -81,7 +81,7 @@ void run_engine(benchmark::State& state, const char* problem_name, const std::st
 
 void run_part(benchmark::State& state, SimdLevel level, benchmarks::Part part) {
   const LoadedProblem problem = load_problem("q1-complex");
-  const articulated::ChainModel& chain = problem.tracking->setup().chain();
+  const articulated::ChainModel& chain = problem.tracking()->setup().chain();
   const benchmarks::PartsChain numbers{chain.joints(), chain.flags().data(), chain.tilted_gravity(),
                                        chain.numbers().data()};
   std::vector<double> seconds;
@@ -99,7 +99,7 @@ void run_part(benchmark::State& state, SimdLevel level, benchmarks::Part part) {
 void run_sharing(benchmark::State& state) {
   const std::vector<std::string> overrides = {"physics.engine=articulated"};
   const LoadedProblem problem = load_problem("q1-complex", overrides);
-  const auto x = problem.tracking->make_vector(load_design("table-a5").design);
+  const auto x = problem.tracking()->make_vector(load_design("table-a5").design);
   StopSignal stop;
   ThreadExecutor one(1);
   ThreadExecutor two(2);

@@ -68,11 +68,11 @@ void replay_in_bare_ode(const RobotModel& model, std::span<const double> start_r
 void BM_WholeTrackingAgainstBareOde(benchmark::State& state) {
   const LoadedProblem problem = load_problem(state.range(0) == 0 ? "q1-complex" : "q2-e6");
   const ArmDesign design = load_design(problem.published.design).design;
-  const TestSet set = problem.tracking->get_set("test/2");
-  const TrackingSetup& setup = problem.tracking->setup();
+  const TestSet set = problem.tracking()->get_set("test/2");
+  const TrackingSetup& setup = problem.tracking()->setup();
   const TargetTable targets = setup.make_targets(set.make_case(0));
   const TrackingResult recorded =
-      problem.tracking->track(design, set, 0, {.error_series = false, .trajectory = true});
+      problem.tracking()->track(design, set, 0, {.error_series = false, .trajectory = true});
   const auto engine = make_engine("ode");
   TrackingJob job;
   job.design = &design;
@@ -102,8 +102,8 @@ BENCHMARK(BM_WholeTrackingAgainstBareOde)
 
 void BM_InverseKinematicsOfOneCase(benchmark::State& state) {
   const LoadedProblem problem = load_problem("q1-complex");
-  const TrackingSetup& setup = problem.tracking->setup();
-  const TestCase test_case = problem.tracking->get_set("test/2").make_case(0);
+  const TrackingSetup& setup = problem.tracking()->setup();
+  const TestCase test_case = problem.tracking()->get_set("test/2").make_case(0);
   std::vector<double> seconds;
   int steps = 0;
   for (auto _ : state) {
@@ -116,7 +116,7 @@ BENCHMARK(BM_InverseKinematicsOfOneCase)->Unit(benchmark::kMicrosecond);
 // A generation of the genetic algorithm: 35 designs on one new case, on one thread and on two.
 void BM_GenerationOnTwoCoresAgainstOne(benchmark::State& state) {
   const LoadedProblem problem = load_problem("q1-complex");
-  const auto x = problem.tracking->make_vector(load_design("table-a5").design);
+  const auto x = problem.tracking()->make_vector(load_design("table-a5").design);
   StopSignal stop;
   ThreadExecutor one(1);
   ThreadExecutor two(2);
@@ -128,7 +128,7 @@ void BM_GenerationOnTwoCoresAgainstOne(benchmark::State& state) {
         .run(candidates, block, false, [](std::size_t, Evaluation) {});
   };
   std::vector<double> speedup, serial, parallel;
-  const std::uint64_t computed_before = problem.tracking->targets().computed();
+  const std::uint64_t computed_before = problem.tracking()->targets().computed();
   for (auto _ : state) {
     serial.push_back(measure_s([&] { evaluate_generation(one); }));
     parallel.push_back(measure_s([&] { evaluate_generation(two); }));
@@ -137,7 +137,7 @@ void BM_GenerationOnTwoCoresAgainstOne(benchmark::State& state) {
   state.counters["speedup"] = calc_median(speedup);
   state.counters["evaluations_per_s_on_two"] = 35 / calc_median(parallel);
   state.counters["inverse_kinematics_per_generation"] =
-      static_cast<double>(problem.tracking->targets().computed() - computed_before) /
+      static_cast<double>(problem.tracking()->targets().computed() - computed_before) /
       static_cast<double>(number);
 }
 BENCHMARK(BM_GenerationOnTwoCoresAgainstOne)->Iterations(30)->Unit(benchmark::kMillisecond);

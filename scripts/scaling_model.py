@@ -1,5 +1,5 @@
 """Simulates by discrete events how batches are distributed over ranks. It follows the policy of src/study/executor/chunk_planner.cpp and
-the behaviour of coordinator_links.cpp and worker.cpp, in simulated time.
+the behaviour of coordinator_messages.cpp and worker.cpp, in simulated time.
 
 The model has few parameters. All are times in seconds, except crowding:
 
@@ -29,7 +29,7 @@ LATEST = 0.3
 FIRST_LATENCY_S = 1e-3
 FORGETTING_S = 1.0
 MOST_RISE = 4
-# coordinator_links.cpp: the pauses of the thread that communicates, and the number of messages that it takes in a row
+# coordinator_messages.cpp: the pauses of the thread that communicates, and the number of messages that it takes in a row
 SHORTEST_S, LONGEST_S = 50e-6, 1e-3
 AT_ONCE = 256
 # worker.cpp: pauses while the worker has work, and while it has none

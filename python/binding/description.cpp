@@ -91,7 +91,7 @@ json describe(const LoadedProblem& problem) {
   json all = describe(problem.problem->description());
   all["name"] = problem.name;
   all["title"] = problem.title;
-  all["is_arm"] = problem.tracking != nullptr;
+  all["is_arm"] = problem.tracking() != nullptr;
   all["schedule"] = to_text(problem.schedule);
   all["fixed_cases"] = problem.fixed_cases;
   all["racing"] = to_text(problem.racing);

@@ -158,11 +158,11 @@ py::tuple evaluate(const ProblemHandle& handle, const Numbers& points,
 // (cases, points, 3), in metres.
 py::array_t<double> list_cases(const ProblemHandle& handle, const std::string& set_name,
                                std::uint64_t first, std::uint64_t count) {
-  if (handle.loaded.tracking == nullptr) {
+  if (handle.loaded.tracking() == nullptr) {
     throw Error(ErrorKind::usage, fmt::format("problem '{}' is a function, which has no test cases",
                                               handle.loaded.name));
   }
-  const TestSet set = handle.loaded.tracking->get_set(set_name);
+  const TestSet set = handle.loaded.tracking()->get_set(set_name);
   const std::size_t points = count > 0 ? set.make_case(first).points_m.size() : 0;
   py::array_t<double> cases(
       {static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(points), py::ssize_t{3}});

@@ -46,8 +46,8 @@ test('from the first page through the tutorials to the next page', async () => {
   assert.equal(await page.locator('#pages [aria-current]').textContent(), 'Tune an arm');
   await page.click('.neighbours .after');
   assert.match(await page.title(), /^Compare optimizers/);
-  await page.click('aside a:has-text("Ask for more")');
-  assert.match(page.url(), /compare\.html#5-ask-for-more/);
+  await page.click('aside a:has-text("Add optimizers and replicates")');
+  assert.match(page.url(), /compare\.html#5-add-optimizers-and-replicates/);
   assert.deepEqual(faults, []);
 });
 

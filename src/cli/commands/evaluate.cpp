@@ -138,7 +138,7 @@ std::string format_profile(const EvaluatedDesign& evaluated, const Style& style)
     int points = 0;
   };
   std::array<Class, 6> classes{{{0.1}, {0.2}, {0.4}, {0.8}, {1.2}, {HUGE_VAL}}};
-  const bool skip_first = !evaluated.problem.tracking->config().task.count_first_point;
+  const bool skip_first = !evaluated.problem.tracking()->config().task.count_first_point;
   for (std::size_t i = 0; i < evaluated.evaluation.results.size(); ++i) {
     const auto& errors_m = evaluated.evaluation.results[i].point_error_m;
     const auto points_m = evaluated.cases.set.make_case(i).points_m;

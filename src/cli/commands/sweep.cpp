@@ -205,7 +205,7 @@ int run_sweep(const SweepOptions& options, Session& session) {
   for (std::size_t i = 0; i < problems.size(); ++i) {
     // A swept workspace changes the cases, and one problem's targets are of no use to the next.
     const ChosenCases cases = choose_cases(problems[i], options.cases);
-    auto evaluation = evaluate_with_progress(*problems[i].tracking, design.design, cases, jobs,
+    auto evaluation = evaluate_with_progress(*problems[i].tracking(), design.design, cases, jobs,
                                              session.stop, bar, share);
     problems[i] = {};
     if (!evaluation) {

@@ -313,7 +313,7 @@ int run_verify(const VerifyOptions& options, Session& session) {
   VerifiedDesign verified{design.name, base.name, cases, {}, {}, {}};
   BarShare share{0, cases.count * settings.size()};
   for (std::size_t i = 0; i < settings.size(); ++i) {
-    auto survey = survey_with_progress(*problems[i].tracking, design.design, cases, jobs,
+    auto survey = survey_with_progress(*problems[i].tracking(), design.design, cases, jobs,
                                        session.stop, bar, share);
     problems[i] = {};  // its targets are of no use to the next
     if (!survey) {

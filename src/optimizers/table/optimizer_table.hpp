@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "optimizers/interface/optimizer.hpp"
-#include "optimizers/table/optimizer_table.hpp"
 
 namespace armwright {
 

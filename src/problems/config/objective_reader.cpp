@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "problems/tracking/tracking_description.hpp"
+#include "problems/tracking/tracking_config.hpp"
 
 namespace armwright {
 namespace {

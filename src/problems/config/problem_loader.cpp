@@ -108,7 +108,7 @@ std::string read_name(const ConfigTable& table, const std::filesystem::path& pat
 // A path is always the same, and so are its simulations unless plants are perturbed: one of each is
 // enough, whatever the file says of generated cases.
 void settle_path(LoadedProblem& loaded, std::vector<std::string>& settled) {
-  const TrackingConfig& config = loaded.tracking->config();
+  const TrackingConfig& config = loaded.tracking()->config();
   if (!config.path || config.perturbation.changes_anything()) {
     return;
   }
@@ -124,7 +124,7 @@ void settle_path(LoadedProblem& loaded, std::vector<std::string>& settled) {
 void load_analytic(const ConfigTable& table, LoadedProblem& loaded) {
   const ConfigTable function = table.get_table("function");
   const std::string name = function.get_choice("name", analytic_names());
-  const AnalyticRow& row = find_analytic(name);
+  const AnalyticFunction& row = find_analytic(name);
   const auto dimension = static_cast<int>(function.get_integer_or(
       "dimension", row.default_dimension, row.smallest_dimension, row.largest_dimension));
   loaded.problem = make_analytic(name, dimension);
@@ -164,7 +164,7 @@ LoadedProblem load_problem_tables(const std::filesystem::path& path, const ReadT
     }
     settle_path(loaded, settled);
     if (table.has("sweep")) {
-      loaded.sweep = read_sweep(table.get_table("sweep"), *loaded.tracking);
+      loaded.sweep = read_sweep(table.get_table("sweep"), *loaded.tracking());
     }
   }
   table.refuse_unknown();

@@ -46,8 +46,8 @@ struct LoadedProblem {
   std::string name;   // also of folders
   std::string title;  // one line
   std::shared_ptr<const Problem> problem;
-  std::shared_ptr<const TrackingProblem>
-      tracking;  // the same object; null for an analytic function
+  // Returns the tracking problem; null for an analytic function. Valid as long as `problem`.
+  const TrackingProblem* tracking() const { return problem->tracking(); }
   Schedule schedule;
   int fixed_cases = 5;  // K for optimizers without generations where the schedule needs them
   Racing racing;

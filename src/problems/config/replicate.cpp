@@ -18,6 +18,7 @@ class StartedElsewhere final : public Problem {
   }
 
   const ProblemDescription& description() const override { return description_; }
+  const TrackingProblem* tracking() const override { return problem_->tracking(); }
   BatchSize batch_size(CaseRole role) const override { return problem_->batch_size(role); }
   std::vector<CaseOutcome> simulate(std::span<const CaseJob> jobs) const override {
     return problem_->simulate(jobs);

@@ -6,7 +6,7 @@
 #include <limits>
 #include <set>
 
-#include "problems/tracking/tracking_description.hpp"
+#include "problems/tracking/tracking_config.hpp"
 #include "sim/tracking/designed_arm.hpp"
 
 namespace armwright {

@@ -19,7 +19,7 @@
 #include "problems/config/requirement_reader.hpp"
 #include "problems/config/robot_proposal.hpp"
 #include "problems/config/task_reader.hpp"
-#include "problems/tracking/tracking_description.hpp"
+#include "problems/tracking/tracking_config.hpp"
 #include "sim/robot/mesh_file.hpp"
 #include "sim/tracking/design_conversion.hpp"
 #include "sim/tracking/designed_arm.hpp"
@@ -148,8 +148,8 @@ std::vector<std::string> load_tracking(const ConfigTable& table, std::span<const
   config.robot = scale_masses(load_robot(robot, urdf, loaded), config.mass_scale);
 
   const ConfigTable physics = table.get_table_or_empty("physics");
-  ChosenEngines chosen = choose_engines(physics, engines);
-  config.engines = std::move(chosen.engines);
+  config.engines = choose_engines(physics, engines);
+  const std::optional<SimdLevel> simd = config.engines.simd;
   const ConfigTable task = table.get_table_or_empty("task");
   const ConfigTable control = table.get_table_or_empty("control");
   config.task = read_task(task, physics, control);
@@ -207,12 +207,11 @@ std::vector<std::string> load_tracking(const ConfigTable& table, std::span<const
   }
   check_limits(table.get_table_or_empty("objective"), config);
   config.requirements = read_requirements(table.get_tables_or_empty("requirement"), config);
-  loaded.tracking = make_tracking(std::move(config), variables, urdf);
-  loaded.problem = loaded.tracking;
+  loaded.problem = make_tracking(std::move(config), variables, urdf);
   std::vector<std::string> settled = std::move(perturbation.settled);
   std::ranges::move(proposed, std::back_inserter(settled));
-  if (chosen.simd) {  // what "auto" has come to decides the last bits of every result
-    settled.push_back(fmt::format("physics.simd={}", to_string(*chosen.simd)));
+  if (simd) {  // what "auto" has come to decides the last bits of every result
+    settled.push_back(fmt::format("physics.simd={}", to_string(*simd)));
   }
   return settled;
 }

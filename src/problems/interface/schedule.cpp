@@ -141,7 +141,8 @@ Racing read_racing_table(const ConfigTable& table) {
   Racing racing;
   racing.kind =
       *find_kind(kRacingKinds, table.get_choice("kind", list_names(kRacingKinds), "none"));
-  // Read where they count only: elsewhere they are refused, as they would change nothing.
+  // Each key is read only for the kind that uses it. The configuration refuses keys that were not
+  // read, so a key without effect is an error.
   if (racing.kind == Racing::Kind::halving) {
     racing.first_cases =
         static_cast<int>(table.get_integer_or("first_cases", racing.first_cases, 1, kMostCases));

@@ -28,14 +28,15 @@ const EngineRow& read_engine(const ConfigTable& physics, std::string_view key,
   return *std::ranges::find(table, name, &EngineRow::name);
 }
 
-// The options that an engine of those chosen has; what it has not is the other one's.
+// Returns the options of one of the two chosen engines. An engine without SIMD gets the defaults,
+// because the options are meant for the other engine.
 EngineOptions resolve(const EngineRow& engine, EngineOptions options) {
   return engine.simd ? resolve_options(engine, options) : EngineOptions{};
 }
 
 }  // namespace
 
-ChosenEngines choose_engines(const ConfigTable& physics, std::span<const EngineRow> table) {
+EnginePair choose_engines(const ConfigTable& physics, std::span<const EngineRow> table) {
   const EngineRow& training = read_engine(physics, "engine", "ode", table);
   const EngineRow& judging = read_engine(physics, "judging_engine", training.name, table);
   std::vector<std::string> levels = simd_names();
@@ -53,17 +54,17 @@ ChosenEngines choose_engines(const ConfigTable& physics, std::span<const EngineR
     physics.refuse("precision", fmt::format("{} ('double' suits every engine)", error.what()));
   }
   const EngineOptions double_only{.precision = Precision::double_, .simd = options.simd};
-  ChosenEngines chosen;
+  EnginePair chosen;
   try {
     resolve_options(training.simd ? training : judging, double_only);
     const EngineOptions for_training = resolve(training, options);
     const EngineOptions for_judging = resolve(judging, double_only);
     chosen.simd = training.simd ? for_training.simd : for_judging.simd;
-    chosen.engines.training_name = training.name;
-    chosen.engines.judging_name = judging.name;
-    chosen.engines.training = training.make(for_training);
+    chosen.training_name = training.name;
+    chosen.judging_name = judging.name;
+    chosen.training = training.make(for_training);
     const bool alike = &judging == &training && options.precision == Precision::double_;
-    chosen.engines.judging = alike ? chosen.engines.training : judging.make(for_judging);
+    chosen.judging = alike ? chosen.training : judging.make(for_judging);
   } catch (const Error& error) {
     physics.refuse("simd", fmt::format("{} ('auto' suits every engine)", error.what()));
   }

@@ -1,9 +1,9 @@
-// Which physics engines a problem is simulated with, read from its table [physics]:
-//   engine          of training, and of everything else unless judging_engine says otherwise
-//   judging_engine  of validation, test and every evaluation of a given design
-//   precision       "double" or "float": of training only; judged is always in double
+// The choice of a problem's physics engines, read from its table [physics]:
+//   engine          for training; also for all other cases unless judging_engine is given
+//   judging_engine  for validation, for tests and for every evaluation of a given design
+//   precision       "double" or "float"; training only, all other cases use double
 //   simd            "auto" (the best level of this machine) or a level
-// Precision and SIMD level are for engines that work in SIMD lanes.
+// Precision and SIMD level apply to engines that work in SIMD lanes.
 #pragma once
 
 #include <memory>
@@ -18,25 +18,24 @@
 
 namespace armwright {
 
+// The two engines of a problem. They may be the same object.
 struct EnginePair {
   std::shared_ptr<const PhysicsEngine> training;
-  std::shared_ptr<const PhysicsEngine> judging;  // may be the same
+  std::shared_ptr<const PhysicsEngine> judging;  // for all roles but training
   std::string training_name;
   std::string judging_name;
+  // The SIMD level that the engines use; it decides the last bits of results. Nothing if neither
+  // engine works in SIMD lanes.
+  std::optional<SimdLevel> simd;
 
   const PhysicsEngine& get(CaseRole role) const {
     return role == CaseRole::training ? *training : *judging;
   }
 };
 
-struct ChosenEngines {
-  EnginePair engines;
-  // What the engines use, which is part of what determines a result; nothing if none has SIMD.
-  std::optional<SimdLevel> simd;
-};
-
-// Error{usage} names the key of `physics` at fault. `table` holds the engines to choose from.
-ChosenEngines choose_engines(const ConfigTable& physics,
-                             std::span<const EngineRow> table = engine_table());
+// Makes the engines that `physics` asks for. `table` has the engines to choose from. Throws
+// Error{usage} with the wrong key of `physics`.
+EnginePair choose_engines(const ConfigTable& physics,
+                          std::span<const EngineRow> table = engine_table());
 
 }  // namespace armwright

@@ -60,6 +60,13 @@ void Plant::change_design(ArmDesign& design) const {
   }
 }
 
+std::size_t Plant::size_bytes() const {
+  // An estimate that is rather too large. In each form of the arm, a joint has about fifty numbers,
+  // a name and its factors.
+  constexpr std::size_t kJoint_bytes = 4096;
+  return sizeof *this + mass_factors.size() * kJoint_bytes;
+}
+
 Plant draw_plant(const Perturbation& perturbation, std::size_t joints, double substep_s,
                  std::string_view case_set, std::uint64_t number) {
   const Perturbation& p = perturbation;
@@ -77,7 +84,7 @@ Plant draw_plant(const Perturbation& perturbation, std::size_t joints, double su
     variation.torque_ripple.push_back(p.torque_ripple_relative * random.uniform());
     variation.ripple_phase_rad.push_back(2 * std::numbers::pi * random.uniform());
   }
-  // Normal numbers take as many from the stream as they need, so they come last.
+  // A normal number takes an unknown count of numbers from the stream, so these come last.
   for (std::size_t i = 0; i < joints; ++i) {
     plant.limit_factors.push_back(std::exp(-p.effort_limit_sigma * std::abs(random.normal())));
   }

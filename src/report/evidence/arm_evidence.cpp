@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "base/text.hpp"
-#include "problems/tracking/tracking_description.hpp"
+#include "problems/tracking/tracking_config.hpp"
 #include "report/evidence/distance_response.hpp"
 #include "report/evidence/page_json.hpp"
 #include "report/evidence/signals.hpp"

@@ -67,7 +67,7 @@ class Executor {
   }
 
   std::optional<PartResult> make_result(const PlannedPart& part) {
-    const TrackingProblem& problem = *part.problem.tracking;
+    const TrackingProblem& problem = *part.problem.tracking();
     const auto design = find_design(part);
     if (!design) {
       return std::nullopt;
@@ -153,9 +153,9 @@ std::vector<std::string> make_run_words(const std::string& program, const RunPla
           "--seed",
           std::to_string(run.seed),
           "--engine",
-          run.problem.tracking->config().engines.training_name,
+          run.problem.tracking()->config().engines.training_name,
           "--judging-engine",
-          run.problem.tracking->config().engines.judging_name,
+          run.problem.tracking()->config().engines.judging_name,
           "--out",
           folder.string()};
 }

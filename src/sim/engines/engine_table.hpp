@@ -8,7 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/engines/engine_table.hpp"
 #include "sim/tracking/physics_engine.hpp"
 
 namespace armwright {

@@ -86,7 +86,7 @@ void visit_checks(const StudyPlan& plan, const std::filesystem::path& study, Stu
                   const auto& on_missing) {
   for (std::size_t p = 0; p < plan.problems.size() && !plan.final_engine.empty(); ++p) {
     const StudyProblem& problem = plan.problems[p];
-    for (std::size_t o = 0; o < plan.optimizers.size() && problem.loaded.tracking; ++o) {
+    for (std::size_t o = 0; o < plan.optimizers.size() && problem.loaded.tracking(); ++o) {
       const std::string& optimizer = plan.optimizers[o].label;
       const CellOutcome* best = find_best_cell(result.cells, problem.label, optimizer);
       if (best == nullptr) {

@@ -258,7 +258,7 @@ ProblemResult analyze_problem(const StudyPlan& plan, std::size_t number,
     compare_optimizers(values, result);
   }
   add_targets(plan, all_runs, complete, result);
-  if (problem.loaded.tracking) {
+  if (problem.loaded.tracking()) {
     add_failures(all_runs, complete, result);
   }
   result.order.resize(values.size());

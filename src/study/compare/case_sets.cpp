@@ -52,7 +52,7 @@ void check_count(const StudyPlan& plan) {
   std::int64_t count = 0;
   for (std::size_t p = 0; p < plan.problems.size(); ++p) {
     const LoadedProblem& problem = plan.problems[p].loaded;
-    if (problem.tracking) {
+    if (problem.tracking()) {
       count += std::int64_t{problem.sets.test_cases} + problem.sets.validation_cases +
                plan.replicates * count_training_cases(plan, list_schedules(plan, p));
     }
@@ -73,8 +73,8 @@ void visit_sets(const StudyPlan& plan, const Visitor& visit) {
                                   std::span<const std::uint64_t> numbers) {
       UsedSet set{problem.label, role, name, static_cast<int>(numbers.size()), ""};
       std::vector<TestCase> cases;
-      if (problem.loaded.tracking) {
-        const TestSet source = problem.loaded.tracking->get_set(name);
+      if (problem.loaded.tracking()) {
+        const TestSet source = problem.loaded.tracking()->get_set(name);
         for (const std::uint64_t number : numbers) {
           cases.push_back(source.make_case(number));
         }

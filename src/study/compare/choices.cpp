@@ -1,7 +1,6 @@
 #include "study/compare/choices.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 
 #include "base/bits.hpp"
@@ -83,8 +82,7 @@ const Evaluation* DesignBench::find(std::span<const double> x) const {
 }
 
 ErrorSummary summarize_errors(const LoadedProblem& problem, const Evaluation& evaluation) {
-  const double limit = problem.tracking ? kFailureError_m : std::numeric_limits<double>::infinity();
-  return summarize(evaluation.case_errors, limit);
+  return summarize(evaluation.case_errors, problem.problem->description().failure_error);
 }
 
 std::optional<std::vector<Choice>> make_choices(const RunPlan& run,

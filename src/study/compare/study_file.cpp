@@ -455,7 +455,7 @@ StudyPlan make_study_plan(const StudyRequest& request) {
     find_engine(plan.final_engine);
   }
   for (const StudyProblem& problem : plan.problems) {
-    if (plan.start_spread == 0 && !problem.loaded.tracking) {
+    if (plan.start_spread == 0 && !problem.loaded.tracking()) {
       throw Error(ErrorKind::usage,
                   fmt::format("start_spread is 0, and {} has no training cases: the replicates of "
                               "a deterministic optimizer would all be the same run; it must be "

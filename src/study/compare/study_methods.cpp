@@ -33,10 +33,11 @@ std::string get_key(std::string_view setting) {
 // The perturbation that designs meet in validation and tests; nothing if there is none, whatever
 // its table says.
 std::optional<Perturbation> get_judged_perturbation(const LoadedProblem& problem) {
-  if (!problem.tracking || !problem.tracking->config().perturbation.applies_to(CaseRole::test)) {
+  if (!problem.tracking() ||
+      !problem.tracking()->config().perturbation.applies_to(CaseRole::test)) {
     return {};
   }
-  Perturbation perturbation = problem.tracking->config().perturbation;
+  Perturbation perturbation = problem.tracking()->config().perturbation;
   perturbation.where = Perturbation::Where::judging;  // whether training has it as well
   return perturbation;
 }
@@ -170,7 +171,7 @@ void check_targets(StudyPlan& plan) {
         throw Error(ErrorKind::usage, fmt::format("target '{}': {}", target.label,
                                                   describe_unknown("problem", problem, problems)));
       }
-      if (target.failures && !found->loaded.tracking) {
+      if (target.failures && !found->loaded.tracking()) {
         throw Error(ErrorKind::usage,
                     fmt::format("target '{}' counts failing test cases, and {} is a function, "
                                 "which has none",
@@ -180,12 +181,13 @@ void check_targets(StudyPlan& plan) {
   }
   if (plan.value == StudyValue::failures) {
     for (const StudyProblem& problem : plan.problems) {
-      if (!problem.loaded.tracking || problem.loaded.problem->description().objectives.size() > 1) {
+      if (!problem.loaded.tracking() ||
+          problem.loaded.problem->description().objectives.size() > 1) {
         throw Error(ErrorKind::usage,
                     fmt::format("value is \"failures\": that compares arms by the share of test "
                                 "cases in which they fail, and {} is {}",
                                 problem.label,
-                                problem.loaded.tracking ? "judged by its front" : "a function"));
+                                problem.loaded.tracking() ? "judged by its front" : "a function"));
       }
     }
   }

@@ -45,8 +45,8 @@ std::vector<double> draw_near_start(std::span<const DecisionVariable> variables,
 // and weights of a network, moved a share of their range each, no controller at all.
 std::vector<double> convert_start(const StudyPlan& plan, const Cell& cell,
                                   const std::vector<double>& start) {
-  const TrackingProblem& own = *get_problem(plan, cell).tracking;
-  const ArmDesign design = plan.problems[cell.problem].loaded.tracking->make_design(start);
+  const TrackingProblem& own = *get_problem(plan, cell).tracking();
+  const ArmDesign design = plan.problems[cell.problem].loaded.tracking()->make_design(start);
   std::vector<double> own_start;
   try {
     const TrackingConfig& config = own.config();
@@ -72,8 +72,8 @@ std::vector<double> draw_start(const StudyPlan& plan, const Cell& cell) {
                       make_stream(plan, cell) + "/start");
   const LoadedProblem& own = get_problem(plan, cell);
   const bool has_own_controller =
-      problem.tracking && own.tracking &&
-      own.tracking->config().start.controller != problem.tracking->config().start.controller;
+      problem.tracking() && own.tracking() &&
+      own.tracking()->config().start.controller != problem.tracking()->config().start.controller;
   return has_own_controller ? convert_start(plan, cell, start) : start;
 }
 
@@ -202,7 +202,7 @@ StudyCost calc_cost(const StudyPlan& plan) {
     // The winner, the start, the incumbents at the checkpoints, a front.
     cost.test +=
         runs * (2 + tested * (has_targets ? 2 : 1) + (fronts ? judged : 0)) * sets.test_cases;
-    if (!plan.final_engine.empty() && problem.loaded.tracking) {
+    if (!plan.final_engine.empty() && problem.loaded.tracking()) {
       cost.test += static_cast<std::int64_t>(plan.optimizers.size()) * sets.test_cases;
     }
   }

@@ -47,7 +47,7 @@ double estimate_cell_memory_mib(const StudyPlan& plan) {
   constexpr double kTargets_mib = 128;  // the cache of test cases, which arms fill
   constexpr double kEvaluation_mib = 32.0 / (1 << 20);
   const bool has_arm = std::ranges::any_of(plan.problems, [](const StudyProblem& problem) {
-    return problem.loaded.tracking != nullptr;
+    return problem.loaded.tracking() != nullptr;
   });
   int fewest_cases = plan.problems.front().schedule.cases;
   for (const StudyProblem& problem : plan.problems) {

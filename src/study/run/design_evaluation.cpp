@@ -48,14 +48,14 @@ double get_number(const TrackingResult& result) {
 }  // namespace
 
 const TrackingProblem& require_tracking(const LoadedProblem& problem) {
-  if (problem.tracking == nullptr) {
+  if (problem.tracking() == nullptr) {
     throw Error(
         ErrorKind::usage,
         fmt::format("problem '{}' is an analytic function, on which no arm can be evaluated; "
                     "choose a robot problem (armwright list problems)",
                     problem.name));
   }
-  return *problem.tracking;
+  return *problem.tracking();
 }
 
 std::optional<double> get_error(const TrackingResult& result) {

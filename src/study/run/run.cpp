@@ -47,7 +47,7 @@ RunResult make_result(const RunPlan& plan) {
   result.limits = description.limits;
   result.requirements = description.requirements;
   result.test_set = plan.problem.sets.test;
-  result.tracking = plan.problem.tracking != nullptr;
+  result.tracking = plan.problem.tracking() != nullptr;
   result.published = plan.problem.published;
   return result;
 }

@@ -99,7 +99,7 @@ std::string make_front_csv(const RunResult& result) {
 
 std::string make_winner_toml(const RunPlan& plan, const RunResult& result,
                              const std::vector<double>& x) {
-  const TrackingProblem& tracking = *plan.problem.tracking;
+  const TrackingProblem& tracking = *plan.problem.tracking();
   DesignFile file;
   file.name = make_run_name(plan);
   file.title = fmt::format("Winner of {} on {}", plan.optimizer.name, plan.problem.name);
@@ -200,8 +200,8 @@ void write_derived_files(const RunFolder& folder, const RunPlan& plan, const Run
   if (all && result.objectives.size() > 1) {
     write_file_atomically(path / "front.csv", make_front_csv(result));
   }
-  if (result.winner && plan.problem.tracking) {
-    const TrackingProblem& tracking = *plan.problem.tracking;
+  if (result.winner && plan.problem.tracking()) {
+    const TrackingProblem& tracking = *plan.problem.tracking();
     const auto& x = result.judged[*result.winner].candidate.x;
     write_file_atomically(path / "winner.toml", make_winner_toml(plan, result, x));
     if (all) {

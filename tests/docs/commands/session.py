@@ -75,10 +75,14 @@ class Session:
             "CMAKE_PREFIX_PATH": os.environ.get("ARMWRIGHT_PREFIX", "")}
 
     def link(self, path):
-        """Something of the repository, where a clone has it."""
+        """Makes a link to a part of the repository, at the place where a clone has it. What the pages name build/release is the build of the
+        tested program, whatever its preset."""
+        target = self.sources / path
+        if path == "build":
+            path, target = "build/release", self.program.parent.parent
         place = self.work / path
         place.parent.mkdir(parents=True, exist_ok=True)
-        place.symlink_to(self.sources / path)
+        place.symlink_to(target)
 
     def run(self, command):
         """What becomes of a command, where the last one left off."""

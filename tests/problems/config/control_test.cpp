@@ -32,8 +32,8 @@ const DecisionVariable& get_variable(const LoadedProblem& loaded, const std::str
 
 TEST(Control, WithoutATableThereIsThePidOfTheStart) {
   const LoadedProblem loaded = load_with_gains({});
-  EXPECT_EQ(loaded.tracking->config().start.controller, "pid");
-  EXPECT_EQ(loaded.tracking->config().task.feed_forward, FeedForward::none);
+  EXPECT_EQ(loaded.tracking()->config().start.controller, "pid");
+  EXPECT_EQ(loaded.tracking()->config().task.feed_forward, FeedForward::none);
   EXPECT_THAT(loaded.resolved_json, testing::Not(HasSubstr("\"controller\"")));
 }
 
@@ -43,14 +43,14 @@ TEST_P(EveryControl, TakesTheStartOver) {
   const LoadedProblem plain = load_with_gains({});
   const LoadedProblem loaded = load_with_gains({"control.controller=" + GetParam()});
   const ControllerRow& row = find_controller(GetParam());
-  const TrackingConfig& config = loaded.tracking->config();
+  const TrackingConfig& config = loaded.tracking()->config();
   EXPECT_EQ(config.start.controller, row.name);
   EXPECT_EQ(config.task.feed_forward, row.feed_forward);
   const std::size_t joints = config.robot.joint_count();
   const auto& variables = loaded.problem->description().variables;
   ASSERT_EQ(variables.size(), joints * (row.gains.size() + 2));
   for (std::size_t joint = 0; joint < joints; ++joint) {
-    const JointDrive& before = plain.tracking->config().start.joints[joint];
+    const JointDrive& before = plain.tracking()->config().start.joints[joint];
     EXPECT_EQ(config.start.joints[joint].limits.min_n_m, before.limits.min_n_m);
     EXPECT_EQ(config.start.joints[joint].limits.max_n_m, before.limits.max_n_m);
     for (std::size_t k = 0; k < row.gains.size(); ++k) {
@@ -89,7 +89,7 @@ TEST_P(EveryControl, DesignsSurviveTheirFile) {
   file.name = "made";
   file.title = "a start";
   file.source = "converted";
-  file.design = load_with_gains({"control.controller=" + GetParam()}).tracking->config().start;
+  file.design = load_with_gains({"control.controller=" + GetParam()}).tracking()->config().start;
   file.design.joints[1].gains.back() *= 1.0 / 3;
   for (std::size_t k = 0; k < find_controller(GetParam()).gains.size(); ++k) {
     if (find_controller(GetParam()).gains[k].any_sign) {
@@ -109,10 +109,11 @@ TEST_P(EveryControl, DesignsSurviveTheirFile) {
   // As a start it is used as it is, by its own controller or without naming it.
   const LoadedProblem again =
       load_with_gains({"control.controller=" + GetParam(), "variables.start=" + path});
-  EXPECT_EQ(again.tracking->config().start.joints[2].gains, file.design.joints[2].gains);
+  EXPECT_EQ(again.tracking()->config().start.joints[2].gains, file.design.joints[2].gains);
   const LoadedProblem unnamed = load_with_gains({"variables.start=" + path});
-  EXPECT_EQ(unnamed.tracking->config().start.controller, GetParam());
-  EXPECT_EQ(unnamed.tracking->config().task.feed_forward, find_controller(GetParam()).feed_forward);
+  EXPECT_EQ(unnamed.tracking()->config().start.controller, GetParam());
+  EXPECT_EQ(unnamed.tracking()->config().task.feed_forward,
+            find_controller(GetParam()).feed_forward);
   if (GetParam() != "pid") {
     EXPECT_THAT(usage_error_of([&] {
                   load_with_gains(
@@ -158,7 +159,7 @@ TEST(Control, GainsStandForAllOfAController) {
 TEST(Control, TheFilterStartsAtATenthOfThePeriod) {
   const LoadedProblem loaded =
       load_with_gains({"control.controller=pid_filtered", "control.period_s=0.004"});
-  EXPECT_EQ(loaded.tracking->config().task.control_period_s, 0.004);
+  EXPECT_EQ(loaded.tracking()->config().task.control_period_s, 0.004);
   EXPECT_DOUBLE_EQ(get_variable(loaded, "joint_1.filter").start, 0.0004);
 }
 
@@ -177,21 +178,21 @@ TEST(Control, RefusesAStartThatMakesNoController) {
 TEST(Control, ADesignNeedsTheTablesOfItsController) {
   const LoadedProblem plain = load_with_gains({});
   const ArmDesign design =
-      convert_design(plain.tracking->config().start, "pid_computed_torque", 0.01);
-  EXPECT_EQ(usage_error_of([&] { plain.tracking->check_design(design); }),
-            "the design is for controller 'pid_computed_torque', whose efforts in advance problem "
-            "q2-e6 does not make; set control.controller to 'pid_computed_torque'");
-  load_with_gains({"control.controller=pid_computed_torque"}).tracking->check_design(design);
+      convert_design(plain.tracking()->config().start, "pid_computed_torque", 0.01);
+  EXPECT_EQ(usage_error_of([&] { plain.tracking()->check_design(design); }),
+            "the design is for controller 'pid_computed_torque', whose feed-forward efforts "
+            "problem q2-e6 does not compute; set control.controller to 'pid_computed_torque'");
+  load_with_gains({"control.controller=pid_computed_torque"}).tracking()->check_design(design);
   // Another controller without tables can be judged, but is no vector of this problem.
-  const ArmDesign pi2d = convert_design(plain.tracking->config().start, "pi2d", 0.01);
-  plain.tracking->check_design(pi2d);
-  EXPECT_THAT(usage_error_of([&] { plain.tracking->make_vector(pi2d); }),
+  const ArmDesign pi2d = convert_design(plain.tracking()->config().start, "pi2d", 0.01);
+  plain.tracking()->check_design(pi2d);
+  EXPECT_THAT(usage_error_of([&] { plain.tracking()->make_vector(pi2d); }),
               HasSubstr("the design is for controller 'pi2d', the variables of problem q2-e6 are "
                         "those of 'pid'"));
 }
 
 TEST(Control, AConvertedStartKeepsItsArmAndItsSpeed) {
-  ArmDesign start = load_with_gains({}).tracking->config().start;
+  ArmDesign start = load_with_gains({}).tracking()->config().start;
   start.joints[1].length_scale = 1.1;
   start.joints[2].section_scale = 0.9;
   start.speed_m_per_s = 1.25;
@@ -212,7 +213,7 @@ TEST(Control, RecordsOfOldRunsCanBeRead) {
   const std::string task = "\"task\":{";
   old.insert(old.find(task) + task.size(), "\"control_period_s\":0.005,");
   const LoadedProblem again = load_recorded_problem(old, "q2-e6", ".");
-  EXPECT_EQ(again.tracking->config().task.control_period_s, 0.005);
+  EXPECT_EQ(again.tracking()->config().task.control_period_s, 0.005);
   EXPECT_EQ(again.resolved_json, now.resolved_json);
 }
 

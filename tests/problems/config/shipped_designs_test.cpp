@@ -57,7 +57,7 @@ TEST(ShippedDesigns, AreThoseOfTheAppendixForThisArm) {
     EXPECT_EQ(file.source, "thesis, Table A." + name.substr(7));
     EXPECT_EQ(file.design.controller, "pid");
     EXPECT_THAT(file.joint_names, ElementsAre("joint_1", "joint_2", "joint_3", "joint_4"));
-    load_problem("q1-complex").tracking->check_design(file.design);
+    load_problem("q1-complex").tracking()->check_design(file.design);
     for (const JointDrive& joint : file.design.joints) {
       EXPECT_THAT(joint.gains, SizeIs(3));
       EXPECT_LT(joint.limits.min_n_m, 0);
@@ -90,7 +90,7 @@ TEST(ShippedDesigns, PublishedResultsNameProblemsThatLoad) {
       SCOPED_TRACE(published.label);
       labels.push_back(published.label);
       const LoadedProblem loaded = load_problem(published.problem, published.overrides);
-      ASSERT_NE(loaded.tracking, nullptr);
+      ASSERT_NE(loaded.tracking(), nullptr);
       EXPECT_THAT(published.where, testing::Not(IsEmpty()));
       if (published.overrides.empty()) {  // the design is the problem's winner
         EXPECT_EQ(loaded.published.design, name);
@@ -109,7 +109,7 @@ TEST(ShippedDesigns, PublishedResultsNameProblemsThatLoad) {
 TEST(ShippedDesigns, OverridesOfPublishedResultsTakeEffect) {
   const auto load = [](const std::string& design, std::size_t which) {
     const PublishedResult published = load_design(design).published.at(which);
-    return load_problem(published.problem, published.overrides).tracking->config().task;
+    return load_problem(published.problem, published.overrides).tracking()->config().task;
   };
   EXPECT_TRUE(load("table-a5", 0).ik_bug);
   EXPECT_FALSE(load("table-a5", 1).ik_bug);

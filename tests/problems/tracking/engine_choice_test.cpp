@@ -1,4 +1,4 @@
-// Which engine simulates what, and what of it is recorded.
+// The choice of engines: which engine simulates which cases, and what the configuration records.
 #include "problems/tracking/engine_choice.hpp"
 
 #include <fmt/format.h>
@@ -10,6 +10,7 @@
 #include "problems/config/config_files.hpp"
 #include "problems/config/problem_loader.hpp"
 #include "problems/lanes_engine.hpp"
+#include "problems/load_tracking.hpp"
 
 namespace armwright {
 namespace {
@@ -21,6 +22,10 @@ using testing::HasSubstr;
 LoadedProblem load_with_lanes(std::vector<std::string> overrides) {
   overrides.insert(overrides.end(), {"workspace.points=4"});
   return load_problem("q1-complex", overrides, engines_with_lanes());
+}
+
+std::shared_ptr<const TrackingProblem> track_with_lanes(std::vector<std::string> overrides) {
+  return share_tracking(load_with_lanes(std::move(overrides)));
 }
 
 std::string refusal_of(const std::vector<std::string>& overrides) {
@@ -42,14 +47,14 @@ double simulate(const TrackingProblem& problem, std::span<const double> x, CaseR
 
 TEST(EngineChoice, OdeAloneUnlessTheProblemSaysOtherwise) {
   const LoadedProblem loaded = load_with_lanes({});
-  const EnginePair& engines = loaded.tracking->config().engines;
+  const EnginePair& engines = loaded.tracking()->config().engines;
   EXPECT_EQ(engines.training_name, "ode");
   EXPECT_EQ(engines.judging_name, "ode");
   EXPECT_EQ(engines.training, engines.judging);
-  EXPECT_EQ(loaded.tracking->batch_size(CaseRole::training).largest, 1U);
+  EXPECT_EQ(loaded.tracking()->batch_size(CaseRole::training).largest, 1U);
 }
 
-// Runs that were begun before there was a choice can be resumed.
+// Otherwise runs that were started before engines could be chosen could not be resumed.
 TEST(EngineChoice, NothingIsAddedToTheConfigurationOfOde) {
   for (const auto& overrides :
        {std::vector<std::string>{}, {"physics.engine=ode"}, {"physics.simd=auto"}}) {
@@ -72,8 +77,7 @@ TEST(EngineChoice, TheSimdLevelInUseIsRecorded) {
 }
 
 TEST(EngineChoice, FloatIsForTrainingOnly) {
-  const auto problem =
-      load_with_lanes({"physics.engine=lanes", "physics.precision=float"}).tracking;
+  const auto problem = track_with_lanes({"physics.engine=lanes", "physics.precision=float"});
   const std::vector<double> x = problem->make_vector(problem->config().start);
   for (const auto role : {CaseRole::training, CaseRole::validation, CaseRole::test}) {
     const bool training = role == CaseRole::training;
@@ -89,11 +93,10 @@ TEST(EngineChoice, FloatIsForTrainingOnly) {
 }
 
 TEST(EngineChoice, AnotherEngineJudges) {
-  const auto problem = load_with_lanes({"physics.engine=lanes", "physics.judging_engine=ode",
-                                        "physics.precision=float"})
-                           .tracking;
+  const auto problem = track_with_lanes(
+      {"physics.engine=lanes", "physics.judging_engine=ode", "physics.precision=float"});
   EXPECT_EQ(problem->config().engines.judging_name, "ode");
-  const auto ode = load_with_lanes({}).tracking;
+  const auto ode = track_with_lanes({});
   const std::vector<double> x = problem->make_vector(problem->config().start);
   EXPECT_EQ(simulate(*problem, x, CaseRole::training),
             calc_lanes_error_m(*problem, x, "train/1", 3, Precision::single));
@@ -106,8 +109,7 @@ TEST(EngineChoice, AnotherEngineJudges) {
 }
 
 TEST(EngineChoice, OneCallMayMixWhatDifferentEnginesSimulate) {
-  const auto problem =
-      load_with_lanes({"physics.engine=lanes", "physics.judging_engine=ode"}).tracking;
+  const auto problem = track_with_lanes({"physics.engine=lanes", "physics.judging_engine=ode"});
   const std::vector<double> x = problem->make_vector(problem->config().start);
   const CaseBlock train{CaseRole::training, "train/1", {3}};
   const CaseBlock test{CaseRole::test, "test/2", {3}};
@@ -122,7 +124,7 @@ TEST(EngineChoice, OneCallMayMixWhatDifferentEnginesSimulate) {
 }
 
 TEST(EngineChoice, EveryTableOfTargetsIsMadeOnceForAllOfABatch) {
-  const auto problem = load_with_lanes({"physics.engine=lanes"}).tracking;
+  const auto problem = track_with_lanes({"physics.engine=lanes"});
   const std::vector<double> x = problem->make_vector(problem->config().start);
   std::vector<double> y = x;
   y[0] *= 2;
@@ -143,7 +145,7 @@ TEST(EngineChoice, EveryTableOfTargetsIsMadeOnceForAllOfABatch) {
 }
 
 TEST(EngineChoice, SeveralCasesOfADesignAreTrackedAsOneByOne) {
-  const auto problem = load_with_lanes({"physics.judging_engine=lanes"}).tracking;
+  const auto problem = track_with_lanes({"physics.judging_engine=lanes"});
   const TestSet set = problem->get_set("test/5");
   const auto together = problem->track(problem->config().start, set, 2, 3, {});
   ASSERT_EQ(together.size(), 3U);
@@ -160,7 +162,7 @@ TEST(EngineChoice, WhatAnEngineDoesNotHaveIsRefused) {
   EXPECT_THAT(refusal_of({"physics.simd=" + kLevel}),
               AllOf(HasSubstr("physics.simd is"), HasSubstr("engine 'ode' has none to choose"),
                     HasSubstr("('auto' suits every engine)")));
-  // Judged is in double always, so this says nothing to the engine that has floats.
+  // The judging engine always uses double, so the setting is for the training engine, ODE.
   EXPECT_THAT(refusal_of({"physics.judging_engine=lanes", "physics.precision=float"}),
               HasSubstr("engine 'ode' always computes in double"));
   EXPECT_THAT(refusal_of({"physics.engine=lane"}), HasSubstr("'lanes'"));

@@ -51,7 +51,7 @@ ArmDesign make_start(const RunPlan& run) {
   for (const DecisionVariable& variable : run.problem.problem->description().variables) {
     x.push_back(variable.start);
   }
-  return run.problem.tracking->make_design(x);
+  return run.problem.tracking()->make_design(x);
 }
 
 TEST(StudyMethods, WithOtherControllersBeginFromTheSamePid) {
@@ -75,7 +75,7 @@ set = ["physics.engine=articulated", "workspace.points=4"]
     SCOPED_TRACE(names[cell.optimizer] + " " + std::to_string(cell.replicate));
     const ArmDesign pid = make_start(make_run_plan(plan, {0, 0, cell.replicate}));
     const RunPlan run = make_run_plan(plan, cell);
-    const TrackingProblem& own = *run.problem.tracking;
+    const TrackingProblem& own = *run.problem.tracking();
     const ArmDesign start = make_start(run);
     const ArmDesign converted =
         convert_design(pid, names[cell.optimizer], own.config().task.control_period_s);

@@ -146,7 +146,7 @@ double calc_mean_log(std::span<const double> errors) {
 TEST(CaseBreeder, CasesBecomeHarderForTheRobot) {
   const LoadedProblem loaded =
       load_problem("q2-e6", std::vector<std::string>{"physics.engine=articulated"});
-  const std::vector<double> x = loaded.tracking->make_vector(loaded.tracking->config().start);
+  const std::vector<double> x = loaded.tracking()->make_vector(loaded.tracking()->config().start);
   const auto evaluate = [&](const std::string& set, std::vector<std::uint64_t> numbers) {
     return loaded.problem->evaluate(x, {CaseRole::training, set, std::move(numbers)}).case_errors;
   };

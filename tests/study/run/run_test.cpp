@@ -85,11 +85,10 @@ TEST_F(RunTest, TheWinnerIsTheBestOnTheValidationSetAndItsTestIsComplete) {
 }
 
 TEST(EvaluateDesign, InBatchesItIsWhatCaseByCaseGives) {
-  const auto problem =
-      load_problem("q1-complex",
-                   std::vector<std::string>{"workspace.points=3", "physics.judging_engine=lanes"},
-                   engines_with_lanes())
-          .tracking;
+  const LoadedProblem loaded = load_problem(
+      "q1-complex", std::vector<std::string>{"workspace.points=3", "physics.judging_engine=lanes"},
+      engines_with_lanes());
+  const TrackingProblem* problem = loaded.tracking();
   const ArmDesign& design = problem->config().start;
   const TestSet set = problem->get_set("test/2");
   for (const unsigned jobs : {1U, 3U}) {

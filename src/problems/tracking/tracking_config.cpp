@@ -1,4 +1,4 @@
-#include "problems/tracking/tracking_description.hpp"
+#include "problems/tracking/tracking_config.hpp"
 
 #include <fmt/format.h>
 
@@ -148,7 +148,8 @@ DecisionVariable make_variable(const TrackingConfig& config, const DesignParamet
                             variable.name));
   }
   variable.scale = Scale::logarithmic;
-  // The list form returns values; the two-argument form would return references to the temporaries.
+  // With an initializer list, std::minmax returns values. With two arguments it would return
+  // references to temporaries.
   const double factor = get_bounds_factor(config, parameter);
   const auto [lower, upper] = std::minmax({variable.start / factor, variable.start * factor});
   variable.lower = lower;
@@ -182,6 +183,7 @@ ProblemDescription make_tracking_description(const TrackingConfig& config) {
   description.name = config.name;
   description.summary = config.summary;
   description.cost_unit = "simulated test case";
+  description.failure_error = kFailureError_m;
   for (const DesignParameter& parameter : config.parameters) {
     description.variables.push_back(make_variable(config, parameter));
   }
@@ -232,7 +234,7 @@ ProblemDescription make_tracking_description(const TrackingConfig& config) {
   description.has_residuals = objective.has_residuals() && description.limits.empty();
   if (!description.has_residuals && description.limits.empty()) {
     description.residuals_advice =
-        "only objective.statistic = \"mean\" is such a sum; choose it or another optimizer";
+        "only objective.statistic = \"mean\" has residuals; choose it or another optimizer";
   }
   return description;
 }
