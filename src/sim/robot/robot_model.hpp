@@ -1,6 +1,7 @@
-// A robot arm as the rest of the program sees it: a serial chain of revolute and prismatic joints on a
-// fixed base. It is read from URDF with a strict validation of everything that is used: numbers that are
-// not numbers, negative masses and inertia tensors that no body can have are refused.
+// A robot arm as the rest of the program sees it: a serial chain of revolute and prismatic joints
+// on a fixed base. It is read from URDF with a strict validation of everything that is used:
+// numbers that are not numbers, negative masses and inertia tensors that no body can have are
+// refused.
 //
 // Frames: a link's frame is its joint's frame (URDF's convention); that of a prismatic joint moves
 // with the link. Links joined by fixed joints are lumped into the link that carries them. SI units,

@@ -63,8 +63,8 @@ struct UrdfPlacement {
   Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();  // in the parent link's frame
   // Of a joint of the chain: its kind, axis and limits, as in RobotModel. Its origin stays empty.
   Joint motion;
-  // Of a joint beside the chain that could move: the pose in which it is held, from its origin on, and that
-  // position in words ("0 m").
+  // Of a joint beside the chain that could move: the pose in which it is held, from its origin on,
+  // and that position in words ("0 m").
   Eigen::Isometry3d held_pose = Eigen::Isometry3d::Identity();
   std::string held_at;  // empty: it is fixed, or part of the chain
 };
@@ -83,8 +83,8 @@ struct CheckedUrdf {
 // Calls scan_urdf(), then reads and validates all that is used of the file.
 CheckedUrdf check_urdf(std::string_view xml, const std::string& name, const RobotOptions& options);
 
-// Builds the model: joins links that do not move against each other, and gives links mass at a density.
-// Refuses a moving link without mass. Searches meshes from the folder of the file `name`.
+// Builds the model: joins links that do not move against each other, and gives links mass at a
+// density. Refuses a moving link without mass. Searches meshes from the folder of the file `name`.
 RobotModel build_model(const CheckedUrdf& checked, const std::string& name,
                        const RobotOptions& options);
 
