@@ -13,8 +13,9 @@ using tinyxml2::XMLElement;
 
 namespace {
 
-// The rotation Rz(yaw) Ry(pitch) Rx(roll) by way of its normalized quaternion. This order of operations decides
-// the last bits of every result of a robot with rotated frames: it is that of version 1.0.
+// The rotation Rz(yaw) Ry(pitch) Rx(roll) by way of its normalized quaternion. This order of
+// operations decides the last bits of every result of a robot with rotated frames: it is that of
+// version 1.0.
 Eigen::Matrix3d make_rotation(double roll, double pitch, double yaw) {
   const double phi = roll / 2.0;
   const double the = pitch / 2.0;

@@ -1,25 +1,75 @@
-// The parts of urdf_check.cpp: they read links and joints strictly.
-// Private to the .cpp files urdf_check*.cpp.
+// Strict reading of XML elements, links and joints. Only urdf_xml.cpp and urdf_check*.cpp include
+// this header. Every error is Error{bad_data} and names the file, the line, the link or joint, the
+// element and the attribute.
 #pragma once
 
 #include <tinyxml2.h>
 
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sim/robot/urdf.hpp"
-#include "sim/robot/urdf_xml.hpp"
 
 namespace armwright {
 
-// The pose that the <origin> of an element gives; the identity if it has none.
+// Returns the beginning of a text from a file, safe to print in a message.
+std::string shorten(std::string_view text);
+
+// A reader of single XML elements that throws for everything it does not accept.
+class UrdfXml {
+ public:
+  // `name` is the file's name in messages.
+  explicit UrdfXml(std::string name) : name_(std::move(name)) {}
+
+  // Sets how messages name the current link or joint, for example "link 'link_1'".
+  void set_context(std::string where) { where_ = std::move(where); }
+  // Throws Error{bad_data} with the file's name, the element's line and the context.
+  [[noreturn]] void fail(const tinyxml2::XMLElement& element, const std::string& what) const;
+
+  // Throws for a child or attribute whose name looks misspelt, and for elements of xacro. Ignores
+  // other extensions of URDF.
+  void check_names(const tinyxml2::XMLElement& element, const std::vector<std::string>& children,
+                   const std::vector<std::string>& attributes) const;
+
+  // Return the only child of that name and throw if there is a second one. If there is none,
+  // find_only() returns null and get_only() throws.
+  const tinyxml2::XMLElement* find_only(const tinyxml2::XMLElement& parent,
+                                        const char* child_name) const;
+  const tinyxml2::XMLElement& get_only(const tinyxml2::XMLElement& parent, const char* child_name,
+                                       const char* hint) const;
+
+  // Returns an attribute's text. Throws if it is missing, empty or not printable.
+  std::string get_text(const tinyxml2::XMLElement& element, const char* attribute) const;
+
+  // Returns the `count` finite numbers of an attribute, or `fallback` if the attribute is missing.
+  // Throws if it is missing and `fallback` is empty.
+  std::vector<double> read_numbers(const tinyxml2::XMLElement& element, const char* attribute,
+                                   std::size_t count,
+                                   const std::vector<double>& fallback = {}) const;
+  double read_number(const tinyxml2::XMLElement& element, const char* attribute) const;
+  double read_number(const tinyxml2::XMLElement& element, const char* attribute,
+                     double fallback) const;
+  double read_positive(const tinyxml2::XMLElement& element, const char* attribute) const;
+
+ private:
+  void check_spelling(const tinyxml2::XMLElement& at, const std::string& what,
+                      const std::string& found, const std::vector<std::string>& valid) const;
+  void refuse_xacro(const tinyxml2::XMLElement& element, const char* attribute,
+                    std::string_view text) const;
+
+  std::string name_;
+  std::string where_ = "the file";
+};
+
+// Returns the pose of an element's <origin>, or the identity if it has none.
 Eigen::Isometry3d read_origin(const tinyxml2::XMLElement& parent, const UrdfXml& xml);
 
-// Links: mass and looks.
+// A reader of <link> elements: their mass and visual shapes.
 class LinkChecker {
  public:
-  // Materials are known before the links that use them.
+  // Reads the robot's materials, which links refer to by name.
   LinkChecker(const tinyxml2::XMLElement& robot, UrdfXml& xml);
 
   UrdfBody read(const tinyxml2::XMLElement& link, const std::string& link_name);
@@ -35,12 +85,12 @@ class LinkChecker {
   void read_color(const tinyxml2::XMLElement& material, VisualShape& shape);
 
   UrdfXml& xml_;
-  std::map<std::string, std::vector<double>> colors_;  // of materials, empty: a texture only
-  std::map<const tinyxml2::XMLElement*, std::vector<double>> own_colors_;  // of each <material>
+  std::map<std::string, std::vector<double>> colors_;  // by material; empty: only a texture
+  std::map<const tinyxml2::XMLElement*, std::vector<double>> own_colors_;  // by <material>
   std::vector<std::string> massless_;
 };
 
-// Joints: where they are and how far they go.
+// A reader of <joint> elements: their origins, axes and limits.
 class JointChecker {
  public:
   JointChecker(const UrdfChain& chain, UrdfXml& xml) : chain_(chain), xml_(xml) {}

@@ -60,8 +60,8 @@ class Builder {
   // Body 0 is the base, body i the link that joint i - 1 moves.
   Link& get_body(std::size_t body) { return body == 0 ? model_.base : model_.links[body - 1]; }
 
-  // Adds a link and everything below it, joints in the order of their names. `pose` is the link's in its carrier's
-  // frame. Recurses at most kUrdfLinkLimit deep.
+  // Adds a link and everything below it, joints in the order of their names. `pose` is the link's
+  // in its carrier's frame. Recurses at most kUrdfLinkLimit deep.
   void add(const std::string& link, const Eigen::Isometry3d& pose, std::size_t carrier,
            const std::size_t* held) {
     lump(link, pose, carrier, held);

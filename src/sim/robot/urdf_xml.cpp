@@ -1,5 +1,3 @@
-#include "sim/robot/urdf_xml.hpp"
-
 #include <fmt/format.h>
 #include <tinyxml2.h>
 
@@ -7,7 +5,7 @@
 #include <cmath>
 
 #include "base/text.hpp"
-#include "sim/robot/urdf.hpp"
+#include "sim/robot/urdf_parts.hpp"
 
 namespace armwright {
 
