@@ -45,7 +45,8 @@ WorkspaceProposal propose_workspace(const RobotModel& robot, const TrackingTask&
 
 // Returns the cases of kProposalSet in the sphere.
 std::vector<TestCase> make_proposal_cases(const WorkspaceSphere& sphere);
-// Makes the task cheaper for proposals: a control period of 10 ms, and rests no longer than needed.
+// Makes the task cheaper for proposals: a control period of at least 10 ms and rests of at most 0.1
+// s.
 void coarsen(TrackingTask& task);
 
 }  // namespace armwright

@@ -21,7 +21,7 @@ Eigen::Matrix3d calc_point_inertia(double mass_kg, const Eigen::Vector3d& r) {
 
 Inertial combine(const Inertial& a, const Inertial& b) {
   if (a.mass_kg == 0 || b.mass_kg == 0) {
-    return a.mass_kg == 0 ? b : a;  // to the last bit, whatever the other's frame
+    return a.mass_kg == 0 ? b : a;  // unchanged to the last bit
   }
   Inertial sum;
   sum.mass_kg = a.mass_kg + b.mass_kg;

@@ -10,7 +10,7 @@
 namespace armwright {
 namespace {
 
-// Names in the order of the file, the first dozen of them.
+// Returns the first twelve names as text, and the number of the others.
 std::string list_names(const std::vector<std::string>& names, std::string_view separator) {
   constexpr std::size_t kShown = 12;
   std::vector<std::string> shown;
@@ -21,7 +21,7 @@ std::string list_names(const std::vector<std::string>& names, std::string_view s
          (names.size() > kShown ? fmt::format(" and {} more", names.size() - kShown) : "");
 }
 
-// Links and joints as a tree.
+// The links and joints as a tree.
 class Tree {
  public:
   Tree(const std::vector<UrdfLink>& links, const std::vector<UrdfJoint>& joints,
@@ -77,7 +77,7 @@ class Tree {
     return leaves;
   }
 
-  // The joints from the root down to that link.
+  // Returns the joints from the root down to the link.
   std::vector<const UrdfJoint*> find_way(const std::string& link) const {
     std::vector<const UrdfJoint*> way;
     for (auto joint = joint_above_.find(link); joint != joint_above_.end();
@@ -121,10 +121,10 @@ class Tree {
     }
   }
 
-  // "'a' -> 'b' -> 'a'": follows the joints down from a link that has no root above it.
+  // Returns the cycle above a link that no root carries, as "'a' -> 'b' -> 'a'".
   std::string describe_cycle(const UrdfLink& start) const {
-    // Going up never ends on such a link, so after as many steps as there are joints we are on the
-    // cycle itself.
+    // From such a link one can go up without end. So after as many steps as there are joints, the
+    // link is on the cycle itself.
     std::string on_cycle = start.name;
     for (std::size_t i = 0; i < joint_above_.size(); ++i) {
       on_cycle = joint_above_.at(on_cycle)->parent;

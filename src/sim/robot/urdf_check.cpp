@@ -13,9 +13,9 @@ using tinyxml2::XMLElement;
 
 namespace {
 
-// The rotation Rz(yaw) Ry(pitch) Rx(roll) by way of its normalized quaternion. This order of
-// operations decides the last bits of every result of a robot with rotated frames: it is that of
-// version 1.0.
+// Returns the rotation Rz(yaw) Ry(pitch) Rx(roll), computed from its normalized quaternion. The
+// order of the operations must not change: it decides the last bits of all results of robots with
+// rotated frames, and it is the same as in version 1.0.
 Eigen::Matrix3d make_rotation(double roll, double pitch, double yaw) {
   const double phi = roll / 2.0;
   const double the = pitch / 2.0;
@@ -84,7 +84,8 @@ const XMLElement& find_robot(const tinyxml2::XMLDocument& document, const UrdfXm
   return *robot;
 }
 
-// Names and how they hang together, before anything else of links and joints is read.
+// The names of links and joints and the links that each joint connects. They are read before
+// anything else of links and joints.
 class Index {
  public:
   Index(const XMLElement& robot, UrdfXml& xml) : xml_(xml) {
@@ -144,7 +145,7 @@ class Index {
     joints.push_back(std::move(joint));
   }
 
-  // The link that <parent> or <child> names.
+  // Returns the name of the link that <parent> or <child> refers to.
   std::string read_end(const XMLElement& joint, const char* end) const {
     const XMLElement& element =
         xml_.get_only(joint, end, "a joint needs a parent and a child link");
@@ -161,7 +162,7 @@ class Index {
   std::set<std::string> link_names_, joint_names_;
 };
 
-// URDF has one version so far.
+// Throws unless the version is 1.0, the only version of URDF.
 void check_version(const XMLElement& robot, const UrdfXml& xml) {
   const std::string version = xml.get_text(robot, "version");
   if (version != "1.0") {

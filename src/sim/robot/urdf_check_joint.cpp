@@ -14,7 +14,7 @@ using tinyxml2::XMLElement;
 
 namespace {
 
-// An axis shorter than this has no direction worth the name.
+// The direction of an axis shorter than this is not reliable.
 constexpr double kShortestAxis = 1e-6;
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
@@ -23,7 +23,7 @@ struct Range {
   double lower = 0, upper = 0;
 };
 
-// <limit>'s ends, each 0 where it is not given.
+// Returns the lower and upper limit; a limit that is not given is 0.
 Range read_range(const XMLElement& limit, bool prismatic, const UrdfXml& xml) {
   const Range range{xml.read_number(limit, "lower", 0.0), xml.read_number(limit, "upper", 0.0)};
   if (range.lower > range.upper) {
@@ -74,8 +74,8 @@ Joint JointChecker::read_motion(const XMLElement& element, const UrdfJoint& join
   return motion;
 }
 
-// At 0, or at the end of its range nearest to that. Floating and planar joints have no position and
-// stay at their origin.
+// Holds a joint at position 0, or at the end of its range that is nearest to 0. Floating and planar
+// joints stay at their origin.
 void JointChecker::hold(const XMLElement& element, const UrdfJoint& joint,
                         UrdfPlacement& placement) const {
   if (joint.type == "floating" || joint.type == "planar") {
@@ -99,7 +99,7 @@ void JointChecker::hold(const XMLElement& element, const UrdfJoint& joint,
 }
 
 Eigen::Vector3d JointChecker::read_axis(const XMLElement& element) const {
-  std::vector<double> axis{1, 0, 0};  // URDF's default
+  std::vector<double> axis{1, 0, 0};  // the default in URDF
   if (const XMLElement* given = xml_.find_only(element, "axis")) {
     xml_.check_names(*given, {}, {"xyz"});
     axis = xml_.read_numbers(*given, "xyz", 3);
@@ -154,7 +154,7 @@ void JointChecker::read_limit(const XMLElement& element, const UrdfJoint& joint,
   }
 }
 
-// What would change how the joint moves, and is not simulated.
+// Notes elements that would change the joint's motion but are not simulated.
 void JointChecker::note_extras(const XMLElement& element, const UrdfJoint& joint) {
   if (xml_.find_only(element, "safety_controller") != nullptr) {
     softly_limited_.push_back(fmt::format("'{}'", joint.name));

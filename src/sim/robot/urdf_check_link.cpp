@@ -12,8 +12,8 @@ using tinyxml2::XMLElement;
 
 namespace {
 
-// How far the largest principal moment may exceed the sum of the others: the rounding of a plate's
-// moments to three digits.
+// The largest principal moment may exceed the sum of the others by this fraction, because a thin
+// plate's moments can be rounded to three digits.
 constexpr double kTriangleTolerance = 1e-3;
 
 constexpr const char* kEntries[3][3] = {
@@ -59,7 +59,7 @@ LinkChecker::LinkChecker(const XMLElement& robot, UrdfXml& xml) : xml_(xml) {
   }
 }
 
-// Materials are defined at the top or in the visual that uses them first.
+// Materials are defined at the top level or in the visual that uses them first.
 void LinkChecker::collect_colors(const XMLElement& holder) {
   for (const XMLElement* e = holder.FirstChildElement("material"); e != nullptr;
        e = e->NextSiblingElement("material")) {
@@ -121,7 +121,7 @@ std::optional<Inertial> LinkChecker::read_inertial(const XMLElement& element,
               "or no <inertial>)");
   }
   check_tensor(inertia, tensor, xml_);
-  // Symmetric by the names of its entries.
+  // The matrix is symmetric because URDF names each off-diagonal entry once.
   const Inertial body{mass_kg, Eigen::Vector3d::Zero(), tensor};
   return transform(body, read_origin(element, xml_));
 }
@@ -181,7 +181,8 @@ void LinkChecker::read_shape(const XMLElement& element, const std::vector<std::s
   }
 }
 
-// A material without a colour of its own takes the colour of the first material of its name.
+// Sets the shape's colour. A material without a colour takes the colour of the first material of
+// the same name.
 void LinkChecker::read_color(const XMLElement& material, VisualShape& shape) {
   std::vector<double> rgba = own_colors_.at(&material);
   if (rgba.empty() && material.FirstChildElement("texture") == nullptr) {
@@ -197,11 +198,11 @@ void LinkChecker::read_color(const XMLElement& material, VisualShape& shape) {
     rgba = found->second;
   }
   if (rgba.empty()) {
-    return;  // a texture only
+    return;  // it has only a texture
   }
   for (int i = 0; i < 4; ++i) {
-    shape.rgba[i] =
-        static_cast<float>(rgba[static_cast<std::size_t>(i)]);  // as version 1.0 kept it
+    shape.rgba[i] = static_cast<float>(
+        rgba[static_cast<std::size_t>(i)]);  // rounded to float, as in version 1.0
   }
 }
 

@@ -14,7 +14,8 @@
 namespace armwright {
 namespace {
 
-// Walks down the tree; what does not move against a link of the chain becomes part of it.
+// Builds the model by walking down the tree. A link that does not move relative to a link of the
+// chain becomes part of it.
 class Builder {
  public:
   Builder(const CheckedUrdf& checked, const std::string& name, const RobotOptions& options)
@@ -39,7 +40,7 @@ class Builder {
     add(root->name, Eigen::Isometry3d::Identity(), 0, nullptr);
     check_masses();
     model_.notes = checked_.notes;
-    std::ranges::sort(held_, {}, &Held::joint);  // as in the file
+    std::ranges::sort(held_, {}, &Held::joint);  // in the order of the file
     for (const Held& held : held_) {
       model_.notes.push_back(describe(held));
     }
@@ -50,7 +51,7 @@ class Builder {
   }
 
  private:
-  // A joint that is held, and what hangs on it up to the next such joint.
+  // A held joint, and the mass of the links after it up to the next held joint.
   struct Held {
     std::size_t joint;
     std::size_t carrier;
@@ -91,7 +92,7 @@ class Builder {
     }
   }
 
-  // Adds a link's mass and looks to the link that carries it.
+  // Adds a link's mass and visual shapes to the body that carries it.
   void lump(const std::string& link, const Eigen::Isometry3d& pose, std::size_t carrier,
             const std::size_t* held) {
     const UrdfBody& from = checked_.bodies[link_numbers_.at(link)];
@@ -114,7 +115,7 @@ class Builder {
     }
   }
 
-  // At the density, of a link's shapes in its own frame.
+  // Returns the mass properties of a link's shapes at the density, in the link's frame.
   Inertial calc_inertial(const std::string& link, const std::vector<VisualShape>& shapes) {
     Inertial sum;
     for (const VisualShape& shape : shapes) {

@@ -13,7 +13,8 @@ using tinyxml2::XMLElement;
 
 namespace {
 
-// Larger numbers are mistakes, and their squares and products must not overflow.
+// The largest accepted number. Larger ones are mistakes, and squares and products must not
+// overflow.
 constexpr double kLargest = 1e18;
 
 }  // namespace
