@@ -46,7 +46,8 @@ std::string describe(const Eigen::Vector3d& v) {
                           sanitize(model.name), what));
 }
 
-// Returns +1 if the axis is `expected` in the world, or -1 if it is the opposite.
+// Returns +1 if the axis is `expected` in the world, or -1 if it is the opposite. Throws
+// Error{bad_data} otherwise.
 double find_axis_sign(const RobotModel& model, std::size_t joint, const Eigen::Isometry3d& pose,
                       const Eigen::Vector3d& expected, std::string_view expected_name) {
   const Eigen::Vector3d axis = pose.linear() * model.joints[joint].axis;

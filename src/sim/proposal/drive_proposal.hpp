@@ -11,9 +11,9 @@
 //                  P = w^2 m,            at most D^2 / m
 //                  I = P sqrt(P / m) / 4
 //                These gains are slow, but stable.
-//   efforts      twice the largest effort of inverse dynamics, at least M_ii x 5 rad/s^2; a tenth
-//                of the joint's limit if that is more, but at most ten times as much; never above
-//                the limit
+//   efforts      e = twice the largest effort of inverse dynamics, at least M_ii x 5 rad/s^2. If
+//                a tenth of the joint's limit is larger than e, that tenth, but at most 10 e.
+//                Never above the joint's limit.
 #pragma once
 
 #include <vector>
