@@ -138,8 +138,8 @@ LineProcess::LineProcess(const std::vector<std::string>& words, OutputLog& log)
   if (error != 0) {
     reap(std::exchange(pid_, -1));
     throw Error(ErrorKind::usage,
-                fmt::format("cannot start '{}': {}; it must be a program on the PATH or the path "
-                            "of one",
+                fmt::format("cannot start '{}': {}; name a program on the PATH or give a "
+                            "program's path",
                             sanitize(words.front()), std::generic_category().message(error)));
   }
 }

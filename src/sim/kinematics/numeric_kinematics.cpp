@@ -154,7 +154,7 @@ void NumericKinematics::check_task(const RobotModel& robot) const {
     throw Error(
         ErrorKind::bad_data,
         fmt::format("the joints of robot '{}' move its tool in {} independent directions at most, "
-                    "but task.orientation = \"{}\" is about the {}; choose another orientation",
+                    "but task.orientation = \"{}\" tracks the {}; choose another orientation",
                     sanitize(robot.name), rank_,
                     tool_orientation_names()[static_cast<std::size_t>(tool_.orientation)],
                     describe_task(tool_.orientation)));

@@ -50,7 +50,7 @@ std::string find_format(const std::filesystem::path& file) {
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
   if (ending != ".stl" && ending != ".obj" && ending != ".dae") {
-    fail(file, "not a mesh that can be read; these are: .stl, .obj, .dae");
+    fail(file, "this type of file is not a mesh; allowed are .stl, .obj and .dae");
   }
   return ending.substr(1);
 }
@@ -73,7 +73,7 @@ void append(TriangleMesh& mesh, const aiMesh& part, const std::filesystem::path&
     }
     for (unsigned k = 0; k < 3; ++k) {
       if (face.mIndices[k] >= part.mNumVertices) {
-        fail(file, "a triangle has a vertex that is not there");
+        fail(file, "a triangle refers to a vertex that does not exist");
       }
       mesh.indices.push_back(first + face.mIndices[k]);
     }

@@ -57,9 +57,9 @@ Inertial calc_file_inertial(const VisualShape& shape, double density_kg_per_m3,
   file = find_mesh(shape.mesh_file, folder);
   if (!file) {
     throw Error(ErrorKind::bad_data,
-                fmt::format("there is no mesh '{}' in the URDF's folder and those above, which "
-                            "gives the link its mass; put it there, or give the link an "
-                            "<inertial> element",
+                fmt::format("there is no mesh '{}' in the URDF's folder and the folders above it, "
+                            "but the link's mass comes from this mesh; put it there, or give the "
+                            "link an <inertial> element",
                             name));
   }
   const TriangleMesh mesh = read_mesh(*file);
@@ -151,8 +151,8 @@ Inertial calc_mesh_inertial(const TriangleMesh& mesh, const Eigen::Vector3d& sca
   if (!(volume > kThinnest * diagonal_m * diagonal_m * diagonal_m)) {
     throw Error(ErrorKind::bad_data,
                 fmt::format("its volume is {:.3g} m3{}", volume,
-                            volume < 0 ? ", as if its triangles showed their backs outside"
-                                       : ", of a sheet without thickness"));
+                            volume < 0 ? ", as if its triangles faced inwards"
+                                       : ", like that of a sheet without thickness"));
   }
   const Eigen::Vector3d com = first / volume;
   const Eigen::Matrix3d about_com = second - volume * com * com.transpose();

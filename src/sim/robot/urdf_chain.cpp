@@ -30,11 +30,10 @@ class Tree {
     for (const UrdfJoint& joint : joints) {
       const auto [other, inserted] = joint_above_.emplace(joint.child, &joint);
       if (!inserted) {
-        fail_urdf(
-            name_, joint.line,
-            fmt::format(
-                "link '{}' is the child of the joints '{}' and '{}'; a link hangs on one joint",
-                joint.child, other->second->name, joint.name));
+        fail_urdf(name_, joint.line,
+                  fmt::format("link '{}' is the child of the joints '{}' and '{}'; a link can have "
+                              "only one parent joint",
+                              joint.child, other->second->name, joint.name));
       }
       children_[joint.parent].push_back(joint.child);
     }
@@ -95,17 +94,18 @@ class Tree {
         continue;
       }
       if (root_ != nullptr) {
-        fail_urdf(name_, link.line,
-                  fmt::format("the links '{}' and '{}' both hang on no joint; exactly one link is "
-                              "the root: join them by a joint or remove one",
-                              root_->name, link.name));
+        fail_urdf(
+            name_, link.line,
+            fmt::format("the links '{}' and '{}' both have no parent joint; exactly one link is "
+                        "the root: connect them by a joint or remove one",
+                        root_->name, link.name));
       }
       root_ = &link;
     }
     if (root_ == nullptr) {
       fail_urdf(name_, links_.front().line,
                 fmt::format(
-                    "the links form a cycle, {}; one link must be the root that hangs on no joint",
+                    "the links form a cycle, {}; one link must be the root, without a parent joint",
                     describe_cycle(links_.front())));
     }
   }
@@ -115,8 +115,9 @@ class Tree {
     for (const UrdfLink& link : links_) {
       if (!on_root.contains(link.name)) {
         fail_urdf(name_, link.line,
-                  fmt::format("the links form a cycle, {}; every link must hang on the root '{}'",
-                              describe_cycle(link), root_->name));
+                  fmt::format(
+                      "the links form a cycle, {}; joints must connect every link to the root '{}'",
+                      describe_cycle(link), root_->name));
       }
     }
   }
@@ -161,8 +162,8 @@ class Chooser {
       first = std::find_if(way.begin(), way.end(),
                            [&](const UrdfJoint* joint) { return joint->child == chain.base; });
       if (first == way.end()) {
-        fail("base", fmt::format("the base '{}' is not above the tip '{}', to which the way from "
-                                 "the root is {}; name one of these",
+        fail("base", fmt::format("the base '{}' is not above the tip '{}', and the path from "
+                                 "the root to the tip is {}; name one of these",
                                  chain.base, chain.tip, describe_way(way)));
       }
       ++first;

@@ -56,7 +56,7 @@ namespace {
 std::string explain(const tinyxml2::XMLDocument& document) {
   switch (document.ErrorID()) {
     case tinyxml2::XML_ERROR_MISMATCHED_ELEMENT:
-      return "an element is closed by another name, or not at all";
+      return "an element has a closing tag of another name, or none";
     case tinyxml2::XML_ERROR_PARSING_ATTRIBUTE:
       return "an attribute is malformed or given twice; they are written name=\"value\"";
     case tinyxml2::XML_ERROR_PARSING_TEXT:

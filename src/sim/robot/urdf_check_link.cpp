@@ -41,8 +41,9 @@ void check_tensor(const XMLElement& element, const Eigen::Matrix3d& tensor, cons
              found + "; all must be > 0 (a positive definite tensor about the centre of mass)");
   }
   if (!(moments[0] + moments[1] >= (1 - kTriangleTolerance) * moments[2])) {
-    xml.fail(element,
-             found + "; no body has these: the largest must not exceed the sum of the other two");
+    xml.fail(
+        element,
+        found + "; no body has such moments: the largest must not exceed the sum of the other two");
   }
 }
 
@@ -175,8 +176,8 @@ void LinkChecker::read_shape(const XMLElement& element, const std::vector<std::s
     xml_.fail(element,
               describe_unknown("shape", kind, kinds) +
                   (kind == "capsule" ? " (write a capsule as three <visual>, a cylinder and "
-                                       "a sphere at each end, or leave it out: visuals count "
-                                       "for looks, and for mass at a density)"
+                                       "a sphere at each end, or leave it out: visuals only "
+                                       "give looks, and mass if robot.density_kg_per_m3 is set)"
                                      : ""));
   }
 }

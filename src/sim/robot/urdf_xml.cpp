@@ -41,7 +41,8 @@ void UrdfXml::check_names(const XMLElement& element, const std::vector<std::stri
   for (const XMLElement* child = element.FirstChildElement(); child != nullptr;
        child = child->NextSiblingElement()) {
     if (std::string_view(child->Name()).starts_with("xacro:")) {
-      fail(*child, fmt::format("<{}> is of xacro; {}", shorten(child->Name()), kXacroAdvice));
+      fail(*child,
+           fmt::format("<{}> is an element of xacro; {}", shorten(child->Name()), kXacroAdvice));
     }
     check_spelling(*child, fmt::format("element in <{}>", element.Name()), child->Name(), children);
   }
