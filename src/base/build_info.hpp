@@ -26,7 +26,8 @@ std::map<std::string, std::string> describe_build();
 inline constexpr const char* kNotInBuild = "not in this build";
 
 // Returns one sentence for each value of `recorded`, an earlier describe_build(), that is different
-// now. `what` names what began then: "run". Values that only one of both has are not compared.
+// now. `what` names the recorded thing, for example "run". Values that only one of them has are not
+// compared.
 std::vector<std::string> describe_build_changes(const std::map<std::string, std::string>& recorded,
                                                 std::string_view what);
 

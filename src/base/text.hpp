@@ -10,8 +10,8 @@
 namespace armwright {
 
 // Returns the candidate nearest to `name` by Damerau-Levenshtein distance (optimal string
-// alignment). Returns nothing if more than a third of the letters differ. Of equally near
-// candidates the earlier one counts.
+// alignment). Returns nothing if more than a third of the letters differ. If several candidates are
+// equally near, returns the first.
 std::optional<std::string> find_nearest(std::string_view name,
                                         std::span<const std::string> candidates);
 

@@ -13,7 +13,7 @@ namespace armwright {
 
 inline constexpr double kMib = 1024.0 * 1024.0;  // bytes per MiB
 
-// What a child process may use before it is killed.
+// Limits of a child process. A process that exceeds one is killed.
 struct ProcessLimits {
   double silence_s = 60;     // longest time between two requests, without the time of the answers
   double memory_mib = 4096;  // memory that it may allocate in addition to that at its start
