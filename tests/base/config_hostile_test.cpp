@@ -1,4 +1,4 @@
-// Texts that are wrong, and texts made to hurt: each must give one line that says where and why.
+// Wrong and malicious texts: each must give a message of one line that says where and why.
 #include <gtest/gtest.h>
 
 #include <functional>

@@ -1,4 +1,4 @@
-// Where a configuration comes from: files, the files they extend, overrides.
+// The sources of a configuration: files, the files that they extend, and overrides.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -23,15 +23,15 @@ constexpr int kSlowdowns = 20;
 
 constexpr double kBandwidth_rad_per_s = 10;
 constexpr double kDampingRatio = 0.7;
-// Of the 2 at which sampled damping diverges.
+// The largest h D (M^-1)_ii; sampled damping diverges at 2.
 constexpr double kMostSampledDamping = 0.7;
 constexpr double kEffortReserve = 2;
 constexpr double kUsualEffortShare = 0.1;
 constexpr double kMostReserve = 10;
 constexpr double kLeastAcceleration = 5;  // rad/s^2 or m/s^2
-constexpr int kStepsBetween = 20;         // at which the mass matrix is looked at
+constexpr int kStepsBetween = 20;         // steps between two evaluations of the mass matrix
 
-// The largest efforts that inverse dynamics asks for on the path, and the largest M_ii.
+// The largest efforts of inverse dynamics on the path and the largest M_ii, one per joint.
 struct Demand {
   std::vector<double> efforts;
   std::vector<double> inertia;
@@ -78,7 +78,7 @@ std::vector<TargetTable> make_tables(const RobotModel& robot, const TrackingSetu
   return tables;
 }
 
-// The joint that is asked for most of what its limit allows, and how much of it.
+// Returns the joint that uses the largest share of its limit, and that share.
 template <class GetShare>
 std::pair<std::size_t, double> find_busiest(std::size_t joints, const GetShare& get_share) {
   std::pair<std::size_t, double> busiest{0, 0};
@@ -96,7 +96,7 @@ std::pair<std::size_t, double> find_busiest(std::size_t joints, const GetShare& 
 double propose_speed(const RobotModel& robot, TrackingTask task,
                      const std::vector<TestCase>& cases) {
   if (task.limits == LimitPolicy::enforce) {
-    task.limits = LimitPolicy::warn;  // what it is too quick for is found out here
+    task.limits = LimitPolicy::warn;  // this function itself finds the speed that the limits allow
   }
   coarsen(task);
   task.feed_forward = FeedForward::inverse_dynamics;
@@ -134,7 +134,7 @@ double propose_speed(const RobotModel& robot, TrackingTask task,
     }
     if (round >= kSlowdowns) {
       if (share < 1) {
-        return task.speed_m_per_s;  // it can be held, but hardly more
+        return task.speed_m_per_s;  // the joint can hold the arm with a small reserve
       }
       refuse_proposal(
           robot,
@@ -172,7 +172,7 @@ ArmDesign propose_design(const RobotModel& robot, TrackingTask task,
     const double own = robot.joints[i].effort_limit;
     const double needed =
         std::max(kEffortReserve * demand.efforts[i], kLeastAcceleration * demand.inertia[i]);
-    // A tenth of what the joint can do, where that is not out of all proportion.
+    // A tenth of the joint's limit, but at most kMostReserve times the needed effort.
     const double usual =
         std::isfinite(own) ? std::min(kUsualEffortShare * own, kMostReserve * needed) : 0;
     const double limit = std::min(std::max(needed, usual), own);
