@@ -127,22 +127,22 @@ py::tuple evaluate(const ProblemHandle& handle, const Numbers& points,
     const std::size_t at_once = count_at_once(block.numbers.size());
     for (std::size_t first = 0; first < count && !host.stop().requested(); first += at_once) {
       const auto some = std::span(rows).subspan(first, std::min(at_once, count - first));
-      executor.evaluate(
-          problem, some, block, {request.residuals || request.jacobian, request.jacobian},
-          host.stop(), [&](std::size_t candidate, Evaluation evaluation) {
-            const std::size_t row = first + candidate;
-            table.put(row, evaluation, penalty);
-            if (kept > 0) {
-              residuals[row] = std::move(evaluation.residuals);
-              jacobians[row] = std::move(evaluation.jacobian);
-            }
-            const std::lock_guard lock(mutex);
-            if (evaluation.status != EvaluationStatus::ok) {
-              reasons[row] = std::move(evaluation.reason);
-            }
-            progress.done += block.numbers.size();
-            host.on_progress(progress);
-          });
+      executor.evaluate(problem, some, block,
+                        {request.residuals || request.jacobian, request.jacobian}, host.stop(),
+                        [&](std::size_t candidate, Evaluation evaluation) {
+                          const std::size_t row = first + candidate;
+                          table.put(row, evaluation, penalty);
+                          if (kept > 0) {
+                            residuals[row] = std::move(evaluation.residuals);
+                            jacobians[row] = std::move(evaluation.jacobian);
+                          }
+                          const std::lock_guard lock(mutex);
+                          if (evaluation.status != EvaluationStatus::ok) {
+                            reasons[row] = std::move(evaluation.reason);
+                          }
+                          progress.done += block.numbers.size();
+                          host.on_progress(progress);
+                        });
     }
   });
   const py::object none = py::none();
