@@ -1,4 +1,4 @@
-// The kind "settings": every key of a problem's, a study's and a design's file.
+// The kind "settings": all keys of the files of problems, studies and designs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,8 +21,7 @@ using nlohmann::json;
 
 // One kind of configuration file.
 struct SettingFile {
-  std::string
-      prefix;  // of names in the list; empty for problems, whose keys --set takes as they are
+  std::string prefix;  // of the names; empty for problems, whose keys are those of --set
   std::string title;
   std::string words;  // Markdown
   std::vector<ListedSetting> settings;
@@ -31,17 +30,17 @@ struct SettingFile {
 std::vector<SettingFile> list_setting_files() {
   return {
       {"", "Problems",
-       "`configs/problems/NAME.toml`, or a file of your own. `--set KEY=VALUE` changes any of them "
-       "on the command line. `extends = \"NAME\"` takes over another problem's file, beside this "
-       "one or a shipped one, and changes it.",
+       "`configs/problems/NAME.toml`, or a file of your own. `--set KEY=VALUE` changes a setting "
+       "on the command line. `extends = \"NAME\"` starts from another problem and changes it; NAME "
+       "is a file beside this one or a shipped problem.",
        list_settings(problem_settings())},
       {"study:", "Studies",
        "`configs/studies/NAME.toml`, or a file of your own, for `armwright compare` "
        "([comparing.md](../comparing.md)). `extends` works as in problems.",
        list_settings(study_settings())},
       {"design:", "Designs",
-       "`configs/designs/NAME.toml`, or the `winner.toml` of a run. Which gains there are depends "
-       "on the controller.",
+       "`configs/designs/NAME.toml`, or the `winner.toml` of a run. The controller determines "
+       "which gains there are.",
        list_settings(design_settings())},
   };
 }
@@ -56,7 +55,8 @@ std::vector<ListItem> list_known_settings() {
   return items;
 }
 
-// Names that hold what was typed, a key without its unit, say; else the nearest.
+// Suggests the names that contain the typed text, for example a key without its unit, or else the
+// nearest name.
 std::string suggest(const std::string& typed, const std::vector<std::string>& names) {
   constexpr std::size_t kMostSuggested = 5;
   std::vector<std::string> holding;
@@ -179,10 +179,10 @@ std::string format_page(const std::string& name) {
   }
   std::string text = fmt::format(
       "{}# Settings\n\n"
-      "Every key of the configuration files, as `armwright list settings` prints them. Units are "
-      "SI, and a key's name ends with its unit. Without a default a key is required, or what its "
-      "absence means stands beside it. Unknown keys are refused, with the nearest valid one. In "
-      "`--set` a key is named with its table: `task.speed_m_per_s`.\n",
+      "All keys of the configuration files, as `armwright list settings` prints them. Units are "
+      "SI, and a key's name ends with its unit. A key without a default is required, unless its "
+      "meaning says what its absence means. Unknown keys are refused, and the nearest valid key is "
+      "suggested. In `--set`, a key is named with its table: `task.speed_m_per_s`.\n",
       kGeneratedPage);
   for (const SettingFile& file : list_setting_files()) {
     text += fmt::format("\n## {}\n\n{}\n", file.title, file.words) + format_tables(file.settings);
