@@ -93,7 +93,8 @@ FoundRuns find_cells(const fs::path& folder) {
   return found;
 }
 
-// From the journal rather than the result: it says which cases were simulated.
+// Returns the cases of the winner's test. The journal says which cases were simulated; the result
+// does not.
 std::optional<UsedCases> find_tested(const JournalContent& journal) {
   std::optional<UsedCases> used;
   for (const EvaluationRecord& record : journal.judgements) {
@@ -143,10 +144,7 @@ void include_trace(ProblemRuns& problem, const RunTrace& trace) {
     problem.tested_on = trace.tested_on;
     problem.tested_on->count = std::max(before, trace.tested_on->count);
   }
-  if (problem.labels.empty() || problem.labels.back().label != trace.run.label) {
-    problem.labels.push_back({trace.run.label, {}});
-  }
-  problem.labels.back().runs.push_back(trace.run);
+  problem.labels[trace.run.label].push_back(trace.run);
 }
 
 }  // namespace
@@ -225,45 +223,45 @@ RunTrace read_trace(const RunEntry& run) {
   return trace;
 }
 
-Survey survey_runs(const std::vector<RunEntry>& runs) {
-  Survey survey;
+CollectedRuns collected_runs(const std::vector<RunEntry>& runs) {
+  CollectedRuns collected;
   for (const RunEntry& run : runs) {
     const RunTrace trace = read_trace(run);
     if (trace.evaluations.empty()) {
-      ++survey.empty;
+      ++collected.empty;
       continue;
     }
-    if (survey.problems.empty() || survey.problems.back().name != run.problem) {
+    if (collected.problems.empty() || collected.problems.back().name != run.problem) {
       ProblemRuns problem;
       problem.name = run.problem;
       problem.names = trace.names;
       problem.tracking = trace.tracking;
-      survey.problems.push_back(std::move(problem));
+      collected.problems.push_back(std::move(problem));
     }
-    ProblemRuns& problem = survey.problems.back();
+    ProblemRuns& problem = collected.problems.back();
     if (problem.names != trace.names) {
       throw Error(
           ErrorKind::bad_data,
           fmt::format("{} and {} are both runs on '{}', but with other variables, objectives or "
                       "metrics; export them apart",
-                      problem.labels.front().runs.front().folder.string(), run.folder.string(),
+                      problem.labels.begin()->second.front().folder.string(), run.folder.string(),
                       sanitize(run.problem)));
     }
     include_trace(problem, trace);
-    ++survey.runs;
-    survey.evaluations += trace.evaluations.size();
+    ++collected.runs;
+    collected.evaluations += trace.evaluations.size();
   }
-  if (survey.problems.empty()) {
+  if (collected.problems.empty()) {
     throw Error(ErrorKind::usage, "no run has evaluated anything, so there is nothing to export");
   }
-  return survey;
+  return collected;
 }
 
-std::vector<std::string> list_labels(const Survey& survey) {
+std::vector<std::string> list_labels(const CollectedRuns& collected) {
   std::set<std::string> labels;
-  for (const ProblemRuns& problem : survey.problems) {
-    for (const LabelRuns& runs : problem.labels) {
-      labels.insert(runs.label);
+  for (const ProblemRuns& problem : collected.problems) {
+    for (const auto& [label, runs] : problem.labels) {
+      labels.insert(label);
     }
   }
   return {labels.begin(), labels.end()};

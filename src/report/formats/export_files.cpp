@@ -1,6 +1,13 @@
-#include "report/formats/export_names.hpp"
+#include "report/formats/export_files.hpp"
 
 #include <fmt/format.h>
+#include <stdio.h>
+#include <unistd.h>
+
+#include <cerrno>
+
+#include "base/error.hpp"
+#include "base/file.hpp"
 
 namespace armwright {
 namespace {
@@ -13,8 +20,8 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-// Every character that is neither letter nor digit nor among `allowed` becomes one '_', however
-// many bytes it has.
+// Replaces every character by one '_' that is neither a letter, a digit nor among `allowed`. A
+// character of several bytes gives one '_' too.
 std::string replace_others(std::string_view text, std::string_view allowed) {
   std::string replaced;
   for (const char c : text) {
@@ -29,6 +36,56 @@ std::string replace_others(std::string_view text, std::string_view allowed) {
 }
 
 }  // namespace
+
+std::filesystem::path check_export_folder(const std::filesystem::path& target) {
+  const auto folder = normalize_folder(std::filesystem::absolute(target));
+  std::error_code ignored;
+  if (std::filesystem::exists(std::filesystem::symlink_status(folder, ignored)) &&
+      !(std::filesystem::is_directory(folder) && std::filesystem::is_empty(folder))) {
+    throw Error(ErrorKind::usage,
+                fmt::format("{}: is there already, and nothing is overwritten; choose another "
+                            "folder with --out",
+                            target.string()));
+  }
+  return folder;
+}
+
+void put_in_place(PartialFolder& folder) {
+  if (::rename(folder.path().c_str(), folder.target().c_str()) != 0) {
+    fail_io(folder.target(), "put it in place", errno);
+  }
+  folder.release();
+}
+
+OutputFile::OutputFile(std::filesystem::path path)
+    : path_(std::move(path)), file_(nullptr, std::fclose) {
+  make_folder(path_.parent_path());
+  file_.reset(std::fopen(path_.c_str(), "wxe"));
+  if (file_ == nullptr) {
+    fail_io(path_, "write it", errno);
+  }
+}
+
+void OutputFile::write(std::string_view text) {
+  if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size()) {
+    fail_io(path_, "write it", errno);
+  }
+}
+
+void OutputFile::close() {
+  const bool whole = std::fflush(file_.get()) == 0 &&
+                     (::fsync(::fileno(file_.get())) == 0 || errno == EINVAL || errno == EROFS);
+  const int error = errno;
+  if (std::fclose(file_.release()) != 0 || !whole) {
+    fail_io(path_, "write it", whole ? errno : error);
+  }
+}
+
+void write_output_file(const std::filesystem::path& path, std::string_view text) {
+  OutputFile file(path);
+  file.write(text);
+  file.close();
+}
 
 std::string escape_file_name(std::string_view name) {
   constexpr std::size_t kLongest = 80;  // leaves room for what is put around it; 255 is the limit
