@@ -10,17 +10,36 @@ std::vector<std::string> get_strings_or_empty(const ConfigTable& table, std::str
   return table.has(key) ? table.get_strings(key) : std::vector<std::string>{};
 }
 
-UnpublishedConfig read_unpublished(const ConfigTable& table) {
-  UnpublishedConfig design{.label = table.get_string("label"),
-                           .design = table.get_string("design"),
-                           .problem = table.get_string("problem"),
-                           .total_torque_n_m = {},
-                           .where = table.get_string("where", "")};
+ReproductionPart read_run(const ConfigTable& table) {
+  ReproductionPart part;
+  part.kind = ReproductionPart::Kind::anew;
+  part.label = table.get_string("label");
+  part.problem = table.get_string("problem");
+  return part;
+}
+
+ReproductionPart read_unpublished(const ConfigTable& table) {
+  ReproductionPart part;
+  part.kind = ReproductionPart::Kind::unpublished;
+  part.label = table.get_string("label");
+  part.design = table.get_string("design");
+  part.problem = table.get_string("problem");
+  part.where = table.get_string("where", "");
   if (table.has("total_torque_n_m")) {
-    design.total_torque_n_m =
+    part.published_torque_n_m =
         table.get_number("total_torque_n_m", Range{.lower = 0, .lower_open = true});
   }
-  return design;
+  return part;
+}
+
+ReproductionPart read_reevaluation(const ConfigTable& table) {
+  ReproductionPart part;
+  part.kind = ReproductionPart::Kind::anew;
+  part.label = table.get_string("label");
+  part.run = table.get_string("run");
+  part.overrides = get_strings_or_empty(table, "set");
+  part.where = table.get_string("where", "");
+  return part;
 }
 
 ResponseFigureConfig read_figure(const ConfigTable& table) {
@@ -30,7 +49,7 @@ ResponseFigureConfig read_figure(const ConfigTable& table) {
                               .remark = table.get_string("remark", ""),
                               .series = {}};
   for (const ConfigTable& series : table.get_tables("series")) {
-    figure.series.push_back({series.get_string("name"), series.get_string("of")});
+    figure.series.emplace_back(series.get_string("name"), series.get_string("of"));
   }
   return figure;
 }
@@ -47,16 +66,14 @@ ReproductionConfig load_reproduction_config(const std::string& name_or_path) {
   config.seed = static_cast<std::uint64_t>(table.get_integer("seed", 0, kLargestSeed));
   config.engine = table.get_string("engine");
   for (const ConfigTable& run : table.get_tables_or_empty("runs")) {
-    config.runs.push_back({run.get_string("label"), run.get_string("problem")});
+    config.runs.push_back(read_run(run));
   }
   for (const ConfigTable& design : table.get_tables_or_empty("unpublished")) {
     config.unpublished.push_back(read_unpublished(design));
   }
   config.sweep = table.get_string("sweep");
   for (const ConfigTable& again : table.get_tables_or_empty("reevaluation")) {
-    config.reevaluations.push_back({again.get_string("label"), again.get_string("run"),
-                                    get_strings_or_empty(again, "set"),
-                                    again.get_string("where", "")});
+    config.reevaluations.push_back(read_reevaluation(again));
   }
   for (const ConfigTable& figure : table.get_tables_or_empty("figure")) {
     config.figures.push_back(read_figure(figure));
@@ -67,7 +84,7 @@ ReproductionConfig load_reproduction_config(const std::string& name_or_path) {
                               replay.get_string("training_case")});
   }
   for (const ConfigTable& momentary : table.get_tables_or_empty("momentary")) {
-    config.momentary.push_back({momentary.get_string("name"), momentary.get_string("replay")});
+    config.momentary.emplace_back(momentary.get_string("name"), momentary.get_string("replay"));
   }
   table.refuse_unknown();
   return config;
