@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "fuzz/harness.hpp"
-#include "report/exchange/import_reader.hpp"
-#include "report/formats/tables.hpp"
+#include "report/exchange/import.hpp"
+#include "report/formats/formats.hpp"
 
 namespace armwright::fuzz {
 

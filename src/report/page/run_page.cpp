@@ -1,5 +1,3 @@
-#include "report/page/run_page.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,8 +9,8 @@
 #include "report/evidence/distance_response.hpp"
 #include "report/evidence/page_json.hpp"
 #include "report/evidence/robot_scene.hpp"
-#include "report/page/run_facts.hpp"
-#include "report/page/run_history.hpp"
+#include "report/page/page_data.hpp"
+#include "report/page/run_parts.hpp"
 #include "study/run/run.hpp"
 
 namespace armwright {
@@ -27,7 +25,7 @@ int count_incumbent_cases(const RecordedRun& run) {
   return std::min(run.problem->sets.test_cases, kMostIncumbentCases);
 }
 
-// Incumbents; `simulator` null: without their values on the test set.
+// Returns Incumbents. Without a simulator (null) they have no values on the test set.
 json make_incumbents(const RecordedRun& run, const std::vector<Incumbent>& shown,
                      bool by_generation, PageSimulator* simulator) {
   json incumbents = {
@@ -89,7 +87,7 @@ void add_notes(const RecordedRun& run, const History& history, const PageOptions
   }
 }
 
-// That what is simulated here is what the run recorded.
+// Adds a note if the winner's errors, simulated now, differ from those that the run recorded.
 void compare_with_record(const RecordedRun& run, const std::vector<ShownDesign>& designs,
                          std::vector<std::string>& notes) {
   const auto now = get_case_errors(designs.front().results);
@@ -106,12 +104,12 @@ void compare_with_record(const RecordedRun& run, const std::vector<ShownDesign>&
   }
 }
 
-// All that an arm adds: everything that takes long is in here.
+// Adds the parts that only an arm has. All simulations except those of the incumbents happen here.
 void add_arm(const RecordedRun& run, const PageOptions& options, PageSimulator* simulator,
              json& page, std::vector<std::string>& notes) {
   auto designs = list_designs(run, notes);
   const TrackingProblem& problem = *run.tracking();
-  // A run under way has no winner to test; it shows how its best moves.
+  // An unfinished run has no winner to test. Its page shows the incumbent's motions.
   const bool has_winner = run.result && run.result->winner;
   if (simulator != nullptr) {
     const auto requests = choose_replays(run, designs, options.cases);
@@ -154,7 +152,7 @@ json make_page(const RecordedRun& run, const PageOptions& options, PageSimulator
   std::vector<std::string> notes = run.notes;
   add_notes(run, history, options, notes);
   std::vector<std::string> command = run.command_line;
-  if (!command.empty()) {  // wherever the program lay
+  if (!command.empty()) {  // without the program's folder
     command.front() = std::filesystem::path(command.front()).filename().string();
   }
   const Quantity quantity = get_scalar_quantity(description.objectives);

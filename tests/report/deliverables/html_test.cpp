@@ -1,8 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "report/deliverables/html_table.hpp"
-#include "report/deliverables/line_figure.hpp"
+#include "report/deliverables/datasheet_parts.hpp"
 
 namespace armwright {
 namespace {

@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "base/error.hpp"
-#include "report/deliverables/finished_arm.hpp"
+#include "report/deliverables/deliverables.hpp"
 
 namespace armwright {
 namespace {

@@ -1,4 +1,4 @@
-#include "report/deliverables/yaml_text.hpp"
+#include "report/formats/export_text.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "report/formats/export_folder.hpp"
+#include "report/formats/export_files.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // The page of a reproduction has all keys of its type, the figures that there are results for, and
 // says what it lacks.
 
-#include "report/page/reproduction_page.hpp"
+#include "report/page/page_data.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Pages of tiny runs of every kind, and what their JSON promises.
-#include "report/page/run_page.hpp"
+#include "report/page/page_data.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "report/page/study_page.hpp"
+#include "report/page/page_data.hpp"
 
 #include <gmock/gmock.h>
 
