@@ -7,6 +7,7 @@
 #include "cli/terminal/session.hpp"
 #include "cli/terminal/signals.hpp"
 #include "report/page/page_data.hpp"
+#include "report/page/page_file.hpp"
 
 namespace armwright {
 

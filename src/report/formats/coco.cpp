@@ -24,7 +24,6 @@ std::string make_data_name(std::size_t id, std::size_t dimension) {
 void write_function(const ProblemRuns& problem, const std::string& label, std::size_t id,
                     const std::filesystem::path& root) {
   const std::size_t dimension = problem.names.variables.size();
-  const CocoScale scale = make_coco_scale(problem);
   const std::string name = make_data_name(id, dimension);
   OutputFile dat(root / (name + ".dat"));
   OutputFile tdat(root / (name + ".tdat"));
@@ -32,7 +31,7 @@ void write_function(const ProblemRuns& problem, const std::string& label, std::s
   OutputFile mdat(root / (name + ".mdat"));
   std::string summaries;
   for (const RunEntry& run : problem.labels.at(label)) {
-    const CocoRun rows = make_coco_run(read_trace(run), scale);
+    const CocoRun rows = make_coco_run(read_trace(run), problem);
     dat.write(rows.header + rows.dat);
     tdat.write(rows.header + rows.tdat);
     rdat.write(rows.header);
@@ -90,31 +89,29 @@ std::string format_constraint_digits(std::span<const double> constraint_values) 
   return digits;
 }
 
-CocoScale make_coco_scale(const ProblemRuns& problem) {
-  CocoScale scale;
-  scale.constraints = problem.constraints;
-  if (problem.best) {
-    scale.reference = *problem.best;
-    while (scale.infeasible <= *problem.worst) {
-      scale.infeasible *= 10;
-    }
+double calc_coco_infeasible(const ProblemRuns& problem) {
+  double infeasible = 1e10;
+  while (problem.worst && infeasible <= *problem.worst) {
+    infeasible *= 10;
   }
-  return scale;
+  return infeasible;
 }
 
-CocoRun make_coco_run(const RunTrace& trace, const CocoScale& scale) {
+CocoRun make_coco_run(const RunTrace& trace, const ProblemRuns& problem) {
+  const double reference = problem.best.value_or(0);
+  const double infeasible = calc_coco_infeasible(problem);
   CocoRun run;
   run.header = fmt::format(
       "% f evaluations | g evaluations | best noise-free fitness - Fref ({:.12e}) + sum g_i+ | "
       "measured fitness | best measured fitness or single-digit g-values | x1 | x2...\n",
-      scale.reference);
+      reference);
   std::optional<int> level;
-  double best = scale.infeasible;
+  double best = infeasible;
   trace.evaluations.visit([&](const TracedEvaluation& evaluation) {
     const bool last = evaluation.number == trace.evaluations.last()->number;
-    const double measured = evaluation.feasible ? *evaluation.objective : scale.infeasible;
+    const double measured = evaluation.feasible ? *evaluation.objective : infeasible;
     best = std::min(best, measured);
-    const int its_level = calc_coco_level(best - scale.reference);
+    const int its_level = calc_coco_level(best - reference);
     const bool reaches = !level || its_level < *level;
     level = reaches ? its_level : level;
     const bool matches = is_coco_milestone(evaluation.number, trace.names.variables.size());
@@ -122,10 +119,10 @@ CocoRun make_coco_run(const RunTrace& trace, const CocoScale& scale) {
       return;
     }
     std::vector<double> constraints = evaluation.constraint_values;
-    constraints.resize(scale.constraints, HUGE_VAL);  // a failed evaluation satisfies none
+    constraints.resize(problem.constraints, HUGE_VAL);  // a failed evaluation satisfies none
     std::string row = fmt::format(
         "{} {} {:+.9e} {:+.9e} {}", evaluation.number, constraints.empty() ? 0 : evaluation.number,
-        best - scale.reference, measured,
+        best - reference, measured,
         constraints.empty() ? fmt::format("{:+.9e}", best) : format_constraint_digits(constraints));
     for (std::size_t i = 0; i < evaluation.x.size() && evaluation.x.size() <= kMostShown; ++i) {
       row += fmt::format(" {:+.4e}", evaluation.x[i]);
@@ -135,7 +132,7 @@ CocoRun make_coco_run(const RunTrace& trace, const CocoScale& scale) {
     run.tdat += matches || last ? row : "";
   });
   run.summary = fmt::format("{}:{}|{:.1e}", trace.run.replicate, trace.evaluations.last()->number,
-                            best - scale.reference);
+                            best - reference);
   return run;
 }
 

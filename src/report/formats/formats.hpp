@@ -93,13 +93,9 @@ bool is_coco_milestone(std::uint64_t evaluation, std::size_t dimension);
 // 8 up to 1, and 9 above.
 std::string format_constraint_digits(std::span<const double> constraint_values);
 
-// The numbers that all runs on a problem share.
-struct CocoScale {
-  double reference = 0;      // Fref
-  double infeasible = 1e10;  // the objective of evaluations that are not feasible
-  std::size_t constraints = 0;
-};
-CocoScale make_coco_scale(const ProblemRuns& problem);
+// Returns the objective of evaluations that are not feasible: 1e10, or the next power of ten above
+// all feasible objectives of the problem.
+double calc_coco_infeasible(const ProblemRuns& problem);
 
 // A run's part of the files.
 struct CocoRun {
@@ -108,6 +104,6 @@ struct CocoRun {
   std::string tdat;     // rows
   std::string summary;  // "1:200|3.1e-03": replicate, evaluations and best - Fref
 };
-CocoRun make_coco_run(const RunTrace& trace, const CocoScale& scale);
+CocoRun make_coco_run(const RunTrace& trace, const ProblemRuns& problem);
 
 }  // namespace armwright

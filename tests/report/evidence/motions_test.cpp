@@ -124,8 +124,8 @@ TEST_F(Motions, AResponseIsTheMeanOfEachPoint) {
     }
     const double mean = sum / kCases;
     EXPECT_NEAR(series["mean_m"][k].get<double>(), mean, 1e-15);
-    // This formula for the variance loses digits: squares near 1e-5 have a rounding error of 1e-16,
-    // relative.
+    // This formula for the variance subtracts nearly equal numbers. Their rounding errors are 1e-16
+    // of squares near 1e-5.
     EXPECT_NEAR(std::pow(series["standard_error_m"][k].get<double>(), 2),
                 (squares - kCases * mean * mean) / (kCases - 1) / kCases, 1e-17);
     all += response["counted"][k] ? mean / 24 : 0;

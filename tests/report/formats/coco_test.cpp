@@ -58,9 +58,17 @@ TEST(ConstraintDigits, GrowWithTheViolation) {
   EXPECT_EQ(format_constraint_digits({}), "");
 }
 
+ProblemRuns make_problem(double best, std::size_t constraints = 0) {
+  ProblemRuns problem;
+  problem.best = best;
+  problem.worst = best;
+  problem.constraints = constraints;
+  return problem;
+}
+
 TEST(CocoRun, HasARowPerLevelAndARowPerMilestone) {
   const CocoRun run = make_coco_run(make_trace({101.0, 102.0, 2.0, 1.99, 1.5, 1.0, 4.0, 4.0, 5.0}),
-                                    {.reference = 1});
+                                    make_problem(1));
   EXPECT_EQ(run.header,
             "% f evaluations | g evaluations | best noise-free fitness - Fref (1.000000000000e+00) "
             "+ sum g_i+ | measured fitness | best measured fitness or single-digit g-values | x1 | "
@@ -91,7 +99,7 @@ TEST(CocoRun, CountsConstraintsAndShowsThemAsDigits) {
         evaluations[0].feasible = false;
         evaluations[1].constraint_values = {0, -2};
       });
-  const CocoRun run = make_coco_run(trace, {.reference = 1.5, .constraints = 2});
+  const CocoRun run = make_coco_run(trace, make_problem(1.5, 2));
   EXPECT_EQ(run.dat,
             "1 1 +9.999999998e+09 +1.000000000e+10 80 +5.0000e-01\n"
             "2 2 +5.000000000e-01 +2.000000000e+00 00 +5.0000e-01\n"
@@ -113,16 +121,12 @@ TEST(CocoRun, ShowsUpToSixVariables) {
   EXPECT_THAT(make_coco_run(make(7), {}).dat, testing::EndsWith(" +2.000000000e+00\n"));
 }
 
-TEST(CocoScale, RefersToTheBestAndKeepsInfeasibleOnesAboveAll) {
+TEST(CocoInfeasible, IsAboveAllFeasibleObjectives) {
   ProblemRuns problem;
-  problem.constraints = 3;
-  EXPECT_EQ(make_coco_scale(problem).reference, 0);
-  EXPECT_EQ(make_coco_scale(problem).infeasible, 1e10);
+  EXPECT_EQ(calc_coco_infeasible(problem), 1e10);
   problem.best = -2;
   problem.worst = 3e11;
-  EXPECT_EQ(make_coco_scale(problem).reference, -2);
-  EXPECT_EQ(make_coco_scale(problem).infeasible, 1e12);
-  EXPECT_EQ(make_coco_scale(problem).constraints, 3u);
+  EXPECT_EQ(calc_coco_infeasible(problem), 1e12);
 }
 
 }  // namespace
