@@ -25,8 +25,8 @@ inline std::span<const double> get_row(const Numbers& matrix, py::ssize_t row) {
   return {matrix.data(row, 0), static_cast<std::size_t>(matrix.shape(1))};
 }
 
-// Checks a matrix with one point per row. Messages call it `name`. With `inside`, every point must lie
-// within the bounds.
+// Checks a matrix with one point per row. Messages call it `name`. With `inside`, every point must
+// lie within the bounds.
 void check_points(const Numbers& points, std::span<const DecisionVariable> variables,
                   const std::string& name, bool inside);
 

@@ -112,9 +112,9 @@ json summarize(const DesignEvaluation& evaluation, const std::string& design,
           {"mean_energy_j", optional_to_json(evaluation.mean_energy_j)}};
 }
 
-// Evaluates a design on the first `count` cases of a set. `design` is a name or a path, "start", or a
-// row of numbers. `set` is the name of a set, or a list of arrays (points, 3). Returns summary and
-// requirements as JSON, and for every case status, reason, error, energy and the errors of its
+// Evaluates a design on the first `count` cases of a set. `design` is a name or a path, "start", or
+// a row of numbers. `set` is the name of a set, or a list of arrays (points, 3). Returns summary
+// and requirements as JSON, and for every case status, reason, error, energy and the errors of its
 // points.
 py::tuple evaluate_design(const ProblemHandle& handle, const py::object& design_argument,
                           const py::object& set, std::uint64_t count, unsigned jobs,

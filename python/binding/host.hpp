@@ -1,7 +1,7 @@
-// Connects a call from Python with long work in C++: Ctrl-C stops the work, and progress and messages
-// reach Python. Both happen only on the thread that called. This code installs no signal handler:
-// Python's own handler records the interruption, and the work checks for it whenever it checks the
-// stop signal.
+// Connects a call from Python with long work in C++: Ctrl-C stops the work, and progress and
+// messages reach Python. Both happen only on the thread that called. This code installs no signal
+// handler: Python's own handler records the interruption, and the work checks for it whenever it
+// checks the stop signal.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -24,13 +24,13 @@ namespace py = pybind11;
 // Returns the exception itself, with its traceback.
 py::object to_exception(const py::error_already_set& error);
 
-// An observer and a stop signal for one call from Python. The caller creates and destroys it with the
-// GIL held.
+// An observer and a stop signal for one call from Python. The caller creates and destroys it with
+// the GIL held.
 class Host final : public RunObserver {
  public:
-  // `listener` is None or a function. It is called as listener(message, None) or
-  // listener(None, progress), where progress is the tuple (phase, done, total, replayed, generation,
-  // best). `best` is None before the first objective.
+  // `listener` is None or a function. It is called as listener(message, None) or listener(None,
+  // progress), where progress is the tuple (phase, done, total, replayed, generation, best). `best`
+  // is None before the first objective.
   explicit Host(py::object listener);
 
   StopSignal& stop() { return stop_; }
@@ -41,8 +41,8 @@ class Host final : public RunObserver {
   void on_message(const std::string& message) override;
 
   // Runs `work` without the GIL, then tells the listener the last messages. Throws what the work
-  // throws; otherwise what Python raised meanwhile: KeyboardInterrupt, an exception of the listener,
-  // or an exception of an optimizer that does not count as the optimizer's failure.
+  // throws; otherwise what Python raised meanwhile: KeyboardInterrupt, an exception of the
+  // listener, or an exception of an optimizer that does not count as the optimizer's failure.
   void run(const std::function<void()>& work);
   // Does the same on a new thread, for work that does not check the stop signal on the thread that
   // called it.

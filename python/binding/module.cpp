@@ -1,6 +1,6 @@
-// The module armwright._armwright: the functions of the library that the package in python/armwright
-// needs, with plain numbers, arrays and JSON. Users see only the package, and its docstrings explain
-// everything.
+// The module armwright._armwright: the functions of the library that the package in
+// python/armwright needs, with plain numbers, arrays and JSON. Users see only the package, and its
+// docstrings explain everything.
 #include <pybind11/pybind11.h>
 
 #include "base/build_info.hpp"

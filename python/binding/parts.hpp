@@ -36,9 +36,9 @@ struct ProblemHandle {
   LoadedProblem loaded;
 };
 
-// Returns the row of an optimizer that Python passes: a name, or the tuple (name, description, input
-// hashes, run). Each run of the optimizer calls run(evaluator, values, seed). Any thread may copy
-// and destroy the row. An optimizer of the row may run only while `host` runs work.
+// Returns the row of an optimizer that Python passes: a name, or the tuple (name, description,
+// input hashes, run). Each run of the optimizer calls run(evaluator, values, seed). Any thread may
+// copy and destroy the row. An optimizer of the row may run only while `host` runs work.
 OptimizerRow load_row(const py::object& optimizer, Host& host);
 
 // Return the description of a problem or an optimizer as JSON. The package reads it with Python's

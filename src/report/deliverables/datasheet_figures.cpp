@@ -12,8 +12,8 @@
 namespace armwright {
 namespace {
 
-// Returns the share of the cases below each error: one step per case. Cases without a number have no
-// step, so the line ends below 100 %.
+// Returns the share of the cases below each error: one step per case. Cases without a number have
+// no step, so the line ends below 100 %.
 LineFigure make_spread(const FinishedArm& arm) {
   LineFigure figure{"of the test cases have an error below", "error in mm", "%", {}};
   std::vector<double> errors_m;

@@ -1,5 +1,5 @@
-// The parts of the data sheet: its style, tables, lists and figures, as HTML. Only .cpp files include
-// this. Callers give plain text, and these functions escape it.
+// The parts of the data sheet: its style, tables, lists and figures, as HTML. Only .cpp files
+// include this. Callers give plain text, and these functions escape it.
 #pragma once
 
 #include <span>
@@ -19,8 +19,8 @@ struct HtmlCell {
 };
 
 // Returns a table. The first cell of each row is the row's heading. Every row has as many cells as
-// `heads`. A text that is too long for its column ends in dots, and the browser shows all of it as a
-// tooltip.
+// `heads`. A text that is too long for its column ends in dots, and the browser shows all of it as
+// a tooltip.
 std::string make_table(std::span<const std::string> heads,
                        std::span<const std::vector<HtmlCell>> rows);
 

@@ -32,12 +32,12 @@ void refuse_study(const fs::path& folder, std::string_view format) {
   const FoundRuns found = find_runs(folder);
   const auto run = std::ranges::find_if(
       found.runs, [](const RunEntry& one) { return load_result(one.folder).tracking; });
-  refuse_run(folder,
-             run == found.runs.end()
-                 ? fmt::format("this is a study of functions; {} is made of an arm's run", format)
-                 : fmt::format("this is a study; {} is made of one run: give the folder of "
-                               "one, such as {}",
-                               format, sanitize(run->folder.string())));
+  refuse_run(
+      folder,
+      run == found.runs.end()
+          ? fmt::format("this is a study of functions; {} needs a run of an arm", format)
+          : fmt::format("this is a study; {} needs one run: name the folder of a run, such as {}",
+                        format, sanitize(run->folder.string())));
 }
 
 // Returns lines that say where the design comes from and how the simulated arm differs from the one
@@ -79,10 +79,11 @@ std::string read_urdf_of(const FinishedArm& arm, const fs::path& file) {
   const auto& inputs = arm.run.configuration.at("inputs");
   const std::string name = file.filename().string();
   if (!inputs.contains(name) || inputs[name] != calc_sha256_hex(xml)) {
-    throw Error(ErrorKind::bad_data,
-                fmt::format("{}: is not the file that the run used; bring it back as it was, or "
-                            "optimize again",
-                            sanitize(file.string())));
+    throw Error(
+        ErrorKind::bad_data,
+        fmt::format(
+            "{}: is not the file that the run used; restore it as it was, or optimize again",
+            sanitize(file.string())));
   }
   return xml;
 }
@@ -116,9 +117,10 @@ FinishedArm load_finished_arm(const fs::path& folder, std::string_view format) {
   refuse_study(folder, format);
   const RunResult result = load_result(folder);
   if (!result.tracking) {
-    refuse_run(folder, fmt::format("is a run on {}, which is a function and no arm; {} is made of "
-                                   "an arm's run. csv, ioh, coco and json are there for all",
-                                   sanitize(result.problem), format));
+    refuse_run(folder,
+               fmt::format("is a run on {}, which is a function, not an arm; {} needs a run of an "
+                           "arm. The formats csv, ioh, coco and json work for every run",
+                           sanitize(result.problem), format));
   }
   if (!result.winner) {
     refuse_run(folder, fmt::format("this run found no design that could be simulated to its end, "
@@ -130,8 +132,8 @@ FinishedArm load_finished_arm(const fs::path& folder, std::string_view format) {
   arm.run = read_recorded_run(folder);
   if (arm.run.tracking() == nullptr) {
     throw Error(ErrorKind::bad_data,
-                fmt::format("{}: the arm of this run is not known any more. {} Bring these files "
-                            "back as they were, or optimize again",
+                fmt::format("{}: the arm of this run cannot be rebuilt. {} Restore the files as "
+                            "they were, or optimize again",
                             sanitize(folder.string()), arm.run.problem_fault));
   }
   arm.design = arm.run.tracking()->make_design(arm.run.find_best());

@@ -13,8 +13,8 @@
 namespace armwright {
 namespace {
 
-// Returns the text as a comment with lines of at most kColumns characters. In an item ("- ..."), the
-// lines after the first are indented.
+// Returns the text as a comment with lines of at most kColumns characters. In an item ("- ..."),
+// the lines after the first are indented.
 std::string comment_on(std::string_view text) {
   constexpr std::size_t kColumns = 100;
   std::string lines;

@@ -1,5 +1,5 @@
-// Writes a PID design as parameters of ROS 2, for controller_manager and joint_trajectory_controller,
-// which commands efforts through one control_toolbox::Pid per joint.
+// Writes a PID design as parameters of ROS 2, for controller_manager and
+// joint_trajectory_controller, which commands efforts through one control_toolbox::Pid per joint.
 //
 // Our law (sim/controllers/pid.hpp), where h is the control period:
 //   u = clamp(p e + i S + d (e - e_prev) / h),  S = sum of e h; S stays as it is for one period
@@ -36,8 +36,8 @@ struct Ros2Distribution {
 std::span<const Ros2Distribution> ros2_distributions();
 
 // Returns the file for one distribution. `origin` are lines of text that say where the design comes
-// from. Throws Error{usage} if the controller is not "pid", the period is not 1 s divided by a whole
-// number, or a joint's effort limits allow no effort.
+// from. Throws Error{usage} if the controller is not "pid", the period is not 1 s divided by a
+// whole number, or a joint's effort limits allow no effort.
 std::string make_ros2_control(const Ros2Distribution& distribution, const RobotModel& robot,
                               const ArmDesign& design, double control_period_s,
                               std::span<const std::string> origin);

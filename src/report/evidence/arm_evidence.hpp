@@ -35,8 +35,8 @@ void simulate_designs(const RecordedRun& run, PageSimulator& simulator,
 // simulated, it has only the errors that the run recorded of its winner.
 nlohmann::json make_test_errors(const RecordedRun& run, const std::vector<ShownDesign>& designs);
 
-// Returns ArmEvidence of web/src/data.ts. Without a simulator (null) it has no sweep. `notes` gets a
-// sentence for each design that the sweep leaves out. Throws PageStopped.
+// Returns ArmEvidence of web/src/data.ts. Without a simulator (null) it has no sweep. `notes` gets
+// a sentence for each design that the sweep leaves out. Throws PageStopped.
 nlohmann::json make_arm_evidence(const RecordedRun& run, const std::vector<ShownDesign>& designs,
                                  PageSimulator* simulator, std::vector<std::string>& notes);
 

@@ -139,8 +139,8 @@ void ReplayList::add(const std::string& case_id, const std::string& reason) {
   if (set.find('/') == std::string::npos || set.front() == '/' || set.back() == '/' || number < 0 ||
       number > kMost) {
     throw Error(ErrorKind::usage,
-                fmt::format("case '{}' is none: it must be SET:NUMBER with the name of a set of "
-                            "test cases and a number from 0, as in test/2:17",
+                fmt::format("case '{}' is not valid: it must be SET:NUMBER with the name of a set "
+                            "of test cases and a number from 0, such as test/2:17",
                             sanitize(case_id)));
   }
   add(set, static_cast<std::uint64_t>(number), reason);

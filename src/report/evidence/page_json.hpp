@@ -1,5 +1,5 @@
-// Values in the form of the pages' JSON (web/src/data.ts): SI units, and null for a number without a
-// value. Only .cpp files include this.
+// Values in the form of the pages' JSON (web/src/data.ts): SI units, and null for a number without
+// a value. Only .cpp files include this.
 #pragma once
 
 #include <cmath>

@@ -198,15 +198,15 @@ void rebuild_problem(RecordedRun& run) {
   const json& recorded = run.configuration.at("problem");
   const json usable = choose_simd(recorded, run.notes);
   constexpr const char* kConsequence =
-      "What would have to be simulated for this page is left out, rather than showing another "
-      "problem's numbers.";
+      "Parts that need a simulation are left out, so that the page does not show the numbers of "
+      "another problem.";
   try {
     LoadedProblem problem =
         load_recorded_problem(usable.dump(), run.problem_name, run.input_folder);
     const auto changed = list_changed_inputs(run, problem);
     if (!changed.empty()) {
-      run.problem_fault = fmt::format(
-          "Files of the problem are not what the run used any more: {}.", join(changed, ", "));
+      run.problem_fault = fmt::format("These files of the problem have changed since the run: {}.",
+                                      join(changed, ", "));
       run.notes.push_back(run.problem_fault + " " + kConsequence);
       return;
     }
@@ -215,7 +215,7 @@ void rebuild_problem(RecordedRun& run) {
     }
     run.problem = std::move(problem);
   } catch (const Error& error) {
-    run.problem_fault = fmt::format("The problem cannot be made again as the run recorded it ({}).",
+    run.problem_fault = fmt::format("The problem cannot be rebuilt as the run recorded it ({}).",
                                     sanitize(error.what()));
     run.notes.push_back(run.problem_fault + " " + kConsequence);
   }

@@ -13,9 +13,9 @@ namespace armwright {
 // Returns Robot of web/src/data.ts. `model` is the arm without its load. A load above 0 kg is a box
 // on the last body in its own colour (add_load()). Meshes are STL, OBJ or Collada files, which
 // find_mesh() finds from `urdf_folder`; limits are 64 MiB per file and 200 000 triangles per robot.
-// A mesh that cannot be read is left out. A body whose shapes are all missing gets plain shapes, and
-// so do all bodies of a robot without any shapes. `notes` gets a whole sentence for each of these
-// cases. Throws what add_load() throws if the robot cannot carry a load.
+// A mesh that cannot be read is left out. A body whose shapes are all missing gets plain shapes,
+// and so do all bodies of a robot without any shapes. `notes` gets a whole sentence for each of
+// these cases. Throws what add_load() throws if the robot cannot carry a load.
 nlohmann::json make_robot(const RobotModel& model, double load_kg,
                           const std::filesystem::path& urdf_folder,
                           std::vector<std::string>& notes);

@@ -1,6 +1,6 @@
 // Samples the five reference signals over one move, with the exact derivatives of their formulas
-// (sim/tracking/reference_signal.hpp), and the lower speed of short moves: the thesis's Fig. 5.5-5.8
-// and 5.10.
+// (sim/tracking/reference_signal.hpp), and the lower speed of short moves: the thesis's Fig.
+// 5.5-5.8 and 5.10.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -25,8 +25,8 @@ struct SignalSample {
 std::vector<SignalSample> sample_signal(SignalShape shape, double distance_m, double speed_m_per_s,
                                         double acceleration_m_per_s2, double rest_s);
 
-// Returns the length of a move that is not slowed down: the distance limit, or 0.9 m if the task has
-// none.
+// Returns the length of a move that is not slowed down: the distance limit, or 0.9 m if the task
+// has none.
 double choose_signal_distance(const TrackingTask& task);
 
 // Returns Signals of web/src/data.ts for this move at the task's speed. With `name_used`, the page

@@ -120,9 +120,7 @@ std::uint64_t count_sweep_cases(const RecordedRun& run, const std::vector<ShownD
 json make_speed_sweep(const RecordedRun& run, const std::vector<ShownDesign>& designs,
                       PageSimulator& simulator, std::vector<std::string>& notes) {
   if (has_own_times(run)) {
-    notes.push_back(
-        "The path is gone through at times of its own: there is no sweep over the "
-        "speed.");
+    notes.push_back("The path has its own times, so there is no sweep over the speed.");
     return nullptr;
   }
   const auto swept = choose_swept(designs);
@@ -134,8 +132,8 @@ json make_speed_sweep(const RecordedRun& run, const std::vector<ShownDesign>& de
   }
   if (!own_speed.empty()) {
     notes.push_back(
-        fmt::format("Designs with a speed of their own move at that, whatever the task's is: the "
-                    "sweep over the speed leaves out {}.",
+        fmt::format("Designs with their own speed ignore the task's speed, so the sweep over the "
+                    "speed leaves out {}.",
                     join(own_speed, ", ")));
   }
   if (swept.empty()) {

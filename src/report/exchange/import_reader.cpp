@@ -226,9 +226,9 @@ std::vector<fs::path> find_ioh_files(const fs::path& folder) {
 std::vector<ImportedRun> read_export(const fs::path& folder) {
   std::vector<ImportedRun> runs;
   if (!fs::is_directory(folder)) {
-    throw Error(
-        ErrorKind::usage,
-        fmt::format("{}: is no folder; name the one that armwright export wrote", folder.string()));
+    throw Error(ErrorKind::usage,
+                fmt::format("{}: is not a folder; name the folder that armwright export wrote",
+                            folder.string()));
   }
   if (fs::exists(folder / kRunsCsv)) {
     read_csv_folder(folder, runs);
@@ -238,8 +238,8 @@ std::vector<ImportedRun> read_export(const fs::path& folder) {
     const auto files = find_ioh_files(folder);
     if (files.empty()) {
       throw Error(ErrorKind::usage,
-                  fmt::format("{}: holds no export as csv, json or ioh (coco rounds what it "
-                              "writes down, and cannot be imported)",
+                  fmt::format("{}: holds no export as csv, json or ioh (the format coco has "
+                              "rounded numbers and cannot be imported)",
                               folder.string()));
     }
     for (const fs::path& file : files) {

@@ -42,10 +42,9 @@ std::filesystem::path check_export_folder(const std::filesystem::path& target) {
   std::error_code ignored;
   if (std::filesystem::exists(std::filesystem::symlink_status(folder, ignored)) &&
       !(std::filesystem::is_directory(folder) && std::filesystem::is_empty(folder))) {
-    throw Error(ErrorKind::usage,
-                fmt::format("{}: is there already, and nothing is overwritten; choose another "
-                            "folder with --out",
-                            target.string()));
+    throw Error(ErrorKind::usage, fmt::format("{}: exists already, and an export never overwrites "
+                                              "anything; choose another folder with --out",
+                                              target.string()));
   }
   return folder;
 }

@@ -14,8 +14,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// The format's version in IOHexperimenter's numbering. Readers take a number below 0.3.3 for another
-// format.
+// The format's version in IOHexperimenter's numbering. Readers take a number below 0.3.3 for
+// another format.
 constexpr const char* kVersion = "0.3.5";
 
 // Returns whether a reader could take the name for a decision variable.

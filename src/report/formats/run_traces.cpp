@@ -49,8 +49,8 @@ RunEntry read_cell(const fs::path& folder) {
     run.replicate = replicate;
   } catch (const json::exception& error) {
     throw Error(ErrorKind::bad_data,
-                fmt::format("{}: is no cell that armwright wrote ({}); remove it and start the "
-                            "study again to have it rebuilt",
+                fmt::format("{}: is not a cell file that armwright wrote ({}); remove it and start "
+                            "the study again, which rebuilds it",
                             file.string(), sanitize(error.what())));
   }
   return run;
@@ -76,7 +76,7 @@ FoundRuns find_cells(const fs::path& folder) {
   if (found.runs.empty()) {
     throw Error(ErrorKind::usage,
                 fmt::format("{}: no cell of this study has finished, so there is nothing to "
-                            "export; start it again with the same command to go on",
+                            "export; start the study again with the same command to continue it",
                             folder.string()));
   }
   std::sort(found.runs.begin(), found.runs.end(),
@@ -135,8 +135,8 @@ void include_trace(ProblemRuns& problem, const RunTrace& trace) {
   if (trace.tested_on) {
     if (problem.tested_on && problem.tested_on->set != trace.tested_on->set) {
       throw Error(ErrorKind::bad_data,
-                  fmt::format("{}: this run was tested on {}, others on problem '{}' on {}; export "
-                              "them apart",
+                  fmt::format("{}: this run was tested on {}, but other runs on problem '{}' were "
+                              "tested on {}; export them separately",
                               trace.run.folder.string(), sanitize(trace.tested_on->set),
                               sanitize(problem.name), sanitize(problem.tested_on->set)));
     }
@@ -240,12 +240,11 @@ CollectedRuns collected_runs(const std::vector<RunEntry>& runs) {
     }
     ProblemRuns& problem = collected.problems.back();
     if (problem.names != trace.names) {
-      throw Error(
-          ErrorKind::bad_data,
-          fmt::format("{} and {} are both runs on '{}', but with other variables, objectives or "
-                      "metrics; export them apart",
-                      problem.labels.begin()->second.front().folder.string(), run.folder.string(),
-                      sanitize(run.problem)));
+      throw Error(ErrorKind::bad_data,
+                  fmt::format("{} and {} are both runs on '{}', but with other variables, "
+                              "objectives or metrics; export them separately",
+                              problem.labels.begin()->second.front().folder.string(),
+                              run.folder.string(), sanitize(run.problem)));
     }
     include_trace(problem, trace);
     ++collected.runs;

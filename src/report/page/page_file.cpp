@@ -82,7 +82,7 @@ std::string read_page_data(const std::filesystem::path& page) {
   const std::size_t end = block == std::string::npos ? block : html.find("</script>", begin);
   if (!is_page_file(page) || end == std::string::npos) {
     throw Error(ErrorKind::bad_data,
-                fmt::format("{}: is no page that armwright report wrote", page.string()));
+                fmt::format("{}: is not a page that armwright report wrote", page.string()));
   }
   return html.substr(begin, end - begin);
 }

@@ -19,7 +19,8 @@ using Kind = ReproductionPart::Kind;
 
 constexpr const char* kProgram = "armwright";
 
-// Returns a sentence to append to others if a few failed cases dominate the mean; otherwise nothing.
+// Returns a sentence to append to others if a few failed cases dominate the mean; otherwise
+// nothing.
 std::string describe_few_failures(const std::string& name, const ErrorSummary& summary) {
   if (summary.failures == 0 || 2 * summary.failures > summary.cases || !summary.median) {
     return "";
@@ -51,8 +52,8 @@ class ReproductionPage {
     const std::size_t planned = record_.planned.size();
     const std::size_t there = record_.results.size();
     if (there < planned) {
-      notes_.push_back(fmt::format("This reproduction is unfinished: {} of {} results are there.",
-                                   there, planned));
+      notes_.push_back(
+          fmt::format("This reproduction is unfinished: it has {} of {} results.", there, planned));
     }
     const auto is_anew = [](const PartResult* one) { return one->part.kind == Kind::anew; };
     if (!config_.remark.empty() && std::ranges::any_of(results_, is_anew)) {
@@ -262,7 +263,7 @@ class ReproductionPage {
       }
     }
     if (!missing.empty()) {
-      notes_.push_back("Not there: " + join(missing, ", ") + ".");
+      notes_.push_back("Missing: " + join(missing, ", ") + ".");
     }
     return responses;
   }
@@ -292,7 +293,7 @@ class ReproductionPage {
     }
     json series = json::array();
     if (values.empty()) {
-      notes_.emplace_back("The sweep over the speed (Fig. 6.16) is not there.");
+      notes_.emplace_back("The sweep over the speed (Fig. 6.16) is missing.");
     } else {
       series.push_back({{"name", get_table_name(plan.design)},
                         {"mean_m", means},

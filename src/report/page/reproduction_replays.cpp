@@ -109,8 +109,7 @@ json make_reproduction_replays(const ReproductionRecord& record, const Reproduct
   }
   if (!missing.empty()) {
     notes.push_back(
-        fmt::format("Without the published results that they belong to, these motions "
-                    "are left out: {}.",
+        fmt::format("These motions are left out, because their published results are missing: {}.",
                     join(missing, "; ")));
   }
   return made;

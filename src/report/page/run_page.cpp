@@ -58,7 +58,7 @@ json make_incumbents(const RecordedRun& run, const std::vector<Incumbent>& shown
 void add_notes(const RecordedRun& run, const History& history, const PageOptions& options,
                std::vector<std::string>& notes) {
   if (!run.result) {
-    notes.push_back("The run has not come to its end: there is no winner yet, and no test of one.");
+    notes.push_back("The run has not ended, so it has no winner and no test of a winner yet.");
   } else if (!run.result->winner) {
     notes.push_back("No design that the run found has a number, so there is no winner.");
   }
@@ -74,12 +74,13 @@ void add_notes(const RecordedRun& run, const History& history, const PageOptions
                                 history.left_out + history.parts.size(), history.parts.size()));
   }
   if (!run.describe().constraints.empty()) {
-    notes.push_back("Best, mean and worst in training are of the designs that keep all limits.");
+    notes.push_back(
+        "In training, best, mean and worst count only the designs that meet all constraints.");
   }
   if (!run.problem) {
     notes.push_back(
-        "Without the problem the bounds of its variables are not known, so their "
-        "history is left out.");
+        "Without the problem the bounds of its variables are unknown, so their history is left "
+        "out.");
   } else if (!options.simulate) {
     notes.push_back(
         "Nothing was simulated for this page: replays, tests of incumbents and of "
@@ -96,8 +97,8 @@ void compare_with_record(const RecordedRun& run, const std::vector<ShownDesign>&
     const bool same = now[i] == recorded[i] || (std::isnan(now[i]) && std::isnan(recorded[i]));
     if (!same) {
       notes.push_back(
-          fmt::format("What is simulated for this page differs from what the run "
-                      "recorded, first on test case {}: {} m then, {} m now.",
+          fmt::format("The simulations for this page differ from those that the run recorded, "
+                      "first on test case {}: {} m recorded, {} m now.",
                       i, format_exact(recorded[i]), format_exact(now[i])));
       return;
     }

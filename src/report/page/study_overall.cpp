@@ -74,10 +74,10 @@ json make_cliques(const StudyPlan& plan, std::span<const PairResult> pairs,
   }
   const auto cliques = find_cliques(plan.optimizers.size(), distinguished, kMostCliques);
   if (!cliques) {
-    notes.push_back(
-        fmt::format("There are more than {} sets of optimizers that cannot be told apart over the "
-                    "problems; they are left out, the table of pairs has all of it.",
-                    kMostCliques));
+    notes.push_back(fmt::format(
+        "Over the problems there are more than {} sets of optimizers without a significant "
+        "difference. They are left out; the table of pairs has every comparison.",
+        kMostCliques));
     return json::array();
   }
   return *cliques;

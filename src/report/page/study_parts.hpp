@@ -36,8 +36,8 @@ nlohmann::json make_study_overall(const StudyPlan& plan, const StudyResult& resu
 // Returns a list of Fact that describes the plan.
 nlohmann::json make_study_facts(const StudyPlan& plan);
 
-// Returns a list of ReplaySet for the first problems with an arm. Each shows the best designs of the
-// best optimizers and the problem's own start, on a few cases of the test set and on `cases`
+// Returns a list of ReplaySet for the first problems with an arm. Each shows the best designs of
+// the best optimizers and the problem's own start, on a few cases of the test set and on `cases`
 // ("test/2:17"). The replays have at most 3 MB. `robots` gets the robots, and `notes` a sentence on
 // what is left out. Throws Error{usage} if one of `cases` is not a case; PageStopped.
 nlohmann::json make_study_replays(const StudyPlan& plan, const StudyResult& result,

@@ -28,9 +28,9 @@ struct BestDesign {
   NamedDesign named;
 };
 
-// Returns the best design of each of the best optimizers, the best optimizer first. Each design comes
-// with its method's problem, because a controller may need precomputed efforts that the problems of
-// other methods do not have.
+// Returns the best design of each of the best optimizers, the best optimizer first. Each design
+// comes with its method's problem, because a controller may need precomputed efforts that the
+// problems of other methods do not have.
 std::vector<BestDesign> find_best_designs(const StudyPlan& plan, const StudyResult& result,
                                           std::size_t problem, std::vector<std::string>& notes) {
   std::vector<BestDesign> designs;

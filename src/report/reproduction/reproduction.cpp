@@ -89,8 +89,8 @@ class Executor {
                       .total_torque_n_m = evaluation->total_torque_n_m};
   }
 
-  // Returns the part's design. If a run has to find it, makes the run first; returns nothing if that
-  // was stopped.
+  // Returns the part's design. If a run has to find it, makes the run first; returns nothing if
+  // that was stopped.
   std::optional<ArmDesign> find_design(const PlannedPart& part) {
     if (part.part.run.empty()) {
       return part.design;

@@ -81,8 +81,8 @@ class Planner {
         plan_.request.cases.value_or(static_cast<std::uint64_t>(planned.problem.sets.test_cases));
     if (!labels_.insert(part.label).second) {
       throw Error(ErrorKind::usage,
-                  fmt::format("two results to reproduce are called '{}'; each needs a label of its "
-                              "own, in configs/designs or configs/reproductions",
+                  fmt::format("two results to reproduce have the label '{}'; labels in "
+                              "configs/designs and configs/reproductions must differ",
                               sanitize(part.label)));
     }
     planned.part = std::move(part);

@@ -241,10 +241,11 @@ void ReproductionFolder::check(const ReproductionPlan& plan) const {
   const std::string recorded = describe_settings(record_.cases, record_.overrides);
   const std::string now = describe_settings(plan.request.cases, plan.request.overrides);
   if (recorded != now) {
-    throw Error(ErrorKind::usage,
-                fmt::format("{} holds a reproduction with other settings: recorded {}, now {}. Go "
-                            "on with the recorded ones, or use --new or --out for another folder",
-                            path_.string(), sanitize(recorded), now));
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("{} holds a reproduction with other settings: recorded {}, now {}. Continue "
+                    "with the recorded ones, or use --new or --out for another folder",
+                    path_.string(), sanitize(recorded), now));
   }
   if (record_.config != plan.request.config) {
     throw Error(

@@ -244,7 +244,7 @@ TEST_F(RunPage, OfSeveralObjectivesHasAFront) {
 TEST_F(RunPage, OfConstraintsCountsOnlyDesignsThatKeepThem) {
   make_run(make_plan("q2-torque", "ga", 24), "a");
   const json page = make_page("a");
-  EXPECT_THAT(notes_of(page), Contains(HasSubstr("keep all limits")));
+  EXPECT_THAT(notes_of(page), Contains(HasSubstr("meet all constraints")));
   const JournalContent journal = read("a");
   const json& training = page["training"];
   ASSERT_FALSE(training["index"].empty());
