@@ -118,7 +118,7 @@ TEST(VerifyConclusion, SaysThatEverythingHolds) {
                           HasSubstr("Engines: It holds in b."),
                           HasSubstr("It holds with 2 substeps, 5 substeps and 10 substeps."),
                           HasSubstr("Masses: It holds with -10 % and +10 %."),
-                          HasSubstr("it holds in 17 of 17."), Not(HasSubstr("depends on"))));
+                          HasSubstr("it holds in 17 of 17 settings."), Not(HasSubstr("depends on"))));
 }
 
 TEST(VerifyConclusion, NamesWhatDoesNotHold) {
