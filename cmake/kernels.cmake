@@ -20,5 +20,10 @@ foreach(level scalar sse2 avx2 avx512)
   foreach(flag -O3 -DNDEBUG -U_GLIBCXX_ASSERTIONS)
     list(APPEND flags $<$<CONFIG:Release>:${flag}>)
   endforeach()
+  # With sanitizers a compiler takes more than a minute per file. All levels are the same source, so only one of them has sanitizers,
+  # and scripts/sanitize runs the tests with it.
+  if(CMAKE_CXX_FLAGS MATCHES "-fsanitize=" AND NOT level STREQUAL "sse2")
+    list(APPEND flags -fno-sanitize=all)
+  endif()
   set(ARMWRIGHT_KERNEL_FLAGS_${level} ${flags})
 endforeach()
