@@ -1,5 +1,5 @@
-// Evaluations that CMA-ES needs: ours, pagmo's, and what is published, as the table of
-// docs/cmaes.md. Prints Markdown; takes two minutes.
+// Measures how many evaluations CMA-ES needs: ours, pagmo's and the published ones. Prints the
+// table of docs/cmaes.md as Markdown and takes two minutes.
 //
 //   build/release/bin/cmaes_benchmark > table.md
 #include <fmt/format.h>
@@ -70,7 +70,7 @@ struct Function {
   double (*calc)(std::span<const double>) = nullptr;
 };
 
-// A function on [-half_width, half_width]^n and where the search begins in it.
+// A function on [-half_width, half_width]^n, and the range in which its search starts.
 struct Setting {
   Function function;
   int dimension = 10;
@@ -181,8 +181,8 @@ struct PagmoFunction {
   }
 };
 
-// As raw as it comes: the initial population is what pagmo's strategy would have sampled around the
-// start; the mean begins at its best member.
+// Runs pagmo's CMA-ES without any help. The initial population is sampled around the start as
+// pagmo's strategy would do it, and the mean begins at its best member.
 Outcome run_pagmo(const Setting& setting, int seed) {
   PagmoFunction::Shared shared{.setting = &setting, .count = 0, .hit_at = {}};
   const int population = setting.population > 0
@@ -269,7 +269,7 @@ std::vector<Setting> make_settings() {
   run.target = 5.727e-16;
   run.published = "1456 [3]";
   settings.push_back(run);
-  // Large populations, which the global structure rewards.
+  // These functions have a global structure, so large populations are better.
   for (const auto& [n, population] : {std::pair{10, 200}, {10, 400}, {20, 400}, {20, 800}}) {
     settings.push_back({.function = rastrigin,
                         .dimension = n,
@@ -336,7 +336,7 @@ void print_speed() {
             .target = -1,
             .budget = 300000};
   s.restarts = "ipop";
-  const std::clock_t begin = std::clock();  // of this process alone
+  const std::clock_t begin = std::clock();  // processor time of this process
   const Outcome outcome = run_own(s, 1);
   const double duration_s = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   fmt::print("\n{:.0f} thousand evaluations a second on the sphere in 20 dimensions.\n",

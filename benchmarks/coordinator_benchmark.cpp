@@ -1,7 +1,7 @@
-// The coordinator's own work, without MPI: the real one, with ranks that are not there. A rank here
-// is an entry in a table: it answers after the time that its pairs would take, and costs next to
-// nothing, so that thousands of them fit into one process. What is left is what one coordinator
-// can do: chunks and pairs a second, and how many ranks it keeps at work.
+// Measures the coordinator's own work without MPI: the real coordinator with simulated ranks. A
+// simulated rank is an entry in a table that answers after the time that its pairs would take. It
+// costs almost nothing, so thousands of ranks fit into one process. The benchmark reports what one
+// coordinator can do: chunks and pairs per second, and how many ranks it keeps busy.
 #include <benchmark/benchmark.h>
 #include <unistd.h>
 
@@ -25,10 +25,10 @@ namespace {
 
 constexpr const char* kIdentity = R"("coordinator_benchmark")";
 
-// Ranks as a table of when they answer.
-class CrowdLinks final : public Links {
+// Links to simulated ranks: a table of the times at which they answer.
+class CrowdTransport final : public MessageTransport {
  public:
-  CrowdLinks(std::size_t ranks, std::size_t threads, double pair_s)
+  CrowdTransport(std::size_t ranks, std::size_t threads, double pair_s)
       : pair_s_(pair_s), threads_(threads), free_at_s_(ranks + 1, 0) {
     const std::string ready = make_rank_message(WorkerIntroduction{
         .host = "crowd", .cpu = "", .threads = threads, .identity = kIdentity, .failure = ""});
@@ -59,8 +59,8 @@ class CrowdLinks final : public Links {
     return message;
   }
 
-  // Chunks so far, their bytes both ways, and what these ranks have taken of the coordinator's
-  // thread. When no batch is under way.
+  // Chunks so far, their bytes in both directions, and the time that the simulated ranks have used
+  // on the coordinator's thread. Call it only between batches.
   double chunks() const { return chunks_; }
   double bytes() const { return bytes_; }
   double spent_s() const { return spent_s_; }
@@ -75,7 +75,7 @@ class CrowdLinks final : public Links {
 
   static double now_s() { return read_clock_s(CLOCK_MONOTONIC); }
 
-  // The message's size says how many pairs it holds, as points are all alike (put_jobs()).
+  // All points have the same size (put_jobs()), so the message's size gives the number of pairs.
   static std::size_t count_pairs(const std::string& message) {
     constexpr std::size_t kPair = (1 + SyntheticProblem::kVariables) * sizeof(double) + 16;
     return message.size() / kPair;
@@ -111,7 +111,7 @@ class CrowdLinks final : public Links {
   double chunks_ = 0, bytes_ = 0, spent_s_ = 0;
 };
 
-// What encoding and decoding take of `pairs` pairs, by themselves.
+// Measures the encoding and decoding of `pairs` pairs alone.
 void packets(benchmark::State& state) {
   const auto pairs = static_cast<std::size_t>(state.range(0));
   const SyntheticProblem problem({});
@@ -127,7 +127,7 @@ void packets(benchmark::State& state) {
   }
 }
 
-// The coordinator's thread that computes takes part with pairs of the same cost.
+// The coordinator has one computing thread, which simulates pairs of the same cost.
 void crowd(benchmark::State& state) {
   constexpr double kAll_s = 1.0;
   const auto ranks = static_cast<std::size_t>(state.range(0));
@@ -136,41 +136,41 @@ void crowd(benchmark::State& state) {
   const auto pairs = static_cast<std::size_t>(state.range(3));
   const SyntheticProblem problem({});
   const SyntheticBatch batch(problem, pairs, pair_s * measure_iterations_per_s());
-  CrowdLinks links(ranks - 1, threads, pair_s);
+  CrowdTransport transport(ranks - 1, threads, pair_s);
   StopSignal stop;
   std::vector<double> times_s;
-  double chunks = 0, bytes = 0, processor_s = 0, links_s = 0;
+  double chunks = 0, bytes = 0, processor_s = 0, transport_s = 0;
   {
-    Coordinator coordinator(links, {&problem}, kIdentity, {}, [](const std::string&) {});
+    Coordinator coordinator(transport, {&problem}, kIdentity, {}, [](const std::string&) {});
     while (coordinator.expects_workers()) {
       ::usleep(1000);
     }
-    coordinator.run(batch.get(), stop);  // learns the cost
+    coordinator.run(batch.get(), stop);  // measures the cost per pair
     for (auto _ : state) {
       const double start_s = read_clock_s(CLOCK_MONOTONIC);
       const double cpu_before_s = read_clock_s(CLOCK_PROCESS_CPUTIME_ID);
-      const double links_before_s = links.spent_s();
-      const double chunks_before = links.chunks(), bytes_before = links.bytes();
+      const double transport_before_s = transport.spent_s();
+      const double chunks_before = transport.chunks(), bytes_before = transport.bytes();
       while (times_s.size() < 3 || read_clock_s(CLOCK_MONOTONIC) - start_s < kAll_s) {
         const double cpu_s = read_clock_s(CLOCK_THREAD_CPUTIME_ID);
         times_s.push_back(measure_s([&] { coordinator.run(batch.get(), stop); }));
         processor_s -= read_clock_s(CLOCK_THREAD_CPUTIME_ID) - cpu_s;
       }
-      links_s = links.spent_s() - links_before_s;
-      processor_s += read_clock_s(CLOCK_PROCESS_CPUTIME_ID) - cpu_before_s - links_s;
+      transport_s = transport.spent_s() - transport_before_s;
+      processor_s += read_clock_s(CLOCK_PROCESS_CPUTIME_ID) - cpu_before_s - transport_s;
       const auto batches = static_cast<double>(times_s.size());
-      chunks = (links.chunks() - chunks_before) / batches;
-      bytes = (links.bytes() - bytes_before) / batches;
+      chunks = (transport.chunks() - chunks_before) / batches;
+      bytes = (transport.bytes() - bytes_before) / batches;
       processor_s /= batches;
-      links_s /= batches;
+      transport_s /= batches;
       state.SetIterationTime(calc_median(times_s));
     }
   }
   const double all_threads = 1 + static_cast<double>((ranks - 1) * threads);
   state.counters["chunks"] = chunks;
   state.counters["bytes"] = bytes;
-  state.counters["communication_s"] = processor_s;  // of the thread that communicates, a batch
-  state.counters["links_s"] = links_s;  // what the ranks that are not there take of that thread
+  state.counters["communication_s"] = processor_s;  // of the communicating thread, per batch
+  state.counters["links_s"] = transport_s;          // the simulated ranks' share of that thread
   state.counters["efficiency"] =
       static_cast<double>(pairs) * pair_s / calc_median(times_s) / all_threads;
 }

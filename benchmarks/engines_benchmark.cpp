@@ -1,7 +1,8 @@
-// What a step of the thesis's arm costs in every engine, on the same task: its four controllers,
-// the dynamics and the measures of 64 test cases. Times are those of the thread's CPU, without the
-// target tables, which all engines share. Every ratio is to ODE on some of the same cases within
-// the same run, by turns, so that a machine that slows down slows down both; errors stand beside.
+// Measures the cost of a step of the thesis's arm in every engine, on the same task: four
+// controllers, the dynamics and the measures of 64 test cases. Times are CPU times of the thread,
+// without the target tables, which all engines share. Every ratio compares with ODE on some of the
+// same cases. Both sides run alternately, so that a slower machine slows down both. The errors are
+// reported too.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -15,7 +16,7 @@
 #include "problems/config/design_file.hpp"
 #include "problems/config/problem_loader.hpp"
 #include "sim/dynamics/chain_model.hpp"
-#include "study/executor/case_runner.hpp"
+#include "study/executor/case_executor.hpp"
 
 namespace armwright {
 namespace {
@@ -31,9 +32,9 @@ struct Task {
 
   explicit Task(const char* problem_name)
       : problem(load_problem(problem_name)), design(load_design(problem.published.design).design) {
-    const TestSet set = problem.tracking->get_set("test/2");
+    const TestSet set = problem.tracking()->get_set("test/2");
     for (std::size_t i = 0; i < kCases; ++i) {
-      targets.push_back(problem.tracking->setup().make_targets(set.make_case(i)));
+      targets.push_back(problem.tracking()->setup().make_targets(set.make_case(i)));
     }
     for (const TargetTable& table : targets) {
       TrackingJob& job = jobs.emplace_back();
@@ -50,7 +51,7 @@ Measured simulate(const PhysicsEngine& engine, const Task& task, std::size_t cas
   Measured measured;
   std::vector<TrackingResult> results;
   measured.seconds = measure_cpu_s([&] {
-    results = engine.simulate(task.problem.tracking->setup(), std::span(task.jobs).first(cases));
+    results = engine.simulate(task.problem.tracking()->setup(), std::span(task.jobs).first(cases));
   });
   for (const TrackingResult& result : results) {
     measured.steps += result.steps;
@@ -81,7 +82,7 @@ void run_engine(benchmark::State& state, const char* problem_name, const std::st
 
 void run_part(benchmark::State& state, SimdLevel level, benchmarks::Part part) {
   const LoadedProblem problem = load_problem("q1-complex");
-  const articulated::ChainModel& chain = problem.tracking->setup().chain();
+  const articulated::ChainModel& chain = problem.tracking()->setup().chain();
   const benchmarks::PartsChain numbers{chain.joints(), chain.flags().data(), chain.tilted_gravity(),
                                        chain.numbers().data()};
   std::vector<double> seconds;
@@ -94,12 +95,12 @@ void run_part(benchmark::State& state, SimdLevel level, benchmarks::Part part) {
   state.counters["ns_per_step"] = 1e9 * calc_median(seconds) / kRounds / lanes;
 }
 
-// The same number of simulations on one thread and on two, and shared out in two ways; target
-// tables made before. By the wall's clock.
+// Runs the same number of simulations on one thread and on two, and as many designs on one case as
+// cases of one design. Target tables exist before. Measures wall-clock time.
 void run_sharing(benchmark::State& state) {
   const std::vector<std::string> overrides = {"physics.engine=articulated"};
   const LoadedProblem problem = load_problem("q1-complex", overrides);
-  const auto x = problem.tracking->make_vector(load_design("table-a5").design);
+  const auto x = problem.tracking()->make_vector(load_design("table-a5").design);
   StopSignal stop;
   ThreadExecutor one(1);
   ThreadExecutor two(2);
@@ -107,11 +108,11 @@ void run_sharing(benchmark::State& state) {
     CaseBlock block{CaseRole::training, "train/1", std::vector<std::uint64_t>(cases)};
     std::iota(block.numbers.begin(), block.numbers.end(), 0);
     const std::vector<std::span<const double>> candidates(designs, x);
-    CaseRunner(*problem.problem, executor, stop)
-        .run(candidates, block, false, [](std::size_t, Evaluation) {});
+    executor.evaluate(*problem.problem, candidates, block, {}, stop,
+                      [](std::size_t, Evaluation) {});
   };
   std::vector<double> speedup, ratio;
-  evaluate(one, 1, kCases);  // the tables
+  evaluate(one, 1, kCases);  // makes the target tables
   for (auto _ : state) {
     const double serial = measure_s([&] { evaluate(one, 16, kCases); });
     const double parallel = measure_s([&] { evaluate(two, 16, kCases); });

@@ -1,6 +1,6 @@
-// How many evaluations a second the journal takes: records of 20 variables, flushed after every
-// batch of 100, as a population would be. The figure to hold is 500 000 records/s, so that the
-// journal stays below a tenth of a second's work of the engine.
+// Measures how many evaluations per second the journal can store: records of 20 variables, flushed
+// after every batch of 100, as for a population. The requirement is 500 000 records/s, so that the
+// journal needs less than a tenth of the engine's time.
 #include <benchmark/benchmark.h>
 #include <unistd.h>
 

@@ -1,4 +1,4 @@
-// How benchmarks measure: time of the wall's clock or of the thread's CPU, and medians.
+// Measurements for benchmarks: wall-clock time or CPU time of the thread, and medians.
 #pragma once
 
 #include <time.h>
@@ -14,7 +14,7 @@ inline double read_clock_s(clockid_t clock) {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-// Seconds that the work takes.
+// Returns the seconds that the work takes.
 double measure_s(const auto& work, clockid_t clock = CLOCK_MONOTONIC) {
   const double start = read_clock_s(clock);
   work();

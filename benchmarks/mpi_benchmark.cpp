@@ -1,12 +1,12 @@
-// Batches shared out over ranks beside the same batches on one thread of one process, and what a
-// message takes. Started by mpirun, with one thread a rank:
+// Compares batches shared out over ranks with the same batches on one thread of one process, and
+// measures the cost of a message. Start it with mpirun, with one thread per rank:
 //
 //     mpirun.openmpi --enable-recovery -n 2 build/release/bin/mpi_benchmark
 //
-// (--oversubscribe for more ranks than cores.) Rank 0 measures, the others work for it. The figures
-// to hold with as many ranks as cores: an efficiency of 0.9 for batches of 40 pairs and more of 5
-// ms, and a speedup of at least 1 for any batch of pairs of 50 us, less what the machine's noise
-// takes (0.05). docs/scaling.md reads the output.
+// (--oversubscribe for more ranks than cores.) Rank 0 measures, the others work for it.
+// Requirements with as many ranks as cores: an efficiency of 0.9 for batches of at least 40 pairs
+// of 5 ms, and a speedup of at least 1 for any batch of pairs of 50 us, minus 0.05 for the
+// machine's noise. docs/scaling.md explains the output.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -32,53 +32,53 @@ namespace {
 
 constexpr BatchSize kOde{}, kLanes{.granularity = 8, .largest = 64};
 constexpr const char* kIdentity = R"("mpi_benchmark")";
-constexpr char kBegin = '!';  // an end of echoes: now the worker's life begins
+constexpr char kBegin = '!';  // ends the echoes and starts the worker
 
-// Both sides' problems, in the same order.
+// The problems of both sides, in the same order.
 struct Problems {
   SyntheticProblem ode{kOde}, lanes{kLanes};
   std::vector<const Problem*> list() const { return {&ode, &lanes}; }
 };
 
-// What ranks above 0 do: they send back whatever comes, without pauses, and then work.
-int serve(Links& links) {
+// The work of ranks above 0: they return every message without pauses until kBegin, then simulate.
+int serve(MessageTransport& transport) {
   while (true) {
-    auto message = links.receive();
+    auto message = transport.receive();
     if (!message) {
       continue;
     }
     if (message->bytes == std::string(1, kBegin)) {
       break;
     }
-    links.send(0, std::move(message->bytes));
+    transport.send(0, std::move(message->bytes));
   }
   const Problems problems;
   bool in_order = false;
   {
-    Worker worker(links, problems.list(),
+    Worker worker(transport, problems.list(),
                   {.host = "here", .cpu = "", .threads = 1, .identity = kIdentity, .failure = ""});
     in_order = worker.serve() == Worker::End::finalize;
   }
   if (!in_order) {
-    ::_exit(1);  // MPI could only end with all ranks
+    ::_exit(1);  // a regular end would wait for all ranks
   }
   close_mpi();
   return 0;
 }
 
-// Counts what goes through.
-class CountingLinks final : public Links {
+// Links that count the messages that pass through them.
+class CountingTransport final : public MessageTransport {
  public:
-  explicit CountingLinks(Links& links) : links_(links) {}
-  std::size_t rank() const override { return links_.rank(); }
-  std::size_t size() const override { return links_.size(); }
+  explicit CountingTransport(MessageTransport& transport) : transport_(transport) {}
+  std::size_t rank() const override { return transport_.rank(); }
+  std::size_t size() const override { return transport_.size(); }
   void send(std::size_t to, std::string message) override {
     ++sent_;
     bytes_ += message.size();
-    links_.send(to, std::move(message));
+    transport_.send(to, std::move(message));
   }
   std::optional<Message> receive() override {
-    auto message = links_.receive();
+    auto message = transport_.receive();
     bytes_ += message ? message->bytes.size() : 0;
     return message;
   }
@@ -86,27 +86,27 @@ class CountingLinks final : public Links {
   double bytes() const { return static_cast<double>(bytes_); }
 
  private:
-  Links& links_;
+  MessageTransport& transport_;
   std::atomic<std::uint64_t> sent_ = 0, bytes_ = 0;
 };
 
-// Rank 0's side of everything.
+// Rank 0's side: the coordinator and its measurements.
 class Leader {
  public:
-  explicit Leader(Links& links) : links_(links) {}
-  // Whether all ranks have ended in order.
+  explicit Leader(MessageTransport& transport) : transport_(transport) {}
+  // Returns whether all ranks have ended in order.
   bool end() {
     begin_work();
     coordinator_.reset();
-    return end_workers(links_, 5);
+    return end_workers(transport_, 5);
   }
 
-  CountingLinks& links() { return links_; }
+  CountingTransport& transport() { return transport_; }
   bool has_workers() const { return coordinator_ != nullptr; }
   const Problems& problems() const { return problems_; }
   double iterations(double seconds) const { return seconds * iterations_per_s_; }
   std::size_t cores() const {
-    return std::min<std::size_t>(links_.size(), std::thread::hardware_concurrency());
+    return std::min<std::size_t>(transport_.size(), std::thread::hardware_concurrency());
   }
   Coordinator& coordinator() {
     begin_work();
@@ -118,24 +118,24 @@ class Leader {
     if (coordinator_) {
       return;
     }
-    for (std::size_t rank = 1; rank < links_.size(); ++rank) {
-      links_.send(rank, std::string(1, kBegin));
+    for (std::size_t rank = 1; rank < transport_.size(); ++rank) {
+      transport_.send(rank, std::string(1, kBegin));
     }
     coordinator_ = std::make_unique<Coordinator>(
-        links_, problems_.list(), kIdentity, CoordinatorSettings{},
+        transport_, problems_.list(), kIdentity, CoordinatorSettings{},
         [](const std::string& message) { fmt::print(stderr, "mpi_benchmark: {}\n", message); });
     while (coordinator_->expects_workers()) {
       ::usleep(1000);
     }
   }
 
-  CountingLinks links_;
+  CountingTransport transport_;
   const Problems problems_;
   const double iterations_per_s_ = measure_iterations_per_s();
   std::unique_ptr<Coordinator> coordinator_;
 };
 
-// A message there and back between two ranks that do nothing but look for messages.
+// Sends a message to a rank and back, while both ranks only wait for messages.
 void round_trip(benchmark::State& state, Leader& leader) {
   if (leader.has_workers()) {
     state.SkipWithError("the other ranks are at work already");
@@ -143,13 +143,13 @@ void round_trip(benchmark::State& state, Leader& leader) {
   }
   const std::string message(static_cast<std::size_t>(state.range(0)), 'x');
   for (auto _ : state) {
-    leader.links().send(1, message);
-    while (!leader.links().receive()) {
+    leader.transport().send(1, message);
+    while (!leader.transport().receive()) {
     }
   }
 }
 
-// Both sides by turns: what disturbs the machine disturbs both.
+// Runs both sides alternately, so that any disturbance of the machine affects both.
 void batch(benchmark::State& state, Leader& leader) {
   constexpr double kTurn_s = 0.04, kAll_s = 1.2;
   constexpr int kLeastRounds = 3;
@@ -161,7 +161,7 @@ void batch(benchmark::State& state, Leader& leader) {
   ThreadExecutor one(1);
   Coordinator& ranks = leader.coordinator();
   for (int i = 0; i < 3; ++i) {
-    ranks.run(batch.get(), stop);  // learns the costs
+    ranks.run(batch.get(), stop);  // measures the costs
   }
   const double first_s = measure_s([&] { one.run(batch.get(), stop); });
   const int repeats = std::max(1, static_cast<int>(kTurn_s / first_s));
@@ -174,11 +174,11 @@ void batch(benchmark::State& state, Leader& leader) {
            repeats;
   };
   std::vector<double> times_one_s, times_ranks_s, ratios;
-  // Of rounds with ranks, beside the pairs.
+  // The cost of rounds with ranks, without that of the pairs.
   double chunks = 0, bytes = 0, communication_s = 0;
   const auto count = [&](double sign) {
-    chunks += sign * leader.links().sent();
-    bytes += sign * leader.links().bytes();
+    chunks += sign * leader.transport().sent();
+    bytes += sign * leader.transport().bytes();
     communication_s +=
         sign * (read_clock_s(CLOCK_PROCESS_CPUTIME_ID) - read_clock_s(CLOCK_THREAD_CPUTIME_ID));
   };
@@ -201,7 +201,7 @@ void batch(benchmark::State& state, Leader& leader) {
   const double batches = static_cast<double>(ratios.size()) * repeats;
   state.counters["chunks"] = chunks / batches;
   state.counters["bytes"] = bytes / batches;
-  state.counters["communication_s"] = communication_s / batches;  // of the thread that does it
+  state.counters["communication_s"] = communication_s / batches;  // of the communicating thread
   state.counters["rounds"] = static_cast<double>(ratios.size());
 }
 
@@ -227,9 +227,9 @@ void add_benchmarks(Leader& leader) {
       ->Unit(benchmark::kMillisecond);
 }
 
-int lead(Links& links, int argc, char** argv) {
-  Leader leader(links);
-  benchmark::AddCustomContext("ranks", std::to_string(links.size()));
+int lead(MessageTransport& transport, int argc, char** argv) {
+  Leader leader(transport);
+  benchmark::AddCustomContext("ranks", std::to_string(transport.size()));
   benchmark::AddCustomContext("cores", std::to_string(std::thread::hardware_concurrency()));
   add_benchmarks(leader);
   benchmark::Initialize(&argc, argv);
@@ -258,6 +258,6 @@ int main(int argc, char** argv) {
                argc > 0 ? argv[0] : "mpi_benchmark");
     return 1;
   }
-  const auto links = open_mpi_links();
-  return place->rank == 0 ? lead(*links, argc, argv) : serve(*links);
+  const auto transport = open_mpi_transport();
+  return place->rank == 0 ? lead(*transport, argc, argv) : serve(*transport);
 }

@@ -1,8 +1,8 @@
-// What armwright puts between an optimizer and a function, beside the same work without it: the
-// sphere in 20 variables, evaluated as `armwright optimize` does it (run folder, journal, budget,
-// incumbents, progress), in batches of 100 as a population would be, and one at a time under
-// NLopt's Nelder-Mead. The figures to hold are 500 000 evaluations a second in batches and 300 000
-// one at a time. docs/overhead.md tells how to read the output.
+// Measures the overhead of armwright between an optimizer and a function, compared with the same
+// work without it. The function is the sphere in 20 variables, evaluated as `armwright optimize`
+// does it (run folder, journal, budget, incumbents, progress): in batches of 100, as for a
+// population, and one at a time under NLopt's Nelder-Mead. The requirements are 500 000 evaluations
+// per second in batches and 300 000 one at a time. docs/overhead.md explains the output.
 #include <benchmark/benchmark.h>
 #ifdef ARMWRIGHT_WITH_NLOPT
 #include <nlopt.h>
@@ -27,7 +27,7 @@ namespace armwright {
 namespace {
 
 constexpr std::size_t kBatch = 100;
-// The simplex has shrunk to rounding by then, as far as NLopt lets it.
+// By then the simplex has shrunk to the size of rounding, as far as NLopt allows.
 constexpr int kNelderMeadBudget = 10'000;
 
 class Folder {
@@ -70,14 +70,13 @@ RunPlan make_plan(const std::string& optimizer, const std::vector<std::string>& 
   return plan;
 }
 
-// What execute_run() has standing while an optimizer is at work.
+// The objects that execute_run() has while an optimizer works.
 struct Run {
   Run(const RunPlan& plan, unsigned jobs)
       : run_folder(folder.path(), plan, {}),
         journal(run_folder.journal(), recorded),
         executor(jobs),
-        runner(*plan.problem.problem, executor, stop),
-        evaluator(plan, runner, stop, journal, std::move(recorded), observer) {}
+        evaluator(plan, executor, stop, journal, recorded, observer) {}
 
   Folder folder;
   RunFolder run_folder;
@@ -85,12 +84,11 @@ struct Run {
   Journal journal;
   StopSignal stop;
   ThreadExecutor executor;
-  CaseRunner runner;
   ClockReader observer;
   RunEvaluator evaluator;
 };
 
-// Uniform in the box: nearly none of them improves on the best.
+// Points drawn uniformly in the box: almost none of them improves the incumbent.
 std::vector<std::vector<double>> draw_points(const ProblemDescription& problem, std::size_t count) {
   RandomStream random("benchmark/overhead", 1);
   std::vector<std::vector<double>> points(count, std::vector<double>(problem.variables.size()));
@@ -103,7 +101,7 @@ std::vector<std::vector<double>> draw_points(const ProblemDescription& problem, 
   return points;
 }
 
-// The function itself, written down once more for the sides without armwright.
+// The function itself, written again for the sides without armwright.
 double calc_sphere(const double* x, const double* minimiser, std::size_t dimension) {
   double sum = 0;
   for (std::size_t i = 0; i < dimension; ++i) {
@@ -113,14 +111,14 @@ double calc_sphere(const double* x, const double* minimiser, std::size_t dimensi
   return sum;
 }
 
-// Processor time of all threads, the journal's included: other work on the machine disturbs it less
-// than the wall's clock.
+// Measures processor time of all threads, including the journal's. Other work on the machine
+// disturbs it less than wall-clock time.
 class ProcessorWatch {
  public:
   void start() { start_ = std::clock(); }
   void stop() { sum_s_ += static_cast<double>(std::clock() - start_) / CLOCKS_PER_SEC; }
 
-  // The rate by the wall's clock, and what one evaluation takes of the processor.
+  // The rate in wall-clock time, and the processor time per evaluation.
   void report(benchmark::State& state, std::uint64_t evaluations) const {
     state.SetItemsProcessed(static_cast<std::int64_t>(evaluations));
     state.counters["cpu_us_each"] = 1e6 * sum_s_ / static_cast<double>(evaluations);
@@ -218,8 +216,8 @@ void bare_nelder_mead(benchmark::State& state) {
   watch.report(state, evaluations);
 }
 
-// A run a turn, because improvements cost more than other evaluations and a run has its share of
-// them; making its folder is not timed.
+// Measures one run per turn. Improvements cost more than other evaluations, and a whole run has the
+// usual share of them. Making its folder is not timed.
 void nelder_mead(benchmark::State& state) {
   const RunPlan plan = make_nelder_mead_plan();
   const auto optimizer = plan.optimizer.make(plan.options);

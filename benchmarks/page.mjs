@@ -1,5 +1,5 @@
-// How large the page of a large comparison is, how long it takes to open, and how smoothly a replay
-// is scrubbed, in headless Chromium with software rendering.
+// Measures the size of the page of a large comparison, the time to open it, and how smoothly a
+// replay can be scrubbed, in headless Chromium with software rendering.
 //   node benchmarks/page.mjs STUDY.html RUN.html
 import { statSync } from 'node:fs';
 import { list_tabs, open_browser, open_page, open_tab } from '../tests/page/browser.mjs';
@@ -43,7 +43,7 @@ for (const tab of await list_tabs(page)) {
   }
 }
 await page.waitForFunction(() => window.armwright_replay?.state.frames > 0);
-// As fast as the browser gives frames: each asks for another place.
+// Requests another place in every frame, as fast as the browser draws frames.
 const rates = await page.evaluate(async (repetitions) => {
   const input = document.querySelector('.replay input[type=range]');
   const found = [];

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What evaluations cost from Python beside the program: the table of docs/python.md.
+"""Compares the cost of evaluations from Python with that of the program: the table of docs/python.md.
 
     PYTHONPATH=build/release/python /usr/bin/python3 benchmarks/python_benchmark.py [--evaluations N] [--repetitions R]
 

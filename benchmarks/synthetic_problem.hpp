@@ -1,6 +1,6 @@
-// A problem whose pairs take as long as one says, on every rank alike: a number of iterations,
-// which comes with the decision vector. Vectors and outcomes are as large as those of the tracking
-// problem with four joints.
+// A problem whose pairs take a given time, the same on every rank. The decision vector gives it as
+// a count of iterations. Vectors and outcomes are as large as those of the tracking problem with
+// four joints.
 #pragma once
 
 #include <benchmark/benchmark.h>
@@ -11,7 +11,7 @@
 
 #include "base/stop_signal.hpp"
 #include "measure.hpp"
-#include "study/executor/case_batch.hpp"
+#include "study/executor/case_executor.hpp"
 
 namespace armwright {
 
@@ -44,8 +44,8 @@ class SyntheticProblem final : public Problem {
     outcome.metrics.assign(kMetrics, error);
     return outcome;
   }
-  // Each iteration waits for the one before. (From 1 none would change anything, and the compiler
-  // sees it.)
+  // Each iteration needs the result of the one before. (If the value started at 1, no iteration
+  // would change it, and the compiler would remove the loop.)
   static double burn(double iterations) {
     double value = 0.5;
     for (auto left = static_cast<std::uint64_t>(iterations); left > 0; --left) {
@@ -60,7 +60,7 @@ class SyntheticProblem final : public Problem {
   ProblemDescription description_;
 };
 
-// How many iterations a second of processor time has.
+// Returns the count of iterations per second of processor time.
 inline double measure_iterations_per_s() {
   constexpr double kIterations = 4e6;
   std::vector<double> rates;
@@ -70,8 +70,8 @@ inline double measure_iterations_per_s() {
   return calc_median(rates);
 }
 
-// A batch of so many candidates on one case each: of all batches with as many pairs the one with
-// the most to be sent.
+// A batch with one case and `pairs` candidates. Of all batches with that many pairs it has the
+// longest messages.
 class SyntheticBatch {
  public:
   SyntheticBatch(const Problem& problem, std::size_t pairs, double iterations)

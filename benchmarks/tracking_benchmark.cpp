@@ -1,6 +1,6 @@
-// What the tracking simulation costs beside the physics engine alone, and how evaluations scale
-// over cores. Every ratio is measured within one run, both sides by turns, so that a machine that
-// slows down slows down both.
+// Compares the cost of a tracking simulation with that of the physics engine alone, and measures
+// how evaluations scale over cores. Every ratio is measured within one run, with both sides running
+// alternately, so that a slower machine slows down both.
 #include <benchmark/benchmark.h>
 #include <ode/ode.h>
 
@@ -12,20 +12,20 @@
 #include "problems/config/design_file.hpp"
 #include "problems/config/problem_loader.hpp"
 #include "sim/engines/ode/ode_arm.hpp"
-#include "study/executor/case_runner.hpp"
+#include "study/executor/case_executor.hpp"
 
 namespace armwright {
 namespace {
 
-// The same bodies and hinges in plain ODE, driven by recorded efforts and nothing else.
-void replay_in_bare_ode(const RobotModel& model, std::span<const double> start_rad,
+// Replays recorded efforts on the same bodies and hinges in plain ODE, and does nothing else.
+void replay_in_bare_ode(const RobotModel& model, std::span<const double> start_positions,
                         const std::vector<TrajectorySample>& recorded, double dt_s) {
   const dWorldID world = dWorldCreate();
   dWorldSetGravity(world, 0, 0, -9.80665);
   dWorldSetERP(world, 0.25);
   dWorldSetCFM(world, 0);
   dWorldSetAutoDisableFlag(world, 0);
-  const auto poses = calc_link_poses(model, start_rad);
+  const auto poses = calc_link_poses(model, start_positions);
   std::vector<dJointID> hinges;
   dBodyID parent = nullptr;
   for (std::size_t i = 0; i < model.joint_count(); ++i) {
@@ -57,7 +57,7 @@ void replay_in_bare_ode(const RobotModel& model, std::span<const double> start_r
   }
   for (const TrajectorySample& sample : recorded) {
     for (std::size_t i = 0; i < hinges.size(); ++i) {
-      dJointAddHingeTorque(hinges[i], sample.effort_n_m[i]);
+      dJointAddHingeTorque(hinges[i], sample.effort[i]);
     }
     dWorldStep(world, dt_s);
   }
@@ -68,11 +68,11 @@ void replay_in_bare_ode(const RobotModel& model, std::span<const double> start_r
 void BM_WholeTrackingAgainstBareOde(benchmark::State& state) {
   const LoadedProblem problem = load_problem(state.range(0) == 0 ? "q1-complex" : "q2-e6");
   const ArmDesign design = load_design(problem.published.design).design;
-  const TestSet set = problem.tracking->get_set("test/2");
-  const TrackingSetup& setup = problem.tracking->setup();
+  const TestSet set = problem.tracking()->get_set("test/2");
+  const TrackingSetup& setup = problem.tracking()->setup();
   const TargetTable targets = setup.make_targets(set.make_case(0));
   const TrackingResult recorded =
-      problem.tracking->track(design, set, 0, {.error_series = false, .trajectory = true});
+      problem.tracking()->track(design, set, 0, {.error_series = false, .trajectory = true});
   const auto engine = make_engine("ode");
   TrackingJob job;
   job.design = &design;
@@ -84,7 +84,7 @@ void BM_WholeTrackingAgainstBareOde(benchmark::State& state) {
       benchmark::DoNotOptimize(engine->simulate(setup, {&job, 1}));
     }));
     bare.push_back(measure_s([&] {
-      replay_in_bare_ode(setup.robot(), targets.start_rad, recorded.trajectory,
+      replay_in_bare_ode(setup.robot(), targets.start_positions, recorded.trajectory,
                          setup.task().control_period_s);
     }));
     ratio.push_back(whole.back() / bare.back());
@@ -102,8 +102,8 @@ BENCHMARK(BM_WholeTrackingAgainstBareOde)
 
 void BM_InverseKinematicsOfOneCase(benchmark::State& state) {
   const LoadedProblem problem = load_problem("q1-complex");
-  const TrackingSetup& setup = problem.tracking->setup();
-  const TestCase test_case = problem.tracking->get_set("test/2").make_case(0);
+  const TrackingSetup& setup = problem.tracking()->setup();
+  const TestCase test_case = problem.tracking()->get_set("test/2").make_case(0);
   std::vector<double> seconds;
   int steps = 0;
   for (auto _ : state) {
@@ -113,10 +113,11 @@ void BM_InverseKinematicsOfOneCase(benchmark::State& state) {
 }
 BENCHMARK(BM_InverseKinematicsOfOneCase)->Unit(benchmark::kMicrosecond);
 
-// A generation of the genetic algorithm: 35 designs on one new case, on one thread and on two.
+// Evaluates a generation of the genetic algorithm, 35 designs on one new case, on one thread and on
+// two.
 void BM_GenerationOnTwoCoresAgainstOne(benchmark::State& state) {
   const LoadedProblem problem = load_problem("q1-complex");
-  const auto x = problem.tracking->make_vector(load_design("table-a5").design);
+  const auto x = problem.tracking()->make_vector(load_design("table-a5").design);
   StopSignal stop;
   ThreadExecutor one(1);
   ThreadExecutor two(2);
@@ -124,11 +125,11 @@ void BM_GenerationOnTwoCoresAgainstOne(benchmark::State& state) {
   const auto evaluate_generation = [&](ThreadExecutor& executor) {
     const CaseBlock block{CaseRole::training, "train/1", {number++}};
     const std::vector<std::span<const double>> candidates(35, x);
-    CaseRunner(*problem.problem, executor, stop)
-        .run(candidates, block, false, [](std::size_t, Evaluation) {});
+    executor.evaluate(*problem.problem, candidates, block, {}, stop,
+                      [](std::size_t, Evaluation) {});
   };
   std::vector<double> speedup, serial, parallel;
-  const std::uint64_t computed_before = problem.tracking->targets().computed();
+  const std::uint64_t computed_before = problem.tracking()->targets().computed();
   for (auto _ : state) {
     serial.push_back(measure_s([&] { evaluate_generation(one); }));
     parallel.push_back(measure_s([&] { evaluate_generation(two); }));
@@ -137,7 +138,7 @@ void BM_GenerationOnTwoCoresAgainstOne(benchmark::State& state) {
   state.counters["speedup"] = calc_median(speedup);
   state.counters["evaluations_per_s_on_two"] = 35 / calc_median(parallel);
   state.counters["inverse_kinematics_per_generation"] =
-      static_cast<double>(problem.tracking->targets().computed() - computed_before) /
+      static_cast<double>(problem.tracking()->targets().computed() - computed_before) /
       static_cast<double>(number);
 }
 BENCHMARK(BM_GenerationOnTwoCoresAgainstOne)->Iterations(30)->Unit(benchmark::kMillisecond);

@@ -44,7 +44,6 @@ armwright_library(pagmo ARMWRIGHT_WITH_PAGMO "${Pagmo_VERSION}")
 armwright_library(sqlite TRUE "${SQLite3_VERSION}")
 armwright_library(tinyxml2 TRUE "${TINYXML2_VERSION}")
 armwright_library(tomlplusplus TRUE "${TOMLPLUSPLUS_VERSION}")
-armwright_library(urdfdom TRUE "${URDFDOM_VERSION}")
 armwright_library(zlib TRUE "${ZLIB_VERSION_STRING}")
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/generated/library_versions.hpp CONTENT
      "// Written by cmake/build_info.cmake. An empty version means: not in this build.

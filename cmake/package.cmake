@@ -38,8 +38,8 @@ clusters, shows results on a page with the motion of the arm, and writes
 the gains of the winner for ROS 2.")
 
 # The packages that find_package(armwright) needs, because the libraries are static.
-set(dev_packages libeigen3-dev libfmt-dev nlohmann-json3-dev libssl-dev zlib1g-dev libsqlite3-dev pkg-config libode-dev liburdfdom-dev
-                 liburdfdom-headers-dev libconsole-bridge-dev libtomlplusplus-dev libtinyxml2-dev)
+set(dev_packages libeigen3-dev libfmt-dev nlohmann-json3-dev libssl-dev zlib1g-dev libsqlite3-dev pkg-config libode-dev
+                 libtomlplusplus-dev libtinyxml2-dev)
 foreach(option_and_packages IN ITEMS "PAGMO:libpagmo-dev" "CERES:libceres-dev" "NLOPT:libnlopt-cxx-dev" "PAGE:duktape-dev"
                                      "PAGE:libcpp-httplib-dev" "MPI:libopenmpi-dev" "MUJOCO:libmujoco-dev" "ASSIMP:libassimp-dev")
   string(REGEX MATCH "(.*):(.*)" unused ${option_and_packages})

@@ -1,6 +1,6 @@
-// Parts of a step of the articulated engine by themselves, in double precision. What is not
-// measured here, the controllers and the sums of efforts, is what is left of the whole step. Parts
-// overlap in the processor, so they need not add up exactly.
+// Measures parts of a step of the engine `articulated` alone, in double precision. The controllers
+// and the sums of efforts are not measured; they are the rest of the whole step. Parts overlap in
+// the processor, so they need not add up exactly.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace armwright::benchmarks {
 enum class Part : std::uint8_t {
   sine_cosine,      // of three angles, as in steps without measuring
   dynamics,         // equations of motion and their solution
-  posture_and_tip,  // sine and cosine of four angles, and where the tip is: while measuring
+  posture_and_tip,  // sine and cosine of four angles, and the tip's position: while measuring
 };
 inline constexpr Part kParts[] = {Part::sine_cosine, Part::dynamics, Part::posture_and_tip};
 
@@ -29,7 +29,7 @@ struct PartsChain {
   const double* numbers;  // ChainModel::numbers()
 };
 
-// Runs a part `rounds` times, each depending on the one before; returns the number of lanes.
+// Runs a part `rounds` times, each round depending on the one before. Returns the count of lanes.
 int run_part(SimdLevel level, Part part, const PartsChain& chain, int rounds);
 
 int run_part_scalar(Part part, const PartsChain& chain, int rounds);

@@ -49,7 +49,7 @@ int run_part_in_lanes(Part part, const PartsChain& chain, int rounds) {
       }
     }
   }
-  // What was computed must not be left out.
+  // Use the results, so that the compiler does not remove their computation.
   volatile double sink = 0;
   for (int i = 0; i < kJoints; ++i) {
     sink =

@@ -4,7 +4,7 @@
 #include <iterator>
 
 #include "base/text.hpp"
-#include "optimizers/interface/capability_names.hpp"
+#include "optimizers/interface/capability_table.hpp"
 
 namespace armwright::python {
 namespace {
@@ -91,7 +91,7 @@ json describe(const LoadedProblem& problem) {
   json all = describe(problem.problem->description());
   all["name"] = problem.name;
   all["title"] = problem.title;
-  all["is_arm"] = problem.tracking != nullptr;
+  all["is_arm"] = problem.tracking() != nullptr;
   all["schedule"] = to_text(problem.schedule);
   all["fixed_cases"] = problem.fixed_cases;
   all["racing"] = to_text(problem.racing);
@@ -113,7 +113,7 @@ json describe(const LoadedProblem& problem) {
 
 json describe(const OptimizerRow& row) {
   json capabilities = json::array();
-  for (const CapabilityName& one : kCapabilityNames) {
+  for (const CapabilityRow& one : kCapabilityTable) {
     if (row.capabilities.*one.member) {
       capabilities.push_back(one.name);
     }

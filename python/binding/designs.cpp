@@ -12,7 +12,7 @@
 #include "problems/config/design_file.hpp"
 #include "problems/tracking/requirement_grade.hpp"
 #include "sim/controllers/controller.hpp"
-#include "sim/tracking/test_case_file.hpp"
+#include "sim/tracking/test_case.hpp"
 #include "study/run/design_evaluation.hpp"
 #include "study/run/json_values.hpp"
 
@@ -147,7 +147,7 @@ py::tuple evaluate_design(const ProblemHandle& handle, const DesignQuestion& que
   Host host(listener);
   host.run([&] {
     evaluation = evaluate_with_progress(tracking, file.design, cases, question.jobs, host.stop(),
-                                        host, {0, cases.count});
+                                        host, {.total = cases.count});
   });
   if (!evaluation) {
     throw Error(ErrorKind::usage, "the evaluation was stopped");  // by whom has been thrown already

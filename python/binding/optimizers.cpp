@@ -192,7 +192,7 @@ class PythonOptimizer : public Optimizer {
 
 OptimizerRow make_row(const py::tuple& optimizer, Host& host) {
   const auto name = optimizer[0].cast<std::string>();
-  OptimizerRow row = read_foreign_row(name, optimizer[1].cast<std::string>());
+  OptimizerRow row = read_host_row(name, optimizer[1].cast<std::string>());
   row.input_hashes = optimizer[2].cast<std::map<std::string, std::string>>();
   row.unavailable = {};
   row.make = [name, run = share(optimizer[3]),
@@ -249,7 +249,7 @@ void add_optimizers(py::module_& module) {
   module.def("check_optimizer", &check_optimizer);
   // Error{bad_data} for a description of a class that does not hold together.
   module.def("check_description", [](const std::string& name, const std::string& description) {
-    return describe(read_foreign_row(name, description)).dump();
+    return describe(read_host_row(name, description)).dump();
   });
   py::class_<EvaluatorBridge, std::shared_ptr<EvaluatorBridge>>(module, "Evaluator")
       .def("describe_problem", &EvaluatorBridge::describe_problem)

@@ -12,7 +12,7 @@
 #include "host.hpp"
 #include "parts.hpp"
 #include "problems/config/path_survey.hpp"
-#include "study/executor/case_runner.hpp"
+#include "study/executor/case_executor.hpp"
 #include "study/run/run_observer.hpp"
 
 namespace armwright::python {
@@ -120,33 +120,29 @@ py::tuple evaluate(const ProblemHandle& handle, const Numbers& points,
   host.run([&] {
     ThreadExecutor executor(std::min<std::size_t>(
         request.jobs, std::max<std::size_t>(1, count * block.numbers.size())));
-    CaseRunner runner(problem, executor, host.stop());
     std::mutex mutex;  // of reasons and progress
     Progress progress;
-    progress.phase = block.role == CaseRole::training     ? Progress::Phase::training
-                     : block.role == CaseRole::validation ? Progress::Phase::validation
-                                                          : Progress::Phase::test;
+    progress.phase = block.role;
     progress.total = std::uint64_t{count} * block.numbers.size();
     const std::size_t at_once = count_at_once(block.numbers.size());
     for (std::size_t first = 0; first < count && !host.stop().requested(); first += at_once) {
       const auto some = std::span(rows).subspan(first, std::min(at_once, count - first));
-      runner.run(
-          some, block, request.residuals || request.jacobian,
-          [&](std::size_t candidate, Evaluation evaluation) {
-            const std::size_t row = first + candidate;
-            table.put(row, evaluation, penalty);
-            if (kept > 0) {
-              residuals[row] = std::move(evaluation.residuals);
-              jacobians[row] = std::move(evaluation.jacobian);
-            }
-            const std::lock_guard lock(mutex);
-            if (evaluation.status != EvaluationStatus::ok) {
-              reasons[row] = std::move(evaluation.reason);
-            }
-            progress.done += block.numbers.size();
-            host.on_progress(progress);
-          },
-          request.jacobian);
+      executor.evaluate(problem, some, block,
+                        {request.residuals || request.jacobian, request.jacobian}, host.stop(),
+                        [&](std::size_t candidate, Evaluation evaluation) {
+                          const std::size_t row = first + candidate;
+                          table.put(row, evaluation, penalty);
+                          if (kept > 0) {
+                            residuals[row] = std::move(evaluation.residuals);
+                            jacobians[row] = std::move(evaluation.jacobian);
+                          }
+                          const std::lock_guard lock(mutex);
+                          if (evaluation.status != EvaluationStatus::ok) {
+                            reasons[row] = std::move(evaluation.reason);
+                          }
+                          progress.done += block.numbers.size();
+                          host.on_progress(progress);
+                        });
     }
   });
   const py::object none = py::none();
@@ -158,11 +154,11 @@ py::tuple evaluate(const ProblemHandle& handle, const Numbers& points,
 // (cases, points, 3), in metres.
 py::array_t<double> list_cases(const ProblemHandle& handle, const std::string& set_name,
                                std::uint64_t first, std::uint64_t count) {
-  if (handle.loaded.tracking == nullptr) {
+  if (handle.loaded.tracking() == nullptr) {
     throw Error(ErrorKind::usage, fmt::format("problem '{}' is a function, which has no test cases",
                                               handle.loaded.name));
   }
-  const TestSet set = handle.loaded.tracking->get_set(set_name);
+  const TestSet set = handle.loaded.tracking()->get_set(set_name);
   const std::size_t points = count > 0 ? set.make_case(first).points_m.size() : 0;
   py::array_t<double> cases(
       {static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(points), py::ssize_t{3}});

@@ -10,10 +10,10 @@
 #include "places.hpp"
 #include "study/analysis/final_check.hpp"
 #include "study/analysis/study_tables.hpp"
-#include "study/compare/escape.hpp"
 #include "study/compare/study_folder.hpp"
+#include "study/compare/study_plan.hpp"
 #include "study/compare/study_runner.hpp"
-#include "study/matrix/earlier_state.hpp"
+#include "study/matrix/cell_attempt.hpp"
 #include "study/run/run_observer.hpp"
 
 namespace armwright::python {
@@ -30,7 +30,7 @@ class CellObserver final : public RunObserver {
  public:
   CellObserver(RunObserver& study, Progress done) : study_(study), done_(done) {}
   void on_progress(const Progress& progress) override {
-    if (progress.phase == Progress::Phase::training) {
+    if (progress.phase == CaseRole::training) {
       Progress all = done_;
       all.done += progress.done;
       all.replayed += progress.replayed;

@@ -5,11 +5,11 @@
 namespace armwright {
 
 std::size_t calc_chunk(BatchSize size, std::size_t jobs, std::size_t threads) {
-  // With so many chunks a thread, one that ends last keeps the others waiting for an eighth of the
-  // time at most.
+  // With this many chunks per thread, threads wait at most an eighth of the time for the last
+  // chunk.
   constexpr std::size_t kChunksPerThread = 8;
   if (threads <= 1) {
-    return size.largest;  // there is nobody to share with
+    return size.largest;  // a single thread shares no work
   }
   const auto divide_up = [](std::size_t a, std::size_t b) { return (a + b - 1) / b; };
   const std::size_t share = divide_up(jobs, kChunksPerThread * threads);

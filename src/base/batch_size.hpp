@@ -1,17 +1,19 @@
-// How many jobs something that works on batches should be handed at a time.
+// How many jobs a batch should have.
 #pragma once
 
 #include <cstddef>
 
 namespace armwright {
 
+// The size that suits a worker on batches.
 struct BatchSize {
-  std::size_t granularity = 1;  // a whole number of these leaves no SIMD lane idle
-  std::size_t largest = 1;      // more at once gains nothing; a multiple of the granularity
+  std::size_t granularity = 1;  // a multiple of it leaves no SIMD lane idle
+  std::size_t largest = 1;      // larger batches are not faster; a multiple of the granularity
 };
 
-// Into how large chunks to cut jobs that threads share out: the largest useful ones, but small
-// enough that every thread gets several, so that none waits long for the last. At least 1.
+// Returns the size of the chunks into which threads divide their jobs, at least 1: the largest
+// useful size, but small enough that every thread gets several chunks and does not wait long for
+// the last one.
 std::size_t calc_chunk(BatchSize size, std::size_t jobs, std::size_t threads);
 
 }  // namespace armwright

@@ -1,4 +1,4 @@
-// Equality of numbers bit by bit: NaN equals itself, and -0 is not +0.
+// Compares numbers bit by bit: NaN equals itself, and -0 differs from +0.
 #pragma once
 
 #include <cstring>

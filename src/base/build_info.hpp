@@ -1,4 +1,5 @@
-// What this program was built from and runs on, for manifests and --version.
+// Facts about the build of this program and the machine that it runs on, for manifests and
+// --version.
 #pragma once
 
 #include <map>
@@ -11,20 +12,22 @@ namespace armwright {
 std::string get_version();       // "1.0.0"
 std::string get_release_date();  // of that version: "2026-11-23"
 
-// A library and its version, as they were when the build was configured; empty where the build was
-// made without it.
+// A library and its version when the build was configured. The version is empty if the build does
+// not use the library.
 struct LibraryVersion {
   std::string name;
   std::string version;
 };
 std::vector<LibraryVersion> list_libraries();  // by name
 
-// version, git, compiler, build_type, cpu, host, and the version of every library, or kNotInBuild.
+// Returns version, git, compiler, build_type, cpu, host, and the version of every library or
+// kNotInBuild.
 std::map<std::string, std::string> describe_build();
 inline constexpr const char* kNotInBuild = "not in this build";
 
-// One sentence for each thing that `recorded`, describe_build() of another time, has and that is
-// another one now. `what` began then: "run". What that version did not record is not compared.
+// Returns one sentence for each value of `recorded`, an earlier describe_build(), that is different
+// now. `what` names the recorded thing, for example "run". Values that only one of them has are not
+// compared.
 std::vector<std::string> describe_build_changes(const std::map<std::string, std::string>& recorded,
                                                 std::string_view what);
 

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <utility>
 
 #include "base/config_tree.hpp"
 #include "base/error.hpp"
@@ -15,11 +18,12 @@ namespace armwright {
 using config::Kind;
 using config::Value;
 
-// A view of one table of the document, or of an empty table that stands for a missing one.
+// One table of the document, or an empty table in place of a missing one.
 struct ConfigTable::Node {
   std::shared_ptr<const config::Document> document;
   std::shared_ptr<const Value> table;
   std::string path;
+  const SettingTable* declared;  // what may be read; null: any setting
 };
 
 namespace {
@@ -27,35 +31,28 @@ namespace {
 using Node = ConfigTable::Node;
 
 constexpr const char* kString = "a string";
-constexpr const char* kBoolean = "true or false";
 
-std::string describe_choice(std::span<const std::string> valid) {
-  return fmt::format("one of these strings: {}", join(valid, ", "));
+void check_declared(const Node& node, const AnySetting& setting) {
+  const auto has_key = [&](const AnySetting* one) { return one->key == setting.key; };
+  if (node.declared != nullptr && std::ranges::none_of(node.declared->settings, has_key)) {
+    throw std::logic_error(fmt::format("setting '{}' is read in table '{}', which does not list it",
+                                       setting.key, node.path));
+  }
 }
 
-std::string describe_range(const Range& range) {
-  std::string text = "a finite number";
-  if (std::isfinite(range.lower)) {
-    text += fmt::format(" {} {}", range.lower_open ? ">" : ">=", format_exact(range.lower));
+// Returns what may be read in the inner table.
+const SettingTable* check_declared(const Node& node, const SettingTable& inner) {
+  if (node.declared == nullptr) {
+    return nullptr;
   }
-  if (std::isfinite(range.upper)) {
-    text += fmt::format("{} <= {}", std::isfinite(range.lower) ? " and" : "",
-                        format_exact(range.upper));
+  if (std::ranges::find(node.declared->tables, &inner) == node.declared->tables.end()) {
+    throw std::logic_error(fmt::format("table '{}' is read in table '{}', which does not list it",
+                                       inner.key, node.path));
   }
-  return text;
+  return &inner;
 }
 
-std::string describe_range(std::int64_t lower, std::int64_t upper) {
-  const bool from = lower != std::numeric_limits<std::int64_t>::min();
-  const bool to = upper != std::numeric_limits<std::int64_t>::max();
-  if (from && to) {
-    return fmt::format("an integer from {} to {}", lower, upper);
-  }
-  return from ? fmt::format("an integer >= {}", lower)
-              : (to ? fmt::format("an integer <= {}", upper) : "an integer");
-}
-
-// The nearest of `names`, where a name may also have been given without its unit ("speed" for
+// Returns the nearest of `names`. The key may lack the unit that a name ends with ("speed" for
 // "speed_m_per_s").
 std::optional<std::string> find_nearest_key(std::string_view key,
                                             const std::vector<std::string>& names) {
@@ -75,33 +72,8 @@ std::optional<std::string> find_nearest_key(std::string_view key,
               : std::nullopt;
 }
 
-// "requirement[3].use" -> "requirement[].use"
-std::string drop_indices(const std::string& path) {
-  std::string text;
-  bool inside = false;
-  for (const char c : path) {
-    inside = inside && c != ']';
-    if (!inside) {
-      text += c;
-    }
-    inside = inside || c == '[';
-  }
-  return text;
-}
-
-// The first that says what is allowed counts.
-void note_asked(const Node& node, std::string_view key, std::string_view allowed,
-                std::string_view fallback = "") {
-  const std::string path = drop_indices(config::join_path(node.path, key));
-  AskedKey& asked = node.document->asked[path];
-  asked.path = path;
-  if (asked.allowed.empty()) {
-    asked.allowed = allowed;
-    asked.fallback = fallback;
-  }
-}
-
-const Value* find(const Node& node, std::string_view key) {
+// Returns the value of the key, or null. The key counts as read from now on.
+const Value* find_value(const Node& node, std::string_view key) {
   auto& asked = node.table->asked;
   if (std::find(asked.begin(), asked.end(), key) == asked.end()) {
     asked.emplace_back(key);
@@ -111,12 +83,11 @@ const Value* find(const Node& node, std::string_view key) {
 }
 
 const Value& require(const Node& node, std::string_view key, std::string_view must) {
-  note_asked(node, key, must);
-  if (const Value* value = find(node, key)) {
+  if (const Value* value = find_value(node, key)) {
     return *value;
   }
-  std::vector<std::string>
-      others;  // what was not asked for so far: perhaps one of them is this key, mistyped
+  // One of the keys that nobody has read so far may be this key, mistyped.
+  std::vector<std::string> others;
   for (const auto& [other, value] : node.table->keys) {
     if (std::find(node.table->asked.begin(), node.table->asked.end(), other) ==
         node.table->asked.end()) {
@@ -152,23 +123,24 @@ const Value& require_kind(const Node& node, std::string_view key, Kind kind,
 
 double read_number(const Value& value, const std::string& path, const Range& range) {
   if (value.kind != Kind::number && value.kind != Kind::integer) {
-    refuse_type(value, path, describe_range(range));
+    refuse_type(value, path, describe_number(range));
   }
   const double number =
       value.kind == Kind::number ? value.number : static_cast<double>(value.integer);
   const bool too_low = range.lower_open ? number <= range.lower : number < range.lower;
   if (too_low || number > range.upper) {
     config::fail(value.place, fmt::format("{} is {}; it must be {}", path, value.describe(),
-                                          describe_range(range)));
+                                          describe_number(range)));
   }
   return number;
 }
 
+// A key that no reader read.
 struct Unknown {
-  const Value* value;  // where it stands
+  const Value* value;
   std::string path;
   std::string key;
-  const Value* table;
+  const Value* table;  // that holds the key
 };
 
 std::string describe_unknown_key(const Unknown& unknown) {
@@ -202,7 +174,12 @@ std::string quote_json(const std::string& text) {
   return nlohmann::json(text).dump();
 }
 
-void append_json(const Value& value, std::string& out) {
+// Appends the value, with the settled values in place of its own. `settled` may be null.
+void append_json(const Value& value, const Value* settled, std::string& out) {
+  if (settled != nullptr && (settled->kind != Kind::table || value.kind != Kind::table)) {
+    append_json(*settled, nullptr, out);
+    return;
+  }
   switch (value.kind) {
     case Kind::string:
     case Kind::date:
@@ -226,178 +203,339 @@ void append_json(const Value& value, std::string& out) {
         if (&item != value.items.data()) {
           out += ',';
         }
-        append_json(item, out);
+        append_json(item, nullptr, out);
       }
       out += ']';
       return;
-    case Kind::table:
-      out += '{';
+    case Kind::table: {
+      std::map<std::string_view, std::pair<const Value*, const Value*>> both;
       for (const auto& [key, child] : value.keys) {
+        both[key].first = child.get();
+      }
+      if (settled != nullptr) {
+        for (const auto& [key, child] : settled->keys) {
+          both[key].second = child.get();
+        }
+      }
+      out += '{';
+      for (const auto& [key, children] : both) {
         if (out.back() != '{') {
           out += ',';
         }
-        out += quote_json(key) + ':';
-        append_json(*child, out);
+        out += quote_json(std::string(key)) + ':';
+        const auto [own, chosen] = children;
+        append_json(own != nullptr ? *own : *chosen, own != nullptr ? chosen : nullptr, out);
       }
       out += '}';
       return;
+    }
   }
 }
 
-std::shared_ptr<Node> make_root(std::shared_ptr<const config::Document> document) {
+// The overloads return a value to settle.
+Value make_settled(const std::string& text) {
+  Value value;
+  value.kind = Kind::string;
+  value.string = text;
+  return value;
+}
+
+Value make_settled(std::int64_t integer) {
+  Value value;
+  value.kind = Kind::integer;
+  value.integer = integer;
+  return value;
+}
+
+Value make_settled(int integer) {
+  return make_settled(std::int64_t{integer});
+}
+
+Value make_settled(double number) {
+  constexpr double kLongestWhole = 1e16;  // from here on a file would show an exponent
+  if (number == std::trunc(number) && std::abs(number) < kLongestWhole) {
+    return make_settled(static_cast<std::int64_t>(number));
+  }
+  Value value;
+  value.kind = Kind::number;
+  value.number = number;
+  return value;
+}
+
+Value make_settled(const std::vector<double>& numbers) {
+  Value value;
+  value.kind = Kind::array;
+  for (const double number : numbers) {
+    value.items.push_back(make_settled(number));
+  }
+  return value;
+}
+
+// Returns a copy of a value that is no table.
+Value copy_value(const Value& value) {
+  Value copy;
+  copy.kind = value.kind;
+  copy.string = value.string;
+  copy.integer = value.integer;
+  copy.number = value.number;
+  copy.boolean = value.boolean;
+  for (const Value& item : value.items) {
+    copy.items.push_back(copy_value(item));
+  }
+  return copy;
+}
+
+void settle_value(const Node& node, const std::string& key, Value value) {
+  Value* table = &node.document->settled;
+  for (const std::string& step : split(node.path, '.')) {
+    if (!step.empty()) {  // the path of the whole document is empty
+      auto& slot = table->keys[step];
+      slot = slot ? std::move(slot) : std::make_unique<Value>();
+      table = slot.get();
+    }
+  }
+  table->keys[key] = std::make_unique<Value>(std::move(value));
+}
+
+// Returns the settled values of this table, or null.
+const Value* find_settled(const Node& node) {
+  const Value* table = &node.document->settled;
+  for (const std::string& step : split(node.path, '.')) {
+    if (!step.empty()) {
+      const auto found = table->keys.find(step);
+      if (found == table->keys.end()) {
+        return nullptr;
+      }
+      table = found->second.get();
+    }
+  }
+  return table;
+}
+
+std::shared_ptr<Node> make_root(std::shared_ptr<const config::Document> document,
+                                const SettingTable* declared) {
   const std::shared_ptr<const Value> root(document, &document->root);
-  return std::make_shared<Node>(Node{std::move(document), root, ""});
+  return std::make_shared<Node>(Node{std::move(document), root, "", declared});
 }
 
-std::shared_ptr<Node> make_child(const Node& parent, const Value& table, std::string path) {
-  return std::make_shared<Node>(Node{
-      parent.document, std::shared_ptr<const Value>(parent.document, &table), std::move(path)});
+std::shared_ptr<Node> make_child(const Node& parent, const Value& table, std::string path,
+                                 const SettingTable* declared) {
+  return std::make_shared<Node>(Node{parent.document,
+                                     std::shared_ptr<const Value>(parent.document, &table),
+                                     std::move(path), declared});
 }
 
-}  // namespace
+// The overloads of read() return the value of a key that must be there.
 
-ConfigTable::ConfigTable(std::shared_ptr<Node> node) : node_(std::move(node)) {}
-
-ConfigTable ConfigTable::load(const std::filesystem::path& file,
-                              std::span<const std::string> overrides,
-                              const std::filesystem::path& shipped) {
-  return ConfigTable(make_root(config::load_document(file, overrides, shipped)));
+double read(const Node& node, const Setting<double>& setting) {
+  return read_number(require(node, setting.key, setting.describe_allowed()),
+                     config::join_path(node.path, setting.key), setting.range);
 }
 
-ConfigTable ConfigTable::parse(std::string_view toml, const std::string& name,
-                               std::span<const std::string> overrides) {
-  return ConfigTable(make_root(config::parse_document(toml, name, overrides)));
-}
-
-bool ConfigTable::has(std::string_view key) const {
-  note_asked(*node_, key, "");
-  return find(*node_, key) != nullptr;
-}
-
-std::string ConfigTable::get_string(std::string_view key) const {
-  return require_kind(*node_, key, Kind::string, kString).string;
-}
-
-std::string ConfigTable::get_choice(std::string_view key,
-                                    std::span<const std::string> valid) const {
-  const Value& value = require_kind(*node_, key, Kind::string, describe_choice(valid));
-  if (std::find(valid.begin(), valid.end(), value.string) == valid.end()) {
-    config::fail(value.place, describe_unknown(config::join_path(node_->path, key),
-                                               config::shorten(value.string), valid));
-  }
-  return value.string;
-}
-
-double ConfigTable::get_number(std::string_view key, Range range) const {
-  return read_number(require(*node_, key, describe_range(range)),
-                     config::join_path(node_->path, key), range);
-}
-
-std::int64_t ConfigTable::get_integer(std::string_view key, std::int64_t lower,
-                                      std::int64_t upper) const {
-  const std::string must = describe_range(lower, upper);
-  const Value& value = require_kind(*node_, key, Kind::integer, must);
-  if (value.integer < lower || value.integer > upper) {
+std::int64_t read_integer(const Node& node, const AnySetting& setting) {
+  const std::string must = setting.describe_allowed();
+  const Value& value = require_kind(node, setting.key, Kind::integer, must);
+  const auto number = static_cast<double>(value.integer);
+  if (number < setting.range.lower || number > setting.range.upper) {
     config::fail(value.place,
-                 fmt::format("{} is {}; it must be {}", config::join_path(node_->path, key),
+                 fmt::format("{} is {}; it must be {}", config::join_path(node.path, setting.key),
                              value.describe(), must));
   }
   return value.integer;
 }
 
-bool ConfigTable::get_bool(std::string_view key) const {
-  return require_kind(*node_, key, Kind::boolean, kBoolean).boolean;
+std::int64_t read(const Node& node, const Setting<std::int64_t>& setting) {
+  return read_integer(node, setting);
 }
 
-std::vector<double> ConfigTable::get_numbers(std::string_view key, Range range) const {
-  const Value& array =
-      require_kind(*node_, key, Kind::array,
-                   fmt::format("an array, each element of it {}", describe_range(range)));
-  const std::string path = config::join_path(node_->path, key);
+int read(const Node& node, const Setting<int>& setting) {
+  return static_cast<int>(read_integer(node, setting));
+}
+
+bool read(const Node& node, const Setting<bool>& setting) {
+  return require_kind(node, setting.key, Kind::boolean, setting.describe_allowed()).boolean;
+}
+
+std::string read(const Node& node, const Setting<std::string>& setting) {
+  const Value& value = require_kind(node, setting.key, Kind::string, setting.describe_allowed());
+  if (setting.choices) {
+    const std::vector<std::string> valid = setting.choices();
+    if (std::ranges::find(valid, value.string) == valid.end()) {
+      config::fail(value.place, describe_unknown(config::join_path(node.path, setting.key),
+                                                 config::shorten(value.string), valid));
+    }
+  }
+  return value.string;
+}
+
+std::vector<double> read(const Node& node, const Setting<std::vector<double>>& setting) {
+  const Value& array = require_kind(node, setting.key, Kind::array, setting.describe_allowed());
+  const std::string path = config::join_path(node.path, setting.key);
   std::vector<double> numbers;
   for (const Value& item : array.items) {
-    numbers.push_back(read_number(item, fmt::format("{}[{}]", path, numbers.size()), range));
+    numbers.push_back(
+        read_number(item, fmt::format("{}[{}]", path, numbers.size()), setting.range));
   }
   return numbers;
 }
 
-std::vector<std::string> ConfigTable::get_strings(std::string_view key) const {
-  const Value& array = require_kind(*node_, key, Kind::array, "an array of strings");
+std::vector<std::string> read(const Node& node, const Setting<std::vector<std::string>>& setting) {
+  const Value& array = require_kind(node, setting.key, Kind::array, setting.describe_allowed());
+  const std::string path = config::join_path(node.path, setting.key);
   std::vector<std::string> strings;
   for (const Value& item : array.items) {
     if (item.kind != Kind::string) {
-      refuse_type(item, fmt::format("{}[{}]", config::join_path(node_->path, key), strings.size()),
-                  "a string");
+      refuse_type(item, fmt::format("{}[{}]", path, strings.size()), kString);
     }
     strings.push_back(item.string);
   }
   return strings;
 }
 
-ConfigTable ConfigTable::get_table(std::string_view key) const {
-  const std::string path = config::join_path(node_->path, key);
-  const Value& table = require_kind(*node_, key, Kind::table, fmt::format("a table, [{}]", path));
-  return ConfigTable(make_child(*node_, table, path));
+}  // namespace
+
+ConfigTable::ConfigTable(std::shared_ptr<Node> node) : node_(std::move(node)) {}
+
+ConfigTable ConfigTable::load(const SettingTable& settings, const std::filesystem::path& file,
+                              std::span<const std::string> overrides,
+                              const std::filesystem::path& shipped) {
+  return ConfigTable(make_root(config::load_document(file, overrides, shipped), &settings));
 }
 
-std::vector<ConfigTable> ConfigTable::get_tables(std::string_view key) const {
-  const std::string path = config::join_path(node_->path, key);
-  const std::string must = fmt::format("an array of tables, [[{}]]", path);
-  const Value& array = require_kind(*node_, key, Kind::array, must);
+ConfigTable ConfigTable::parse(const SettingTable& settings, std::string_view toml,
+                               const std::string& name, std::span<const std::string> overrides) {
+  return ConfigTable(make_root(config::parse_document(toml, name, overrides), &settings));
+}
+
+ConfigTable ConfigTable::load(const std::filesystem::path& file,
+                              std::span<const std::string> overrides,
+                              const std::filesystem::path& shipped) {
+  return ConfigTable(make_root(config::load_document(file, overrides, shipped), nullptr));
+}
+
+ConfigTable ConfigTable::parse(std::string_view toml, const std::string& name,
+                               std::span<const std::string> overrides) {
+  return ConfigTable(make_root(config::parse_document(toml, name, overrides), nullptr));
+}
+
+bool ConfigTable::has(const AnySetting& setting) const {
+  check_declared(*node_, setting);
+  return has(setting.key);
+}
+
+bool ConfigTable::has(std::string_view key) const {
+  return find_value(*node_, key) != nullptr;
+}
+
+template <class T>
+std::optional<T> ConfigTable::find(const Setting<T>& setting) const {
+  return has(setting) ? std::optional(read(*node_, setting)) : std::nullopt;
+}
+
+template <class T>
+T ConfigTable::get_or(const Setting<T>& setting, const std::type_identity_t<T>& fallback) const {
+  return has(setting) ? read(*node_, setting) : fallback;
+}
+
+template <class T>
+T ConfigTable::get(const Setting<T>& setting) const {
+  check_declared(*node_, setting);
+  return setting.fallback ? get_or(setting, *setting.fallback) : read(*node_, setting);
+}
+
+std::size_t ConfigTable::get_choice(const Setting<std::string>& setting) const {
+  const std::vector<std::string> choices = setting.choices();
+  return static_cast<std::size_t>(std::ranges::find(choices, get(setting)) - choices.begin());
+}
+
+template <class T>
+void ConfigTable::settle(const Setting<T>& setting, const std::type_identity_t<T>& value) const {
+  check_declared(*node_, setting);
+  settle_value(*node_, setting.key, make_settled(value));
+}
+
+void ConfigTable::settle_missing(const ConfigTable& other) const {
+  for (const auto& [key, value] : other.node_->table->keys) {
+    if (!has(key)) {
+      settle_value(*node_, key, copy_value(*value));
+    }
+  }
+}
+
+template bool ConfigTable::get(const Setting<bool>&) const;
+template int ConfigTable::get(const Setting<int>&) const;
+template std::int64_t ConfigTable::get(const Setting<std::int64_t>&) const;
+template double ConfigTable::get(const Setting<double>&) const;
+template std::string ConfigTable::get(const Setting<std::string>&) const;
+template std::vector<double> ConfigTable::get(const Setting<std::vector<double>>&) const;
+template std::vector<std::string> ConfigTable::get(const Setting<std::vector<std::string>>&) const;
+template bool ConfigTable::get_or(const Setting<bool>&, const bool&) const;
+template int ConfigTable::get_or(const Setting<int>&, const int&) const;
+template std::int64_t ConfigTable::get_or(const Setting<std::int64_t>&, const std::int64_t&) const;
+template double ConfigTable::get_or(const Setting<double>&, const double&) const;
+template std::string ConfigTable::get_or(const Setting<std::string>&, const std::string&) const;
+template std::vector<double> ConfigTable::get_or(const Setting<std::vector<double>>&,
+                                                 const std::vector<double>&) const;
+template std::vector<std::string> ConfigTable::get_or(const Setting<std::vector<std::string>>&,
+                                                      const std::vector<std::string>&) const;
+template std::optional<bool> ConfigTable::find(const Setting<bool>&) const;
+template std::optional<int> ConfigTable::find(const Setting<int>&) const;
+template std::optional<std::int64_t> ConfigTable::find(const Setting<std::int64_t>&) const;
+template std::optional<double> ConfigTable::find(const Setting<double>&) const;
+template std::optional<std::string> ConfigTable::find(const Setting<std::string>&) const;
+template std::optional<std::vector<double>> ConfigTable::find(
+    const Setting<std::vector<double>>&) const;
+template std::optional<std::vector<std::string>> ConfigTable::find(
+    const Setting<std::vector<std::string>>&) const;
+template void ConfigTable::settle(const Setting<int>&, const int&) const;
+template void ConfigTable::settle(const Setting<std::int64_t>&, const std::int64_t&) const;
+template void ConfigTable::settle(const Setting<double>&, const double&) const;
+template void ConfigTable::settle(const Setting<std::string>&, const std::string&) const;
+template void ConfigTable::settle(const Setting<std::vector<double>>&,
+                                  const std::vector<double>&) const;
+
+ConfigTable ConfigTable::get_table(const SettingTable& table) const {
+  const SettingTable* declared = check_declared(*node_, table);
+  const std::string path = config::join_path(node_->path, table.key);
+  const Value& value =
+      require_kind(*node_, table.key, Kind::table, fmt::format("a table, [{}]", path));
+  return ConfigTable(make_child(*node_, value, path, declared));
+}
+
+std::vector<ConfigTable> ConfigTable::get_tables(const SettingTable& array) const {
+  const SettingTable* declared = check_declared(*node_, array);
+  const std::string path = config::join_path(node_->path, array.key);
+  const Value& value =
+      require_kind(*node_, array.key, Kind::array, fmt::format("an array of tables, [[{}]]", path));
   std::vector<ConfigTable> tables;
-  for (const Value& item : array.items) {
+  for (const Value& item : value.items) {
     const std::string item_path = fmt::format("{}[{}]", path, tables.size());
     if (item.kind != Kind::table) {
       refuse_type(item, item_path, "a table");
     }
-    tables.push_back(ConfigTable(make_child(*node_, item, item_path)));
+    tables.push_back(ConfigTable(make_child(*node_, item, item_path, declared)));
   }
   return tables;
 }
 
-std::string ConfigTable::get_string(std::string_view key, std::string_view fallback) const {
-  note_asked(*node_, key, kString, quote_json(std::string(fallback)));
-  return has(key) ? get_string(key) : std::string(fallback);
-}
-
-std::string ConfigTable::get_choice(std::string_view key, std::span<const std::string> valid,
-                                    std::string_view fallback) const {
-  note_asked(*node_, key, describe_choice(valid), quote_json(std::string(fallback)));
-  return has(key) ? get_choice(key, valid) : std::string(fallback);
-}
-
-double ConfigTable::get_number_or(std::string_view key, double fallback, Range range) const {
-  note_asked(*node_, key, describe_range(range), format_exact(fallback));
-  return has(key) ? get_number(key, range) : fallback;
-}
-
-std::int64_t ConfigTable::get_integer_or(std::string_view key, std::int64_t fallback,
-                                         std::int64_t lower, std::int64_t upper) const {
-  note_asked(*node_, key, describe_range(lower, upper), fmt::format("{}", fallback));
-  return has(key) ? get_integer(key, lower, upper) : fallback;
-}
-
-bool ConfigTable::get_bool_or(std::string_view key, bool fallback) const {
-  note_asked(*node_, key, kBoolean, fallback ? "true" : "false");
-  return has(key) ? get_bool(key) : fallback;
-}
-
-ConfigTable ConfigTable::get_table_or_empty(std::string_view key) const {
-  if (has(key)) {
-    return get_table(key);
+ConfigTable ConfigTable::get_table_or_empty(const SettingTable& table) const {
+  if (has(table.key)) {
+    return get_table(table);
   }
   const auto empty = std::make_shared<Value>();
   empty->place = node_->table->place;
   return ConfigTable(
-      std::make_shared<Node>(Node{node_->document, empty, config::join_path(node_->path, key)}));
+      std::make_shared<Node>(Node{node_->document, empty, config::join_path(node_->path, table.key),
+                                  check_declared(*node_, table)}));
 }
 
-std::vector<ConfigTable> ConfigTable::get_tables_or_empty(std::string_view key) const {
-  return has(key) ? get_tables(key) : std::vector<ConfigTable>();
+std::vector<ConfigTable> ConfigTable::get_tables_or_empty(const SettingTable& array) const {
+  check_declared(*node_, array);
+  return has(array.key) ? get_tables(array) : std::vector<ConfigTable>();
 }
 
 void ConfigTable::refuse_unknown() const {
-  constexpr std::size_t kShown = 8;  // enough to mend a file in one go, too few to flood a terminal
+  constexpr std::size_t kShown = 8;  // enough to mend a file at once, too few to flood a terminal
   std::vector<Unknown> unknown;
   collect_unknown(*node_->table, node_->path, unknown);
   if (unknown.empty()) {
@@ -418,18 +556,14 @@ void ConfigTable::refuse_unknown() const {
 
 void ConfigTable::refuse(std::string_view key, std::string_view must) const {
   const std::string path = config::join_path(node_->path, key);
-  if (const Value* value = find(*node_, key)) {
+  if (const Value* value = find_value(*node_, key)) {
     config::fail(value->place, fmt::format("{} is {}; {}", path, value->describe(), must));
   }
   config::fail(node_->table->place, fmt::format("{} is missing; {}", path, must));
 }
 
-std::vector<AskedKey> ConfigTable::asked() const {
-  std::vector<AskedKey> all;
-  for (const auto& [path, key] : node_->document->asked) {
-    all.push_back(key);
-  }
-  return all;
+void ConfigTable::refuse(const AnySetting& setting, std::string_view must) const {
+  refuse(setting.key, must);
 }
 
 const std::filesystem::path& ConfigTable::file() const {
@@ -442,7 +576,7 @@ std::vector<std::filesystem::path> ConfigTable::files() const {
 
 std::string ConfigTable::to_json() const {
   std::string json;
-  append_json(*node_->table, json);
+  append_json(*node_->table, find_settled(*node_), json);
   return json;
 }
 

@@ -1,92 +1,105 @@
-// Strict reading of TOML. A ConfigTable hands out each value with its type and range checked and
-// remembers what was asked for; what is left over is unknown and refused, with the nearest valid
-// key. Every message reads FILE:LINE: field is VALUE; it must be ALLOWED. Hostile files (size,
-// depth, non-finite numbers; toml++ 3.3.0 crashes on some) are refused beforehand.
+// Strict reading of TOML. A ConfigTable is one table of a document. Readers take each value out of
+// it by the value's declaration (setting.hpp): the table checks type and range, and remembers which
+// keys were read. refuse_unknown() then refuses the keys that no reader read.
 //
-// Inheritance: a top-level `extends = "other"` names a file (without .toml) of the same folder or,
-// if there is none, of the folder of shipped ones, that is read first; tables merge, anything else
-// replaces. Overrides ("task.speed_m_per_s=2") come last
-// and are named as such in messages.
+// Every error that a document causes is Error{usage} with a message of the form
+//   FILE:LINE: FIELD is VALUE; it must be ALLOWED
+// Hostile files are refused before they are parsed: by size, depth, numbers that are not finite,
+// and text that toml++ 3.3.0 crashes on.
+//
+// Inheritance: a top-level `extends = "other"` names a file without .toml. It lies in the same
+// folder or, if that has none, in the folder of shipped files. It is read first; then tables merge
+// key by key, and any other value replaces the inherited one. Overrides ("task.speed_m_per_s=2")
+// are applied last. Messages about an overridden value name the override.
+//
+// Copies of a ConfigTable refer to the same document. Reading changes what the document remembers,
+// so one thread at a time may read a document.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
+
+#include "base/setting.hpp"
 
 namespace armwright {
 
-struct Range {
-  double lower = -std::numeric_limits<double>::infinity();
-  double upper = std::numeric_limits<double>::infinity();
-  bool lower_open = false;  // true: the value must be strictly above `lower`
-};
-
-// What a reader asked a document for: the rows of a reference of its keys are made of these, and so
-// say what is really read.
-struct AskedKey {
-  std::string path;      // "task.speed_m_per_s"; of the tables of an array "requirement[].use"
-  std::string allowed;   // "a finite number >= 0.01 and <= 100"; empty: it was asked only whether
-                         // the key is there, which it was not
-  std::string fallback;  // as in TOML; empty: the reader has none, or only knows it elsewhere
-};
-
 class ConfigTable {
  public:
-  // `overrides` are KEY=VALUE texts with dotted keys; VALUE is TOML, or a bare word taken as a
-  // string. `shipped`: where files that are extended are looked for beside the file's own folder.
+  // Reads a file whose settings are those of `settings`, which must outlive the table.
+  // `overrides` are KEY=VALUE texts with dotted keys; VALUE is TOML, or a bare word that counts as
+  // a string. `shipped` is the folder of shipped files. Throws Error{usage} for a document that
+  // cannot be used, Error{io} for a file that cannot be read.
+  static ConfigTable load(const SettingTable& settings, const std::filesystem::path& file,
+                          std::span<const std::string> overrides = {},
+                          const std::filesystem::path& shipped = {});
+  // Reads text that is not in a file. Messages show `name` in place of the file.
+  static ConfigTable parse(const SettingTable& settings, std::string_view toml,
+                           const std::string& name, std::span<const std::string> overrides = {});
+  // The same for documents whose keys are not declared: for to_json() and single values. The
+  // tables hand out any setting.
   static ConfigTable load(const std::filesystem::path& file,
                           std::span<const std::string> overrides = {},
                           const std::filesystem::path& shipped = {});
-  // For tests and for text that is not in a file; `name` stands where messages name the file.
   static ConfigTable parse(std::string_view toml, const std::string& name,
                            std::span<const std::string> overrides = {});
 
+  // Each function that takes a declaration throws std::logic_error if the table's SettingTable does
+  // not list it. Only the key counts, so that within() and among() may narrow a declaration.
+
+  bool has(const AnySetting& setting) const;
+  // Returns whether the table has the key, whatever its value. For keys that a reader refuses.
   bool has(std::string_view key) const;
 
-  // Required values. Each throws Error{usage} if the key is missing, of another type or out of
-  // range.
-  std::string get_string(std::string_view key) const;
-  std::string get_choice(std::string_view key, std::span<const std::string> valid) const;
-  double get_number(std::string_view key, Range range = {}) const;  // integers count as numbers
-  std::int64_t get_integer(std::string_view key, std::int64_t lower, std::int64_t upper) const;
-  bool get_bool(std::string_view key) const;
-  std::vector<double> get_numbers(std::string_view key, Range range = {}) const;
-  std::vector<std::string> get_strings(std::string_view key) const;
-  ConfigTable get_table(std::string_view key) const;
-  std::vector<ConfigTable> get_tables(std::string_view key) const;  // an array of tables
+  // Returns the value, or the declared default if the key is missing. Throws Error{usage} if the
+  // value has another type or is out of range, or if the key is missing and has no default.
+  // Integers count as numbers.
+  template <class Value>
+  Value get(const Setting<Value>& setting) const;
+  // The same with a default that the reader found out.
+  template <class Value>
+  Value get_or(const Setting<Value>& setting, const std::type_identity_t<Value>& fallback) const;
+  // Returns the value, or nothing if the key is missing.
+  template <class Value>
+  std::optional<Value> find(const Setting<Value>& setting) const;
+  // Returns the index of the value in setting.choices().
+  std::size_t get_choice(const Setting<std::string>& setting) const;
 
-  // The same with a default for a missing key (an empty table, for get_table_or_empty and
-  // get_tables_or_empty).
-  std::string get_string(std::string_view key, std::string_view fallback) const;
-  std::string get_choice(std::string_view key, std::span<const std::string> valid,
-                         std::string_view fallback) const;
-  double get_number_or(std::string_view key, double fallback, Range range = {}) const;
-  std::int64_t get_integer_or(std::string_view key, std::int64_t fallback, std::int64_t lower,
-                              std::int64_t upper) const;
-  bool get_bool_or(std::string_view key, bool fallback) const;
-  ConfigTable get_table_or_empty(std::string_view key) const;
-  std::vector<ConfigTable> get_tables_or_empty(std::string_view key) const;
+  // Return the tables inside this one. Throw Error{usage} if the key is missing or no table.
+  ConfigTable get_table(const SettingTable& table) const;
+  std::vector<ConfigTable> get_tables(const SettingTable& array) const;
+  // The same, with an empty table or no tables in place of a missing key.
+  ConfigTable get_table_or_empty(const SettingTable& table) const;
+  std::vector<ConfigTable> get_tables_or_empty(const SettingTable& array) const;
 
-  // Refuses every key, here and below, that nobody asked for.
+  // Refuses every key, here and in the tables inside, that was not read. Throws Error{usage} with
+  // the nearest valid key.
   void refuse_unknown() const;
 
-  // An Error{usage} at this key: "FILE:LINE: KEY is VALUE; MUST". For checks that need more than a
-  // range.
+  // Throws Error{usage} at this key: "FILE:LINE: KEY is VALUE; MUST". For checks that need more
+  // than a range.
   [[noreturn]] void refuse(std::string_view key, std::string_view must) const;
+  [[noreturn]] void refuse(const AnySetting& setting, std::string_view must) const;
 
-  // Everything that was asked for so far, of the whole document, by path.
-  std::vector<AskedKey> asked() const;
+  // Records a value that the reader chose because the file leaves it open, or in place of the
+  // file's. Only to_json() shows it; reading and has() do not. Not for tables of an array. A whole
+  // number is recorded without decimal point.
+  template <class Value>
+  void settle(const Setting<Value>& setting, const std::type_identity_t<Value>& value) const;
+  // Records every value of `other` whose key this table lacks. `other` holds no tables.
+  void settle_missing(const ConfigTable& other) const;
 
-  const std::filesystem::path& file() const;  // the file that was loaded, not the ones it extends
-  std::vector<std::filesystem::path> files() const;  // it and all it extends, for hashing
+  const std::filesystem::path& file() const;  // the file that was loaded, not those it extends
+  std::vector<std::filesystem::path> files() const;  // it and all files it extends, for hashing
 
-  // The resolved table as canonical JSON (sorted keys): what is recorded and compared on resume.
+  // Returns the table with the settled values as canonical JSON (sorted keys, no blanks). It is
+  // recorded, and compared when a run is resumed.
   std::string to_json() const;
 
   struct Node;  // implementation

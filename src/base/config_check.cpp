@@ -1,6 +1,6 @@
-// The look at a TOML text before the parser sees it. It follows strings, comments and brackets
-// exactly as far as the text is valid; behind the first syntax error it may misjudge, but there the
-// parser stops as well.
+// Checks a TOML text before it is parsed. The scanner follows strings, comments and brackets
+// exactly as long as the text is valid. After the first syntax error it may be wrong, but the
+// parser stops there too.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -39,7 +39,7 @@ class Scanner {
   }
 
  private:
-  // Passes over a string or a comment, whose letters may be anything that is UTF-8.
+  // Skips a string or a comment. Any UTF-8 text is allowed there.
   void skip_to(std::size_t end) {
     while (at_ < end) {
       if (text_[at_] == '\n') {
@@ -81,8 +81,8 @@ class Scanner {
                                 "anything else needs quotes");
   }
 
-  // A string, an array or a table in the middle of something else: the parser looks on into it
-  // before it refuses it, and takes its letters for what they are not.
+  // Refuses a string, an array or a table that begins in the middle of another value. The parser
+  // would read on inside it before it refuses it, and would misread its characters.
   void check_beginning(char c) const {
     const bool may_begin =
         in_value_
@@ -101,7 +101,7 @@ class Scanner {
     if (rest.starts_with(three)) {
       std::size_t end = find_end(at_ + 3, three);
       for (int extra = 0; extra < 2 && end < text_.size() && text_[end] == quote; ++extra) {
-        ++end;  // up to two quotes may stand right before the closing three
+        ++end;  // up to two quotes may precede the closing three
       }
       skip_to(end);
     } else {
@@ -109,7 +109,7 @@ class Scanner {
     }
   }
 
-  // Where the string ends that is closed by `closing`; a string of one line also ends with its
+  // Returns the end of the string that `closing` closes. A string of one line also ends with its
   // line.
   std::size_t find_end(std::size_t from, std::string_view closing) const {
     while (from < text_.size()) {
@@ -127,8 +127,8 @@ class Scanner {
     return text_.size();
   }
 
-  // Behind a backslash at the end of a line the parser skips blanks, and beyond ASCII it does not
-  // know what is one.
+  // After a backslash at the end of a line the parser skips blanks. It cannot tell which characters
+  // beyond ASCII are blanks.
   void check_escape(std::size_t backslash) const {
     const std::size_t next = text_.find_first_not_of(" \t\r\n", backslash + 1);
     if (next != std::string_view::npos && !is_ascii(text_[next])) {
@@ -209,7 +209,7 @@ class Scanner {
     dots_ = 0;
   }
 
-  // At the T or the blank behind what may be a date.
+  // Called at the T or the blank after what may be a date.
   void check_time_follows_date() const {
     constexpr std::string_view kDate = "0000-00-00";
     const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
@@ -231,7 +231,7 @@ class Scanner {
     const bool array = text_.substr(at_).starts_with("[[");
     const std::size_t next = text_.find_first_not_of(" \t", at_ + (array ? 2 : 1));
     if (next == std::string_view::npos || !is_ascii(text_[next])) {
-      return;  // the parser, or this scanner, says what is wrong
+      return;  // the parser, or this scanner, reports it later
     }
     const std::string_view first = text_.substr(next, 1);
     if (!is_bare_key(first) && first != "\"" && first != "'" && first != "]") {
@@ -261,7 +261,7 @@ class Scanner {
 
   struct Bracket {
     char kind;
-    std::size_t levels;  // of depth that it adds, those of its dotted key included
+    std::size_t levels;  // of depth that it adds, with those of its dotted key
   };
 
   const Source& source_;
@@ -269,11 +269,11 @@ class Scanner {
   std::size_t at_ = 0;
   std::size_t line_ = 1;
   bool line_is_blank_ = true;
-  char previous_ = '\0';  // the last character that is no blank, if the line has one
+  char previous_ = '\0';  // the last character that is not a blank, if the line has one
   bool in_header_ = false;
   bool in_value_ = false;  // right of a '=' or in an array
   std::vector<Bracket> brackets_;
-  std::size_t header_depth_ = 0;  // of the [table] the current line belongs to
+  std::size_t header_depth_ = 0;  // of the [table] that the current line belongs to
   std::size_t open_depth_ = 0;    // of all brackets_
   std::size_t key_depth_ = 0;     // dots of the key left of the last '='
   std::size_t dots_ = 0;          // dots since the last delimiter

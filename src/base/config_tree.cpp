@@ -22,7 +22,8 @@ bool is_bare_letter(char c) {
          c == '-';
 }
 
-// Finds the text of a value from toml++'s line and column, which counts characters, not bytes.
+// Finds the text of a value. toml++ gives its line and column, and the column counts characters,
+// not bytes.
 class TextIndex {
  public:
   explicit TextIndex(std::string_view text) : text_(text) {
@@ -128,7 +129,7 @@ Value parse_source(Document& document, std::string name, std::string_view text) 
   return Converter(source).convert(parse_toml(source), "");
 }
 
-// What stands in `over` wins: tables merge key by key, anything else replaces.
+// Puts `over` on top of `base`: tables merge key by key, any other value replaces that of `base`.
 void merge(Value& base, Value over) {
   if (base.kind != Kind::table || over.kind != Kind::table) {
     base = std::move(over);
@@ -151,7 +152,7 @@ std::string read_config_file(const std::filesystem::path& file) {
     return read_file(file, kFileLimit_bytes);
   } catch (const Error& error) {
     if (error.kind() ==
-        ErrorKind::bad_data) {  // too large: here it is the configuration that is wrong
+        ErrorKind::bad_data) {  // too large, which for a configuration is a usage error
       throw Error(ErrorKind::usage, error.what());
     }
     throw;
@@ -238,7 +239,7 @@ class Loader {
 
   Document& document_;
   const std::filesystem::path& shipped_;
-  std::vector<std::string> chain_;  // the file names on the way here
+  std::vector<std::string> chain_;  // names of the files that are being loaded, the first first
 };
 
 std::string_view trim(std::string_view text) {
@@ -257,7 +258,7 @@ bool is_bare_word(std::string_view text) {
 Value parse_override_value(Document& document, std::string name, std::string_view key,
                            std::string_view text) {
   Source& source = document.sources.emplace_back(Source{std::move(name), "", true});
-  constexpr std::string_view kPrefix = "v = ";  // a value alone is no TOML document
+  constexpr std::string_view kPrefix = "v = ";  // TOML has no documents of one value
   source.text = fmt::format("{}{}", kPrefix, text);
   const Place place{&source, 1};
   if (std::any_of(text.begin(), text.end(),
@@ -270,7 +271,7 @@ Value parse_override_value(Document& document, std::string name, std::string_vie
     try {
       table = toml::parse(std::string_view(source.text));
     } catch (const toml::parse_error&) {
-      table.reset();  // perhaps a word
+      table.reset();  // the text may still be a bare word
     }
   }
   if (table) {
@@ -329,7 +330,7 @@ void apply_override(Document& document, std::string_view text) {
     const Place place = slot->place;
     const bool both_tables = slot->kind == Kind::table && value.kind == Kind::table;
     merge(*slot, std::move(value));
-    slot->place = both_tables ? place : slot->place;  // a table that gains a key stays where it was
+    slot->place = both_tables ? place : slot->place;  // a table that gets a key keeps its place
   }
 }
 
@@ -379,7 +380,7 @@ std::string shorten(std::string_view text) {
   }
   std::size_t end = kShown_bytes;
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) {
-    --end;  // not in the middle of a character
+    --end;  // do not cut inside a character
   }
   return sanitize(text.substr(0, end)) + "...";
 }

@@ -1,6 +1,6 @@
-// The tree behind ConfigTable (config.hpp): what a TOML file, the files it extends and the
-// overrides say, each value with the place where it really stands. Internal to the base room;
-// everything else uses ConfigTable.
+// The tree behind ConfigTable (config.hpp): the values of a TOML file, of the files that it extends
+// and of the overrides, each with the place where it stands. Internal to this module; all other
+// code uses ConfigTable.
 #pragma once
 
 #include <cstddef>
@@ -20,16 +20,17 @@
 namespace armwright::config {
 
 inline constexpr std::size_t kFileLimit_bytes = std::size_t{1} << 20;
-inline constexpr std::size_t kDepthLimit = 64;  // of nested tables and arrays, dotted keys included
-inline constexpr std::size_t kExtendsLimit = 8;
+inline constexpr std::size_t kDepthLimit = 64;   // nested tables and arrays; each dot counts as one
+inline constexpr std::size_t kExtendsLimit = 8;  // files that are extended in a row
 
 // One text that was parsed: a file, or one override.
 struct Source {
-  std::string name;  // as messages give it: the path, or "--set KEY=VALUE"
+  std::string name;  // as messages show it: the path, or "--set KEY=VALUE"
   std::string text;
   bool is_override = false;
 };
 
+// The line that a value stands in.
 struct Place {
   const Source* source = nullptr;
   std::size_t line = 0;
@@ -38,51 +39,54 @@ struct Place {
 
 enum class Kind { string, integer, number, boolean, date, array, table };
 
+// One value of the tree.
 struct Value {
   Kind kind = Kind::table;
   Place place;
-  std::string_view written;  // as it stands in its source's text; empty for a table made by a
-                             // header or a dotted key
-  std::string string;        // also a date, as written
+  std::string_view written;  // the part of its source's text; empty for a table made by a header or
+                             // a dotted key
+  std::string string;        // of a string, and of a date as written
   std::int64_t integer = 0;
   double number = 0;
   bool boolean = false;
   std::vector<Value> items;
   std::map<std::string, std::unique_ptr<Value>, std::less<>> keys;
-  mutable std::vector<std::string>
-      asked;  // of a table: the keys that were asked for, in that order
+  mutable std::vector<std::string> asked;  // of a table: keys that were read, in order of reading
 
   std::string describe() const;            // the value as written, shortened and printable
-  std::string describe_with_type() const;  // the same and what it is: "4, an integer"
+  std::string describe_with_type() const;  // the same with its type: "4, an integer"
 };
 
+// One document, with all sources that it was made from.
 struct Document {
   std::filesystem::path file;
-  std::vector<std::filesystem::path> files;
-  std::deque<Source> sources;  // a deque, since places point into it
+  std::vector<std::filesystem::path> files;  // the file and all files that it extends
+  std::deque<Source> sources;  // a deque keeps its elements in place; every Place points to one
   Value root;
-  mutable std::map<std::string, AskedKey, std::less<>> asked;  // by path
+  mutable Value settled;  // what readers settled (ConfigTable::settle), a table
 };
 
+// Return the document, as ConfigTable::load() and ConfigTable::parse() describe.
 std::shared_ptr<const Document> load_document(const std::filesystem::path& file,
                                               std::span<const std::string> overrides,
                                               const std::filesystem::path& shipped);
 std::shared_ptr<const Document> parse_document(std::string_view toml, const std::string& name,
                                                std::span<const std::string> overrides);
 
-// Refuses what toml++ 3.3.0 does not report but runs into, a stack overflow or undefined behaviour:
-// text deeper than kDepthLimit; characters beyond ASCII where it may take them for keys or blanks;
-// headers without a name, values that begin in the middle of others, dates with half a time (all
-// found by a fuzzer). Invalid UTF-8 as well. Error{usage} at the line where it stands.
+// Refuses text on which toml++ 3.3.0 overflows the stack or has undefined behaviour, where it
+// should report an error. A fuzzer found: text deeper than kDepthLimit; characters beyond ASCII
+// that it may take for keys or blanks; headers without a name; values that begin in the middle of
+// others; dates with half a time. Refuses invalid UTF-8 too. Throws Error{usage} with the line.
 void check_text(const Source& source);
 
-// "task" and "speed_m_per_s" as "task.speed_m_per_s"; a key that TOML wants quoted is quoted, a
-// long one is shortened.
+// Returns "task.speed_m_per_s" for "task" and "speed_m_per_s". A key that TOML needs quotes for is
+// quoted, a long key is shortened.
 std::string join_path(std::string_view path, std::string_view key);
-// Printable, and at most some sixty bytes of it.
+// Returns the text in printable form, cut after 60 bytes.
 std::string shorten(std::string_view text);
 bool is_bare_key(std::string_view key);
 
-[[noreturn]] void fail(const Place& place, std::string_view message);  // Error{usage}
+// Throws Error{usage} "PLACE: MESSAGE".
+[[noreturn]] void fail(const Place& place, std::string_view message);
 
 }  // namespace armwright::config

@@ -1,6 +1,5 @@
-// What goes wrong for a caller's reason. Each kind has a documented exit code (design: exit codes
-// of the CLI). A failed simulation is not an error but a status (sim/tracking.hpp); a bug of ours
-// is an assertion.
+// The errors that a caller can cause. Each kind has a documented exit code of the command line. A
+// failed simulation is no error but a status (sim/tracking); a bug of armwright is an assertion.
 #pragma once
 
 #include <stdexcept>

@@ -99,7 +99,7 @@ void AtomicFile::commit() {
 void put_in_place(const std::filesystem::path& file, const std::filesystem::path& path) {
   {
     const FileDescriptor descriptor = open_file(file, O_RDONLY, "open it");
-    // Some file systems cannot sync; what they can do is then all there is to have.
+    // Some file systems cannot sync and return one of these errors; the file is still written.
     if (::fsync(descriptor.get()) != 0 && errno != EINVAL && errno != EROFS) {
       fail_io(file, "sync it to the disk", errno);
     }
@@ -109,7 +109,7 @@ void put_in_place(const std::filesystem::path& file, const std::filesystem::path
   }
   const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
   const FileDescriptor directory = open_file(folder, O_RDONLY | O_DIRECTORY, "open its folder");
-  // Here too; and the rename itself has succeeded.
+  // Errors are ignored: some file systems cannot sync a folder, and the rename has succeeded.
   ::fsync(directory.get());
 }
 

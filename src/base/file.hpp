@@ -1,5 +1,5 @@
-// Whole files, read with a size limit and written so that a reader sees the old content or the new,
-// never a mixture. Every failure is an Error{io} that names the path and the operating system's
+// Reads whole files with a size limit, and writes files so that a reader sees the old or the new
+// content, never a mixture. Every failure is an Error{io} with the path and the operating system's
 // reason.
 #pragma once
 
@@ -12,14 +12,15 @@
 
 namespace armwright {
 
-// Throws Error{io} "PATH: cannot DOING: the operating system's reason" for an errno.
+// Throws Error{io} "PATH: cannot DOING: REASON", with the operating system's reason for the errno
+// `error`.
 [[noreturn]] void fail_io(const std::filesystem::path& path, std::string_view doing, int error);
 
-// Error{bad_data} if the file is larger than `limit_bytes`.
+// Returns the content. Throws Error{bad_data} if the file is larger than `limit_bytes`.
 std::string read_file(const std::filesystem::path& path, std::size_t limit_bytes);
 
-// A file that is written piece by piece and takes its place only as a whole: until commit() it
-// bears the name "PATH.new", and without it it is taken away again.
+// A file that is written in pieces and appears at its path only when it is complete. Until commit()
+// it has the name "PATH.new"; without commit() the destructor removes it.
 class AtomicFile {
  public:
   explicit AtomicFile(const std::filesystem::path& path);
@@ -28,7 +29,7 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   void write(std::string_view content);
-  void commit();  // put_in_place()
+  void commit();  // syncs it and moves it to its path
 
  private:
   void write_buffer();
@@ -42,10 +43,11 @@ class AtomicFile {
 // Syncs the file, renames it over `path` and syncs the folder.
 void put_in_place(const std::filesystem::path& file, const std::filesystem::path& path);
 
-// The whole of an AtomicFile at once.
+// Writes an AtomicFile with this content and commits it.
 void write_file_atomically(const std::filesystem::path& path, std::string_view content);
 
-// As mkdir -p; an Error{io} says which folder could not be made and why.
+// Makes a folder and its parents, like mkdir -p. Throws Error{io} that says which folder could not
+// be made and why.
 void make_folder(const std::filesystem::path& path);
 
 }  // namespace armwright

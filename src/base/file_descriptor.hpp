@@ -1,4 +1,4 @@
-// An open file that closes itself.
+// A file descriptor that closes itself.
 #pragma once
 
 #include <unistd.h>
@@ -20,7 +20,7 @@ class FileDescriptor {
     close();
     fd_ = fd;
   }
-  // As close(2): 0, or -1 with errno set; 0 if there was nothing to close.
+  // Closes it, like close(2). Returns 0, or -1 with errno set; 0 if nothing was open.
   int close() { return is_open() ? ::close(std::exchange(fd_, -1)) : 0; }
 
  private:

@@ -1,5 +1,5 @@
-// Content hashes (SHA-256, FIPS 180-4) and record checksums (CRC-32, ISO 3309), both from system
-// libraries.
+// Hashes of contents (SHA-256, FIPS 180-4) and checksums of records (CRC-32, ISO 3309). Both come
+// from system libraries.
 #pragma once
 
 #include <array>

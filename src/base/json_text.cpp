@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-// Fit for a line: a recorded value can be anything.
+// Returns the beginning of a recorded value, safe to print in one line.
 std::string cut(std::string_view text) {
   constexpr std::size_t kLongest_bytes = 200;
   return sanitize(text.substr(0, kLongest_bytes)) + (text.size() > kLongest_bytes ? "..." : "");
@@ -22,8 +22,8 @@ std::string cut(std::string_view text) {
 
 }  // namespace
 
-// Brackets within strings do not count. Exact as far as the text is valid; what is behind the first
-// syntax error the parser never gets to.
+// Brackets within strings do not count. The depth is exact up to the first syntax error; the parser
+// does not read beyond it.
 void check_json_depth(std::string_view text, const std::string& name) {
   std::size_t depth = 0;
   for (std::size_t at = 0; at < text.size(); ++at) {

@@ -1,6 +1,6 @@
-// JSON from files, looked at before a parser sees it: the parser itself copes with any depth, but
-// whatever copies, compares, flattens or writes what it has read calls itself once a level, and
-// text of a few hundred kilobytes nests deep enough to end the program.
+// Checks JSON from files before a parser reads it. The parser itself accepts any depth. But code
+// that copies, compares, flattens or writes the result recurses once per level, and a few hundred
+// kilobytes of text can nest deep enough to overflow the stack.
 #pragma once
 
 #include <cstddef>
@@ -13,13 +13,14 @@ namespace armwright {
 
 inline constexpr std::size_t kJsonDepthLimit = 64;
 
-// Error{bad_data} "NAME:LINE: ..." if arrays and objects nest deeper than kJsonDepthLimit.
+// Throws Error{bad_data} "NAME:LINE: ..." if arrays and objects nest deeper than kJsonDepthLimit.
 void check_json_depth(std::string_view text, const std::string& name);
 
-// The file's text, with both checks; the size as in read_file().
+// Returns the text of a file after checking its size (as read_file() does) and its depth.
 std::string read_json_file(const std::filesystem::path& file, std::size_t limit_bytes);
 
-// One line a difference: "run.seed: recorded 1, now 2". Empty if the texts say the same.
+// Returns one line per difference: "run.seed: recorded 1, now 2". Empty if both texts have the same
+// values. Both must be valid JSON.
 std::vector<std::string> describe_differences(const std::string& recorded_json,
                                               const std::string& now_json);
 

@@ -1,26 +1,27 @@
-// A new folder that is whole or not there: it is filled under another name beside its own,
-// NAME.partial-N, and renamed at the end. A kill leaves that one behind, which may be removed.
+// A new folder that appears only when it is complete. It is filled under another name beside its
+// own, NAME.partial-N, and renamed at the end. After a kill, NAME.partial-N remains and may be
+// removed.
 #pragma once
 
 #include <filesystem>
 
 namespace armwright {
 
-// As PartialFolder wants a target to be named: without dots, and without a slash at its end, behind
-// which there would be no name to put something beside.
+// Returns the path without dots and without a slash at its end, so that it has a last name.
+// PartialFolder needs this form.
 std::filesystem::path normalize_folder(const std::filesystem::path& folder);
 
 class PartialFolder {
  public:
-  // Makes NAME.partial-N, with the folders above it. Error{io}.
+  // Makes NAME.partial-N and its parent folders. Throws Error{io}.
   explicit PartialFolder(std::filesystem::path target);
-  ~PartialFolder();  // removes it, unless it was released
+  ~PartialFolder();  // removes the partial folder unless it was released
   PartialFolder(const PartialFolder&) = delete;
   PartialFolder& operator=(const PartialFolder&) = delete;
 
   const std::filesystem::path& target() const { return target_; }
-  const std::filesystem::path& path() const { return path_; }  // where to write until then
-  void release() { path_.clear(); }                            // it is in place now
+  const std::filesystem::path& path() const { return path_; }  // write here
+  void release() { path_.clear(); }                            // call it after the rename
 
  private:
   std::filesystem::path target_;

@@ -12,7 +12,7 @@ namespace armwright {
 RandomStream::RandomStream(std::string_view name, std::uint64_t index) : index_(index) {
   const auto digest = calc_sha256(name);
   for (std::size_t word = 0; word < key_.size(); ++word) {
-    for (std::size_t byte = 0; byte < 8; ++byte) {  // little-endian whatever the machine
+    for (std::size_t byte = 0; byte < 8; ++byte) {  // little-endian on every machine
       key_[word] |= static_cast<std::uint64_t>(digest[8 * word + byte]) << (8 * byte);
     }
   }
@@ -44,7 +44,7 @@ double RandomStream::uniform(double lower, double upper) {
 std::uint64_t RandomStream::below(std::uint64_t n) {
   assert(n >= 1);
   const std::uint64_t rejected =
-      (0 - n) % n;  // 2^64 mod n values at the bottom would bias the remainder
+      (0 - n) % n;  // the lowest 2^64 mod n values would bias the remainder
   std::uint64_t number = next_u64();
   while (number < rejected) {
     number = next_u64();

@@ -1,7 +1,7 @@
-// Counter-based random numbers: a stream is a pure function of (name, index), the n-th number of a
-// stream a pure function of n. No stream depends on another, on threads or on the order of use,
-// which is what makes runs repeatable and resumable. Generator: Philox4x64-10 (Salmon, Moraes, Dror
-// and Shaw, SC 2011), from Random123. The key is the SHA-256 of the name.
+// Counter-based random numbers. A stream is a pure function of (name, index), and the n-th number
+// of a stream is a pure function of n. No stream depends on another one, on threads or on the order
+// of use; so runs can be repeated and resumed. Generator: Philox4x64-10 (Salmon, Moraes, Dror and
+// Shaw, SC 2011), from Random123. The key is the SHA-256 of the name.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@ namespace armwright {
 
 class RandomStream {
  public:
-  // `name` says what the numbers are for ("train/1", "optimizer/ga"); `index` picks one of
-  // its 2^64 substreams.
+  // `name` says what the numbers are for ("train/1", "optimizer/ga"). `index` selects one of the
+  // 2^64 substreams of the name.
   explicit RandomStream(std::string_view name, std::uint64_t index = 0);
 
   std::uint64_t next_u64();

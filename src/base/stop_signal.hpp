@@ -1,5 +1,5 @@
-// Asks a run to come to a graceful, resumable end. Set from signal handlers and threads, polled
-// wherever work is handed out.
+// A request that a run ends early, so that it can be resumed. Signal handlers and threads set it;
+// code that hands out work polls it.
 #pragma once
 
 #include <atomic>
@@ -14,17 +14,18 @@ enum class StopReason { none, interrupted, terminated, time_limit };
 
 class StopSignal {
  public:
-  using Clock = std::chrono::steady_clock;  // monotonic: a changed wall clock stops nothing
+  using Clock = std::chrono::steady_clock;  // monotonic: setting the wall clock has no effect
 
-  // Safe in a signal handler. The first reason stays.
+  // Requests the stop. Safe in a signal handler. The first reason counts.
   void request(StopReason reason) {
     StopReason none = StopReason::none;
     reason_.compare_exchange_strong(none, reason);
   }
-  void set_deadline(Clock::time_point deadline) { deadline_ = deadline; }  // before the run starts
-  // Called whenever somebody asks whether to stop, from any thread: for hosts that learn of
-  // interruptions otherwise than by signal handlers of ours, and then request() one. Before the run
-  // starts.
+  // Sets the time of a stop. Call it before the run starts.
+  void set_deadline(Clock::time_point deadline) { deadline_ = deadline; }
+  // Sets a function that requested() calls first, from any thread. A host program that has no
+  // signal handlers of armwright checks for interruptions there, and then calls request(). Call
+  // this before the run starts.
   void set_lookout(std::function<void()> lookout) { lookout_ = std::move(lookout); }
 
   StopReason reason() const { return reason_; }

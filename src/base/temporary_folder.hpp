@@ -1,4 +1,4 @@
-// A new empty folder that is removed, with what is in it, at the end of its scope.
+// A new empty folder that is removed with its content at the end of the scope.
 #pragma once
 
 #include <stdlib.h>
@@ -32,7 +32,7 @@ class TemporaryFolder {
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
 
-  // The names of what is in it, sorted.
+  // Returns the names of its entries, sorted.
   std::vector<std::string> list() const {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(path_)) {

@@ -10,8 +10,7 @@
 namespace armwright {
 namespace {
 
-// One piece of memory for the whole table: files with ten thousands of names to compare are read as
-// well.
+// Allocates the whole table at once, because some files have tens of thousands of names to compare.
 std::size_t calc_edit_distance(std::string_view a, std::string_view b) {
   const std::size_t row = b.size() + 1;
   std::vector<std::size_t> d((a.size() + 1) * row);
@@ -32,7 +31,7 @@ std::size_t calc_edit_distance(std::string_view a, std::string_view b) {
   return d.back();
 }
 
-// Length of the valid UTF-8 sequence at the start of `text`, 0 if there is none.
+// Returns the length of the valid UTF-8 sequence at the start of `text`, 0 if there is none.
 std::size_t utf8_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const std::size_t length = byte(0) < 0x80                       ? 1
@@ -55,9 +54,9 @@ std::size_t utf8_length(std::string_view text) {
   return overlong || not_a_character || c1_control ? 0 : length;
 }
 
-// Marks that turn the direction of what is written, and separators of lines: U+200E, U+200F, U+2028
-// to U+202E, U+2066 to U+2069. A name with one could show itself or its neighbours as something
-// else.
+// Returns whether the character changes the writing direction or separates lines: U+200E, U+200F,
+// U+2028 to U+202E, U+2066 to U+2069. A name with such a character could look like another text on
+// a terminal.
 bool rearranges_text(std::string_view character) {
   if (character.size() != 3 || character[0] != '\xE2') {
     return false;
@@ -71,7 +70,7 @@ bool rearranges_text(std::string_view character) {
 template <typename Number>
 std::optional<Number> parse_whole(std::string_view text) {
   if (text.starts_with('+') && !text.starts_with("+-")) {
-    text.remove_prefix(1);  // from_chars takes no plus sign, people write one
+    text.remove_prefix(1);  // from_chars() accepts no plus sign, but users write it
   }
   Number value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -85,8 +84,9 @@ std::optional<Number> parse_whole(std::string_view text) {
 
 std::optional<std::string> find_nearest(std::string_view name,
                                         std::span<const std::string> candidates) {
-  constexpr std::size_t kLongestName =
-      64;  // the distance costs length x length; nobody mistypes more
+  // The cost of the distance grows with the product of the lengths, so longer names are not
+  // compared.
+  constexpr std::size_t kLongestName = 64;
   if (name.size() > kLongestName) {
     return std::nullopt;
   }
@@ -94,10 +94,11 @@ std::optional<std::string> find_nearest(std::string_view name,
   std::size_t best = 0;
   for (const std::string& candidate : candidates) {
     const std::size_t length = std::max(name.size(), candidate.size());
-    // A third, or one letter of two; one letter of one would have nothing in common.
+    // At most a third of the letters may differ, or one of two letters. Names of one letter match
+    // nothing else.
     const std::size_t near = length == 2 ? 1 : length / 3;
     if (length - std::min(name.size(), candidate.size()) > near) {
-      continue;  // so many letters more cannot be near; candidates can be names out of a file, too
+      continue;  // the lengths differ too much; this saves time for long lists from a file
     }
     const std::size_t distance = calc_edit_distance(name, candidate);
     if (distance <= near && (!nearest || distance < best)) {
@@ -110,7 +111,7 @@ std::optional<std::string> find_nearest(std::string_view name,
 
 std::string describe_unknown(std::string_view what, std::string_view name,
                              std::span<const std::string> valid) {
-  // What is valid can stand in the same file: of any length, of any number, and printable or not.
+  // The valid names can come from the same file: there can be many, long and unprintable ones.
   constexpr std::size_t kMostListed = 200;
   const auto show = [](std::string_view text) {
     constexpr std::size_t kLongest_bytes = 100;

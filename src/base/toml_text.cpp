@@ -5,7 +5,8 @@
 namespace armwright {
 
 std::string quote_toml(std::string_view text) {
-  // A JSON string is a TOML string, but for one character that TOML wants escaped.
+  // A JSON string is a valid TOML string, except for one character that TOML requires to be
+  // escaped.
   std::string quoted =
       nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   for (std::size_t at = quoted.find('\x7f'); at != std::string::npos;

@@ -1,4 +1,4 @@
-// Text as TOML writes it.
+// Writes text as TOML.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace armwright {
 
-// A string in quotation marks, which a TOML reader reads back as it is; what is not UTF-8 in it is
+// Returns a quoted TOML string that reads back as the same text. Bytes that are not UTF-8 are
 // replaced.
 std::string quote_toml(std::string_view text);
 

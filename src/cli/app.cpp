@@ -11,12 +11,14 @@
 #include <new>
 #include <system_error>
 
+#include "base/build_info.hpp"
 #include "base/error.hpp"
 #include "base/file_descriptor.hpp"
 #include "base/text.hpp"
-#include "cli/commands/version.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/terminal/session.hpp"
 #include "cli/terminal/terminal.hpp"
+#include "sim/simd/simd_level.hpp"
 #include "study/executor/mpi_transport.hpp"
 
 namespace armwright {
@@ -26,37 +28,66 @@ constexpr const char* kSummary =
     "Tunes and designs robot arms by simulation, with interchangeable gradient-free optimizers.";
 
 constexpr const char* kFooter = R"(Examples:
-  armwright list problems                          # what can be optimized
+  armwright list problems                          # the problems that can be optimized
   armwright list optimizers ga                     # one optimizer and its options
-  armwright optimize q1-complex --seed 1           # tune the arm as the thesis did; resumes if interrupted
-  armwright compare --preset smoke                 # which optimizer is better, and how sure is that?
-  armwright compare q1 --executor slurm            # the same on a cluster; status and merge see to the rest
-  armwright rerun results/q1 q1-complex/ga/r03     # one run of a comparison anew: is it the same to the last bit?
+  armwright optimize q1-complex --seed 1           # tune the arm as in the thesis; resumes if interrupted
+  armwright compare --preset smoke                 # compare optimizers, with statistics
+  armwright compare q1 --executor slurm            # the same on a cluster, followed by status and merge
+  armwright rerun results/q1 q1-complex/ga/r03     # repeat one run of a study and compare all bits
   armwright evaluate table-a10 --problem q2-e6     # a published design on 500 test cases
-  armwright verify table-a10                       # does it hold under other engines, time steps and masses?
-  armwright reproduce                              # the thesis's published results beside ours
-  armwright report results/q1                      # a page to look at: figures, and the arm's motion in 3D
-  armwright export results/q1 --format csv         # its evaluations for other programs: csv, ioh, coco, json
-  armwright doctor results/q1                      # is all that is stored intact? without a folder: is all there?
+  armwright verify table-a10                       # check the design with other engines, time steps and masses
+  armwright reproduce                              # the published results of the thesis beside ours
+  armwright report results/q1                      # write a page with figures and the arm's motion in 3D
+  armwright export results/q1 --format csv         # write its evaluations as csv, ioh, coco or json
+  armwright doctor results/q1                      # check the stored files; without a folder, this machine
   armwright manual optimize                        # the manual page of a command
 
 'armwright COMMAND --help' explains a command, with examples.
 
-Results go to standard output, progress and messages to standard error. NO_COLOR and --color are respected.
+Results go to standard output, progress and messages to standard error. NO_COLOR and --color control colours.
 
 Exit codes:
   0    done
-  2    wrong use or configuration
+  2    wrong usage or configuration
   3    done, but something failed (a case without a number, nothing feasible found, a design that does not hold)
   4    an input file (robot, path, test cases, a recorded run) cannot be used
   5    another process writes this folder, or has taken over this cell
   74   reading or writing failed
   75   stopped by a time limit or SIGTERM; the same command resumes
   130  interrupted (Ctrl-C); the same command resumes
-  1    a fault of armwright itself, or no memory left
+  1    a bug in armwright, or no memory left
 
-Environment: ARMWRIGHT_JOBS and ARMWRIGHT_SEED stand in for --jobs and --seed; ARMWRIGHT_CONFIGS names the folder of
-the shipped configuration, ARMWRIGHT_SIMD the highest instruction set that is chosen unless --simd names one.)";
+Environment: ARMWRIGHT_JOBS and ARMWRIGHT_SEED are used if --jobs and --seed are not given. ARMWRIGHT_CONFIGS names the
+folder of the shipped configuration. ARMWRIGHT_SIMD limits the instruction set that is chosen without --simd.)";
+
+// Returns what --version prints: version, commit, compiler, processor, SIMD levels and libraries.
+std::string describe_version() {
+  const auto build = describe_build();
+  std::string text = fmt::format("armwright {}\n", get_version());
+  const auto add = [&text](const std::string& what, const std::string& value) {
+    text += fmt::format("  {:<13} {}\n", what, value);
+  };
+  add("git", build.at("git"));
+  add("compiler", build.at("compiler"));
+  add("build type", build.at("build_type"));
+  add("processor", build.at("cpu"));
+  add("SIMD levels", fmt::format("{}; default {}", join(supported_simd_names(), ", "),
+                                 to_string(find_best_simd())));
+  add("host", build.at("host"));
+  text += "Libraries it was built with:\n";
+  std::vector<std::string> missing;
+  for (const LibraryVersion& library : list_libraries()) {
+    if (library.version.empty()) {
+      missing.push_back(library.name);
+    } else {
+      add(library.name, library.version);
+    }
+  }
+  if (!missing.empty()) {
+    text += fmt::format("Not in this build: {}\n", join(missing, ", "));
+  }
+  return text;
+}
 
 std::vector<std::string> list_commands(const CLI::App& app) {
   std::vector<std::string> names;
@@ -76,7 +107,7 @@ std::vector<std::string> list_flags(const CLI::App& app) {
   return flags;
 }
 
-// The innermost subcommand that was named, and how it is called.
+// Returns the innermost subcommand on the command line, and its full name in `name`.
 const CLI::App& find_chosen(const CLI::App& app, std::string& name) {
   name = app.get_name();
   const CLI::App* chosen = &app;
@@ -87,7 +118,7 @@ const CLI::App& find_chosen(const CLI::App& app, std::string& name) {
   return *chosen;
 }
 
-// What is wrong with the command line, better than the parser can say it.
+// Returns what is wrong with the command line. The parser's own messages are less helpful.
 std::string describe_mistake(const CLI::App& app, const CLI::ParseError& error) {
   std::string name;
   const CLI::App& chosen = find_chosen(app, name);
@@ -141,14 +172,15 @@ int parse_and_run(CLI::App& app, Session& session, int argc, char** argv) {
       return exit_code::kDone;
     }
     write_message(fmt::format(
-        "note: of {} ranks only the first has work: optimize and compare alone share theirs out",
+        "note: only the first of {} ranks works; only optimize and compare use all ranks",
         place->size));
   }
   return session.action();
 }
 
-// A closed one would be given to the next file that is opened, perhaps a journal, and what is
-// printed would go there. Not to be written to: whoever prints is told.
+// Opens /dev/null in place of each closed standard stream. Otherwise the next file that is opened,
+// perhaps a journal, would get the stream's number and the printed text. It is opened for reading
+// only, so that printing fails with an error.
 void occupy_standard_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(stream, F_GETFD) < 0 && ::open("/dev/null", O_RDONLY) != stream) {
@@ -171,7 +203,8 @@ int get_exit_code(ErrorKind kind) {
   return exit_code::kIo;
 }
 
-// What rank 0 has to say is said once: the others parse the same words and read the same files.
+// The other ranks parse the same words and read the same files as rank 0, so they would print the
+// same messages.
 void silence_worker_ranks() {
   const auto place = find_rank_place();
   if (place && place->rank > 0) {
@@ -194,15 +227,14 @@ int run_command(Session& session, int argc, char** argv) {
   } catch (const Error& error) {
     write_message(std::string("error: ") + error.what());
     return get_exit_code(error.kind());
-  } catch (const std::system_error& error) {  // std::filesystem's, and no threads to be had
+  } catch (const std::system_error& error) {  // of std::filesystem, or if no thread can start
     write_message(std::string("error: ") + error.what());
     return exit_code::kIo;
   } catch (const std::bad_alloc&) {
-    write_message("error: no memory left; fewer --jobs or a smaller problem need less");
+    write_message("error: no memory left; use fewer --jobs or a smaller problem");
     return exit_code::kInternal;
   } catch (const std::exception& error) {
-    write_message(std::string("error: a fault of armwright itself, please report it: ") +
-                  error.what());
+    write_message(std::string("error: a bug in armwright, please report it: ") + error.what());
     return exit_code::kInternal;
   }
 }
@@ -243,38 +275,9 @@ void add_all_commands(CLI::App& app, Session& session) {
   add_completion(app, session);
 }
 
-std::string quote_own_command(const Session& session, std::vector<std::string> words) {
-  words.insert(words.begin(), session.command_line.front());
-  return sanitize(quote_command(words));
-}
-
-int get_stop_code(StopReason reason) {
-  return reason == StopReason::interrupted ? exit_code::kInterrupted : exit_code::kStopped;
-}
-
-const char* describe_stop(StopReason reason) {
-  switch (reason) {
-    case StopReason::interrupted:
-      return "interrupted";
-    case StopReason::terminated:
-      return "stopped by a signal";
-    case StopReason::time_limit:
-      return "stopped: the time limit is reached";
-    case StopReason::none:
-      break;
-  }
-  return "stopped";
-}
-
-int end_stopped(const Session& session, std::span<const std::string> command) {
-  const StopReason reason = session.stop.reason();
-  write_message(fmt::format("{}; nothing is lost. To go on:\n{}", describe_stop(reason),
-                            quote_command(command)));
-  return get_stop_code(reason);
-}
-
 int run_app(int argc, char** argv) {
-  // A closed pipe and a file beyond the limit of its size show as errors of write().
+  // With these signals ignored, a closed pipe and a file beyond its size limit are errors of
+  // write().
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   Session session;
@@ -283,7 +286,7 @@ int run_app(int argc, char** argv) {
     std::fflush(nullptr);
     abort_mpi(code);
   }
-  // To mpirun a worker that has no work because the command line is wrong is no second failure.
+  // If the command line is wrong, mpirun shall see one failed rank, not one per worker.
   const auto place = find_rank_place();
   return place && place->rank > 0 ? exit_code::kDone : code;
 }

@@ -21,7 +21,7 @@ namespace armwright {
 namespace {
 
 constexpr int kPollMs = 50;
-constexpr int kClosedPollMs = 1;  // once the connection is closed, death is a matter of moments
+constexpr int kClosedPollMs = 1;  // after the connection has closed, the child ends soon
 constexpr std::uint64_t kMaxFrameBytes = std::uint64_t{1} << 32;
 
 [[noreturn]] void fail(const char* doing, int error) {
@@ -66,7 +66,7 @@ ChildProcess::ChildProcess(const std::function<void(ParentLink&)>& body,
   if (output_) {
     output_->close_child_end();
   }
-  setpgid(pid_, pid_);  // as the child does: whoever comes first
+  setpgid(pid_, pid_);  // the child does the same; either call may be first
 }
 
 ChildProcess::~ChildProcess() {
@@ -75,13 +75,13 @@ ChildProcess::~ChildProcess() {
   try {
     take_output();
   } catch (const std::exception&) {
-    // Its last words are lost; nobody who could be told is left.
+    // The child's last output is lost. A destructor cannot report the error.
   }
 }
 
 bool ChildProcess::end_gently(std::chrono::milliseconds patience) const {
   constexpr std::chrono::milliseconds kPause{5};
-  ::kill(pid_, SIGTERM);  // not reaped yet, so that the number is its own
+  ::kill(pid_, SIGTERM);  // the child is not reaped yet, so the id is still its own
   for (const auto end = Clock::now() + patience; Clock::now() < end && !has_ended(pid_);) {
     std::this_thread::sleep_for(kPause);
   }
@@ -98,8 +98,9 @@ ChildProcess::Event ChildProcess::receive(const std::function<bool()>& must_give
     if (const auto event = take_message(message)) {
       return *event;
     }
-    check_silence();  // a part of a message does not break it
-    // Death is looked at before reading: what was sent before it is then all there.
+    check_silence();  // a part of a message does not count as a sign of life
+    // Checks for the child's end before reading: everything that it sent before its end is then
+    // readable.
     const bool is_dead = has_ended(pid_);
     if (!is_dead && !wait_for(POLLIN)) {
       continue;
@@ -113,7 +114,7 @@ ChildProcess::Event ChildProcess::receive(const std::function<bool()>& must_give
       explain_death();
     }
     if (!is_open) {
-      wait_for(0);  // its end is closed: it is about to die, or will fall silent
+      wait_for(0);  // the child closed its end: it ends soon, or the silence limit ends the wait
     }
   }
 }
@@ -134,7 +135,7 @@ std::optional<ChildProcess::Event> ChildProcess::send(std::string_view message,
         return Event::given_up;
       }
     } else if (errno != EINTR) {
-      return std::nullopt;  // it is dead; receive() says of what
+      return std::nullopt;  // the child has ended; receive() reports why
     }
   }
   return std::nullopt;
@@ -156,7 +157,7 @@ std::optional<ChildProcess::Event> ChildProcess::take_message(std::string& messa
   message = received_.substr(sizeof header, header.size);
   received_.erase(0, sizeof header + header.size);
   if (header.kind != FrameKind::message) {
-    take_output();  // it has printed its last before it said so
+    take_output();  // the child sends this after its last output
   }
   switch (header.kind) {
     case FrameKind::message:

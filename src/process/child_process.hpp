@@ -1,8 +1,8 @@
-// A child of this process (fork, no exec) that exchanges messages with it and can be abandoned at
-// any time. The child holds no descriptor of this process but the standard ones (its input is
-// empty, what it prints goes into a log or to the error stream), has no signal handlers, is out of
-// the terminal's reach (own process group), runs none of this process's exit handlers and dies with
-// it.
+// A forked child of this process (no exec) that exchanges messages with it and can be abandoned at
+// any time. The child keeps only the standard descriptors: its input is empty, and its output goes
+// into a log or to the standard error. It has no signal handlers, leads a process group of its own
+// so that the terminal does not reach it, runs no exit handlers of this process, and dies when this
+// process dies.
 #pragma once
 
 #include <sys/types.h>
@@ -22,23 +22,24 @@ namespace armwright {
 
 class ChildProcess {
  public:
-  // Runs `body` in the child. What it prints goes into `log`, which must outlive this; without one
-  // to our standard error. Error{io} if there is no process to be had.
+  // Runs `body` in the child. The child's output goes into `log`, which must live longer than this
+  // object, or to our standard error without a log. Throws Error{io} if no process can be started.
   ChildProcess(const std::function<void(ParentLink&)>& body, const ProcessLimits& limits,
                OutputLog* log = nullptr);
-  ~ChildProcess();  // kills the child and whatever it started in its process group, and reaps it
+  ~ChildProcess();  // kills and reaps the child, and kills its process group
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
   enum class Event { message, finished, given_up };
-  // Waits for the next message. `finished`: the body has returned; `given_up`: `must_give_up`
-  // (asked at least every 50 ms) said so. Throws ChildFailure when the body threw, the child died,
-  // sent nothing for too long or took too much memory.
+  // Waits for the next message. Returns `finished` if the body has returned, and `given_up` if
+  // `must_give_up` returned true; it is called at least every 50 ms. Throws ChildFailure if the
+  // body threw, or the child died, sent nothing for too long, or exceeded its memory limit.
   Event receive(const std::function<bool()>& must_give_up, std::string& message);
-  // The same for sending; never `message` nor `finished`, but nothing if all is sent.
+  // Sends a message. Returns nothing when all is sent, or `given_up` as receive() does. Throws as
+  // receive() does.
   std::optional<Event> send(std::string_view message, const std::function<bool()>& must_give_up);
 
-  // Asks it to end (SIGTERM), which it may take as long for as `patience`; whether it has ended.
+  // Asks the child to end (SIGTERM) and waits at most for `patience`. Returns whether it has ended.
   bool end_gently(std::chrono::milliseconds patience) const;
 
  private:
@@ -50,8 +51,8 @@ class ChildProcess {
 
   static SocketPair open_sockets();
   std::optional<Event> take_message(std::string& message);
-  bool wait_for(short events);  // whether there is something to be done
-  bool read_available();        // false at the end
+  bool wait_for(short events);  // true if an event has happened
+  bool read_available();        // false at the end of the stream
   void take_output();
   void check_silence() const;
   void check_memory();

@@ -1,4 +1,4 @@
-// The words of a command, as a shell would split it.
+// Splits a command into words as a shell does.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace armwright {
 
-// Words between blanks; quotes of both kinds and backslashes as in a shell. Nothing is expanded.
-// Error{usage} if a quote stays open or there is no word.
+// Splits at blanks and handles both kinds of quotes and backslashes as a shell does. Expands
+// nothing. Throws Error{usage} if a quote is not closed or there is no word.
 std::vector<std::string> split_command(std::string_view command);
 
 }  // namespace armwright

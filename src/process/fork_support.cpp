@@ -20,7 +20,7 @@ AllSignalsBlocked::~AllSignalsBlocked() {
 
 void reset_signals() {
   for (int signal = 1; signal < NSIG; ++signal) {
-    std::signal(signal, SIG_DFL);  // refused for those that have no handler, and rightly
+    std::signal(signal, SIG_DFL);  // fails for signals that cannot have a handler; ignored
   }
   sigset_t none;
   sigemptyset(&none);

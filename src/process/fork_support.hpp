@@ -1,4 +1,4 @@
-// What the children of this process have in common between fork() and what they are for.
+// Functions that the children of this process need after fork().
 #pragma once
 
 #include <signal.h>
@@ -6,7 +6,8 @@
 
 namespace armwright {
 
-// Around a fork(): until the child has handlers of its own, no signal may run this process's in it.
+// Blocks all signals in its scope. Use it around fork(), so that no handler of this process runs in
+// the child.
 class AllSignalsBlocked {
  public:
   AllSignalsBlocked();
@@ -18,13 +19,15 @@ class AllSignalsBlocked {
   sigset_t before_;
 };
 
-// In the child. All three are safe there, whatever threads the parent had.
+// The three functions below run in the child. They are safe there, even if the parent has threads.
 
-// No handlers, nothing ignored, nothing blocked.
+// Removes all signal handlers, and unblocks and unignores all signals.
 void reset_signals();
-// Ctrl-C is the parent's to answer, and killing the group takes what the child starts as well.
+// Makes the child the leader of a process group. Ctrl-C then reaches only the parent, and killing
+// the group also kills what the child has started.
 void lead_own_group();
-// Is killed when the thread that forked it ends, however that happens; ends here if it already has.
+// Makes the kernel kill the child when the thread that forked it ends. Ends the child now if that
+// thread has already ended.
 void die_with(pid_t parent);
 
 }  // namespace armwright

@@ -24,7 +24,7 @@
 namespace armwright {
 namespace {
 
-constexpr auto kSlice = std::chrono::milliseconds(100);  // between two looks at what is watched
+constexpr auto kSlice = std::chrono::milliseconds(100);  // the time between two checks
 
 using Clock = LineProcess::Clock;
 
@@ -33,7 +33,7 @@ Clock::time_point after(double seconds) {
          std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
 
-// Resident memory in MiB; 0 for a process that is gone.
+// Returns the process's resident memory in MiB, or 0 if the process has ended.
 double read_memory_mib(pid_t pid) {
   const auto memory = measure_memory(std::to_string(pid));
   return memory ? static_cast<double>(memory->resident_bytes) / 1048576 : 0;
@@ -50,12 +50,12 @@ std::string describe_exit(int status) {
   return fmt::format("ended with exit code {}", WEXITSTATUS(status));
 }
 
-// What the child is to become. All of it is there before the fork: after it, nothing may take
-// memory.
+// The data that the child needs to start the program. It is prepared before the fork, because the
+// child must not allocate memory after it.
 struct ChildPlan {
   pid_t parent = -1;
-  std::array<int, 3> streams{};  // its standard ones
-  int report = -1;               // where it says why it could not begin: an errno
+  std::array<int, 3> streams{};  // standard input, output and error
+  int report = -1;               // the child writes errno here if it cannot start
   char* const* words = nullptr;
 };
 
@@ -77,7 +77,7 @@ struct ChildPlan {
   _exit(EXIT_FAILURE);
 }
 
-// 0, or why it could not begin.
+// Returns 0 if the program has started, otherwise the errno that explains why not.
 int read_report(int report) {
   int error = 0;
   ssize_t count = 0;
@@ -91,7 +91,7 @@ int read_report(int report) {
 
 LineProcess::LineProcess(const std::vector<std::string>& words, OutputLog& log)
     : log_(log), next_memory_check_(Clock::now()) {
-  // The child's input is a socket, not a pipe: send() can be told not to raise SIGPIPE.
+  // The child's input is a socket and not a pipe, so that send() can suppress SIGPIPE.
   std::array<int, 2> to_child{};
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, to_child.data()) != 0) {
     fail_io(words.front(), "connect to the process", errno);
@@ -131,15 +131,15 @@ LineProcess::LineProcess(const std::vector<std::string>& words, OutputLog& log)
   if (pid_ < 0) {
     fail_io(words.front(), "start a process for it", errno);
   }
-  setpgid(pid_, pid_);  // as the child does: whoever comes first
+  setpgid(pid_, pid_);  // the child does the same; either call may be first
   child_report.close();
   log_.close_child_end();
   const int error = read_report(our_report.get());
   if (error != 0) {
     reap(std::exchange(pid_, -1));
     throw Error(ErrorKind::usage,
-                fmt::format("cannot start '{}': {}; it must be a program on the PATH or the path "
-                            "of one",
+                fmt::format("cannot start '{}': {}; name a program on the PATH or give a "
+                            "program's path",
                             sanitize(words.front()), std::generic_category().message(error)));
   }
 }
@@ -148,7 +148,7 @@ LineProcess::~LineProcess() {
   try {
     kill();
   } catch (const std::exception&) {
-    // Dead it is; only its last words are lost.
+    // The program is killed; only its last output is lost.
   }
 }
 
@@ -227,7 +227,7 @@ void LineProcess::send(const std::string& line, double silence_s) {
       continue;
     }
     if (errno == EPIPE || errno == ECONNRESET) {
-      return;  // it does not listen: receive() finds out why
+      return;  // the program has closed its input; receive() reports why
     }
     if (has_ended(pid_)) {
       return;
@@ -238,7 +238,7 @@ void LineProcess::send(const std::string& line, double silence_s) {
     }
     check_memory();
     log_.take_available();
-    // It may have to get rid of something before it listens.
+    // The program may have to write its output before it can read its input, so this reads too.
     const bool has_room = !at_end_ && received_.size() <= kLongestLine;
     std::array<pollfd, 3> waiting{pollfd{input_.get(), POLLOUT, 0}, pollfd{log_.get(), POLLIN, 0},
                                   pollfd{has_room ? output_.get() : -1, POLLIN, 0}};
@@ -259,7 +259,8 @@ std::optional<std::string> LineProcess::receive(double silence_s,
     if (is_given_up()) {
       return std::nullopt;
     }
-    // What it wrote before it ended is read first, whoever else holds its output open.
+    // Checks for the program's end before reading: everything that it wrote before its end is then
+    // read, even if another process keeps the output open.
     const bool ended = has_ended(pid_);
     const std::size_t before = received_.size();
     read_available();
@@ -269,7 +270,8 @@ std::optional<std::string> LineProcess::receive(double silence_s,
         return line;
       }
     }
-    // Only a whole line breaks the silence: one byte now and then would keep us here for ever.
+    // Only a whole line ends the silence. Otherwise a program that writes single bytes could block
+    // this function forever.
     silence.look();
     const bool is_late = silence.get_s() > silence_s;
     if (has_grown && !is_late) {
@@ -289,7 +291,7 @@ std::optional<std::string> LineProcess::receive(double silence_s,
       throw LineProcessSilence(fmt::format("has been silent for {:g} s", silence_s));
     }
     if (at_end_) {
-      poll(nullptr, 0, 10);  // it is about to end
+      poll(nullptr, 0, 10);  // the program ends soon
     } else {
       std::array<pollfd, 2> waiting{pollfd{output_.get(), POLLIN, 0},
                                     pollfd{log_.get(), POLLIN, 0}};
@@ -304,7 +306,7 @@ std::string LineProcess::finish(double patience_s) {
   while (!has_ended(pid_)) {
     received_.clear();
     taken_ = searched_ = 0;
-    read_available();  // so that it does not wait for us
+    read_available();  // so that the program does not block on its output
     log_.take_available();
     if (Clock::now() > deadline) {
       kill();

@@ -1,6 +1,6 @@
-// A program in a process of its own, spoken to in lines: its standard input and output are ours.
-// It is watched while it is waited for, and never outlives the object: what it started in its
-// process group is killed with it.
+// A program in a process of its own that exchanges lines with this process over its standard input
+// and output. It is watched while this process waits for it. The destructor kills it and its
+// process group.
 #pragma once
 
 #include <sys/types.h>
@@ -18,13 +18,13 @@
 
 namespace armwright {
 
-// The child broke off, fell silent or took too much. The message completes a sentence that begins
-// with the child's name: "ended with exit code 3".
+// The child ended, sent nothing for too long or used too much memory. The message completes a
+// sentence that begins with the child's name: "ended with exit code 3".
 class LineProcessFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// It kept us waiting for longer than it might.
+// The child did not answer in time.
 class LineProcessSilence : public LineProcessFailure {
   using LineProcessFailure::LineProcessFailure;
 };
@@ -34,28 +34,29 @@ class LineProcess {
   using Clock = std::chrono::steady_clock;
   static constexpr std::size_t kLongestLine = std::size_t{64} << 20;
 
-  // Looks words[0] up on the PATH. Standard error goes to `log`, which must outlive this.
-  // Error{usage} if there is no such program; Error{io} from here and all that waits if the log
-  // cannot be written.
+  // Starts words[0], which is searched on the PATH. Its standard error goes to `log`, which must
+  // live longer than this object. Throws Error{usage} if there is no such program. This and every
+  // function that waits throw Error{io} if the log cannot be written.
   LineProcess(const std::vector<std::string>& words, OutputLog& log);
   ~LineProcess();  // kills
   LineProcess(const LineProcess&) = delete;
   LineProcess& operator=(const LineProcess&) = delete;
 
-  // From now on it may hold `mib` more of resident memory than it does now.
+  // Limits the resident memory to its present value and `mib` more.
   void limit_memory(double mib);
 
-  // Both throw LineProcessFailure. `silence_s` is how long it may keep us waiting.
+  // Both throw LineProcessFailure. `silence_s` is the longest time to wait for the child.
   void send(const std::string& line, double silence_s);
-  // The next line, or nothing as soon as `is_given_up` holds, which is asked ten times a second.
+  // Returns the next line, or nothing as soon as `is_given_up` returns true; it is called ten times
+  // per second.
   std::optional<std::string> receive(double silence_s, const std::function<bool()>& is_given_up);
 
-  // No more is said to it; it has `patience_s` to end by itself and is killed after that. Its exit
-  // as text if it was not exit code 0: empty if it was, or if it had to be killed.
+  // Closes its input, waits at most `patience_s` for its end, and then kills it. Returns how it
+  // ended as text; empty for exit code 0 or if it had to be killed.
   std::string finish(double patience_s);
 
  private:
-  std::string kill();  // and reap; how it ended
+  std::string kill();  // kills and reaps it; returns how it ended
   void check_memory();
   void read_available();
   std::optional<std::string> take_line();

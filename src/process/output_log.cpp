@@ -38,7 +38,7 @@ OutputLog::~OutputLog() {
   try {
     write(note + tail_.substr(tail_.size() - kept));
   } catch (const std::exception&) {
-    // A full disk: the run has said so itself, or has got everything that it needs.
+    // The disk is full. The run has reported that itself, or it has already stored all its results.
   }
 }
 
@@ -109,7 +109,7 @@ OutputPipe::OutputPipe(OutputLog& log) : log_(log) {
 }
 
 void OutputPipe::take_available() {
-  constexpr int kMostReads = 16;  // whoever prints without end must not keep us here for ever
+  constexpr int kMostReads = 16;  // a child that prints without end must not block this function
   std::array<char, 65536> buffer;
   for (int i = 0; our_end_.is_open() && i < kMostReads; ++i) {
     const ssize_t count = read(our_end_.get(), buffer.data(), buffer.size());

@@ -1,5 +1,5 @@
-// What an optimizer's processes print, on its way through a pipe into a file that does not grow
-// without end, whatever they print: the beginning and the end are kept.
+// The log of what optimizers' processes print. The output comes through a pipe and goes into a file
+// of limited size: its beginning and its end are kept.
 #pragma once
 
 #include <cstddef>
@@ -19,17 +19,17 @@ class OutputLog {
 
   enum class Begin { anew, behind_what_is_there };
 
-  // No file: only the last lines are kept, for messages.
+  // Keeps only the last lines, for messages, without a file.
   OutputLog() = default;
-  // An empty name: likewise. Anew: what an earlier run left there is removed, and a file is made
-  // once there is something to write. Error{io}.
+  // Writes to `file`; an empty name means no file. With `anew`, removes the file of an earlier run
+  // and makes a file with the first output. Throws Error{io}.
   OutputLog(std::filesystem::path file, Begin begin);
-  ~OutputLog();  // writes the end, with a line that says how much was left out before it
+  ~OutputLog();  // writes the end of the output, after a line that says how much is left out
   OutputLog(const OutputLog&) = delete;
   OutputLog& operator=(const OutputLog&) = delete;
 
-  void add(std::string_view printed);  // Error{io}
-  // The last lines, fit for a terminal; at most ten.
+  void add(std::string_view printed);  // throws Error{io}
+  // Returns the last lines, at most ten, safe to show on a terminal.
   std::vector<std::string> last_lines() const;
 
  private:
@@ -43,11 +43,11 @@ class OutputLog {
   std::string tail_;             // the last of everything, between one and two times kTailBytes
 };
 
-// "; the last that it printed:" and the lines, each on a line of its own; nothing for no lines.
+// Returns "; the last that it printed:" and the lines, one per line. Empty if there are no lines.
 std::string describe_printed(const std::vector<std::string>& lines);
 
-// A pipe into a log. A child writes into its one end; the other is read while the child is waited
-// for.
+// A pipe into a log. A child writes into one end. This process reads the other end while it waits
+// for the child.
 class OutputPipe {
  public:
   explicit OutputPipe(OutputLog& log);  // Error{io}
@@ -55,7 +55,7 @@ class OutputPipe {
   int child_end() const { return child_end_.get(); }
   void close_child_end() { child_end_.close(); }
   int get() const { return our_end_.get(); }  // for poll(); -1 at the end
-  // What is there already, or a good part of it if there is much. Error{io} of the log.
+  // Reads what is available, or a large part of it. Throws Error{io} of the log.
   void take_available();
 
  private:

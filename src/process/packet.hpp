@@ -1,5 +1,5 @@
-// Numbers and texts as bytes, between two processes of the same program: the machine's own byte
-// order, no versions. Reading beyond the end throws.
+// Numbers and texts as bytes between two processes of the same program, in the machine's byte order
+// and without versions. A read beyond the end throws.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace armwright {
 
-// What was received is not what was agreed on.
+// A received message does not have the expected content.
 class PacketError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -43,7 +43,7 @@ class PacketReader {
 
   template <typename Number>
   requires std::is_arithmetic_v<Number> || std::is_enum_v<Number> Number get() {
-    if constexpr (std::is_same_v<Number, bool>) {  // of any other byte no bool may be made
+    if constexpr (std::is_same_v<Number, bool>) {  // only 0 and 1 are valid
       const auto byte = get<std::uint8_t>();
       if (byte > 1) {
         throw PacketError("a message has a truth value that is none");

@@ -18,7 +18,7 @@ namespace armwright {
 namespace {
 
 constexpr int kChildSocket = 3;
-constexpr std::size_t kMaxTextBytes = 4000;  // of an exception; what is longer is cut
+constexpr std::size_t kMaxTextBytes = 4000;  // of an exception; longer texts are cut
 
 void leave_descriptors_behind(int socket, int output) {
   if (output >= 0) {
@@ -33,11 +33,12 @@ void leave_descriptors_behind(int socket, int output) {
   if (nothing > kChildSocket) {
     close(nothing);
   }
-  dup2(STDERR_FILENO, STDOUT_FILENO);  // the program's results alone go to its output
+  dup2(STDERR_FILENO, STDOUT_FILENO);  // armwright's own output is for results only
 }
 
-// The parent kills a child that is over the limit; between two of its looks this stops the rest.
-// Not under the address sanitizer, whose allocator takes a refusal for the end of the program.
+// Limits the memory that the child can allocate. The parent kills a child that exceeds its limit;
+// this limit stops a fast-growing child between two of the parent's checks. It is not used with the
+// address sanitizer, whose allocator ends the program if an allocation fails.
 [[maybe_unused]] void limit_memory(std::optional<std::int64_t> at_start, double memory_mib) {
   rlimit limit{};
   if (!at_start || getrlimit(RLIMIT_DATA, &limit) != 0) {
@@ -99,10 +100,10 @@ void run_child(const ChildSettings& settings, const std::function<void(ParentLin
   lead_own_group();
   die_with(settings.parent);
   leave_descriptors_behind(settings.socket, settings.output);
-  // What this process had not yet written is not the child's to write; and exit() in the body ends
-  // here, before the handlers registered earlier.
+  // Discards the parent's unwritten output, which the child must not write again. The exit handler
+  // below ends the process before the handlers that the parent registered earlier.
   __fpurge(stdout);
-  setvbuf(stdout, nullptr, _IOLBF, 0);  // what it printed before it crashed is wanted
+  setvbuf(stdout, nullptr, _IOLBF, 0);  // keeps lines that the child printed before a crash
   on_exit([](int status, void*) { _exit(status); }, nullptr);
 #ifndef __SANITIZE_ADDRESS__
   limit_memory(settings.data_bytes_at_start, settings.memory_mib);

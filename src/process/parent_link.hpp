@@ -1,5 +1,5 @@
-// The inside of a child process (child_process.hpp): how it cuts itself off from the process it was
-// forked from, and what it sends there.
+// The inside of a child process (child_process.hpp): how it separates itself from its parent, and
+// the frames that it sends to it.
 #pragma once
 
 #include <sys/types.h>
@@ -13,11 +13,12 @@
 
 namespace armwright {
 
-// What became of a child, as the end of a sentence that begins with its name: "was killed by signal
-// 11 (Segmentation fault)". A body may throw it too, and it comes out with the same words.
+// Says how a child failed. The text completes a sentence that begins with the child's name: "was
+// killed by signal 11 (Segmentation fault)". A body may throw it too; the parent then throws it
+// with the same text.
 class ChildFailure : public std::runtime_error {
  public:
-  // `limit`: the member of ProcessLimits that it went beyond; empty for none.
+  // `limit` is the member of ProcessLimits that the child exceeded; empty for none.
   explicit ChildFailure(const std::string& what, const char* limit = "")
       : std::runtime_error(what), limit_(limit) {}
   const char* limit() const { return limit_; }
@@ -28,8 +29,8 @@ class ChildFailure : public std::runtime_error {
 
 enum class FrameKind : std::uint64_t { message, finished, failure, exception, out_of_memory };
 
-// A frame: this, then `size` bytes. The mark tells apart what a child wrote into a descriptor that
-// is not its own.
+// A frame is this header and `size` bytes. The mark distinguishes frames from bytes that a child
+// wrote into a wrong descriptor.
 struct FrameHeader {
   std::uint64_t mark = 0x41524d5752494748;
   std::uint64_t size = 0;
@@ -38,14 +39,15 @@ struct FrameHeader {
 
 std::string make_frame(FrameKind kind, std::string_view message);
 
-// The child's end. If the parent is gone, the child ends: no function returns then.
+// The child's end of the connection. If the parent has ended, the functions do not return; the
+// child ends.
 class ParentLink {
  public:
   explicit ParentLink(int socket) : socket_(socket) {}
   void send(std::string_view message) { send(FrameKind::message, message); }
   void send(FrameKind kind, std::string_view message);
   std::string receive();
-  // Sends a question and waits for its answer.
+  // Sends a request and waits for its answer.
   std::string ask(std::string_view question);
 
  private:
@@ -55,12 +57,12 @@ class ParentLink {
 struct ChildSettings {
   pid_t parent = -1;
   int socket = -1;
-  int output = -1;  // where what it prints goes; -1: to the error stream
+  int output = -1;  // where its output goes; -1: the standard error
   std::optional<std::int64_t> data_bytes_at_start = {};
-  double memory_mib = 0;  // that it may take beyond that
+  double memory_mib = 0;  // that it may allocate in addition
 };
 
-// What a child does between fork() and its end.
+// Does all the work of a child between fork() and its end.
 [[noreturn]] void run_child(const ChildSettings& settings,
                             const std::function<void(ParentLink&)>& body);
 

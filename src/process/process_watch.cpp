@@ -30,7 +30,7 @@ bool has_ended(pid_t child) {
 
 void kill_group(pid_t child) {
   kill(-child, SIGKILL);
-  kill(child, SIGKILL);  // one that has not yet come to lead its group
+  kill(child, SIGKILL);  // the child may not lead its group yet
 }
 
 int reap(pid_t child) {
@@ -50,7 +50,7 @@ void WakingTime::restart() {
 }
 
 void WakingTime::look() {
-  constexpr double kLongestWait_s = 0.2;  // twice the longest between two looks
+  constexpr double kLongestWait_s = 0.2;  // twice the longest time between two calls
   const Clock::time_point now = Clock::now();
   passed_s_ += std::min(std::chrono::duration<double>(now - last_).count(), kLongestWait_s);
   last_ = now;

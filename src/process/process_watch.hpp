@@ -1,4 +1,4 @@
-// What is watched in child processes: memory, end, and the time since the last sign of life.
+// Watches child processes: their memory, their end, and the time since their last message.
 #pragma once
 
 #include <sys/types.h>
@@ -13,36 +13,38 @@ namespace armwright {
 
 inline constexpr double kMib = 1024.0 * 1024.0;  // bytes per MiB
 
+// Limits of a child process. A process that exceeds one is killed.
 struct ProcessLimits {
-  double silence_s = 60;     // longest time between two questions; the scores' own time not counted
-  double memory_mib = 4096;  // that the child may allocate beyond what it began with
-  bool are_options = false;  // the two above: messages then name them, for the user to change
+  double silence_s = 60;     // longest time between two requests, without the time of the answers
+  double memory_mib = 4096;  // memory that it may allocate in addition to that at its start
+  bool are_options = false;  // both values are options of the user, and messages name them
 };
 
 struct ProcessMemory {
   std::int64_t resident_bytes = 0;
-  std::int64_t data_bytes = 0;  // writable private memory, stacks included, whether touched or not
+  std::int64_t data_bytes = 0;  // writable private memory with stacks, also if it was never touched
 };
 
-// `process` is a number or "self". Nothing for a process that is gone.
+// Returns the memory of a process, given as a number or "self". Returns nothing if the process has
+// ended.
 std::optional<ProcessMemory> measure_memory(const std::string& process);
 
-// Whether a child has ended. It is not reaped: its number stays its own.
+// Returns whether a child has ended. Does not reap it, so that its process number stays reserved.
 bool has_ended(pid_t child);
 
-// Kills a child that has not been reaped, so that no number can be anybody else's, and everything
-// in the process group that it leads.
+// Kills a child and all processes of the group that it leads. The child must not have been reaped,
+// so that its number cannot belong to another process.
 void kill_group(pid_t child);
 
-// Waits for its end and returns waitpid's status.
+// Waits for the end of a child and returns the status of waitpid().
 int reap(pid_t child);
 
-// "was killed by signal 11 (Segmentation fault)"
+// Returns "was killed by signal 11 (Segmentation fault)".
 std::string describe_signal(int signal);
 
-// Time that passes while this process is awake: the sum of the times between looks, each of which
-// counts for no more than a wait may last. So a suspended machine or a stopped program does not
-// make a child late.
+// Measures the time that passes while this process runs: the sum of the times between two calls of
+// look(), where each counts at most as long as one wait. So a suspended machine or a stopped
+// program does not make a child late.
 class WakingTime {
  public:
   void restart();

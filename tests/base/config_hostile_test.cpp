@@ -1,10 +1,11 @@
-// Texts that are wrong, and texts made to hurt: each must give one line that says where and why.
+// Wrong and malicious texts: each must give a message of one line that says where and why.
 #include <gtest/gtest.h>
 
 #include <functional>
 
 #include "base/config.hpp"
 #include "base/expect_error.hpp"
+#include "base/some_settings.hpp"
 
 namespace armwright {
 namespace {
@@ -101,7 +102,7 @@ TEST(HostileConfig, KeysBeyondAsciiNeedQuotes) {
       refusal_of("[délka]\n"),
       "q1.toml:1: 'délka' stands outside quotes; keys are made of a-z A-Z 0-9 _ -, anything else "
       "needs quotes");
-  EXPECT_EQ(ConfigTable::parse("\"ŭ\" = 'é' # ž\n", "q1.toml").get_string("ŭ"), "é");
+  EXPECT_EQ(ConfigTable::parse("\"ŭ\" = 'é' # ž\n", "q1.toml").get(text("ŭ")), "é");
 }
 
 TEST(HostileConfig, AHeaderNeedsAName) {
@@ -140,9 +141,9 @@ TEST(HostileConfig, ALetterBeyondAsciiDoesNotFollowABackslash) {
       "a letter beyond ASCII behind a backslash; write the text without this backslash";
   EXPECT_EQ(refusal_of("x = 1\ny = \"\"\"\na \\\n  ž\"\"\"\n"), "q1.toml:4: " + message);
   EXPECT_EQ(refusal_of("x = \"\\ž\"\n"), "q1.toml:1: " + message);
-  EXPECT_EQ(ConfigTable::parse("x = \"\"\"ž \\\n  a\"\"\"\n", "q1.toml").get_string("x"), "ž a");
-  EXPECT_EQ(ConfigTable::parse("x = '\\ž'\n", "q1.toml").get_string("x"), "\\ž");
-  EXPECT_EQ(ConfigTable::parse("x = \"\\\\ž\"\n", "q1.toml").get_string("x"), "\\ž");
+  EXPECT_EQ(ConfigTable::parse("x = \"\"\"ž \\\n  a\"\"\"\n", "q1.toml").get(text("x")), "ž a");
+  EXPECT_EQ(ConfigTable::parse("x = '\\ž'\n", "q1.toml").get(text("x")), "\\ž");
+  EXPECT_EQ(ConfigTable::parse("x = \"\\\\ž\"\n", "q1.toml").get(text("x")), "\\ž");
 }
 
 TEST(HostileConfig, ADateNeedsItsTimeBehindTheT) {
@@ -163,7 +164,7 @@ TEST(HostileConfig, ABraceDoesNotStandForAValue) {
 }
 
 TEST(HostileConfig, AByteOrderMarkIsSkipped) {
-  EXPECT_EQ(ConfigTable::parse("\xef\xbb\xbfx = 1\n", "q1.toml").get_number("x"), 1);
+  EXPECT_EQ(ConfigTable::parse("\xef\xbb\xbfx = 1\n", "q1.toml").get(number("x")), 1);
 }
 
 TEST(HostileConfig, TextCutOffAnywhereGivesAMessageOrAValue) {
@@ -184,9 +185,9 @@ TEST(HostileConfig, TextCutOffAnywhereGivesAMessageOrAValue) {
 
 TEST(HostileConfig, LargeFilesOfTinyPiecesAreRead) {
   EXPECT_EQ(
-      ConfigTable::parse("a = [" + repeat("1,", 500000) + "]", "q1.toml").get_numbers("a").size(),
+      ConfigTable::parse("a = [" + repeat("1,", 500000) + "]", "q1.toml").get(numbers("a")).size(),
       500000U);
-  EXPECT_EQ(ConfigTable::parse(repeat("[[a]]\n", 150000), "q1.toml").get_tables("a").size(),
+  EXPECT_EQ(ConfigTable::parse(repeat("[[a]]\n", 150000), "q1.toml").get_tables(array("a")).size(),
             150000U);
 }
 

@@ -1,10 +1,11 @@
-// Where a configuration comes from: files, the files they extend, overrides.
+// The sources of a configuration: files, the files that they extend, and overrides.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "base/config.hpp"
 #include "base/expect_error.hpp"
 #include "base/file.hpp"
+#include "base/some_settings.hpp"
 #include "base/temporary_folder.hpp"
 
 namespace armwright {
@@ -24,10 +25,10 @@ class ConfigFiles : public testing::Test {
 TEST_F(ConfigFiles, ReadsAFile) {
   const auto path = write("q1.toml", "x = 1\n");
   const ConfigTable config = ConfigTable::load(path);
-  EXPECT_EQ(config.get_number("x"), 1);
+  EXPECT_EQ(config.get(number("x")), 1);
   EXPECT_EQ(config.file(), path);
   EXPECT_EQ(config.files(), std::vector<std::filesystem::path>{path});
-  EXPECT_EQ(usage_error_of([&] { config.get_bool("x"); }),
+  EXPECT_EQ(usage_error_of([&] { config.get(boolean("x")); }),
             at("q1.toml") + ":1: x is 1, an integer; it must be true or false");
 }
 
@@ -55,21 +56,21 @@ TEST_F(ConfigFiles, MessagesNameTheFileWhereTheValueStands) {
   write("base.toml", "\n\n[task]\na = 1\nb = 2\n[only_base]\n");
   const ConfigTable config =
       ConfigTable::load(write("q1.toml", "extends = 'base'\n[task]\nb = 3\n"));
-  const ConfigTable task = config.get_table("task");
-  EXPECT_EQ(usage_error_of([&] { task.get_bool("a"); }),
+  const ConfigTable task = config.get_table(table("task"));
+  EXPECT_EQ(usage_error_of([&] { task.get(boolean("a")); }),
             at("base.toml") + ":4: task.a is 1, an integer; it must be true or false");
-  EXPECT_EQ(usage_error_of([&] { task.get_bool("b"); }),
+  EXPECT_EQ(usage_error_of([&] { task.get(boolean("b")); }),
             at("q1.toml") + ":3: task.b is 3, an integer; it must be true or false");
-  EXPECT_EQ(usage_error_of([&] { task.get_bool("missing"); }),
+  EXPECT_EQ(usage_error_of([&] { task.get(boolean("missing")); }),
             at("q1.toml") + ":2: task.missing is missing; it must be true or false");
-  EXPECT_EQ(usage_error_of([&] { config.get_table("only_base").get_bool("missing"); }),
+  EXPECT_EQ(usage_error_of([&] { config.get_table(table("only_base")).get(boolean("missing")); }),
             at("base.toml") + ":6: only_base.missing is missing; it must be true or false");
 }
 
 TEST_F(ConfigFiles, UnknownKeysOfAnExtendedFileAreRefusedThere) {
   write("base.toml", "name = 'x'\nnaem = 'y'\n");
   const ConfigTable config = ConfigTable::load(write("q1.toml", "extends = 'base'\n"));
-  config.get_string("name");
+  config.get(text("name"));
   EXPECT_EQ(usage_error_of([&] { config.refuse_unknown(); }),
             at("base.toml") + ":2: unknown key naem; did you mean 'name'? Valid here: name");
 }
@@ -77,7 +78,7 @@ TEST_F(ConfigFiles, UnknownKeysOfAnExtendedFileAreRefusedThere) {
 TEST_F(ConfigFiles, ATypeMayBeReplacedAndIsCheckedAfterwards) {
   write("base.toml", "[task]\nx = 1\n");
   const ConfigTable config = ConfigTable::load(write("q1.toml", "extends = 'base'\ntask = 3\n"));
-  EXPECT_EQ(usage_error_of([&] { config.get_table("task"); }),
+  EXPECT_EQ(usage_error_of([&] { config.get_table(table("task")); }),
             at("q1.toml") + ":2: task is 3, an integer; it must be a table, [task]");
 }
 
@@ -100,7 +101,7 @@ TEST_F(ConfigFiles, RefusesMoreThanEightSteps) {
   for (int i = 1; i <= 9; ++i) {
     write(fmt::format("f{}.toml", i), fmt::format("extends = 'f{}'\n", i - 1));
   }
-  EXPECT_EQ(ConfigTable::load(at("f8.toml")).get_number("x"), 1);
+  EXPECT_EQ(ConfigTable::load(at("f8.toml")).get(number("x")), 1);
   EXPECT_EQ(
       usage_error_of([&] { ConfigTable::load(at("f9.toml")); }),
       at("f1.toml") +
@@ -162,26 +163,26 @@ TEST(ConfigOverrides, MakeTablesAndMergeIntoThem) {
 
 TEST(ConfigOverrides, AreNamedInPlaceOfTheLine) {
   const ConfigTable config = parse({"task.x=-4", "task.unit=1.5kg", "new.y=1"});
-  const ConfigTable task = config.get_table("task");
-  EXPECT_EQ(usage_error_of([&] { task.get_number("x", {.lower = 0, .lower_open = true}); }),
+  const ConfigTable task = config.get_table(table("task"));
+  EXPECT_EQ(usage_error_of([&] { task.get(number("x", {.lower = 0, .lower_open = true})); }),
             "--set task.x=-4: task.x is -4; it must be a finite number > 0");
-  EXPECT_EQ(usage_error_of([&] { task.get_number("unit"); }),
+  EXPECT_EQ(usage_error_of([&] { task.get(number("unit")); }),
             "--set task.unit=1.5kg: task.unit is 1.5kg, a string; it must be a finite number");
-  EXPECT_EQ(usage_error_of([&] { config.get_table("new").get_number("z"); }),
+  EXPECT_EQ(usage_error_of([&] { config.get_table(table("new")).get(number("z")); }),
             "--set new.y=1: new.z is missing; it must be a finite number");
-  EXPECT_EQ(usage_error_of([&] { task.get_number("z"); }),
+  EXPECT_EQ(usage_error_of([&] { task.get(number("z")); }),
             "q1.toml:1: task.z is missing; it must be a finite number");
 }
 
 TEST(ConfigOverrides, ATableThatGainsKeysStaysWhereItWas) {
   const ConfigTable config = parse({"task={y=2}"});
-  EXPECT_EQ(usage_error_of([&] { config.get_table("task").get_number("z"); }),
+  EXPECT_EQ(usage_error_of([&] { config.get_table(table("task")).get(number("z")); }),
             "q1.toml:1: task.z is missing; it must be a finite number");
 }
 
 TEST(ConfigOverrides, UnknownKeysAreRefused) {
   const ConfigTable config = parse({"task.xx=4", "tsk.x=1"});
-  config.get_table("task").get_number("x");
+  config.get_table(table("task")).get(number("x"));
   EXPECT_EQ(usage_error_of([&] { config.refuse_unknown(); }),
             "--set task.xx=4: unknown key task.xx; did you mean 'task.x'? Valid here: x\n"
             "--set tsk.x=1: unknown key tsk; did you mean 'task'? Valid here: task");

@@ -1,5 +1,5 @@
-// Every test has a fixed stream, so it passes or fails for ever; the statistical bounds say how
-// unlikely a good generator would be to miss them, had the stream been drawn by lot.
+// Every test uses a fixed stream, so its result never changes. The comments at the statistical
+// bounds state how rarely a good generator would miss them with a random stream.
 #include "base/random.hpp"
 
 #include <Random123/philox.h>
@@ -41,7 +41,7 @@ TEST(Random, TheGeneratorGivesItsAuthorsKnownAnswers) {
 
 // From an independent implementation of Philox4x64-10 (Python integers; it gives the known answers
 // above): key = the first 16 bytes of SHA-256(name), little-endian; counter = (block, 0, index, 0).
-// A change here makes old runs unrepeatable.
+// If these values change, old runs cannot be repeated.
 TEST(Random, AStreamNeverChanges) {
   EXPECT_EQ(
       take(RandomStream("train/1"), 6),
@@ -87,8 +87,8 @@ TEST(Random, UniformStaysInItsHalfOpenInterval) {
     ASSERT_LT(number, 1);
     sum += number;
   }
-  // The mean has a standard deviation of sqrt(1/12 / n); five of them: one stream in 1.7 million
-  // would miss.
+  // The mean has a standard deviation of sqrt(1/12 / n). The bound is five of them: one stream in
+  // 1.7 million would miss it.
   EXPECT_NEAR(sum / kCount, 0.5, 5 * std::sqrt(1.0 / 12 / kCount));
 }
 
@@ -102,7 +102,8 @@ TEST(Random, UniformNeverRoundsUpToItsUpperEnd) {
 }
 
 TEST(Random, BelowIsUnbiased) {
-  // n = 3 * 2^62 is where a plain remainder errs most: the lowest third would come twice as often.
+  // For n = 3 * 2^62 a plain remainder has its largest error: the lowest third would be drawn twice
+  // as often.
   constexpr std::uint64_t kN = std::uint64_t{3} << 62;
   constexpr int kCount = 30000;
   std::array<int, 3> thirds{};

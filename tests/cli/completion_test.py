@@ -1,8 +1,8 @@
-"""Run by ctest: types into a real bash on a terminal, presses TAB and looks at the line that comes of it.
+"""Run by ctest: types into a real bash on a terminal, presses TAB and checks the line that results.
 
     completion_test.py PROGRAM CONFIGS
 
-With and without the package bash-completion, which changes nothing but how the script is found.
+It runs with and without the package bash-completion, which only changes how bash finds the script.
 """
 import os
 import pty
@@ -15,10 +15,10 @@ import time
 
 PROGRAM, CONFIGS = sys.argv[1:3]
 BASH_COMPLETION = "/usr/share/bash-completion/bash_completion"
-PATIENCE_S = 30  # of a machine that is busy; an answer comes within a tenth of a second
-LONGEST_CALL_S = 0.1  # what a TAB may cost, of processor time
+TIMEOUT_S = 30  # for a busy machine; normally an answer takes less than 0.1 s
+LONGEST_CALL_S = 0.1  # the processor time that one TAB may cost
 
-# What is typed before TAB, and the line after it. A blank at the end: the word is complete.
+# The typed text before TAB, and the line after it. A blank at the end means that the word is complete.
 CASES = [
     ("armwright opt", "armwright optimize "),
     ("armwright check", "armwright check-plugin "),
@@ -65,7 +65,7 @@ class Shell:
         if self.process == 0:
             os.chdir(os.path.join(folder, "home"))
             os.execve("/bin/bash", ["bash", "--norc", "--noprofile", "-i"], environment)
-        # A line longer than the terminal would be scrolled.
+        # On a narrow terminal, bash would scroll a long line.
         self.send("stty cols 1000 -echo; PS1=; bind 'set bell-style none'; bind 'set enable-bracketed-paste off'; "
                   "bind 'set page-completions off'; bind -x '\"\\C-g\": printf \"<line>%s</line>\" \"$READLINE_LINE\"'; "
                   + set_up + "; echo re''ady\n")
@@ -75,14 +75,14 @@ class Shell:
         os.write(self.terminal, text.encode())
 
     def expect(self, pattern):
-        seen, end = "", time.monotonic() + PATIENCE_S
+        seen, end = "", time.monotonic() + TIMEOUT_S
         while time.monotonic() < end:
             if select.select([self.terminal], [], [], 0.2)[0]:
                 seen += os.read(self.terminal, 4096).decode()
                 found = re.search(pattern, seen, re.DOTALL)
                 if found:
                     return found
-        raise AssertionError(f"no {pattern!r} came from bash within {PATIENCE_S} s, but {seen!r}")
+        raise AssertionError(f"no {pattern!r} came from bash within {TIMEOUT_S} s, but {seen!r}")
 
     def complete(self, line):
         self.send(line + "\t\x07")
@@ -106,7 +106,7 @@ def check_with(folder, name, set_up, failures):
 
 
 def check_cost(failures):
-    """Of what a TAB asks the program: the least of three, since others use this machine too."""
+    """Checks the processor time of the calls of one TAB. It takes the least of three, as other processes use the machine, too."""
     for kind in ["problems", "optimizers", "robots", "engines", "designs", "studies"]:
         costs = []
         for _ in range(3):
@@ -130,7 +130,7 @@ def main():
             file.write(subprocess.run([PROGRAM, "completion", "bash"], stdout=subprocess.PIPE, check=True).stdout)
         subprocess.run(["bash", "-n", script], check=True)
         check_with(folder, "bash alone", f"source '{script}'", failures)
-        # As some people have it, for names of hosts and packages.
+        # Some users remove these characters, for names of hosts and packages.
         check_with(folder, "':' breaks no words", f"source '{script}'; COMP_WORDBREAKS=${{COMP_WORDBREAKS//:}}", failures)
         if os.path.exists(BASH_COMPLETION):
             check_with(folder, "with bash-completion", f"source {BASH_COMPLETION}", failures)

@@ -1,4 +1,4 @@
-"""Run by ctest: man itself formats every manual page, without a warning, and finds its name.
+"""Run by ctest: man formats every manual page without a warning and finds its name.
 
     manual_pages_test.py PROGRAM
 """
@@ -16,7 +16,7 @@ def run(*words):
 
 
 def check(page, failures):
-    # As Debian's lintian does.
+    # These are the calls of Debian's lintian.
     formatted = run("man", "--warnings", "-E", "UTF-8", "-l", "-Tutf8", "-Z", page)
     if formatted.returncode != 0 or formatted.stderr:
         failures.append(f"{page}: man says\n{formatted.stderr}")
@@ -24,7 +24,7 @@ def check(page, failures):
     found = run("lexgrog", page)
     if found.returncode != 0 or f'"{name} - ' not in found.stdout:
         failures.append(f"{page}: lexgrog says {found.stdout}{found.stderr}")
-    # What is read is what can be typed: flags with two plain dashes, straight quotes.
+    # The shown text can be typed: flags have two plain dashes, and quotes are straight.
     text = run("man", "-E", "UTF-8", "-l", "-P", "cat", page).stdout
     for wrong in "\u2010\u2212\u2018\u2019\u201c\u201d":
         if wrong in text:

@@ -1,5 +1,5 @@
-// The optimizer contract (study/contract.hpp) over every row of the table: new rows are covered by
-// being there. Beside it, that the suite itself can fail.
+// Tests the contract (study/contract/contract.hpp) of every optimizer in the table, also of future
+// ones, and tests that the suite itself finds broken promises.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -9,7 +9,6 @@
 
 #include "optimizers/table/optimizer_table.hpp"
 #include "study/contract/contract.hpp"
-#include "study/contract/contract_problems.hpp"
 
 namespace armwright {
 namespace {
@@ -77,7 +76,7 @@ TEST_P(OptimizerRowContract, EveryDefaultIsAllowedAndReadsBack) {
 INSTANTIATE_TEST_SUITE_P(Table, OptimizerRowContract, testing::ValuesIn(optimizer_names()),
                          [](const auto& parameters) { return make_test_name(parameters.param); });
 
-// Optimizers that break one promise each; the suite must find every one out.
+// Optimizers that break one promise each. The suite must find all of them.
 using Minimize = std::function<void(Evaluator&, std::uint64_t)>;
 
 class FunctionOptimizer : public Optimizer {

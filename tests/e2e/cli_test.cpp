@@ -135,7 +135,7 @@ TEST_F(Cli, RefusesWrongValuesAndSaysWhatIsAllowed) {
   expect_refused({"evaluate", "table-a5", "--precision", "float"}, 2, {"unknown flag"});
   expect_refused({"sweep", "q1-complex", "--design", "table-a5", "--engine", "ode", "--parameter",
                   "physics.engine", "--values", "ode"},
-                 2, {"--parameter physics.engine is what varies"});
+                 2, {"--parameter physics.engine takes several values"});
   refuse({"--color", "pink"}, {"unknown --color 'pink'", "auto, always, never"});
   expect_refused({"optimize", "sphere"}, 2, {"ARMWRIGHT_SEED", "'one'"},
                  {{{"ARMWRIGHT_SEED", "one"}}, ""});
@@ -278,13 +278,16 @@ TEST_F(Cli, AnUnreachableTargetIsNamedAndHasNoNumber) {
 
 TEST_F(Cli, WritesCasesAndATrajectoryAsCsv) {
   const Outcome outcome = run({"evaluate", "table-a10", "--cases", "2", "--csv", "cases.csv",
-                               "--trajectory", "arm.csv", "--case", "7", "--quiet"});
+                               "--trajectory", "arm.csv", "--trajectory-case", "7", "--quiet"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("mean error"), HasSubstr("0.8 to 1.2 m")));
   EXPECT_THAT(read_text(folder_.path() / "cases.csv"),
               AllOf(StartsWith("case,status,mean_error_m,"), HasSubstr("\n1,ok,")));
   EXPECT_THAT(read_text(folder_.path() / "arm.csv"), StartsWith("time_s,"));
-  expect_refused({"evaluate", "table-a10", "--trajectory", "arm.csv"}, 2, {"belong together"});
+  expect_refused({"evaluate", "table-a10", "--trajectory", "arm.csv"}, 2,
+                 {"must be given together"});
+  // The former name of --trajectory-case.
+  expect_refused({"evaluate", "table-a10", "--case", "7"}, 2, {"must be given together"});
 }
 
 TEST_F(Cli, BadTestCasesAreBadData) {
@@ -332,13 +335,13 @@ TEST_F(Cli, KeepsAReproductionAndGoesOnWithIt) {
       std::filesystem::exists(folder_.path() / "results" / "reproduction" / "reproduction.json"));
   const Outcome again = run(kept);
   EXPECT_EQ(again.out, printed);
-  EXPECT_THAT(again.err, HasSubstr("results/reproduction (1 of 1 results there already)"));
+  EXPECT_THAT(again.err, HasSubstr("results/reproduction (1 of 1 results exist already)"));
   kept.emplace_back("--new");
   EXPECT_THAT(run(kept).err, HasSubstr("results/reproduction-002 "));
   const Outcome stopped = run({"reproduce", "--cases", "500", "--table", "A.10", "--out", "slow",
                                "--time-limit", "1", "--quiet"});
   EXPECT_EQ(stopped.exit_code, 75);
-  EXPECT_THAT(stopped.err, HasSubstr("nothing is lost. To go on:"));
+  EXPECT_THAT(stopped.err, HasSubstr("nothing is lost. To resume:"));
   expect_refused({"reproduce", "--cases", "3", "--out"}, 2, {"other settings", "--new"});
   std::filesystem::create_directory(folder_.path() / "run");
   write("run/manifest.json", "{}");

@@ -70,7 +70,7 @@ TEST(CliCompare, InterruptedItSaysHowToGoOn) {
   program.send(SIGINT);
   const Outcome outcome = program.wait();
   EXPECT_EQ(outcome.exit_code, 130);
-  EXPECT_THAT(outcome.err, HasSubstr("nothing is lost. To go on:"));
+  EXPECT_THAT(outcome.err, HasSubstr("nothing is lost. To resume:"));
 }
 
 TEST(CliCompare, ADryRunPrintsThePlanAndRunsNothing) {

@@ -111,16 +111,16 @@ TEST_F(Deliverables, Ros2sParametersAreTheWinnersToTheLastDigit) {
       EXPECT_EQ(gains.at("i"), drive.gains[1]);
       EXPECT_EQ(gains.at("d"), drive.gains[2]);
       if (distribution != "humble") {
-        EXPECT_EQ(gains.at("u_clamp_max"), drive.limits.max_n_m);
-        EXPECT_EQ(gains.at("u_clamp_min"), drive.limits.min_n_m);
+        EXPECT_EQ(gains.at("u_clamp_max"), drive.limits.max);
+        EXPECT_EQ(gains.at("u_clamp_min"), drive.limits.min);
       } else {
         EXPECT_EQ(gains.at("angle_wraparound"), i == 0);
       }
       if (distribution == "kilted") {
-        EXPECT_EQ(gains.at("i_clamp_max"), drive.limits.max_n_m);
-        EXPECT_EQ(gains.at("i_clamp_min"), drive.limits.min_n_m);
+        EXPECT_EQ(gains.at("i_clamp_max"), drive.limits.max);
+        EXPECT_EQ(gains.at("i_clamp_min"), drive.limits.min);
       } else {
-        EXPECT_EQ(gains.at("i_clamp"), std::max(-drive.limits.min_n_m, drive.limits.max_n_m));
+        EXPECT_EQ(gains.at("i_clamp"), std::max(-drive.limits.min, drive.limits.max));
       }
     }
   }
@@ -149,7 +149,7 @@ TEST_F(Deliverables, TheUrdfIsTheSameRobotWithTheWinnersLimits) {
   ASSERT_EQ(after.joint_count(), before.joint_count());
   for (std::size_t i = 0; i < after.joint_count(); ++i) {
     EXPECT_EQ(after.joints[i].name, before.joints[i].name);
-    EXPECT_EQ(after.joints[i].effort_limit, calc_largest_torque_n_m(winner.design.joints[i]));
+    EXPECT_EQ(after.joints[i].effort_limit, calc_largest_effort(winner.design.joints[i]));
     EXPECT_EQ(after.joints[i].lower, before.joints[i].lower);
     EXPECT_EQ(after.joints[i].origin.matrix(), before.joints[i].origin.matrix());
     EXPECT_EQ(after.links[i].inertial.inertia_kg_m2, before.links[i].inertial.inertia_kg_m2);

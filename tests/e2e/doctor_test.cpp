@@ -79,7 +79,7 @@ TEST_F(Doctor, ARepairedRunGoesOnToTheSameResult) {
     ASSERT_EQ(run(make_run(hurt, optimizer)).exit_code, 0);
     const Outcome intact = doctor({hurt});
     EXPECT_EQ(intact.exit_code, 0) << intact.out;
-    EXPECT_THAT(intact.out, HasSubstr("All that is there is intact."));
+    EXPECT_THAT(intact.out, HasSubstr("All stored files are intact."));
     damage_journal(folder_ / hurt);
     const std::string bytes = read_text(folder_ / hurt / "journal");
 
@@ -191,7 +191,7 @@ TEST_F(Doctor, ARunInProgressIsReadAndNotRepaired) {
     const Outcome outcome = doctor({"run"});
     ASSERT_EQ(outcome.exit_code, 0) << outcome.out;
     ASSERT_THAT(outcome.out, HasSubstr("being written now by process"));
-    ASSERT_THAT(outcome.out, Not(HasSubstr("To go on")));
+    ASSERT_THAT(outcome.out, Not(HasSubstr("To resume")));
   }
   const Outcome refused = doctor({"run", "--repair"});
   EXPECT_EQ(refused.exit_code, 5);
@@ -201,7 +201,7 @@ TEST_F(Doctor, ARunInProgressIsReadAndNotRepaired) {
   program.wait();
   const Outcome killed = doctor({"run"});
   EXPECT_EQ(killed.exit_code, 0) << killed.out;
-  EXPECT_THAT(killed.out, HasSubstr("To go on:\n  armwright optimize"));
+  EXPECT_THAT(killed.out, HasSubstr("To resume:\n  armwright optimize"));
 }
 
 TEST_F(Doctor, AFullDiskOrAKillDuringRepairHarmsNothing) {
@@ -295,7 +295,7 @@ TEST_F(Doctor, SaysWhatIsMissingAndHowToGetIt) {
       doctor({}, {.variables = {{"ARMWRIGHT_CONFIGS", "/nowhere"}}, .out_file = ""});
   EXPECT_EQ(configuration.exit_code, 3);
   EXPECT_THAT(configuration.out, HasSubstr("BAD  folder"));
-  EXPECT_THAT(configuration.out, HasSubstr("1 thing must be put right"));
+  EXPECT_THAT(configuration.out, HasSubstr("1 thing must be fixed"));
   // A folder where nothing can be written, whoever asks.
   std::filesystem::create_directory_symlink("/proc", folder_ / "results");
   const Outcome results = doctor({"--json"});

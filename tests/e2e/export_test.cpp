@@ -364,7 +364,7 @@ TEST_F(Export, ComesBackAsADesignBitForBit) {
     const Outcome outcome = run({"import", out, "--out", out + ".toml"});
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     const DesignFile design = load_design(path(out + ".toml").string());
-    EXPECT_EQ(load_problem("q1-complex").tracking->make_vector(design.design), best.x);
+    EXPECT_EQ(load_problem("q1-complex").tracking()->make_vector(design.design), best.x);
     EXPECT_EQ(run({"import", out}).out, read_text(path(out + ".toml")));
   }
   EXPECT_EQ(read("read_ioh.py", "back-ioh").at("ga").at("q1-complex").size(), 1u);

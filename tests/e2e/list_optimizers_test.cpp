@@ -113,9 +113,9 @@ TEST_F(ListOptimizers, MarkdownIsForKindsThatHavePages) {
     return outcome.err;
   };
   EXPECT_THAT(refusal_of({"list", "robots", "--markdown"}),
-              HasSubstr("--markdown is for problems, optimizers and settings, not for robots"));
+              HasSubstr("--markdown works for problems, optimizers and settings, not for robots"));
   EXPECT_THAT(refusal_of({"list", "settings", "task.rest_s", "--markdown"}),
-              HasSubstr("the page of settings has all of them; leave out the name"));
+              HasSubstr("the page of settings contains all settings; leave out the name"));
   const Outcome both = run({"--markdown", "--json"});
   EXPECT_EQ(both.exit_code, 2);
   EXPECT_THAT(both.err, HasSubstr("choose one"));

@@ -77,7 +77,7 @@ TEST_F(CliMatrix, AScriptComesToTheSameBytesAsALocalComparison) {
   EXPECT_EQ(all.exit_code, 0) << all.err;
   EXPECT_THAT(all.err, HasSubstr("all chunks have ended. Statistics, tables and verdict:"));
   const Outcome status = run({"status", "a study's"});
-  EXPECT_THAT(status.out, HasSubstr("All cells have ended. Tables and verdict:"));
+  EXPECT_THAT(status.out, HasSubstr("All cells have ended. To make tables and verdict:"));
   EXPECT_THAT(status.out, HasSubstr("merge 'a study'\\''s'"));
   const Outcome merged = run({"merge", "a study's", "--json", "--quiet"});
   EXPECT_EQ(merged.exit_code, 0) << merged.err;
@@ -88,7 +88,7 @@ TEST_F(CliMatrix, AScriptComesToTheSameBytesAsALocalComparison) {
   const Outcome again = run({"compare", "mine.toml", "--executor", "script", "--out", "a study's"});
   EXPECT_EQ(again.exit_code, 0);
   EXPECT_EQ(again.out, "");
-  EXPECT_THAT(again.err, HasSubstr("all cells are done. Tables and verdict:"));
+  EXPECT_THAT(again.err, HasSubstr("all cells are done. To make tables and verdict:"));
 }
 
 TEST_F(CliMatrix, ADryRunSaysWhatWouldBeSubmittedAndWritesNothing) {
@@ -96,7 +96,7 @@ TEST_F(CliMatrix, ADryRunSaysWhatWouldBeSubmittedAndWritesNothing) {
                                "--sbatch=--partition=short", "--sbatch=--mem=1G", "--quiet"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("cells    24, of which 0 are done\nchunks   1, of 24 cells"));
-  EXPECT_THAT(outcome.out, HasSubstr("memory   about 96 MiB a task"));
+  EXPECT_THAT(outcome.out, HasSubstr("memory   about 96 MiB per task"));
   EXPECT_THAT(outcome.out, HasSubstr("submit   sbatch --parsable --array=1-1 --requeue "
                                      "--open-mode=append --job-name=armwright-mine --output="));
   EXPECT_THAT(outcome.out, HasSubstr("--time=11 --cpus-per-task=1 --partition=short --mem=1G "));
@@ -117,8 +117,8 @@ TEST_F(CliMatrix, WhatCannotBeIsRefused) {
   expect({"--chunk", "1m"}, 2, "--chunk is for --executor slurm or script");
   expect({"--sbatch=-x", "--executor", "script"}, 2, "--sbatch is for --executor slurm");
   expect({"--json", "--executor", "script"}, 2,
-         "--json and --time-limit are not for --executor slurm and script");
-  expect({"--executor", "mpi"}, 2, "--executor mpi needs the ranks of an mpirun");
+         "--json and --time-limit cannot be used with --executor slurm or script");
+  expect({"--executor", "mpi"}, 2, "--executor mpi needs ranks that mpirun starts");
   expect({"--executor", "slurm"}, 2, "there is no program 'sbatch' on this machine's PATH");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "results/mine/submissions/001"));
   std::filesystem::create_directories(folder_ / "results/mine/submissions/001");
@@ -209,13 +209,14 @@ label = "patient"
   const Outcome stopped = second.wait();
   EXPECT_EQ(stopped.exit_code, 75);
   EXPECT_THAT(stopped.err, HasSubstr("resuming: 10 evaluations"));
-  EXPECT_THAT(stopped.err, HasSubstr("nothing is lost. To go on:"));
+  EXPECT_THAT(stopped.err, HasSubstr("nothing is lost. To resume:"));
 
   // A local comparison holds the study, so that others keep away.
   Program local(folder_.path(), {"compare", "slow.toml", "--out", "study"}, environment);
   ASSERT_TRUE([&] {
     for (int tries = 0; tries < 1000; ++tries) {
-      if (run({"status", "study"}).out.find("A local comparison is at it") != std::string::npos) {
+      if (run({"status", "study"}).out.find("One process runs the whole study") !=
+          std::string::npos) {
         return true;
       }
     }

@@ -55,7 +55,7 @@ class CliMisbehavingPlugins : public testing::Test {
     EXPECT_THAT(
         outcome.err,
         AllOf(HasSubstr("armwright: error: optimizer '"), HasSubstr(message),
-              HasSubstr(out + " is marked as failed; what was evaluated is kept and judged."),
+              HasSubstr(out + " is marked as failed; its evaluations are kept and judged."),
               HasSubstr("armwright check-plugin " + quoted(optimizer)), HasSubstr(" --new")));
     const json result = json::parse(read_text(folder_ / (out + "/result.json")));
     EXPECT_EQ(result["end_reason"], "optimizer failed");
@@ -203,8 +203,8 @@ TEST_F(CliMisbehavingPlugins, TheLogIsWhereTheUserWantsItAndOfThisRunAlone) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "a/optimizer.log"));
   optimize(library("misbehaving"), {"how=fail", "log=mine.log"}, "a");
   const Outcome outcome = optimize(library("misbehaving"), {"how=fail", "log=mine.log"}, "a");
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("What the optimizer printed: mine.log\n"),
-                                 HasSubstr("(silence_s, memory_mib and log may be others)")));
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("The output of the optimizer: mine.log\n"),
+                                 HasSubstr("(silence_s, memory_mib and log may change)")));
   EXPECT_EQ(read_text(folder_ / "mine.log"),
             "two points are evaluated\ntwo points are evaluated\n");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "a/optimizer.log"));

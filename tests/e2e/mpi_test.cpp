@@ -270,7 +270,7 @@ TEST_F(Mpi, WhatIsSaidIsSaidOnce) {
   const Outcome list = run_program(folder_.path(), {"list", "engines"}, make_ranks(3));
   EXPECT_EQ(list.exit_code, 0);
   EXPECT_EQ(count(list.out, "Open Dynamics Engine"), 1u);
-  EXPECT_THAT(list.err, HasSubstr("of 3 ranks only the first has work"));
+  EXPECT_THAT(list.err, HasSubstr("only the first of 3 ranks works"));
   const Outcome optimized = run_program(
       folder_.path(), {"optimize", "sphere", "--budget", "100", "--out", "run"}, make_ranks(2, {}));
   EXPECT_EQ(optimized.exit_code, 0) << optimized.err;

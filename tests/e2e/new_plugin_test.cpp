@@ -59,7 +59,7 @@ TEST_F(CliNewPlugin, OverwritesNothingAndRefusesBadNames) {
   const std::string before = read_text(folder_ / "mine/mine.cpp");
   const Outcome again = run({"new-plugin", "--language", "c", "mine"});
   EXPECT_EQ(again.exit_code, 2);
-  EXPECT_THAT(again.err, HasSubstr("'mine' exists already; nothing is overwritten"));
+  EXPECT_THAT(again.err, HasSubstr("'mine' exists already and is not overwritten"));
   EXPECT_EQ(read_text(folder_ / "mine/mine.cpp"), before);
   for (const char* name : {"../x", "Mine", "1st", "a-b", "", "test", "ga"}) {
     const Outcome outcome = run({"new-plugin", name});

@@ -123,8 +123,8 @@ TEST_F(CliOptimize, InterruptedItResumesToTheSameResult) {
       "--out 'it'\\''s here' --jobs 1";
   EXPECT_THAT(stopped.err, AllOf(HasSubstr("interrupted; nothing is lost"), HasSubstr(command)));
   EXPECT_FALSE(has("it's here/result.json"));
-  EXPECT_THAT(run({"show", "it's here"}).out, AllOf(HasSubstr("has not come to its end"),
-                                                    HasSubstr("of 350 cases"), HasSubstr(command)));
+  EXPECT_THAT(run({"show", "it's here"}).out,
+              AllOf(HasSubstr("is not complete"), HasSubstr("of 350 cases"), HasSubstr(command)));
 
   const Outcome resumed = run(common + std::vector<std::string>{"it's here", "--jobs", "1"});
   ASSERT_EQ(resumed.exit_code, 0) << resumed.err;

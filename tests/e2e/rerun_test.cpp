@@ -108,7 +108,7 @@ TEST_F(CliRerun, InterruptedItGoesOnWithTheSameCommand) {
   program.send(SIGINT);
   const Outcome stopped = program.wait();
   EXPECT_EQ(stopped.exit_code, 130) << stopped.err;
-  EXPECT_THAT(stopped.err, HasSubstr("nothing is lost. To go on:"));
+  EXPECT_THAT(stopped.err, HasSubstr("nothing is lost. To resume:"));
   const Outcome last = rerun({"q1-complex/ga/r01"});
   EXPECT_EQ(last.exit_code, 0) << last.err;
   EXPECT_THAT(last.out, HasSubstr("identical: 2000 evaluations"));

@@ -144,7 +144,7 @@ TEST_F(Verify, PrintsATableAndAConclusion) {
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("table-a10 on q2-e6: the first 1 case of test/2"),
                                  HasSubstr("its own setting"), HasSubstr("table-a10 holds in "),
                                  ContainsRegex("\nengine +substeps  plant ")));
-  EXPECT_THAT(outcome.err, HasSubstr("no --problem given: using q2-e6"));
+  EXPECT_THAT(outcome.err, HasSubstr("--problem is not given; using q2-e6"));
 }
 
 // Soft controllers hardly notice the time step, and this workspace asks little of them.
@@ -190,7 +190,8 @@ TEST_F(Verify, AnEngineIsThereOrSaysWhatIsMissing) {
     EXPECT_THAT(listed, HasSubstr(name));
   }
   for (const MissingEngine& missing : missing_engine_table()) {
-    EXPECT_THAT(listed, AllOf(HasSubstr(missing.name), HasSubstr("not there: " + missing.reason)));
+    EXPECT_THAT(listed,
+                AllOf(HasSubstr(missing.name), HasSubstr("not available: " + missing.reason)));
   }
 }
 

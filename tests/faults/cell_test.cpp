@@ -1,5 +1,5 @@
-// Cells of a comparison that are run one by one, as a cluster does, killed or failing at any
-// moment: the next attempt ends with the same bytes, and what lies in a cell's place is whole.
+// Tests cells of a comparison that are run one by one, as on a cluster, and are killed or fail at
+// any moment. The next attempt ends with the same bytes, and a published cell is always complete.
 #include "faults/support.hpp"
 
 namespace armwright::faults {
@@ -29,7 +29,7 @@ class Cells : public testing::Test {
                           std::filesystem::copy_options::recursive);
     return "runs/" + name;
   }
-  // A cell in its place is whole, and the next attempt ends as the undisturbed one.
+  // A published cell is complete, and the next attempt ends like an undisturbed one.
   void expect_mended(const std::string& study) {
     const auto place = folder_ / study / kCell;
     if (std::filesystem::exists(place)) {

@@ -1,4 +1,4 @@
-// Stored files that are torn, damaged or left over, and faults while one of them is being mended.
+// Tests stored files that are torn, damaged or left over, and faults during their repair.
 #include <fcntl.h>
 #include <sys/file.h>
 #include <unistd.h>
@@ -23,7 +23,7 @@ class Damage : public testing::Test {
   Outcome run(const Words& words, const Environment& environment = {}) {
     return run_program(folder_.path(), words, environment);
   }
-  // A run as a kill leaves it: manifest and journal, and nothing derived.
+  // Makes a run as a kill leaves it: with manifest and journal, without derived files.
   fs::path copy_journal(const std::string& name, std::uintmax_t bytes) {
     fs::create_directories(folder_ / name);
     for (const char* file : {"manifest.json", "journal"}) {
@@ -40,7 +40,8 @@ class Damage : public testing::Test {
   TemporaryFolder folder_;
 };
 
-// What lay behind the last whole record is cut off, kept beside and told; then all is made again.
+// The bytes behind the last whole record are cut off, kept in a file and reported. Then the run is
+// completed.
 TEST_F(Damage, AJournalTruncatedAtEveryPageAndAroundARecordIsMended) {
   const auto size = get_size(folder_ / "whole/journal");
   constexpr std::uintmax_t kPage_bytes = 4096;
@@ -71,7 +72,7 @@ TEST_F(Damage, AJournalTruncatedAtEveryPageAndAroundARecordIsMended) {
   }
 }
 
-// Every byte: of the smallest journal there is, a run of a function.
+// Tests every byte of the smallest possible journal, that of a run on a function.
 TEST_F(Damage, ASmallJournalTruncatedAtEveryByteIsMended) {
   const auto make = [](const std::string& out) {
     return Words{"optimize",    "sphere", "--set",    "function.dimension=2",
@@ -95,8 +96,8 @@ TEST_F(Damage, ASmallJournalTruncatedAtEveryByteIsMended) {
   }
 }
 
-// A byte that has changed: in the last record it is a torn end, anywhere else the run is refused
-// with the place, and nothing is touched.
+// A changed byte in the last record is a torn end. Anywhere else the run is refused, the message
+// names the place, and no file is changed.
 TEST_F(Damage, AChangedByteOfTheJournalIsNamedByItsPlace) {
   const std::string whole = read_text(folder_ / "whole/journal");
   const std::size_t record =
@@ -121,12 +122,13 @@ TEST_F(Damage, AChangedByteOfTheJournalIsNamedByItsPlace) {
       EXPECT_THAT(outcome.err, AllOf(HasSubstr(" at byte "), HasSubstr(" is damaged (")));
     }
     EXPECT_EQ(read_text(journal), damaged);
-    EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "damaged"), {}), 3);  // and the lock
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "damaged"), {}),
+              3);  // the third one is the lock
     ++refused;
     fs::remove_all(folder_ / "damaged");
   }
   EXPECT_GT(refused, 20);
-  // The last byte of all: what it belonged to is made again.
+  // If the last byte of the file has changed, its record is evaluated again.
   const auto journal = copy_journal("end", whole.size());
   flip_byte(journal, whole.size() - 1);
   const Outcome outcome = run(make_run("end"));
@@ -134,8 +136,8 @@ TEST_F(Damage, AChangedByteOfTheJournalIsNamedByItsPlace) {
   expect_same_run(folder_ / "whole", folder_ / "end");
 }
 
-// Of what is derived from the journal: named and said how to be rebuilt, or rebuilt. Each of the
-// damages is one that a crash or a careless hand leaves.
+// Damaged derived files are rebuilt, or the message names them and says how to rebuild them.
+// Crashes or careless edits can cause each of these damages.
 TEST_F(Damage, DerivedFilesAreRebuiltOrNamed) {
   for (const char* name : {"result.json", "manifest.json"}) {
     const std::string text = read_text(folder_ / "whole" / name);
@@ -156,14 +158,14 @@ TEST_F(Damage, DerivedFilesAreRebuiltOrNamed) {
       for (const Words& command : {make_run("damaged"), Words{"show", "damaged"}}) {
         const Outcome outcome = run(command);
         if (outcome.exit_code == 0 && command.front() == "show") {
-          continue;  // it does not look at the manifest's whole
+          continue;  // this command does not read the whole manifest
         }
         EXPECT_EQ(outcome.exit_code, 4) << outcome.err;
         EXPECT_THAT(outcome.err, HasSubstr(std::string("error: damaged/") + name + ":"));
       }
     }
   }
-  // Removed, as the message advises, it is rebuilt from the journal.
+  // After the user has removed it, as the message advises, it is rebuilt from the journal.
   copy_whole("rebuilt");
   fs::remove(folder_ / "rebuilt/result.json");
   for (const char* file : {"results.sqlite", "winner.toml", "convergence.csv"}) {
@@ -190,7 +192,7 @@ TEST_F(Damage, FilesOfAStudyAreNamed) {
       write_text(folder_ / file, damage);
       const Outcome outcome = run(command);
       if (file.ends_with("sphere.json") && outcome.exit_code == 0) {
-        EXPECT_EQ(read_text(folder_ / file), text);  // written anew
+        EXPECT_EQ(read_text(folder_ / file), text);  // written again
         continue;
       }
       EXPECT_THAT(outcome.exit_code, AnyOf(2, 4)) << outcome.err;
@@ -198,7 +200,7 @@ TEST_F(Damage, FilesOfAStudyAreNamed) {
     }
     write_text(folder_ / file, text);
   }
-  // Its tables and its result are made again whatever has become of them.
+  // The tables and the result are always written again.
   for (const std::string& file : {std::string("result.json"), std::string("tables/cells.csv")}) {
     write_text(folder_ / "study" / file, "damaged");
   }
@@ -206,7 +208,7 @@ TEST_F(Damage, FilesOfAStudyAreNamed) {
   EXPECT_EQ(read_study(folder_ / "study"), tables);
 }
 
-// As a power cut or a kill leaves them: locks of others, half-written files, earlier torn ends.
+// A power cut or a kill leaves such files: locks of others, half-written files, earlier torn ends.
 TEST_F(Damage, WhatIsLeftOverIsInNobodysWay) {
   const auto journal = copy_journal("left", get_size(folder_ / "whole/journal") / 2);
   write_text(folder_ / "left/lock", std::string(5000, '\xff') + "process 1 on \x1b[31m");
@@ -222,7 +224,7 @@ TEST_F(Damage, WhatIsLeftOverIsInNobodysWay) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(read_text(folder_ / "left/journal.torn-1"), "an earlier one");
   EXPECT_EQ(read_text(folder_ / "left/journal.torn-3"), end);
-  fs::remove(folder_ / "left/manifest.json.new");  // nobody's, until a manifest is written
+  fs::remove(folder_ / "left/manifest.json.new");  // stays until a manifest is written
   expect_same_run(folder_ / "whole", folder_ / "left");
 }
 
@@ -243,8 +245,8 @@ TEST_F(Damage, ACorruptedLockNamesNobodyAndLocksAllTheSame) {
   EXPECT_THAT(folder.err, HasSubstr("locked/lock: cannot open it: Is a directory"));
 }
 
-// A second fault while the first is being mended: at every write, sync, truncation and rename of a
-// resume that begins with a torn end, it is killed; and the next one finds nothing wrong.
+// Tests a second fault during the repair of the first. A resume that begins with a torn end is
+// killed at every write, sync, truncation and rename. The next resume must succeed.
 TEST_F(Damage, KillsDuringTheMendingAreMendedAsWell) {
   const auto half = get_size(folder_ / "whole/journal") / 2;
   for (const char* call : {"write", "ftruncate", "fdatasync", "rename", "open"}) {
@@ -268,11 +270,11 @@ TEST_F(Damage, KillsDuringTheMendingAreMendedAsWell) {
   }
 }
 
-// No room to keep the torn end: it is not cut off.
+// Without room to save the torn end it is not cut off.
 TEST_F(Damage, AFullDiskDuringTheMendingLosesNothing) {
   copy_journal("runs/run", get_size(folder_ / "whole/journal") / 2);
   const std::string before = read_text(folder_ / "runs/run/journal");
-  // The lock, then the torn end.
+  // The first write is the lock, the second one the torn end.
   FailingFiles files(folder_ / "runs", "write");
   const Outcome outcome =
       run(make_run("runs/run"), files.make_environment(Fault::for_ever, 2, ENOSPC));

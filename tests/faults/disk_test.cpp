@@ -1,6 +1,6 @@
-// Disks that fail or are full: the run ends with exit code 74 and a message that names the file and
-// the reason, loses no evaluation that was on the disk, and goes on from there when there is room
-// again.
+// Tests disks that fail or are full. The run ends with exit code 74 and a message that names the
+// file and the reason. It loses no evaluation that was on the disk, and resumes from there when
+// there is room again.
 #include <sys/mount.h>
 
 #include <cerrno>
@@ -18,14 +18,14 @@ struct Way {
   const char* call;
   Fault fault;
   int error;
-  std::vector<bool> begins = {false, true};  // whether in the midst of a run
+  std::vector<bool> begins = {false, true};  // false: at the start of a run, true: in the middle
 };
 
 void PrintTo(const Way& way, std::ostream* out) {
   *out << way.name;
 }
 
-// The system's reason, or SQLite's word for it.
+// The system's reason, or SQLite's text for it.
 auto gives_the_reason(int error) {
   return AnyOf(HasSubstr(std::strerror(error)), HasSubstr("disk I/O error"),
                HasSubstr("database or disk is full"), HasSubstr("unable to open database file"));
@@ -37,7 +37,7 @@ class FailingDisk : public testing::TestWithParam<Way> {
     std::filesystem::create_directory(runs_);
     ASSERT_EQ(run(make_run("runs/whole")).exit_code, 0);
     whole_ = read_journal(runs_ / "whole/journal");
-    // What a kill in the midst of a record leaves.
+    // A kill in the middle of a record leaves this.
     std::filesystem::create_directory(runs_ / "half");
     for (const char* file : {"manifest.json", "journal", "lock"}) {
       std::filesystem::copy(runs_ / "whole" / file, runs_ / "half" / file);
@@ -53,7 +53,7 @@ class FailingDisk : public testing::TestWithParam<Way> {
     return run_program(folder_.path(), words, environment);
   }
 
-  // Whether the fault came at all: beyond the last call of its kind it does not.
+  // Whether the fault happened: the run may have fewer calls of this kind.
   bool try_at(std::uint64_t at, bool from_half) {
     const std::string out = "runs/" + std::to_string(at) + (from_half ? "-half" : "");
     SCOPED_TRACE(out);
@@ -103,8 +103,8 @@ TEST_P(FailingDisk, EveryCallInTurn) {
     }
   }
   EXPECT_GT(told_, 0) << "no failure was ever told";
-  // Nothing that is written or put in place may fail in silence. What is only read may fail to
-  // close, and a folder to sync.
+  // No failure to write or rename a file may go unnoticed. Errors from closing a file that was only
+  // read, and from syncing a folder, are ignored.
   const std::string call = GetParam().call;
   if (call == "write" || call == "rename" || call == "fdatasync" || call == "ftruncate") {
     EXPECT_EQ(survived_, 0);
@@ -139,7 +139,7 @@ class Disk : public testing::Test {
   TemporaryFolder folder_;
 };
 
-// A file system of so many bytes on a folder; unmounted at the end.
+// Mounts a file system of a given size on a folder, and unmounts it at the end.
 class SmallDisk {
  public:
   SmallDisk(const std::filesystem::path& folder, const std::string& size) : folder_(folder) {
@@ -160,8 +160,8 @@ class SmallDisk {
   bool is_there_ = false;
 };
 
-// A real disk that is full, from before the manifest to the last page of SQLite's table: a file
-// takes all room but so many pages.
+// A real full disk, on which a file leaves only some pages free: from too few for the manifest to
+// too few for the last page of SQLite's tables.
 TEST_F(Disk, FullAtEveryPageAndThenWithRoomAgain) {
   const SmallDisk disk(folder_ / "disk", "2m");
   if (!disk.is_there()) {
@@ -233,14 +233,15 @@ TEST_F(Disk, FullBelowTheStandardStreams) {
   const Outcome out = run(make_run("out"), {{}, "/dev/full"});
   EXPECT_EQ(out.exit_code, 74);
   EXPECT_THAT(out.err, HasSubstr("standard output: cannot write it: No space left on device"));
-  expect_same_run(folder_ / "whole", folder_ / "out");  // it is complete, only not printed
+  expect_same_run(folder_ / "whole",
+                  folder_ / "out");  // the run is complete, and only the printing failed
   const Outcome err = run(make_run("err"), after_shell("exec 2>/dev/full"));
   EXPECT_EQ(err.exit_code, 0);
   expect_same_run(folder_ / "whole", folder_ / "err");
 }
 
-// The first file that is opened would get the number of a closed stream, and what is printed would
-// go into it.
+// Otherwise the first file that is opened would get the number of a closed stream, and would
+// receive the printed text.
 TEST_F(Disk, ClosedStandardStreamsAreNoFileOfTheRun) {
   ASSERT_EQ(run(make_run("whole")).exit_code, 0);
   for (const auto& [streams, code] :
@@ -254,7 +255,7 @@ TEST_F(Disk, ClosedStandardStreamsAreNoFileOfTheRun) {
     expect_same_run(folder_ / "whole", folder_ / "closed");
     std::filesystem::remove_all(folder_ / "closed");
   }
-  // A program that optimizes gets streams of its own all the same.
+  // An external optimizer still gets its own streams.
   const Outcome plugin =
       run({"optimize", "sphere", "--optimizer", "exec:python3 " + get_script("good.py"), "--budget",
            "20", "--out", "plugin"},

@@ -1,12 +1,12 @@
 // A disk that fails, between the program and the C library (LD_PRELOAD): the n-th call of one kind on
-// a file below one folder fails, alone or with all that follow. What is told in environment variables:
+// a file below one folder fails, alone or with all that follow. Environment variables set the fault:
 //   FAILING_FILES_FOLDER  only files below it count, however they are named
 //   FAILING_FILES_CALL    open, write, fsync, fdatasync, ftruncate, rename or close
-//   FAILING_FILES_AT      n, from 1; 0 fails never
+//   FAILING_FILES_AT      n, from 1; 0: no call fails
 //   FAILING_FILES_ERROR   the errno
 //   FAILING_FILES_FOREVER set: all later calls fail as well
-//   FAILING_FILES_KILL    set: no failure; the process is killed in the midst of the call, when half of
-//                         what it writes is written
+//   FAILING_FILES_KILL    set: no failure; the process is killed during the call, when half of the bytes
+//                         are written
 //   FAILING_FILES_COUNT   a file of 8 bytes that counts the calls, shared by all processes
 #define _GNU_SOURCE
 #include <errno.h>
@@ -91,7 +91,7 @@ static void die(void) {
   }
 }
 
-// Counts, and says whether this one fails; errno is then set.
+// Counts the call and returns whether it fails; sets errno then.
 static bool counts_and_fails(void) {
   const uint64_t number = atomic_fetch_add(g_count, 1) + 1;
   const bool fails = g_at != 0 && (number == g_at || (g_forever && number > g_at));
@@ -146,7 +146,7 @@ int open64(const char* path, int flags, ...) {
 int close(int fd) {
   const bool fails = descriptor_fails("close", fd);
   const int error = errno;
-  const int result = (int)syscall(SYS_close, fd);  // as the system does: closed it is all the same
+  const int result = (int)syscall(SYS_close, fd);  // the file is closed even if close() fails, as in the system
   if (fails) {
     errno = error;
     return -1;

@@ -1,5 +1,5 @@
-// Folders that vanish, move, become files or cannot be written, before and during a run: exit code
-// 74 and the name of the folder or file; what was there before is untouched.
+// Tests folders that vanish, move, become files or cannot be written, before and during a run. The
+// exit code is 74, the message names the folder or file, and other files are unchanged.
 #include <sys/mount.h>
 #include <unistd.h>
 
@@ -23,7 +23,7 @@ class Folders : public testing::Test {
   Outcome run(const Words& words, const Environment& environment = {}) {
     return run_program(folder_.path(), words, environment);
   }
-  // Lets a run begin, does something to its folder and waits for what it says.
+  // Lets a run begin, changes its folder and waits for its end.
   Outcome disturb(const std::function<void()>& action) {
     Program program(folder_.path(), make_endless_run("run"));
     EXPECT_TRUE(wait_until([&] { return get_size(folder_ / "run/journal") > 1000; }));
@@ -50,8 +50,8 @@ TEST_F(Folders, MadeAFileDuringARun) {
   EXPECT_EQ(read_text(folder_ / "run"), "precious");
 }
 
-// The open journal moves with it; what is derived at the end has no place to go, and the run is
-// whole where it is now.
+// The open journal moves with the folder. The derived files cannot be written at the end, and the
+// run can be completed at its new place.
 TEST_F(Folders, RenamedDuringARun) {
   ASSERT_EQ(run(make_run("whole", "3500")).exit_code, 0);
   Program program(folder_.path(), make_run("run", "3500"));
@@ -88,8 +88,8 @@ TEST_F(Folders, ReadOnlyForTheUserBeforeAndDuringARun) {
   EXPECT_EQ(before.exit_code, 74);
   EXPECT_THAT(before.err, HasSubstr("error: locked/run: cannot create this folder: Permission "
                                     "denied"));
-  // Made read-only in the midst, the journal that is open is written to its end; the rest has to
-  // wait.
+  // The folder becomes read-only during the run. The open journal is still written to its end; the
+  // derived files must wait.
   ASSERT_EQ(run(make_run("whole", "3500"), user).exit_code, 0);
   Program program(folder_.path(), make_run("run", "3500"), user);
   ASSERT_TRUE(wait_until([&] { return get_size(folder_ / "run/journal") > 100; }));
@@ -119,7 +119,7 @@ TEST_F(Folders, OnAReadOnlyFileSystem) {
   const Outcome resumed = run(make_run("disk/run"));
   EXPECT_EQ(resumed.exit_code, 74);
   EXPECT_THAT(resumed.err, HasSubstr("error: disk/run/lock: cannot open it: Read-only"));
-  // Reading is all that showing, exporting and drawing need.
+  // The commands that show, export and draw only need to read.
   EXPECT_EQ(run({"show", "disk/run"}).exit_code, 0);
   EXPECT_EQ(run({"export", "disk/run", "--format", "csv", "--out", "table"}).exit_code, 0);
   EXPECT_EQ(run({"report", "disk/run", "--out", "run.html"}).exit_code, 0);
@@ -151,7 +151,7 @@ TEST_F(Folders, ReadOnlyInputsAreInputs) {
   fs::permissions(folder_ / "inputs", fs::perms::all);
 }
 
-// Network file systems: fsync says that it cannot, and is believed.
+// Some network file systems cannot sync: the error of fsync is then ignored.
 TEST_F(Folders, WithoutSync) {
   fs::create_directory(folder_ / "runs");
   ASSERT_EQ(run(make_run("runs/whole")).exit_code, 0);

@@ -1,5 +1,5 @@
-// Inputs that change under a run, cannot be used or are hostile: refused with the difference or the
-// line, within a second, and nothing is written.
+// Tests inputs that change during a run, cannot be used or are hostile. They are refused within a
+// second, the message names the difference or the line, and no file is written.
 #include <sys/resource.h>
 #include <sys/wait.h>
 
@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Every file below a folder, by its name, with its content.
+// Returns the content of every file below a folder, by name.
 std::map<std::string, std::string> read_all(const fs::path& folder) {
   std::map<std::string, std::string> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -60,13 +60,14 @@ class ChangedInputs : public Inputs {
            (has_budget ? Words{} : Words{"--budget", "70"}) + more;
   }
 
-  // A finished run, its input changed by `change`, is neither gone on with nor touched.
+  // Changes the input of a finished run with `change`, and expects that the run is neither resumed
+  // nor changed.
   void expect_refused(const Words& optimizer, const std::function<void()>& change,
                       const testing::Matcher<const std::string&>& message,
                       const Words& instead = {}) {
     fs::remove_all(folder_ / "run");
     ASSERT_EQ(run(make(optimizer)).exit_code, 0);
-    fs::remove(folder_ / "run/result.json");  // so that there is something to go on with
+    fs::remove(folder_ / "run/result.json");  // so that the run can be resumed
     const auto before = read_all(folder_ / "run");
     change();
     const Outcome outcome = run(make(instead.empty() ? optimizer : instead));
@@ -105,7 +106,7 @@ TEST_F(ChangedInputs, AByteOfThePerturbation) {
 }
 
 TEST_F(ChangedInputs, AByteOfALibrary) {
-  // In the text of its description's source, which no line of code depends on.
+  // Changes the text of its source in the description, which no code depends on.
   expect_refused(
       {"--optimizer", "./good.so"},
       [&] { replace_in(folder_ / "good.so", "Jeeves 1961", "Jeeves 1962"); },
@@ -133,7 +134,7 @@ TEST_F(ChangedInputs, SeedOptionBudgetAndOptimizer) {
                  {"--optimizer", "cmaes"});
 }
 
-// Another build may compute the same: what differs is said, and the journal decides.
+// Another build may compute the same. The differences are reported, and the journal decides.
 TEST_F(ChangedInputs, AnotherBuildIsWarnedOf) {
   ASSERT_EQ(run(make({})).exit_code, 0);
   const std::string result = read_text(folder_ / "run/result.json");
@@ -159,12 +160,12 @@ TEST_F(ChangedInputs, AByteOfAStudysProblem) {
   replace_in(folder_ / "arm.urdf", "229.6", "229.7");
   const Outcome outcome = run(command);
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("study holds a study whose cells would not compare"),
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("study holds a study whose cells could not be compared"),
                                  HasSubstr("recorded")));
   EXPECT_EQ(read_all(folder_ / "study"), before);
 }
 
-// The processor's time that the program took, in seconds.
+// Returns the processor time of the program in seconds.
 double measure_cpu_s(const std::function<void()>& action) {
   const auto now_s = [] {
     rusage usage{};
@@ -272,7 +273,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "cases.csv"}),
     [](const auto& test) { return test.param.name; });
 
-// A mesh is for looks: one that is broken costs the replay its picture, not the report.
+// Meshes are only drawn: with a broken one the replay has no picture of it, and the report works.
 TEST_F(Inputs, ABrokenMeshCostsOnlyItsPicture) {
   std::string urdf = read_text(ARMWRIGHT_CONFIGS "/robots/irb4600_40_255.urdf");
   const std::string sphere = "<geometry><box size=\"0.62 0.56 0.04\"/></geometry>";

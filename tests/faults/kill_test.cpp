@@ -1,5 +1,5 @@
-// SIGKILL at any moment: resumed, a run or a comparison ends as if nobody had disturbed it, bit by
-// bit.
+// Tests SIGKILL at any moment: a resumed run or comparison ends with the same bits as an
+// undisturbed one.
 #include "base/random.hpp"
 #include "faults/support.hpp"
 
@@ -16,8 +16,8 @@ class Kill : public testing::Test {
   TemporaryFolder folder_;
 };
 
-// Everything that is written or put in place, from the manifest to the last derived file; the half
-// of what was to be written is written when the process dies.
+// Kills the process at every write and rename, from the manifest to the last derived file. When it
+// dies, half of the bytes are written.
 TEST_F(Kill, AtEveryWriteAndEveryRenameOfARun) {
   std::filesystem::create_directory(folder_ / "runs");
   ASSERT_EQ(run(make_run("runs/whole")).exit_code, 0);
@@ -38,18 +38,18 @@ TEST_F(Kill, AtEveryWriteAndEveryRenameOfARun) {
       ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
       expect_same_run(folder_ / "runs/whole", folder_ / out);
     }
-    // manifest.json and five derived files, of which SQLite puts its own in place by the same call.
+    // manifest.json and five derived files; SQLite renames its own file with the same call.
     EXPECT_GE(kills, 5) << call;
   }
 }
 
-// An optimizer, and a problem that keeps it busy for longer than a hundred lives.
+// An optimizer, and a problem that takes longer than a hundred lives of the process.
 struct Setting {
   const char* name;
   std::string optimizer;
   const char* schedule;
   const char* budget;
-  int most_writes = 8;  // that a life gets to; a write of a batch's answers holds more of them
+  int most_writes = 8;  // per life; one write may hold several answers of a batch
 };
 
 void PrintTo(const Setting& setting, std::ostream* out) {
@@ -90,8 +90,8 @@ std::size_t count_records(const std::filesystem::path& journal) {
 
 class KillAHundredTimes : public testing::TestWithParam<Setting> {};
 
-// Four lives of five end amid a write, one of the first of the journal; the
-// others at a random time, which may well be before.
+// Four of five lives end during a write, one of the first of the journal. The others end at a
+// random time, which may be before the first write.
 TEST_P(KillAHundredTimes, AndResumeEachTime) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "runs");
@@ -117,8 +117,8 @@ TEST_P(KillAHundredTimes, AndResumeEachTime) {
     ASSERT_EQ(program.wait().exit_code, -SIGKILL) << "the run ended before its kill " << kill;
     const bool during_work = count_records(journal) > before;
     kills_during_work += during_work ? 1 : 0;
-    // Before are written the lock and the torn end of the life before: the first time the lock, the
-    // manifest and the journal's begin.
+    // The writes before are the lock and the torn end of the previous life; in the first life the
+    // lock, the manifest and the beginning of the journal.
     EXPECT_TRUE(during_work || !at_a_write || at < 5) << "kill " << kill << " at write " << at;
   }
   EXPECT_GE(kills_during_work, 40);
@@ -140,8 +140,8 @@ INSTANTIATE_TEST_SUITE_P(Optimizers, KillAHundredTimes,
                                                  "fresh:1", "3000", 5}),
                          [](const auto& test) { return test.param.name; });
 
-// The whole process group, as a terminal that closes does it, or the parent alone, whose workers
-// must then neither go on writing nor keep the locks.
+// Kills the whole process group, as a closing terminal does, or the parent alone. Its workers must
+// then neither continue to write nor keep the locks.
 TEST_F(Kill, AComparisonWithItsWorkersOrWithoutThem) {
   ASSERT_EQ(run(make_arm_comparison("whole")).exit_code, 0);
   RandomStream random("test/kill-a-comparison", 1);

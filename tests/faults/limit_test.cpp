@@ -1,6 +1,6 @@
-// What is too large, and systems that grant no more: refused from an estimate, with what is
-// allowed, before memory is taken; or gone on with less, and said; or ended with a message, the
-// journal whole.
+// Tests inputs that are too large, and systems that grant no more resources. An input is refused
+// from an estimate, with the allowed value, before memory is allocated. A run continues with fewer
+// resources and reports that, or it ends with a message and a complete journal.
 #include "faults/support.hpp"
 
 namespace armwright::faults {
@@ -13,7 +13,7 @@ class Limits : public testing::Test {
   Outcome run(const Words& words, const Environment& environment = {}) {
     return run_program(folder_.path(), words, environment);
   }
-  // Under limits that bind root as well.
+  // Runs under limits that also apply to root.
   Outcome run_limited(const Words& limits, const Words& words, bool as_ordinary_user = false) {
     Environment environment;
     environment.launcher = as_ordinary_user ? become_ordinary_user() : Words{};
@@ -63,7 +63,7 @@ TEST_F(Limits, HugeNumbersAreRefusedWithWhatIsAllowed) {
   }
 }
 
-// A population that is allowed, of a problem that is allowed, and both together too much.
+// The population and the problem are each allowed, but too large together.
 TEST_F(Limits, WhatIsTooMuchTogetherIsRefusedFromAnEstimate) {
   for (const std::string optimizer : {"ga", "cmaes", "de", "pagmo:de"}) {
     const Outcome outcome =
@@ -84,8 +84,9 @@ TEST_F(Limits, WithoutMemoryARunEndsWithAMessageAndGoesOnLater) {
                          "--quiet",     "--jobs", "2"};
   const Outcome outcome = run_limited({"--as=300000000"}, command);
   EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("armwright: error: no memory left; fewer --jobs or a smaller "
-                                     "problem need less"));
+  EXPECT_THAT(outcome.err,
+              HasSubstr("armwright: error: no memory left; use fewer --jobs or a smaller "
+                        "problem"));
   EXPECT_EQ(read_journal(folder_ / "run/journal").torn_bytes, 0u);
   EXPECT_EQ(run(command).exit_code, 0);
 }
@@ -114,7 +115,7 @@ TEST_F(Limits, WithFewerThreadsAndProcessesItGoesOnAndSaysSo) {
   };
   ASSERT_EQ(run(make_run("whole")).exit_code, 0);
   ASSERT_EQ(run(make_comparison("tables")).exit_code, 0);
-  // Whoever else runs as this user counts as well: from no processes at all to enough.
+  // Other processes of this user count as well, so the limits go from no process to enough.
   const Outcome none = limited(0, make_run("none") + Words{"--jobs", "4"});
   ASSERT_EQ(none.exit_code, 0) << none.err;
   EXPECT_THAT(none.err, HasSubstr("warning: the system grants 1 of 4 threads; the result is the "
@@ -148,7 +149,8 @@ TEST_F(Limits, WithFewDescriptorsItGoesOnOrSaysWhy) {
   ASSERT_EQ(run(make_comparison("tables")).exit_code, 0);
   bool has_failed = false;
   bool has_succeeded = false;
-  for (int descriptors = 4; descriptors < 16; ++descriptors) {  // fewer do not load the program
+  for (int descriptors = 4; descriptors < 16;
+       ++descriptors) {  // with fewer the program cannot be loaded
     SCOPED_TRACE(descriptors);
     const Words limit = {"--nofile=" + std::to_string(descriptors)};
     const Outcome single = run_limited(limit, make_run("run"));
@@ -181,7 +183,7 @@ TEST_F(Limits, OfFileSizeAndProcessorTimeEndARunResumably) {
   ASSERT_EQ(run(make_run("whole")).exit_code, 0);
   for (const char* bytes : {"0", "5000", "30000", "60000", "110000"}) {
     SCOPED_TRACE(bytes);
-    // What it prints is no file, or it would be limited as well.
+    // The output is not a file, because the limit would apply to it as well.
     Environment environment;
     environment.launcher = {
         "sh", "-c",
@@ -198,7 +200,7 @@ TEST_F(Limits, OfFileSizeAndProcessorTimeEndARunResumably) {
                          "10000000", "--out",      "long",     "--quiet"};
   const Outcome outcome = run_limited({"--cpu=1:30"}, endless);
   EXPECT_EQ(outcome.exit_code, 75);
-  EXPECT_THAT(outcome.err, HasSubstr("stopped by a signal; nothing is lost. To go on:"));
+  EXPECT_THAT(outcome.err, HasSubstr("stopped by a signal; nothing is lost. To resume:"));
   EXPECT_GT(read_journal(folder_ / "long/journal").training.size(), 0u);
 }
 

@@ -1,6 +1,6 @@
-// Names, texts and paths that come from elsewhere: none of them runs as a script or a formula, none
-// changes a terminal, and any folder that the system has can be used. Numbers have a point in every
-// language.
+// Tests names, texts and paths from outside: none of them runs as a script or a formula, or changes
+// a terminal, and every folder name that the system allows works. Numbers have a decimal point in
+// every language.
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
@@ -23,14 +23,14 @@ class Names : public testing::Test {
     urdf.replace(urdf.find(before), before.size(), "<robot name=\"" + robot + "\">");
     write_text(folder_ / name, urdf);
   }
-  // Neither out nor err does anything to a terminal.
+  // Expects that neither output has control characters for a terminal.
   static void expect_harmless(const Outcome& outcome) {
     for (const std::string* text : {&outcome.out, &outcome.err}) {
       EXPECT_THAT(*text, AllOf(Not(HasSubstr("\x1b")), Not(HasSubstr("\x07")),
                                Not(HasSubstr("\u202e")), Not(HasSubstr("\r"))));
       EXPECT_EQ(text->find('\0'), std::string::npos);
     }
-    EXPECT_THAT(outcome.err, Not(HasSubstr("a fault of armwright itself")));
+    EXPECT_THAT(outcome.err, Not(HasSubstr("a bug in armwright")));
     EXPECT_LT(outcome.err.size(), 20'000u);
   }
   TemporaryFolder folder_;
@@ -39,7 +39,7 @@ class Names : public testing::Test {
 const std::string kProblem =
     kShortProblem + "robot.urdf = \"arm.urdf\"\nvariables.start = \"table-a1\"\n";
 
-// In XML a name may hold what is markup in HTML; a control character is no XML at all or refused.
+// An XML name may contain text that is markup in HTML. Control characters are refused.
 TEST_F(Names, OfARobotAreTextInThePage) {
   write_text(folder_ / "problem.toml", kProblem);
   copy_robot("arm.urdf", "&lt;/script&gt;&lt;script&gt;document.title='PWNED'&lt;/script&gt;");
@@ -82,7 +82,7 @@ TEST_F(Names, OfAProblemsTextsAreHarmlessEverywhere) {
   }
 }
 
-// What a spreadsheet would run as a formula gets an apostrophe in front; numbers stay numbers.
+// Text that a spreadsheet would run as a formula gets an apostrophe in front; numbers stay numbers.
 TEST_F(Names, OfAStudyAreNoFormulasInItsTables) {
   const Words labels = {"=cmd|' /C calc'!A0", "+1+1",     "-2+3", "@SUM(A1)",
                         "</script><b>",       "'quoted'", "a,b",  std::string(150, 'n')};
@@ -150,7 +150,7 @@ TEST_F(Names, InTheCommandLineAreShownHarmlessly) {
   }
 }
 
-// What a plugin prints goes into a file as it is, and onto the terminal without its codes.
+// The output of a plugin goes into a file unchanged, and to the terminal without control codes.
 TEST_F(Names, OfAPluginAndWhatItPrintsAreHarmlessOnTheTerminal) {
   write_text(folder_ / "evil.py",
              "import json, sys\n"
@@ -171,7 +171,7 @@ TEST_F(Names, OfAPluginAndWhatItPrintsAreHarmlessOnTheTerminal) {
   expect_harmless(run({"list", "optimizers", "exec:python3 evil.py evil"}));
 }
 
-// Whatever a folder may be called; a name that the system does not take is named as the reason.
+// Any folder name works. If the system refuses a name, the message says so.
 TEST_F(Names, OfFoldersMayBeAnything) {
   std::string deep = "deep";
   while (deep.size() + folder_.path().native().size() < 460) {
@@ -206,7 +206,7 @@ TEST_F(Names, OfFoldersMayBeAnything) {
   }
 }
 
-// SQLite opens no file whose path is longer than 512 bytes, and that would be found out at the end.
+// SQLite cannot open a file with a path of more than 512 bytes. The run must not fail at its end.
 TEST_F(Names, OfFoldersTooDeepForTheDatabaseAreRefusedBeforeTheRun) {
   std::string deep = "deep";
   while (deep.size() < 3000) {
@@ -218,7 +218,7 @@ TEST_F(Names, OfFoldersTooDeepForTheDatabaseAreRefusedBeforeTheRun) {
   EXPECT_FALSE(fs::exists(folder_ / "deep"));
 }
 
-// Of every file that is read, with a name or a content that is no UTF-8.
+// Tests every file that is read, with a name or a content that is not UTF-8.
 TEST_F(Names, AndTextsThatAreNoUtf8) {
   const std::string odd = "b\xff\xfe d\n";
   fs::create_directory(folder_ / odd);
@@ -228,14 +228,14 @@ TEST_F(Names, AndTextsThatAreNoUtf8) {
       run({"optimize", odd + "/problem.toml", "--budget", "35", "--out", "run"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   expect_harmless(outcome);
-  // The robot's own file: its name goes into the manifest.
+  // The name of the robot's file goes into the manifest.
   fs::copy(folder_ / odd / "arm.urdf", folder_ / odd / "a\xff.urdf");
   fs::copy(folder_ / odd / "arm.urdf", folder_ / "a\xff.urdf");
   const Outcome robot = run({"optimize", "q1-complex", "--set", "robot.urdf=a\xff.urdf", "--budget",
                              "35", "--out", "other"});
   EXPECT_THAT(robot.exit_code, AnyOf(0, 2, 4)) << robot.err;
   expect_harmless(robot);
-  // A plugin's.
+  // The name of a plugin.
   fs::copy(get_plugin("good"), folder_ / odd / "good\xff.so");
   fs::copy(get_script("good.py"), folder_ / "g\xff.py");
   for (const std::string& plugin :
@@ -259,7 +259,7 @@ TEST_F(Names, AndTextsThatAreNoUtf8) {
   }
 }
 
-// A language that writes numbers with a comma: made here, as the system may not have it.
+// Creates a locale that writes numbers with a comma, because the system may not have one.
 TEST_F(Names, NumbersHaveAPointInEveryLanguage) {
   const std::string make =
       "localedef -i de_DE -f UTF-8 '" + (folder_ / "de_DE.UTF-8").string() + "' > /dev/null 2>&1";

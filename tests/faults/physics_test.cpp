@@ -1,6 +1,5 @@
-// Physics that has no answer: designs and arms that make every engine diverge, produce NaN or, in
-// ODE, abort. An evaluation has failed, with a reason; the run goes on, and no file holds what is
-// no number.
+// Tests designs and arms that make every engine diverge, produce NaN or, in ODE, abort. The
+// evaluation fails with a reason, the run continues, and no file has a NaN or an infinity.
 #include <cmath>
 
 #include "faults/support.hpp"
@@ -11,7 +10,7 @@ namespace {
 struct Provocation {
   const char* name;
   Words settings;    // of the problem
-  std::string gain;  // of every joint's proportional part; "": the published design's own
+  std::string gain;  // of every joint's proportional part; "": as in the published design
   std::string effort_n_m;
 };
 

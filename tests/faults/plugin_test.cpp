@@ -1,5 +1,5 @@
-// Optimizers of the user's that do wrong, beside what tests/e2e/misbehaving_plugins_test.cpp has:
-// they cost their own run, never the program, and never more than the budget.
+// Tests faulty optimizers of users, besides those of tests/e2e/misbehaving_plugins_test.cpp. Only
+// their own run fails, never the program, and the budget is never exceeded.
 #include <nlohmann/json.hpp>
 
 #include "faults/support.hpp"
@@ -21,11 +21,11 @@ class Plugins : public testing::Test {
                            more,
                        environment);
   }
-  // Marked as failed, with what was evaluated, and nothing of it is left running.
+  // The run is marked as failed and keeps its evaluations, and no process is left.
   void expect_failed(const Outcome& outcome, const std::string& message) {
     EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
     EXPECT_THAT(outcome.err, AllOf(HasSubstr("armwright: error: optimizer '"), HasSubstr(message),
-                                   HasSubstr("what was evaluated is kept and judged")));
+                                   HasSubstr("its evaluations are kept and judged")));
     EXPECT_EQ(json::parse(read_text(folder_ / "run/result.json"))["end_reason"],
               "optimizer failed");
     EXPECT_TRUE(wait_until([] { return list_processes("plugin").empty(); }));

@@ -1,5 +1,5 @@
-// Several processes: two writers of one folder, holders and workers that are killed, suspended
-// processes, clocks that jump.
+// Tests several processes: two writers of one folder, lock holders and workers that are killed,
+// suspended processes, clocks that jump.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -9,7 +9,7 @@
 namespace armwright::faults {
 namespace {
 
-// A problem that keeps a run busy until it is killed, and costs little.
+// A small problem that keeps a run busy until it is killed.
 Words make_endless_run(const std::string& out, const Words& optimizer) {
   return Words{"optimize", "q1-complex", "--engine", "ode",        "--schedule",
                "fixed:5",  "--budget",   "10000000", "--jobs",     "1",
@@ -76,7 +76,8 @@ TEST_F(Processes, TheSecondWriterOfAStudyIsToldWhoTheFirstIs) {
   EXPECT_TRUE(first.is_running());
 }
 
-// Whatever the holder had started ends with it, even what is deaf and busy; so the folder is free.
+// All processes that the holder has started end with it, also those that ignore signals. The folder
+// is then free.
 TEST_F(Processes, NothingOutlivesAKilledRun) {
   for (const Words& optimizer : {Words{"nlopt:newuoa_bound"}, Words{get_plugin("good")},
                                  Words{get_plugin("misbehaving"), "--opt", "how=loop"},
@@ -106,7 +107,7 @@ TEST_F(Processes, NothingOutlivesAKilledComparison) {
                                                           ",exec:python3 " + get_script("good.py"));
   for (int kill = 0; kill < 3; ++kill) {
     Program program(folder_.path(), command, mark("study-orphan"));
-    // The parent, two workers and the processes of their optimizers, both of which need one.
+    // The parent, two workers, and one process of the optimizer of each.
     ASSERT_TRUE(wait_until([] { return list_processes("study-orphan").size() == 5; }))
         << list_processes("study-orphan").size() << " processes at start " << kill
         << (program.is_running() ? "" : ", and the comparison has ended");
@@ -126,8 +127,8 @@ std::vector<int> list_children(int parent) {
   return children;
 }
 
-// A worker that dies takes at most its cell, which is made again; one whose process dies twice is
-// marked as failed, and the same command makes it again.
+// If a worker dies, at most its cell is lost, and is run again. A cell whose process dies twice is
+// marked as failed, and the same command runs it again.
 TEST_F(Processes, WorkersOfAComparisonThatAreKilledChangeNoTable) {
   ASSERT_EQ(run(make_arm_comparison("whole")).exit_code, 0);
   RandomStream random("test/kill-workers", 1);
@@ -151,12 +152,12 @@ TEST_F(Processes, WorkersOfAComparisonThatAreKilledChangeNoTable) {
   EXPECT_EQ(read_study(folder_ / "whole"), read_study(folder_ / "killed"));
 }
 
-// A worker that ends well has not thereby done its cell: only cell.json says so.
+// Only cell.json says that a cell is done, not the exit of its worker.
 TEST_F(Processes, ACellIsDoneOnlyByItsOwnRecord) {
   ASSERT_EQ(run(make_arm_comparison("study")).exit_code, 0);
   const auto tables = read_study(folder_ / "study");
   const auto cell = folder_ / "study/cells/q1-complex/ga/r02";
-  for (const char* file : {"cell.json", "result.json", ""}) {  // the last: all of it
+  for (const char* file : {"cell.json", "result.json", ""}) {  // the last one: the whole folder
     SCOPED_TRACE(file);
     std::filesystem::remove(cell / "cell.json");
     std::filesystem::remove_all(cell / file);
@@ -167,7 +168,7 @@ TEST_F(Processes, ACellIsDoneOnlyByItsOwnRecord) {
   }
 }
 
-// The same bytes for any number of workers, and for each of them after kills.
+// The bytes are the same for any number of workers, also after kills.
 TEST_F(Processes, AComparisonDoesNotDependOnTheNumberOfItsWorkers) {
   ASSERT_EQ(run(make_arm_comparison("one", "1")).exit_code, 0);
   const auto tables = read_study(folder_ / "one");
@@ -209,7 +210,7 @@ TEST_P(JobsAndKind, GiveTheSameRun) {
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     expect_same_run(folder / "1", folder / jobs);
   }
-  // And gone on with by another number than it began with.
+  // The comparison is resumed with another number of workers.
   std::filesystem::remove(folder / "1/result.json");
   std::filesystem::resize_file(folder / "1/journal", get_size(folder / "1/journal") / 2);
   std::filesystem::rename(folder / "1", folder / "resumed");
@@ -230,7 +231,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Kind{"program", "exec:python3 " + get_script("good.py"), "fresh:2"}),
     [](const auto& test) { return test.param.name; });
 
-// The wall clock jumps to and fro by days; nothing that waits looks at it.
+// The wall clock jumps back and forth by days. No wait depends on it.
 TEST_F(Processes, AWallClockThatJumpsChangesNothing) {
   const auto make = [](const std::string& out) {
     return make_run(out, "700") + Words{"--optimizer",  "exec:python3 " + get_script("good.py"),
@@ -251,7 +252,7 @@ TEST_F(Processes, AWallClockThatJumpsChangesNothing) {
   const Outcome outcome = program.wait();
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   expect_same_run(folder_ / "whole", folder_ / "jumping");
-  // The library was indeed there: the manifest is dated ten days off, whichever way.
+  // The library was loaded: the date in the manifest is ten days off, in either direction.
   const auto get_year_and_day = [&](const char* folder) {
     const std::string text = read_text(folder_ / folder / "manifest.json");
     const std::size_t at = text.find("\"started\": \"");
@@ -260,7 +261,7 @@ TEST_F(Processes, AWallClockThatJumpsChangesNothing) {
   EXPECT_NE(get_year_and_day("jumping"), get_year_and_day("whole"));
 }
 
-// Suspended, with everything that it started, for longer than a plugin may be silent.
+// The run and all its processes are suspended for longer than a plugin may be silent.
 TEST_F(Processes, ASuspendedRunBlamesNobodyForTheSilence) {
   const auto make = [](const std::string& out, const Words& optimizer) {
     return Words{"optimize",    "q1-complex",
@@ -285,7 +286,8 @@ TEST_F(Processes, ASuspendedRunBlamesNobodyForTheSilence) {
       return get_size(folder_ / ("suspended-" + name) / "journal") > 2000 || !program.is_running();
     }));
     ASSERT_TRUE(program.is_running());
-    // The parent last, as a debugger or a batch system would: its child is then late already.
+    // The parent is resumed last, as by a debugger or a batch system: its child is then late
+    // already.
     auto processes = list_processes("suspended");
     for (auto pid = processes.rbegin(); pid != processes.rend(); ++pid) {
       ::kill(*pid, SIGSTOP);

@@ -1,6 +1,6 @@
-// A clock on the wall that is set by hand while the program runs (LD_PRELOAD): CLOCK_REALTIME is off by
-// as many seconds as stand in the file that SHIFTED_CLOCK_FILE names, read at every look. Other clocks
-// are the system's.
+// A wall clock that is changed while the program runs (LD_PRELOAD): CLOCK_REALTIME is shifted by the
+// number of seconds in the file that SHIFTED_CLOCK_FILE names, which is read at every call. Other clocks
+// are not changed.
 #define _GNU_SOURCE
 #include <fcntl.h>
 #include <stddef.h>

@@ -1,5 +1,5 @@
-// Ctrl-C and its like: everything that runs ends soon, says how to go on, and goes on to the same
-// result.
+// Tests Ctrl-C and similar signals: every command ends soon, says how to resume, and resumes to the
+// same result.
 #include <algorithm>
 #include <tuple>
 
@@ -10,11 +10,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Simulations that are in progress are finished, and they take milliseconds; the rest is for a busy
+// Running simulations are finished, which takes milliseconds. The rest is a margin for a busy
 // machine.
 constexpr std::chrono::seconds kSoon{5};
 
-// Some seconds of work on one thread.
+// A run of some seconds on one thread.
 Words make_long_run(const std::string& out, const std::string& optimizer = "ga") {
   return {"optimize",    "q1-complex",
           "--optimizer", optimizer,
@@ -33,7 +33,7 @@ class Signals : public testing::Test {
   Outcome run(const Words& words, const Environment& environment = {}) {
     return run_program(folder_.path(), words, environment);
   }
-  // Its journal grows, and it has not ended.
+  // Waits until its journal grows and it has not ended.
   static bool is_at_work(const Program& program, const std::filesystem::path& journal,
                          std::uintmax_t before = 100) {
     return wait_until([&] { return get_size(journal) > before || !program.is_running(); }) &&
@@ -57,8 +57,9 @@ TEST_F(Signals, EachEndsARunSoonWithItsOwnCodeAndTheSameCommandGoesOn) {
     const Outcome outcome = program.wait();
     EXPECT_LT(Clock::now() - begin, kSoon);
     EXPECT_EQ(outcome.exit_code, code);
-    EXPECT_THAT(outcome.err, AllOf(HasSubstr("armwright: " + word + "; nothing is lost. To go on:"),
-                                   HasSubstr("optimize q1-complex"), HasSubstr("--out stopped")));
+    EXPECT_THAT(outcome.err,
+                AllOf(HasSubstr("armwright: " + word + "; nothing is lost. To resume:"),
+                      HasSubstr("optimize q1-complex"), HasSubstr("--out stopped")));
     EXPECT_EQ(read_journal(folder_ / "stopped/journal").torn_bytes, 0u);
   }
   EXPECT_EQ(run(make_long_run("stopped")).exit_code, 0);
@@ -72,7 +73,7 @@ TEST_F(Signals, WhoIsStartedWithNohupStays) {
   EXPECT_EQ(program.wait().exit_code, 0);
 }
 
-// One simulation of a minute, in the midst of which nobody looks for signals.
+// A single simulation takes a minute, and does not check for signals.
 TEST_F(Signals, TheSecondOneEndsAtOnce) {
   Program program(folder_.path(),
                   {"optimize", "q1-complex", "--optimizer", "random", "--schedule", "fixed:1",
@@ -88,7 +89,7 @@ TEST_F(Signals, TheSecondOneEndsAtOnce) {
     return false;
   };
   program.send(SIGINT);
-  ASSERT_TRUE(wait_until([&] { return says("once more stops at once"); }));
+  ASSERT_TRUE(wait_until([&] { return says("press Ctrl-C again to stop at once"); }));
   const auto begin = Clock::now();
   program.send(SIGINT);
   EXPECT_EQ(program.wait().exit_code, 130);
@@ -145,7 +146,7 @@ TEST_F(Signals, DuringJudging) {
   const Outcome outcome = program.wait();
   EXPECT_EQ(outcome.exit_code, 130);
   EXPECT_LT(Clock::now() - begin, kSoon);
-  EXPECT_THAT(outcome.err, HasSubstr("nothing is lost. To go on:"));
+  EXPECT_THAT(outcome.err, HasSubstr("nothing is lost. To resume:"));
   EXPECT_EQ(read_journal(folder_ / "stopped/journal").training.size(), trained);
   const Outcome resumed = run(make("stopped"));
   EXPECT_EQ(resumed.exit_code, 0);
@@ -181,7 +182,7 @@ TEST_F(Signals, AComparisonEndsWithItsWorkers) {
     EXPECT_EQ(outcome.exit_code, code);
     EXPECT_LT(Clock::now() - begin, kSoon);
     EXPECT_THAT(outcome.err,
-                AllOf(HasSubstr("nothing is lost. To go on:"), HasSubstr("--out stopped")));
+                AllOf(HasSubstr("nothing is lost. To resume:"), HasSubstr("--out stopped")));
     EXPECT_TRUE(wait_until([] { return list_processes("signalled").empty(); }));
   }
   EXPECT_EQ(run(make("stopped")).exit_code, 0);

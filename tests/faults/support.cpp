@@ -111,7 +111,7 @@ std::uint64_t FailingFiles::count() const {
 }
 
 void expect_part_of(const JournalContent& part, const JournalContent& whole) {
-  // In memory, as each is compared with all.
+  // Keeps the records in memory, because each is compared with all.
   expect_part({part.training.begin(), part.training.end()},
               {whole.training.begin(), whole.training.end()}, "evaluation");
   expect_part(part.judgements, whole.judgements, "judgement");

@@ -1,5 +1,5 @@
-// What the tests of faults share: small runs of the real program, disks that fail, processes found
-// by a mark, and the comparison with a run that nobody disturbed.
+// Helpers for the tests of faults: small runs of the real program, disks that fail, processes found
+// by a mark, and the comparison with an undisturbed run.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -37,32 +37,33 @@ inline Words operator+(Words words, const Words& more) {
   return words;
 }
 
-// 0 for a file that is not there.
+// Returns 0 for a missing file.
 std::uintmax_t get_size(const std::filesystem::path& file);
 void write_text(const std::filesystem::path& file, const std::string& text);
-// A copy whose byte at `offset` is another one.
+// Returns a copy with another byte at `offset`.
 void flip_byte(const std::filesystem::path& file, std::size_t offset);
 
 std::string get_plugin(const std::string& name);  // "good": the library's file
 std::string get_script(const std::string& name);  // "good.py"
 
-// A shell that does something to itself and becomes the program: "ulimit -n 8".
+// Runs the program from a shell that first executes a command such as "ulimit -n 8".
 inline Environment after_shell(const std::string& commands) {
   Environment environment;
   environment.launcher = {"sh", "-c", commands + "; exec \"$@\"", "sh"};
   return environment;
 }
 
-// Root is exempt from rights and limits: the program becomes somebody else first. Empty for others,
-// who are somebody else already.
+// Returns the words that run the program as another user, because root is exempt from rights and
+// limits. Empty if this process is not root.
 Words become_ordinary_user();
-// So that this somebody may write there.
+// Gives that user the right to write there.
 void open_to_all(const std::filesystem::path& folder);
 
-// A run of q1-complex that is short and has every kind of derived file.
+// Returns the words of a short run of q1-complex that has every kind of derived file.
 Words make_run(const std::string& out, const std::string& budget = "105");
 
-// Calls of one kind on files below a folder; the n-th fails, or kills (failing_files.c).
+// Lets the n-th call of one kind on files below a folder fail, or kill the process
+// (failing_files.c).
 class FailingFiles {
  public:
   // `folder` must exist.
@@ -77,25 +78,26 @@ class FailingFiles {
   TemporaryFolder counter_;
 };
 
-// Processes that were started with the variable FAULTS_MARK=mark, or are children of such.
+// Finds the processes that were started with the variable FAULTS_MARK=mark, and their children.
 inline std::vector<int> list_processes(const std::string& mark) {
   return list_processes_with("FAULTS_MARK=" + mark);
 }
 
-// Both journals hold the same evaluations and judgements, and the derived files are the same bytes.
+// Expects that both journals hold the same evaluations, and that the derived files are the same
+// bytes.
 void expect_same_run(const std::filesystem::path& a, const std::filesystem::path& b);
-// Every record of `part` is one of `whole`, bit by bit.
+// Expects that every record of `part` is one of `whole`, bit by bit.
 void expect_part_of(const JournalContent& part, const JournalContent& whole);
 
-// Two optimizers on a quick arm, in sixteen cells with the baselines.
+// Returns a comparison of two optimizers on a quick arm, sixteen cells with the baselines.
 Words make_arm_comparison(const std::string& out, const std::string& jobs = "2");
 
-// The beginning of a problem file that tunes the shipped arm for a few short cases.
+// Returns the beginning of a problem file that tunes the shipped arm on a few short cases.
 inline const std::string kShortProblem =
     "kind = \"tracking\"\nphysics.engine = \"articulated\"\nworkspace.points = 4\n"
     "sets.test_cases = 2\nsets.validation_cases = 1\n";
 
-// No number in it is NaN or infinite, however it is written.
+// Expects that no number in the text is NaN or infinite, in any notation.
 void expect_finite_numbers(const std::filesystem::path& file);
 
 }  // namespace armwright::faults

@@ -16,9 +16,8 @@ DesignFile load(std::string_view text) {
 bool same(const ArmDesign& a, const ArmDesign& b) {
   return a.controller == b.controller && a.speed_m_per_s == b.speed_m_per_s &&
          std::ranges::equal(a.joints, b.joints, [](const JointDrive& one, const JointDrive& other) {
-           return one.gains == other.gains && one.limits.min_n_m == other.limits.min_n_m &&
-                  one.limits.max_n_m == other.limits.max_n_m &&
-                  one.length_scale == other.length_scale &&
+           return one.gains == other.gains && one.limits.min == other.limits.min &&
+                  one.limits.max == other.limits.max && one.length_scale == other.length_scale &&
                   one.section_scale == other.section_scale;
          });
 }

@@ -2,7 +2,7 @@
 // again.
 #include "fuzz/harness.hpp"
 #include "optimizers/table/optimizer_table.hpp"
-#include "problems/config/recorded_problem.hpp"
+#include "problems/config/problem_loader.hpp"
 #include "study/run/run_folder.hpp"
 #include "study/run/run_plan.hpp"
 

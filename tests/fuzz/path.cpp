@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "fuzz/harness.hpp"
-#include "problems/config/path_file.hpp"
-#include "sim/tracking/test_case_file.hpp"
+#include "problems/config/problem_readers.hpp"
+#include "sim/tracking/test_case.hpp"
 
 namespace armwright::fuzz {
 

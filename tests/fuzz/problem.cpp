@@ -9,7 +9,6 @@
 #include "fuzz/harness.hpp"
 #include "problems/config/config_files.hpp"
 #include "problems/config/problem_loader.hpp"
-#include "problems/config/recorded_problem.hpp"
 
 namespace armwright::fuzz {
 namespace {

@@ -20,12 +20,12 @@ bool runs_code(const std::string& optimizer) {
 
 bool names_plugin(const fs::path& file) {
   const ConfigTable table = ConfigTable::load(file);
-  std::vector<std::string> names;
-  if (table.has("optimizers")) {
-    names = table.get_strings("optimizers");
-  }
-  for (const ConfigTable& optimizer : table.get_tables_or_empty("optimizer")) {
-    names.push_back(optimizer.get_string("name", ""));
+  const Setting<std::vector<std::string>> optimizers("optimizers", kNoDefault, "");
+  const SettingTable entry{.key = "optimizer", .is_array = true};
+  const Setting<std::string> name("name", "", "");
+  std::vector<std::string> names = table.get_or(optimizers, {});
+  for (const ConfigTable& optimizer : table.get_tables_or_empty(entry)) {
+    names.push_back(optimizer.get(name));
   }
   return std::ranges::any_of(names, runs_code);
 }

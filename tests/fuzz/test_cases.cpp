@@ -3,7 +3,7 @@
 
 #include "base/text.hpp"
 #include "fuzz/harness.hpp"
-#include "sim/tracking/test_case_file.hpp"
+#include "sim/tracking/test_case.hpp"
 
 namespace armwright::fuzz {
 namespace {

@@ -1,4 +1,4 @@
-// Simulations given up as soon as their error is certain to exceed a bound.
+// Simulations that are abandoned as soon as their error is certain to exceed a bound.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ struct LimpArm {
     job.abandon_above_m = bound_m;
     return simulate_one(*setup, job);
   }
-  // The least that is certain after so many points.
+  // Returns the lower bound of the error that is certain after so many points.
   double calc_bound_m(std::size_t points) const {
     const std::size_t first = setup->task().count_first_point ? 0 : 1;
     double sum_m = 0;
@@ -45,7 +45,8 @@ TEST(Abandonment, EndsAfterThePointThatMakesItCertain) {
     const std::size_t points = arm.whole.point_error_m.size();
     for (std::size_t done = count_first_point ? 1 : 2; done < points; ++done) {
       SCOPED_TRACE(done);
-      // A bound just below what is certain after `done` points, and above that after one less.
+      // A bound just below the lower bound after `done` points, and above that after one point
+      // less.
       const double bound_m = std::nextafter(arm.calc_bound_m(done), 0);
       ASSERT_GT(bound_m, arm.calc_bound_m(done - 1));
       const TrackingResult result = arm.run(bound_m);
@@ -66,7 +67,7 @@ TEST(Abandonment, WhatIsNotAbandonedIsTheSameToTheLastBit) {
   const LimpArm arm(false);
   const std::size_t points = arm.whole.point_error_m.size();
   expect_identical(arm.run(arm.whole.mean_error_m), arm.whole);  // reached, not exceeded
-  // Exceeded by the last point only: nothing is left to abandon.
+  // Only the last point exceeds it, so the simulation is complete.
   const double bound_m = arm.calc_bound_m(points - 1);
   ASSERT_GT(arm.whole.mean_error_m, bound_m);
   expect_identical(arm.run(bound_m), arm.whole);

@@ -1,5 +1,5 @@
-// The classes that simulate a single arm, and what each may be off by: the physics tests run over
-// every one of them. An arm has OdeArm's constructor and members.
+// The classes that simulate a single arm, and the tolerances of each. The physics tests run over
+// all of them. An arm has OdeArm's constructor and members.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -24,21 +24,23 @@ using ArmTypes = testing::Types<OdeArm, ArticulatedArm>;
 template <class Arm>
 struct ArmTraits;
 
-// Maximal coordinates: in a step links move along tangents, the joints are pulled together again in
-// the steps after it, and velocities are those that solve the equations in the posture before it.
+// Maximal coordinates: in a step, links move along tangents, and the next steps pull the joints
+// together again. The velocities after a step solve the equations in the posture before it.
 template <>
 struct ArmTraits<OdeArm> {
   static constexpr const char* kName = "OdeArm";
 
-  // After a second of motion, in units of the error of semi-implicit Euler in joint coordinates:
-  // the own error and the distance to that method. Measured: up to 3.
+  // Limits after a second of motion, in units of the error of semi-implicit Euler in joint
+  // coordinates: the arm's error, and its distance from that method. Measured: up to 3.
   static constexpr double kErrorOverEuler = 4;
   static constexpr double kDistanceToEuler = 4;
 
-  // A large swing loses amplitude to the tangents, and so period, in proportion to the step.
+  // The motion along tangents reduces a large swing's amplitude, and so its period, in proportion
+  // to the step.
   static constexpr int kPeriodOrder = 1;
 
-  // Of the momentum along a joint that nothing else acts on, in units of momentum x turn in a step.
+  // Error of the momentum along a joint on which nothing else acts, in units of momentum x turn per
+  // step.
   static constexpr double kMomentumError = 1;
 
   // The posture to which the velocities after a step belong.
@@ -46,37 +48,39 @@ struct ArmTraits<OdeArm> {
                                                const Eigen::VectorXd& after [[maybe_unused]]) {
     return before;
   }
-  // Of the rates after a step in which the links turned by `turn`, relative to all of them. They
-  // are measured along axes that have turned since: by the square of that. Between the two bodies
-  // of a slider the lever has changed as well, by the turn itself times their distance (up to 2 m).
+  // Relative error of the rates after a step in which the links turned by `turn`. The axes along
+  // which rates are measured have turned since, which gives an error of the turn's square. For a
+  // slider, the lever between its two bodies has changed, too: by the turn times their distance (up
+  // to 2 m).
   static double calc_rate_error(double turn_rad, bool slides) {
     return slides ? 2 * turn_rad : turn_rad * turn_rad / 2;
   }
-  // Of a centre of mass beside the straight line after a first step from rest, in which the joints
-  // moved by `moved` in all (rad and m): rounding only.
+  // Distance of a centre of mass from the straight line after a first step from rest, in which the
+  // joints moved by `moved` in all (rad and m): rounding only.
   static double calc_path_error_m(double turn_rad [[maybe_unused]], double moved [[maybe_unused]]) {
     return 4e-15;
   }
-  // Of the tip from where the joint positions put it: each joint is off its circle by turn^2 / 2
-  // times the reach more every step, of which the share ERP is taken back.
+  // Distance of the tip from the forward kinematics of the joint positions. In every step each
+  // joint leaves its circle by another turn^2 / 2 times the reach, and the share ERP of it is
+  // corrected.
   static double calc_gap_m(double turn_rad, double reach_m, std::size_t joints, double erp) {
     return static_cast<double>(joints) * turn_rad * turn_rad * reach_m / (2 * erp);
   }
-  // A link that turns fast leaves its circle.
+  // Whether a link that turns fast leaves its circle.
   static constexpr bool kMovesAlongTangents = true;
-  // How far a link slides along a level rail before it is a kilometre away, in |x| + |y| + |z|.
+  // The distance that a link slides along a level rail until |x| + |y| + |z| is a kilometre.
   static constexpr double kFarthestSlide_m = 714;
-  // What is said of an arm that blew up: joints are named unless the library itself gave up.
+  // The message about an arm that diverged. It names a joint unless the library itself stopped.
   static constexpr const char* kBlownUp =
       "joint [0-9]+ \\([a-z]+\\): its link is .* m from the base and turns at .* rad/s|"
       "ODE stopped \\(message .*";
 };
 
-// Joint coordinates: semi-implicit Euler itself, so that only rounding is left.
+// Joint coordinates: semi-implicit Euler itself, so the only error is rounding.
 struct ReducedArmTraits {
   static constexpr double kErrorOverEuler = 1 + 1e-6;
   static constexpr double kDistanceToEuler = 1e-6;
-  // Its symplectic map keeps the amplitude: the period is off by the square of the step.
+  // Its symplectic map keeps the amplitude, so the period's error is of second order in the step.
   static constexpr int kPeriodOrder = 2;
   static constexpr double kMomentumError = 2;
   static const Eigen::VectorXd& select_posture(const Eigen::VectorXd& before [[maybe_unused]],
@@ -100,7 +104,7 @@ struct ReducedArmTraits {
       "joint [0-9]+ \\([a-z]+\\): its link is .* m from the base and turns at .* rad/s";
 };
 
-// What counts is how far joints turned or slid, plus their rates: a million in all.
+// It diverges once the positions (rad or m) and rates of all joints add up to a million.
 template <>
 struct ArmTraits<ArticulatedArm> : ReducedArmTraits {
   static constexpr const char* kName = "ArticulatedArm";

@@ -1,6 +1,6 @@
-// The equations of motion in joint coordinates against those of the bodies' Jacobians, on chains of
-// every kind: general ones, and those whose axes are parallel, opposite, at right angles or nearly
-// so, where the engine takes short cuts.
+// Compares the equations of motion in joint coordinates with those from the bodies' Jacobians.
+// Chains are general, or have axes that are parallel, opposite or at right angles, exactly or
+// nearly. For the exact cases the engine leaves out arithmetic.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,8 +18,9 @@
 namespace armwright::physics_test {
 namespace {
 
-// Rounding of some thousand operations at 1e-16 each, in other orders. Of axes that differ by a
-// microradian the engine takes the cosine, 1 - 5e-13, for 1: so much at every joint.
+// Rounding of some thousand operations at 1e-16 each, in different orders. For axes that differ by
+// a microradian, the engine rounds the cosine 1 - 5e-13 to 1, which gives that error at every
+// joint.
 constexpr double kRounding = 1e-12, kRoundingOfTilted = 1e-10;
 
 struct Drawn {
@@ -33,7 +34,7 @@ Vector3d draw_direction(RandomStream& random) {
   return Vector3d(x, y, random.uniform(-1, 1)).normalized();
 }
 
-// One of x, y, z and their opposites.
+// Draws one of x, y, z and their opposites.
 Vector3d draw_main_direction(RandomStream& random) {
   Vector3d v = Vector3d::Zero();
   v[static_cast<Eigen::Index>(random.uniform(0, 3))] = random.uniform(0, 1) < 0.5 ? -1 : 1;
@@ -46,7 +47,8 @@ void place(RobotModel& model, std::size_t i, const Vector3d& axis, const Matrix3
   model.joints[i].origin.linear() = turn;
 }
 
-// Frames in quarter turns, axes and offsets along them: right angles, parallel and opposite axes.
+// Frames turned by quarter turns, with axes and offsets along them: axes are parallel, opposite or
+// at right angles.
 void align_axes(RobotModel& model, RandomStream& random) {
   for (std::size_t i = 0; i < model.joint_count(); ++i) {
     const int quarters = static_cast<int>(random.uniform(0, 4));
@@ -56,7 +58,7 @@ void align_axes(RobotModel& model, RandomStream& random) {
   }
 }
 
-// Runs of joints about the same axis, which is general: groups of one to four.
+// Groups of one to four joints about the same axis, which has a general direction.
 void group_axes(RobotModel& model, RandomStream& random) {
   Vector3d axis = draw_direction(random);
   for (std::size_t i = 0; i < model.joint_count(); ++i) {
@@ -67,7 +69,7 @@ void group_axes(RobotModel& model, RandomStream& random) {
   }
 }
 
-// Axes that differ by a microradian from those before or their opposites.
+// Axes that differ by a microradian from the axis before or from its opposite.
 void tilt_axes(RobotModel& model, RandomStream& random) {
   Vector3d axis = draw_direction(random);
   for (std::size_t i = 0; i < model.joint_count(); ++i) {
@@ -77,7 +79,7 @@ void tilt_axes(RobotModel& model, RandomStream& random) {
   }
 }
 
-// Chains of one to eight and of twelve joints: of turning ones alone, or with sliders.
+// Chains of one to eight and of twelve joints: all revolute, or with prismatic ones.
 std::vector<Drawn> make_chains(bool sliders) {
   std::vector<Drawn> chains;
   for (const std::size_t joints : {1, 2, 3, 4, 5, 6, 7, 8, 12}) {
@@ -136,7 +138,7 @@ void expect_equations(const RobotModel& model, double gravity, const Motion& m,
                       const MatrixXd& mass, const VectorXd& bias, double rounding) {
   const ChainOracle::Equations expected = ChainOracle(model, gravity).calc(m.q, m.qd);
   EXPECT_LT((mass - expected.mass).norm(), rounding * expected.mass.norm());
-  // Parts of the bias may cancel: without gravity and at rest nothing is left.
+  // Parts of the bias may cancel. Without gravity and at rest it is zero.
   const double size = expected.mass.norm() * (m.qd.squaredNorm() + gravity);
   EXPECT_LT((bias - expected.bias).norm(), rounding * (expected.bias.norm() + size));
 }
@@ -159,7 +161,8 @@ TEST(ArticulatedArm, HasTheEquationsOfMotionOfTheJacobians) {
   }
 }
 
-// The forms of the same code that leave out what turning joints, or the palletiser, do not need.
+// Tests the variants of the code that leave out what revolute joints, or the palletiser, do not
+// need.
 struct TestLevel;
 using Lane = lanes::Single<double, TestLevel>;
 struct Equations {
@@ -208,7 +211,7 @@ TEST(ArticulatedChain, OfTurningJointsHasTheEquationsOfMotionOfTheJacobians) {
   }
 }
 
-// The thesis's arm as it is, and with other masses, lengths and inertias in it.
+// Tests the thesis's arm, and the same arm with other masses, lengths and inertias.
 RobotModel make_palletiser(std::uint64_t number) {
   RandomStream random("test/physics/palletiser", number);
   RobotModel model = load_irb4600();
@@ -233,8 +236,8 @@ TEST(ArticulatedChain, OfAPalletiserHasTheEquationsOfMotionOfTheJacobians) {
   }
 }
 
-// tau of an acceleration, and back again. The solution of a system with M loses the digits of its
-// condition.
+// Computes tau from an acceleration, and the acceleration from tau. Solving a system with M loses
+// as many digits as the condition number of M has.
 TEST(ArticulatedArm, ForwardDynamicsInvertsInverseDynamics) {
   std::uint64_t number = 0;
   for (const bool sliders : {false, true}) {
@@ -253,7 +256,7 @@ TEST(ArticulatedArm, ForwardDynamicsInvertsInverseDynamics) {
       const double size =
           acceleration.norm() + m.qd.norm() + inverse.bias.norm() / eigenvalues.maxCoeff();
       EXPECT_LT((found - acceleration).norm(), 0.1 * chain.rounding * condition * size);
-      ASSERT_LT(condition, 1e7);  // or the line before would say little
+      ASSERT_LT(condition, 1e7);  // otherwise the tolerance above would be too wide
     }
   }
 }
@@ -276,9 +279,9 @@ TEST(ArticulatedArm, TheMassMatrixIsPositiveDefiniteAndHoldsTheKineticEnergy) {
   }
 }
 
-// At rest the bias is the gradient of the potential energy, also where the first axis lies level or
-// slants. Central differences over 1e-4: off by 1e-8 / 6 of third derivatives of the energy's size,
-// and by rounding over 1e-4.
+// At rest the bias is the gradient of the potential energy, also if the first axis is horizontal or
+// inclined. Central differences over 1e-4 have an error of 1e-8 / 6 times third derivatives, which
+// have the energy's size, and of rounding divided by 1e-4.
 TEST(ArticulatedArm, GravityIsTheGradientOfThePotentialEnergy) {
   std::uint64_t number = 0;
   for (const bool sliders : {false, true}) {
@@ -308,7 +311,7 @@ TEST(ArticulatedArm, GravityIsTheGradientOfThePotentialEnergy) {
           }
           gradient[i] = (energies_j[1] - energies_j[0]) / 2e-4;
         }
-        // Levers of at most 2 m a joint.
+        // Levers of at most 2 m per joint.
         EXPECT_LT((bias - gradient).norm(), 1e-8 * weight_n * 2 * static_cast<double>(m.q.size()));
         set_motion(arm, m);
       }

@@ -1,15 +1,17 @@
-// The tests' own mechanics of a serial chain, independent of the engine: equations of motion from
-// the bodies' Jacobians (Kane's method) and plain integrators. Only RobotModel, the description of
-// the arm, is shared with what is tested.
+// A model of a serial chain for the tests, independent of the engines: equations of motion from the
+// bodies' Jacobians (Kane's method), and simple integrators. It shares only RobotModel, the
+// description of the arm, with the tested code.
 //
 //   M(q) qdd + b(q, qd) = tau
 //   M = sum over the bodies of  m Jv' Jv + Jw' I Jw
 //   b = sum over the bodies of  m Jv' (a0 - g) + Jw' (I alpha0 + w x I w)
 //
-// Jv, Jw: Jacobians of a centre of mass's velocity and of the body's spin, their columns a x (c -
-// p) and a for a revolute joint in p with the axis a, a and 0 for a prismatic one; a0, alpha0:
-// their accelerations at qdd = 0, with 2 w x a qd of a prismatic joint (Coriolis); I: inertia about
-// the centre of mass, along the world's axes; g: gravity.
+//   Jv, Jw      Jacobians of the velocity of the centre of mass c and of the body's spin. Their
+//               columns are a x (c - p) and a for a revolute joint at p with axis a, and a and 0
+//               for a prismatic joint.
+//   a0, alpha0  their accelerations at qdd = 0, with 2 w x a qd of a prismatic joint (Coriolis)
+//   I           inertia about the centre of mass, along the world's axes
+//   g           gravity
 #pragma once
 
 #include <Eigen/Dense>
@@ -60,7 +62,7 @@ class ChainOracle {
     const Vector3d up_m_per_s2(0, 0, gravity_);
     MatrixXd spin_jacobian = MatrixXd::Zero(3, n);
     MatrixXd axes(3, n);      // of the joints
-    MatrixXd joints_m(3, n);  // where the revolute joints are
+    MatrixXd joints_m(3, n);  // positions of the revolute joints
     Matrix3d rotation = Matrix3d::Identity();
     Vector3d position = Vector3d::Zero(), spin = Vector3d::Zero();
     Vector3d spin_rate = Vector3d::Zero(), acceleration = Vector3d::Zero();
@@ -131,7 +133,7 @@ struct State {
 };
 using Acceleration = std::function<VectorXd(double t_s, const VectorXd& q, const VectorXd& qd)>;
 
-// qd += h qdd(t, q, qd); q += h qd: first order, what the engine is documented to do.
+// Integrates with qd += h qdd(t, q, qd); q += h qd: first order, as documented for the engines.
 inline State integrate_semi_implicit_euler(const Acceleration& f, State s, int steps, double h_s) {
   for (int k = 0; k < steps; ++k) {
     s.qd += h_s * f(k * h_s, s.q, s.qd);

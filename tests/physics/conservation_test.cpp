@@ -35,8 +35,8 @@ template <class Arm>
 class SwingingArm : public testing::Test {};
 TYPED_TEST_SUITE(SwingingArm, ArmTypes, ArmNames);
 
-// From rest the first step's energies are exact, V = sum of m g z and T = qd' M(q) qd / 2, but for
-// the error of the rates, which counts twice in their square.
+// From rest, the energies after the first step are exact, V = sum of m g z and T = qd' M(q) qd / 2,
+// except for the error of the rates, which counts twice in their square.
 TYPED_TEST(SwingingArm, EnergiesAreThoseOfTheEquationsOfMotion) {
   for (const SomeArm& a : kArms) {
     SCOPED_TRACE(a.name);
@@ -48,7 +48,7 @@ TYPED_TEST(SwingingArm, EnergiesAreThoseOfTheEquationsOfMotion) {
                 1e-12 * 100);  // rounding of some 100 J
     step(arm, VectorXd::Constant(a.start.size(), 7.7), 0.01);
     const VectorXd rates = read_rates(arm, a.model.joint_count());
-    const VectorXd after = read_angles(arm, a.model.joint_count());
+    const VectorXd after = read_positions(arm, a.model.joint_count());
     const double expected_j =
         oracle.calc_kinetic_energy_j(ArmTraits<TypeParam>::select_posture(a.start, after), rates);
     EXPECT_GT(expected_j, 0.005);
@@ -58,7 +58,7 @@ TYPED_TEST(SwingingArm, EnergiesAreThoseOfTheEquationsOfMotion) {
   }
 }
 
-// The largest deviation from the start's energy over a second of free motion.
+// Returns the largest deviation from the initial energy over a second of free motion.
 template <class Arm>
 double measure_drift_j(const SomeArm& a, int steps) {
   Arm arm = make_arm<Arm>(a.model, a.start);
@@ -81,14 +81,15 @@ TYPED_TEST(SwingingArm, TheEnergyDriftShrinksInProportionToTheStep) {
     const double fine_j = measure_drift_j<TypeParam>(a, 3200);
     EXPECT_NEAR(std::log2(coarse_j / middle_j), 1, kOrderTolerance);
     EXPECT_NEAR(std::log2(middle_j / fine_j), 1, kOrderTolerance);
-    // Semi-implicit Euler errs by about h |dT/dt| / 2, with some 100 J/s of a swinging arm here and
-    // up to 1 kJ/s of one that falls along its rail; ODE's is of that size.
+    // The error of semi-implicit Euler is about h |dT/dt| / 2. |dT/dt| is some 100 J/s for a
+    // swinging arm and up to 1 kJ/s for one that falls along its rail. ODE's error has the same
+    // size.
     EXPECT_LT(fine_j, (has_slider(a.model) ? 1000.0 : 100.0) / 3200);
   }
 }
 
-// Constant efforts: the work is the sum of effort x motion, without any integral to approximate;
-// what remains of (energy change - work) is the integrator's, first order.
+// With constant efforts, the work is exactly the sum of effort x motion. The difference between
+// energy change and work is therefore the integrator's error, of first order.
 TYPED_TEST(SwingingArm, WorkInIsEnergyChange) {
   for (const SomeArm& a : kArms) {
     SCOPED_TRACE(a.name);
@@ -100,7 +101,7 @@ TYPED_TEST(SwingingArm, WorkInIsEnergyChange) {
       VectorXd q = a.start;
       for (int k = 0; k < steps; ++k) {
         step(arm, tau, 1.0 / steps);
-        q += calc_motion(a.model, q, read_angles(arm, a.model.joint_count()));
+        q += calc_motion(a.model, q, read_positions(arm, a.model.joint_count()));
       }
       work_j = tau.dot(q - a.start);
       return VectorXd::Constant(1, calc_energy_j(arm) - start_j - work_j);
@@ -108,14 +109,14 @@ TYPED_TEST(SwingingArm, WorkInIsEnergyChange) {
     const Limit imbalance_j = extrapolate(simulate, 1600);
     EXPECT_GT(std::abs(work_j), 5);
     EXPECT_NEAR(imbalance_j.order, 1, kOrderTolerance);
-    EXPECT_LT(imbalance_j.error, 1e-3 * std::abs(work_j));  // or the next line would say little
+    EXPECT_LT(imbalance_j.error, 1e-3 * std::abs(work_j));  // or the next check is weak
     EXPECT_LT(std::abs(imbalance_j.value[0]), imbalance_j.error);
   }
 }
 
-// About a vertical first axis neither gravity nor efforts in the other joints have a moment: the
-// angular momentum there, the first row of M(q) qd, is the impulse of the first effort. Likewise
-// along a level first rail: momentum.
+// Gravity and the efforts of the other joints have no moment about a vertical first axis. The
+// angular momentum about it, the first row of M(q) qd, is therefore the impulse of the first
+// effort. The same holds for the momentum along a level first rail.
 struct MomentumCase {
   const char* name;
   RobotModel model;
@@ -135,7 +136,8 @@ template <class Arm>
 class Momentum : public testing::Test {};
 TYPED_TEST_SUITE(Momentum, ArmTypes, ArmNames);
 
-// The largest deviation from the impulse over a second; the first effort acts for a quarter of it.
+// Returns the largest deviation from the impulse over a second. The first effort acts for a quarter
+// of that time.
 template <class Arm>
 double measure_momentum_error(const MomentumCase& a, double gravity, bool pushed, int steps) {
   const ChainOracle oracle(a.model, gravity);
@@ -151,7 +153,7 @@ double measure_momentum_error(const MomentumCase& a, double gravity, bool pushed
                      a.efforts[1] * std::sin(5 * t_s + 0.3), a.efforts[2] * std::cos(3 * t_s)});
     step(arm, tau, 1.0 / steps);
     impulse += tau[0] / steps;
-    const VectorXd q = read_angles(arm, 3), qd = read_rates(arm, 3);
+    const VectorXd q = read_positions(arm, 3), qd = read_rates(arm, 3);
     moved += calc_motion(a.model, moved, q);
     farthest = farthest.cwiseMax((moved - kThreeAngles).cwiseAbs());
     error = std::max(error, std::abs((oracle.calc(q, qd).mass * qd)[0] - impulse));
@@ -160,9 +162,9 @@ double measure_momentum_error(const MomentumCase& a, double gravity, bool pushed
   return error;
 }
 
-// Rates and positions after a step are not of the same instant: the difference is of first order,
-// of the size of the momentum (6 N m s of the turning arms, 10 N s along the rail, 30 N m s with a
-// mass that slides far out) times the turn in a step (rates up to 10 rad/s).
+// Rates and positions after a step belong to different instants. The difference is of first order:
+// the momentum (6 N m s of the turning arms, 10 N s along the rail, 30 N m s with a mass that
+// slides far out) times the turn per step (rates up to 10 rad/s).
 TYPED_TEST(Momentum, AlongTheFirstJointIsTheImpulse) {
   for (const MomentumCase& a : make_momentum_cases()) {
     for (const double gravity : {0.0, kGravity_m_per_s2}) {

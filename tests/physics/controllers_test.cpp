@@ -1,5 +1,5 @@
-// Whole simulations under every controller: engines beside each other, lanes beside neighbours, and
-// feed-forward on an arm that is what the model says.
+// Whole simulations under every controller: engines agree, lanes do not affect each other, and
+// feed-forward moves an arm that equals its model exactly.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include "base/expect_error.hpp"
 #include "sim/engines/articulated/articulated_arm.hpp"
 #include "sim/kinematics/kinematics.hpp"
-#include "sim/tracking/design_conversion.hpp"
+#include "sim/tracking/design.hpp"
 #include "sim/tracking/tracking_loop.hpp"
 #include "tracking_arms.hpp"
 
@@ -33,9 +33,9 @@ class UnderController : public testing::TestWithParam<std::string> {
   ArmDesign design_ = convert_design(kTableA1, GetParam(), 0.01);
 };
 
-// Maximal coordinates with corrected joints against joint coordinates: a percent, as for the
-// published designs, and 50 um, in which ODE's plant is not the one that efforts in advance are
-// for.
+// Compares maximal coordinates with corrected joints and joint coordinates. Tolerance: a percent,
+// as for the published designs, and 50 um, because feed-forward efforts do not fit ODE's plant
+// exactly.
 TEST_P(UnderController, EnginesAgree) {
   std::vector<TargetTable> targets;
   std::vector<TrackingJob> jobs;
@@ -58,11 +58,12 @@ TEST_P(UnderController, EnginesAgree) {
   }
 }
 
-// The engine's single lane and a loop around one arm: the same equations in another order.
+// Compares the engine's single lane with a loop around one arm: the same equations in another
+// order.
 TEST_P(UnderController, LanesAgreeWithALoop) {
   const TargetTable targets = setup_.make_targets(make_case(4, 8));
   const TrackingJob job = make_job(design_, targets);
-  ArticulatedArm arm(setup_.robot(), targets.start_rad, setup_.task().physics);
+  ArticulatedArm arm(setup_.robot(), targets.start_positions, setup_.task().physics);
   const TrackingResult alone = TrackingLoop(setup_, job).run(arm);
   for (const std::string& level : supported_simd_names()) {
     const TrackingResult lane = make_engine("articulated", {.simd = parse_simd(level)})
@@ -72,17 +73,17 @@ TEST_P(UnderController, LanesAgreeWithALoop) {
       EXPECT_NEAR(lane.point_error_m[k], alone.point_error_m[k], 1e-9) << level;
     }
     for (std::size_t i = 0; i < 4; ++i) {
-      EXPECT_NEAR(lane.rms_effort_n_m[i] / alone.rms_effort_n_m[i], 1, 1e-6) << level;
+      EXPECT_NEAR(lane.rms_effort[i] / alone.rms_effort[i], 1, 1e-6) << level;
       EXPECT_NEAR(lane.saturated_share[i], alone.saturated_share[i], 1e-3) << level;
     }
   }
 }
 
-// Under other controllers, with other gains, on other cases, cut off and diverging: the lanes
-// beside it change nothing of a job.
+// The other lanes do not change a job's result, even if they have other controllers, gains and
+// cases, are cut off or diverge.
 TEST_P(UnderController, NeighboursDoNotMatter) {
   TrackingTask task = make_task();
-  task.feed_forward = FeedForward::inverse_dynamics;  // serves those that want none, too
+  task.feed_forward = FeedForward::inverse_dynamics;  // some controllers do not use it
   if (find_controller(GetParam()).feed_forward == FeedForward::gravity) {
     task.feed_forward = FeedForward::gravity;
   }
@@ -109,25 +110,25 @@ TEST_P(UnderController, NeighboursDoNotMatter) {
 INSTANTIATE_TEST_SUITE_P(Table, UnderController, testing::ValuesIn(controller_names()),
                          [](const auto& test) { return test.param; });
 
-// No feedback at all: with one step a period the model's efforts take the model to its targets,
-// exactly; what rounding leaves grows on an arm without feedback, over some hundred steps by a few
-// powers of ten.
+// Without any feedback and with one step per period, the model's efforts take the model exactly to
+// its targets. On an arm without feedback, rounding errors grow by a few powers of ten over some
+// hundred steps.
 TEST(FeedForwardTable, TakesTheModelToItsTargets) {
   TrackingTask task = make_e6_task();
   task.feed_forward = FeedForward::inverse_dynamics;
   const TrackingSetup setup(load_irb4600(), task);
   const TargetTable targets = setup.make_targets(make_case(3, 4));
-  ASSERT_EQ(targets.feed_forward_n_m.size(), targets.angles_rad.size());
-  ArticulatedArm arm(setup.robot(), targets.start_rad, task.physics);
+  ASSERT_EQ(targets.feed_forward_effort.size(), targets.joint_positions.size());
+  ArticulatedArm arm(setup.robot(), targets.start_positions, task.physics);
   std::vector<double> q(4);
   double moved = 0;
   for (int step = 0; step < targets.steps; ++step) {
     arm.step(targets.feed_forward(step), task.control_period_s);
-    arm.read_angles(q);
+    arm.read_positions(q);
     for (std::size_t i = 0; i < 4; ++i) {
-      ASSERT_NEAR(calc_displacement(JointKind::revolute, targets.angles(step)[i], q[i]), 0, 1e-7)
+      ASSERT_NEAR(calc_displacement(JointKind::revolute, targets.positions(step)[i], q[i]), 0, 1e-7)
           << "step " << step;
-      moved = std::max(moved, std::abs(q[i] - targets.start_rad[i]));
+      moved = std::max(moved, std::abs(q[i] - targets.start_positions[i]));
     }
   }
   EXPECT_GT(moved, 0.3);
@@ -141,7 +142,7 @@ TEST(FeedForwardTable, HoldsTheModelWhereItsTargetIs) {
   // The posture before step k is the target at the end of step k - 1.
   for (const int step : {0, 20, 60, 130}) {
     const auto posture =
-        step == 0 ? std::span<const double>(targets.start_rad) : targets.angles(step - 1);
+        step == 0 ? std::span<const double>(targets.start_positions) : targets.positions(step - 1);
     ArticulatedArm arm(setup.robot(), posture, task.physics);
     const Eigen::VectorXd bias = arm.calc_bias();
     arm.step(targets.feed_forward(step), 0.01);
@@ -162,9 +163,9 @@ TEST(FeedForwardTable, IsThereOnlyWhereItIsAskedForAndCounted) {
   const TrackingSetup with(load_irb4600(), task);
   const TargetTable plain = without.make_targets(make_case(3, 4));
   const TargetTable full = with.make_targets(make_case(3, 4));
-  EXPECT_TRUE(plain.feed_forward_n_m.empty());
-  EXPECT_EQ(plain.angles_rad, full.angles_rad);
-  EXPECT_EQ(full.size_bytes(), plain.size_bytes() + full.angles_rad.size() * sizeof(double));
+  EXPECT_TRUE(plain.feed_forward_effort.empty());
+  EXPECT_EQ(plain.joint_positions, full.joint_positions);
+  EXPECT_EQ(full.size_bytes(), plain.size_bytes() + full.joint_positions.size() * sizeof(double));
   const ArmDesign design = convert_design(kTableA1, "pid_gravity", 0.01);
   const TrackingJob job = make_job(design, plain);
   for (const std::string& engine : engine_names()) {

@@ -1,4 +1,4 @@
-// What a first-order method converges to, and how far off that is known to be.
+// Estimates the limit of a first-order method, and the error of that estimate.
 #pragma once
 
 #include <Eigen/Dense>
@@ -12,12 +12,12 @@ namespace armwright::physics_test {
 // O(h^(p+1)), the second by O(h^(p+2)).
 struct Limit {
   Eigen::VectorXd value;   // second level
-  double error = 0;        // what the first level still changes by: bounds the second's own error
+  double error = 0;        // change of the first level: bounds the second level's error
   double order = 0;        // log2 |S(h) - S(h/2)| / |S(h/2) - S(h/4)|: p, up to O(h)
   Eigen::VectorXd finest;  // S(h/4)
 };
 
-// `simulate` takes a number of steps for a fixed span of time.
+// `simulate` takes the count of steps for a fixed span of time.
 inline Limit extrapolate(const std::function<Eigen::VectorXd(int)>& simulate, int steps,
                          int order = 1) {
   const Eigen::VectorXd s1 = simulate(steps), s2 = simulate(2 * steps), s4 = simulate(4 * steps);
@@ -32,8 +32,8 @@ inline Limit extrapolate(const std::function<Eigen::VectorXd(int)>& simulate, in
   return limit;
 }
 
-// The order, measured at finite steps: the next term of the series moves log2 of the ratio by about
-// b h / a, which the steps of these tests keep below this.
+// Tolerance of the order that is measured at finite steps. The next term of the series changes log2
+// of the ratio by about b h / a, and the steps of these tests keep it below this value.
 constexpr double kOrderTolerance = 0.2;
 
 }  // namespace armwright::physics_test

@@ -1,4 +1,4 @@
-// Exact derivatives of simulations against differences of the same simulations.
+// Compares exact derivatives of simulations with differences of the same simulations.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -6,26 +6,26 @@
 #include <stdexcept>
 #include <vector>
 
-#include "sim/tracking/design_conversion.hpp"
+#include "sim/tracking/design.hpp"
 #include "tracking_arms.hpp"
 
 namespace armwright::physics_test {
 namespace {
 
-// One number of the design, in the order in which derivatives are asked for.
+// Returns one number of the design, in the order of the derivatives.
 double& get_number(ArmDesign& design, std::size_t which) {
   const std::size_t gains = design.joints.front().gains.size();
   JointDrive& joint = design.joints[which / (gains + 2)];
   const std::size_t k = which % (gains + 2);
-  return k < gains ? joint.gains[k] : k == gains ? joint.limits.min_n_m : joint.limits.max_n_m;
+  return k < gains ? joint.gains[k] : k == gains ? joint.limits.min : joint.limits.max;
 }
 std::size_t count_numbers(const ArmDesign& design) {
   return design.joints.size() * (design.joints.front().gains.size() + 2);
 }
 constexpr std::size_t kNumbers = 20;  // of a PID design
 
-// Along the numbers themselves, so that derivatives are those by their logarithms, as errors are:
-// m for a factor of e.
+// Makes directions along the numbers themselves. The derivatives are then with respect to the
+// logarithms of the numbers, in m per factor of e.
 std::vector<ArmDesign> make_directions(const ArmDesign& design) {
   ArmDesign zero = design;
   const std::size_t numbers = count_numbers(design);
@@ -50,7 +50,7 @@ std::vector<double> calc_errors(const PhysicsEngine& engine, const TrackingSetup
   return engine.simulate(setup, {&job, 1}).front().point_error_m;
 }
 
-// Central differences, a row a point; `step` in units of the number itself.
+// Returns central differences, one row per point; `step` is relative to the number itself.
 std::vector<double> calc_differences(const PhysicsEngine& engine, const TrackingSetup& setup,
                                      const ArmDesign& design, const TargetTable& targets,
                                      double step) {
@@ -70,15 +70,15 @@ std::vector<double> calc_differences(const PhysicsEngine& engine, const Tracking
   return differences;
 }
 
-// How far from the differences the derivatives are. Where differences of two steps disagree, there
-// is a kink between (another step attains the maximum, a limit is just met) or much curvature;
-// where they agree to `kAgreement` of the scale it is smooth, and extrapolating them to no step at
-// all leaves an error far below that.
+// The distance of derivatives from differences. If differences of two step sizes disagree, there is
+// a kink between them (another control period has the maximum, a limit is just reached) or strong
+// curvature. If they agree to `kAgreement` of the scale, the error is smooth there, and
+// extrapolation to step size 0 leaves an error far below that.
 struct Comparison {
   int smooth = 0;
-  int with_influence = 0;  // of the smooth ones
+  int with_influence = 0;  // count of smooth ones
   int rough = 0;
-  double worst = 0;  // of the smooth ones, as a share of the scale
+  double worst = 0;  // largest distance at smooth ones, as a share of the scale
 };
 constexpr double kAgreement = 3e-6;
 
@@ -95,8 +95,8 @@ Comparison compare(const TrackingSetup& setup, const ArmDesign& design,
   EXPECT_EQ(exact.size(), wide.size());
   Comparison comparison;
   for (std::size_t i = 0; i < exact.size(); ++i) {
-    // Errors are rounded to some 1e-15 m, which differences divide by the step: 1e-10 m. The scale
-    // never falls below the errors themselves, 1e-4 m at least.
+    // Errors are rounded to some 1e-15 m, and differences divide that by the step: 1e-10 m. The
+    // scale is never below the errors themselves, at least 1e-4 m.
     const double scale = std::max(std::abs(wide[i]), errors[i / numbers]);
     if (std::abs(wide[i] - narrow[i]) > kAgreement * scale) {
       ++comparison.rough;
@@ -111,10 +111,10 @@ Comparison compare(const TrackingSetup& setup, const ArmDesign& design,
 }
 
 void expect_agreement(const Comparison& comparison) {
-  // A kink that moves the differences by less than what they must agree to, and the extrapolated
-  // ones by little more, goes unseen.
+  // The test does not see a kink that changes the differences by less than the required agreement,
+  // and the extrapolated differences by little more.
   EXPECT_LT(comparison.worst, 3 * kAgreement);
-  // Most places are smooth, and in many the number matters.
+  // Most derivatives are smooth, and many of them are not zero.
   EXPECT_GT(comparison.smooth, 4 * comparison.rough);
   EXPECT_GT(comparison.with_influence, comparison.smooth / 10);
 }
@@ -131,21 +131,21 @@ TEST_F(Derivatives, AreTheLimitsOfDifferences) {
   }
 }
 
-// A hair off parallel, the third axis begins a group of its own, at a general angle: the code for
-// chains of any shape.
+// If the third axis is slightly off parallel, it begins a group of its own at a general angle. Then
+// the code for chains of any shape runs.
 TEST_F(Derivatives, HoldForAnyShapeOfChain) {
   RobotModel robot = load_irb4600();
   robot.joints[2].axis = (robot.joints[2].axis + 3e-7 * Eigen::Vector3d(0.6, 0, 0.8)).normalized();
   const TrackingSetup setup(robot, make_e6_task());
   const Comparison comparison = compare(setup, kTableA1, targets_);
   expect_agreement(comparison);
-  // The arm is the same to 3e-7 rad, and so are its derivatives, but for what is rough.
+  // The arm is the same to 3e-7 rad, and so are its derivatives, except near kinks.
   const TrackingJob job = make_job(kTableA1, targets_);
   const auto directions = make_directions(kTableA1);
   const auto a = make_articulated()->calc_derivatives(setup_, job, directions);
   const auto b = make_articulated()->calc_derivatives(setup, job, directions);
   ASSERT_EQ(a.size(), b.size());
-  EXPECT_NE(a, b);  // other code
+  EXPECT_NE(a, b);  // because other code ran
   double largest = 0;
   double difference = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -171,7 +171,8 @@ TEST_F(Derivatives, DoNotDependOnHowManyAreAskedForAtOnce) {
   EXPECT_TRUE(engine->calc_derivatives(setup_, job, {}).empty());
 }
 
-// Of every controller, made of the first design, with what starts at zero or at a kink moved off.
+// Tests every controller, converted from the first design. Numbers that start at zero or at a kink
+// are moved away from it.
 TEST_F(Derivatives, AreTheLimitsOfDifferencesForEveryController) {
   for (const ControllerRow& row : controller_table()) {
     TrackingTask task = make_e6_task();
@@ -180,7 +181,7 @@ TEST_F(Derivatives, AreTheLimitsOfDifferencesForEveryController) {
     const TargetTable targets = setup.make_targets(make_case(7, 8));
     ArmDesign design = convert_design(kTableA1, row.name, task.control_period_s);
     for (JointDrive& joint : design.joints) {
-      joint.limits.min_n_m *= 0.97;  // both limits alike: a kink of the larger one
+      joint.limits.min *= 0.97;  // two equal limits would be a kink of the larger one
       for (std::size_t k = 0; k < joint.gains.size(); ++k) {
         joint.gains[k] += row.gains[k].any_sign    ? 0.01 * std::cos(static_cast<double>(k))
                           : row.gains[k].range > 0 ? -0.1
@@ -195,7 +196,7 @@ TEST_F(Derivatives, AreTheLimitsOfDifferencesForEveryController) {
   }
 }
 
-// Points that were not reached count as the cut-off error, which depends on nothing.
+// Points that were not reached have the cut-off error, which is constant.
 TEST_F(Derivatives, AreZeroFromACutOffOnAndFiniteWhereAnArmDiverges) {
   const auto engine = make_articulated();
   const TrackingJob job = make_job(kLimp, targets_, 0.3);

@@ -1,4 +1,4 @@
-// A result depends on its own job: not on the thread, the batch or what ran before.
+// A result depends on its own job only, not on the thread, the batch or earlier simulations.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 namespace armwright::physics_test {
 namespace {
 
-// Sixteen jobs of every kind: good designs, an exploding and a limp one, with and without cut-off,
-// with and without recording, an unreachable case.
+// Sixteen jobs of every kind: good designs, one that explodes and one that is too weak, with and
+// without cut-off and recording, and an unreachable case.
 class SixteenJobs : public testing::Test {
  protected:
   SixteenJobs() {
@@ -74,8 +74,9 @@ TEST_F(SixteenJobs, AloneAndInOtherBatchesAreTheSame) {
   EXPECT_TRUE(engine_->simulate(setup_, {}).empty());
 }
 
-// Every thread begins at another job, so that different simulations run at the same time. A few
-// rounds: state shared by mistake shows only when two steps collide.
+// Every thread begins with another job, so that different simulations run at the same time. There
+// are several rounds because state shared by mistake shows only when two steps run at the same
+// time.
 TEST_F(SixteenJobs, InEightThreadsAreTheSame) {
   constexpr std::size_t kThreads = 8, kRounds = 6;
   std::vector<std::vector<TrackingResult>> results(kThreads);

@@ -1,4 +1,4 @@
-// Simulations that cannot go on: what is said of them, and that nothing else suffers.
+// Simulations that diverge: their messages, and that they do not affect other simulations.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "sim/tracking/tracking_result.hpp"
+#include "sim/tracking/engine_support.hpp"
 #include "test_arms.hpp"
 #include "tracking_arms.hpp"
 
@@ -33,7 +33,7 @@ std::string divergence_message(const std::function<void()>& action) {
   return "(no error)";
 }
 
-// Steps until something is thrown, at most `steps` times.
+// Steps until a DivergenceError, at most `steps` times, and returns its message.
 template <class Arm>
 std::string step_until_divergence(const RobotModel& model, Eigen::Index joint, double effort_n_m,
                                   int steps) {
@@ -47,7 +47,7 @@ std::string step_until_divergence(const RobotModel& model, Eigen::Index joint, d
   });
 }
 
-// All that can be read of an arm after half a second of general motion.
+// Returns everything that can be read from an arm after half a second of general motion.
 template <class Arm>
 VectorXd simulate_half_a_second() {
   const RobotModel model = make_skew_arm();
@@ -56,8 +56,8 @@ VectorXd simulate_half_a_second() {
     step(arm, VectorXd::LinSpaced(3, std::sin(k), -2), 0.01);
   }
   VectorXd all(11);
-  all << read_angles(arm, 3), read_rates(arm, 3), arm.tip_position_m(), arm.calc_kinetic_energy_j(),
-      arm.calc_potential_energy_j();
+  all << read_positions(arm, 3), read_rates(arm, 3), arm.tip_position_m(),
+      arm.calc_kinetic_energy_j(), arm.calc_potential_energy_j();
   return all;
 }
 
@@ -79,8 +79,8 @@ TYPED_TEST(Divergence, ANonFiniteEffortNamesItsJoint) {
   }
 }
 
-// 1e160 squared overflows; with the largest double the first step itself does, and the engine stops
-// in its middle.
+// The square of 1e160 overflows. With the largest double, the first step overflows, and the engine
+// stops in the middle of it.
 TYPED_TEST(Divergence, AbsurdEffortsAreCaughtAndNameAJoint) {
   const RobotModel model = make_skew_arm();
   for (const double effort_n_m : {1e12, -1e30, 1e100, 1e160, -1e160, 1e300, kLargest, -kLargest}) {
@@ -92,8 +92,8 @@ TYPED_TEST(Divergence, AbsurdEffortsAreCaughtAndNameAJoint) {
   }
 }
 
-// A link on an axis along y, kicked to a rate within one step (qd = h tau / J, exact from rest): an
-// arm that is merely out of control is not called diverged.
+// A link on an axis along y gets a rate within one step (qd = h tau / J, exact from rest). An arm
+// that is only out of control must not count as diverged.
 template <class Arm>
 std::string kick(double rate_rad_per_s, double h_s) {
   const RobotModel model = make_pendulum({0, 1, 0});
@@ -106,7 +106,7 @@ std::string kick(double rate_rad_per_s, double h_s) {
       [&] { step(arm, VectorXd::Constant(1, rate_rad_per_s * inertia_kg_m2 / h_s), h_s); });
 }
 
-// In a microsecond the link moves by less than a metre: the rate alone decides.
+// In a microsecond the link moves by less than a metre, so only the rate decides.
 TYPED_TEST(Divergence, BeginsAtAMillionRadiansPerSecond) {
   for (const double sign : {1.0, -1.0}) {
     EXPECT_EQ(kick<TypeParam>(sign * 0.99e6, 1e-6), "(no error)");
@@ -116,9 +116,9 @@ TYPED_TEST(Divergence, BeginsAtAMillionRadiansPerSecond) {
   }
 }
 
-// The centre of mass is at most 0.34 m from the hinge and the distance that counts is |x| + |y| +
-// |z|, so that in 0.1 s and at 1e4 rad/s it gets 0.34 to 0.48 km away, at 1e5 rad/s 3.4 to 4.8 km,
-// if it leaves its circle at all.
+// The centre of mass is at most 0.34 m from the hinge, and the distance that counts is |x| + |y| +
+// |z|. If it leaves its circle, it moves 0.34 to 0.48 km away in 0.1 s at 1e4 rad/s, and 3.4 to 4.8
+// km at 1e5 rad/s.
 TYPED_TEST(Divergence, BeginsAtAKilometre) {
   EXPECT_EQ(kick<TypeParam>(1e4, 0.1), "(no error)");
   if constexpr (ArmTraits<TypeParam>::kMovesAlongTangents) {
@@ -130,7 +130,8 @@ TYPED_TEST(Divergence, BeginsAtAKilometre) {
   }
 }
 
-// A link on a level rail, pushed for one step of 10 s: it is there where it says, or too far away.
+// A link on a level rail is pushed for one step of 10 s. It either reports its position or is too
+// far away.
 TYPED_TEST(Divergence, OfASliderBeginsFarAwayToo) {
   const RobotModel model = make_slider({0.6, -0.8, 0});
   const auto push = [&](double distance_m) {
@@ -150,7 +151,7 @@ TYPED_TEST(Divergence, OfASliderBeginsFarAwayToo) {
             "joint 1 (rail): its controller asks for a non-finite effort");
 }
 
-// Rates are a tenth of the way here.
+// Here the rate (m/s) is a tenth of the way (m).
 TEST(ArticulatedArmDivergence, BeginsAtAMillionRadiansInAll) {
   EXPECT_EQ(kick<ArticulatedArm>(0.9e5, 10), "(no error)");
   EXPECT_EQ(kick<ArticulatedArm>(1e5, 10),
@@ -162,7 +163,7 @@ TYPED_TEST(Divergence, LeavesNoTraceInTheNextSimulation) {
   const RobotModel model = make_skew_arm();
   for (const double effort_n_m :
        {1e12, 1e160, 1e300, kLargest, std::numeric_limits<double>::quiet_NaN()}) {
-    auto survivor = make_arm<TypeParam>(model, kStart);  // lives on beside the one that blows up
+    auto survivor = make_arm<TypeParam>(model, kStart);  // must not change when another diverges
     EXPECT_NE(step_until_divergence<TypeParam>(model, 1, effort_n_m, 3), "(no error)");
     EXPECT_EQ(simulate_half_a_second<TypeParam>(), fresh) << effort_n_m;
     step(survivor, VectorXd::Constant(3, 1.5), 0.01);
@@ -173,7 +174,7 @@ TYPED_TEST(Divergence, LeavesNoTraceInTheNextSimulation) {
   }
 }
 
-// A thread that has seen a blow-up and one that has not do the same.
+// A thread in which an arm has diverged gives the same results as another thread.
 TYPED_TEST(Divergence, LeavesNoTraceInItsThread) {
   const VectorXd fresh = simulate_half_a_second<TypeParam>();
   VectorXd after;
@@ -195,11 +196,11 @@ TEST(DivergedSimulation, IsAStatusWithTimeAndJoint) {
                    "\\(joint_[1-4]\\): its link is .* m from the base and turns at .* rad/s"));
   EXPECT_THAT(result.reason, HasSubstr("joint 4 (joint_4)"));
   EXPECT_LT(result.steps, 100);
-  EXPECT_TRUE(result.point_error_m.empty());  // it reached none, and nobody asked to fill them
+  EXPECT_TRUE(result.point_error_m.empty());  // it reached none, and there is no cut-off
   EXPECT_EQ(result.mean_error_m, 0);
 }
 
-// Limits that leave joint 1 nothing but the largest double.
+// Limits that leave joint 1 only the largest double as effort.
 TEST(DivergedSimulation, IsAStatusEvenIfTheEngineStopsInTheMiddleOfAStep) {
   ArmDesign design = kTableA5;
   design.joints[0] = {{1, 0, 0}, {kLargest, kLargest}};
@@ -226,13 +227,13 @@ TEST(DivergedSimulation, CountsAsTheCutOffErrorWhereThereIsOne) {
   EXPECT_THAT(result.point_error_m, Each(cutoff_m));
   EXPECT_EQ(result.mean_error_m, cutoff_m);
   for (std::size_t i = 0; i < 4; ++i) {
-    EXPECT_TRUE(std::isfinite(result.peak_effort_n_m[i])) << i;
-    EXPECT_TRUE(std::isfinite(result.rms_effort_n_m[i])) << i;
+    EXPECT_TRUE(std::isfinite(result.peak_effort[i])) << i;
+    EXPECT_TRUE(std::isfinite(result.rms_effort[i])) << i;
   }
   EXPECT_TRUE(std::isfinite(result.energy_j));
 }
 
-// In a batch beside others, and before them.
+// A diverging job in a batch with others, and before them.
 TEST(DivergedSimulation, LeavesTheOthersOfItsBatchAlone) {
   const TrackingSetup setup(load_irb4600(), {});
   const TargetTable targets = setup.make_targets(make_case(1, 4));
@@ -264,7 +265,7 @@ TEST(UnreachableTarget, IsAStatusThatNamesPointAndReach) {
     EXPECT_EQ(results[i].steps, 0);
     EXPECT_TRUE(results[i].point_error_m.empty());
   }
-  // Joint 2-3 and 3-4: 1.095 m and hypot(1.270, 0.175) = 1.282 m.
+  // Joints 2 to 3 and 3 to 4: 1.095 m and hypot(1.270, 0.175) = 1.282 m.
   EXPECT_THAT(
       results[0].reason,
       MatchesRegex("on the way to point 3: target \\(.*\\) m is out of reach: .*2\\.377.*"));

@@ -1,4 +1,4 @@
-// Chains of two and three links against equations of motion written here.
+// Compares chains of two and three links with equations of motion written here.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -80,7 +80,7 @@ TYPED_TEST(TwoLinkArm, FollowsTheTextbookEquations) {
   }
 }
 
-// The oracle of the spatial arms, checked itself: rounding only.
+// Checks the oracle of the spatial arms; only rounding errors are allowed.
 TEST(TwoLinks, TheJacobianEquationsAgreeWithTheTextbooks) {
   for (const Plane& plane : kPlanes) {
     SCOPED_TRACE(plane.name);
@@ -96,8 +96,8 @@ TEST(TwoLinks, TheJacobianEquationsAgreeWithTheTextbooks) {
   }
 }
 
-// Without efforts RK4 keeps the oracle's energy to its own error: the equations of the skew arm,
-// gyroscopic terms included, are consistent with its energy.
+// Without efforts, RK4 conserves the oracle's energy up to its own error. The equations of the skew
+// arm, including gyroscopic terms, are therefore consistent with its energy.
 TEST(ThreeLinks, TheJacobianEquationsKeepTheirEnergy) {
   const RobotModel model = make_skew_arm();
   const ChainOracle oracle(model, kGravity_m_per_s2);

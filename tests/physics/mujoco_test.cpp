@@ -1,5 +1,5 @@
-// The engine that the others are checked with, checked itself: against equations of motion written
-// here, closed forms, and ODE on the thesis's designs. Without the library, what is said instead.
+// Checks the engine `mujoco` against equations of motion written here, closed forms, and ODE on the
+// thesis's designs. Without the library, checks the message that replaces it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@
 
 #include "base/random.hpp"
 #include "sim/engines/mujoco/mujoco_arm.hpp"
-#include "sim/tracking/tracking_result.hpp"
+#include "sim/tracking/engine_support.hpp"
 #include "test_arms.hpp"
 #include "tracking_arms.hpp"
 
@@ -37,8 +37,8 @@ std::span<const double> as_span(const VectorXd& v) {
 class RandomChain : public testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(Joints, RandomChain, testing::Values(1, 2, 3, 4, 5, 6, 7, 8, 20));
 
-// Semi-implicit Euler on the same equations is the same numbers, step for step: forty steps amplify
-// the rounding of the two (1e-15) by less than a millionfold.
+// Semi-implicit Euler on the same equations gives the same numbers in every step. Forty steps
+// amplify the rounding errors of both (1e-15) by a factor of less than a million.
 TEST_P(RandomChain, StepsAsSemiImplicitEulerOnItsEquationsOfMotion) {
   constexpr double kStep_s = 0.005;
   constexpr int kSteps = 40;
@@ -62,7 +62,7 @@ TEST_P(RandomChain, StepsAsSemiImplicitEulerOnItsEquationsOfMotion) {
       step(arm, drive(k * kStep_s), kStep_s);
     }
     ASSERT_GT((end.q - q).norm(), 0.002) << "hardly moves";
-    EXPECT_LT(calc_motion(model, read_angles(arm, joints), end.q).norm(), 1e-9);
+    EXPECT_LT(calc_motion(model, read_positions(arm, joints), end.q).norm(), 1e-9);
     EXPECT_LT((read_rates(arm, joints) - end.qd).norm(), 1e-9 * (1 + end.qd.norm()));
 
     const ChainOracle::Equations there = oracle.calc(end.q, end.qd);
@@ -76,8 +76,8 @@ TEST_P(RandomChain, StepsAsSemiImplicitEulerOnItsEquationsOfMotion) {
   }
 }
 
-// Moments of a plate, rounded: the largest exceeds the sum of the others by a thousandth, as our
-// own reading of a URDF allows. They are used as they are.
+// The rounded moments of a plate: the largest exceeds the sum of the others by a thousandth, which
+// the URDF reader allows. MuJoCo must use them unchanged.
 TEST(MujocoArm, TakesMomentsOfInertiaThatAreOffByRounding) {
   RobotModel model = make_pendulum({0, 0, 1});
   model.links[0].inertial.inertia_kg_m2 = Vector3d(1, 1, 2.002).asDiagonal();
@@ -88,7 +88,7 @@ TEST(MujocoArm, TakesMomentsOfInertiaThatAreOffByRounding) {
   EXPECT_NEAR(read_rates(arm, 1)[0], 0.01 / 2.002, 1e-16);
 }
 
-// The library's own way out is to end the process, after writing a file into the current folder.
+// On an error, the library itself would write a file into the current folder and end the process.
 TEST(MujocoDivergence, AnErrorOfTheLibraryIsThrownAndNothingIsWritten) {
   const RobotModel model = make_skew_arm();
   MujocoArm arm(model, as_span(make_vector({0.6, -0.9, 1.3})), {});
@@ -103,7 +103,7 @@ TEST(MujocoDivergence, AnErrorOfTheLibraryIsThrownAndNothingIsWritten) {
   EXPECT_FALSE(std::filesystem::exists("MUJOCO_LOG.TXT"));
 }
 
-// MuJoCo itself would go on with an inertia of its own choice.
+// MuJoCo itself would go on with another inertia.
 TEST(MujocoDivergence, AJointThatMovesHardlyAnythingIsNamed) {
   RobotModel model = make_pendulum({0, 1, 0});
   model.links[0].inertial = {1e-20, {0.1, 0, 0}, 1e-22 * Matrix3d::Identity()};
@@ -152,7 +152,7 @@ TEST_F(TenCases, OfA10AreWithinAPercentOfOde) {
   for (std::size_t i = 0; i < jobs_.size(); ++i) {
     EXPECT_NEAR(mujoco[i].mean_error_m, ode[i].mean_error_m, 0.01 * ode[i].mean_error_m) << i;
   }
-  EXPECT_NEAR(calc_mean_error_m(mujoco), 0.0745e-3, 0.0075e-3);  // of 500 cases, and how 10 scatter
+  EXPECT_NEAR(calc_mean_error_m(mujoco), 0.0745e-3, 0.0075e-3);  // of 500 cases; spread of 10
 }
 
 // Measured elsewhere on other cases: 0.007 % between the two.
@@ -168,7 +168,7 @@ TEST_F(TenCases, OfA5AreWithinATenthOfAPercentOfOde) {
   EXPECT_NEAR(calc_mean_error_m(mujoco), 5.77e-3, 0.6e-3);
 }
 
-// The published gains live on one step of semi-implicit Euler in a control period. Measured
+// The published gains need exactly one step of semi-implicit Euler per control period. Measured
 // elsewhere, on other cases, with this engine: 129.86 mm.
 TEST_F(TenCases, OfA10AreLostWithTwoSubsteps) {
   TrackingTask task = make_e6_task();
@@ -178,7 +178,7 @@ TEST_F(TenCases, OfA10AreLostWithTwoSubsteps) {
   EXPECT_NEAR(calc_mean_error_m(simulate("mujoco", setup, jobs_)), 0.130, 0.005);
 }
 
-// Alone, in a batch, beside a simulation that blows up, and in threads that share nothing.
+// The same result alone, in a batch, together with a simulation that diverges, and in threads.
 TEST_F(TenCases, AreTheSameWhateverRunsBeside) {
   const TrackingSetup setup(load_irb4600(), make_e6_task());
   make_jobs(setup, kTableA10);

@@ -1,4 +1,4 @@
-// One link on one hinge against the closed forms of the compound pendulum.
+// Compares one link on one hinge with the closed forms of the compound pendulum.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,14 +10,14 @@
 namespace armwright::physics_test {
 namespace {
 
-// What the closed forms need of a link on an axis of any inclination.
+// The numbers that the closed forms need, of a link on an axis of any inclination.
 struct Pendulum {
   explicit Pendulum(const Vector3d& axis) : model(make_pendulum(axis)) {
     const Vector3d a = model.joints[0].axis;
     const Inertial& body = model.links[0].inertial;
     const Vector3d gravity(0, 0, -kGravity_m_per_s2);
     const Vector3d lever = body.com_m - a * a.dot(body.com_m);
-    const Vector3d pull = gravity - a * a.dot(gravity);  // what of gravity turns it
+    const Vector3d pull = gravity - a * a.dot(gravity);  // the part of gravity that turns it
     lever_m = lever.norm();
     pull_m_per_s2 = pull.norm();
     inertia_kg_m2 = a.dot(body.inertia_kg_m2 * a) + body.mass_kg * lever_m * lever_m;  // Steiner
@@ -41,7 +41,8 @@ struct Pendulum {
   double rest_rad;  // joint angle at which it hangs
 };
 
-// From the first to the third time it passes the lowest point, interpolated linearly between steps.
+// Returns the time from the first to the third pass through the lowest point, interpolated linearly
+// between steps.
 template <class Arm>
 double measure_period_s(const Pendulum& pendulum, double amplitude_rad, double h_s) {
   const VectorXd start = VectorXd::Constant(1, pendulum.rest_rad + amplitude_rad);
@@ -50,7 +51,7 @@ double measure_period_s(const Pendulum& pendulum, double amplitude_rad, double h
   double before = amplitude_rad;
   for (int k = 1; passes_s.size() < 3 && k * h_s < 10; ++k) {
     step(arm, VectorXd::Zero(1), h_s);
-    const double angle = std::remainder(read_angles(arm, 1)[0] - pendulum.rest_rad, 2 * kPi);
+    const double angle = std::remainder(read_positions(arm, 1)[0] - pendulum.rest_rad, 2 * kPi);
     if (angle * before < 0 && std::abs(angle) < 1.5) {  // not the jump from pi to -pi
       passes_s.push_back(h_s * (k - angle / (angle - before)));
     }
@@ -85,7 +86,7 @@ TYPED_TEST(PendulumOnAxis, SmallSwingsHaveTheClosedFormPeriodUpToTheIntegratorsO
   }
 }
 
-// Large swings, with the arm's own order.
+// Large swings, whose period converges with the arm's own order.
 TYPED_TEST(PendulumOnAxis, LargeSwingsConvergeToTheClosedFormPeriod) {
   for (const Vector3d& axis : kAxes) {
     SCOPED_TRACE(testing::Message() << "axis " << axis.transpose());
@@ -100,12 +101,11 @@ TYPED_TEST(PendulumOnAxis, LargeSwingsConvergeToTheClosedFormPeriod) {
           1600, ArmTraits<TypeParam>::kPeriodOrder);
       EXPECT_NEAR(limit.order, ArmTraits<TypeParam>::kPeriodOrder, kOrderTolerance)
           << "amplitude " << amplitude_rad;
-      EXPECT_LT(limit.error, 3e-4 * period_s);  // or the next line would say little
+      EXPECT_LT(limit.error, 3e-4 * period_s);  // or the next check is weak
       // 1e-11: rounding, of passes found between steps.
       EXPECT_NEAR(limit.value[0], period_s, limit.error + 1e-11 * period_s)
           << "amplitude " << amplitude_rad;
-      // The first-order term itself, at the finest step: relative, about the fastest turn in a
-      // step.
+      // The first-order term itself at the finest step, relative: about the fastest turn per step.
       const double fastest_rad_per_s =
           2 * pendulum.calc_frequency_rad_per_s() * std::sin(amplitude_rad / 2);
       EXPECT_NEAR(limit.finest[0], period_s, fastest_rad_per_s / 6400 * period_s)
@@ -114,9 +114,9 @@ TYPED_TEST(PendulumOnAxis, LargeSwingsConvergeToTheClosedFormPeriod) {
   }
 }
 
-// Released at rest, the first step gives it the rate h m g l sin(from rest) / J, to rounding: there
-// is no velocity yet for the integrator to err on. With the angle phi between lever and horizontal
-// this is m g l cos(phi) / J.
+// Released at rest, the link has the rate h m g l sin(from rest) / J after the first step, up to
+// rounding: without velocity the integrator has no error. With the angle phi between lever and
+// horizontal, the acceleration is m g l cos(phi) / J.
 TYPED_TEST(PendulumOnAxis, FallsWithTheAccelerationOfTheHandFormula) {
   for (const Vector3d& axis : kAxes) {
     SCOPED_TRACE(testing::Message() << "axis " << axis.transpose());
@@ -134,7 +134,7 @@ TYPED_TEST(PendulumOnAxis, FallsWithTheAccelerationOfTheHandFormula) {
   }
 }
 
-// A massive effort and gravity add up; the effort acts about the hinge's axis.
+// A large effort and gravity add up; the effort acts about the hinge's axis.
 TYPED_TEST(PendulumOnAxis, AnEffortAddsToGravity) {
   for (const Vector3d& axis : kAxes) {
     SCOPED_TRACE(testing::Message() << "axis " << axis.transpose());

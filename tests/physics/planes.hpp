@@ -1,4 +1,4 @@
-// Mechanisms of one plane, in coordinates of it, for equations of motion written by hand.
+// Planar mechanisms in plane coordinates, for equations of motion written by hand.
 #pragma once
 
 #include <Eigen/Dense>

@@ -1,5 +1,5 @@
-// What perturbed plants do to a joint, against closed forms and by hand, and that the engines agree
-// on it.
+// Checks the perturbations of a joint against closed forms and numbers computed by hand, and that
+// the engines agree.
 #include "sim/tracking/plant_variation.hpp"
 
 #include <gmock/gmock.h>
@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/tracking/arm_plant.hpp"
 #include "sim/tracking/tracking_loop.hpp"
 #include "test_arms.hpp"
 #include "tracking_arms.hpp"
@@ -17,14 +16,14 @@ namespace {
 
 PlantVariation make_variation(std::size_t joints) {
   PlantVariation variation;
-  variation.viscous_friction_n_m_s_per_rad.resize(joints);
-  variation.coulomb_friction_n_m.resize(joints);
+  variation.viscous_friction.resize(joints);
+  variation.coulomb_friction.resize(joints);
   variation.torque_ripple.resize(joints);
   variation.ripple_phase_rad.resize(joints);
   return variation;
 }
 
-// A link on an upright hinge, which gravity does not turn, and its moment of inertia.
+// A link on a vertical hinge, which gravity does not turn, and its moment of inertia.
 const RobotModel kTurnstile = make_pendulum({0, 0, 1});
 double calc_inertia_kg_m2() {
   const Inertial& body = kTurnstile.links[0].inertial;
@@ -38,9 +37,9 @@ class Turnstile : public testing::Test {
   static constexpr double kStep_s = 0.001;
 
   void step(double effort_n_m) {
-    q_ = read_angles(arm_, 1);
+    q_ = read_positions(arm_, 1);
     rate_ = read_rates(arm_, 1);
-    const auto torque = plant_.calc_torque({&effort_n_m, 1}, {q_.data(), 1}, {rate_.data(), 1});
+    const auto torque = plant_.calc_effort({&effort_n_m, 1}, {q_.data(), 1}, {rate_.data(), 1});
     arm_.step(torque, kStep_s);
   }
   double rate() const { return read_rates(arm_, 1)[0]; }
@@ -52,7 +51,7 @@ class Turnstile : public testing::Test {
 };
 TYPED_TEST_SUITE(Turnstile, ArmTypes, ArmNames);
 
-// Under viscous friction b a rate decays as exp(-b t / J): in steps, as (1 - h b / J)^k.
+// Under viscous friction b, a rate decays as exp(-b t / J), and in steps as (1 - h b / J)^k.
 TYPED_TEST(Turnstile, ViscousFrictionLetsTheRateDecay) {
   const double effort_n_m = 0.5;
   for (int k = 0; k < 200; ++k) {
@@ -61,22 +60,22 @@ TYPED_TEST(Turnstile, ViscousFrictionLetsTheRateDecay) {
   const double fastest = this->rate();
   EXPECT_NEAR(fastest, 0.2 * effort_n_m / calc_inertia_kg_m2(), 1e-6);
   const double b = 0.6;
-  this->variation_.viscous_friction_n_m_s_per_rad = {b};
+  this->variation_.viscous_friction = {b};
   const int steps = 1000;
   for (int k = 0; k < steps; ++k) {
     this->step(0);
   }
   const double share = b * this->kStep_s / calc_inertia_kg_m2();
   EXPECT_NEAR(this->rate() / fastest, std::pow(1 - share, steps), 1e-5);
-  // The explicit steps themselves are off by (b t / J) (h b / J) / 2, relative.
+  // The relative error of the explicit steps is (b t / J) (h b / J) / 2.
   const double exact = std::exp(-share * steps);
   EXPECT_NEAR(this->rate() / fastest, exact, exact * steps * share * share / 2 * 1.1);
 }
 
-// Below c the joint creeps, and no faster than v_s tau / c; above it, it gets away.
+// Under an effort below c, the joint creeps no faster than v_s tau / c; above c, it accelerates.
 TYPED_TEST(Turnstile, CoulombFrictionHoldsItBelowItsTorque) {
-  this->variation_.coulomb_friction_n_m = {2};
-  this->variation_.friction_transition_rad_per_s = 0.05;
+  this->variation_.coulomb_friction = {2};
+  this->variation_.friction_transition_rate = 0.05;
   const double tau_n_m = 1.5;
   for (int k = 0; k < 2000; ++k) {
     this->step(tau_n_m);
@@ -99,7 +98,7 @@ TYPED_TEST(Turnstile, TorqueRipplesWithTheAngle) {
   EXPECT_NEAR(this->rate(), this->kStep_s * tau_n_m * share / calc_inertia_kg_m2(), 1e-12);
 }
 
-// Turns its joints by 1 mrad a step, whatever acts on them.
+// An arm that turns its joints by 1 mrad per step under any effort.
 struct RecordingArm {
   int steps = 0;
   std::vector<std::vector<double>> torques_n_m;
@@ -111,7 +110,7 @@ struct RecordingArm {
     torques_n_m.emplace_back(torque_n_m.begin(), torque_n_m.end());
     ++steps;
   }
-  void read_angles(std::span<double> q) const {
+  void read_positions(std::span<double> q) const {
     for (std::size_t i = 0; i < q.size(); ++i) {
       q[i] = angle(i, steps);
     }
@@ -135,10 +134,10 @@ class ScriptedPlant : public testing::Test {
   PlantVariation variation_ = make_variation(4);
 };
 
-// Three substeps late, in steps of 7 mrad; what is measured before the start is the start.
+// Measured three substeps late, with a quantum of 7 mrad. Before the start, the start is measured.
 TEST_F(ScriptedPlant, ControllersSeeLateAndRoundedAngles) {
   variation_.delay_substeps = 3;
-  variation_.quantisation_rad = 0.007;
+  variation_.quantum = 0.007;
   TrackingJob job = make_job(design_, targets_);
   job.variation = &variation_;
   RecordingArm arm;
@@ -150,7 +149,7 @@ TEST_F(ScriptedPlant, ControllersSeeLateAndRoundedAngles) {
       const double gain = 10 * (static_cast<double>(i) + 1);
       for (const int substep : {0, 3}) {
         EXPECT_NEAR(arm.torques_n_m[static_cast<std::size_t>(4 * period + substep)][i],
-                    gain * (targets_.angles(period)[i] - seen), 1e-12)
+                    gain * (targets_.positions(period)[i] - seen), 1e-12)
             << "period " << period << ", joint " << i;
       }
     }
@@ -159,17 +158,17 @@ TEST_F(ScriptedPlant, ControllersSeeLateAndRoundedAngles) {
 
 TEST_F(ScriptedPlant, EffortsAreMeasuredAsTheyWereAskedFor) {
   variation_.torque_ripple.assign(4, 0.5);
-  variation_.viscous_friction_n_m_s_per_rad.assign(4, 3);
-  variation_.coulomb_friction_n_m = {1, 2, 3, 4};
+  variation_.viscous_friction.assign(4, 3);
+  variation_.coulomb_friction = {1, 2, 3, 4};
   TrackingJob job = make_job(design_, targets_);
   RecordingArm nominal;
   const TrackingResult expected = TrackingLoop(setup_, job).run(nominal);
   job.variation = &variation_;
   RecordingArm arm;
   const TrackingResult result = TrackingLoop(setup_, job).run(arm);
-  EXPECT_EQ(result.peak_effort_n_m, expected.peak_effort_n_m);
+  EXPECT_EQ(result.peak_effort, expected.peak_effort);
   EXPECT_EQ(result.energy_j, expected.energy_j);
-  // Sliding faster than v_s: all of the Coulomb friction.
+  // The joint is faster than v_s, so Coulomb friction has its full size.
   for (std::size_t i = 0; i < 4; ++i) {
     const double ripple = 1 + 0.5 * std::sin(12 * arm.angle(i, 5));
     EXPECT_NEAR(arm.torques_n_m[5][i],
@@ -177,9 +176,9 @@ TEST_F(ScriptedPlant, EffortsAreMeasuredAsTheyWereAskedFor) {
   }
 }
 
-// The upright joint of the whole arm, in every engine: under a constant torque it turns at tau / b
-// in the end, and creeps at v_s tau / c where that is less than c. There is no gravity, and all
-// other joints are free but for friction.
+// The vertical joint of the whole arm, in every engine. Under a constant torque it finally turns at
+// tau / b, and it creeps at v_s tau / c if tau < c. There is no gravity, and all other joints are
+// free except for friction.
 TEST(PlantVariationInEngines, FrictionSetsTheRate) {
   TrackingTask task;
   task.physics.gravity_m_per_s2 = 0;
@@ -190,10 +189,10 @@ TEST(PlantVariationInEngines, FrictionSetsTheRate) {
   const ArmDesign pushed =
       make_design({{0, 0, 0, tau_n_m, tau_n_m}, {0, 0, 0, 0, 0}, {0, 0, 0, 0, 0}, {0, 0, 0, 0, 0}});
   PlantVariation viscous = make_variation(4);
-  viscous.viscous_friction_n_m_s_per_rad = {4000, 40, 40, 4};
+  viscous.viscous_friction = {4000, 40, 40, 4};
   PlantVariation sticking = make_variation(4);
-  sticking.coulomb_friction_n_m = {50, 1, 1, 0.1};
-  sticking.friction_transition_rad_per_s = 0.02;
+  sticking.coulomb_friction = {50, 1, 1, 0.1};
+  sticking.friction_transition_rate = 0.02;
   for (const std::string& name : engine_names()) {
     SCOPED_TRACE(name);
     const auto engine = make_engine(name);
@@ -202,23 +201,23 @@ TEST(PlantVariationInEngines, FrictionSetsTheRate) {
       job.variation = variation;
       const auto motion = std::move(engine->simulate(setup, {&job, 1}).at(0).trajectory);
       ASSERT_GT(motion.size(), 300U);
-      const double rate = (motion.back().q_rad[0] - motion[motion.size() - 101].q_rad[0]) / 1.0;
+      const double rate = (motion.back().q[0] - motion[motion.size() - 101].q[0]) / 1.0;
       const double expected = variation == &viscous ? tau_n_m / 4000 : 0.02 * tau_n_m / 50;
       EXPECT_NEAR(rate, expected, 1e-3 * expected);
     }
   }
 }
 
-// A design under everything at once: the same error in every engine, to about a percent.
+// A design under all perturbations at once has the same error in every engine, to about a percent.
 TEST(PlantVariationInEngines, AgreeUnderEverythingAtOnce) {
   TrackingTask task;
   task.physics.substeps = 10;
   const TrackingSetup setup(load_irb4600(), task);
   PlantVariation variation = make_variation(4);
-  variation.viscous_friction_n_m_s_per_rad = {60, 120, 40, 0.5};
-  variation.coulomb_friction_n_m = {100, 200, 60, 0.2};
-  variation.friction_transition_rad_per_s = 0.1;
-  variation.quantisation_rad = 1e-4;
+  variation.viscous_friction = {60, 120, 40, 0.5};
+  variation.coulomb_friction = {100, 200, 60, 0.2};
+  variation.friction_transition_rate = 0.1;
+  variation.quantum = 1e-4;
   variation.delay_substeps = 2;
   variation.torque_ripple = {0.02, 0.01, 0.02, 0.015};
   variation.ripple_phase_rad = {1, 2, 3, 4};
@@ -228,7 +227,7 @@ TEST(PlantVariationInEngines, AgreeUnderEverythingAtOnce) {
     const double nominal_m = simulate_one(setup, job).mean_error_m;
     job.variation = &variation;
     const double expected_m = simulate_one(setup, job).mean_error_m;
-    EXPECT_GT(std::abs(expected_m / nominal_m - 1), 0.005);  // it does something
+    EXPECT_GT(std::abs(expected_m / nominal_m - 1), 0.005);  // the perturbations have an effect
     for (const std::string& name : engine_names()) {
       const TrackingResult result = make_engine(name)->simulate(setup, {&job, 1}).at(0);
       EXPECT_EQ(result.status, SimulationStatus::ok) << result.reason;

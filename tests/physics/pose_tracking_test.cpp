@@ -1,5 +1,5 @@
-// Tools whose orientation counts, on arms without a closed form: the same under every engine, and
-// the six-axis arm beside the four-axis one that the thesis made of it.
+// Tasks with a tool orientation, on arms without a closed form. All engines agree, and the six-axis
+// arm agrees with the four-axis arm that the thesis made of it.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ RobotModel load_six() {
   return load_urdf(ARMWRIGHT_CONFIGS "/robots/irb4600_six.urdf");
 }
 
-// The tool points down, as the thesis's does; any turn about it is free, or none.
+// The tool points down, as in the thesis. Turns about its axis are free, or none is.
 TrackingTask make_six_task(ToolOrientation orientation) {
   TrackingTask task = make_e6_task();
   task.kinematics = KinematicsChoice::numeric;
@@ -29,7 +29,8 @@ TrackingTask make_six_task(ToolOrientation orientation) {
   return task;
 }
 
-// A.10 with drives for the axes 4 and 6, as stiff for their inertia as that of axis 5.
+// The design of table A.10, with drives for axes 4 and 6 that are as stiff, relative to their
+// inertia, as the drive of axis 5.
 ArmDesign make_six_design() {
   ArmDesign design = kTableA10;
   design.joints.insert(design.joints.begin() + 3, {{4000, 10000, 80}, {-3000, 3000}});
@@ -41,8 +42,8 @@ TestCase make_number(std::uint64_t number) {
   return make_test_case("test/2", number, WorkspaceSphere{});
 }
 
-// With the direction alone asked for, axes 4 and 6 have nothing to do, and the others do what the
-// closed form says.
+// If only the direction is given, axes 4 and 6 need not move, and the others follow the closed
+// form.
 TEST(SixAxes, AnglesAreThoseOfTheReducedArm) {
   TrackingTask four_task = make_e6_task();
   const TrackingSetup four(load_irb4600(), four_task);
@@ -53,23 +54,23 @@ TEST(SixAxes, AnglesAreThoseOfTheReducedArm) {
   ASSERT_EQ(found.steps, expected.steps);
   double worst = 0;
   for (int step = 0; step < found.steps; ++step) {
-    const auto q = found.angles(step);
-    const auto p = expected.angles(step);
+    const auto q = found.positions(step);
+    const auto p = expected.positions(step);
     worst = std::max({worst, std::abs(q[3]), std::abs(q[5]), std::abs(q[0] - p[0]),
                       std::abs(q[1] - p[1]), std::abs(q[2] - p[2]), std::abs(q[4] - p[3])});
   }
   EXPECT_LT(worst, 1e-8);
 }
 
-// What the extra bodies explain is that they can turn: with axes 4 and 6 held by drives of their
-// own, the reduced and the full arm follow alike.
+// The two arms differ only because the additional bodies can turn. With axes 4 and 6 held by
+// drives, the reduced and the full arm follow alike.
 TEST(SixAxes, FollowAsTheReducedArmDoes) {
   TrackingTask four_task = make_e6_task();
   const TrackingSetup four(load_irb4600(), four_task);
   const TrackingSetup six(load_six(), make_six_task(ToolOrientation::pointing));
   const auto engine = make_engine("articulated");
   const ArmDesign design = make_six_design();
-  // Both are judged by the tip alone.
+  // The error of both is that of the tip alone.
   TrackingTask tip_task = make_six_task(ToolOrientation::pointing);
   for (std::uint64_t number = 0; number < 4; ++number) {
     const TargetTable four_targets = four.make_targets(make_number(number));
@@ -94,8 +95,8 @@ TEST(SixAxes, FollowAsTheReducedArmDoes) {
   }
 }
 
-// The error of a pose under ODE, which has bodies and no joint angles, and in the lanes, which have
-// nothing but joint angles.
+// Compares the error of a pose in ODE, which simulates bodies, with that in the lanes, which
+// simulate joint positions.
 TEST(PoseTracking, EnginesAgreeOnTheErrorOfAPose) {
   const TrackingSetup setup(load_six(), make_six_task(ToolOrientation::pose));
   TestCase its = make_number(1);
@@ -119,7 +120,7 @@ TEST(PoseTracking, EnginesAgreeOnTheErrorOfAPose) {
   }
 }
 
-// The exact derivatives of a pose's error against differences of it.
+// Compares the exact derivatives of a pose's error with its differences.
 TEST(PoseTracking, TheErrorOfAPoseHasDerivatives) {
   const TrackingSetup setup(load_six(), make_six_task(ToolOrientation::pose));
   TestCase its = make_number(3);
@@ -136,7 +137,7 @@ TEST(PoseTracking, TheErrorOfAPoseHasDerivatives) {
     one.joints[joint].gains[0] = 1;  // p
     const auto slopes =
         engine->calc_derivatives(setup, make_job(design, targets), std::vector{one});
-    // Errors of 1e-5 m have the rounding of places 1 m away: 1e-16 m.
+    // Errors of 1e-5 m have the rounding of positions 1 m away: 1e-16 m.
     const double step = 1e-3 * design.joints[joint].gains[0];
     const auto calc_errors = [&](double by) {
       ArmDesign changed = design;
@@ -153,15 +154,15 @@ TEST(PoseTracking, TheErrorOfAPoseHasDerivatives) {
   }
 }
 
-// A drive that nobody sees at the tip: without its gains the tool turns, which only an error of the
-// pose tells.
+// The tip's position does not depend on this drive. Without its gains the tool turns, and only the
+// error of the pose shows it.
 TEST(PoseTracking, TheErrorSeesJointsThatOnlyTurnTheTool) {
   ArmDesign loose = make_six_design();
   loose.joints[5] = {{0.001, 0, 0.001}, {-300, 300}};
   const auto engine = make_engine("articulated");
   const auto calc_error = [&](ToolOrientation orientation, const ArmDesign& design) {
     const TrackingSetup setup(load_six(), make_six_task(orientation));
-    // The tool turns about itself on the way; a flange without a drive stays as it is.
+    // The target turns the tool about its own axis; a flange without a drive does not follow.
     TestCase its = make_number(2);
     its.points_m.resize(4);
     for (const double roll_rad : {0.0, 0.5, 1.0, 0.3}) {
@@ -178,7 +179,7 @@ TEST(PoseTracking, TheErrorSeesJointsThatOnlyTurnTheTool) {
             20 * calc_error(ToolOrientation::pose, design));
 }
 
-// The path turns the tool as well, from point to point along the shortest way.
+// The path also turns the tool, from point to point along the shortest way.
 TEST(PoseTracking, TurnsAlongTheShortestWayWithThePath) {
   const TrackingSetup setup(load_six(), make_six_task(ToolOrientation::pose));
   const Eigen::Quaterniond down(make_turn({0, std::numbers::pi / 2, 0}));
@@ -192,7 +193,7 @@ TEST(PoseTracking, TurnsAlongTheShortestWayWithThePath) {
   const Segment& segment = targets.segments.front();
   double before = 0;
   for (int step = 0; step < segment.steps; ++step) {
-    const ToolPose pose = kinematics->calc_pose(targets.angles(step));
+    const ToolPose pose = kinematics->calc_pose(targets.positions(step));
     const double share = (pose.position_m.y() - 0) / 0.5;
     const double turned = down.angularDistance(Eigen::Quaterniond(pose.turn));
     EXPECT_NEAR(turned, share * 0.4, 1e-7) << "step " << step;
@@ -202,7 +203,7 @@ TEST(PoseTracking, TurnsAlongTheShortestWayWithThePath) {
   EXPECT_NEAR(before, 0.4, 1e-8);
 }
 
-// The thesis's task ignores what ABB's arm can do: most of its cases ask for more speed.
+// The thesis's task ignores the limits of ABB's arm: most of its cases need more speed.
 TEST(PathCheck, TheThesisAsksForMoreThanTheArmsSpeeds) {
   TrackingTask task = make_e6_task();
   task.distance_limit_m = 0.9;  // of Q1
@@ -221,7 +222,7 @@ TEST(PathCheck, TheThesisAsksForMoreThanTheArmsSpeeds) {
   EXPECT_GT(too_fast, 10);
 }
 
-// Each kind of fault on an arm made to have it, with its point and joint named.
+// Tests each kind of fault on an arm that has it. The message names the point and the joint.
 TEST(PathCheck, NamesPointAndJoint) {
   RobotModel robot = load_irb4600();
   TrackingTask task = make_e6_task();
@@ -248,10 +249,10 @@ TEST(PathCheck, NamesPointAndJoint) {
                                              "have to move at"),
                           testing::HasSubstr("its limit is 0.5 rad/s"))));
   robot.joints[0].speed_limit = 10;
-  // Nearly stretched out: a point at the end of the arm's reach.
+  // A point at the end of the arm's reach, where the arm is nearly stretched out.
   its.points_m.back() = {2.4897, 0, 0.9};
   EXPECT_THAT(find(), testing::Contains(testing::HasSubstr("comes close to a singularity")));
-  // A path that may not be violates nothing more than that.
+  // With `enforce`, the same fault makes the case unreachable.
   task.limits = LimitPolicy::enforce;
   robot.joints[0].speed_limit = 0.01;
   its.points_m.back() = {1.4, -0.6, 0.9};
@@ -259,8 +260,8 @@ TEST(PathCheck, NamesPointAndJoint) {
   EXPECT_THAT(setup.make_targets(its).unreachable, testing::HasSubstr("joint 1 ('joint_1')"));
 }
 
-// A continuous path's samples are followed one by one, each with an error of its own, and by the
-// closed form as well as numerically.
+// The arm follows the samples of a continuous path one by one, each with its own error, with the
+// closed form and numerically.
 TEST(ContinuousPath, EverySampleCounts) {
   TestCase its;
   its.continuous = true;
@@ -285,7 +286,7 @@ TEST(ContinuousPath, EverySampleCounts) {
         make_engine("ode")->simulate(setup, std::vector{make_job(kTableA10, targets)}).front();
     EXPECT_NEAR(ode.mean_error_m / result.mean_error_m, 1, 0.02);
     for (std::size_t k = 0; k < targets.segments.size(); ++k) {
-      EXPECT_LT((calc_tip_position(setup.robot(), targets.angles(static_cast<int>(k))) -
+      EXPECT_LT((calc_tip_position(setup.robot(), targets.positions(static_cast<int>(k))) -
                  its.points_m[k + 1])
                     .norm(),
                 1e-8);

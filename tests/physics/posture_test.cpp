@@ -1,4 +1,5 @@
-// Where an arm starts, which way it moves, what holds it still, and that its joints hold.
+// Tests an arm's start posture, the direction of its motion, the efforts that hold it at rest, and
+// that its joints hold together.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,8 +13,9 @@
 namespace armwright::physics_test {
 namespace {
 
-// The IRB 4600 by hand. In the vertical plane of the arm, x outwards and z up, a joint angle turns
-// x to -z (axis +y); r: from the joint to the link's centre of mass, s: to the next joint.
+// The IRB 4600, computed by hand. In the vertical plane of the arm, x points outwards and z up, and
+// a joint angle turns x to -z (axis +y). r: from the joint to the link's centre of mass, s: to the
+// next joint.
 struct HandLink {
   double mass_kg;
   double r_x, r_z, s_x, s_z;
@@ -22,8 +24,8 @@ constexpr std::array<HandLink, 3> kHandLinks{{{266.3, 0.00006, 0.48764, 0, 1.095
                                               {545.6, 0.22749, 0.13050, 1.270, 0.175},
                                               {13.8, 0.01617, 0.00037, 0, 0}}};
 
-// The sum of m g x lever arm of all that a joint carries; it pulls the axis +y forward and down, so
-// the effort that holds it is the negative.
+// Returns the sum of m g x lever arm over everything that a joint carries. It turns the arm forward
+// and down about the axis +y, so the effort that holds it is the negative.
 VectorXd calc_holding_efforts_by_hand(const VectorXd& q) {
   std::array<double, 3> joint_x{}, com_x{};
   double x = 0, turn = 0;
@@ -63,12 +65,12 @@ TYPED_TEST(Irb4600, StandsStillUnderTheEffortsComputedByHand) {
       step(arm, tau, 0.01);
       fastest = std::max(fastest, read_rates(arm, 4).norm());
     }
-    EXPECT_LT(calc_motion(model, q, read_angles(arm, 4)).norm(), 1e-9);
+    EXPECT_LT(calc_motion(model, q, read_positions(arm, 4)).norm(), 1e-9);
     EXPECT_LT(fastest, 1e-8);
   }
 }
 
-// One per cent more in one joint and it does not.
+// With one per cent more effort in one joint, the arm does not stay at rest.
 TYPED_TEST(Irb4600, MovesUnderAnyOtherEffort) {
   const RobotModel model = load_irb4600();
   const VectorXd q = make_vector({0.4, 0.3, -0.5, 0.7});
@@ -79,7 +81,7 @@ TYPED_TEST(Irb4600, MovesUnderAnyOtherEffort) {
     double farthest = 0;
     for (int k = 0; k < 100; ++k) {
       step(arm, tau, 0.01);
-      farthest = std::max(farthest, calc_motion(model, q, read_angles(arm, 4)).norm());
+      farthest = std::max(farthest, calc_motion(model, q, read_positions(arm, 4)).norm());
     }
     EXPECT_GT(farthest, 1e-3) << "joint " << i + 1;
   }
@@ -99,18 +101,18 @@ template <class Arm>
 class AnyArm : public testing::Test {};
 TYPED_TEST_SUITE(AnyArm, ArmTypes, ArmNames);
 
-VectorXd take(const VectorXd& values, const RobotModel& model) {
+VectorXd select_first(const VectorXd& values, const RobotModel& model) {
   return values.head(static_cast<Eigen::Index>(model.joint_count()));
 }
 
-// M is positive definite, so is its inverse: an effort in a joint accelerates that joint its own
-// way.
+// M is positive definite, and so is its inverse. Therefore an effort in a joint accelerates that
+// joint in the effort's direction.
 TYPED_TEST(AnyArm, APositiveEffortMovesItsJointPositively) {
   for (const auto& [name, model] : kPosedArms) {
     const std::size_t joints = model.joint_count();
     PhysicsSettings physics;
     physics.gravity_m_per_s2 = 0;
-    const VectorXd q = take(make_vector({0.4, -0.8, 1.2, -0.3}), model);
+    const VectorXd q = select_first(make_vector({0.4, -0.8, 1.2, -0.3}), model);
     for (std::size_t i = 0; i < joints; ++i) {
       for (const double sign : {1.0, -1.0}) {
         SCOPED_TRACE(testing::Message() << name << ", joint " << i + 1);
@@ -120,9 +122,9 @@ TYPED_TEST(AnyArm, APositiveEffortMovesItsJointPositively) {
         tau[joint] = sign * 3.3;
         step(arm, tau, 0.01);
         const VectorXd rates = read_rates(arm, joints);
-        const double moved = (read_angles(arm, joints) - q)[joint];
+        const double moved = (read_positions(arm, joints) - q)[joint];
         EXPECT_GT(sign * rates[joint], 0);
-        // Semi-implicit: moved by h times the new rate, but for the square of the turn in a step.
+        // Semi-implicit: it moved by h times the new rate, up to the square of the turn per step.
         const double turn_rad = calc_turn_rad(model, rates, 0.01);
         EXPECT_NEAR(moved, 0.01 * rates[joint], turn_rad * turn_rad + 1e-14);
       }
@@ -135,14 +137,14 @@ TYPED_TEST(AnyArm, StartsAtRestInThePostureAskedFor) {
   for (const auto& [name, model] : kPosedArms) {
     SCOPED_TRACE(name);
     const ChainOracle oracle(model, kGravity_m_per_s2);
-    const VectorXd rest = take(VectorXd::Zero(4), model);
+    const VectorXd rest = select_first(VectorXd::Zero(4), model);
     for (const VectorXd& posture :
          {make_vector({0.4, -0.8, 1.2, -0.3}), make_vector({3.1, -3.1, 2.9, -2.8}),
           make_vector({kPi - 1e-9, -kPi + 1e-9, kPi - 1e-3, -3}),
           make_vector({kPi, -kPi, -kPi, kPi}), make_vector({4.5, -7.7, 11.2, -3.3})}) {
-      const VectorXd q = take(posture, model);
+      const VectorXd q = select_first(posture, model);
       const auto arm = make_arm<TypeParam>(model, q);
-      const VectorXd measured = read_angles(arm, model.joint_count());
+      const VectorXd measured = read_positions(arm, model.joint_count());
       EXPECT_LT(calc_motion(model, q, measured).norm(), 1e-14) << q.transpose();
       for (Eigen::Index i = 0; i < q.size(); ++i) {
         EXPECT_TRUE(is_prismatic(model, i) || std::abs(measured[i]) <= kPi) << measured[i];
@@ -157,8 +159,9 @@ TYPED_TEST(AnyArm, StartsAtRestInThePostureAskedFor) {
   }
 }
 
-// Turning on and on, from just before pi and either way round: angles stay in [-pi, pi] and follow
-// the sum of the rates modulo a turn, to the rotation update's h w^3 / 12 a step.
+// A joint turns for many turns, from just before pi and in both directions. Angles stay in [-pi,
+// pi] and equal the sum of the rates modulo a turn, up to the rotation update's error of h w^3 / 12
+// per step.
 TYPED_TEST(AnyArm, AnglesWrapAtPi) {
   const RobotModel model = make_pendulum({0.5, 0.8, 0.4});
   PhysicsSettings physics;
@@ -169,9 +172,9 @@ TYPED_TEST(AnyArm, AnglesWrapAtPi) {
     double expected = sign * 3.1, largest = 0;
     int wraps = 0;
     for (int k = 0; k < 4000; ++k) {
-      const double before = read_angles(arm, 1)[0];
+      const double before = read_positions(arm, 1)[0];
       step(arm, VectorXd::Constant(1, sign * 2.5), h_s);
-      const double angle = read_angles(arm, 1)[0], rate = read_rates(arm, 1)[0];
+      const double angle = read_positions(arm, 1)[0], rate = read_rates(arm, 1)[0];
       ASSERT_LE(std::abs(angle), kPi);
       largest = std::max(largest, std::abs(angle));
       wraps += std::abs(angle - before) > kPi ? 1 : 0;
@@ -184,12 +187,12 @@ TYPED_TEST(AnyArm, AnglesWrapAtPi) {
   }
 }
 
-// The tip is where the joint positions put it, but for what the arm lets its joints gape.
+// The tip agrees with the forward kinematics of the joint positions, up to the gaps in the joints.
 TYPED_TEST(AnyArm, ItsJointsHoldOverAThousandStepsOfFreeMotion) {
   for (const auto& [name, model] : kPosedArms) {
     const std::size_t joints = model.joint_count();
     const ChainOracle oracle(model, kGravity_m_per_s2);
-    const VectorXd start = take(make_vector({0.4, -0.8, 1.2, -0.3}), model);
+    const VectorXd start = select_first(make_vector({0.4, -0.8, 1.2, -0.3}), model);
     double reach_m = model.tip_pose.translation().norm();
     for (std::size_t i = 1; i < joints; ++i) {
       reach_m += model.joints[i].origin.translation().norm();
@@ -201,7 +204,7 @@ TYPED_TEST(AnyArm, ItsJointsHoldOverAThousandStepsOfFreeMotion) {
       double worst_m = 0, fastest = 0, turn_rad = 0, farthest_m = 0;
       for (int k = 0; k < 1000; ++k) {
         step(arm, VectorXd::Zero(start.size()), h_s);
-        const VectorXd q = read_angles(arm, joints), qd = read_rates(arm, joints);
+        const VectorXd q = read_positions(arm, joints), qd = read_rates(arm, joints);
         fastest = std::max(fastest, qd.cwiseAbs().sum());
         turn_rad = std::max(turn_rad, calc_turn_rad(model, qd, h_s));
         double slid_m = 0;
@@ -218,8 +221,8 @@ TYPED_TEST(AnyArm, ItsJointsHoldOverAThousandStepsOfFreeMotion) {
   }
 }
 
-// A kick and its opposite leave the link at rest, off its hinge by r (w h)^2 / 2: from then on a
-// step takes the share ERP of the rest back. The error's own square is neglected.
+// An impulse and its opposite leave the link at rest, with a gap of r (w h)^2 / 2 at its hinge.
+// Every later step corrects the share ERP of the gap. The square of the gap is neglected.
 TEST(OdeArmHinges, HealByTheShareErpAStep) {
   const RobotModel model = make_pendulum({0.5, 0.8, 0.4});
   const double h_s = 0.01;

@@ -1,5 +1,5 @@
-// Prismatic joints: one against the closed forms of free fall, two beside a hinge against the
-// textbook's equations, chains of any kind against the Jacobians'.
+// Prismatic joints: one compared with the closed forms of free fall, two mechanisms with a hinge
+// with the textbook's equations, and chains of any kind with the equations from Jacobians.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,8 +19,8 @@ template <class Arm>
 class Slider : public testing::Test {};
 TYPED_TEST_SUITE(Slider, ArmTypes, ArmNames);
 
-// With the acceleration a = F / m - g . axis, semi-implicit Euler is after k steps at the rate k h
-// a and at a h^2 k (k + 1) / 2. Nothing turns, so that the rest is rounding.
+// With the acceleration a = F / m - g . axis, semi-implicit Euler has the rate k h a and the
+// position a h^2 k (k + 1) / 2 after k steps. Nothing turns, so the only error is rounding.
 TYPED_TEST(Slider, FallsAlongItsAxis) {
   for (const Vector3d& rail : kRails) {
     for (const double force_n : {0.0, -21.5, 44.0}) {
@@ -34,7 +34,7 @@ TYPED_TEST(Slider, FallsAlongItsAxis) {
         step(arm, make_vector({force_n}), h_s);
         const double moved_m = acceleration * h_s * h_s * k * (k + 1) / 2;
         ASSERT_NEAR(read_rates(arm, 1)[0], k * h_s * acceleration, 1e-11) << "step " << k;
-        ASSERT_NEAR(read_angles(arm, 1)[0], 0.37 + moved_m, 1e-11) << "step " << k;
+        ASSERT_NEAR(read_positions(arm, 1)[0], 0.37 + moved_m, 1e-11) << "step " << k;
         const Vector3d way_m = moved_m * model.joints[0].axis;
         ASSERT_LT((arm.com_position_m(0) - com_m - way_m).norm(), 1e-11) << "step " << k;
         ASSERT_LT((arm.tip_position_m() - tip_m - way_m).norm(), 1e-11) << "step " << k;
@@ -43,16 +43,16 @@ TYPED_TEST(Slider, FallsAlongItsAxis) {
   }
 }
 
-// The position is a length: it passes pi and many turns without a jump.
+// The position is a length: it exceeds pi and multiples of it without a jump.
 TYPED_TEST(Slider, GoesOnPastPi) {
   for (const double start_m : {3.0, -3.0, 40.0}) {
     const RobotModel model = make_slider({0, 1, 0});  // level
     auto arm = make_arm<TypeParam>(model, make_vector({start_m}));
-    double before_m = read_angles(arm, 1)[0];
+    double before_m = read_positions(arm, 1)[0];
     EXPECT_EQ(before_m, start_m);
     for (int k = 0; k < 300; ++k) {
       step(arm, make_vector({std::copysign(80, start_m)}), 0.01);
-      const double position_m = read_angles(arm, 1)[0];
+      const double position_m = read_positions(arm, 1)[0];
       ASSERT_NEAR(position_m - before_m, 0.01 * read_rates(arm, 1)[0], 1e-11) << k;
       before_m = position_m;
     }
@@ -60,9 +60,9 @@ TYPED_TEST(Slider, GoesOnPastPi) {
   }
 }
 
-// In coordinates of a plane: a slider on a hinge (a polar manipulator) and a hinge on a slider (a
-// cart with a pole), centres of mass anywhere. Both derived from Lagrange's equations with c, d:
-// centres of mass and the joint between, a: the slider's axis.
+// Two planar mechanisms with centres of mass anywhere: a slider on a hinge (a polar manipulator)
+// and a hinge on a slider (a cart with a pole). Both are derived from Lagrange's equations. c:
+// centres of mass, d: the joint between the links, a: the slider's axis.
 struct PlanarBodies {
   PlanarBodies(const RobotModel& model, const Plane& plane, std::size_t slider) {
     const auto project = [&](const Vector3d& p) {
@@ -138,7 +138,7 @@ RobotModel make_planar_model(const PlanarCase& kind, const Plane& plane) {
   return model;
 }
 
-// The oracle, checked itself: rounding only.
+// Checks the oracle itself; only rounding errors are allowed.
 TEST(SlidingPlane, TheJacobianEquationsAgreeWithLagranges) {
   for (const PlanarCase& kind : kPlanarCases) {
     for (const Plane& plane : kPlanes) {
@@ -185,8 +185,8 @@ const std::vector<MixedCase> kMixedCases{{"rpr", make_vector({9, 12, 0.7})},
                                          {"ppp", make_vector({40, 25, 14})}};
 const VectorXd kMixedStart = make_vector({0.6, -0.9, 0.3});
 
-// Without efforts RK4 keeps the oracle's energy to its own error: the oracle's equations are
-// consistent with its energy, Coriolis terms of the sliders included.
+// Without efforts, RK4 conserves the oracle's energy up to its own error. The oracle's equations,
+// including the sliders' Coriolis terms, are therefore consistent with its energy.
 TEST(MixedChain, TheJacobianEquationsKeepTheirEnergy) {
   for (const MixedCase& mixed : kMixedCases) {
     const RobotModel model = make_mixed_arm(mixed.kinds);
@@ -228,7 +228,7 @@ TYPED_TEST(MixedArm, TheFirstStepHasTheAccelerationsOfTheEquationsOfMotion) {
   }
 }
 
-// Chains of one to eight joints of either kind, of any shape and in any posture.
+// Chains of one to eight joints, revolute or prismatic, of any shape and in any posture.
 TYPED_TEST(MixedArm, RandomChainsTakeTheFirstStepOfTheEquationsOfMotion) {
   std::size_t sliders = 0, hinges = 0;
   for (std::size_t joints = 1; joints <= 8; ++joints) {

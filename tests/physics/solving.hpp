@@ -1,4 +1,5 @@
-// Whether an arm solves equations of motion: driven for a second, against their solution.
+// Checks whether an arm solves given equations of motion: it is driven for a second and compared
+// with their solution.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -12,7 +13,7 @@
 
 namespace armwright::physics_test {
 
-// Smooth driving efforts, different in every joint.
+// Returns smooth driving efforts, different in every joint.
 inline VectorXd calc_drive(const VectorXd& amplitude, double t_s) {
   VectorXd tau(amplitude.size());
   for (Eigen::Index i = 0; i < tau.size(); ++i) {
@@ -22,7 +23,7 @@ inline VectorXd calc_drive(const VectorXd& amplitude, double t_s) {
   return tau;
 }
 
-// Positions (turns counted) and rates after a second of driving.
+// Returns positions (with whole turns) and rates after a second of driving.
 template <class Arm>
 VectorXd simulate(const RobotModel& model, const VectorXd& start, const VectorXd& amplitude,
                   int steps) {
@@ -32,7 +33,7 @@ VectorXd simulate(const RobotModel& model, const VectorXd& start, const VectorXd
   VectorXd q = start;
   for (int k = 0; k < steps; ++k) {
     step(arm, calc_drive(amplitude, k * h_s), h_s);
-    q += calc_motion(model, q, read_angles(arm, joints));
+    q += calc_motion(model, q, read_positions(arm, joints));
   }
   VectorXd state(2 * start.size());
   state << q, read_rates(arm, joints);
@@ -47,9 +48,8 @@ inline VectorXd flatten(const State& s) {
 
 constexpr int kTruthSteps = 4000;  // RK4's error is then below 1e-9, four orders below the others
 
-// The engine's limit h -> 0 is the solution of the equations; on the way there its error is of
-// first order, like that of semi-implicit Euler in joint coordinates, but with a constant of its
-// own.
+// For h -> 0 the engine converges to the solution of the equations. Its error is of first order,
+// like that of semi-implicit Euler in joint coordinates, but with its own constant.
 template <class Arm>
 void expect_solves(const RobotModel& model, const Acceleration& f, const VectorXd& start,
                    const VectorXd& amplitude) {
@@ -63,7 +63,7 @@ void expect_solves(const RobotModel& model, const Acceleration& f, const VectorX
   const Limit engine =
       extrapolate([&](int steps) { return simulate<Arm>(model, start, amplitude, steps); }, 800);
   EXPECT_NEAR(engine.order, 1, kOrderTolerance);
-  EXPECT_LT(engine.error, 1e-3 * truth.norm());  // or the next line would say little
+  EXPECT_LT(engine.error, 1e-3 * truth.norm());  // or the next check is weak
   EXPECT_LT((engine.value - truth).norm(), engine.error);
 
   for (const int steps : {200, 1000, 3200}) {
@@ -75,16 +75,16 @@ void expect_solves(const RobotModel& model, const Acceleration& f, const VectorX
   }
 }
 
-// The equations of motion of a chain, driven.
+// The equations of motion of a driven chain.
 inline Acceleration make_driven_acceleration(const ChainOracle& oracle, const VectorXd& amplitude) {
   return [&oracle, amplitude](double t_s, const VectorXd& q, const VectorXd& qd) {
     return oracle.calc_acceleration(q, qd, calc_drive(amplitude, t_s));
   };
 }
 
-// The first step from rest is exact: every centre of mass moves by h^2 times its acceleration, but
-// for rounding (of positions of some metres, and of the solution), and qd = h qdd, but for the
-// arm's error of rates and what it makes of rounded positions, some 1e-15 / h.
+// The first step from rest is exact. Every centre of mass moves by h^2 times its acceleration, up
+// to rounding of positions of some metres and of the solution. Rates are h qdd, up to the arm's
+// error of rates and the effect of rounded positions, some 1e-15 / h.
 template <class Arm>
 void expect_first_step(const RobotModel& model, const VectorXd& start, const VectorXd& tau,
                        double h_s) {

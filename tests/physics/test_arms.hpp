@@ -1,4 +1,4 @@
-// Arms of general shape for the physics tests (no zeros, no symmetry), and driving one.
+// Arms of general shape for the physics tests (no zeros, no symmetry), and functions to drive them.
 #pragma once
 
 #include <Eigen/Dense>
@@ -56,7 +56,7 @@ inline RobotModel make_pendulum(const Vector3d& axis) {
   return model;
 }
 
-// Two parallel axes: all motion is planar, the plane's inclination is the axis's.
+// Two parallel axes: all motion is in a plane perpendicular to them.
 inline RobotModel make_planar_arm(const Vector3d& axis) {
   RobotModel model;
   append_link(model, "shoulder", {0.2, -0.3, 1.4}, axis, kFirstBody);
@@ -101,7 +101,7 @@ inline RobotModel make_slider(const Vector3d& axis) {
   return model;
 }
 
-// A chain of `joints` links of any shape, the kind of each joint drawn too.
+// Returns a random chain of `joints` links of any shape, with random kinds of joints.
 inline RobotModel make_random_arm(std::size_t joints, RandomStream& random) {
   const auto draw = [&](double size) {
     const double x = random.uniform(-size, size), y = random.uniform(-size, size);
@@ -128,9 +128,9 @@ inline RobotModel make_random_arm(std::size_t joints, RandomStream& random) {
 }
 
 template <class Arm>
-VectorXd read_angles(const Arm& arm, std::size_t joints) {
+VectorXd read_positions(const Arm& arm, std::size_t joints) {
   VectorXd q(static_cast<Eigen::Index>(joints));
-  arm.read_angles({q.data(), joints});
+  arm.read_positions({q.data(), joints});
   return q;
 }
 
@@ -155,7 +155,7 @@ inline bool is_prismatic(const RobotModel& model, Eigen::Index joint) {
   return model.joints[static_cast<std::size_t>(joint)].kind == JointKind::prismatic;
 }
 
-// From one posture to another: of revolute joints the short way round.
+// Returns the motion from one posture to another, the short way round for revolute joints.
 inline VectorXd calc_motion(const RobotModel& model, const VectorXd& from, const VectorXd& to) {
   VectorXd motion = to - from;
   for (Eigen::Index i = 0; i < motion.size(); ++i) {
@@ -166,7 +166,7 @@ inline VectorXd calc_motion(const RobotModel& model, const VectorXd& from, const
   return motion;
 }
 
-// By how much links turn in a step, at most.
+// Returns an upper bound of the links' turn per step.
 inline double calc_turn_rad(const RobotModel& model, const VectorXd& rates, double h_s) {
   double turn_rad = 0;
   for (Eigen::Index i = 0; i < rates.size(); ++i) {

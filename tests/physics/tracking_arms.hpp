@@ -1,4 +1,4 @@
-// The thesis's arm, three of its designs and ways to run them, for the tests of whole simulations.
+// The thesis's arm, three of its designs and functions to run them, for tests of whole simulations.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 
 #include "sim/engines/engine_table.hpp"
 #include "sim/robot/robot_model.hpp"
+#include "sim/tracking/simulation.hpp"
 #include "sim/tracking/test_case.hpp"
-#include "sim/tracking/tracking.hpp"
 
 namespace armwright::physics_test {
 
@@ -43,13 +43,13 @@ inline const ArmDesign kTableA10 = make_design({{864048, 202279, 10876.1, -7246.
                                                 {2810730, 7338360, 24059, -14943.4, 12499},
                                                 {1531200, 1426490, 4394.7, -5713.1, 4836.06},
                                                 {601.378, 13600.6, 3.48375, -946.889, 573.647}});
-// A last joint far beyond the edge of stability (P h^2 / J is about 2e5; 4 is the limit) that
-// nothing limits: its efforts grow without bound.
+// The last joint is far beyond the limit of stability (P h^2 / J is about 2e5; the limit is 4) and
+// has no effort limits, so its efforts grow without bound.
 inline const ArmDesign kExploding = make_design({{45000, 150000, 7500, -20000, 20000},
                                                  {270000, 700000, 30000, -45000, 45000},
                                                  {30000, 100000, 5000, -20000, 20000},
                                                  {1e8, 2000, 5, -1e300, 1e300}});
-// Too weak to carry itself.
+// A design that is too weak to carry the arm.
 inline const ArmDesign kLimp = make_design({{450, 1500, 75, -200, 200},
                                             {2700, 7000, 300, -450, 450},
                                             {300, 1000, 50, -200, 200},
@@ -81,24 +81,24 @@ inline TrackingResult simulate_one(const TrackingSetup& setup, const TrackingJob
   return std::move(results.at(0));
 }
 
-// Everything a result has, to the last bit.
+// Compares all members of two results, to the last bit.
 inline void expect_identical(const TrackingResult& a, const TrackingResult& b) {
   EXPECT_EQ(a.status, b.status);
   EXPECT_EQ(a.reason, b.reason);
   EXPECT_EQ(a.steps, b.steps);
   EXPECT_EQ(a.point_error_m, b.point_error_m);
   EXPECT_EQ(a.mean_error_m, b.mean_error_m);
-  EXPECT_EQ(a.peak_effort_n_m, b.peak_effort_n_m);
-  EXPECT_EQ(a.rms_effort_n_m, b.rms_effort_n_m);
+  EXPECT_EQ(a.peak_effort, b.peak_effort);
+  EXPECT_EQ(a.rms_effort, b.rms_effort);
   EXPECT_EQ(a.saturated_share, b.saturated_share);
   EXPECT_EQ(a.energy_j, b.energy_j);
   EXPECT_EQ(a.error_series_m, b.error_series_m);
   ASSERT_EQ(a.trajectory.size(), b.trajectory.size());
   for (std::size_t i = 0; i < a.trajectory.size(); ++i) {
     EXPECT_EQ(a.trajectory[i].time_s, b.trajectory[i].time_s);
-    EXPECT_EQ(a.trajectory[i].q_rad, b.trajectory[i].q_rad);
-    EXPECT_EQ(a.trajectory[i].target_rad, b.trajectory[i].target_rad);
-    EXPECT_EQ(a.trajectory[i].effort_n_m, b.trajectory[i].effort_n_m);
+    EXPECT_EQ(a.trajectory[i].q, b.trajectory[i].q);
+    EXPECT_EQ(a.trajectory[i].target_q, b.trajectory[i].target_q);
+    EXPECT_EQ(a.trajectory[i].effort, b.trajectory[i].effort);
     EXPECT_EQ(a.trajectory[i].tip_m, b.trajectory[i].tip_m);
     EXPECT_EQ(a.trajectory[i].target_m, b.trajectory[i].target_m);
   }

@@ -1,5 +1,5 @@
-// The tracking loop on arms that follow a script instead of physics: the timeline, what is asked of
-// the arm and when, and the measures, all by hand.
+// The tracking loop on arms that follow a script instead of physics. The timeline, the calls of the
+// arm and the measures are compared with numbers computed by hand.
 #include "sim/tracking/tracking_loop.hpp"
 
 #include <gmock/gmock.h>
@@ -32,7 +32,8 @@ TrackingTask make_task(int substeps = 1) {
   return task;
 }
 
-// Stands still in a posture of its own; its tip is where the script says after so many steps.
+// An arm that keeps its joint positions. Its tip is at the position that the script gives for a
+// count of steps.
 struct ScriptedArm {
   std::vector<double> q_rad{0.1, 0.2, -0.3, 0.4};
   std::function<Eigen::Vector3d(int)> tip_m = [](int) { return Eigen::Vector3d(1, 2, 3); };
@@ -48,7 +49,9 @@ struct ScriptedArm {
     efforts_n_m.emplace_back(effort_n_m.begin(), effort_n_m.end());
     steps_s.push_back(dt_s);
   }
-  void read_angles(std::span<double> q) const { std::copy(q_rad.begin(), q_rad.end(), q.begin()); }
+  void read_positions(std::span<double> q) const {
+    std::copy(q_rad.begin(), q_rad.end(), q.begin());
+  }
   void read_rates(std::span<double> qd) const { std::ranges::fill(qd, 0.0); }
   Eigen::Vector3d tip_position_m() const { return tip_m(static_cast<int>(steps_s.size())); }
   Eigen::Vector3d tool_point_m(std::size_t /*point*/) const { return tip_position_m(); }
@@ -93,7 +96,7 @@ TEST(TrackingLoop, StepsThePlantOnceAPeriodWithTheEffortForTheTargetAtItsEnd) {
 TEST(TrackingLoop, HoldsTheEffortOverSubsteps) {
   ScriptedRun run(make_task(4));
   ScriptedRun plain(make_task());
-  run.job.design = plain.job.design = &kTableA1;  // a controller that knows the time
+  run.job.design = plain.job.design = &kTableA1;  // its efforts depend on the control period
   ScriptedArm arm, plain_arm;
   EXPECT_EQ(run(arm).steps, 2 * kSteps);
   plain(plain_arm);
@@ -104,7 +107,7 @@ TEST(TrackingLoop, HoldsTheEffortOverSubsteps) {
   }
 }
 
-// An error that only shrinks: the window's first one is the largest, and it is that of t = t_m.
+// The error only shrinks, so the largest one in the window is its first one, at t = t_m.
 TEST(TrackingLoop, MeasuresFromTheEndOfTheMove) {
   ScriptedRun run(make_task());
   ScriptedArm arm;
@@ -123,7 +126,7 @@ TEST(TrackingLoop, MeasuresFromTheEndOfTheMove) {
   EXPECT_NEAR(result.mean_error_m, 1.0 / (kWindowStart + 1), 1e-15);  // of the second point alone
 }
 
-// An error in one period alone, the last that counts, or just before the first that counts.
+// An error in a single period: the last one that counts, or the one before the first that counts.
 TEST(TrackingLoop, MeasuresToTheEndOfTheRest) {
   for (const int spike : {kWindowStart - 1, kWindowStart, kSteps - 1}) {
     ScriptedRun run(make_task());
@@ -173,7 +176,7 @@ TEST(TrackingLoop, CutsOffInThePeriodInWhichTheErrorIsTooLarge) {
   EXPECT_EQ(result.mean_error_m, 0.3);
 }
 
-// Before the window opens the tip may be anywhere.
+// Before the window, the tip's position does not count.
 TEST(TrackingLoop, DoesNotCutOffDuringAMove) {
   ScriptedRun run(make_task());
   run.job.cutoff_m = 0.3;

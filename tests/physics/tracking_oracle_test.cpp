@@ -1,5 +1,5 @@
-// Designs of the thesis on three test cases against the errors of an independent program for the
-// same task, also on ODE (data/tracking-oracle.json).
+// Compares designs of the thesis on three test cases with the errors of an independent program for
+// the same task, which also uses ODE (data/tracking-oracle.json).
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -15,8 +15,9 @@ namespace {
 
 const std::map<std::string, ArmDesign> kDesigns{{"A.5", kTableA5}, {"A.10", kTableA10}};
 
-// The same arithmetic in another order: rounding of 1e-16 m, which loops that are stable do not
-// magnify much over 4000 steps (measured: 5e-14 m), and the file's 12 digits of up to 1e-2 m.
+// The programs do the same arithmetic in another order. Stable loops do not magnify rounding errors
+// of 1e-16 m much over 4000 steps (measured: 5e-14 m). The file has 12 digits of errors up to 1e-2
+// m.
 constexpr double kTolerance_m = 1e-12;
 
 TEST(TrackingOracle, EveryPointErrorAgrees) {

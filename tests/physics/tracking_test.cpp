@@ -1,4 +1,4 @@
-// Whole simulations of the thesis's arm with the ODE engine: what is recorded and measured.
+// Whole simulations of the thesis's arm with the engine `ode`: recordings and measures.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -32,13 +32,14 @@ TEST_F(Tracking, TheErrorSeriesHasThePointErrorsAsTheMaximaOfItsWindows) {
   double sum_m = 0;
   for (std::size_t k = 0; k < 25; ++k) {
     const Segment& segment = targets_.segments[k];
-    // By the task's definition: t_m = ds / v', v' = 1.5 ds / 1.6, or as it is on the longest moves.
+    // The task's definition: t_m = ds / v' with v' = 1.5 ds / 1.6, or v' = 1.5 on the longest
+    // moves.
     const double move_m = (segment.to_m - segment.from_m).norm();
     const double duration_s = move_m / (1.5 * std::min(1.0, move_m / 1.6));
     const auto first = result.error_series_m.begin() + segment.first_step;
     double worst_m = 0;
     for (int step = 0; step < segment.steps; ++step) {
-      // A hair of tolerance where a move ends at the end of a period.
+      // A small tolerance for moves that end at the end of a period.
       if ((step + 1) * 0.01 >= duration_s - 1e-9) {
         worst_m = std::max(worst_m, first[step]);
       }
@@ -59,7 +60,7 @@ TEST_F(Tracking, RecordingChangesNothing) {
   expect_identical(recorded, plain);
 }
 
-// The tip is where the kinematics of the recorded angles put it, up to the hinges' drift: at most 4
+// The tip agrees with the kinematics of the recorded positions, up to the hinges' drift: at most 4
 // joints x (w h)^2 r / (2 ERP), r = 2.8 m, w the sum of the joints' rates (posture_test.cpp).
 TEST_F(Tracking, TheTrajectoryIsConsistent) {
   const TrackingResult result =
@@ -67,14 +68,14 @@ TEST_F(Tracking, TheTrajectoryIsConsistent) {
   ASSERT_EQ(result.status, SimulationStatus::ok) << result.reason;
   ASSERT_EQ(result.trajectory.size(), static_cast<std::size_t>(result.steps));
   const ChainOracle oracle(setup_.robot(), kGravity_m_per_s2);
-  VectorXd before = Eigen::Map<const VectorXd>(targets_.start_rad.data(), 4);
-  double turn = 0;  // the fastest within the last steps, in which the drift has gathered
+  VectorXd before = Eigen::Map<const VectorXd>(targets_.start_positions.data(), 4);
+  double turn = 0;  // the fastest within the last steps, in which the drift has grown
   for (std::size_t k = 0; k < result.trajectory.size(); ++k) {
     const TrajectorySample& sample = result.trajectory[k];
     EXPECT_NEAR(sample.time_s, 0.01 * static_cast<double>(k + 1), 1e-9);
-    const auto target = targets_.angles(static_cast<int>(k));
-    EXPECT_EQ(sample.target_rad, std::vector<double>(target.begin(), target.end()));
-    const VectorXd q = Eigen::Map<const VectorXd>(sample.q_rad.data(), 4);
+    const auto target = targets_.positions(static_cast<int>(k));
+    EXPECT_EQ(sample.target_q, std::vector<double>(target.begin(), target.end()));
+    const VectorXd q = Eigen::Map<const VectorXd>(sample.q.data(), 4);
     turn = std::max(0.9 * turn, calc_motion(setup_.robot(), before, q).cwiseAbs().sum());
     before = q;
     EXPECT_LT((oracle.calc(q, VectorXd::Zero(4)).tip_m - sample.tip_m).norm(),
@@ -82,37 +83,37 @@ TEST_F(Tracking, TheTrajectoryIsConsistent) {
         << k;
     EXPECT_EQ((sample.tip_m - sample.target_m).norm(), result.error_series_m[k]);
     for (std::size_t i = 0; i < 4; ++i) {
-      EXPECT_GE(sample.effort_n_m[i], kTableA10.joints[i].limits.min_n_m);
-      EXPECT_LE(sample.effort_n_m[i], kTableA10.joints[i].limits.max_n_m);
-      EXPECT_LE(std::abs(sample.q_rad[i]), kPi);
+      EXPECT_GE(sample.effort[i], kTableA10.joints[i].limits.min);
+      EXPECT_LE(sample.effort[i], kTableA10.joints[i].limits.max);
+      EXPECT_LE(std::abs(sample.q[i]), kPi);
     }
   }
-  // The tip follows the target: the angles asked for put it there.
+  // The kinematics of the setpoints put the tip at the target.
   const TrajectorySample& last = result.trajectory.back();
   EXPECT_EQ(last.target_m, targets_.segments.back().to_m);
   EXPECT_LT((last.tip_m - last.target_m).norm(), 1e-3);
 }
 
-// At Q1's speeds, where the limits of a design for Q2 are reached.
+// At Q1's speeds, at which a design for Q2 reaches its effort limits.
 TEST_F(Tracking, TheMeasuresOfEffortFollowFromTheTrajectory) {
   const TrackingSetup fast(load_irb4600(), {});
   const TargetTable targets = fast.make_targets(make_case(7));
   const TrackingResult result =
       simulate_one(fast, make_job(kTableA10, targets, kNever, kEverything));
   ASSERT_EQ(result.status, SimulationStatus::ok) << result.reason;
-  std::vector<double> q = targets.start_rad;
+  std::vector<double> q = targets.start_positions;
   double energy_j = 0;
   std::vector<double> peak(4), squares(4), saturated(4);
   for (const TrajectorySample& sample : result.trajectory) {
     for (std::size_t i = 0; i < 4; ++i) {
-      const double effort = sample.effort_n_m[i];
+      const double effort = sample.effort[i];
       const EffortLimits& limits = kTableA10.joints[i].limits;
-      energy_j += std::max(0.0, effort * std::remainder(sample.q_rad[i] - q[i], 2 * kPi));
+      energy_j += std::max(0.0, effort * std::remainder(sample.q[i] - q[i], 2 * kPi));
       peak[i] = std::max(peak[i], std::abs(effort));
       squares[i] += effort * effort;
-      saturated[i] += effort == limits.min_n_m || effort == limits.max_n_m ? 1 : 0;
+      saturated[i] += effort == limits.min || effort == limits.max ? 1 : 0;
     }
-    q = sample.q_rad;
+    q = sample.q;
   }
   const double steps = result.steps;
   EXPECT_GT(energy_j, 100);
@@ -121,13 +122,13 @@ TEST_F(Tracking, TheMeasuresOfEffortFollowFromTheTrajectory) {
   EXPECT_GT(*std::max_element(saturated.begin(), saturated.end()), 0) << "no test of saturation";
   for (std::size_t i = 0; i < 4; ++i) {
     const double rms = std::sqrt(squares[i] / steps);
-    EXPECT_EQ(result.peak_effort_n_m[i], peak[i]);
-    EXPECT_NEAR(result.rms_effort_n_m[i], rms, 1e-12 * rms);
+    EXPECT_EQ(result.peak_effort[i], peak[i]);
+    EXPECT_NEAR(result.rms_effort[i], rms, 1e-12 * rms);
     EXPECT_EQ(result.saturated_share[i], saturated[i] / steps);
   }
 }
 
-// Positive work alone: at least what the arm's energy has gained, and of the size of lifting and
+// The positive work is at least the gain of the arm's energy, and has the size of lifting and
 // accelerating a ton.
 TEST_F(Tracking, ThePositiveWorkCoversWhatIsLifted) {
   TestCase up;
@@ -139,8 +140,8 @@ TEST_F(Tracking, ThePositiveWorkCoversWhatIsLifted) {
   const auto potential_j = [&](const double* q) {
     return oracle.calc(Eigen::Map<const VectorXd>(q, 4), VectorXd::Zero(4)).potential_energy_j;
   };
-  const double gain_j =
-      potential_j(targets.angles(targets.steps - 1).data()) - potential_j(targets.start_rad.data());
+  const double gain_j = potential_j(targets.positions(targets.steps - 1).data()) -
+                        potential_j(targets.start_positions.data());
   EXPECT_GT(gain_j, 1000);
   EXPECT_GT(result.energy_j, gain_j);
   EXPECT_LT(result.energy_j, 10 * gain_j);
@@ -157,8 +158,8 @@ TEST_F(Tracking, CountFirstPointAddsItToTheMean) {
   EXPECT_GT(std::abs(with.mean_error_m - without.mean_error_m), 1e-6);
 }
 
-// Cut off somewhere in the middle: what came before is untouched, what comes after counts as the
-// cut-off.
+// A cut-off in the middle does not change the points before; the points after it get the cut-off
+// error.
 TEST_F(Tracking, ACutOffEndsTheSimulationAndCountsForTheRest) {
   const TrackingResult whole = simulate_one(setup_, make_job(kTableA1, targets_));
   ASSERT_EQ(whole.status, SimulationStatus::ok) << whole.reason;
@@ -193,8 +194,8 @@ TEST_F(Tracking, ACutOffThatIsNotReachedChangesNothing) {
   expect_identical(simulate_one(setup_, make_job(kTableA10, targets_, 1.0)), free);
 }
 
-// The thesis's gains need its integrator: table A.10 (published: 0.083 mm) sits at the edge of
-// stability of one step a period and beyond that of two (about 130 mm).
+// The thesis's gains need its integrator. Table A.10 (published: 0.083 mm) is at the limit of
+// stability with one step per period, and beyond it with two (about 130 mm).
 TEST_F(Tracking, TableA10HoldsWithOneStepAPeriodAndFailsWithTwo) {
   TrackingTask task = make_e6_task();
   task.physics.substeps = 2;
@@ -215,7 +216,7 @@ TEST_F(Tracking, TableA10HoldsWithOneStepAPeriodAndFailsWithTwo) {
     one_m += one.mean_error_m / kCases;
     two_m += two.mean_error_m / kCases;
   }
-  EXPECT_GT(one_m, 0.00004);  // the published size, not a perfect arm
+  EXPECT_GT(one_m, 0.00004);  // as large as published; the arm is not perfect
 }
 
 // With the thesis's load the last link is heavier by the load, and the same design fails.

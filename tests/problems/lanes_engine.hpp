@@ -23,8 +23,8 @@ class LanesEngine final : public PhysicsEngine {
       result.steps = job.targets->steps;
       result.point_error_m.assign(job.targets->segments.size(), error_m);
       result.mean_error_m = error_m;
-      result.peak_effort_n_m.resize(job.targets->joints);
-      result.rms_effort_n_m.resize(job.targets->joints);
+      result.peak_effort.resize(job.targets->joints);
+      result.rms_effort.resize(job.targets->joints);
       result.saturated_share.resize(job.targets->joints);
     }
     return results;
@@ -33,7 +33,7 @@ class LanesEngine final : public PhysicsEngine {
 
   static double calc_error_m(const ArmDesign& design, const TargetTable& targets,
                              Precision precision) {
-    double error_m = 0.01 + 1e-3 * targets.start_rad[0] * targets.start_rad[0];
+    double error_m = 0.01 + 1e-3 * targets.start_positions[0] * targets.start_positions[0];
     for (const JointDrive& joint : design.joints) {
       error_m += 1e-9 * joint.gains[0];
     }

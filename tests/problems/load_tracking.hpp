@@ -1,4 +1,4 @@
-// Tracking problems as the tests of them ask for them.
+// Loads tracking problems for tests.
 #pragma once
 
 #include <memory>
@@ -12,9 +12,14 @@ namespace armwright {
 
 inline constexpr const char* kOracle = ARMWRIGHT_TEST_DATA "/tracking-oracle.json";
 
+// Returns the tracking problem, which keeps the loaded problem alive. Null for another problem.
+inline std::shared_ptr<const TrackingProblem> share_tracking(const LoadedProblem& loaded) {
+  return {loaded.problem, loaded.tracking()};
+}
+
 inline std::shared_ptr<const TrackingProblem> load_tracking(
     const std::string& name, const std::vector<std::string>& overrides = {}) {
-  return load_problem(name, overrides).tracking;
+  return share_tracking(load_problem(name, overrides));
 }
 
 inline std::vector<double> get_start(const TrackingProblem& problem) {

@@ -251,7 +251,7 @@ class RunTest(FolderTest):
                 begun = armwright.load_run(out)
                 self.assertFalse(begun.finished)
                 self.assertGreater(len(begun.history), 0)
-                self.assertIn("has not come to its end", self.run_program("show", out))
+                self.assertIn("is not complete", self.run_program("show", out))
 
 
 if __name__ == "__main__":

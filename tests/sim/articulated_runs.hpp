@@ -1,4 +1,4 @@
-// Ways to run the engine `articulated` that its tests share.
+// Functions that run the engine `articulated`, shared by its tests.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Arms that nobody has drawn: URDFs of three to seven joints, of plausible sizes and masses, their
-// joints tilted and shifted at random so that no closed form fits.
+// Generated arms: URDFs of three to seven joints with plausible sizes and masses. The joints are
+// tilted and shifted at random so that no closed form fits.
 #pragma once
 
 #include <fmt/format.h>
@@ -14,7 +14,7 @@ namespace armwright {
 
 inline constexpr int kGeneratedArms = 10;
 
-// Number 0 to kGeneratedArms - 1; of 3 + number % 5 joints.
+// Returns the arm of a number from 0 to kGeneratedArms - 1. It has 3 + number % 5 joints.
 inline std::string make_arm_urdf(int number) {
   RandomStream random("test/arm", static_cast<std::uint64_t>(number));
   const int joints = 3 + number % 5;
@@ -32,7 +32,7 @@ inline std::string make_arm_urdf(int number) {
     const double mass_kg = 12 * size * std::pow(0.6, i) * random.uniform(0.7, 1.3);
     const double across = mass_kg * (next_m * next_m / 12 + 0.0025);
     const double tilt = 0.1;
-    // Motors that hold the whole arm stretched out three times over, and then some.
+    // Motors with more than three times the effort that holds the whole arm stretched out.
     const double effort = 400 * size * size * std::pow(0.55, i);
     urdf += fmt::format(
         R"(  <joint name="joint_{0}" type="revolute">

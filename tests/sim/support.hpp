@@ -1,4 +1,4 @@
-// What several test files of this room need.
+// Helpers for the test files of this room.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ using physics_test::load_irb4600;
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// With what words `action` is refused.
+// Returns the message with which `action` is refused.
 inline std::string usage_message(const std::function<void()>& action) {
   try {
     action();

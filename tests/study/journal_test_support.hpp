@@ -1,4 +1,4 @@
-// What the tests of the journal share.
+// Helpers for the tests of the journal.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -19,7 +19,7 @@
 
 namespace armwright::journal_testing {
 
-// A training record whose every field depends on its index.
+// Returns a training record whose fields all depend on its index.
 inline EvaluationRecord make_record(std::uint64_t index) {
   const double i = static_cast<double>(index);
   EvaluationRecord record;
@@ -66,7 +66,7 @@ inline void expect_same(const EvaluationRecord& got, const EvaluationRecord& wan
   EXPECT_EQ(got.evaluation.failed_cases, wanted.evaluation.failed_cases);
 }
 
-// The training records are make_record(0) to make_record(count - 1).
+// Expects the training records make_record(0) to make_record(count - 1).
 inline void expect_first_records(const JournalContent& content, std::size_t count) {
   ASSERT_EQ(content.training.size(), count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -84,7 +84,8 @@ inline void write_bytes(const std::filesystem::path& file, const std::string& by
   stream << bytes;
 }
 
-// A journal of `count` records, and where each of them ends (the first entry: where they begin).
+// Writes a journal of `count` records. Returns the offset at which the first record begins, then
+// the offset at which each record ends.
 inline std::vector<std::size_t> write_journal(const std::filesystem::path& file,
                                               std::size_t count) {
   JournalContent content;
@@ -99,8 +100,7 @@ inline std::vector<std::size_t> write_journal(const std::filesystem::path& file,
   return ends;
 }
 
-// Runs `action` and gives the Error it throws; a test failure and a usage error saying so if it
-// throws none.
+// Runs `action` and returns the Error that it throws. If it throws none, the test fails.
 template <class Action>
 Error catch_error(Action action) {
   try {

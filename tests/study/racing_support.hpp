@@ -1,5 +1,4 @@
-// Problems whose races can be followed by hand or on which races are worth something, and plans for
-// them.
+// Problems whose races can be computed by hand, problems on which races save cases, and plans.
 #pragma once
 
 #include <cmath>
@@ -12,13 +11,13 @@
 
 #include "base/random.hpp"
 #include "optimizers/table/optimizer_table.hpp"
-#include "sim/tracking/bred_case.hpp"
+#include "sim/tracking/test_case.hpp"
 #include "study/run_support.hpp"
 
 namespace armwright {
 
-// The objective is the mean of the cases' errors, which are never negative, so that it is bounded
-// from below by what has been seen of them.
+// The objective is the mean of the errors of the cases. They are never negative, so the errors
+// simulated so far give a lower bound.
 class MeanProblem : public Problem {
  public:
   using CalcError = std::function<double(std::span<const double> x, const CaseBlock& block,
@@ -65,9 +64,9 @@ class MeanProblem : public Problem {
   CalcError calc_error_;
 };
 
-// A bowl in `variables` dimensions whose place differs from case to case, normally with standard
-// deviation `noise`: the mean's minimiser is close to 1 in every coordinate, and a few cases tell
-// good designs from bad ones.
+// Returns a bowl in `variables` dimensions. Its centre is normally distributed over the cases with
+// standard deviation `noise`, so the minimiser of the mean is close to 1 in every coordinate. A few
+// cases suffice to tell good designs from bad ones.
 inline std::shared_ptr<const Problem> make_noisy_bowl(std::size_t variables, double noise) {
   return std::make_shared<MeanProblem>(
       variables, [noise](std::span<const double> x, const CaseBlock& block, std::uint64_t number) {

@@ -1,4 +1,4 @@
-// What tests of whole runs share: a silent observer, small plans, a fixture with a folder.
+// Helpers for tests of whole runs: a silent observer, small plans, a fixture with a folder.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -47,7 +47,8 @@ class StoppingObserver final : public SilentObserver {
   std::uint64_t after_;
 };
 
-// A short run of the thesis's problem: few cases to judge on, small populations.
+// Returns a plan for a short run of the thesis's problem: few validation and test cases, small
+// populations.
 inline RunPlan make_small_plan(const std::string& optimizer = "ga", std::int64_t budget = 40) {
   RunPlan plan;
   plan.problem = load_problem(
@@ -65,7 +66,7 @@ inline RunPlan make_small_plan(const std::string& optimizer = "ga", std::int64_t
   return plan;
 }
 
-// Runs in a folder of their own that goes away.
+// Executes runs in a temporary folder.
 class RunTest : public testing::Test {
  protected:
   std::optional<RunResult> run(const RunPlan& plan, const std::string& folder, unsigned jobs = 2) {

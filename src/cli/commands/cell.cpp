@@ -1,4 +1,4 @@
-// armwright cell: some cells of a study, on whatever machine this is. What a cluster's jobs call.
+// armwright cell: runs some cells of a study. The jobs of a cluster call it.
 
 #include "study/compare/cell.hpp"
 
@@ -12,16 +12,15 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/progress_bar.hpp"
 #include "cli/terminal/session.hpp"
-#include "cli/terminal/signals.hpp"
 #include "cli/terminal/terminal.hpp"
 #include "study/matrix/attempt.hpp"
 #include "study/matrix/cell_attempt.hpp"
 #include "study/matrix/cell_selection.hpp"
-#include "study/matrix/recorded_study.hpp"
 #include "study/run/run_lock.hpp"
 
 namespace armwright {
@@ -29,23 +28,25 @@ namespace {
 
 constexpr const char* kCellExamples = R"(Examples:
   armwright cell results/q1 0-9                       # the first ten cells, one after the other
-  armwright cell results/q1 q1-complex/ga/r03         # one, by its name, which stays right when the plan grows
-  armwright cell results/q1 12 17 --jobs 4            # two, four threads each
+  armwright cell results/q1 q1-complex/ga/r03         # one cell by its name, which stays valid when the study grows
+  armwright cell results/q1 12 17 --jobs 4            # two cells, each with four threads
 
-What 'armwright compare --executor slurm' and 'script' call on a cluster; any number of these may run at once, on any
-machines that see the folder. Cells that are done are skipped, others go on where they were. Whoever begins a cell last
-has it: an earlier process at the same cell, forgotten by its batch system perhaps, notices and ends with exit code 5.
-'armwright status' shows how far all are, 'armwright merge' makes tables and verdict of them. See docs/clusters.md.)";
+A cell is one run of a study: a method on a problem in a replicate. 'armwright compare --executor slurm' and 'script'
+call this command on a cluster. Any number of such processes may run at once, on all machines that see the folder. Cells
+that have ended are skipped; others are resumed. If two processes run the same cell, the later one keeps it; the earlier
+one notices this and ends with exit code 5. 'armwright status' shows the state of all cells, and 'armwright merge' makes
+the tables and the verdict. See docs/clusters.md.)";
 
 struct CellOptions {
   std::string plan;
   std::vector<std::string> cells;
-  JobsOption jobs;
-  TimeLimitOption time_limit;
+  std::string jobs;
+  std::string time_limit;
   bool quiet = false;
 };
 
-// A command that holds the study for a moment only, as merge does, is waited for.
+// Waits up to 3 s for a command that holds the study only briefly, as merge does. Throws
+// Error{busy} after that.
 void wait_for_study(const std::filesystem::path& folder, StopSignal& stop) {
   constexpr std::chrono::milliseconds kPause{100};
   constexpr int kTries = 30;
@@ -55,16 +56,17 @@ void wait_for_study(const std::filesystem::path& folder, StopSignal& stop) {
       return;
     }
     if (tries == kTries) {
-      throw Error(ErrorKind::busy,
-                  fmt::format("{} is in use by {}, which runs its cells itself; wait for it, or "
-                              "stop it",
-                              sanitize(folder.string()), writer));
+      throw Error(
+          ErrorKind::busy,
+          fmt::format("{} is in use by {}, which runs its cells itself; wait until it ends, "
+                      "or stop it",
+                      sanitize(folder.string()), writer));
     }
     std::this_thread::sleep_for(kPause);
   }
 }
 
-// Attempts that did not end in order.
+// Returns the number of attempts whose process died.
 std::size_t count_deaths(const std::filesystem::path& attempts) {
   std::size_t deaths = 0;
   for (const int token : list_tokens(attempts)) {
@@ -79,14 +81,14 @@ class CellCommand {
       : options_(options),
         session_(session),
         study_(load_recorded_study(options.plan)),
-        jobs_(options.jobs.get_or(1)) {}
+        jobs_(parse_jobs_or_one(options.jobs)) {}
 
   int run() {
     std::vector<Cell> cells = select_cells(study_.plan, options_.cells);
     catch_signals(session_.stop);
     wait_for_study(study_.folder, session_.stop);
-    // What has taken processes with it comes last, so that it costs no others. After one death all
-    // stay in order: a job that is begun again meets what is left of its earlier life at once.
+    // Cells whose processes died more than once come last, so that they do not delay the others.
+    // One death changes nothing: a restarted job shall first resume the cell that it left.
     constexpr std::size_t kMostDeaths = 1;
     std::ranges::stable_partition(cells, [&](const Cell& cell) {
       return count_deaths(make_attempts_path(study_.plan, cell, study_.folder)) <= kMostDeaths;
@@ -148,7 +150,8 @@ class CellCommand {
     }
   }
 
-  // What fills one cell's disk fills all, and whoever holds a cell holds them all.
+  // A full disk or a locked folder would stop every other cell, too, so these errors end the
+  // command.
   void note_broken(const Cell& cell, const Error& error) {
     if (error.kind() == ErrorKind::io || error.kind() == ErrorKind::busy) {
       throw error;
@@ -178,20 +181,20 @@ class CellCommand {
 void add_cell(CLI::App& app, Session& session) {
   auto options = std::make_shared<CellOptions>();
   CLI::App* command =
-      add_command(app, session, "cell",
-                  "Run some cells of a comparison, as the jobs of a cluster do", kCellExamples);
+      add_command(app, session, "cell", "Run some cells of a study, as the jobs of a cluster do",
+                  kCellExamples);
   command->add_option("PLAN", options->plan, "The folder of a study, or its study.toml")
       ->required();
   command
       ->add_option("CELL", options->cells,
-                   "Which: a number from 0, a range 3-9, or PROBLEM/OPTIMIZER/rNN")
+                   "The cells: a number from 0, a range 3-9, or PROBLEM/OPTIMIZER/rNN")
       ->required();
-  options->jobs.add_to(*command, "1");
-  options->time_limit.add_to(*command);
-  command->add_flag("--quiet,-q", options->quiet, "No progress")->group("Output");
+  add_jobs_flag(*command, options->jobs, "1");
+  add_time_limit_flag(*command, options->time_limit);
+  command->add_flag("--quiet,-q", options->quiet, "Show no progress")->group("Output");
   command->callback([options, &session] {
     session.action = [options, &session] {
-      options->time_limit.apply(session.stop);
+      apply_time_limit(options->time_limit, session.stop);
       return CellCommand(*options, session).run();
     };
   });

@@ -1,4 +1,4 @@
-// armwright check-plugin: the optimizer contract, tried on any optimizer.
+// armwright check-plugin: checks whether an optimizer keeps the optimizer contract.
 
 #include <fmt/format.h>
 
@@ -6,9 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/list/list_views.hpp"
 #include "cli/terminal/arguments.hpp"
-#include "cli/terminal/json.hpp"
+#include "cli/terminal/format.hpp"
 #include "cli/terminal/session.hpp"
 #include "cli/terminal/table.hpp"
 #include "cli/terminal/terminal.hpp"
@@ -25,8 +26,8 @@ constexpr const char* kCheckPluginExamples = R"(Examples:
   armwright check-plugin 'exec:python3 mine.py'
   armwright check-plugin nlopt:sbplx --opt restarts=0
 
-Runs the optimizer on functions with known properties and says of every promise that an optimizer gives whether it
-keeps it. Exit code 0 if all hold, 3 if one is broken.)";
+Runs the optimizer on functions with known properties. Prints for each promise of the optimizer contract whether the
+optimizer keeps it. The exit code is 0 if it keeps all promises, 3 if it breaks one.)";
 
 struct CheckPluginOptions {
   std::string optimizer;
@@ -82,9 +83,9 @@ int run_check_plugin(const CheckPluginOptions& options, Session& session) {
 
 void add_check_plugin(CLI::App& app, Session& session) {
   auto options = std::make_shared<CheckPluginOptions>();
-  CLI::App* command = add_command(app, session, "check-plugin",
-                                  "Try whether an optimizer keeps what every optimizer promises",
-                                  kCheckPluginExamples);
+  CLI::App* command = add_command(
+      app, session, "check-plugin",
+      "Check whether an optimizer keeps the promises of every optimizer", kCheckPluginExamples);
   command
       ->add_option("OPTIMIZER", options->optimizer,
                    "A name, a shared library (./libmine.so) or a process ('exec:COMMAND')")

@@ -1,4 +1,4 @@
-// armwright compare: optimizers on the same footing, resumable and extendable.
+// armwright compare: a study of optimizers under equal conditions. It can be resumed and extended.
 
 #include <fmt/format.h>
 
@@ -9,42 +9,41 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "cli/commands/executor.hpp"
-#include "cli/commands/team.hpp"
+#include "cli/commands/commands.hpp"
+#include "cli/commands/executor_options.hpp"
+#include "cli/commands/mpi_job.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/progress_bar.hpp"
 #include "cli/terminal/session.hpp"
-#include "cli/terminal/signals.hpp"
 #include "cli/terminal/terminal.hpp"
-#include "cli/views/study_end.hpp"
 #include "cli/views/study_view.hpp"
 #include "problems/config/path_survey.hpp"
-#include "study/compare/escape.hpp"
+#include "study/compare/study_plan.hpp"
 #include "study/compare/study_runner.hpp"
-#include "study/matrix/cell_duration.hpp"
-#include "study/matrix/earlier_state.hpp"
-#include "study/run/locked_observer.hpp"
+#include "study/matrix/cell_attempt.hpp"
+#include "study/matrix/chunks.hpp"
+#include "study/run/run_observer.hpp"
 
 namespace armwright {
 namespace {
 
 constexpr const char* kCompareExamples = R"(Examples:
-  armwright compare --preset smoke                 # a small one, in seconds
-  armwright compare configs/studies/q1.toml        # what the file says; resumes where it was
-  armwright compare q1 --dry-run                   # a shipped study: plan, cost and expected time
+  armwright compare --preset smoke                 # a small study that takes seconds
+  armwright compare configs/studies/q1.toml        # the study in this file; resumes if interrupted
+  armwright compare q1 --dry-run                   # plan, cost and expected time of a shipped study
   armwright compare --problems q1-complex,q2-e6 --optimizers ga,cmaes --replicates 20 --budget 5000 \
       --engine articulated
-  armwright compare q1 --replicates 30             # more replicates: only what is new is run
+  armwright compare q1 --replicates 30             # more replicates; only the new cells are run
   armwright compare q1 --executor slurm            # the same on a cluster (docs/clusters.md)
 
-Terms: a case is one path of the moving target; a cell is one run, of an optimizer on a problem in a replicate.
-Every optimizer gets the same budget of simulated training cases, and in replicate r the same training cases and the
-same start as all others. Each run's winner is chosen on a validation set and judged on a test set that is the same
-for all. Random search and a local search take part as baselines. The verdict follows from the statistics: see
-docs/comparing.md. The folder (default: results/NAME, NAME as the study's file, or study-PROBLEMS) holds the plan
-(study.toml), every run with its journal (cells/), tables, result.json and verdict.txt. The same command goes on where it
-was; replicates, problems and optimizers can be added to it. What would not compare with what is there, another budget
-say, is refused; --new begins another folder.)";
+Terms: a case is one path of the moving target. A cell is one run: an optimizer on a problem in a replicate.
+Every optimizer gets the same budget of simulated training cases. In replicate r all optimizers have the same training
+cases and the same start. The winner of each run is chosen on a validation set and judged on a test set, which is the
+same for all. Random search and a local search take part as baselines. The verdict follows from the statistics: see
+docs/comparing.md. The folder (default: results/NAME, with the NAME of the study's file, or study-PROBLEMS) holds the
+plan (study.toml), every run with its journal (cells/), tables, result.json and verdict.txt. The same command resumes
+the study; replicates, problems and optimizers can be added to it. A change that would make the cells incomparable, for
+example another budget, is refused; --new begins another folder.)";
 
 struct CompareOptions {
   std::string file;
@@ -57,8 +56,8 @@ struct CompareOptions {
   std::string seed;
   bool no_baselines = false;
   OverrideOptions overrides;
-  JobsOption jobs;
-  TimeLimitOption time_limit;
+  std::string jobs;
+  std::string time_limit;
   FolderOptions folder;
   ExecutorOptions executor;
   bool dry_run = false;
@@ -93,7 +92,7 @@ StudyRequest make_request(const CompareOptions& options) {
   return request;
 }
 
-// How long one process takes for the whole plan.
+// Returns the expected time of one process for the whole plan.
 double measure_duration_s(const StudyPlan& plan) {
   double total_s = 0;
   for (const double cell_s : measure_cell_durations_s(plan)) {
@@ -111,7 +110,7 @@ void announce(const CompareOptions& options, const StudyPlan& plan, unsigned job
     const auto cells = list_cells(plan);
     const auto there = std::ranges::count_if(
         cells, [&](const Cell& cell) { return load_cell(plan, cell, folder).has_value(); });
-    text += fmt::format("\n{} of {} cells are there already", there, cells.size());
+    text += fmt::format("\n{} of {} cells have ended already", there, cells.size());
   }
   if (!options.dry_run) {
     text +=
@@ -125,20 +124,20 @@ void announce(const CompareOptions& options, const StudyPlan& plan, unsigned job
 int run_compare(const CompareOptions& options, Session& session) {
   if (options.file.empty() && options.preset.empty() && options.problems.empty()) {
     throw Error(ErrorKind::usage,
-                "compare what? Give a study file, --preset NAME, or --problems "
+                "no study is named; give a study file, --preset NAME, or --problems "
                 "and --optimizers. See 'armwright compare --help'");
   }
   const bool is_elsewhere = options.executor.is_elsewhere();
-  if (is_elsewhere && (options.json || !options.time_limit.text.empty())) {
+  if (is_elsewhere && (options.json || !options.time_limit.empty())) {
     throw Error(ErrorKind::usage,
-                "--json and --time-limit are not for --executor slurm and script; give --json to "
-                "'armwright merge', and a job's time to the batch system");
+                "--json and --time-limit cannot be used with --executor slurm or script; give "
+                "--json to 'armwright merge', and set the time of a job in the batch system");
   }
-  Team team(session);
-  const unsigned jobs = is_elsewhere ? options.jobs.get_or(1) : options.jobs.get();
+  MpiJob job(session);
+  const unsigned jobs = is_elsewhere ? parse_jobs_or_one(options.jobs) : parse_jobs(options.jobs);
   StudyPlan plan;
-  if (team.is_worker()) {
-    team.serve(
+  if (job.is_worker()) {
+    job.serve(
         [&] {
           plan = make_study_plan(make_request(options));
           adopt_recorded(options.folder.choose(escape_name(plan.name)), plan);
@@ -146,7 +145,7 @@ int run_compare(const CompareOptions& options, Session& session) {
         },
         jobs);
   }
-  options.time_limit.apply(session.stop);
+  apply_time_limit(options.time_limit, session.stop);
   plan = make_study_plan(make_request(options));
   const auto path = options.folder.choose(escape_name(plan.name));
   adopt_recorded(path, plan);
@@ -161,8 +160,7 @@ int run_compare(const CompareOptions& options, Session& session) {
     std::ranges::for_each(notes, write_message);
   }
   if (is_elsewhere) {
-    return hand_over(options.executor, plan,
-                     {.folder = path, .jobs = jobs, .dry_run = options.dry_run}, session);
+    return hand_over_cells(options.executor, plan, path, jobs, options.dry_run, session);
   }
   if (options.dry_run) {
     write_stdout(to_toml(plan));
@@ -176,72 +174,72 @@ int run_compare(const CompareOptions& options, Session& session) {
   ProgressBar bar(options.quiet, {});
   LockedObserver observer(bar);
   adopt_attempts(plan, path, observer);
-  auto coordinator = team.lead(list_problems(plan), jobs, observer);
+  auto coordinator = job.make_coordinator(list_problems(plan), jobs, observer);
   const CellsResult cells = run_cells(plan, path, jobs, session.stop, observer, coordinator.get());
-  team.dismiss(std::move(coordinator));
+  job.end_workers(std::move(coordinator));
   if (cells.stopped) {
     bar.clear();
     return end_stopped(session, session.command_line);
   }
-  return end_study(plan, {.folder = path, .jobs = jobs, .json = options.json}, session, bar);
+  return end_study(plan, path, jobs, options.json, session, bar);
 }
 
 }  // namespace
 
 void add_compare(CLI::App& app, Session& session) {
   auto options = std::make_shared<CompareOptions>();
-  CLI::App* command =
-      add_command(app, session, "compare",
-                  "Settle which optimizer to use: runs on the same footing, statistics, a verdict",
-                  kCompareExamples);
+  CLI::App* command = add_command(
+      app, session, "compare",
+      "Compare optimizers in a study: runs under equal conditions, statistics, a verdict",
+      kCompareExamples);
   command->add_option("STUDY", options->file,
-                      "A study file, or the name of a shipped one (armwright list studies)");
+                      "A study file, or the name of a shipped study (armwright list studies)");
   command->add_option("--preset", options->preset, "A shipped study by its name: smoke, q1, ...")
       ->type_name("NAME");
   command
       ->add_option("--problems,-p", options->problems,
-                   "Problems to compare on, instead of the file's")
+                   "Problems of the study, instead of those in the file")
       ->type_name("A,B,...")
       ->delimiter(',')
       ->allow_extra_args(false);
   command
       ->add_option("--optimizers,-o", options->optimizers,
-                   "Optimizers to compare, instead of the file's")
+                   "Optimizers to compare, instead of those in the file")
       ->type_name("A,B,...")
       ->delimiter(',')
       ->allow_extra_args(false);
   command
       ->add_option("--replicates", options->replicates,
-                   "Runs of every optimizer on every problem (default: 15)")
+                   "Runs of each optimizer on each problem (default: 15)")
       ->type_name("N");
   command
       ->add_option("--budget", options->budget,
-                   "Training cases to simulate in every run, the same for all (default: the\n"
-                   "file's; required without one)")
+                   "Training cases to simulate in each run, the same for all (default: that of\n"
+                   "the file; required without a file)")
       ->type_name("CASES");
   command
       ->add_option("--schedule", options->schedule,
-                   "Which training cases: fixed:K; fresh:K or coevolution:K where all\n"
-                   "optimizers have generations (default: fixed, K as the problem has it)")
+                   "Schedule of the training cases: fixed:K, or, if all optimizers have\n"
+                   "generations, fresh:K or coevolution:K (default: fixed, K of the problem)")
       ->type_name("KIND:K");
   command
       ->add_option("--seed", options->seed,
-                   "Of the study: draws starts, training cases and the optimizers'\n"
-                   "streams (default: 1)")
+                   "Seed of the study, for starts, training cases and the optimizers' random\n"
+                   "numbers (default: 1)")
       ->type_name("N");
   command->add_flag("--no-baselines", options->no_baselines,
-                    "Leave out random search and the local search that always take part; the\n"
-                    "verdict says so");
+                    "Leave out the baselines, random search and a local search; the verdict\n"
+                    "mentions this");
   options->overrides.add_to(*command, true);
-  options->jobs.add_to(*command);
-  options->time_limit.add_to(*command);
+  add_jobs_flag(*command, options->jobs);
+  add_time_limit_flag(*command, options->time_limit);
   options->executor.add_to(*command);
   command->add_flag("--dry-run", options->dry_run,
-                    "Print the resolved plan and what it costs, or with another executor its\n"
-                    "chunks and how they are submitted, and run nothing");
+                    "Run nothing; print the plan and its cost. With --executor slurm or script,\n"
+                    "print the chunks and the command that submits them");
   options->folder.add_to(*command, "study", "results/NAME");
   command->add_flag("--json", options->json, "Print the result as JSON")->group("Output");
-  command->add_flag("--quiet,-q", options->quiet, "No plan and no progress")->group("Output");
+  command->add_flag("--quiet,-q", options->quiet, "Show no plan and no progress")->group("Output");
   command->callback([options, &session] {
     session.shares_work = true;
     session.action = [options, &session] { return run_compare(*options, session); };

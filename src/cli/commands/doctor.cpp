@@ -1,4 +1,5 @@
-// armwright doctor: whether what is stored is intact, and whether this machine has what is needed.
+// armwright doctor: checks whether stored files are intact, or whether this machine meets
+// armwright's requirements.
 
 #include <fmt/format.h>
 
@@ -8,11 +9,11 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/commands/system_check.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/session.hpp"
-#include "cli/terminal/signals.hpp"
 #include "cli/terminal/table.hpp"
 #include "cli/terminal/terminal.hpp"
 #include "cli/views/store_view.hpp"
@@ -26,15 +27,15 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kDoctorExamples = R"(Examples:
-  armwright doctor                                 # is everything there that armwright needs?
-  armwright doctor results/q1-complex-ga-seed1     # is what this run has stored intact?
-  armwright doctor results/q1                      # all cells of a comparison
-  armwright doctor results/q1 --repair             # a copy, results/q1.repaired, without what is damaged
+  armwright doctor                                 # check whether this machine meets armwright's requirements
+  armwright doctor results/q1-complex-ga-seed1     # check whether the files of this run are intact
+  armwright doctor results/q1                      # check all cells of a study
+  armwright doctor results/q1 --repair             # make a copy, results/q1.repaired, without damaged records
   armwright doctor results/q1 --json | jq .damaged
 
-It only reads, also while a run is writing; --repair leaves the original alone. Exit code 0: all is intact (there);
-3: something that optimizing needs is missing; 4: something stored is damaged; 5: --repair, and a process is writing.
-docs/doctor.md explains what is looked at.)";
+The command only reads, also while a run is writing; --repair does not change the original. The exit code is 0 if
+everything is intact (or there), 3 if something that optimizing needs is missing, 4 if a stored file is damaged, and 5 if
+--repair finds a process that writes the folder. docs/doctor.md explains the checks.)";
 
 struct DoctorOptions {
   std::string folder;
@@ -84,11 +85,11 @@ int check_installation(const DoctorOptions& options, const Session& session) {
     const std::string optional =
         count(CheckState::lacking) == 0
             ? ""
-            : fmt::format(" ({} that armwright does without)",
+            : fmt::format(" ({} that armwright can do without)",
                           format_count(count(CheckState::lacking), "thing"));
     write_stdout(describe_checks(checks, style) + "\n" +
-                 (is_usable ? "What optimizing an arm needs is there" + optional + ".\n"
-                            : fmt::format("{} must be put right before an arm can be optimized.\n",
+                 (is_usable ? "Everything that optimizing an arm needs is there" + optional + ".\n"
+                            : fmt::format("{} must be fixed before an arm can be optimized.\n",
                                           format_count(count(CheckState::bad), "thing"))));
   }
   return is_usable ? exit_code::kDone : exit_code::kFailed;
@@ -122,7 +123,7 @@ int repair(const DoctorOptions& options, Session& session) {
     if (options.json) {
       write_stdout(json{{"copy", nullptr}}.dump(1) + "\n");
     } else {
-      write_stdout(fmt::format("{}: all that is there is intact; no copy was made\n",
+      write_stdout(fmt::format("{}: all stored files are intact; no copy was made\n",
                                sanitize(folder.string())));
     }
     return exit_code::kDone;
@@ -138,14 +139,15 @@ int repair(const DoctorOptions& options, Session& session) {
 
 int run_doctor(const DoctorOptions& options, Session& session) {
   if (!options.out.empty() && !options.repair) {
-    throw Error(ErrorKind::usage, "--out names the copy that --repair makes; give both, or none");
+    throw Error(ErrorKind::usage,
+                "--out names the copy that --repair makes; give both flags or neither");
   }
   if (!options.folder.empty()) {
     return options.repair ? repair(options, session) : check_store(options, session);
   }
   if (options.repair) {
     throw Error(ErrorKind::usage,
-                "--repair needs a FOLDER: that of a run, a study or a reproduction");
+                "--repair needs a FOLDER: the folder of a run, a study or a reproduction");
   }
   return check_installation(options, session);
 }
@@ -156,15 +158,16 @@ void add_doctor(CLI::App& app, Session& session) {
   auto options = std::make_shared<DoctorOptions>();
   CLI::App* command = add_command(
       app, session, "doctor",
-      "Check what is stored in a folder, and repair it; or this machine and installation",
+      "Check the files in a folder and repair them, or check this machine and installation",
       kDoctorExamples);
   command->add_option("FOLDER", options->folder,
                       "The folder of a run, a study or a reproduction\n"
-                      "(default: none; the machine and the installation are checked)");
+                      "(without it, the machine and the installation are checked)");
   command->add_flag("--repair", options->repair,
-                    "Make a copy without what is damaged, ready to be gone on with");
+                    "Make a copy without the damaged records, which can be resumed");
   command
-      ->add_option("--out", options->out, "Where --repair puts the copy (default: FOLDER.repaired)")
+      ->add_option("--out", options->out,
+                   "The folder of the copy that --repair makes (default: FOLDER.repaired)")
       ->type_name("FOLDER")
       ->group("Output");
   command->add_flag("--json", options->json, "Print it as JSON")->group("Output");

@@ -1,4 +1,4 @@
-// armwright evaluate: a design on test cases, without optimization.
+// armwright evaluate: evaluates a design on test cases, without optimization.
 
 #include <fmt/format.h>
 
@@ -6,23 +6,23 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/format.hpp"
-#include "cli/terminal/json.hpp"
 #include "cli/terminal/progress_bar.hpp"
 #include "cli/terminal/session.hpp"
-#include "cli/terminal/signals.hpp"
 #include "cli/terminal/table.hpp"
 #include "cli/terminal/terminal.hpp"
-#include "cli/views/design_evaluation.hpp"
+#include "cli/views/design_and_problem.hpp"
 #include "cli/views/requirement_view.hpp"
 #include "cli/views/result_view.hpp"
 #include "problems/config/design_file.hpp"
 #include "problems/config/path_survey.hpp"
-#include "study/run/store.hpp"
+#include "study/run/derived_files.hpp"
 
 namespace armwright {
 namespace {
@@ -33,22 +33,22 @@ constexpr const char* kEvaluateExamples = R"(Examples:
   armwright evaluate table-a10                     # a published design on the problem it was made for
   armwright evaluate results/q1-complex-ga-seed1/winner.toml --problem q1-complex --cases 100
   armwright evaluate table-a10 --problem q2-e6 --set task.load_kg=20 --json
-  armwright evaluate start --robot my.urdf         # what is proposed for an arm of your own, before any tuning
-  armwright evaluate table-a5 --problem q1-complex --trajectory arm.csv --case 7
+  armwright evaluate start --robot my.urdf         # the start design for an arm of your own, before tuning
+  armwright evaluate table-a5 --problem q1-complex --trajectory arm.csv --trajectory-case 7
 
-Terms: a test case is a sequence of points the arm's tip has to follow; its error is the mean over the points of
-the largest distance between tip and target from the target's arrival there until it leaves. Points are in the frame of
-the robot's base. A failure is a case with an error above
-100 mm or none at all (the simulation diverged, or a target lies out of reach). The total torque is the sum of
-the joints' effort limits. Where the problem has requirements (docs/requirements.md), each is judged by its worst case. The
-exit code is 3 if a case has no number, or a requirement with use = "constraint" is missed.)";
+Terms: a test case is a sequence of points that the target visits, in the frame of the robot's base. The error of a
+point is the largest distance between tip and target while the target rests there. The error of a case is the mean over
+its points. A failure is a case with an error above 100 mm or without a number (the simulation diverged, or a target is
+out of reach). The total torque is the sum of the joints' effort limits. If the problem has requirements
+(docs/requirements.md), each is judged by its worst case. The exit code is 3 if a case has no number, or if a
+requirement with use = "constraint" is missed.)";
 
 struct EvaluateOptions {
   std::string design;
   std::string problem;
   OverrideOptions overrides;
   CaseOptions cases;
-  JobsOption jobs;
+  std::string jobs;
   bool json = false;
   bool quiet = false;
   std::string csv;
@@ -129,7 +129,8 @@ std::string format_csv(const DesignEvaluation& evaluation) {
   return text;
 }
 
-// How the error depends on how far the arm has to move: short moves are slow, and end closer.
+// Returns a table of the error against the length of the move. Short moves are slow and end with
+// smaller errors.
 std::string format_profile(const EvaluatedDesign& evaluated, const Style& style) {
   struct Class {
     double upper_m;
@@ -138,7 +139,7 @@ std::string format_profile(const EvaluatedDesign& evaluated, const Style& style)
     int points = 0;
   };
   std::array<Class, 6> classes{{{0.1}, {0.2}, {0.4}, {0.8}, {1.2}, {HUGE_VAL}}};
-  const bool skip_first = !evaluated.problem.tracking->config().task.count_first_point;
+  const bool skip_first = !evaluated.problem.tracking()->config().task.count_first_point;
   for (std::size_t i = 0; i < evaluated.evaluation.results.size(); ++i) {
     const auto& errors_m = evaluated.evaluation.results[i].point_error_m;
     const auto points_m = evaluated.cases.set.make_case(i).points_m;
@@ -194,13 +195,14 @@ int run_evaluate(const EvaluateOptions& options, Session& session) {
   if (options.trajectory.empty() != options.trajectory_case.empty()) {
     throw Error(
         ErrorKind::usage,
-        "--trajectory FILE and --case N belong together: the trajectory is that of one case");
+        "--trajectory FILE and --trajectory-case N must be given together: the file holds the "
+        "trajectory of one case");
   }
   if (options.json + (options.csv == "-") + (options.trajectory == "-") > 1) {
     throw Error(ErrorKind::usage,
-                "only one of --json, --csv - and --trajectory - can have standard output");
+                "only one of --json, --csv - and --trajectory - can write to standard output");
   }
-  const unsigned jobs = options.jobs.get();
+  const unsigned jobs = parse_jobs(options.jobs);
   auto [design, problem] =
       load_design_and_problem(options.design, options.overrides.choose_problem(options.problem),
                               options.overrides.get(), options.quiet);
@@ -210,7 +212,8 @@ int run_evaluate(const EvaluateOptions& options, Session& session) {
   std::uint64_t traced = 0;
   if (!options.trajectory.empty()) {
     const auto most = static_cast<std::int64_t>(cases.set.size().value_or(1'000'000'000)) - 1;
-    traced = static_cast<std::uint64_t>(parse_count("--case", options.trajectory_case, 0, most));
+    traced = static_cast<std::uint64_t>(
+        parse_count("--trajectory-case", options.trajectory_case, 0, most));
   }
 
   const std::vector<std::string> notes = check_paths(problem);
@@ -220,7 +223,7 @@ int run_evaluate(const EvaluateOptions& options, Session& session) {
   catch_signals(session.stop);
   ProgressBar bar(options.quiet, {"error", "m"});
   auto evaluation = evaluate_with_progress(tracking, design.design, cases, jobs, session.stop, bar,
-                                           {0, cases.count});
+                                           {.total = cases.count});
   bar.clear();
   if (!evaluation) {
     write_message(fmt::format("{}; nothing was written", describe_stop(session.stop.reason())));
@@ -258,25 +261,28 @@ void add_evaluate(CLI::App& app, Session& session) {
   add_design_argument(*command, options->design);
   command
       ->add_option("--problem,-p", options->problem,
-                   "Robot, task and physics to evaluate it under (default: what the design was\n"
-                   "published for; with --robot the problem 'robot'; of others it is required)")
+                   "The problem, with its robot, task and physics (default: the one that the\n"
+                   "design was published for, or 'robot' with --robot; otherwise required)")
       ->type_name("PROBLEM");
   options->overrides.add_to(*command);
   options->cases.add_to(*command);
-  options->jobs.add_to(*command);
+  add_jobs_flag(*command, options->jobs);
   command->add_flag("--json", options->json, "Print everything as JSON")->group("Output");
-  command->add_option("--csv", options->csv, "Write one line a case; - is standard output")
+  command->add_option("--csv", options->csv, "Write one line per case; - is standard output")
       ->type_name("FILE")
       ->group("Output");
   command
       ->add_option("--trajectory", options->trajectory,
-                   "Write angles, efforts and positions over time of one case, as CSV")
+                   "Write joint positions, efforts and tip positions of one case over time, as\n"
+                   "CSV")
       ->type_name("FILE")
       ->group("Output");
-  command->add_option("--case", options->trajectory_case, "Which case that is, from 0")
+  command
+      ->add_option("--trajectory-case,--case", options->trajectory_case,
+                   "The number of the case for --trajectory, from 0")
       ->type_name("N")
       ->group("Output");
-  command->add_flag("--quiet,-q", options->quiet, "No progress")->group("Output");
+  command->add_flag("--quiet,-q", options->quiet, "Show no progress")->group("Output");
   command->callback([options, &session] {
     session.action = [options, &session] { return run_evaluate(*options, session); };
   });

@@ -1,4 +1,4 @@
-// armwright export: runs in the formats of other programs, and an arm's winner for its maker.
+// armwright export: writes runs in the formats of other programs, and the winner for a real robot.
 
 #include "report/exchange/export.hpp"
 
@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/session.hpp"
@@ -19,13 +20,13 @@ constexpr const char* kExportExamples = R"(Examples:
   armwright export results/q1-complex-ga-seed1 --format csv
   armwright export results/q1 --format ioh --out q1-ioh       # a whole study, for IOHanalyzer
   armwright export results/q1 --format coco                   # for cocopp
-  armwright export results/my-arm-ga-seed1 --format ros2-control   # the winner's gains, for the robot
-  armwright export results/my-arm-ga-seed1 --format datasheet      # the winner on a page to print
+  armwright export results/my-arm-ga-seed1 --format ros2-control   # the winner's gains for the robot
+  armwright export results/my-arm-ga-seed1 --format datasheet      # a page about the winner, to print
   armwright evaluate designs/mine.toml --problem q1-complex --test-cases results/q1/export-csv/test-cases/q1-complex.json
 
-ros2-control, urdf and datasheet are made of one finished run of an arm, the other formats of a run or
-a study: of that, the cells that have finished. With csv and json come the test cases that the winners met, as a file for
-evaluate and for other programs. docs/exporting.md has the formats.)";
+ros2-control, urdf and datasheet need one finished run of an arm. The other formats take a run or a study; of a study
+they contain the cells that have ended. csv and json also write the test cases that the winners were judged on, for
+evaluate and for other programs. docs/exporting.md describes the formats.)";
 
 struct ExportOptions {
   std::string folder;
@@ -46,7 +47,7 @@ int run_export(const ExportOptions& options) {
                               format_count(summary.unfinished, "cell")));
   }
   if (summary.survey.empty > 0) {
-    write_message(fmt::format("{} evaluated nothing and are left out",
+    write_message(fmt::format("{} without evaluations are left out",
                               format_count(summary.survey.empty, "run")));
   }
   write_stdout(
@@ -60,9 +61,10 @@ int run_export(const ExportOptions& options) {
 
 void add_export(CLI::App& app, Session& session) {
   auto options = std::make_shared<ExportOptions>();
-  CLI::App* command = add_command(app, session, "export",
-                                  "Write the runs of a folder for other programs", kExportExamples);
-  std::string formats = "How to write them:";
+  CLI::App* command =
+      add_command(app, session, "export",
+                  "Write the runs of a folder in the formats of other programs", kExportExamples);
+  std::string formats = "The format:";
   for (const ExportFormat& format : export_formats()) {
     formats += fmt::format("\n{:<13} {}", format.name, format.title);
   }
@@ -70,7 +72,7 @@ void add_export(CLI::App& app, Session& session) {
   command->add_option("--format", options->format, formats)->type_name("FORMAT")->required();
   command
       ->add_option("--out", options->out,
-                   "A new folder for them (default: FOLDER/export-FORMAT); nothing is overwritten")
+                   "The new folder (default: FOLDER/export-FORMAT); nothing is overwritten")
       ->type_name("DIR");
   command->callback(
       [options, &session] { session.action = [options] { return run_export(*options); }; });

@@ -1,4 +1,4 @@
-// armwright import: designs out of exports.
+// armwright import: makes a design file from an export.
 
 #include "report/exchange/import.hpp"
 
@@ -9,10 +9,11 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/session.hpp"
 #include "cli/terminal/terminal.hpp"
-#include "cli/views/design_evaluation.hpp"
+#include "cli/views/design_and_problem.hpp"
 #include "problems/config/design_file.hpp"
 
 namespace armwright {
@@ -23,9 +24,9 @@ constexpr const char* kImportExamples = R"(Examples:
   armwright import q1-ioh --problem q1-complex --optimizer ga --replicate 3 --out best.toml
   armwright evaluate best.toml --problem q1-complex
 
-It writes the design of the best evaluation, by its training objective, of the runs that are chosen: under a fresh
-schedule that is the luckiest, so prefer the winner, which csv has in designs/. An export names the problem and its
-variables, no more: --config says which problem that is, if it is no shipped one or was changed by --set.
+The command writes the design with the best training objective of the chosen runs. With a fresh schedule this is often a
+lucky design, so prefer the winner; a csv export has it in designs/. An export contains only the names of the problem
+and its variables. If the problem is not a shipped one or was changed by --set, name it with --config and --set.
 'armwright testset import' reads files of test cases.)";
 
 struct ImportOptions {
@@ -38,7 +39,7 @@ struct ImportOptions {
   std::string out = "-";
 };
 
-// Error{bad_data} if the problem has other variables than the export.
+// Throws Error{bad_data} if the variables of the problem and of the export differ.
 void check_variables(const LoadedProblem& problem, const ImportedPoint& point) {
   std::vector<std::string> names;
   for (const DecisionVariable& variable : problem.problem->description().variables) {
@@ -47,7 +48,7 @@ void check_variables(const LoadedProblem& problem, const ImportedPoint& point) {
   if (names != point.variables) {
     throw Error(ErrorKind::bad_data,
                 fmt::format("the export's variables on '{}' are {}; those of problem {} are {}; "
-                            "name the problem that it was made with by --config and --set",
+                            "name the problem of the export with --config and --set",
                             sanitize(point.problem), sanitize(join(point.variables, ", ")),
                             problem.name, join(names, ", ")));
   }
@@ -88,21 +89,24 @@ int run_import(const ImportOptions& options) {
 
 void add_import(CLI::App& app, Session& session) {
   auto options = std::make_shared<ImportOptions>();
-  CLI::App* command = add_command(
-      app, session, "import", "Make a design file of the best point of an export", kImportExamples);
-  command->add_option("EXPORT", options->folder, "What armwright export wrote as csv, json or ioh")
+  CLI::App* command =
+      add_command(app, session, "import",
+                  "Make a design file from the best decision vector of an export", kImportExamples);
+  command
+      ->add_option("EXPORT", options->folder, "An export that armwright wrote as csv, json or ioh")
       ->required();
-  command->add_option("--problem,-p", options->problem, "Only runs on this problem")
+  command->add_option("--problem,-p", options->problem, "Use only runs on this problem")
       ->type_name("PROBLEM");
-  command->add_option("--optimizer", options->label, "Only runs of this label")->type_name("LABEL");
-  command->add_option("--replicate", options->replicate, "Only this replicate")->type_name("N");
+  command->add_option("--optimizer", options->label, "Use only runs with this label")
+      ->type_name("LABEL");
+  command->add_option("--replicate", options->replicate, "Use only this replicate")->type_name("N");
   command
       ->add_option("--config", options->config,
-                   "Problem that makes designs of the points, by name or file (default: the one\n"
-                   "that the export names)")
+                   "The problem that turns decision vectors into designs, by name or file\n"
+                   "(default: the problem that the export names)")
       ->type_name("PROBLEM");
   options->overrides.add_to(*command);
-  command->add_option("--out", options->out, "Where to (default: standard output)")
+  command->add_option("--out", options->out, "The design file (default: standard output)")
       ->type_name("FILE");
   command->callback(
       [options, &session] { session.action = [options] { return run_import(*options); }; });

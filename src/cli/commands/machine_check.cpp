@@ -1,4 +1,4 @@
-// The part of cli/system_check.hpp that asks the operating system.
+// The checks of system_check.hpp that ask the operating system.
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -60,7 +60,8 @@ std::string name_file_system(long type) {
   return fmt::format("file system {:#x}", static_cast<unsigned long>(type));
 }
 
-// What a run does to a file of its folder; empty, or what went wrong.
+// Does with a file what a run does with the files of its folder. Returns the error, or an empty
+// text.
 std::string try_writing(const std::filesystem::path& folder) {
   std::string name = (folder / ".armwright-doctor-XXXXXX").string();
   FileDescriptor file(::mkostemp(name.data(), O_CLOEXEC));
@@ -80,7 +81,7 @@ std::string try_writing(const std::filesystem::path& folder) {
   return "";
 }
 
-// The value of "KEY:   123 kB" in /proc/meminfo.
+// Returns the value of "KEY:   123 kB" in /proc/meminfo.
 std::optional<double> read_meminfo_bytes(std::string_view key) {
   std::ifstream meminfo("/proc/meminfo");
   for (std::string line; std::getline(meminfo, line);) {
@@ -91,7 +92,7 @@ std::optional<double> read_meminfo_bytes(std::string_view key) {
   return std::nullopt;
 }
 
-// Of a container: a number, or "max".
+// Returns the limit of a container. The file has a number, or "max" for no limit.
 std::optional<double> read_memory_limit_bytes() {
   std::ifstream file("/sys/fs/cgroup/memory.max");
   double bytes = 0;
@@ -122,13 +123,13 @@ void check_processors(Checks& checks) {
   CPU_ZERO(&set);
   const bool known = ::sched_getaffinity(0, sizeof set, &set) == 0;
   const auto usable = known ? static_cast<unsigned>(CPU_COUNT(&set)) : there;
-  std::string found = fmt::format("{} usable: so many --jobs unless told otherwise", usable);
+  std::string found = fmt::format("{} usable, which is the default of --jobs", usable);
   std::ifstream file("/sys/fs/cgroup/cpu.max");
   double quota_us = 0;
   double period_us = 0;
   std::string remedy;
   if (file >> quota_us >> period_us && period_us > 0 && quota_us < period_us * usable) {
-    found += fmt::format("; this container gets the time of {:.1f}", quota_us / period_us);
+    found += fmt::format("; this container may use the time of {:.1f}", quota_us / period_us);
     remedy = fmt::format("--jobs {:.0f} is as fast", std::max(1.0, quota_us / period_us));
   }
   checks.push_back({"machine", "processors", CheckState::good, found, remedy});
@@ -155,18 +156,19 @@ void check_limit(Checks& checks, const char* name, decltype(RLIMIT_NOFILE) resou
 
 void check_limits(Checks& checks) {
   check_limit(checks, "open files", RLIMIT_NOFILE, 256, "n",
-              "too few for comparisons with many --jobs and for plugins");
+              "too few for studies with many --jobs and for plugins");
   check_limit(checks, "processes", RLIMIT_NPROC, 64, "u", "too few for --jobs and for plugins");
   check_limit(checks, "size of a file", RLIMIT_FSIZE, RLIM_INFINITY, "f",
-              "a journal that grows beyond ends its run");
-  check_limit(checks, "address space", RLIMIT_AS, RLIM_INFINITY, "v", "a run that needs more ends");
+              "a run ends when its journal exceeds this");
+  check_limit(checks, "address space", RLIMIT_AS, RLIM_INFINITY, "v",
+              "a run ends when it needs more");
 }
 
 void check_locale(Checks& checks) {
   const locale_t named = ::newlocale(LC_ALL_MASK, "", nullptr);
   if (named == nullptr) {
     checks.push_back({"terminal", "locale", CheckState::lacking,
-                      "the one that LC_ALL, LC_* or LANG names is not installed",
+                      "the locale that LC_ALL, LC_* or LANG names is not installed",
                       "export LC_ALL=C.UTF-8"});
     return;
   }
@@ -228,11 +230,12 @@ void check_results_folder(Checks& checks) {
   }
   const double free = static_cast<double>(disk.f_bavail) * static_cast<double>(disk.f_bsize);
   const bool is_little = free < kLittle_bytes;
-  checks.push_back({kGroup, "free space", is_little ? CheckState::bad : CheckState::good,
-                    fmt::format("{} of {}", format_bytes(free),
-                                format_bytes(static_cast<double>(disk.f_blocks) *
-                                             static_cast<double>(disk.f_bsize))),
-                    is_little ? "free some, or name a folder on another disk with --out" : ""});
+  checks.push_back(
+      {kGroup, "free space", is_little ? CheckState::bad : CheckState::good,
+       fmt::format(
+           "{} of {}", format_bytes(free),
+           format_bytes(static_cast<double>(disk.f_blocks) * static_cast<double>(disk.f_bsize))),
+       is_little ? "free some space, or name a folder on another disk with --out" : ""});
 }
 
 }  // namespace armwright

@@ -1,4 +1,4 @@
-// armwright manual: the manual pages of all commands, made of what their --help says.
+// armwright manual: prints the manual pages of all commands. They contain the texts of --help.
 
 #include <fmt/format.h>
 
@@ -11,6 +11,7 @@
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/manual/command_definition.hpp"
 #include "cli/manual/manual_formats.hpp"
 #include "cli/manual/manual_page.hpp"
@@ -22,11 +23,11 @@ namespace armwright {
 namespace {
 
 constexpr const char* kManualExamples = R"(Examples:
-  armwright manual                                 # of the program: commands, exit codes, files
-  armwright manual optimize                        # of one command
+  armwright manual                                 # the page of the program: commands, exit codes, files
+  armwright manual optimize                        # the page of one command
   armwright manual testset export | less
-  armwright manual --format man --out man          # pages for man, all of them: man -l man/armwright-optimize.1
-  armwright manual --format markdown               # all on one page, as docs/reference/commands.md
+  armwright manual --format man --out man          # all pages for man: man -l man/armwright-optimize.1
+  armwright manual --format markdown               # all commands on one page, as docs/reference/commands.md
 
 The Debian package installs the pages: 'man armwright' and 'man armwright-optimize' show them.)";
 
@@ -53,9 +54,9 @@ std::vector<ManualPage> make_all_pages(const CommandDefinition& program) {
   return pages;
 }
 
-// Every page into a file of its own, but all of Markdown into one.
+// Writes each page to a file of its own. With Markdown, writes all pages to one file.
 int write_pages(const CommandDefinition& program, const ManualOptions& options) {
-  constexpr int kFileWidth = 80;  // of text that nobody has chosen a width for
+  constexpr int kFileWidth = 80;  // lines of a text file
   const std::filesystem::path folder = options.out;
   std::filesystem::create_directories(folder);
   const std::vector<ManualPage> pages = make_all_pages(program);
@@ -85,7 +86,7 @@ int run_manual(const CommandDefinition& program, const ManualOptions& options,
   if (!options.out.empty()) {
     if (!options.command.empty()) {
       throw Error(ErrorKind::usage,
-                  fmt::format("--out writes the pages of all commands; leave out '{}', or --out",
+                  fmt::format("--out writes the pages of all commands; leave out '{}' or --out",
                               sanitize(join(options.command, " "))));
     }
     return write_pages(program, options);
@@ -112,17 +113,17 @@ void add_manual(CLI::App& app, Session& session) {
       add_command(app, session, "manual", "Print the manual page of a command", kManualExamples);
   command->add_option(
       "COMMAND", options->command,
-      "The command, as in optimize or testset export (default: the program itself; as\n"
-      "markdown all commands on one page)");
+      "The command, as in optimize or testset export (default: the program itself; with\n"
+      "markdown, all commands on one page)");
   command
       ->add_option("--format", options->format,
-                   "text: to read (default); man: roff, for the program man; markdown")
+                   "text (default), man (roff for the program man) or markdown")
       ->type_name("FORMAT")
       ->group("Output");
   command
       ->add_option("--out", options->out,
-                   "Write the pages of all commands into this folder, a file each (markdown: one\n"
-                   "for all); files of these names are replaced")
+                   "Write the pages of all commands to this folder, one file per command\n"
+                   "(markdown: one file for all); files of these names are replaced")
       ->type_name("DIR")
       ->group("Output");
   command->callback([options, &app, &session] {

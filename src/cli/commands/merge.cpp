@@ -1,4 +1,4 @@
-// armwright merge: tables and verdict of cells that were run anywhere.
+// armwright merge: makes the tables and the verdict of cells that were run on other machines.
 
 #include <fmt/format.h>
 
@@ -6,16 +6,15 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/session.hpp"
-#include "cli/terminal/signals.hpp"
 #include "cli/terminal/terminal.hpp"
-#include "cli/views/study_end.hpp"
+#include "cli/views/study_view.hpp"
 #include "study/compare/cell.hpp"
 #include "study/compare/study_folder.hpp"
 #include "study/matrix/cell_selection.hpp"
-#include "study/matrix/recorded_study.hpp"
 #include "study/matrix/study_merge.hpp"
 
 namespace armwright {
@@ -23,23 +22,24 @@ namespace {
 
 constexpr const char* kMergeExamples = R"(Examples:
   armwright merge results/q1                          # when all jobs have ended: statistics, tables, verdict
-  armwright merge results/q1 /mnt/a/q1 /mnt/b/q1      # cells of machines that share no folder are copied in first
+  armwright merge results/q1 /mnt/a/q1 /mnt/b/q1      # first copies cells from machines without a shared folder
   armwright merge results/q1 --json
 
-The same tables, byte for byte, as of a comparison that ran here alone. Cells that have not ended are named and count as
-if they had found nothing (exit code 3); run them, and merge again. Only cells of the same plan are copied; where two
-folders hold different results of one cell, nothing is. See docs/clusters.md.)";
+The tables are the same, byte for byte, as those of a study that ran on this machine only. Cells that have not ended are
+listed and count as runs that found nothing (exit code 3); run them, and merge again. Only cells of the same plan are
+copied. If two folders hold different results of one cell, nothing is copied. See docs/clusters.md.)";
 
 struct MergeOptions {
   std::string study;
   std::vector<std::string> others;
-  JobsOption jobs;
-  TimeLimitOption time_limit;
+  std::string jobs;
+  std::string time_limit;
   bool json = false;
   bool quiet = false;
 };
 
-// The first few by name, and the command that runs them.
+// Prints the first few cells that have not ended and the command that runs them. Throws
+// Error{usage} if no cell has ended.
 void tell_missing(const RecordedStudy& study, const std::string& program) {
   constexpr std::size_t kMostShown = 10;
   std::vector<std::string> names;
@@ -69,8 +69,8 @@ void tell_missing(const RecordedStudy& study, const std::string& program) {
 }
 
 int run_merge(const MergeOptions& options, Session& session) {
-  const unsigned jobs = options.jobs.get();
-  options.time_limit.apply(session.stop);
+  const unsigned jobs = parse_jobs(options.jobs);
+  apply_time_limit(options.time_limit, session.stop);
   const RecordedStudy study = load_recorded_study(options.study);
   const StudyFolder folder(study.folder, study.plan);
   catch_signals(session.stop);
@@ -85,8 +85,7 @@ int run_merge(const MergeOptions& options, Session& session) {
   }
   tell_missing(study, session.command_line.front());
   remove_spent_attempts(study.plan, study.folder);
-  return end_study(study.plan, {.folder = study.folder, .jobs = jobs, .json = options.json},
-                   session, bar);
+  return end_study(study.plan, study.folder, jobs, options.json, session, bar);
 }
 
 }  // namespace
@@ -94,16 +93,16 @@ int run_merge(const MergeOptions& options, Session& session) {
 void add_merge(CLI::App& app, Session& session) {
   auto options = std::make_shared<MergeOptions>();
   CLI::App* command = add_command(
-      app, session, "merge", "Tables and verdict of a comparison whose cells were run elsewhere",
-      kMergeExamples);
+      app, session, "merge",
+      "Make the tables and the verdict of a study whose cells were run elsewhere", kMergeExamples);
   command->add_option("STUDY", options->study, "The folder of a study, or its study.toml")
       ->required();
   command->add_option("OTHER", options->others,
-                      "Folders of the same study on other machines, to copy cells from");
-  options->jobs.add_to(*command);
-  options->time_limit.add_to(*command);
+                      "Folders of the same study from other machines, to copy cells from");
+  add_jobs_flag(*command, options->jobs);
+  add_time_limit_flag(*command, options->time_limit);
   command->add_flag("--json", options->json, "Print the result as JSON")->group("Output");
-  command->add_flag("--quiet,-q", options->quiet, "No progress")->group("Output");
+  command->add_flag("--quiet,-q", options->quiet, "Show no progress")->group("Output");
   command->callback([options, &session] {
     session.action = [options, &session] { return run_merge(*options, session); };
   });

@@ -1,4 +1,4 @@
-// armwright new-plugin: the beginning of an optimizer of the user's own.
+// armwright new-plugin: creates the files of a new optimizer.
 
 #include <fmt/format.h>
 
@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/manual/plugin_templates.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/session.hpp"
@@ -23,16 +24,17 @@ namespace {
 constexpr const char* kNewPluginExamples = R"(Examples:
   armwright new-plugin mine                        # in C++
   armwright new-plugin --language python mine
-  cd mine && ./test.sh                             # builds it, checks it, runs it
+  cd mine && ./test.sh                             # builds, checks and runs it
 
-It writes a folder of that name with an optimizer that works, how to build it and a test. Nothing is overwritten.)";
+The command writes a folder of that name with a working optimizer, its build files and a test. Nothing is overwritten.)";
 
 struct NewPluginOptions {
   std::string name;
   std::string language = "c++";
 };
 
-// It becomes a file, a class, a target of CMake and the optimizer's name.
+// Throws Error{usage} if the name cannot be used. It names a file, a class, a CMake target and the
+// optimizer.
 void check_name(const std::string& name) {
   constexpr std::size_t kLongestName = 64;
   const auto is_allowed = [](char c) {
@@ -45,15 +47,15 @@ void check_name(const std::string& name) {
                             "at most 63 lower-case letters, digits and underscores",
                             sanitize(name)));
   }
-  // Targets that CMake keeps for itself, and the folder that the build is made in.
+  // Names of targets that CMake reserves, and the build folder.
   const std::vector<std::string> reserved = {"all",  "build",   "clean",   "edit_cache",
                                              "help", "install", "package", "rebuild_cache",
                                              "test", "plugin"};
   const auto shipped = optimizer_names();
   if (std::ranges::count(reserved, name) + std::ranges::count(shipped, name) > 0) {
     throw Error(ErrorKind::usage,
-                fmt::format("NAME is '{}', which is taken by CMake or an optimizer of armwright's "
-                            "own; choose another",
+                fmt::format("NAME is '{}', which CMake or a shipped optimizer uses already; choose "
+                            "another name",
                             name));
   }
 }
@@ -67,7 +69,7 @@ int run_new_plugin(const NewPluginOptions& options) {
   const std::filesystem::path folder = options.name;
   if (std::filesystem::exists(std::filesystem::symlink_status(folder))) {
     throw Error(ErrorKind::usage,
-                fmt::format("'{}' exists already; nothing is overwritten. Choose another name, or "
+                fmt::format("'{}' exists already and is not overwritten; choose another name, or "
                             "move it away",
                             folder.string()));
   }
@@ -93,8 +95,10 @@ int run_new_plugin(const NewPluginOptions& options) {
 void add_new_plugin(CLI::App& app, Session& session) {
   auto options = std::make_shared<NewPluginOptions>();
   CLI::App* command =
-      add_command(app, session, "new-plugin", "Begin an optimizer of your own", kNewPluginExamples);
-  command->add_option("NAME", options->name, "Of the optimizer and of its folder")->required();
+      add_command(app, session, "new-plugin", "Create the files of an optimizer of your own",
+                  kNewPluginExamples);
+  command->add_option("NAME", options->name, "The name of the optimizer and of its folder")
+      ->required();
   command
       ->add_option("--language,-l", options->language,
                    fmt::format("{} (default: c++)", join(plugin_languages(), ", ")))

@@ -1,4 +1,4 @@
-// armwright optimize: one optimizer on one problem, resumable.
+// armwright optimize: runs one optimizer on one problem. It can be resumed.
 
 #include <fmt/format.h>
 
@@ -9,19 +9,19 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "cli/commands/team.hpp"
+#include "cli/commands/commands.hpp"
+#include "cli/commands/mpi_job.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/progress_bar.hpp"
 #include "cli/terminal/session.hpp"
-#include "cli/terminal/signals.hpp"
 #include "cli/terminal/terminal.hpp"
 #include "cli/views/result_view.hpp"
 #include "optimizers/table/optimizer_table.hpp"
 #include "problems/config/path_survey.hpp"
-#include "study/run/locked_observer.hpp"
 #include "study/run/run.hpp"
 #include "study/run/run_folder.hpp"
+#include "study/run/run_observer.hpp"
 
 namespace armwright {
 namespace {
@@ -33,19 +33,19 @@ constexpr const char* kOptimizeExamples = R"(Examples:
   armwright optimize my.toml --set task.load_kg=20 --set sets.test_cases=100 --json
   armwright optimize --robot my.urdf --base base_link --tip tool0   # an arm of your own
 
-Interrupted by Ctrl-C, a time limit or a crash, the same command goes on where it was; a run that is complete is
-shown and not made again. A command that would change what is recorded in the folder is refused, and says what
-differs; --new begins another folder. The folder holds the winner (winner.toml), all numbers (result.json,
-results.sqlite, convergence.csv) and the journal of every evaluation.
+If Ctrl-C, a time limit or a crash interrupts the run, the same command resumes it. If the run is complete, the command
+shows its result and does not run again. If the command differs from the one recorded in the folder, it is refused with a
+list of the differences; --new begins another folder. The folder holds the winner (winner.toml), all numbers
+(result.json, results.sqlite, convergence.csv) and the journal of every evaluation.
 
-Terms: a design is the gains and effort limits of all joints; a case is one path of the moving target. The budget
-counts simulated training cases (one design on one case is 1). The schedule says on which cases a design is trained:
-fresh:K takes the next K of the training set for every generation, fixed:K always the first K, coevolution:K breeds
-K that are hard for the designs. Racing spends fewer cases on designs that do badly (docs/racing.md): halving:4:2
-gives all designs of a generation 4 cases, the better half of them twice as many, and so on; abandonment:1:4 gives a
-design up when it is certain to be worse than 1 times the best, and looks every 4 cases. At the end the best designs
-are judged on the validation set, and the winner on the test set, neither charged to the budget. The seed feeds the
-optimizer's random choices; the same seed gives the same result on any number of threads.)";
+Terms: a design is the gains and effort limits of all joints. A case is one path of the moving target. The budget
+counts simulated training cases (one design on one case is 1). The schedule chooses the training cases: fresh:K takes
+the next K cases of the training set for every generation, fixed:K always takes the first K, and coevolution:K breeds
+K cases that are hard for the designs. Racing spends fewer cases on bad designs (docs/racing.md): halving:4:2 gives all
+designs of a generation 4 cases, the better half of them twice as many, and so on; abandonment:1:4 checks every 4 cases
+and abandons a design that is certain to be worse than 1 times the best. At the end, the best designs are judged on the
+validation set and the winner on the test set; the budget does not count these cases. The seed determines the
+optimizer's random numbers; the same seed gives the same result on any number of threads.)";
 
 struct OptimizeOptions {
   std::string problem;
@@ -57,8 +57,8 @@ struct OptimizeOptions {
   std::string racing;
   OverrideOptions overrides;
   std::string validation_cases;
-  JobsOption jobs;
-  TimeLimitOption time_limit;
+  std::string jobs;
+  std::string time_limit;
   FolderOptions folder;
   bool json = false;
   bool quiet = false;
@@ -104,8 +104,8 @@ RunPlan make_plan(const OptimizeOptions& options) {
   return plan;
 }
 
-// The words that make or resume this run: as typed, but for what would lead to another folder or
-// seed the next time.
+// Returns the command that resumes this run. It is the typed command without --new, and with --out
+// and --seed where the typed command would choose another folder or seed the next time.
 std::vector<std::string> make_command(const OptimizeOptions& options, const Session& session,
                                       const std::filesystem::path& folder) {
   std::vector<std::string> words;
@@ -142,8 +142,8 @@ void announce(const RunRequest& request, const std::string& ranks) {
       format_count(request.jobs, "thread"), ranks.empty() ? "" : " on each of " + ranks));
   if (plan.problem.schedule.changes_cases() && !plan.schedule.changes_cases()) {
     write_message(
-        fmt::format("the problem's own schedule is {}, other cases for every "
-                    "generation; this run trains on the same cases throughout",
+        fmt::format("the problem's own schedule is {}, with other cases for every "
+                    "generation; this run always trains on the same cases",
                     to_text(plan.problem.schedule)));
   }
   const std::string no_race = explain_no_race(plan.optimizer, plan.racing, plan.schedule);
@@ -153,7 +153,7 @@ void announce(const RunRequest& request, const std::string& ranks) {
   write_message(fmt::format("folder {} ({})", request.folder.string(), known ? "found" : "new"));
 }
 
-// Where what the optimizer printed went; empty if nothing is there.
+// Returns the file with the optimizer's output, or an empty text if there is none.
 std::string find_log(const RunRequest& request) {
   const auto& values = request.plan.options.values();
   const auto option = values.find("log");
@@ -164,7 +164,7 @@ std::string find_log(const RunRequest& request) {
   return std::filesystem::exists(log) ? log.string() : "";
 }
 
-// What to do about an optimizer that has failed.
+// Returns what the user can do about an optimizer that has failed.
 std::string describe_way_out(const OptimizeOptions& options, const RunRequest& request) {
   std::vector<std::string> check = {
       request.command_line.front(), "check-plugin",
@@ -177,14 +177,15 @@ std::string describe_way_out(const OptimizeOptions& options, const RunRequest& r
   const std::string log = find_log(request);
   const bool is_watched = request.plan.options.values().contains("silence_s");
   return fmt::format(
-      "{} is marked as failed; what was evaluated is kept and judged.{}\nTo look for the fault:\n"
-      "{}\nThe same command tries again from there{}; with a changed optimizer begin anew:\n{}",
-      request.folder.string(), log.empty() ? "" : " What the optimizer printed: " + log,
-      quote_command(check), is_watched ? " (silence_s, memory_mib and log may be others)" : "",
+      "{} is marked as failed; its evaluations are kept and judged.{}\nTo look for the fault:\n"
+      "{}\nThe same command tries again from there{}. With a changed optimizer, begin a new "
+      "run:\n{}",
+      request.folder.string(), log.empty() ? "" : " The output of the optimizer: " + log,
+      quote_command(check), is_watched ? " (silence_s, memory_mib and log may change)" : "",
       quote_command(anew));
 }
 
-// Commands to try next, with the program named as the user named it.
+// Returns commands to try next. They begin with the program's name as the user typed it.
 std::string describe_next(const OptimizeOptions& options, const std::string& program,
                           const std::filesystem::path& folder, const Style& style) {
   const auto winner = folder / "winner.toml";
@@ -203,24 +204,24 @@ std::string describe_next(const OptimizeOptions& options, const std::string& pro
 }
 
 int run_optimize(const OptimizeOptions& options, Session& session) {
-  Team team(session);
+  MpiJob job(session);
   RunRequest request;
-  request.jobs = options.jobs.get();
-  if (team.is_worker()) {
-    team.serve(
-        [&]() -> Team::Problems {
+  request.jobs = parse_jobs(options.jobs);
+  if (job.is_worker()) {
+    job.serve(
+        [&]() -> MpiJob::Problems {
           request.plan = make_plan(options);
           return {&request.plan.problem};
         },
         request.jobs);
   }
-  options.time_limit.apply(session.stop);
+  apply_time_limit(options.time_limit, session.stop);
   request.plan = make_plan(options);
   const std::vector<std::string> notes = check_paths(request.plan.problem);
   request.folder = options.folder.choose(make_run_name(request.plan));
   request.command_line = make_command(options, session, request.folder);
   if (!options.quiet) {
-    announce(request, team.describe());
+    announce(request, job.describe());
     std::ranges::for_each(notes, write_message);
   }
 
@@ -228,10 +229,10 @@ int run_optimize(const OptimizeOptions& options, Session& session) {
   ProgressBar bar(options.quiet,
                   get_scalar_quantity(request.plan.problem.problem->description().objectives));
   LockedObserver observer(bar);
-  auto coordinator = team.lead({&request.plan.problem}, request.jobs, observer);
+  auto coordinator = job.make_coordinator({&request.plan.problem}, request.jobs, observer);
   request.executor = coordinator.get();
   const auto result = execute_run(request, session.stop, observer);
-  team.dismiss(std::move(coordinator));
+  job.end_workers(std::move(coordinator));
 
   bar.clear();
   if (result && !result->failure.empty()) {
@@ -256,14 +257,14 @@ void add_optimize(CLI::App& app, Session& session) {
   auto options = std::make_shared<OptimizeOptions>();
   CLI::App* command =
       add_command(app, session, "optimize",
-                  "Let an optimizer loose on a problem; resumes where it was", kOptimizeExamples);
+                  "Run an optimizer on a problem; resumes an interrupted run", kOptimizeExamples);
   command->add_option(
       "PROBLEM", options->problem,
-      "A problem file, or the name of a shipped one (armwright list problems); not\n"
+      "A problem file, or the name of a shipped problem (armwright list problems); not\n"
       "needed with --robot");
   command
       ->add_option("--optimizer,-o", options->optimizer,
-                   "Who optimizes (armwright list optimizers; default: the problem's)")
+                   "The optimizer (armwright list optimizers; default: the problem's)")
       ->type_name("NAME");
   command
       ->add_option("--opt", options->opt,
@@ -276,29 +277,29 @@ void add_optimize(CLI::App& app, Session& session) {
       ->envname("ARMWRIGHT_SEED");
   command
       ->add_option("--budget", options->budget,
-                   "Training cases to simulate (default: the problem's)")
+                   "Number of training cases to simulate (default: the problem's)")
       ->type_name("CASES");
   command
       ->add_option("--schedule", options->schedule,
-                   "Which training cases: fresh:K, fixed:K or coevolution:K (default: the\n"
-                   "problem's; fixed where an optimizer has no generations)")
+                   "Schedule of the training cases: fresh:K, fixed:K or coevolution:K (default:\n"
+                   "the problem's; fixed if the optimizer has no generations)")
       ->type_name("KIND:K");
   command
       ->add_option("--racing", options->racing,
-                   "Fewer cases for designs that do badly: none, halving:FIRST_CASES:ETA or\n"
+                   "Spend fewer cases on bad designs: none, halving:FIRST_CASES:ETA or\n"
                    "abandonment:MARGIN:CHUNK_CASES (default: the problem's)")
       ->type_name("KIND");
   options->overrides.add_to(*command, true);
   command
       ->add_option("--validation-cases", options->validation_cases,
-                   "Cases on which the candidates for the win are judged (default: the\n"
+                   "Number of validation cases, which choose the winner (default: the\n"
                    "problem's)")
       ->type_name("N");
-  options->jobs.add_to(*command);
-  options->time_limit.add_to(*command);
+  add_jobs_flag(*command, options->jobs);
+  add_time_limit_flag(*command, options->time_limit);
   options->folder.add_to(*command, "run", "results/PROBLEM-OPTIMIZER-seedN");
   command->add_flag("--json", options->json, "Print the result as JSON")->group("Output");
-  command->add_flag("--quiet,-q", options->quiet, "No progress")->group("Output");
+  command->add_flag("--quiet,-q", options->quiet, "Show no progress")->group("Output");
   command->callback([options, &session] {
     session.shares_work = true;
     session.action = [options, &session] { return run_optimize(*options, session); };

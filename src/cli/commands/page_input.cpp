@@ -5,7 +5,6 @@
 #include "base/error.hpp"
 #include "cli/terminal/progress_bar.hpp"
 #include "cli/terminal/session.hpp"
-#include "cli/terminal/signals.hpp"
 #include "report/page/page_data.hpp"
 
 namespace armwright {
@@ -13,31 +12,32 @@ namespace armwright {
 void PageInput::add_to(CLI::App& command) {
   command
       .add_option("FOLDER", source,
-                  "The folder of a run, a comparison or a reproduction, finished or not; or a page "
-                  "that report has written")
+                  "The folder of a run, a study or a reproduction, finished or not; or a page that "
+                  "'armwright report' has written")
       ->required();
   command
       .add_option(
           "--case", cases,
-          "Replay this test case as well, as in test/2:17; repeatable (the usual ones: the "
-          "first of training; of the test set the first, median, worst and those that fail)")
+          "Also show the motion in this case, as in test/2:17; repeatable (shown without it: the "
+          "first training case, and the first, the median, the worst and all failed test cases)")
       ->type_name("SET:NUMBER")
       ->allow_extra_args(false);
-  jobs.add_to(command);
-  command.add_flag("--quiet,-q", quiet, "No progress")->group("Output");
+  add_jobs_flag(command, jobs);
+  command.add_flag("--quiet,-q", quiet, "Show no progress")->group("Output");
 }
 
 std::optional<std::string> PageInput::make_data(Session& session) const {
   if (std::filesystem::is_regular_file(source)) {
     if (!cases.empty()) {
-      throw Error(ErrorKind::usage,
-                  "--case simulates, for which the folder is needed that the page was made of; the "
-                  "page itself holds only the cases that were simulated for it");
+      throw Error(
+          ErrorKind::usage,
+          "--case needs the folder that the page was made from, as it simulates; a page holds "
+          "only the cases that were simulated for it");
     }
     return read_page_data(source);
   }
   PageOptions options;
-  options.jobs = jobs.get();
+  options.jobs = parse_jobs(jobs);
   options.cases = cases;
   catch_signals(session.stop);
   ProgressBar bar(quiet, {"error", "m"});

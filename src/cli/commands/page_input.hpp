@@ -1,4 +1,4 @@
-// What report, plot and watch make pages of.
+// The input of the commands report and plot: the folder or page that they read.
 #pragma once
 
 #include <filesystem>
@@ -12,16 +12,18 @@ namespace armwright {
 
 struct Session;
 
+// The argument FOLDER and the flags --case, --jobs and --quiet.
 struct PageInput {
   std::string source;
   std::vector<std::string> cases;
-  JobsOption jobs;
+  std::string jobs;
   bool quiet = false;
 
-  // The argument FOLDER and the flags.
   void add_to(CLI::App& command);
-  // The data: of a folder computed, with progress on stderr; of a page's file those that stand in
-  // it. Nothing if stopped.
+  // Returns the page's data as JSON. If `source` is a folder, the data are computed, with progress
+  // on stderr. If it is a page, they are read from its file. Returns nothing if the user stopped
+  // it. Throws Error{usage} if cases are named for a page, and Error{bad_data} or Error{io} if the
+  // source cannot be read.
   std::optional<std::string> make_data(Session& session) const;
 };
 

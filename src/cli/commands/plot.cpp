@@ -1,4 +1,4 @@
-// armwright plot: the figures of a page as SVG files, with their numbers as CSV.
+// armwright plot: writes the figures of a page as SVG files, and their numbers as CSV.
 
 #include <fmt/format.h>
 
@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/commands/page_input.hpp"
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/session.hpp"
@@ -20,12 +21,12 @@ namespace armwright {
 namespace {
 
 constexpr const char* kPlotExamples = R"(Examples:
-  armwright plot results/q1-complex-ga-seed1       # every figure, into results/q1-complex-ga-seed1/figures
-  armwright plot results/q1/report.html --list     # which figures there are, and what can be chosen of them
+  armwright plot results/q1-complex-ga-seed1       # all figures, to results/q1-complex-ga-seed1/figures
+  armwright plot results/q1/report.html --list     # list the figures and their choices
   armwright plot results/q1/report.html --figure convergence --out - > convergence.svg
   armwright plot results/q1-complex-ga-seed1 --figure joint-torques --choose joint=2 --size 800x400
 
-They are the figures of 'armwright report', drawn by the same code. Given a page's file nothing is simulated anew.)";
+The figures are those of 'armwright report', drawn by the same code. From a page's file, nothing is simulated again.)";
 
 struct PlotOptions {
   PageInput input;
@@ -61,7 +62,7 @@ Plotter::Picks parse_picks(const std::vector<std::string>& choices) {
     if (equals == std::string::npos || equals == 0) {
       throw Error(ErrorKind::usage,
                   fmt::format("--choose is '{}'; it must be NAME=VALUE, as --list "
-                              "shows them",
+                              "shows it",
                               sanitize(choice)));
     }
     picks[choice.substr(0, equals)] = choice.substr(equals + 1);
@@ -91,7 +92,7 @@ std::string describe_entries(const Plotter& plotter, const Style& style) {
   return table.format(style);
 }
 
-// Those that were named, or all.
+// Returns the figures that the user named, or all.
 std::vector<PlotEntry> choose_entries(const PlotOptions& options, const Plotter& plotter) {
   if (options.figures.empty()) {
     return plotter.entries();
@@ -111,7 +112,7 @@ std::vector<PlotEntry> choose_entries(const PlotOptions& options, const Plotter&
   return chosen;
 }
 
-// Choices apply to the figures that have them.
+// Returns the choices that this figure has.
 Plotter::Picks get_picks(const PlotEntry& entry, const Plotter::Picks& wanted) {
   Plotter::Picks picks;
   for (const PlotChoice& choice : entry.choices) {
@@ -122,7 +123,7 @@ Plotter::Picks get_picks(const PlotEntry& entry, const Plotter::Picks& wanted) {
   return picks;
 }
 
-// A choice that no chosen figure has is a mistake.
+// Throws Error{usage} for a choice that none of the figures has.
 void check_picks(const std::vector<PlotEntry>& entries, const Plotter::Picks& wanted) {
   for (const auto& [id, value] : wanted) {
     std::vector<std::string> valid;
@@ -148,7 +149,7 @@ std::filesystem::path choose_folder(const PlotOptions& options) {
 }
 
 int run_plot(const PlotOptions& options, Session& session) {
-  get_page_assets();  // says so before anything is computed, if there are none
+  get_page_assets();  // throws before anything is computed if this build has no page
   const Plotter::Format format = parse_format(options);
   const Plotter::Picks picks = parse_picks(options.choices);
   if (options.out == "-" && options.figures.size() != 1) {
@@ -195,15 +196,15 @@ int run_plot(const PlotOptions& options, Session& session) {
 
 void add_plot(CLI::App& app, Session& session) {
   auto options = std::make_shared<PlotOptions>();
-  CLI::App* command = add_command(
-      app, session, "plot", "Write the figures of a run or a comparison as SVG", kPlotExamples);
+  CLI::App* command = add_command(app, session, "plot",
+                                  "Write the figures of a run or a study as SVG", kPlotExamples);
   options->input.add_to(*command);
-  command->add_option("--figure", options->figures, "Only this figure or table; repeatable")
+  command->add_option("--figure", options->figures, "Write only this figure or table; repeatable")
       ->type_name("NAME")
       ->allow_extra_args(false);
   command
       ->add_option("--choose", options->choices,
-                   "What a figure shows, where it leaves a choice; repeatable")
+                   "Choose what a figure shows, if it has choices; repeatable")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
   command->add_option("--theme", options->theme, "light or dark (default: light)")
@@ -211,13 +212,12 @@ void add_plot(CLI::App& app, Session& session) {
       ->type_name("NAME");
   command
       ->add_option("--size", options->size,
-                   "Of a figure, in pixels (default: its own, 640x400 for most)")
+                   "Size of a figure in pixels (default: that of the figure, mostly 640x400)")
       ->type_name("WIDTHxHEIGHT");
-  command->add_flag("--list", options->list, "Show which figures there are, and draw none")
-      ->group("Output");
+  command->add_flag("--list", options->list, "List the figures and draw none")->group("Output");
   command
       ->add_option("--out", options->out,
-                   "The folder for them (default: FOLDER/figures), where files of these names are "
+                   "The folder for the figures (default: FOLDER/figures); files of these names are "
                    "replaced; - writes one figure to standard output")
       ->type_name("DIR")
       ->group("Output");

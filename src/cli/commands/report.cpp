@@ -1,4 +1,4 @@
-// armwright report: one HTML page of a run, a comparison or a reproduction.
+// armwright report: writes one HTML page about a run, a study or a reproduction.
 
 #include <fmt/format.h>
 
@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/commands/page_input.hpp"
 #include "cli/terminal/session.hpp"
 #include "cli/terminal/terminal.hpp"
@@ -19,12 +20,12 @@ namespace {
 
 constexpr const char* kReportExamples = R"(Examples:
   armwright report results/q1-complex-ga-seed1     # writes results/q1-complex-ga-seed1/report.html
-  armwright report results/q1 --out q1.html        # of a comparison
+  armwright report results/q1 --out q1.html        # a page about a study
   armwright report results/q1-complex-ga-seed1 --case test/2:17
   armwright report results/q1 --json | jq .verdict
 
-The page is one file that needs nothing else: it opens from disk, without network. Of an arm's run it shows the
-motion in 3D. 'armwright plot' writes its figures as SVG files, 'armwright watch' shows it while a study runs.)";
+The page is a single file that opens from disk, without a network. For the run of an arm, it shows the motion in 3D.
+'armwright plot' writes its figures as SVG files. 'armwright watch' shows the page while a study runs.)";
 
 struct ReportOptions {
   PageInput input;
@@ -32,10 +33,10 @@ struct ReportOptions {
   bool json = false;
 };
 
-// A page may be replaced by a newer one, and nothing else.
+// Throws Error{usage} if the file exists and is not a page. A newer page may replace an older one.
 void check_target(const std::filesystem::path& file) {
   if (std::filesystem::exists(file) && !is_page_file(file)) {
-    throw Error(ErrorKind::usage, fmt::format("{}: is there and is no page of armwright's; choose "
+    throw Error(ErrorKind::usage, fmt::format("{}: exists and is not a page of armwright; choose "
                                               "another name with --out",
                                               file.string()));
   }
@@ -44,7 +45,7 @@ void check_target(const std::filesystem::path& file) {
 int run_report(const ReportOptions& options, Session& session) {
   std::filesystem::path file = options.out;
   if (!options.json) {
-    get_page_assets();  // says so before anything is computed, if there are none
+    get_page_assets();  // throws before anything is computed if this build has no page
     if (file.empty()) {
       if (std::filesystem::is_regular_file(options.input.source)) {
         throw Error(ErrorKind::usage,
@@ -74,17 +75,17 @@ int run_report(const ReportOptions& options, Session& session) {
 
 void add_report(CLI::App& app, Session& session) {
   auto options = std::make_shared<ReportOptions>();
-  CLI::App* command = add_command(
-      app, session, "report", "Write a page that shows a run or a comparison: figures and motion",
-      kReportExamples);
+  CLI::App* command =
+      add_command(app, session, "report", "Write a page about a run or a study: figures and motion",
+                  kReportExamples);
   options->input.add_to(*command);
   auto* out = command
                   ->add_option("--out", options->out,
-                               "The page's file (default: FOLDER/report.html); an older page is "
-                               "replaced, anything else is not")
+                               "The page's file (default: FOLDER/report.html); only a page may be "
+                               "replaced")
                   ->type_name("FILE")
                   ->group("Output");
-  command->add_flag("--json", options->json, "Print the page's data as JSON instead")
+  command->add_flag("--json", options->json, "Print the page's data as JSON, and write no page")
       ->group("Output")
       ->excludes(out);
   command->callback([options, &session] {

@@ -1,21 +1,21 @@
-// armwright reproduce: every published result of the shipped designs beside ours.
+// armwright reproduce: compares every published result of the shipped designs with ours.
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iterator>
+#include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/terminal/format.hpp"
-#include "cli/terminal/json.hpp"
 #include "cli/terminal/progress_bar.hpp"
 #include "cli/terminal/session.hpp"
-#include "cli/terminal/signals.hpp"
 #include "cli/terminal/table.hpp"
 #include "cli/terminal/terminal.hpp"
-#include "cli/views/design_evaluation.hpp"
+#include "cli/views/design_and_problem.hpp"
 #include "report/reproduction/reproduction.hpp"
 
 namespace armwright {
@@ -24,18 +24,20 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kReproduceExamples = R"(Examples:
-  armwright reproduce                              # all published results, on 500 test cases each
-  armwright reproduce --cases 20 --table A.10      # a quick look at one design
+  armwright reproduce                              # all published results, each on 500 test cases
+  armwright reproduce --cases 20 --table A.10      # a quick check of one design
   armwright reproduce --csv - > reproduced.csv
-  armwright reproduce --out                        # all that the thesis's figures need, kept in results/reproduction
+  armwright reproduce --out                        # all results that the thesis's figures need, kept in results/reproduction
 
-The thesis of 2010 from which armwright began tuned the controllers of an ABB IRB 4600-40/2.55 by a genetic algorithm
-(docs/figures.md). Every published design is evaluated on the problem it was made for, under the conditions its source states. The
-test cases are ours: the thesis drew its own. The ratio is our mean error over the published one.
+The thesis of 2010 from which armwright began tuned the controllers of an ABB IRB 4600-40/2.55 with a genetic algorithm
+(docs/figures.md). This command evaluates every published design on the problem it was made for, under the conditions
+that its source states. The test cases are ours, as the thesis drew its own. The ratio is our mean error divided by the
+published one. Errors are mean distances between the tip and its target.
 
-Errors are mean distances of the tip from its target. With --out, what the thesis optimized without printing the designs (the initial experiment, E1 to E5) is optimized
-anew as well, by its genetic algorithm on the engine articulated, and its E6 design is swept over the speed. That takes
-some minutes. All is kept in the folder: interrupted by Ctrl-C, a time limit or a crash, the same command goes on where it was.)";
+With --out, the command also optimizes again what the thesis optimized without printing the designs (the initial
+experiment, E1 to E5), with its genetic algorithm on the engine articulated, and sweeps its E6 design over the speed.
+That takes some minutes. The folder keeps all results. If Ctrl-C, a time limit or a crash interrupts the command, the
+same command resumes it.)";
 
 constexpr const char* kDefaultFolder = "results/reproduction";
 
@@ -43,8 +45,8 @@ struct ReproduceOptions {
   std::string cases;
   std::vector<std::string> tables;
   EngineFlags engines;
-  JobsOption jobs;
-  TimeLimitOption time_limit;
+  std::string jobs;
+  std::string time_limit;
   FolderOptions folder;
   std::string csv;
   bool json = false;
@@ -96,7 +98,7 @@ std::string format_text(const std::vector<PartResult>& rows, const Style& style)
                                         format_count(cases, "simulated case"),
                                         format_count(failures, "failure"));
   if (compared > 0) {
-    text += fmt::format("; {} with a published number, ours being {} to {} times that", compared,
+    text += fmt::format("; {} with a published number; ours are {} to {} times as large", compared,
                         format_significant(least, 3), format_significant(most, 3));
   }
   return text + "\n";
@@ -142,7 +144,8 @@ std::string format_csv(const std::vector<PartResult>& rows) {
   return text;
 }
 
-// The words that go on with it: as typed, but for --new, which would begin another.
+// Returns the command that resumes it: the typed command, without --new, which would begin another
+// folder.
 std::vector<std::string> make_command(const ReproduceOptions& options, const Session& session,
                                       const ReproductionFolder& folder) {
   if (!options.folder.another) {
@@ -158,7 +161,7 @@ std::vector<std::string> make_command(const ReproduceOptions& options, const Ses
   return words;
 }
 
-// What was optimized anew, beside what is published of it.
+// Returns a table of the designs that were optimized again, beside their published numbers.
 std::string format_runs(const std::vector<PartResult>& results, const Style& style) {
   Table table({{"optimized anew", false},
                {"mean mm"},
@@ -181,7 +184,8 @@ std::string format_runs(const std::vector<PartResult>& results, const Style& sty
   return any ? "\n" + table.format(style) : "";
 }
 
-// ODE and the engine of the runs on a core of 2020; only for the notice below.
+// Speeds of ODE and of the engine of the runs on one core of 2020. They serve only the notice
+// below.
 constexpr double kCasesPerJobAndSecond = 70;
 constexpr double kRunCasesPerJobAndSecond = 4000;
 
@@ -215,7 +219,7 @@ void announce(const ReproduceOptions& options, const ReproductionPlan& plan,
                             slow ? fmt::format("about {} ", format_duration(expected_s)) : "",
                             format_count(jobs, "thread")));
   if (folder != nullptr) {
-    write_message(fmt::format("folder {} ({} of {} results there already)", folder->path().string(),
+    write_message(fmt::format("folder {} ({} of {} results exist already)", folder->path().string(),
                               there, plan.parts.size()));
   }
 }
@@ -249,8 +253,8 @@ int run_reproduce(const ReproduceOptions& options, Session& session) {
   }
   ReproductionWork work;
   work.program = session.command_line.front();
-  work.jobs = options.jobs.get();
-  options.time_limit.apply(session.stop);
+  work.jobs = parse_jobs(options.jobs);
+  apply_time_limit(options.time_limit, session.stop);
   ReproductionPlan plan = plan_reproduction(request);
   std::optional<ReproductionFolder> folder;
   if (is_kept) {
@@ -264,14 +268,14 @@ int run_reproduce(const ReproduceOptions& options, Session& session) {
   ProgressBar bar(options.quiet, {"error", "m"});
   if (folder) {
     for (const std::string& warning : folder->warnings()) {
-      bar.on_message("warning: " + warning + "; what is there already is not computed again");
+      bar.on_message("warning: " + warning + "; existing results are not computed again");
     }
   }
   const auto results = execute_reproduction(plan, work, session.stop, bar);
   bar.clear();
   if (!results) {
     const char* stop = describe_stop(session.stop.reason());
-    write_message(is_kept ? fmt::format("{}; nothing is lost. To go on:\n{}", stop,
+    write_message(is_kept ? fmt::format("{}; nothing is lost. To resume:\n{}", stop,
                                         quote_command(make_command(options, session, *folder)))
                           : fmt::format("{}; nothing was written", stop));
     return get_stop_code(session.stop.reason());
@@ -292,19 +296,21 @@ int run_reproduce(const ReproduceOptions& options, Session& session) {
 
 void add_reproduce(CLI::App& app, Session& session) {
   auto options = std::make_shared<ReproduceOptions>();
-  CLI::App* command = add_command(app, session, "reproduce",
-                                  "Evaluate every published design beside its published result",
-                                  kReproduceExamples);
+  CLI::App* command =
+      add_command(app, session, "reproduce",
+                  "Evaluate every published design and compare it with its published result",
+                  kReproduceExamples);
   command
       ->add_option("--cases", options->cases,
-                   "Use the first N test cases (default: as many as each problem says, 500)")
+                   "Use the first N test cases (default: the number of each problem, 500)")
       ->type_name("N");
-  command->add_option("--table", options->tables, "Only this design, as in A.10; repeatable")
+  command
+      ->add_option("--table", options->tables, "Evaluate only this design, as in A.10; repeatable")
       ->type_name("NAME")
       ->allow_extra_args(false);
   options->engines.add_to(*command, false);
-  options->jobs.add_to(*command);
-  options->time_limit.add_to(*command);
+  add_jobs_flag(*command, options->jobs);
+  add_time_limit_flag(*command, options->time_limit);
   options->folder.add_to(*command, "reproduction",
                          fmt::format("nothing is kept;\n--out alone: {}", kDefaultFolder));
   command->get_option("--out")->expected(0, 1)->default_str(kDefaultFolder);
@@ -314,7 +320,7 @@ void add_reproduce(CLI::App& app, Session& session) {
       ->type_name("FILE")
       ->group("Output")
       ->excludes(as_json);
-  command->add_flag("--quiet,-q", options->quiet, "No progress")->group("Output");
+  command->add_flag("--quiet,-q", options->quiet, "Show no progress")->group("Output");
   command->callback([options, &session] {
     session.action = [options, &session] { return run_reproduce(*options, session); };
   });

@@ -1,4 +1,4 @@
-// armwright rerun: one run of a comparison once more, compared to the last bit.
+// armwright rerun: repeats one run of a study and compares all bits of the results.
 
 #include "study/compare/rerun.hpp"
 
@@ -9,11 +9,11 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/progress_bar.hpp"
 #include "cli/terminal/session.hpp"
-#include "cli/terminal/signals.hpp"
 #include "cli/terminal/terminal.hpp"
 #include "study/compare/cell.hpp"
 #include "study/compare/cell_comparison.hpp"
@@ -26,16 +26,16 @@ constexpr const char* kRerunExamples = R"(Examples:
   armwright rerun results/q1 q1-complex/ga/r03
   armwright rerun results/q1 q1-complex/ga/r03 --jobs 1 --json
 
-Runs what the study recorded: the same training cases, start, seed and options. Then every evaluation, the judgements,
-the result and the winner are compared with the study's, to the last bit. Exit code 0: identical; 3: they differ. The
-study itself stays as it is. Labels with other characters than letters, digits, '_', '-' and '.' can be given as they are
-or as their folder is named.)";
+The command repeats the recorded run with the same training cases, start, seed and options. Then it compares all
+evaluations, the judgements, the result and the winner with those of the study, bit for bit. The exit code is 0 if they
+are identical and 3 if they differ. The study is not changed. A label with characters other than letters, digits, '_',
+'-' and '.' can be given as it is or as its folder is named.)";
 
 struct RerunOptions {
   std::string study;
   std::string cell;
-  JobsOption jobs;
-  TimeLimitOption time_limit;
+  std::string jobs;
+  std::string time_limit;
   std::string out;
   bool json = false;
   bool quiet = false;
@@ -57,7 +57,7 @@ void check_recorded(const RerunOptions& options, const StudyPlan& plan, const Ce
   throw Error(
       ErrorKind::usage,
       fmt::format("{}: {} has not ended in this study, so there is nothing to compare with. "
-                  "To go on with the study:\n{}",
+                  "To resume the study:\n{}",
                   sanitize(options.study), describe_cell(plan, cell),
                   sanitize(quote_command(words))));
 }
@@ -108,8 +108,8 @@ std::string describe_same(const CellComparison& comparison) {
   return join(parts, ", ") + " and " + last;
 }
 
-std::string to_text(const std::filesystem::path& recorded, const std::filesystem::path& folder,
-                    const CellComparison& comparison, const std::vector<std::string>& causes) {
+std::string format_text(const std::filesystem::path& recorded, const std::filesystem::path& folder,
+                        const CellComparison& comparison, const std::vector<std::string>& causes) {
   const std::string folders =
       fmt::format("study  {}\nrerun  {}\n", sanitize(recorded.string()), sanitize(folder.string()));
   if (!comparison.difference) {
@@ -119,7 +119,7 @@ std::string to_text(const std::filesystem::path& recorded, const std::filesystem
   const CellDifference& found = *comparison.difference;
   std::string text = fmt::format("different: {}, {}: recorded {}, now {}\n", found.where,
                                  found.field, found.recorded, found.now);
-  text += fmt::format("Before that {} are the same.\n", describe_same(comparison)) + folders;
+  text += fmt::format("Before that, {} are the same.\n", describe_same(comparison)) + folders;
   for (const std::string& cause : causes) {
     text += cause + "\n";
   }
@@ -127,8 +127,8 @@ std::string to_text(const std::filesystem::path& recorded, const std::filesystem
 }
 
 int run_rerun(const RerunOptions& options, Session& session) {
-  const unsigned jobs = options.jobs.get();
-  options.time_limit.apply(session.stop);
+  const unsigned jobs = parse_jobs(options.jobs);
+  apply_time_limit(options.time_limit, session.stop);
   const StudyPlan plan = load_study_plan(options.study);
   const Cell cell = find_cell(plan, options.cell);
   check_recorded(options, plan, cell, session.command_line.front());
@@ -155,7 +155,7 @@ int run_rerun(const RerunOptions& options, Session& session) {
     causes = list_likely_causes(recorded, folder);
   }
   write_stdout(options.json ? to_json(options.cell, recorded, folder, comparison, causes)
-                            : to_text(recorded, folder, comparison, causes));
+                            : format_text(recorded, folder, comparison, causes));
   return comparison.difference ? exit_code::kFailed : exit_code::kDone;
 }
 
@@ -163,22 +163,22 @@ int run_rerun(const RerunOptions& options, Session& session) {
 
 void add_rerun(CLI::App& app, Session& session) {
   auto options = std::make_shared<RerunOptions>();
-  CLI::App* command = add_command(
-      app, session, "rerun", "Run one cell of a comparison anew and compare it, to the last bit",
-      kRerunExamples);
+  CLI::App* command =
+      add_command(app, session, "rerun",
+                  "Repeat one cell of a study and compare all bits of the results", kRerunExamples);
   command->add_option("STUDY", options->study, "The folder of a study")->required();
-  command->add_option("CELL", options->cell, "Which run: PROBLEM/OPTIMIZER/rNN")->required();
-  options->jobs.add_to(*command);
-  options->time_limit.add_to(*command);
+  command->add_option("CELL", options->cell, "The run: PROBLEM/OPTIMIZER/rNN")->required();
+  add_jobs_flag(*command, options->jobs);
+  add_time_limit_flag(*command, options->time_limit);
   command
       ->add_option(
           "--out", options->out,
           "The new run's folder (default: STUDY/reruns/PROBLEM/OPTIMIZER/rNN, or the first\n"
-          "free of rNN-002, ...); nothing is overwritten")
+          "of rNN-002, ... that does not exist); nothing is overwritten")
       ->type_name("FOLDER")
       ->group("Output");
   command->add_flag("--json", options->json, "Print the comparison as JSON")->group("Output");
-  command->add_flag("--quiet,-q", options->quiet, "No progress")->group("Output");
+  command->add_flag("--quiet,-q", options->quiet, "Show no progress")->group("Output");
   command->callback([options, &session] {
     session.action = [options, &session] { return run_rerun(*options, session); };
   });

@@ -1,4 +1,4 @@
-// armwright show: what a run's folder holds, or a study's.
+// armwright show: prints the result of a run or a study from its folder.
 
 #include <fmt/format.h>
 
@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/session.hpp"
@@ -27,11 +28,11 @@ using nlohmann::json;
 
 constexpr const char* kShowExamples = R"(Examples:
   armwright show results/q1-complex-ga-seed1
-  armwright show results/q1                        # a comparison: its tables and verdict
+  armwright show results/q1                        # a study: its tables and verdict
   armwright show results/q1-complex-ga-seed1 --json | jq .winner.test_summary
 
-Of a run or a study that has not come to its end it says how far it is, and how to go on. It changes nothing.
-'armwright status' has more on the cells of a comparison that many processes or machines work on.)";
+If a run or a study is not complete, the command prints how far it is and how to resume it. It changes nothing.
+'armwright status' shows more about the cells of a study that several processes or machines run.)";
 
 struct ShowOptions {
   std::string folder;
@@ -83,8 +84,8 @@ int show_study(const ShowOptions& options, const Session& session) {
                                               (folder / "study.toml").string(), "--out",
                                               folder.string()};
     write_stdout(
-        fmt::format("{}: this study has not come to its end\n  {} of {} have ended\nTo go "
-                    "on:\n  {}\n",
+        fmt::format("{}: this study is not complete\n  {} of {} have ended\nTo "
+                    "resume:\n  {}\n",
                     sanitize(folder.string()), result.cells.size() - result.missing.size(),
                     format_count(result.cells.size(), "cell"), sanitize(quote_command(command))));
   }
@@ -98,7 +99,7 @@ int run_show(const ShowOptions& options, const Session& session) {
   }
   const bool a_run = std::filesystem::exists(folder / "manifest.json");
   if (!a_run || std::filesystem::exists(folder / "result.json")) {
-    const RunResult result = load_result(folder);  // says so, if it is none
+    const RunResult result = load_result(folder);  // throws if it is not the folder of a run
     if (options.json) {
       write_stdout(to_json(result));
     } else {
@@ -116,9 +117,9 @@ int run_show(const ShowOptions& options, const Session& session) {
     write_stdout(state.dump(1) + "\n");
   } else {
     write_stdout(
-        fmt::format("{}: this run has not come to its end\n"
+        fmt::format("{}: this run is not complete\n"
                     "  {} on {} of {} recorded, {}\n"
-                    "To go on:\n  {}\n",
+                    "To resume:\n  {}\n",
                     sanitize(folder.string()), format_count(run.evaluations, "evaluation"),
                     run.cases, format_count(static_cast<unsigned long long>(run.budget), "case"),
                     format_count(run.judgements, "judgement"), command));
@@ -132,9 +133,8 @@ void add_show(CLI::App& app, Session& session) {
   auto options = std::make_shared<ShowOptions>();
   CLI::App* command = add_command(
       app, session, "show", "Show the result of a run or a study, or how far it is", kShowExamples);
-  command->add_option("FOLDER", options->folder, "The folder, as optimize or compare named it")
-      ->required();
-  command->add_flag("--json", options->json, "Print it as JSON")->group("Output");
+  command->add_option("FOLDER", options->folder, "The folder of a run or a study")->required();
+  command->add_flag("--json", options->json, "Print as JSON")->group("Output");
   command->callback([options, &session] {
     session.action = [options, &session] { return run_show(*options, session); };
   });

@@ -1,4 +1,4 @@
-// armwright status: how far the cells of a comparison are, whoever runs them.
+// armwright status: shows the state of all cells of a study.
 
 #include <fmt/format.h>
 
@@ -7,13 +7,13 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/session.hpp"
 #include "cli/terminal/table.hpp"
 #include "cli/terminal/terminal.hpp"
 #include "study/matrix/cell_selection.hpp"
-#include "study/matrix/recorded_study.hpp"
 #include "study/matrix/study_status.hpp"
 
 namespace armwright {
@@ -22,19 +22,20 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kStatusExamples = R"(Examples:
-  armwright status results/q1                         # from any machine that sees the folder
+  armwright status results/q1                         # on any machine that sees the folder
   armwright status results/q1 --json
 
-A cell is one run of a comparison: an optimizer on a problem in a replicate.
+A cell is one run of a study: an optimizer on a problem in a replicate.
 
-done     the cell has its result; of these, failed: the optimizer itself has failed in it, which counts as its result
-broken   its last attempt ended with the error that is shown
-running  somebody is at it, and gave a sign of life within a minute
-silent   somebody was at it and gives none any more
-left     not begun, or stopped cleanly
+done     the cell has its result
+failed   the cell has a result, but its optimizer has failed
+broken   the cell's last attempt ended with the error that is shown
+running  a process runs the cell and has written a sign of life within the last minute
+silent   a process ran the cell, but its sign of life is older
+left     the cell has not begun, or was stopped in order
 
-What is broken, silent or left is gone on with by the same command as before: compare, or the batch system's script
-(docs/clusters.md). Status changes nothing; 'armwright show' has the results of a study that is complete.)";
+To resume cells that are broken, silent or left, use the same command as before: compare, or the batch system's script
+(docs/clusters.md). This command changes nothing. 'armwright show' prints the results of a complete study.)";
 
 struct StatusOptions {
   std::string study;
@@ -90,17 +91,19 @@ std::string describe_next(const RecordedStudy& study, const StudyStatus& status,
   const std::string folder = study.folder.string();
   const std::size_t ended = status.count(CellState::done) + status.count(CellState::failed);
   if (ended == list_cells(study.plan).size()) {
-    return "\nAll cells have ended. Tables and verdict:\n  " +
+    return "\nAll cells have ended. To make tables and verdict:\n  " +
            quote_own_command(session, {"merge", folder}) + "\n";
   }
   const std::string plan = (study.folder / "study.toml").string();
-  return "\nTo run what is left here, or on a cluster (when nothing is running any more):\n  " +
+  return "\nTo run the remaining cells here or on a cluster (when no cell is running any more):\n "
+         " " +
          quote_own_command(session, {"compare", plan, "--out", folder}) + "\n  " +
          quote_own_command(session, {"compare", plan, "--out", folder, "--executor", "slurm"}) +
          "\n";
 }
 
-std::string to_text(const RecordedStudy& study, const StudyStatus& status, const Session& session) {
+std::string format_text(const RecordedStudy& study, const StudyStatus& status,
+                        const Session& session) {
   const Style style = make_style(Stream::out, session.color);
   std::vector<Column> columns = {{"problem", false}, {"optimizer", false}};
   for (std::size_t state = 0; state < kCellStates; ++state) {
@@ -126,7 +129,7 @@ std::string to_text(const RecordedStudy& study, const StudyStatus& status, const
     text += describe_notable(study.plan, status, state, style);
   }
   if (!status.writer.empty()) {
-    text += fmt::format("\nA local comparison is at it: {}\n", status.writer);
+    text += fmt::format("\nOne process runs the whole study: {}\n", status.writer);
   }
   return text + describe_next(study, status, session);
 }
@@ -188,7 +191,7 @@ std::string to_json(const RecordedStudy& study, const StudyStatus& status) {
 int run_status(const StatusOptions& options, const Session& session) {
   const RecordedStudy study = load_recorded_study(options.study);
   const StudyStatus status = read_study_status(study.plan, study.folder);
-  write_stdout(options.json ? to_json(study, status) : to_text(study, status, session));
+  write_stdout(options.json ? to_json(study, status) : format_text(study, status, session));
   return exit_code::kDone;
 }
 
@@ -196,12 +199,12 @@ int run_status(const StatusOptions& options, const Session& session) {
 
 void add_status(CLI::App& app, Session& session) {
   auto options = std::make_shared<StatusOptions>();
-  CLI::App* command =
-      add_command(app, session, "status", "How far a comparison's cells are, and who runs them",
-                  kStatusExamples);
+  CLI::App* command = add_command(
+      app, session, "status", "Show the state of a study's cells, and the processes that run them",
+      kStatusExamples);
   command->add_option("STUDY", options->study, "The folder of a study, or its study.toml")
       ->required();
-  command->add_flag("--json", options->json, "Print it as JSON")->group("Output");
+  command->add_flag("--json", options->json, "Print as JSON")->group("Output");
   command->callback([options, &session] {
     session.action = [options, &session] { return run_status(*options, session); };
   });

@@ -1,21 +1,21 @@
-// armwright sweep: one setting of the problem takes several values, the design stays.
+// armwright sweep: evaluates one design while one setting of the problem takes several values.
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/terminal/format.hpp"
-#include "cli/terminal/json.hpp"
 #include "cli/terminal/progress_bar.hpp"
 #include "cli/terminal/session.hpp"
-#include "cli/terminal/signals.hpp"
 #include "cli/terminal/table.hpp"
 #include "cli/terminal/terminal.hpp"
-#include "cli/views/design_evaluation.hpp"
+#include "cli/views/design_and_problem.hpp"
 #include "problems/config/design_file.hpp"
 
 namespace armwright {
@@ -28,7 +28,7 @@ constexpr const char* kSweepExamples = R"(Examples:
   armwright sweep q2-e6 --design table-a10 --parameter task.load_kg --values 0,5,10,20
   armwright sweep q1-complex --design table-a5 --parameter task.signal --values ramp,complex --cases 50 --csv -
 
-A problem with a [sweep] of its own says what to vary, over which values and with which design; flags say otherwise.)";
+A problem may have a table [sweep] with the setting, its values and the design. Flags override it.)";
 
 struct SweepOptions {
   std::string problem;
@@ -37,7 +37,7 @@ struct SweepOptions {
   std::string values;
   OverrideOptions overrides;
   CaseOptions cases;
-  JobsOption jobs;
+  std::string jobs;
   std::string csv;
   bool json = false;
   bool quiet = false;
@@ -48,7 +48,7 @@ struct SweepRow {
   DesignEvaluation evaluation;
 };
 
-// The problem's own plan, with what the flags say instead.
+// The sweep that the flags choose, or that of the problem's table [sweep].
 struct ChosenSweep {
   std::string parameter;
   std::vector<std::string> values;
@@ -66,7 +66,7 @@ ChosenSweep choose_sweep(const SweepOptions& options, const LoadedProblem& probl
   }
   if (!options.parameter.empty() && options.parameter != chosen.parameter) {
     chosen.parameter = options.parameter;
-    chosen.values.clear();  // they belong to the other parameter
+    chosen.values.clear();  // they are values of the other setting
   }
   if (!options.values.empty()) {
     chosen.values = split(options.values, ',');
@@ -138,8 +138,8 @@ std::string format_text(const ChosenSweep& sweep, const std::vector<SweepRow>& r
       most = std::max(most, *mean);
     }
   }
-  // One character at least; what spans more than a decade fills the bar, less is shown with a
-  // decade's width.
+  // A bar has at least one character. Its full length stands for the range of the values, but for
+  // at least one decade.
   const double decades = std::max(1.0, std::log10(most / least));
   const auto make_bar = [&](std::optional<double> mean) {
     if (!mean || *mean <= 0) {
@@ -165,17 +165,18 @@ std::string format_text(const ChosenSweep& sweep, const std::vector<SweepRow>& r
 }
 
 int run_sweep(const SweepOptions& options, Session& session) {
-  const unsigned jobs = options.jobs.get();
+  const unsigned jobs = parse_jobs(options.jobs);
   const std::vector<std::string> overrides = options.overrides.get();
   const LoadedProblem base = load_problem(options.problem, overrides);
   require_tracking(base);
   const ChosenSweep sweep = choose_sweep(options, base);
   const DesignFile design = load_design(sweep.design);
   if (design.design.speed_m_per_s && sweep.parameter == "task.speed_m_per_s") {
-    throw Error(ErrorKind::usage,
-                fmt::format("the design {} has a speed of its own, whatever task.speed_m_per_s is; "
-                            "take speed_m_per_s out of its file to sweep it",
-                            sanitize(sweep.design)));
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("the design {} has a speed of its own, which replaces task.speed_m_per_s; "
+                    "remove speed_m_per_s from its file to sweep the speed",
+                    sanitize(sweep.design)));
   }
   // All values are validated before the first is simulated.
   std::vector<LoadedProblem> problems;
@@ -183,10 +184,11 @@ int run_sweep(const SweepOptions& options, Session& session) {
     auto all = overrides;
     for (const std::string& flag : options.overrides.engines.get()) {
       if (get_override_key(flag) == sweep.parameter) {
-        throw Error(ErrorKind::usage,
-                    fmt::format("--parameter {} is what varies, but a flag means --set {}; leave "
-                                "the flag out",
-                                sanitize(sweep.parameter), flag));
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("--parameter {} takes several values, but a flag means --set {}; leave "
+                        "the flag out",
+                        sanitize(sweep.parameter), flag));
       }
     }
     all.push_back(sweep.parameter + "=" + value);
@@ -198,22 +200,22 @@ int run_sweep(const SweepOptions& options, Session& session) {
   catch_signals(session.stop);
   ProgressBar bar(options.quiet, {"error", "m"});
   std::vector<SweepRow> rows;
-  BarShare share;
+  Progress progress;
   for (const LoadedProblem& problem : problems) {
-    share.total += choose_cases(problem, options.cases).count;
+    progress.total += choose_cases(problem, options.cases).count;
   }
   for (std::size_t i = 0; i < problems.size(); ++i) {
-    // A swept workspace changes the cases, and one problem's targets are of no use to the next.
+    // The swept setting may change the cases, for example by the workspace, and the target tables.
     const ChosenCases cases = choose_cases(problems[i], options.cases);
-    auto evaluation = evaluate_with_progress(*problems[i].tracking, design.design, cases, jobs,
-                                             session.stop, bar, share);
+    auto evaluation = evaluate_with_progress(*problems[i].tracking(), design.design, cases, jobs,
+                                             session.stop, bar, progress);
     problems[i] = {};
     if (!evaluation) {
       bar.clear();
       write_message(fmt::format("{}; nothing was written", describe_stop(session.stop.reason())));
       return get_stop_code(session.stop.reason());
     }
-    share.done_before += cases.count;
+    progress.done += cases.count;
     rows.push_back({sweep.values[i], std::move(*evaluation)});
   }
   bar.clear();
@@ -243,7 +245,7 @@ void add_sweep(CLI::App& app, Session& session) {
       "Evaluate a design while one setting of the problem takes several values", kSweepExamples);
   command
       ->add_option("PROBLEM", options->problem,
-                   "A problem file, or the name of a shipped one (armwright list problems)")
+                   "A problem file, or the name of a shipped problem (armwright list problems)")
       ->required();
   command->add_option("--design", options->design, "The design (armwright list designs)")
       ->type_name("DESIGN");
@@ -252,14 +254,14 @@ void add_sweep(CLI::App& app, Session& session) {
   command->add_option("--values", options->values, "Its values")->type_name("A,B,...");
   options->overrides.add_to(*command);
   options->cases.add_to(*command);
-  options->jobs.add_to(*command);
+  add_jobs_flag(*command, options->jobs);
   auto* as_json =
       command->add_flag("--json", options->json, "Print the table as JSON")->group("Output");
   command->add_option("--csv", options->csv, "Write the table as CSV; - is standard output")
       ->type_name("FILE")
       ->group("Output")
       ->excludes(as_json);
-  command->add_flag("--quiet,-q", options->quiet, "No progress")->group("Output");
+  command->add_flag("--quiet,-q", options->quiet, "Show no progress")->group("Output");
   command->callback([options, &session] {
     session.action = [options, &session] { return run_sweep(*options, session); };
   });

@@ -32,7 +32,7 @@ std::string advise_build(std::string_view packages, std::string_view option) {
 
 void check_build(Checks& checks) {
   for (const auto& [what, value] : describe_build()) {
-    // The machine has its own checks, and so has what a build can do without.
+    // The machine and the optional libraries have checks of their own.
     if (what != "cpu" && what != "host" && value != kNotInBuild) {
       checks.push_back({"program", what, CheckState::good, value});
     }
@@ -42,7 +42,7 @@ void check_build(Checks& checks) {
 void check_engines(Checks& checks) {
   for (const EngineRow& row : engine_table()) {
     const std::string simd =
-        row.simd ? fmt::format("; SIMD levels here: {}; unless told otherwise {}",
+        row.simd ? fmt::format("; SIMD levels here: {}; default {}",
                                join(supported_simd_names(), ", "), to_string(find_best_simd()))
                  : "";
     checks.push_back({"engines", row.name, CheckState::good, row.summary + simd});
@@ -53,10 +53,10 @@ void check_engines(Checks& checks) {
   }
 }
 
-// The optimizers of a library are all there or all missing, but for those that are in no build.
+// A build has all optimizers of a library or none of them, apart from those that no build offers.
 void check_optimizers(Checks& checks) {
   struct Library {
-    const char* name;  // what a row's backend begins with
+    const char* name;  // the beginning of a row's backend
     const char* package;
     const char* option;
   };
@@ -81,7 +81,7 @@ void check_optimizers(Checks& checks) {
     } else {
       checks.push_back(
           {"optimizers", library.name, CheckState::lacking,
-           fmt::format("not in this build: {} optimizers less", count(library.name, false)),
+           fmt::format("not in this build: {} optimizers are missing", count(library.name, false)),
            advise_build(library.package, library.option)});
     }
   }
@@ -94,19 +94,19 @@ void check_page(Checks& checks) {
   } catch (const Error&) {
     checks.push_back(
         {"reports", "page and figures", CheckState::lacking,
-         "not in this build: no report, plot and watch",
+         "not in this build: report, plot and watch do not work",
          advise_build("nodejs npm duktape-dev libcpp-httplib-dev", "ARMWRIGHT_WITH_PAGE")});
   }
   if (can_read_meshes()) {
     checks.push_back({"reports", "meshes of robots", CheckState::good, "Assimp is built in"});
   } else {
     checks.push_back({"reports", "meshes of robots", CheckState::lacking,
-                      "not in this build: replays show plain shapes, meshes give no mass",
+                      "not in this build: replays show simple shapes, and meshes give no masses",
                       advise_build("libassimp-dev", "ARMWRIGHT_WITH_ASSIMP")});
   }
 }
 
-// All shipped problems are read; the first is made ready to be simulated.
+// Loads all shipped problems.
 void check_configuration(Checks& checks) {
   constexpr const char* kGroup = "configuration";
   constexpr const char* kRemedy =
@@ -142,7 +142,7 @@ void check_configuration(Checks& checks) {
   }
 }
 
-// Where the shell would find it; empty if it would not.
+// Returns the path at which the shell finds the program, or an empty text.
 std::string find_program(const std::string& name) {
   const char* path = std::getenv("PATH");
   for (const std::string& folder : split(path != nullptr ? path : "", ':')) {
@@ -158,7 +158,7 @@ std::string find_program(const std::string& name) {
 void check_programs(Checks& checks) {
   struct Need {
     const char* name;
-    std::vector<std::string> programs;  // any of them
+    std::vector<std::string> programs;  // any one of them is enough
     const char* what_for;
     const char* remedy;
   };

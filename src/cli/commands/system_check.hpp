@@ -1,5 +1,5 @@
-// What `armwright doctor` says of the machine and the installation: one line a fact, and for what
-// is missing how to get it.
+// The checks of `armwright doctor` on this machine and installation. Each check states one fact. If
+// something is missing, the check also says how to get it.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@ namespace armwright {
 
 enum class CheckState {
   good,
-  lacking,  // armwright does without it, or with less
-  bad       // optimizing an arm does not work without it
+  lacking,  // armwright works without it, perhaps with fewer features
+  bad       // without it an arm cannot be optimized
 };
 const char* to_string(CheckState state);  // "good", "lacking", "bad"
 
@@ -19,16 +19,16 @@ struct SystemCheck {
   std::string name;
   CheckState state = CheckState::good;
   std::string found;
-  std::string remedy = {};  // what to do, where something is to be done
+  std::string remedy = {};  // what the user can do; empty if nothing is needed
 };
 
-// Everything, group by group. Makes a file in the folder where results go, and removes it again.
+// Makes all checks, group by group. It creates a file in the folder of the results and removes it.
+// Throws nothing of its own: a fault is a check with the state `bad`.
 std::vector<SystemCheck> check_system();
 
-// Its parts. What was built into the program, and what lies beside it.
-void check_program(std::vector<SystemCheck>& checks);
-// What this machine and this folder allow.
-void check_machine(std::vector<SystemCheck>& checks);
+// The parts of check_system(); each adds its checks.
+void check_program(std::vector<SystemCheck>& checks);  // the build and the files beside it
+void check_machine(std::vector<SystemCheck>& checks);  // processor, memory, limits, terminal
 void check_results_folder(std::vector<SystemCheck>& checks);
 
 }  // namespace armwright

@@ -1,4 +1,4 @@
-// armwright testset: test cases as files, for other programs and from them.
+// armwright testset: writes test cases to files and reads them from files.
 
 #include <fmt/format.h>
 
@@ -8,11 +8,12 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/session.hpp"
 #include "cli/terminal/terminal.hpp"
-#include "cli/views/design_evaluation.hpp"
+#include "cli/views/design_and_problem.hpp"
 #include "sim/tracking/test_case.hpp"
 
 namespace armwright {
@@ -24,27 +25,27 @@ constexpr const char* kTestsetExamples = R"(Examples:
   armwright testset hash test/2 --cases 500
   armwright evaluate table-a5 --problem q1-complex --test-cases mine.json
 
-Terms: a test case is a start point and the points that the arm's tip has to reach after it. A generated set is a
-name and nothing else: case N of test/2 is the same everywhere. train/ID, validation/ID and test/ID are its names.)";
+Terms: a test case is a start point and the points that the arm's tip has to reach after it. A generated set is defined
+by its name only: case N of test/2 is the same on every machine. The names are train/ID, validation/ID and test/ID.)";
 
-constexpr const char* kExportExamples = R"(Examples:
+constexpr const char* kTestsetExportExamples = R"(Examples:
   armwright testset export test/2 --cases 500 --out test-2.json
   armwright testset export train/1 --cases 3 --format csv
   armwright testset export test/1 --cases 100 --problem mine.toml    # in that problem's workspace)";
 
-constexpr const char* kImportExamples = R"(Examples:
-  armwright testset import mine.csv                # is it usable? how many cases, and their hash
+constexpr const char* kTestsetImportExamples = R"(Examples:
+  armwright testset import mine.csv                # check the file; print the number of cases and their hash
   armwright testset import mine.csv --out mine.json
   armwright testset import mine.json --out - --format csv)";
 
-constexpr const char* kHashExamples = R"(Examples:
+constexpr const char* kTestsetHashExamples = R"(Examples:
   armwright testset hash test/2 --cases 500
   armwright testset hash mine.json
 
-The hash is SHA-256 over the coordinates: equal cases have equal hashes, whatever file or name they come from.)";
+The hash is SHA-256 over the coordinates. Equal cases have equal hashes, whatever their file or name is.)";
 
 struct TestsetOptions {
-  std::string name;  // of a set or a file
+  std::string name;  // of a set, or of a file
   std::string cases;
   std::string format;
   std::string out;
@@ -56,11 +57,10 @@ void check_set_name(const std::string& name) {
   const std::vector<std::string> kinds = {"train", "validation", "test"};
   if (parts.size() != 2 || parts[1].empty() ||
       std::find(kinds.begin(), kinds.end(), parts[0]) == kinds.end()) {
-    throw Error(
-        ErrorKind::usage,
-        fmt::format("'{}' is no test set; a generated set is named train/ID, validation/ID or "
-                    "test/ID, as in test/2",
-                    sanitize(name)));
+    throw Error(ErrorKind::usage,
+                fmt::format("'{}' is no test set; the name of a generated set is train/ID, "
+                            "validation/ID or test/ID, as in test/2",
+                            sanitize(name)));
   }
 }
 
@@ -87,7 +87,7 @@ std::vector<TestCase> load_cases(const std::string& file) {
   return cases;
 }
 
-std::string format_cases(const std::vector<TestCase>& cases, const TestsetOptions& options) {
+std::string format_case_file(const std::vector<TestCase>& cases, const TestsetOptions& options) {
   const std::vector<std::string> formats = {"json", "csv"};
   std::string format = options.format;
   if (format.empty()) {
@@ -106,19 +106,20 @@ std::string describe_cases(const std::vector<TestCase>& cases, const std::string
 
 int run_export(const TestsetOptions& options) {
   const auto cases = make_cases(options);
-  const std::string text = format_cases(cases, options);
+  const std::string text = format_case_file(cases, options);
   write_output(options.out.empty() ? "-" : options.out, text);
   return exit_code::kDone;
 }
 
 int run_import(const TestsetOptions& options) {
   if (options.out.empty() && !options.format.empty()) {
-    throw Error(ErrorKind::usage, "--format says how to write the cases; it needs --out FILE");
+    throw Error(ErrorKind::usage,
+                "--format is the format of the file that --out names; give --out FILE, too");
   }
   const auto cases = load_cases(options.name);
   const std::string summary = describe_cases(cases, options.name);
   if (!options.out.empty()) {
-    write_output(options.out, format_cases(cases, options));
+    write_output(options.out, format_case_file(cases, options));
   }
   if (options.out == "-") {
     write_stderr(summary);
@@ -131,7 +132,8 @@ int run_import(const TestsetOptions& options) {
 int run_hash(const TestsetOptions& options) {
   const bool a_file = std::filesystem::is_regular_file(options.name);
   if (a_file && !options.cases.empty()) {
-    throw Error(ErrorKind::usage, "--cases belongs to generated sets; a file is hashed as a whole");
+    throw Error(ErrorKind::usage,
+                "--cases works with generated sets only; a file is hashed as a whole");
   }
   TestsetOptions with_count = options;
   if (with_count.cases.empty()) {
@@ -144,7 +146,8 @@ int run_hash(const TestsetOptions& options) {
 
 void add_format(CLI::App& command, TestsetOptions& options, const char* out_help) {
   command
-      .add_option("--format", options.format, "json or csv (default: by the file's name, or json)")
+      .add_option("--format", options.format,
+                  "json or csv (default: csv for a file named *.csv, otherwise json)")
       ->type_name("FORMAT");
   command.add_option("--out", options.out, out_help)->type_name("FILE");
 }
@@ -158,27 +161,28 @@ void add_testset(CLI::App& app, Session& session) {
   command->require_subcommand(1);
 
   CLI::App* exporting = add_command(*command, session, "export",
-                                    "Write the cases of a generated set", kExportExamples);
+                                    "Write the cases of a generated set", kTestsetExportExamples);
   exporting->add_option("NAME", options->name, "The set: train/ID, validation/ID or test/ID")
       ->required();
   exporting->add_option("--cases", options->cases, "The first N cases")->type_name("N")->required();
-  add_format(*exporting, *options, "Where to (default: standard output)");
+  add_format(*exporting, *options, "The file (default: standard output)");
   exporting
       ->add_option("--problem,-p", options->problem,
-                   "Generate in this problem's workspace (default: the thesis's sphere)")
+                   "Generate the cases in this problem's workspace (default: the thesis's sphere)")
       ->type_name("PROBLEM");
   exporting->callback(
       [options, &session] { session.action = [options] { return run_export(*options); }; });
 
-  CLI::App* importing = add_command(*command, session, "import",
-                                    "Check a file of cases, and convert it", kImportExamples);
+  CLI::App* importing = add_command(
+      *command, session, "import", "Check a file of cases, and convert it", kTestsetImportExamples);
   importing->add_option("FILE", options->name, "JSON or CSV")->required();
-  add_format(*importing, *options, "Write the cases there; - is standard output");
+  add_format(*importing, *options, "Write the cases to this file; - is standard output");
   importing->callback(
       [options, &session] { session.action = [options] { return run_import(*options); }; });
 
-  CLI::App* hashing = add_command(*command, session, "hash",
-                                  "Hash the cases of a generated set or a file", kHashExamples);
+  CLI::App* hashing =
+      add_command(*command, session, "hash", "Hash the cases of a generated set or a file",
+                  kTestsetHashExamples);
   hashing->add_option("NAME", options->name, "The set, or a file")->required();
   hashing
       ->add_option("--cases", options->cases, "The first N cases of a generated set (default: 500)")

@@ -1,28 +1,28 @@
-// armwright verify: does a design hold under other engines, time steps, masses and on perturbed
-// plants?
+// armwright verify: checks whether a design holds with other engines, time steps and masses, and on
+// perturbed plants.
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/format.hpp"
-#include "cli/terminal/json.hpp"
 #include "cli/terminal/progress_bar.hpp"
 #include "cli/terminal/session.hpp"
-#include "cli/terminal/signals.hpp"
 #include "cli/terminal/table.hpp"
 #include "cli/terminal/terminal.hpp"
-#include "cli/views/design_evaluation.hpp"
+#include "cli/views/design_and_problem.hpp"
 #include "cli/views/verification.hpp"
 #include "problems/config/config_files.hpp"
 #include "problems/config/design_file.hpp"
-#include "problems/config/perturbation_reader.hpp"
+#include "problems/config/problem_readers.hpp"
 #include "sim/engines/engine_table.hpp"
 
 namespace armwright {
@@ -39,19 +39,19 @@ constexpr const char* kVerifyExamples = R"(Examples:
   armwright verify table-a1 --problem q1-complex --engines articulated --substeps 10 --cases 10000 \
       --perturbations none,friction,sensor,all
 
-The design is simulated in every engine that is built in, with 1, 2, 5 and 10 substeps of the physics in a control
-period (physics.substeps), and with all masses and inertias of the arm at -10 %, 0 and +10 % (robot.mass_scale), in
-all combinations; and under its own engine and time step on perturbed plants (arms that differ from the nominal one),
-another for each case, of every shipped kind but those that weaken motors or change gains. Who gives --perturbations
-gets all combinations of them with the engines and substeps; a list that is not given keeps its default. The error of a
-case is the mean distance of the tip from its target. Each setting is compared with the design's own setting, the problem as it is:
+The command simulates the design in all combinations of: every engine of this build; 1, 2, 5 and 10 substeps of the
+physics per control period (physics.substeps); and all masses and inertias of the arm at -10 %, 0 and +10 %
+(robot.mass_scale). It also simulates the design in its own engine and time step on perturbed plants, that is, arms that
+differ from the nominal one, with another plant for each case. It uses all shipped perturbations except those that
+weaken motors or change gains. With --perturbations, these are combined with all engines and substeps. A list that is
+not given keeps its default. Each setting is compared with the design's own setting, the problem as it is:
 
   holds   no more cases fail, and the median error is at most 1.1 times its own
   worse   no more cases fail, but the median error is larger than that
   fails   more cases fail, or the median error is more than 10 times its own or does not exist
 
-A failure is a case with an error above 100 mm or none at all; the first one of each setting is named with the command
-that simulates it again and writes down its motion. The exit code is 3 if any setting is worse or fails.)";
+A failure is a case with an error above 100 mm or without a number. For the first failure of each setting, the command
+that simulates it again and writes its trajectory is printed. The exit code is 3 if any setting is worse or fails.)";
 
 struct VerifyOptions {
   std::string design;
@@ -59,7 +59,7 @@ struct VerifyOptions {
   OverrideOptions overrides;
   CaseOptions cases;
   std::vector<std::string> engines, substeps, perturbations;
-  JobsOption jobs;
+  std::string jobs;
   bool json = false;
   bool quiet = false;
 };
@@ -69,8 +69,8 @@ struct VerifiedDesign {
   std::string problem;
   ChosenCases cases;
   std::vector<VerifyRow> rows;       // the first is the design's own setting
-  std::vector<ErrorSurvey> surveys;  // one a row
-  std::vector<std::string> replays;  // one a row: the command for its first failure, if any
+  std::vector<ErrorSurvey> surveys;  // one per row
+  std::vector<std::string> replays;  // one per row: the command for its first failure, or empty
 };
 
 VerifySetting get_own_setting(const TrackingProblem& problem) {
@@ -112,7 +112,7 @@ std::string format_text(const VerifiedDesign& verified, const Style& style) {
        wrap_words(conclude(sanitize(verified.design), verified.rows), 100)) {
     text += line + "\n";
   }
-  const char* title = "\nThe first failure of each, to be simulated again:\n";
+  const char* title = "\nCommands that simulate the first failure of each setting again:\n";
   for (std::size_t i = 0; i < verified.rows.size(); ++i) {
     if (!verified.replays[i].empty()) {
       text += fmt::format("{}  {}: case {}\n    {}\n", std::exchange(title, ""),
@@ -167,7 +167,7 @@ std::string format_json(const VerifiedDesign& verified) {
          "\n";
 }
 
-// What makes the setting's plants of the problem's own.
+// Returns the settings of the problem that make the setting's plants.
 std::vector<std::string> list_plant_overrides(const VerifySetting& setting,
                                               const TrackingConfig& config) {
   if (setting.perturbation.empty()) {
@@ -179,20 +179,21 @@ std::vector<std::string> list_plant_overrides(const VerifySetting& setting,
   }
   if (config.perturbation.changes_anything()) {
     Perturbation plants = load_perturbation(setting.perturbation, config.robot.joint_count());
-    plants.where = Perturbation::Where::everywhere;  // a kind that is there to train with, too
+    plants.where =
+        Perturbation::Where::everywhere;  // also a preset that is meant for training only
     return make_overrides(plants);
   }
   return {"perturbation.preset=" + setting.perturbation, "perturbation.apply_to=everywhere"};
 }
 
-// What makes the setting of the problem as its file is: what the user changed about it, then the
-// setting's own changes.
+// Returns all changes of the problem's file for this setting: those of the user, then those of the
+// setting.
 std::vector<std::string> list_overrides(const VerifyOptions& options, const VerifySetting& setting,
                                         const TrackingConfig& config) {
   std::vector<std::string> changes = list_plant_overrides(setting, config);
   changes.push_back("physics.engine=" + setting.engine);
   changes.push_back("physics.judging_engine=" + setting.engine);
-  // Designs are judged in double, and only some engines have a SIMD level.
+  // Designs are judged in double. Only some engines have a SIMD level.
   changes.push_back("physics.precision=double");
   if (!find_engine(setting.engine).simd) {
     changes.push_back("physics.simd=auto");
@@ -209,7 +210,7 @@ std::vector<std::string> list_overrides(const VerifyOptions& options, const Veri
   return all;
 }
 
-// The command that simulates one case again and writes down its motion.
+// Returns the command that simulates one case again and writes its trajectory.
 std::string make_replay(const VerifyOptions& options, std::span<const std::string> overrides,
                         std::uint64_t number) {
   std::vector<std::string> words = {"armwright", "evaluate", options.design};
@@ -225,13 +226,13 @@ std::string make_replay(const VerifyOptions& options, std::span<const std::strin
     add("--set", assignment);
   }
   add("--cases", "1");
-  add("--case", fmt::format("{}", number));
+  add("--trajectory-case", fmt::format("{}", number));
   add("--trajectory", fmt::format("case-{}.csv", number));
   return quote_command(words);
 }
 
-// Presets that a design should stand: not those that are there to train with, nor, which is said
-// unless `quiet`, those with numbers for an arm of other joints.
+// Returns the presets that a design should hold with. Presets for training only are left out. So
+// are presets for another number of joints, which is reported on stderr unless `quiet`.
 std::vector<std::string> list_usual_presets(std::size_t joints, bool quiet) {
   std::vector<std::string> presets;
   std::vector<std::string> of_others;
@@ -240,14 +241,14 @@ std::vector<std::string> list_usual_presets(std::size_t joints, bool quiet) {
       if (!load_perturbation(name, joints).changes_design()) {
         presets.push_back(name);
       }
-    } catch (const Error&) {  // a shipped file is wrong in nothing else
+    } catch (const Error&) {  // a shipped file has no other fault than the number of joints
       of_others.push_back(name);
     }
   }
   if (!of_others.empty() && !quiet) {
     write_message(
-        fmt::format("left out, as their numbers are for an arm of other joints: {}; "
-                    "--perturbations takes files of your own (docs/robust.md)",
+        fmt::format("left out, as they are for an arm with another number of joints: {}; "
+                    "--perturbations accepts files of your own (docs/robust.md)",
                     join(of_others, ", ")));
   }
   return presets;
@@ -287,7 +288,7 @@ VerifyMatrix choose_matrix(const VerifyOptions& options, const VerifySetting& ow
 }
 
 int run_verify(const VerifyOptions& options, Session& session) {
-  const unsigned jobs = options.jobs.get();
+  const unsigned jobs = parse_jobs(options.jobs);
   const std::string named = options.overrides.choose_problem(options.problem);
   const auto [design, base] =
       load_design_and_problem(options.design, named, options.overrides.get(), options.quiet);
@@ -305,23 +306,24 @@ int run_verify(const VerifyOptions& options, Session& session) {
   std::vector<LoadedProblem> problems;
   for (const VerifySetting& setting : settings) {
     overrides.push_back(list_overrides(options, setting, tracking.config()));
-    problems.push_back(load_its_problem(design, named, overrides.back(), true));
+    problems.push_back(load_problem_of_design(design, named, overrides.back(), true));
   }
 
   catch_signals(session.stop);
   ProgressBar bar(options.quiet, {"error", "m"});
   VerifiedDesign verified{design.name, base.name, cases, {}, {}, {}};
-  BarShare share{0, cases.count * settings.size()};
+  Progress progress;
+  progress.total = cases.count * settings.size();
   for (std::size_t i = 0; i < settings.size(); ++i) {
-    auto survey = survey_with_progress(*problems[i].tracking, design.design, cases, jobs,
-                                       session.stop, bar, share);
-    problems[i] = {};  // its targets are of no use to the next
+    auto survey = survey_with_progress(*problems[i].tracking(), design.design, cases, jobs,
+                                       session.stop, bar, progress);
+    problems[i] = {};  // frees its target tables
     if (!survey) {
       bar.clear();
       write_message(fmt::format("{}; nothing was written", describe_stop(session.stop.reason())));
       return get_stop_code(session.stop.reason());
     }
-    share.done_before += cases.count;
+    progress.done += cases.count;
     const ErrorSummary& own =
         verified.rows.empty() ? survey->summary : verified.rows.front().summary;
     verified.rows.push_back(judge_setting(settings[i], survey->summary, own));
@@ -342,39 +344,39 @@ void add_verify(CLI::App& app, Session& session) {
   auto options = std::make_shared<VerifyOptions>();
   CLI::App* command = add_command(
       app, session, "verify",
-      "Try whether a design holds under other engines, time steps and masses, and on perturbed\n"
+      "Check whether a design holds with other engines, time steps and masses, and on perturbed\n"
       "plants",
       kVerifyExamples);
   add_design_argument(*command, options->design);
   command
       ->add_option("--problem,-p", options->problem,
-                   "Robot, task and physics that are its own setting (default: what the design\n"
-                   "was published for; with --robot the problem 'robot'; of others it is required)")
+                   "The problem that is the design's own setting (default: the one that the\n"
+                   "design was published for, or 'robot' with --robot; otherwise required)")
       ->type_name("PROBLEM");
   options->overrides.add_to(*command);
   options->cases.add_to(*command);
   command
       ->add_option("--engines", options->engines,
-                   "Engines to try, separated by commas (default: all that are built in)")
+                   "Engines to try, separated by commas (default: all engines of this build)")
       ->delimiter(',')
       ->type_name("NAMES");
   command
       ->add_option("--substeps", options->substeps,
-                   "Plant steps in a control period to try (default: 1,2,5,10 and its own)")
+                   "Substeps per control period to try (default: 1,2,5,10 and the problem's)")
       ->delimiter(',')
       ->type_name("NUMBERS");
   command
       ->add_option(
           "--perturbations", options->perturbations,
-          "Plants to try: none, lighter and heavier (all masses -10 and +10 %), a shipped\n"
-          "perturbation (docs/robust.md: masses-10, load-0-40, friction, sensor, ripple,\n"
-          "all of these together: all, weak), paths of such files (default: none, lighter,\n"
-          "heavier, and all shipped ones but weak)")
+          "Plants to try: none; lighter and heavier (all masses -10 and +10 %); a shipped\n"
+          "perturbation (docs/robust.md: masses-10, load-0-40, friction, sensor, ripple, all\n"
+          "(these five together), weak); or the path of such a file (default: none, lighter,\n"
+          "heavier, and all shipped perturbations except weak)")
       ->delimiter(',')
       ->type_name("NAMES");
-  options->jobs.add_to(*command);
+  add_jobs_flag(*command, options->jobs);
   command->add_flag("--json", options->json, "Print everything as JSON")->group("Output");
-  command->add_flag("--quiet,-q", options->quiet, "No progress")->group("Output");
+  command->add_flag("--quiet,-q", options->quiet, "Show no progress")->group("Output");
   command->callback([options, &session] {
     session.action = [options, &session] { return run_verify(*options, session); };
   });

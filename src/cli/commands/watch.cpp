@@ -1,4 +1,5 @@
-// armwright watch: the page of a run or comparison that is still under way, served to this machine.
+// armwright watch: serves the page of a run or study to this machine while the run or study is in
+// progress.
 
 #include <fmt/format.h>
 
@@ -6,9 +7,9 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "cli/commands/commands.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/session.hpp"
-#include "cli/terminal/signals.hpp"
 #include "cli/terminal/terminal.hpp"
 #include "report/page/page_data.hpp"
 #include "report/page/page_server.hpp"
@@ -18,19 +19,19 @@ namespace armwright {
 namespace {
 
 constexpr const char* kWatchExamples = R"(Examples:
-  armwright compare configs/studies/q1.toml &      # a study that runs
-  armwright watch results/q1                       # prints an address; Ctrl-C ends it
+  armwright compare configs/studies/q1.toml &      # start a study
+  armwright watch results/q1                       # print an address; Ctrl-C ends the command
   armwright watch results/q1 --port 8642
 
-It reads only, and answers this machine only (127.0.0.1): over ssh, forward the port with ssh -L. What needs
-simulations of its own (the motion in 3D, curves on the test set) comes with 'armwright report' afterwards.)";
+The command only reads, and it answers only this machine (127.0.0.1); over ssh, forward the port with ssh -L. The page
+leaves out figures that need simulations (the motion in 3D, curves on the test set); 'armwright report' makes them.)";
 
 struct WatchOptions {
   std::string folder;
   std::string port = "0";
 };
 
-// Nobody asks a page how far its making is.
+// The page is made without showing progress.
 class SilentObserver final : public RunObserver {
  public:
   void on_progress(const Progress&) override {}
@@ -50,7 +51,7 @@ int run_watch(const WatchOptions& options, Session& session) {
     }
     return *data;
   };
-  const std::string first = make_data();  // says so now, if there is nothing to show
+  const std::string first = make_data();  // throws now if there is nothing to show
   PageServer server(port, get_page_title(first), make_data);
   write_stdout(fmt::format("http://127.0.0.1:{}/ shows {}; Ctrl-C ends it\n", server.port(),
                            sanitize(options.folder)));
@@ -64,12 +65,11 @@ int run_watch(const WatchOptions& options, Session& session) {
 void add_watch(CLI::App& app, Session& session) {
   auto options = std::make_shared<WatchOptions>();
   CLI::App* command = add_command(
-      app, session, "watch",
-      "Serve the page of a run or a comparison to this machine while it runs", kWatchExamples);
-  command
-      ->add_option("FOLDER", options->folder, "The folder of a run, a comparison or a reproduction")
+      app, session, "watch", "Serve the page of a run or a study to this machine while it runs",
+      kWatchExamples);
+  command->add_option("FOLDER", options->folder, "The folder of a run, a study or a reproduction")
       ->required();
-  command->add_option("--port", options->port, "Of 127.0.0.1 (default: 0, any that is free)")
+  command->add_option("--port", options->port, "Port of 127.0.0.1 (default: 0, any free port)")
       ->type_name("N");
   command->callback([options, &session] {
     session.action = [options, &session] { return run_watch(*options, session); };

@@ -19,11 +19,12 @@ namespace {
 
 using nlohmann::json;
 
-// A robot as it is without options, or up to the nearest of the tips that can be named.
+// A robot as it is loaded without options. If the user must name a tip, the model ends at the tip
+// with the fewest joints.
 struct ListedRobot {
   RobotModel model;
-  std::vector<std::string> tips;  // where one must be named
-  std::string tip;                // which of them the model ends at
+  std::vector<std::string> tips;  // the possible tips if the user must name one; otherwise empty
+  std::string tip;                // the tip at which the model ends
 };
 
 ListedRobot load_listed(const std::filesystem::path& file) {
@@ -39,7 +40,7 @@ ListedRobot load_listed(const std::filesystem::path& file) {
           robot.tip = leaf;
         }
         robot.tips.push_back(leaf);
-      } catch (const Error&) {  // what makes this leaf no tip, a joint that follows another, say
+      } catch (const Error&) {  // this leaf cannot be a tip, for example if a joint mimics another
       }
     }
     if (robot.tips.empty()) {
@@ -174,8 +175,8 @@ json explain_design_as_json(const std::string& name) {
   for (std::size_t i = 0; i < file.design.joints.size(); ++i) {
     const JointDrive& drive = file.design.joints[i];
     json joint = {{"name", sanitize(file.joint_names.at(i))},
-                  {"effort_min_n_m", drive.limits.min_n_m},
-                  {"effort_max_n_m", drive.limits.max_n_m}};
+                  {"effort_min_n_m", drive.limits.min},
+                  {"effort_max_n_m", drive.limits.max}};
     for (std::size_t g = 0; g < drive.gains.size(); ++g) {
       joint[controller.gains[g].key] = drive.gains[g];
     }
@@ -192,7 +193,7 @@ json explain_design_as_json(const std::string& name) {
           {"title", sanitize(file.title)},
           {"source", sanitize(file.source)},
           {"controller", file.design.controller},
-          {"total_torque_n_m", calc_total_torque_n_m(file.design)},
+          {"total_torque_n_m", calc_total_effort(file.design)},
           {"joints", joints},
           {"published", published}};
 }

@@ -23,8 +23,8 @@ const char* describe(FeedForward feed_forward) {
   return "?";
 }
 
-// What bounds a gain as a decision variable.
-std::string describe_bounds(const GainSpec& gain) {
+// Returns the bounds of a gain as a decision variable.
+std::string describe_bounds(const controllers::Gain& gain) {
   return gain.range == 0
              ? "start / bounds_factor to start x bounds_factor"
              : fmt::format("start +- {}{}", gain.range, gain.any_sign ? "" : ", not below 0");
@@ -33,7 +33,7 @@ std::string describe_bounds(const GainSpec& gain) {
 std::string explain(const std::string& name, const Style& style) {
   const ControllerRow& row = find_controller(name);
   Table table({{"gain", false}, {"in design files", false}, {"unit", false}, {"spans", false}});
-  for (const GainSpec& gain : row.gains) {
+  for (const controllers::Gain& gain : row.gains) {
     table.add_row({gain.name, gain.key, gain.unit, describe_bounds(gain)});
   }
   std::string text = format_title(style, row.name, row.summary);
@@ -43,14 +43,14 @@ std::string explain(const std::string& name, const Style& style) {
   }
   text += row.feed_forward == FeedForward::none
               ? ""
-              : fmt::format("  Efforts in advance: {}, of the problem's arm.\n",
+              : fmt::format("  Feed-forward: {}, computed for the problem's arm.\n",
                             describe(row.feed_forward));
   return text + "\n" + table.format(style);
 }
 
 json to_json(const ControllerRow& row) {
   json gains = json::array();
-  for (const GainSpec& gain : row.gains) {
+  for (const controllers::Gain& gain : row.gains) {
     gains.push_back({{"name", gain.name},
                      {"key", gain.key},
                      {"unit", gain.unit},

@@ -11,9 +11,9 @@ namespace {
 
 using nlohmann::json;
 
-// "scalar, sse2, avx2; unless told otherwise avx2"
+// "scalar, sse2, avx2; default avx2"
 std::string describe_simd() {
-  return fmt::format("{}; unless told otherwise {}", join(supported_simd_names(), ", "),
+  return fmt::format("{}; default {}", join(supported_simd_names(), ", "),
                      to_string(find_best_simd()));
 }
 
@@ -22,10 +22,10 @@ std::string explain(const EngineRow& row, const Style& style) {
   if (row.simd) {
     table.add_row({"SIMD level", "--simd LEVEL", describe_simd()});
     table.add_row({"precision in training", "--precision NAME",
-                   join(precision_names(), ", ") + "; unless told otherwise double"});
+                   join(precision_names(), ", ") + "; default double"});
   }
   const std::string none =
-      "  It has no SIMD level and no precision to choose: it computes in double.\n";
+      "  It has no choice of SIMD level or precision: it computes in double.\n";
   return format_title(style, row.name, row.summary) +
          (row.simd ? "\n" + table.format(style, 2) : none);
 }
@@ -50,7 +50,7 @@ ListKind make_engine_kind(std::span<const EngineRow> table) {
           {row.name, row.summary + (row.simd ? "; SIMD here: " + describe_simd() : "")});
     }
     for (const MissingEngine& missing : missing_engine_table()) {
-      items.push_back({missing.name, "not there: " + missing.reason});
+      items.push_back({missing.name, "not available: " + missing.reason});
     }
     return items;
   };

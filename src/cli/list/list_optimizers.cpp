@@ -6,7 +6,6 @@
 #include "base/text.hpp"
 #include "cli/list/list_views.hpp"
 #include "cli/list/optimizer_page.hpp"
-#include "cli/list/optimizer_words.hpp"
 #include "cli/terminal/table.hpp"
 #include "optimizers/table/optimizer_table.hpp"
 
@@ -23,7 +22,7 @@ std::vector<ListItem> list_known_optimizers() {
   return items;
 }
 
-// A row of the table, available or not, or a plugin.
+// Returns a row of the table, also of an unavailable optimizer, or the row of a plugin.
 OptimizerRow get_row(const std::string& name) {
   const bool listed = std::ranges::count(optimizer_table(), name, &OptimizerRow::name) > 0;
   return listed ? find_optimizer(name) : load_optimizer(name);
@@ -57,9 +56,9 @@ std::string format_facts(const OptimizerRow& row, const Style& style, int width)
 
 std::string format_capabilities(const OptimizerRow& row, const Style& style, int width) {
   Table table({{"capability", false}, {"", false}, {"what that means", false, true}});
-  for (const CapabilityWords& words : capability_words()) {
-    table.add_row({words.name, row.capabilities.*words.member ? "yes" : "no",
-                   describe_capability(row, words)});
+  for (const CapabilityRow& capability : kCapabilityTable) {
+    table.add_row({capability.name, row.capabilities.*capability.member ? "yes" : "no",
+                   describe_capability(row, capability)});
   }
   return table.format(style, 0, width);
 }
@@ -107,8 +106,8 @@ json to_json(const OptimizerRow& row) {
     options.push_back(std::move(one));
   }
   json capabilities = json::object();
-  for (const CapabilityWords& words : capability_words()) {
-    capabilities[words.name] = row.capabilities.*words.member;
+  for (const CapabilityRow& capability : kCapabilityTable) {
+    capabilities[capability.name] = row.capabilities.*capability.member;
   }
   return {{"name", row.name},
           {"summary", row.summary},

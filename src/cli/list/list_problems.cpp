@@ -6,8 +6,8 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "cli/list/list_views.hpp"
-#include "cli/list/problem_page.hpp"
 #include "cli/terminal/format.hpp"
+#include "cli/terminal/markdown.hpp"
 #include "cli/terminal/table.hpp"
 #include "cli/views/requirement_view.hpp"
 #include "problems/config/problem_loader.hpp"
@@ -32,7 +32,7 @@ std::string get_key(std::string pointer) {
   return pointer;
 }
 
-// Tables one below the other, lists on one line.
+// Adds one row per setting. A list is one row.
 void collect_settings(const json& value, const std::string& pointer, Table& table) {
   if (value.is_object()) {
     for (const auto& [key, inner] : value.items()) {
@@ -46,7 +46,7 @@ void collect_settings(const json& value, const std::string& pointer, Table& tabl
   }
 }
 
-// What is required of a design; nothing of most problems.
+// Returns a table of the requirements, or an empty text if the problem has none.
 std::string format_required(const ProblemDescription& description, const Style& style) {
   if (description.requirements.empty()) {
     return "";
@@ -118,6 +118,91 @@ json explain_problem_as_json(const std::string& name) {
           {"requirements", requirements},  {"settings", json::parse(loaded.resolved_json)}};
 }
 
+std::string list_quantities(const std::vector<Quantity>& quantities) {
+  std::vector<std::string> texts;
+  for (const Quantity& quantity : quantities) {
+    texts.push_back(quantity.unit.empty() || quantity.unit == "1"
+                        ? quantity.name
+                        : fmt::format("{} ({})", quantity.name, quantity.unit));
+  }
+  return join(texts, ", ");
+}
+
+// Returns the names of the variables. "joint_1.p, joint_1.i, ..." of four joints becomes "p, i, ...
+// of joint_1, ..., joint_4".
+std::string describe_variables(const std::vector<DecisionVariable>& variables) {
+  std::vector<std::string> owners, kinds;
+  const auto add = [](std::vector<std::string>& names, const std::string& name) {
+    if (std::ranges::count(names, name) == 0) {
+      names.push_back(name);
+    }
+  };
+  for (const DecisionVariable& variable : variables) {
+    const std::size_t dot = variable.name.find('.');
+    if (dot == std::string::npos) {
+      return fmt::format("{} to {}", variables.front().name, variables.back().name);
+    }
+    add(owners, variable.name.substr(0, dot));
+    add(kinds, variable.name.substr(dot + 1));
+  }
+  return fmt::format("{} of {}", join(kinds, ", "), join(owners, ", "));
+}
+
+std::string describe_limits(const ProblemDescription& description) {
+  std::vector<std::string> texts;
+  for (const Limit& limit : description.limits) {
+    texts.push_back(
+        fmt::format("{} at most {:g} {}", limit.quantity.name, limit.value, limit.quantity.unit));
+  }
+  if (texts.empty() && !description.constraints.empty()) {
+    return fmt::format("{} <= 0", list_quantities(description.constraints));
+  }
+  return join(texts, "; ");
+}
+
+std::string format_problem(const std::string& name, const LoadedProblem& loaded) {
+  const ProblemDescription& description = loaded.problem->description();
+  const auto settings = nlohmann::json::parse(loaded.resolved_json);
+  std::string text = fmt::format("\n## `{}`\n\n{}.\n", name, escape_markdown(loaded.title));
+  if (settings.contains("description")) {
+    text += "\n";
+    for (const std::string& line : split(settings["description"].get<std::string>(), '\n')) {
+      text += line.empty() ? "" : escape_markdown(line) + "\n";
+    }
+  }
+  text += fmt::format("\n- Minimised: {}\n- Variables: {}, {}\n",
+                      escape_markdown(list_quantities(description.objectives)),
+                      description.variables.size(),
+                      escape_markdown(describe_variables(description.variables)));
+  if (!description.constraints.empty()) {
+    text += fmt::format("- Constraints: {}\n", escape_markdown(describe_limits(description)));
+  }
+  text += fmt::format(
+      "- Defaults: `{}`, a budget of {} {}s, schedule `{}`; {} validation and {} test "
+      "cases\n",
+      loaded.optimizer, loaded.budget, description.cost_unit, to_text(loaded.schedule),
+      loaded.sets.validation_cases, loaded.sets.test_cases);
+  if (!loaded.published.where.empty()) {
+    text += fmt::format("- Published: {}\n", escape_markdown(loaded.published.where));
+  }
+  return text;
+}
+
+std::string format_problem_page() {
+  std::string text = fmt::format(
+      "{}# Problems\n\n"
+      "The shipped problems, which `armwright list problems` lists. `armwright list problems NAME` "
+      "shows one of them with all variables and settings. [configuration.md](configuration.md) "
+      "explains the settings.\n\n| problem | |\n|---|---|\n",
+      kGeneratedPage);
+  std::string sections;
+  for (const ProblemTitle& problem : list_problems()) {
+    text += fmt::format("| [`{0}`](#{0}) | {1} |\n", problem.name, escape_markdown(problem.title));
+    sections += format_problem(problem.name, load_problem(problem.name));
+  }
+  return text + sections;
+}
+
 }  // namespace
 
 ListKind make_problem_kind() {
@@ -128,7 +213,7 @@ ListKind make_problem_kind() {
           .explain_as_markdown = [](const std::string& name) {
             if (!name.empty()) {
               throw Error(ErrorKind::usage,
-                          "the page of problems has all of them; leave out the name");
+                          "the page of problems contains all problems; leave out the name");
             }
             return format_problem_page();
           }};

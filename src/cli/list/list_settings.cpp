@@ -1,4 +1,4 @@
-// The kind "settings": every key of a problem's, a study's and a design's file.
+// The kind "settings": all keys of the files of problems, studies and designs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,58 +10,53 @@
 #include "base/text.hpp"
 #include "cli/list/list_views.hpp"
 #include "cli/terminal/markdown.hpp"
-#include "study/compare/study_settings.hpp"
+#include "problems/config/design_file.hpp"
+#include "problems/config/problem_loader.hpp"
+#include "study/compare/study_plan.hpp"
 
 namespace armwright {
 namespace {
 
 using nlohmann::json;
 
+// One kind of configuration file.
 struct SettingFile {
-  std::string prefix;  // of names; none for problems, whose keys --set takes as they are
+  std::string prefix;  // of the names; empty for problems, whose keys are those of --set
   std::string title;
   std::string words;  // Markdown
-  std::vector<Setting> settings;
+  std::vector<ListedSetting> settings;
 };
 
 std::vector<SettingFile> list_setting_files() {
   return {
       {"", "Problems",
-       "`configs/problems/NAME.toml`, or a file of your own. `--set KEY=VALUE` changes any of them "
-       "on the command line. `extends = \"NAME\"` takes over another problem's file, beside this "
-       "one or a shipped one, and changes it.",
-       list_problem_settings()},
+       "`configs/problems/NAME.toml`, or a file of your own. `--set KEY=VALUE` changes a setting "
+       "on the command line. `extends = \"NAME\"` starts from another problem and changes it; NAME "
+       "is a file beside this one or a shipped problem.",
+       list_settings(problem_settings())},
       {"study:", "Studies",
        "`configs/studies/NAME.toml`, or a file of your own, for `armwright compare` "
        "([comparing.md](../comparing.md)). `extends` works as in problems.",
-       list_study_settings()},
+       list_settings(study_settings())},
       {"design:", "Designs",
-       "`configs/designs/NAME.toml`, or the `winner.toml` of a run. Which gains there are depends "
-       "on the controller.",
-       list_design_settings()},
+       "`configs/designs/NAME.toml`, or the `winner.toml` of a run. The controller determines "
+       "which gains there are.",
+       list_settings(design_settings())},
   };
-}
-
-std::string describe_allowed(const Setting& setting) {
-  return join(setting.allowed, "; or ");
-}
-
-// More than two say only that it depends on something else, which the meaning tells.
-std::vector<std::string> list_defaults(const Setting& setting) {
-  return setting.fallbacks.size() > 2 ? std::vector<std::string>{} : setting.fallbacks;
 }
 
 std::vector<ListItem> list_known_settings() {
   std::vector<ListItem> items;
   for (const SettingFile& file : list_setting_files()) {
-    for (const Setting& setting : file.settings) {
-      items.push_back({file.prefix + setting.path, setting.meaning});
+    for (const ListedSetting& setting : file.settings) {
+      items.push_back({file.prefix + setting.path, setting.setting->meaning});
     }
   }
   return items;
 }
 
-// Names that hold what was typed, a key without its unit, say; else the nearest.
+// Suggests the names that contain the typed text, for example a key without its unit, or else the
+// nearest name.
 std::string suggest(const std::string& typed, const std::vector<std::string>& names) {
   constexpr std::size_t kMostSuggested = 5;
   std::vector<std::string> holding;
@@ -77,13 +72,13 @@ std::string suggest(const std::string& typed, const std::vector<std::string>& na
   return fmt::format("; did you mean '{}'?", join(holding, "' or '"));
 }
 
-Setting find_setting(const std::string& name) {
+const AnySetting& find_setting(const std::string& name) {
   std::vector<std::string> names;
   for (const SettingFile& file : list_setting_files()) {
-    for (const Setting& setting : file.settings) {
+    for (const ListedSetting& setting : file.settings) {
       names.push_back(file.prefix + setting.path);
       if (names.back() == name) {
-        return setting;
+        return *setting.setting;
       }
     }
   }
@@ -93,38 +88,42 @@ Setting find_setting(const std::string& name) {
 }
 
 std::string explain_setting(const std::string& name, const Style& style) {
-  const Setting setting = find_setting(name);
+  const AnySetting& setting = find_setting(name);
   std::string text = format_title(style, name, setting.meaning) + "\n";
   if (!setting.unit.empty()) {
     text += fmt::format("  unit     {}\n", setting.unit);
   }
-  text += fmt::format("  allowed  {}\n", describe_allowed(setting));
-  if (const auto defaults = list_defaults(setting); !defaults.empty()) {
-    text += fmt::format("  default  {}\n", join(defaults, " or "));
+  text += fmt::format("  allowed  {}\n", setting.describe_allowed());
+  if (!setting.default_text.empty()) {
+    text += fmt::format("  default  {}\n", setting.default_text);
   }
   return text;
 }
 
-json to_json(const std::string& name, const Setting& setting) {
+json to_json(const std::string& name, const AnySetting& setting) {
+  json defaults = json::array();
+  if (!setting.default_text.empty()) {
+    defaults.push_back(setting.default_text);
+  }
   return {{"name", name},
           {"unit", setting.unit},
-          {"allowed", setting.allowed},
-          {"default", list_defaults(setting)},
+          {"allowed", json::array({setting.describe_allowed()})},
+          {"default", defaults},
           {"meaning", setting.meaning}};
 }
 
 json list_settings_as_json() {
   json all = json::array();
   for (const SettingFile& file : list_setting_files()) {
-    for (const Setting& setting : file.settings) {
-      all.push_back(to_json(file.prefix + setting.path, setting));
+    for (const ListedSetting& setting : file.settings) {
+      all.push_back(to_json(file.prefix + setting.path, *setting.setting));
     }
   }
   return all;
 }
 
-// In few words, for a narrow column of a table.
-std::string shorten_allowed(const Setting& setting) {
+// Returns what is allowed in few words, for a narrow column of a table.
+std::string shorten_allowed(const AnySetting& setting) {
   constexpr std::pair<std::string_view, std::string_view> kShorter[] = {
       {"an array, each element of it a finite number", "numbers, each"},
       {"one of these strings: ", ""},
@@ -133,17 +132,13 @@ std::string shorten_allowed(const Setting& setting) {
       {"an integer", "integer"},
       {"a string", "text"},
   };
-  std::vector<std::string> texts;
-  for (std::string text : setting.allowed) {
-    for (const auto& [longer, shorter] : kShorter) {
-      if (text.starts_with(longer)) {
-        text.replace(0, longer.size(), shorter);
-        break;
-      }
+  std::string text = setting.describe_allowed();
+  for (const auto& [longer, shorter] : kShorter) {
+    if (text.starts_with(longer)) {
+      return text.replace(0, longer.size(), shorter);
     }
-    texts.push_back(std::move(text));
   }
-  return join(texts, "; or ");
+  return text;
 }
 
 // "task.speed_m_per_s" -> "[task]"; "requirement[].use" -> "[[requirement]]"; "" at the top.
@@ -157,25 +152,23 @@ std::string get_table_heading(const std::string& path) {
                                : "[" + table + "]";
 }
 
-std::string format_row(const Setting& setting) {
-  std::vector<std::string> defaults;
-  std::ranges::transform(list_defaults(setting), std::back_inserter(defaults), format_code);
-  return fmt::format("| {} | {} | {} | {} | {} |\n",
-                     format_code(setting.path.substr(setting.path.rfind('.') + 1)),
+std::string format_row(const AnySetting& setting) {
+  return fmt::format("| {} | {} | {} | {} | {} |\n", format_code(setting.key),
                      escape_markdown(setting.meaning), escape_markdown(shorten_allowed(setting)),
-                     escape_markdown(setting.unit), join(defaults, " or "));
+                     escape_markdown(setting.unit),
+                     setting.default_text.empty() ? "" : format_code(setting.default_text));
 }
 
-// A table of Markdown for each of the file's tables.
-std::string format_tables(const std::vector<Setting>& settings) {
+// Returns one table of Markdown per table of the file.
+std::string format_tables(const std::vector<ListedSetting>& settings) {
   std::string text, heading = "none yet";
-  for (const Setting& setting : settings) {
+  for (const ListedSetting& setting : settings) {
     if (const std::string own = get_table_heading(setting.path); own != heading) {
       heading = own;
       text += (heading.empty() ? "\n" : fmt::format("\n### `{}`\n\n", heading)) +
               "| key | meaning | allowed | unit | default |\n|---|---|---|---|---|\n";
     }
-    text += format_row(setting);
+    text += format_row(*setting.setting);
   }
   return text;
 }
@@ -186,10 +179,10 @@ std::string format_page(const std::string& name) {
   }
   std::string text = fmt::format(
       "{}# Settings\n\n"
-      "Every key of the configuration files, as `armwright list settings` prints them. Units are "
-      "SI, and a key's name ends with its unit. Without a default a key is required, or what its "
-      "absence means stands beside it. Unknown keys are refused, with the nearest valid one. In "
-      "`--set` a key is named with its table: `task.speed_m_per_s`.\n",
+      "All keys of the configuration files, as `armwright list settings` prints them. Units are "
+      "SI, and a key's name ends with its unit. A key without a default is required, unless its "
+      "meaning says what its absence means. Unknown keys are refused, and the nearest valid key is "
+      "suggested. In `--set`, a key is named with its table: `task.speed_m_per_s`.\n",
       kGeneratedPage);
   for (const SettingFile& file : list_setting_files()) {
     text += fmt::format("\n## {}\n\n{}\n", file.title, file.words) + format_tables(file.settings);

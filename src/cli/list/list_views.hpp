@@ -1,4 +1,5 @@
-// The kinds of things that `list` knows: how to name them all, and how to explain one of them.
+// The kinds of things that `armwright list` shows. A kind can list its items and explain one of
+// them.
 #pragma once
 
 #include <functional>
@@ -15,16 +16,17 @@ namespace armwright {
 struct ListItem {
   std::string name;
   std::string summary;
-  std::string unavailable = {};  // why it cannot be used here; empty: it can
+  std::string unavailable = {};  // why it cannot be used here; empty if it can
 };
 
 struct ListKind {
   std::string name;  // "optimizers"
   std::function<std::vector<ListItem>()> list;
-  // Error{usage} with the valid names if there is none of that name.
+  // Both throw Error{usage} with the valid names if there is no item of that name.
   std::function<std::string(const std::string& name, const Style& style)> explain;
   std::function<nlohmann::json(const std::string& name)> explain_as_json;
-  // Optional: more than names and summaries, for --json; and Markdown of all (no name) or of one.
+  // Both are optional. The first returns more than names and summaries, for --json. The second
+  // returns Markdown of one item, or of all items if the name is empty.
   std::function<nlohmann::json()> list_as_json = {};
   std::function<std::string(const std::string& name)> explain_as_markdown = {};
 };
@@ -37,9 +39,11 @@ ListKind make_design_kind();
 ListKind make_study_kind();
 ListKind make_controller_kind();
 ListKind make_setting_kind();
-std::vector<std::string> list_kind_names();  // "problems", "optimizers", ...
+std::vector<ListKind> list_kinds();
+// Returns the names of all kinds: "problems", "optimizers", ...
+std::vector<std::string> list_kind_names();
 
-// "NAME: SUMMARY" as a first line.
+// Returns the line "NAME: SUMMARY".
 std::string format_title(const Style& style, const std::string& name, const std::string& summary);
 
 }  // namespace armwright

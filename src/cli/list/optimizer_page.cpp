@@ -5,12 +5,18 @@
 #include <algorithm>
 
 #include "base/text.hpp"
-#include "cli/list/optimizer_words.hpp"
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/markdown.hpp"
+#include "optimizers/interface/capability_table.hpp"
 
 namespace armwright {
 namespace {
+
+// Returns 1e+12 instead of a number with many zeros.
+std::string format_bound(double value) {
+  const std::string brief = fmt::format("{:g}", value);
+  return parse_finite(brief) == value ? brief : format_exact(value);
+}
 
 std::string format_sentence(const std::string& text) {
   return escape_markdown(text) + (text.ends_with('.') ? "" : ".");
@@ -50,8 +56,8 @@ std::string format_facts(const OptimizerRow& row) {
     text += fmt::format("- **Not offered:** {}\n", format_sentence(row.unfit));
   }
   text += row.backend.empty()
-              ? "- **Build:** every one has it.\n"
-              : fmt::format("- **Build:** one with {}, as every build is by default.\n",
+              ? "- **Build:** part of every build.\n"
+              : fmt::format("- **Build:** needs {}, which a build has by default.\n",
                             escape_markdown(row.backend));
   const std::vector<std::string> required = list_requirements(row.requirements);
   text += required.empty() ? "- **Problem:** any.\n"
@@ -89,17 +95,17 @@ std::string format_calls(const OptimizerRow& row) {
 
 std::string format_capabilities(const OptimizerRow& row) {
   std::string text = "## Capabilities\n\n| capability | | what that means |\n|---|---|---|\n";
-  for (const CapabilityWords& words : capability_words()) {
-    text +=
-        fmt::format("| {} | {} | {} |\n", words.name, row.capabilities.*words.member ? "yes" : "no",
-                    escape_markdown(describe_capability(row, words)));
+  for (const CapabilityRow& capability : kCapabilityTable) {
+    text += fmt::format("| {} | {} | {} |\n", capability.name,
+                        row.capabilities.*capability.member ? "yes" : "no",
+                        escape_markdown(describe_capability(row, capability)));
   }
   return text + "\n";
 }
 
 std::string format_options(const OptimizerRow& row) {
   if (row.options.empty()) {
-    return "## Options\n\nIt has none.\n\n";
+    return "## Options\n\nIt has no options.\n\n";
   }
   std::string text = "## Options\n\n| option | default | allowed | meaning |\n|---|---|---|---|\n";
   for (const OptionSpec& option : row.options) {
@@ -110,7 +116,7 @@ std::string format_options(const OptimizerRow& row) {
   return text + "\n";
 }
 
-// Papers stand in a row's source one behind the other.
+// A row's source lists its papers, separated by "; ".
 std::string format_source(const OptimizerRow& row) {
   std::string text = "## Source\n\n";
   std::string rest = row.source;
@@ -124,6 +130,67 @@ std::string format_source(const OptimizerRow& row) {
 
 }  // namespace
 
+std::vector<std::string> list_capabilities(const Capabilities& capabilities) {
+  std::vector<std::string> names;
+  for (const CapabilityRow& capability : kCapabilityTable) {
+    if (capabilities.*capability.member) {
+      names.emplace_back(capability.name);
+    }
+  }
+  return names;
+}
+
+std::string describe_capability(const OptimizerRow& row, const CapabilityRow& capability) {
+  const bool has = row.capabilities.*capability.member;
+  if (capability.member == &Capabilities::constraints && !has) {
+    const bool weighs = std::ranges::count(row.options, "constraint_weight", &OptionSpec::name) > 0;
+    return weighs ? "does not know the constraints: their violation, times constraint_weight, is "
+                    "added to the objective"
+                  : "does not know the constraints and ignores them";
+  }
+  return has ? capability.with : capability.without;
+}
+
+std::vector<std::string> list_requirements(const Requirements& requirements) {
+  std::vector<std::string> list;
+  if (requirements.objectives > 1) {
+    list.push_back(fmt::format("at least {} objectives", requirements.objectives));
+  }
+  if (requirements.variables > 1) {
+    list.push_back(fmt::format("at least {} decision variables", requirements.variables));
+  }
+  if (requirements.residuals) {
+    list.emplace_back("residuals (all robot problems have them)");
+  }
+  return list;
+}
+
+std::string describe_isolation(const OptimizerRow& row) {
+  if (row.isolated.empty()) {
+    return "in armwright's own process";
+  }
+  constexpr const char* kElsewhere =
+      "in a process of its own, where a hang or a crash costs this run and nothing else";
+  return row.isolated == "always"
+             ? kElsewhere
+             : fmt::format("{} {}, otherwise in armwright's own", row.isolated, kElsewhere);
+}
+
+const char* get_option_type(const OptionValue& value) {
+  constexpr const char* kNames[] = {"true or false", "integer", "number", "text"};
+  return kNames[value.index()];
+}
+
+std::string describe_range(const OptionSpec& option) {
+  if (std::holds_alternative<std::int64_t>(option.fallback)) {
+    return fmt::format("{:.0f} to {:.0f}", option.lower, option.upper);
+  }
+  if (std::holds_alternative<double>(option.fallback)) {
+    return fmt::format("{} to {}", format_bound(option.lower), format_bound(option.upper));
+  }
+  return "";
+}
+
 std::string get_page_name(const std::string& optimizer) {
   std::string name = optimizer + ".md";
   std::ranges::replace(name, ':', '-');
@@ -133,33 +200,31 @@ std::string get_page_name(const std::string& optimizer) {
 std::string format_optimizer_index(std::span<const OptimizerRow> rows) {
   std::string text = fmt::format(
       "{}# Optimizers\n\n"
-      "What `--optimizer` takes, in the order of `armwright list optimizers`. Two more ways to "
-      "name "
-      "one:\n\n"
-      "- `multistart:NAME` runs a *local* one from the start and then from random points, until "
-      "the budget ends.\n"
-      "- `./libmine.so` and `exec:COMMAND` are [optimizers of your "
-      "own](../plugins.md).\n\n"
-      "Every optimizer gets the same budget, the same training cases and the same judging of its "
-      "winner. All are repeatable: the same seed gives the same run. Where options speak of a "
-      "share of "
-      "the box, they mean the distance between a variable's bounds, or between their logarithms "
-      "where "
-      "the variable is logarithmic.\n\n"
+      "The values of `--optimizer`, in the order of `armwright list optimizers`. There are two "
+      "more "
+      "ways to name an optimizer:\n\n"
+      "- `multistart:NAME` runs a *local* optimizer from the start and then from random points, "
+      "until the budget ends.\n"
+      "- `./libmine.so` and `exec:COMMAND` are [optimizers of your own](../plugins.md).\n\n"
+      "All optimizers get the same budget and the same training cases, and their winners are "
+      "judged "
+      "in the same way. The same seed gives the same run. If an option is a share of the box, it "
+      "is "
+      "a share of the distance between a variable's bounds. For a logarithmic variable, it is a "
+      "share of the distance between the logarithms of the bounds.\n\n"
       "| optimizer | what it is | capabilities | needs |\n|---|---|---|---|\n",
       kGeneratedPage);
   for (const OptimizerRow& row : rows) {
     text += format_index_row(row);
   }
   text +=
-      "\nWhat *needs* names a library is missing in a build without it. What *needs* demands of "
-      "the "
-      "problem is checked before a run begins.\n\n"
+      "\nIf *needs* names a library, a build without this library does not have the optimizer. If "
+      "*needs* names a demand on the problem, it is checked before a run begins.\n\n"
       "## How to read the capabilities\n\n"
-      "| capability | an optimizer with it | one without |\n|---|---|---|\n";
-  for (const CapabilityWords& words : capability_words()) {
-    text += fmt::format("| {} | {} | {} |\n", words.name, escape_markdown(words.with),
-                        escape_markdown(words.without));
+      "| capability | an optimizer with it | an optimizer without it |\n|---|---|---|\n";
+  for (const CapabilityRow& capability : kCapabilityTable) {
+    text += fmt::format("| {} | {} | {} |\n", capability.name, escape_markdown(capability.with),
+                        escape_markdown(capability.without));
   }
   return text;
 }

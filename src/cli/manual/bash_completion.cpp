@@ -1,15 +1,149 @@
-#include "cli/manual/bash_completion.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "base/text.hpp"
-#include "cli/manual/bash_completion_text.hpp"
-#include "cli/manual/value_source.hpp"
+#include "cli/manual/completion.hpp"
 
 namespace armwright {
 namespace {
+
+// The part of the script that is the same for all programs. It needs bash 4.4, but not the package
+// bash-completion.
+constexpr const char* kBashCompletionText = R"--(
+# Sets `words` to the words up to the cursor; the last one may be empty. Readline also breaks words at ':' and '=', as in
+# nlopt:bobyqa. Parts without a blank between them are joined again.
+_armwright_join_words() {
+  local rest=$COMP_LINE i word blanks
+  if ((COMP_POINT < ${#rest})); then
+    rest=${rest:0:COMP_POINT}
+  fi
+  words=()
+  for ((i = 0; i <= COMP_CWORD; i++)); do
+    blanks=${rest%%[![:blank:]]*}
+    rest=${rest#"$blanks"}
+    word=$rest
+    if ((i < COMP_CWORD)); then
+      word=${COMP_WORDS[i]}
+      rest=${rest#"$word"}
+    fi
+    if [[ -z $blanks && ${#words[@]} -gt 0 ]]; then
+      words[-1]+=$word
+    else
+      words+=("$word")
+    fi
+  done
+}
+
+# Adds to COMPREPLY all values of the sources $1 that begin with $2, with $3 in front. Uses `program`, `command` and
+# `arguments` of its caller.
+_armwright_values() {
+  local value=$2 prefix=$3 source kind name
+  local -a names=() found=()
+  # Quotes and backslashes are not part of the name; readline adds them again.
+  value=${value#[\'\"]}
+  value=${value//\\/}
+  if [[ " $1 " == *' separated '* && $value == *,* ]]; then
+    prefix+=${value%,*},
+    value=${value##*,}
+  fi
+  for source in $1; do
+    case $source in
+      choice:*) names+=("${source#choice:}") ;;
+      list:@commands)
+        _armwright_commands "${arguments[*]}"
+        names+=($REPLY)
+        ;;
+      list:*)
+        kind=${source#list:}
+        if [[ $kind == @1 ]]; then
+          kind=${arguments[0]-}
+        elif [[ $kind == optimizers && $value == multistart:* ]]; then
+          prefix+=multistart:
+          value=${value#multistart:}
+        fi
+        mapfile -t found < <("$program" list "$kind" --names 2>/dev/null)
+        names+=("${found[@]}")
+        ;;
+    esac
+  done
+  for name in "${names[@]}"; do
+    if [[ $name == "$value"* ]]; then
+      COMPREPLY+=("$prefix$name")
+    fi
+  done
+  # With this option, readline escapes names of files and adds a slash to folders. Other names must not be changed.
+  if ((${#COMPREPLY[@]} == 0)); then
+    compopt -o filenames 2>/dev/null
+  fi
+  case " $1 " in
+    *' file '*) mapfile -t found < <(compgen -f -- "$value") ;;
+    *' folder '*) mapfile -t found < <(compgen -d -- "$value") ;;
+    *) found=() ;;
+  esac
+  for name in "${found[@]}"; do
+    COMPREPLY+=("$prefix$name")
+  done
+}
+
+_armwright() {
+  local program=${COMP_WORDS[0]} command='' flag='' i word current REPLY IFS=$' \t\n'
+  local -a words arguments=()
+  program=${program/#~\//$HOME/}
+  COMPREPLY=()
+  _armwright_join_words
+  current=${words[-1]}
+
+  # Finds the command, the flag and the number of arguments before the cursor.
+  for word in "${words[@]:1:${#words[@]}-2}"; do
+    _armwright_commands "$command"
+    if [[ -n $flag && $word != --* ]]; then
+      flag=''
+    elif [[ $word == --*=* ]]; then
+      flag=''
+    elif [[ $word == -?* ]]; then
+      flag=''
+      if _armwright_sources "$command" "$word"; then
+        flag=$word
+      fi
+    elif [[ " $REPLY " == *" $word "* ]]; then
+      command+=${command:+ }$word
+    else
+      arguments+=("$word")
+    fi
+  done
+
+  _armwright_commands "$command"
+  if [[ $current == --*=* ]]; then
+    flag=${current%%=*}
+    if _armwright_sources "$command" "$flag"; then
+      _armwright_values "$REPLY" "${current#*=}" "$flag="
+    fi
+  elif [[ -n $flag && $current != --* ]]; then
+    _armwright_sources "$command" "$flag"
+    _armwright_values "$REPLY" "$current" ''
+  elif [[ $current == -* ]]; then
+    _armwright_flags "$command"
+    COMPREPLY=($(compgen -W "$REPLY" -- "$current"))
+  elif [[ -n $REPLY ]]; then
+    COMPREPLY=($(compgen -W "$REPLY" -- "$current"))
+  elif _armwright_sources "$command" $((${#arguments[@]} + 1)); then
+    _armwright_values "$REPLY" "$current" ''
+  fi
+
+  # Readline replaces only the part of a word after its last ':' or '='.
+  local breaks=''
+  if [[ $COMP_WORDBREAKS == *=* ]]; then breaks+='='; fi
+  if [[ $COMP_WORDBREAKS == *:* ]]; then breaks+=':'; fi
+  if [[ -n $breaks && $current == *[$breaks]* && $current != [\'\"]* ]]; then
+    word=${current%"${current##*[$breaks]}"}
+    COMPREPLY=("${COMPREPLY[@]#"$word"}")
+  fi
+}
+
+complete -F _armwright armwright
+)--";
 
 // "testset export"; empty for the program itself
 std::string get_path(const CommandDefinition& command) {
@@ -22,7 +156,7 @@ std::vector<std::string> list_flag_names(const ArgumentDefinition& flag) {
   return names;
 }
 
-// One word for each place that values come from, as the script's _armwright_values reads them.
+// Returns one word per place that values come from, as _armwright_values in the script reads them.
 std::string format_source(const CommandDefinition& command, const ArgumentDefinition& argument) {
   const ValueSource source = find_value_source(command, argument).value_or(ValueSource{});
   std::vector<std::string> words;
@@ -44,7 +178,7 @@ std::string format_source(const CommandDefinition& command, const ArgumentDefini
   return "REPLY='" + join(words, " ") + "'";
 }
 
-// A function that sets REPLY to one text a command.
+// Returns a shell function that sets REPLY to one text per command.
 template <typename Make>
 std::string make_function(const char* name, const CommandDefinition& program, Make make) {
   std::string text = fmt::format("{}() {{\n  REPLY=\n  case $1 in\n", name);
@@ -72,7 +206,8 @@ std::string make_flags(const CommandDefinition& command) {
   return fmt::format("      REPLY='{}'\n", join(names, " "));
 }
 
-// By flag, and by an argument's place from 1; what repeats stands for all places behind it.
+// Returns the rows for a command: one per flag, and one per argument by its place from 1. The row
+// of an argument that repeats serves all later places.
 std::string make_values(const CommandDefinition& command) {
   std::string rows;
   for (const ArgumentDefinition& flag : command.flags) {
@@ -94,13 +229,14 @@ std::string make_values(const CommandDefinition& command) {
 std::string make_bash_completion(const CommandDefinition& program, const std::string& version) {
   return fmt::format(
              "# Completion of armwright {} for bash, written by 'armwright completion bash'.\n\n"
-             "# The commands below a command, in REPLY.\n",
+             "# Sets REPLY to the commands below a command.\n",
              version) +
          make_function("_armwright_commands", program, make_commands) +
-         "# The flags of a command, in REPLY.\n" +
+         "# Sets REPLY to the flags of a command.\n" +
          make_function("_armwright_flags", program, make_flags) +
-         "# Where the values come from that a flag of a command takes, or an argument by its place "
-         "from 1, in REPLY.\n# Fails if the flag takes none.\n" +
+         "# Sets REPLY to the sources of the values of a flag, or of an argument by its place from "
+         "1.\n"
+         "# Fails if the flag has no value.\n" +
          make_function("_armwright_sources", program, make_values) + kBashCompletionText;
 }
 

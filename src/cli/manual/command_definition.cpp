@@ -17,7 +17,7 @@ std::vector<std::string> add_dashes(const char* dashes, const std::vector<std::s
   return flags;
 }
 
-// "NAME:{light,dark}", as the parser adds what a check allows -> "NAME"
+// Returns "NAME" of "NAME:{light,dark}". The parser adds the values that a check allows.
 std::string get_value_name(const CLI::Option& option) {
   const std::string name = option.get_type_name();
   return name.substr(0, name.find(":{"));
@@ -41,7 +41,7 @@ ArgumentDefinition describe_argument(const CLI::Option& option) {
   for (const CLI::Option* other : option.get_excludes()) {
     argument.excludes.push_back(other->get_name());
   }
-  std::ranges::sort(argument.excludes);  // the parser has them in the order of their addresses
+  std::ranges::sort(argument.excludes);  // the parser's order depends on addresses
   return argument;
 }
 
@@ -50,14 +50,14 @@ CommandDefinition describe_below(const CLI::App& app, std::vector<std::string> w
   words.push_back(app.get_name());
   command.words = words;
   command.summary = app.get_description();
-  std::ranges::replace(command.summary, '\n', ' ');  // long ones are broken for --help
+  std::ranges::replace(command.summary, '\n', ' ');  // --help needs line breaks in long ones
   command.notes = app.get_footer();
   if (command.notes.ends_with(kSeeExitCodes)) {
     command.notes.resize(command.notes.size() - kSeeExitCodes.size());
   }
   for (const CLI::Option* option : app.get_options({})) {
     ArgumentDefinition argument = describe_argument(*option);
-    if (!argument.group.empty()) {  // else hidden
+    if (!argument.group.empty()) {  // otherwise it is hidden
       (argument.name.empty() ? command.flags : command.arguments).push_back(std::move(argument));
     }
   }

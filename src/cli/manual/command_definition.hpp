@@ -1,5 +1,5 @@
-// What the program's commands are, as data: read from the parser that runs them, so that manual
-// pages, completion and the reference page say what is true.
+// The program's commands as data. They are read from the parser that runs the commands, so that
+// manual pages, completion and the reference page agree with the program.
 #pragma once
 
 #include <string>
@@ -11,28 +11,29 @@ class App;
 
 namespace armwright {
 
-// A flag, or an argument without one.
+// A flag, or a positional argument.
 struct ArgumentDefinition {
-  std::string name;                      // of an argument without flag: "PROBLEM"; else empty
+  std::string name;                      // of a positional argument: "PROBLEM"; otherwise empty
   std::vector<std::string> long_names;   // "--optimizer"
   std::vector<std::string> short_names;  // "-o"
-  std::string value;                     // what follows a flag: "NAME"; empty: nothing does
+  std::string value;                     // the name of a flag's value: "NAME"; empty without one
   bool is_value_optional = false;
   bool is_required = false;
   bool repeats = false;
-  std::string group;                  // the heading that --help has it under: "Options", "Output"
-  std::string environment;            // the variable that stands in for it; empty: none does
-  std::string description;            // in lines, as --help has it
-  std::vector<std::string> excludes;  // flags that it does not go with
+  std::string group;                  // its heading in --help: "Options", "Output"
+  std::string environment;            // the variable that can replace it; empty without one
+  std::string description;            // with the line breaks of --help
+  std::vector<std::string> excludes;  // flags that cannot be given together with it
 
-  // The name of an argument, the long name of a flag.
+  // Returns the name of a positional argument, or the long name of a flag.
   const std::string& get_key() const;
 };
 
+// A command, with the commands below it.
 struct CommandDefinition {
   std::vector<std::string> words;  // {"armwright", "testset", "export"}
   std::string summary;
-  std::string notes;  // what --help says below the flags: examples first
+  std::string notes;  // the text of --help below the flags; the examples come first
   std::vector<ArgumentDefinition> arguments;
   std::vector<ArgumentDefinition> flags;
   std::vector<CommandDefinition> commands;
@@ -42,12 +43,12 @@ struct CommandDefinition {
 
 CommandDefinition describe_command(const CLI::App& app);
 
-// The command that `words` lead to, without the program's own name; none: the program. Error{usage}
-// with the valid ones if there is no such.
+// Returns the command with these words. They do not contain the program's own name; without words,
+// the result is the program. Throws Error{usage} with the valid names if there is no such command.
 const CommandDefinition& find_command(const CommandDefinition& program,
                                       const std::vector<std::string>& words);
 
-// The command itself, then all below it, each before its own.
+// Returns the command and all commands below it; each command comes before those below it.
 std::vector<const CommandDefinition*> list_all_commands(const CommandDefinition& command);
 
 }  // namespace armwright

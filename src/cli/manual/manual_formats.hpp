@@ -1,5 +1,5 @@
-// Sets manual pages: for a terminal, for man, and as one page of Markdown. The last says nothing
-// about this build, so that every build writes the same.
+// Formats manual pages: as text for a terminal, as roff for man, and as Markdown. The Markdown says
+// nothing about the build, so that every build writes the same.
 #pragma once
 
 #include <span>
@@ -13,16 +13,16 @@ namespace armwright {
 
 std::vector<std::string> manual_format_names();  // text, man, markdown
 
-// As man shows it.
+// Returns the page as man shows it, in lines of at most `width` characters.
 std::string to_text(const ManualPage& page, const Style& style, int width);
 
-// For man: roff with the macros of man(7). `version` and `date` ("2026-11-23") go into the page's
-// last line.
+// Returns the page as roff with the macros of man(7). `version` and `date` ("2026-11-23") stand in
+// the page's last line.
 std::string to_roff(const ManualPage& page, const std::string& version, const std::string& date);
 
-// One command as a section of Markdown.
+// Returns the page as a section of Markdown.
 std::string to_markdown(const ManualPage& page);
-// All of them, under a title and a table of contents: docs/reference/commands.md.
+// Returns all pages with a title and a table of contents: docs/reference/commands.md.
 std::string to_markdown_reference(std::span<const ManualPage> pages);
 
 }  // namespace armwright

@@ -1,4 +1,4 @@
-// Manual pages as Markdown: the reference of all commands.
+// Manual pages as Markdown, for the reference of all commands.
 
 #include <fmt/format.h>
 
@@ -43,10 +43,10 @@ class MarkdownWriter {
   void operator()(const PageReferences& references) {
     end_list();
     std::vector<std::string> links;
-    std::ranges::transform(references.pages, std::back_inserter(links),
-                           [](const PageReference& page) {
-                             // A section's title makes the same name of itself.
-                             return fmt::format("[{}](#{})", page.title, page.name);
+    std::ranges::transform(references.titles, std::back_inserter(links),
+                           [](const std::string& title) {
+                             // Markdown makes the same anchor of a section's title.
+                             return fmt::format("[{}](#{})", title, get_manual_name(title));
                            });
     text += join(links, ", ") + "\n\n";
   }
@@ -78,8 +78,8 @@ std::string to_markdown(const ManualPage& page) {
   MarkdownWriter writer;
   writer.text = fmt::format("## {}\n\n", page.title);
   for (const ManualSection& section : page.sections) {
-    // Synopsis and description need no title, and others are none of the page's headings: every
-    // command has them.
+    // Synopsis and description need no title. The other titles are bold text and no headings, as
+    // every command has them.
     if (section.title != "Synopsis" && section.title != "Description") {
       writer.end_list();
       writer.text += fmt::format("**{}**\n\n", section.title);
@@ -96,9 +96,9 @@ std::string to_markdown_reference(std::span<const ManualPage> pages) {
   std::string text =
       "<!-- Written by scripts/docs from the program's own commands: change their --help, not this "
       "file. -->\n# Commands\n\n"
-      "Every command of the program with all that it takes, as `armwright manual COMMAND` and, "
-      "where the packages are installed, `man armwright-COMMAND` show it. `armwright COMMAND "
-      "--help` is the short form.\n\n| command | what it does |\n|---|---|\n";
+      "All commands of the program with all arguments and flags, as `armwright manual COMMAND` "
+      "shows them, and `man armwright-COMMAND` if the packages are installed. `armwright COMMAND "
+      "--help` is shorter.\n\n| command | what it does |\n|---|---|\n";
   for (const ManualPage& page : pages) {
     text +=
         fmt::format("| [{}](#{}) | {} |\n", page.title, page.name, escape_markdown(page.summary));

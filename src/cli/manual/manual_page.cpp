@@ -3,12 +3,94 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "base/text.hpp"
-#include "cli/manual/notes.hpp"
 
 namespace armwright {
 namespace {
+
+// An entry of a list: a name, at least two blanks, and a text: "holds   no more cases fail".
+struct ListEntry {
+  std::string name;
+  std::string text;
+};
+
+// The text that --help prints below the flags.
+struct CommandNotes {
+  std::vector<ManualBlock> text;        // the paragraphs without a title
+  std::vector<ManualSection> sections;  // "Examples", "Exit status", "Environment"
+};
+
+constexpr std::string_view kExamples = "Examples:";
+constexpr std::string_view kExitCodes = "Exit codes:";
+constexpr std::string_view kEnvironment = "Environment: ";
+
+std::vector<std::vector<std::string>> split_paragraphs(const std::string& notes) {
+  std::vector<std::vector<std::string>> paragraphs(1);
+  for (const std::string& line : split(notes, '\n')) {
+    if (line.empty()) {
+      paragraphs.emplace_back();
+    } else {
+      paragraphs.back().push_back(line);
+    }
+  }
+  std::erase_if(paragraphs, [](const auto& lines) { return lines.empty(); });
+  return paragraphs;
+}
+
+std::optional<ListEntry> read_list_entry(const std::string& line) {
+  const auto begin = line.find_first_not_of(' ');
+  const auto end = line.find(' ', begin);
+  const auto text = line.find_first_not_of(' ', end);
+  if (begin == line.npos || end == line.npos || text == line.npos || text - end < 2) {
+    return std::nullopt;
+  }
+  return ListEntry{line.substr(begin, end - begin), line.substr(text)};
+}
+
+std::vector<ManualBlock> make_list(std::span<const std::string> lines) {
+  std::vector<ManualBlock> blocks;
+  for (const std::string& line : lines) {
+    const ListEntry entry = read_list_entry(line).value();
+    blocks.emplace_back(ManualItem{{{{Emphasis::literal, entry.name}}}, entry.text, {}});
+  }
+  return blocks;
+}
+
+bool is_list(std::span<const std::string> lines) {
+  return std::ranges::all_of(
+      lines, [](const std::string& line) { return read_list_entry(line).has_value(); });
+}
+
+Verbatim make_verbatim(std::span<const std::string> lines) {
+  constexpr std::string_view kIndent = "  ";
+  Verbatim verbatim;
+  for (const std::string& line : lines) {
+    verbatim.lines.push_back(line.starts_with(kIndent) ? line.substr(kIndent.size()) : line);
+  }
+  return verbatim;
+}
+
+CommandNotes read_notes(const std::string& notes) {
+  CommandNotes read;
+  for (const std::vector<std::string>& lines : split_paragraphs(notes)) {
+    const auto below = std::span(lines).subspan(1);
+    if (lines.front() == kExamples) {
+      read.sections.push_back({"Examples", {make_verbatim(below)}});
+    } else if (lines.front() == kExitCodes && is_list(below)) {
+      read.sections.push_back({"Exit status", make_list(below)});
+    } else if (lines.front().starts_with(kEnvironment)) {
+      read.sections.push_back(
+          {"Environment", {Paragraph{join(lines, " ").substr(kEnvironment.size())}}});
+    } else if (is_list(lines)) {
+      std::ranges::move(make_list(lines), std::back_inserter(read.text));
+    } else {
+      read.text.emplace_back(Paragraph{join(lines, " ")});
+    }
+  }
+  return read;
+}
 
 Span literal(const std::string& text) {
   return {Emphasis::literal, text};
@@ -31,7 +113,7 @@ Synopsis make_synopsis(const CommandDefinition& command) {
     line.push_back(placeholder(name));
     line.push_back({Emphasis::none, std::string(repeats ? " ..." : "") + (is_required ? "" : "]")});
   };
-  // Flags without which the command does nothing are part of how it is called.
+  // The synopsis shows required flags.
   for (const ArgumentDefinition& flag : command.flags) {
     if (flag.is_required) {
       line.push_back(literal(" " + flag.get_key()));
@@ -47,7 +129,8 @@ Synopsis make_synopsis(const CommandDefinition& command) {
   return {line};
 }
 
-// Lines of a description that are "NAME   what it is" become a list, all others one paragraph.
+// Makes an item of a flag, an argument or a command. Lines "NAME   text" of the description become
+// a list, and all other lines one paragraph.
 ManualItem make_item(std::vector<SpanLine> names, const std::string& description) {
   ManualItem item = {std::move(names), "", {}};
   for (const std::string& line : split(description, '\n')) {
@@ -90,8 +173,8 @@ ManualItem make_argument_item(const ArgumentDefinition& argument) {
     item.text += fmt::format(" Not together with {}.", join(argument.excludes, ", "));
   }
   if (!argument.environment.empty()) {
-    item.text +=
-        fmt::format(" The environment variable {} stands in for it.", argument.environment);
+    item.text += fmt::format(" The environment variable {} is used if it is not given.",
+                             argument.environment);
   }
   return item;
 }
@@ -117,7 +200,7 @@ std::vector<ManualSection> make_argument_sections(const CommandDefinition& comma
   return sections;
 }
 
-// Do the notes name it, as 'armwright NAME'?
+// Returns whether the notes contain the other command, as 'armwright NAME'.
 bool mentions(const CommandDefinition& command, const CommandDefinition& other) {
   constexpr std::string_view kEnds = " '\n.,";
   const std::string& notes = command.notes;
@@ -136,13 +219,14 @@ bool is_below(const CommandDefinition& above, const CommandDefinition& command) 
          std::ranges::equal(above.words, std::span(command.words).first(above.words.size()));
 }
 
-// The commands below and above it, the program, and those that the notes name.
+// Returns references to the commands below and above it, the program, and the commands in the
+// notes.
 PageReferences make_references(const CommandDefinition& command, const CommandDefinition& program) {
   PageReferences references;
   for (const CommandDefinition* other : list_all_commands(program)) {
     if (other != &command && (is_below(command, *other) || is_below(*other, command) ||
                               other == &program || mentions(command, *other))) {
-      references.pages.push_back({get_manual_name(*other), other->get_title()});
+      references.titles.push_back(other->get_title());
     }
   }
   return references;
@@ -151,27 +235,28 @@ PageReferences make_references(const CommandDefinition& command, const CommandDe
 ManualSection make_files_section() {
   return {"Files",
           {ManualItem{{{literal("results/")}},
-                      "Where runs and comparisons go, below the folder that the program is called "
-                      "in, unless --out names another.",
+                      "Runs and studies, in the current folder, unless --out names another "
+                      "folder.",
                       {}},
            ManualItem{{{literal("PREFIX/share/armwright/configs/")}},
                       "The shipped problems, designs, robots, perturbations and studies.",
                       {}},
            ManualItem{{{literal("PREFIX/lib/armwright/plugins/")}},
-                      "Where optimizers of your own are looked for by their name.",
+                      "Plugins, which can be named without a path.",
                       {}},
-           Paragraph{"PREFIX is where the program is installed: the folder above that of the "
-                     "program itself, as /usr."}}};
+           Paragraph{"PREFIX is the folder above that of the program itself, for example /usr."}}};
 }
 
 }  // namespace
 
-std::string get_manual_name(const CommandDefinition& command) {
-  return join(command.words, "-");
+std::string get_manual_name(std::string title) {
+  std::ranges::replace(title, ' ', '-');
+  return title;
 }
 
 ManualPage make_manual_page(const CommandDefinition& command, const CommandDefinition& program) {
-  ManualPage page = {get_manual_name(command), command.get_title(), command.summary, {}};
+  ManualPage page = {
+      get_manual_name(command.get_title()), command.get_title(), command.summary, {}};
   if (page.summary.ends_with('.') && !page.summary.ends_with("...")) {
     page.summary.pop_back();
   }
@@ -188,8 +273,8 @@ ManualPage make_manual_page(const CommandDefinition& command, const CommandDefin
     } else if (&command != &program && title == std::string("Exit status")) {
       page.sections.push_back(
           {title,
-           {Paragraph{"0 if all is done; armwright(1) has the others, which are the same "
-                      "for all commands."}}});
+           {Paragraph{"0 if the command succeeds; armwright(1) lists the other codes, which are "
+                      "the same for all commands."}}});
     }
   }
   if (&command == &program) {

@@ -1,4 +1,4 @@
-// A manual page of one command: what it says, apart from how it is set. manual_formats.hpp sets it.
+// The content of a command's manual page, without its layout. manual_formats.hpp has the layouts.
 #pragma once
 
 #include <string>
@@ -9,7 +9,8 @@
 
 namespace armwright {
 
-enum class Emphasis { none, literal, placeholder };  // as it is typed; what something stands for
+// A literal is typed as it is; a placeholder stands for a value.
+enum class Emphasis { none, literal, placeholder };
 
 struct Span {
   Emphasis emphasis = Emphasis::none;
@@ -23,7 +24,7 @@ struct Paragraph {
 struct Synopsis {
   SpanLine line;
 };
-// What is explained, by all its names, and the explanation; within that perhaps a list.
+// An item of a list: all names of a thing, its explanation, and perhaps a list within that.
 struct ManualItem {
   std::vector<SpanLine> names;
   std::string text;
@@ -32,13 +33,9 @@ struct ManualItem {
 struct Verbatim {
   std::vector<std::string> lines;
 };
-// Other pages, all of chapter 1.
-struct PageReference {
-  std::string name;   // as ManualPage's
-  std::string title;  // as ManualPage's
-};
+// Other pages by their titles, for example "armwright testset export". All are in chapter 1.
 struct PageReferences {
-  std::vector<PageReference> pages;
+  std::vector<std::string> titles;
 };
 using ManualBlock = std::variant<Paragraph, Synopsis, ManualItem, Verbatim, PageReferences>;
 
@@ -51,13 +48,13 @@ struct ManualPage {
   std::string name;   // "armwright-testset-export"
   std::string title;  // "armwright testset export"
   std::string summary;
-  std::vector<ManualSection> sections;  // those behind the name and the summary
+  std::vector<ManualSection> sections;  // those after the name and the summary
 };
 
-// `program`: where the other pages come from.
+// Returns the page of `command`. `program` has the commands that the page may refer to.
 ManualPage make_manual_page(const CommandDefinition& command, const CommandDefinition& program);
 
-// "armwright-testset-export"
-std::string get_manual_name(const CommandDefinition& command);
+// Returns the name of the page with this title: "armwright testset" -> "armwright-testset".
+std::string get_manual_name(std::string title);
 
 }  // namespace armwright

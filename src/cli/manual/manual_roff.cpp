@@ -9,8 +9,8 @@
 namespace armwright {
 namespace {
 
-// Text that comes out as it is, also when it is copied: an unescaped '-' would become a hyphen,
-// quotes would become typographic ones.
+// Escapes text so that man shows it unchanged and it can be copied. Without this, a '-' would
+// become a hyphen, and quotes would become typographic quotes.
 std::string escape_roff(std::string_view text) {
   std::string escaped;
   for (const char c : text) {
@@ -34,7 +34,7 @@ std::string escape_roff(std::string_view text) {
         escaped += "\\(ti";
         break;
       case '"':
-        escaped += "\\(dq";  // would end an argument of a macro
+        escaped += "\\(dq";  // a quote would end an argument of a macro
         break;
       default:
         escaped += c;
@@ -43,7 +43,7 @@ std::string escape_roff(std::string_view text) {
   return escaped;
 }
 
-// A line that begins with a '.' would be a command.
+// Protects a line that begins with a '.', which roff would read as a command.
 std::string make_line(const std::string& escaped) {
   return (escaped.starts_with('.') ? "\\&" : "") + escaped + "\n";
 }
@@ -61,7 +61,7 @@ std::string format_spans(const SpanLine& line) {
 
 class RoffWriter {
  public:
-  // Macros between paragraphs, but none behind a title: man would warn.
+  // A macro separates paragraphs. There is none after a title, as man would warn.
   void begin_section(const std::string& title) {
     std::string upper = escape_roff(title);
     std::ranges::transform(upper, upper.begin(), [](char c) {
@@ -93,9 +93,9 @@ class RoffWriter {
   }
   void operator()(const PageReferences& references) {
     separate();
-    for (const PageReference& page : references.pages) {
-      text += fmt::format(".BR {} (1){}\n", escape_roff(page.name),
-                          &page == &references.pages.back() ? "" : ",");
+    for (const std::string& title : references.titles) {
+      text += fmt::format(".BR {} (1){}\n", escape_roff(get_manual_name(title)),
+                          &title == &references.titles.back() ? "" : ",");
     }
   }
 
@@ -137,7 +137,7 @@ std::string to_roff(const ManualPage& page, const std::string& version, const st
   writer.text = fmt::format(
       ".\\\" Written by 'armwright manual --format man': change what the program's --help says.\n"
       ".TH {} 1 {} \"armwright {}\" \"User Commands\"\n"
-      ".nh\n.nr HY 0\n.ad l\n"  // words are not divided: half a flag cannot be copied
+      ".nh\n.nr HY 0\n.ad l\n"  // no hyphenation, as half a flag cannot be copied
       ".SH NAME\n{} \\- {}\n",
       head, escape_roff(date), escape_roff(version), escape_roff(page.name),
       escape_roff(page.summary));

@@ -11,7 +11,7 @@
 namespace armwright {
 namespace {
 
-constexpr int kTextIndent = 7;  // man's own distances, in columns
+constexpr int kTextIndent = 7;  // the distances that man uses, in columns
 constexpr int kItemIndent = 14;
 constexpr int kNestedIndent = 21;
 
@@ -46,8 +46,8 @@ class TextWriter {
   }
   void operator()(const PageReferences& references) {
     std::vector<std::string> pages;
-    std::ranges::transform(references.pages, std::back_inserter(pages),
-                           [](const PageReference& page) { return page.name + "(1)"; });
+    std::ranges::transform(references.titles, std::back_inserter(pages),
+                           [](const std::string& title) { return get_manual_name(title) + "(1)"; });
     add_wrapped(join(pages, ", "), kTextIndent);
     text += "\n";
   }
@@ -67,7 +67,7 @@ class TextWriter {
       names += comma + format(line);
       plain += comma + format(line, Style(false));
     }
-    // A short name has its text beside it.
+    // The text stands beside a short name, and below a long one.
     const int gap = text_column - name_column - static_cast<int>(plain.size());
     const auto begin = text.size() + static_cast<std::size_t>(name_column);
     if (gap > 0 && !item.text.empty()) {

@@ -1,10 +1,9 @@
-#include "cli/manual/value_source.hpp"
-
 #include <algorithm>
 #include <span>
 
 #include "base/text.hpp"
 #include "cli/list/list_views.hpp"
+#include "cli/manual/completion.hpp"
 #include "cli/manual/manual_formats.hpp"
 #include "cli/manual/plugin_templates.hpp"
 #include "problems/config/config_files.hpp"
@@ -52,12 +51,12 @@ ValueSource make_perturbation_source() {
 }
 
 struct SourceRow {
-  const char* command;   // "testset export"; "" for all that have the argument
+  const char* command;   // "testset export"; "" for all commands with the argument
   const char* argument;  // "--engine", "PROBLEM"
   ValueSource source;
 };
 
-// Rows of one command go before those of all.
+// The rows of one command come before those of all commands.
 std::vector<SourceRow> make_argument_rows() {
   return {
       {"list", "KIND", choose(list_kind_names())},
@@ -70,7 +69,7 @@ std::vector<SourceRow> make_argument_rows() {
       {"verify", "--engines", separate(choose_from("engines"))},
       {"verify", "--perturbations", make_perturbation_source()},
       {"sweep", "--values", kFree},
-      {"report", "FOLDER", kFile},  // or a page
+      {"report", "FOLDER", kFile},  // a folder, or a page
       {"plot", "FOLDER", kFile},
       {"plot", "--theme", choose({"light", "dark"})},
       {"plot", "--figure", kFree},
@@ -106,7 +105,7 @@ std::vector<SourceRow> make_argument_rows() {
   };
 }
 
-// By what the value is called, where the argument itself says no more.
+// Rows by the name of the value, for arguments without a row of their own.
 std::vector<SourceRow> make_value_rows() {
   std::vector<SourceRow> rows = {
       {"", "PROBLEM", choose_or_file("problems")},

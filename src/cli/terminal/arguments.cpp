@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
-#include <iterator>
 #include <thread>
 
 #include "base/error.hpp"
@@ -81,9 +80,9 @@ CLI::App* add_command(CLI::App& parent, Session& session, const std::string& nam
   return command;
 }
 
-void JobsOption::add_to(CLI::App& command, const std::string& fallback) {
+void add_jobs_flag(CLI::App& command, std::string& jobs, const std::string& fallback) {
   command
-      .add_option("--jobs,-j", text,
+      .add_option("--jobs,-j", jobs,
                   fmt::format("Threads that simulate; the results do not depend on it\n"
                               "(default: {})",
                               fallback))
@@ -91,7 +90,7 @@ void JobsOption::add_to(CLI::App& command, const std::string& fallback) {
       ->envname("ARMWRIGHT_JOBS");
 }
 
-unsigned JobsOption::get() const {
+unsigned parse_jobs(std::string_view text) {
   if (text.empty()) {
     const auto place = find_rank_place();
     return place ? count_rank_cores(*place) : std::max(1U, std::thread::hardware_concurrency());
@@ -99,14 +98,20 @@ unsigned JobsOption::get() const {
   return static_cast<unsigned>(parse_count("--jobs (ARMWRIGHT_JOBS)", text, 1, kMostJobs));
 }
 
-void TimeLimitOption::add_to(CLI::App& command) {
-  command.add_option("--time-limit", text, "Stop, resumably, after a time: 90, 90s, 10m, 2h")
+unsigned parse_jobs_or_one(std::string_view text) {
+  return text.empty() ? 1 : parse_jobs(text);
+}
+
+void add_time_limit_flag(CLI::App& command, std::string& time_limit) {
+  command
+      .add_option("--time-limit", time_limit,
+                  "Stop after this time, so that the command can be resumed: 90, 90s, 10m, 2h")
       ->type_name("DURATION");
 }
 
-void TimeLimitOption::apply(StopSignal& stop) const {
-  if (!text.empty()) {
-    const std::chrono::duration<double> limit(parse_duration_s("--time-limit", text));
+void apply_time_limit(std::string_view time_limit, StopSignal& stop) {
+  if (!time_limit.empty()) {
+    const std::chrono::duration<double> limit(parse_duration_s("--time-limit", time_limit));
     stop.set_deadline(StopSignal::Clock::now() +
                       std::chrono::duration_cast<StopSignal::Clock::duration>(limit));
   }
@@ -120,7 +125,7 @@ void FolderOptions::add_to(CLI::App& command, const std::string& what,
   command
       .add_flag(
           "--new", another,
-          fmt::format("Another {} beside one that is there: FOLDER-002, FOLDER-003, ...", what))
+          fmt::format("Begin a new {} if the folder exists: FOLDER-002, FOLDER-003, ...", what))
       ->group("Output");
 }
 
@@ -139,8 +144,8 @@ void add_design_argument(CLI::App& command, std::string& design) {
   command
       .add_option(
           "DESIGN", design,
-          "A design file, the name of a shipped one (armwright list designs), or \"start\":\n"
-          "where the problem's optimization starts")
+          "A design file, the name of a shipped design (armwright list designs), or \"start\"\n"
+          "for the design from which the problem's optimization starts")
       ->required();
 }
 
@@ -148,27 +153,29 @@ void EngineFlags::add_to(CLI::App& command, bool with_training) {
   trains = with_training;
   command
       .add_option("--engine", engine,
-                  trains ? "Physics engine, the same as --set physics.engine=NAME\n"
-                           "(armwright list engines; default: the problem's)"
-                         : "Physics engine (armwright list engines; default: the one that the\n"
-                           "problem is judged with)")
+                  trains
+                      ? "Physics engine, the same as --set physics.engine=NAME\n"
+                        "(armwright list engines; default: the problem's)"
+                      : "Physics engine (armwright list engines; default: the problem's judging\n"
+                        "engine)")
       ->type_name("NAME");
   if (trains) {
     command
         .add_option("--judging-engine", judging_engine,
-                    "Another engine for validation and test, the same as\n"
-                    "--set physics.judging_engine=NAME (default: that of training)")
+                    "Engine for the validation and test sets, the same as\n"
+                    "--set physics.judging_engine=NAME (default: the engine of training)")
         ->type_name("NAME");
     command
         .add_option("--precision", precision,
-                    "double (default) or float, the latter quicker and in training only; for\n"
+                    "double (default) or float, which is faster and used in training only; for\n"
                     "engines with SIMD, the same as --set physics.precision=NAME")
         ->type_name("NAME");
   }
   command
       .add_option("--simd", simd,
-                  "Instruction set of engines with SIMD, on which the last digits of results\n"
-                  "depend; the same as physics.simd (default: auto, the best of this machine)")
+                  "Instruction set of engines with SIMD; the last digits of results depend on\n"
+                  "it; the same as --set physics.simd=LEVEL (default: auto, the best of this\n"
+                  "machine)")
       ->type_name("LEVEL");
 }
 
@@ -204,39 +211,32 @@ void OverrideOptions::add_to(CLI::App& command, bool with_training) {
   command
       .add_option("--set", set,
                   "Change a setting of the problem, as in task.speed_m_per_s=2; repeatable.\n"
-                  "'armwright list problems NAME' shows its own, 'list settings' what they mean")
+                  "'armwright list problems NAME' shows the problem's settings, and\n"
+                  "'armwright list settings' explains them")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   engines.add_to(command, with_training);
-  robot.add_to(command);
-}
-
-std::string OverrideOptions::choose_problem(const std::string& typed) const {
-  return typed.empty() && !robot.robot.empty() ? "robot" : typed;
-}
-
-void RobotFlags::add_to(CLI::App& command) {
   command
       .add_option("--robot", robot,
-                  "An arm of your own, a URDF, or a shipped one (armwright list robots); the same\n"
-                  "as --set robot.urdf=FILE, on the problem 'robot' if none is named")
+                  "An arm of your own, a URDF file, or a shipped one (armwright list robots); the\n"
+                  "same as --set robot.urdf=FILE. Without a problem, the problem is 'robot'")
       ->type_name("FILE");
   command
       .add_option("--base", base,
-                  "The link at which the arm begins (default: the robot's root), the same as\n"
+                  "The link at which the arm begins (default: the robot's root); the same as\n"
                   "--set robot.base=LINK")
       ->type_name("LINK");
   command
       .add_option("--tip", tip,
-                  "The link whose frame is the tool centre point (default: the only one at the\n"
-                  "end of the chain), the same as --set robot.tip=LINK")
+                  "The link whose frame is the tool centre point (default: the end of the chain,\n"
+                  "if there is only one); the same as --set robot.tip=LINK")
       ->type_name("LINK");
 }
 
-std::vector<std::string> RobotFlags::get() const {
-  std::vector<std::string> overrides;
+std::vector<std::string> OverrideOptions::list_flag_overrides() const {
+  std::vector<std::string> overrides = engines.get();
   if (!robot.empty()) {
-    // As it is from everywhere, so that a run's folder can be reported on from another one.
+    // The path is absolute, so that a report of the run can be made from any folder.
     const std::filesystem::path file = resolve_config("robots", robot);
     overrides.push_back("robot.urdf=" + quote_toml(std::filesystem::absolute(file).string()));
   }
@@ -251,9 +251,7 @@ std::vector<std::string> RobotFlags::get() const {
 
 std::vector<std::string> OverrideOptions::get() const {
   std::vector<std::string> overrides = set;
-  std::vector<std::string> flags = engines.get();
-  std::ranges::move(robot.get(), std::back_inserter(flags));
-  for (std::string& flag : flags) {
+  for (std::string& flag : list_flag_overrides()) {
     const std::string_view key = get_override_key(flag);
     const auto same = std::ranges::find(set, key, get_override_key);
     if (same != set.end()) {
@@ -267,21 +265,25 @@ std::vector<std::string> OverrideOptions::get() const {
   return overrides;
 }
 
+std::string OverrideOptions::choose_problem(const std::string& typed) const {
+  return typed.empty() && !robot.empty() ? "robot" : typed;
+}
+
 void CaseOptions::add_to(CLI::App& command) {
   auto* set = command
                   .add_option("--test-set", test_set,
-                              "Generated test set: 2 is short for test/2 (default: the problem's)")
+                              "Generated test set; 2 means test/2 (default: the problem's)")
                   ->type_name("ID");
   command
       .add_option("--test-cases", test_cases,
-                  "Test cases from a file instead: JSON {\"cases\": [[[x,y,z], ...], ...]} in\n"
+                  "Test cases from a file: JSON {\"cases\": [[[x,y,z], ...], ...]} in\n"
                   "metres, or CSV case,point,x_m,y_m,z_m")
       ->type_name("FILE")
       ->excludes(set);
   command
       .add_option("--cases", cases,
-                  "Use the first N cases (default: as many as the problem says, or all in\n"
-                  "the file)")
+                  "Use the first N cases (default: the problem's number of test cases, or all\n"
+                  "cases of the file)")
       ->type_name("N");
 }
 

@@ -1,5 +1,6 @@
-// Values on the command line, read strictly: every refusal names the flag, what was found and what
-// is allowed (Error{usage}). And the flags that several subcommands share.
+// Values on the command line, and the flags that several subcommands share. Values are read
+// strictly: each refusal is an Error{usage} that names the flag, the value found and the values
+// allowed.
 #pragma once
 
 #include <cstdint>
@@ -19,52 +20,58 @@ namespace armwright {
 class StopSignal;
 struct Session;
 
+// Returns the integer in `text`. Throws Error{usage} if it is not from `lower` to `upper`.
 std::int64_t parse_count(std::string_view flag, std::string_view text, std::int64_t lower,
                          std::int64_t upper);
-// "90", "90s", "10m", "1.5h"
+// Returns the seconds that "90", "90s", "10m" or "1.5h" stand for. Throws Error{usage} unless they
+// are above 0.
 double parse_duration_s(std::string_view flag, std::string_view text);
-// "fresh:K", "fixed:K" or "coevolution:K"
+// Reads "fresh:K", "fixed:K" or "coevolution:K", the value of --schedule. Throws Error{usage}.
 Schedule parse_schedule(std::string_view text);
+// Reads the value of --racing. Throws Error{usage}.
 Racing parse_racing(std::string_view text);
 
-// Behind every command's examples; manual pages have a section of their own instead.
+// The last line of every command's --help. Manual pages leave it out, as they have a section with
+// the exit codes.
 inline constexpr std::string_view kSeeExitCodes =
     "\n\nExit codes and environment: armwright --help";
 
-// A new subcommand with what all have: --color, and examples below its help.
+// Adds a subcommand with --color and with `examples` below its help. The parser owns the
+// subcommand.
 CLI::App* add_command(CLI::App& parent, Session& session, const std::string& name,
                       const std::string& description, const std::string& examples);
 
-// --jobs and $ARMWRIGHT_JOBS.
-struct JobsOption {
-  std::string text;
-  // `fallback`: as help says it.
-  void add_to(CLI::App& command, const std::string& fallback = "all cores");
-  unsigned get() const;  // all cores unless told otherwise
-  unsigned get_or(unsigned fallback) const { return text.empty() ? fallback : get(); }
-};
+// Adds --jobs, which $ARMWRIGHT_JOBS can replace. `jobs` must live as long as the parser.
+// `fallback` is the default as the help names it.
+void add_jobs_flag(CLI::App& command, std::string& jobs, const std::string& fallback = "all cores");
+// Returns the number of threads that --jobs names, or all cores of this process if the flag was not
+// given. Throws Error{usage}.
+unsigned parse_jobs(std::string_view text);
+// The same, but returns 1 if the flag was not given.
+unsigned parse_jobs_or_one(std::string_view text);
 
-// --time-limit: a run that is stopped by it can be gone on with.
-struct TimeLimitOption {
-  std::string text;
-  void add_to(CLI::App& command);
-  void apply(StopSignal& stop) const;  // from now on
-};
+// Adds --time-limit. `time_limit` must live as long as the parser.
+void add_time_limit_flag(CLI::App& command, std::string& time_limit);
+// Sets the deadline of `stop` to now plus the time limit, if there is one. Throws Error{usage}.
+void apply_time_limit(std::string_view time_limit, StopSignal& stop);
 
-// --out and --new: where what is made goes.
+// The flags --out and --new, which choose the folder of a run, study or reproduction.
 struct FolderOptions {
   std::string out;
   bool another = false;
-  // `what`: "run"; `fallback`: the folder if none is named, as help says it.
+  // `what` is the thing that the folder holds, for example "run". `fallback` is the default folder
+  // as the help names it.
   void add_to(CLI::App& command, const std::string& what, const std::string& fallback);
-  // results/NAME unless told otherwise.
+  // Returns the folder that --out names, or results/NAME without --out. With --new, the result is
+  // the first of NAME, NAME-002, NAME-003, ... that does not exist.
   std::filesystem::path choose(const std::string& name) const;
 };
 
-// The argument DESIGN.
+// Adds the argument DESIGN. `design` must live as long as the parser.
 void add_design_argument(CLI::App& command, std::string& design);
 
-// Which physics engine, and how: short for settings of the problem's table [physics].
+// The flags that choose the physics engine. Each stands for a setting of the problem's table
+// [physics].
 struct EngineFlags {
   std::string engine;
   std::string judging_engine;
@@ -72,39 +79,39 @@ struct EngineFlags {
   std::string simd;
   bool trains = false;
 
-  // A command that trains knows --judging-engine and --precision besides. In others there is one
-  // engine, and --engine means it.
+  // A command that trains also has --judging-engine and --precision. In other commands, --engine
+  // sets the engine that judges.
   void add_to(CLI::App& command, bool with_training);
-  // As KEY=VALUE texts. Error{usage} for a name that does not exist.
+  // Returns the settings as KEY=VALUE texts. Throws Error{usage} for an unknown name.
   std::vector<std::string> get() const;
 };
 
-// --robot, --base and --tip: the user's own arm, short for settings of the table [robot].
-struct RobotFlags {
+// All flags that change the problem: --set, those of the engine, and --robot, --base and --tip,
+// which stand for settings of the table [robot].
+struct OverrideOptions {
+  std::vector<std::string> set;
+  EngineFlags engines;
   std::string robot;
   std::string base;
   std::string tip;
 
-  void add_to(CLI::App& command);
-  // As KEY=VALUE texts. Error{usage} if there is no such file.
-  std::vector<std::string> get() const;
-};
-
-// --set and the flags above: what is changed about a problem.
-struct OverrideOptions {
-  std::vector<std::string> set;
-  EngineFlags engines;
-  RobotFlags robot;
   void add_to(CLI::App& command, bool with_training = false);
-  // Error{usage} where --set and another flag set the same.
+  // Returns the changes as KEY=VALUE texts, those of --set first. Throws Error{usage} if --set and
+  // another flag change the same setting, for an unknown engine, and if the robot's file is
+  // missing.
   std::vector<std::string> get() const;
-  // The problem as typed; with --robot the one for any arm, where none is.
+  // Returns the name of the problem: as typed, or "robot" if none was typed and --robot was given.
+  // The result is empty if neither was given.
   std::string choose_problem(const std::string& typed) const;
+
+ private:
+  std::vector<std::string> list_flag_overrides() const;
 };
-// The part before the '=' of a KEY=VALUE text, without blanks around it.
+// Returns the part of a KEY=VALUE text before the '=', without blanks around it.
 std::string_view get_override_key(std::string_view assignment);
 
-// --test-set, --test-cases and --cases: what a design is evaluated on.
+// The flags --test-set, --test-cases and --cases, which choose the cases that a design is evaluated
+// on.
 struct CaseOptions {
   std::string test_set;
   std::string test_cases;

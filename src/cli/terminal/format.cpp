@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "base/text.hpp"
 
@@ -23,6 +24,10 @@ std::string format_significant(double value, int digits) {
 
 std::string format_mm(std::optional<double> length_m) {
   return length_m ? format_significant(*length_m * 1000) : "-";
+}
+
+nlohmann::json to_json_value(std::optional<double> value) {
+  return value && std::isfinite(*value) ? nlohmann::json(*value) : nlohmann::json(nullptr);
 }
 
 std::string format_quantity(double value, std::string_view unit) {

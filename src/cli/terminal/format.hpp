@@ -1,22 +1,26 @@
-// Numbers, times and commands as people read them.
+// Numbers and times as text, for people and as JSON.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 
 namespace armwright {
 
-// Four significant digits by default, without an exponent where that stays readable:
-// 0.08241, 5.229, 963686, 1.2e-09.
+// Returns the value with `digits` significant digits, without an exponent for sizes from 1e-4 to
+// 1e9: 0.08241, 5.229, 963686, 1.2e-09.
 std::string format_significant(double value, int digits = 4);
-// A length in mm, without the unit: 0.000083 -> "0.083". "-" for what does not exist.
+// Returns a length in mm without the unit: 0.000083 -> "0.083". Returns "-" if there is no value.
 std::string format_mm(std::optional<double> length_m);
-// With its unit; metres become millimetres, "1" is no unit.
+// Returns the value with its unit. Metres become millimetres; the unit "1" is left out.
 std::string format_quantity(double value, std::string_view unit);
-// "6 s", "12:05", "3:04:59"
+// Returns "6 s", "12:05" or "3:04:59".
 std::string format_duration(double seconds);
-// "1 case", "2 cases"
+// Returns "1 case", "2 cases".
 std::string format_count(unsigned long long count, std::string_view singular);
+
+// Returns null for a missing value and for NaN or infinity, which JSON cannot hold.
+nlohmann::json to_json_value(std::optional<double> value);
 
 }  // namespace armwright

@@ -14,7 +14,7 @@ std::string escape_markdown(std::string_view text) {
   };
   std::string escaped;
   for (std::size_t i = 0; i < clean.size(); ++i) {
-    // Within a word an underscore means nothing.
+    // Markdown does not interpret an underscore within a word.
     const bool is_bare_underscore = clean[i] == '_' && !(i > 0 && is_word(i - 1) && is_word(i + 1));
     if (kSpecial.find(clean[i]) != kSpecial.npos || is_bare_underscore) {
       escaped += '\\';
@@ -24,7 +24,7 @@ std::string escape_markdown(std::string_view text) {
   return escaped;
 }
 
-// A bar ends a cell even between backticks.
+// In a table, a bar ends the cell even between backticks.
 std::string format_code(const std::string& text) {
   if (text.empty()) {
     return "(empty)";

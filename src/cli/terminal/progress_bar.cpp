@@ -19,7 +19,7 @@ using std::chrono::seconds;
 
 constexpr milliseconds kRedrawInterval{100};
 constexpr seconds kLineInterval{5};
-constexpr milliseconds kShortestLineInterval{500};  // however fast the tenths pass
+constexpr milliseconds kShortestLineInterval{500};  // also if a tenth takes less time
 constexpr int kLongestBar = 30;
 constexpr int kShortestBar = 5;
 
@@ -33,11 +33,17 @@ double calc_share(const Progress& progress) {
                                                  static_cast<double>(progress.total));
 }
 
-bool has_generations(const Progress& progress) {
-  return progress.generation > 0 && progress.phase == Progress::Phase::training;
+double calc_left_s(const Progress& progress, double cases_per_s) {
+  return std::max(0.0, static_cast<double>(progress.total) - static_cast<double>(progress.done)) /
+         cases_per_s;
 }
 
-// A piece of the bar's line; where it is too narrow, those with the highest rank go first.
+bool has_generations(const Progress& progress) {
+  return progress.generation > 0 && progress.phase == CaseRole::training;
+}
+
+// A piece of the bar's line. If the line is too long, the pieces with the highest rank are left out
+// first.
 struct Piece {
   std::string text;
   int rank;
@@ -75,7 +81,8 @@ void ProgressBar::on_progress(const Progress& progress) {
   const bool first = !begun_ || progress.phase != last_.phase;
   if (first) {
     begun_ = true;
-    pace_ = {now, count_simulated(progress)};
+    phase_began_ = now;
+    simulated_before_phase_ = count_simulated(progress);
     last_tenth_ = 0;
   }
   last_ = progress;
@@ -110,19 +117,12 @@ void ProgressBar::clear() {
   }
 }
 
-std::optional<ProgressBar::Rate> ProgressBar::calc_rate(const Progress& progress,
-                                                        Clock::time_point now) const {
-  constexpr double kLeast_s = 0.3;  // no rate from less
-  const double elapsed_s = duration<double>(now - pace_.since).count();
+double ProgressBar::calc_cases_per_s(const Progress& progress, Clock::time_point now) const {
+  constexpr double kLeast_s = 0.3;  // a shorter time gives no useful rate
+  const double elapsed_s = duration<double>(now - phase_began_).count();
   const auto simulated =
-      static_cast<double>(count_simulated(progress)) - static_cast<double>(pace_.simulated);
-  if (elapsed_s < kLeast_s || simulated <= 0) {
-    return std::nullopt;
-  }
-  const double rate = simulated / elapsed_s;
-  return Rate{rate, std::max(0.0, static_cast<double>(progress.total) -
-                                      static_cast<double>(progress.done)) /
-                        rate};
+      static_cast<double>(count_simulated(progress)) - static_cast<double>(simulated_before_phase_);
+  return elapsed_s < kLeast_s || simulated <= 0 ? 0 : simulated / elapsed_s;
 }
 
 void ProgressBar::draw_bar(const Progress& progress, Clock::time_point now) {
@@ -132,9 +132,9 @@ void ProgressBar::draw_bar(const Progress& progress, Clock::time_point now) {
       {fmt::format(" {:.0f} %", std::floor(100 * share)), 0},
       {fmt::format(" {}/{}", progress.done, progress.total), 3},
   };
-  if (const auto rate = calc_rate(progress, now)) {
-    pieces.push_back({fmt::format("  {}/s", format_significant(rate->cases_per_s, 3)), 5});
-    pieces.push_back({fmt::format("  ETA {}", format_duration(rate->left_s)), 2});
+  if (const double rate = calc_cases_per_s(progress, now); rate > 0) {
+    pieces.push_back({fmt::format("  {}/s", format_significant(rate, 3)), 5});
+    pieces.push_back({fmt::format("  ETA {}", format_duration(calc_left_s(progress, rate))), 2});
   }
   if (has_generations(progress)) {
     pieces.push_back({fmt::format("  gen {}", progress.generation), 4});
@@ -143,7 +143,7 @@ void ProgressBar::draw_bar(const Progress& progress, Clock::time_point now) {
     pieces.push_back(
         {fmt::format("  best {}", format_quantity(progress.best_objective, objective_.unit)), 1});
   }
-  // A full last column would wrap on some terminals.
+  // Some terminals wrap a line that fills the last column.
   const auto width = static_cast<std::size_t>(std::max(get_width(Stream::error) - 1, 1));
   const std::string after = join_what_fits(std::move(pieces), width);
   std::string line = after;
@@ -164,9 +164,9 @@ void ProgressBar::write_line(const Progress& progress, Clock::time_point now) {
   std::string line =
       fmt::format("{} {:.0f} %  {}/{}", to_string(progress.phase),
                   std::floor(100 * calc_share(progress)), progress.done, progress.total);
-  if (const auto rate = calc_rate(progress, now)) {
-    line += fmt::format("  {} cases/s  ETA {}", format_significant(rate->cases_per_s, 3),
-                        format_duration(rate->left_s));
+  if (const double rate = calc_cases_per_s(progress, now); rate > 0) {
+    line += fmt::format("  {} cases/s  ETA {}", format_significant(rate, 3),
+                        format_duration(calc_left_s(progress, rate)));
   }
   if (has_generations(progress)) {
     line += fmt::format("  generation {}", progress.generation);

@@ -1,9 +1,8 @@
-// Shows how far a run or an evaluation is, on stderr: one line redrawn in place on a terminal,
-// plain lines elsewhere.
+// Shows the progress of a run or an evaluation on stderr. On a terminal it redraws one line in
+// place; elsewhere it prints plain lines.
 #pragma once
 
 #include <chrono>
-#include <optional>
 #include <string>
 
 #include "problems/interface/problem.hpp"
@@ -11,9 +10,10 @@
 
 namespace armwright {
 
+// An observer that prints. Not thread-safe: LockedObserver serves several threads.
 class ProgressBar final : public RunObserver {
  public:
-  // `quiet` shows no progress; messages come through all the same.
+  // With `quiet`, only messages are printed. `objective` gives the unit of the best value.
   ProgressBar(bool quiet, Quantity objective);
   ~ProgressBar() override { clear(); }
   ProgressBar(const ProgressBar&) = delete;
@@ -21,23 +21,16 @@ class ProgressBar final : public RunObserver {
 
   void on_progress(const Progress& progress) override;
   void on_message(const std::string& message) override;
-  // Takes the bar off the screen, so that something else can be written.
+  // Removes the bar from the screen, so that other text can be written.
   void clear();
 
  private:
   using Clock = std::chrono::steady_clock;
   enum class Mode { none, lines, bar };
 
-  // What is known of rate and remaining time, begun anew with every phase.
-  struct Pace {
-    Clock::time_point since;
-    std::uint64_t simulated = 0;  // cases already done then, those from the journal not counted
-  };
-  struct Rate {
-    double cases_per_s;
-    double left_s;
-  };
-  std::optional<Rate> calc_rate(const Progress& progress, Clock::time_point now) const;
+  // Returns the mean rate since the phase began, in cases per second. Returns 0 if less than 0.3 s
+  // have passed or nothing was simulated.
+  double calc_cases_per_s(const Progress& progress, Clock::time_point now) const;
   void draw_bar(const Progress& progress, Clock::time_point now);
   void write_line(const Progress& progress, Clock::time_point now);
 
@@ -45,7 +38,8 @@ class ProgressBar final : public RunObserver {
   Quantity objective_;
   bool begun_ = false;
   Progress last_;
-  Pace pace_;
+  Clock::time_point phase_began_;
+  std::uint64_t simulated_before_phase_ = 0;  // cases of the journal are not counted
   Clock::time_point last_shown_;
   std::uint64_t last_tenth_ = 0;
   bool drawn_ = false;

@@ -1,6 +1,4 @@
-// What one call of the program carries along, the exit codes, and the subcommands. Each subcommand
-// has a file of its own: it adds itself to the parser and leaves, when chosen, its work as an
-// action.
+// One call of the program: its command line, its stop signal and its exit code.
 #pragma once
 
 #include <functional>
@@ -10,18 +8,14 @@
 
 #include "base/stop_signal.hpp"
 
-namespace CLI {
-class App;
-}
-
 namespace armwright {
 
-// Documented in --help.
+// The exit codes that 'armwright --help' documents.
 namespace exit_code {
 inline constexpr int kDone = 0;
-inline constexpr int kInternal = 1;  // a bug of ours, or no memory left
+inline constexpr int kInternal = 1;  // a bug of armwright, or no memory left
 inline constexpr int kUsage = 2;
-inline constexpr int kFailed = 3;  // done, but something failed
+inline constexpr int kFailed = 3;  // the command finished, but something failed
 inline constexpr int kBadData = 4;
 inline constexpr int kBusy = 5;
 inline constexpr int kIo = 74;
@@ -29,50 +23,31 @@ inline constexpr int kStopped = 75;
 inline constexpr int kInterrupted = 130;
 }  // namespace exit_code
 
+// The state of one call, which all parts of the command line share.
 struct Session {
-  std::vector<std::string> command_line;  // as typed, the program's name included
+  std::vector<std::string> command_line;  // as typed, including the program's name
   std::string color = "auto";
   StopSignal stop;
-  std::function<int()> action;    // of the chosen subcommand; its result is the exit code
-  bool shares_work = false;       // the chosen subcommand: out over ranks, if there are any
-  bool must_abort_ranks = false;  // at the end: some are missing (cli/team.hpp)
+  std::function<int()> action;    // the work of the chosen subcommand; it returns the exit code
+  bool shares_work = false;       // whether the chosen subcommand uses all MPI ranks
+  bool must_abort_ranks = false;  // whether MPI must be aborted at the end, as ranks are missing
 };
 
-void add_list(CLI::App& app, Session& session);
-void add_optimize(CLI::App& app, Session& session);
-void add_compare(CLI::App& app, Session& session);
-void add_cell(CLI::App& app, Session& session);
-void add_status(CLI::App& app, Session& session);
-void add_merge(CLI::App& app, Session& session);
-void add_rerun(CLI::App& app, Session& session);
-void add_evaluate(CLI::App& app, Session& session);
-void add_sweep(CLI::App& app, Session& session);
-void add_verify(CLI::App& app, Session& session);
-void add_reproduce(CLI::App& app, Session& session);
-void add_testset(CLI::App& app, Session& session);
-void add_show(CLI::App& app, Session& session);
-void add_report(CLI::App& app, Session& session);
-void add_plot(CLI::App& app, Session& session);
-void add_watch(CLI::App& app, Session& session);
-void add_export(CLI::App& app, Session& session);
-void add_import(CLI::App& app, Session& session);
-void add_check_plugin(CLI::App& app, Session& session);
-void add_new_plugin(CLI::App& app, Session& session);
-void add_doctor(CLI::App& app, Session& session);
-void add_manual(CLI::App& app, Session& session);
-void add_completion(CLI::App& app, Session& session);
-
-// The program itself: its name, what it says of itself, and all of the above.
-void add_all_commands(CLI::App& app, Session& session);
-
-// A command to try next, with the program named as the user named it.
+// Returns a command line for the user to try next, quoted for the shell. It begins with the
+// program's name as the user typed it.
 std::string quote_own_command(const Session& session, std::vector<std::string> words);
 
-// The exit code of a run or evaluation that was stopped.
+// Makes SIGINT (Ctrl-C), SIGTERM, SIGHUP and SIGXCPU request a stop, so that the command can end in
+// order and be resumed. `stop` must live until the process ends. A second signal ends the process
+// at once, with exit code 130 for SIGINT and 75 for the others. A signal that the parent process
+// ignored (nohup, background jobs) stays ignored.
+void catch_signals(StopSignal& stop);
+
+// Returns the exit code of a command that was stopped.
 int get_stop_code(StopReason reason);
-// "interrupted", "time limit reached", ...
+// Returns "interrupted", "stopped by a signal", "stopped: the time limit is reached" or "stopped".
 const char* describe_stop(StopReason reason);
-// Of a command that was stopped and can be gone on with: says so, with the words that do. The exit
+// Tells the user that the stopped command can be resumed, and with which words. Returns the exit
 // code.
 int end_stopped(const Session& session, std::span<const std::string> command);
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kGap = 2;  // between two columns
 
-// Continuation bytes of UTF-8 take no room.
+// Continuation bytes of UTF-8 are no characters.
 std::size_t count_characters(std::string_view text) {
   return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
     return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
@@ -47,7 +47,7 @@ void Table::add_row(std::vector<std::string> cells) {
 
 std::vector<std::size_t> Table::calc_widths(int room) const {
   std::vector<std::size_t> widths;
-  std::vector<std::size_t> least;  // what a column that wraps keeps in any case
+  std::vector<std::size_t> least;  // the smallest width of a column that wraps
   std::size_t total = 0;
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     std::size_t width = count_characters(columns_[c].title);
@@ -62,7 +62,7 @@ std::vector<std::size_t> Table::calc_widths(int room) const {
     least.push_back(columns_[c].wraps ? longest_word : width);
     total += width + (c > 0 ? kGap : 0);
   }
-  // The widest gives way first.
+  // The widest column that wraps is made narrower first.
   while (total > static_cast<std::size_t>(room)) {
     std::size_t widest = columns_.size();
     for (std::size_t c = 0; c < columns_.size(); ++c) {

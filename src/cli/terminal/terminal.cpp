@@ -17,7 +17,7 @@
 namespace armwright {
 namespace {
 
-// 0 or the error number.
+// Returns 0 or the error number.
 int write_all(int descriptor, std::string_view text) {
   while (!text.empty()) {
     const ssize_t put = ::write(descriptor, text.data(), text.size());
@@ -42,7 +42,7 @@ int write_all(int descriptor, std::string_view text) {
 bool is_terminal(Stream stream) {
   const char* term = std::getenv("TERM");
   const bool dumb = term != nullptr && std::string_view(term) == "dumb";
-  // mpirun shows each rank a terminal, whatever it does with what is written there.
+  // Under mpirun, each rank sees a terminal even if its output goes elsewhere.
   const bool by_mpirun = std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr;
   return !dumb && !by_mpirun && ::isatty(static_cast<int>(stream)) == 1;
 }

@@ -1,5 +1,5 @@
-// What the standard streams are connected to, how text may be dressed for them, and writing to
-// them. Results go to stdout, all else to stderr.
+// The standard streams: what they are connected to, colours, and writing. Results go to stdout,
+// progress and messages to stderr.
 #pragma once
 
 #include <string>
@@ -9,12 +9,15 @@ namespace armwright {
 
 enum class Stream { out = 1, error = 2 };
 
+// Returns whether the stream is a terminal that can redraw a line. Returns false under mpirun and
+// for TERM=dumb.
 bool is_terminal(Stream stream);
-int get_width(Stream stream);  // columns; 80 if unknown
-// For text in lines that nobody reads by machine: a terminal's width, 100 anywhere else.
+// Returns the terminal's width in columns, or 80 if it is unknown.
+int get_width(Stream stream);
+// Returns the width for wrapped text: that of the terminal, or 100 columns elsewhere.
 int get_text_width(Stream stream);
 
-// Escape codes for emphasis, or none.
+// Emphasis by escape codes, or no emphasis if it is off.
 class Style {
  public:
   explicit Style(bool on) : on_(on) {}
@@ -29,21 +32,23 @@ class Style {
   bool on_;
 };
 
-// `choice` is always, never or auto: on a terminal that is not dumb, unless NO_COLOR is set
-// (no-color.org).
+// Returns the style for --color: `choice` is always, never or auto. With auto, the style is on if
+// the stream is a terminal and NO_COLOR is not set (no-color.org).
 Style make_style(Stream stream, std::string_view choice);
 
-struct BrokenPipe {
-};  // thrown when nobody reads our stdout any more: the end, but nothing to complain about
+// Thrown when the reader of stdout has closed its end. The program then ends without a message.
+struct BrokenPipe {};
 
-// Error{io} if the text cannot be written; BrokenPipe.
+// Throws Error{io} if the text cannot be written, and BrokenPipe.
 void write_stdout(std::string_view text);
-// Never fails: there is nowhere left to say so.
+// Ignores errors, as there is no other place to report them.
 void write_stderr(std::string_view text);
-// "armwright: TEXT" on stderr; what could be an escape code is made harmless.
+// Writes "armwright: TEXT" to stderr. Control characters are replaced, so that no escape code
+// reaches the terminal.
 void write_message(std::string_view text);
 
-// To a file, whole or not at all; "-" is stdout. Devices and pipes are written to as they are.
+// Writes the text to a file, whole or not at all; "-" is stdout. Devices and pipes are written to
+// directly. Throws Error{io}, and BrokenPipe for "-".
 void write_output(const std::string& file, std::string_view text);
 
 }  // namespace armwright

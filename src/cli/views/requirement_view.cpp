@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "base/text.hpp"
 #include "cli/terminal/format.hpp"
-#include "cli/terminal/json.hpp"
 #include "cli/terminal/table.hpp"
 
 namespace armwright {
@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-// A share as percent, everything else in its unit.
+// Returns a share in percent, and any other value with its unit.
 std::string format_required_value(double value, const std::string& unit) {
   return unit == "1" ? format_significant(100 * value) + " %" : format_quantity(value, unit);
 }
@@ -38,16 +38,17 @@ std::string format_grade(const JudgedRequirement& judged, const Style& style) {
   return word + (judged.binds ? "; this limit binds" : "");
 }
 
-std::string format_place(const WorstPlace& place) {
+// "case 12, point 3" or "case 7, joint_2"
+std::string format_place(const ShownRequirement& one) {
   std::vector<std::string> parts;
-  if (place.case_number) {
-    parts.push_back(fmt::format("case {}", *place.case_number));
+  if (one.worst_case) {
+    parts.push_back(fmt::format("case {}", *one.worst_case));
   }
-  if (place.point) {
-    parts.push_back(fmt::format("point {}", *place.point));
+  if (one.worst_point) {
+    parts.push_back(fmt::format("point {}", *one.worst_point));
   }
-  if (place.joint) {
-    parts.push_back(sanitize(*place.joint));
+  if (one.worst_joint) {
+    parts.push_back(sanitize(*one.worst_joint));
   }
   return join(parts, ", ");
 }
@@ -58,28 +59,29 @@ std::vector<ShownRequirement> judge_evaluation(const TrackingProblem& problem,
                                                const DesignEvaluation& evaluation) {
   const auto& requirements = problem.description().requirements;
   std::vector<std::optional<double>> values(requirements.size());
-  std::vector<WorstPlace> places(requirements.size());
+  std::vector<ShownRequirement> shown(requirements.size());
   for (std::uint64_t number = 0; number < evaluation.results.size(); ++number) {
     if (!get_error(evaluation.results[number])) {
       continue;
     }
     for (std::size_t i = 0; i < requirements.size(); ++i) {
-      const RequiredValue& its = evaluation.required[number][i];
-      if (!its.value || (values[i] && *its.value <= *values[i])) {
+      const RequiredValue& required = evaluation.required[number][i];
+      if (!required.value || (values[i] && *required.value <= *values[i])) {
         continue;
       }
-      values[i] = its.value;
-      places[i] = {.case_number = number, .point = its.point, .joint = {}};
-      if (its.joint) {
-        places[i].joint = problem.config().robot.joints[*its.joint].name;
+      values[i] = required.value;
+      shown[i].worst_case = number;
+      shown[i].worst_point = required.point;
+      shown[i].worst_joint.reset();
+      if (required.joint) {
+        shown[i].worst_joint = problem.config().robot.joints[*required.joint].name;
       }
     }
   }
   const auto judged =
       judge_requirements(requirements, values, evaluation.summary.without_number == 0);
-  std::vector<ShownRequirement> shown;
   for (std::size_t i = 0; i < judged.size(); ++i) {
-    shown.push_back({judged[i], places[i]});
+    shown[i].judged = judged[i];
   }
   return shown;
 }
@@ -87,15 +89,16 @@ std::vector<ShownRequirement> judge_evaluation(const TrackingProblem& problem,
 std::string format_requirements(std::span<const ShownRequirement> requirements,
                                 const Style& style) {
   const bool has_places = std::ranges::any_of(
-      requirements, [](const ShownRequirement& one) { return one.worst.case_number.has_value(); });
+      requirements, [](const ShownRequirement& one) { return one.worst_case.has_value(); });
   std::vector<Column> columns = {
       {"", false}, {"use", false}, {"at most"}, {"is"}, {"of the limit"}};
   if (has_places) {
     columns.push_back({"worst in", false});
   }
-  columns.push_back({"", false});  // the last, as colours would count as characters
+  columns.push_back({"", false});  // last, as the table would count escape codes as characters
   Table table(std::move(columns));
-  for (const auto& [judged, worst] : requirements) {
+  for (const ShownRequirement& one : requirements) {
+    const JudgedRequirement& judged = one.judged;
     const Limit& limit = judged.requirement.limit;
     std::vector<std::string> cells = {
         sanitize(limit.quantity.name), judged.requirement.is_constraint ? "constraint" : "report",
@@ -103,7 +106,7 @@ std::string format_requirements(std::span<const ShownRequirement> requirements,
         judged.value ? format_required_value(*judged.value, limit.quantity.unit) : "-",
         judged.ratio ? format_significant(100 * *judged.ratio, 3) + " %" : "-"};
     if (has_places) {
-      cells.push_back(format_place(worst));
+      cells.push_back(format_place(one));
     }
     cells.push_back(format_grade(judged, style));
     table.add_row(std::move(cells));
@@ -117,7 +120,8 @@ std::string describe_limit(const Limit& limit) {
 
 json requirements_to_json(std::span<const ShownRequirement> requirements) {
   json list = json::array();
-  for (const auto& [judged, worst] : requirements) {
+  for (const ShownRequirement& shown : requirements) {
+    const JudgedRequirement& judged = shown.judged;
     const RequiredMetric& requirement = judged.requirement;
     json one = {{"name", sanitize(requirement.limit.quantity.name)},
                 {"unit", requirement.limit.quantity.unit},
@@ -131,14 +135,14 @@ json requirements_to_json(std::span<const ShownRequirement> requirements) {
                 {"worst_case", nullptr},
                 {"worst_point", nullptr},
                 {"worst_joint", nullptr}};
-    if (worst.case_number) {
-      one["worst_case"] = *worst.case_number;
+    if (shown.worst_case) {
+      one["worst_case"] = *shown.worst_case;
     }
-    if (worst.point) {
-      one["worst_point"] = *worst.point;
+    if (shown.worst_point) {
+      one["worst_point"] = *shown.worst_point;
     }
-    if (worst.joint) {
-      one["worst_joint"] = sanitize(*worst.joint);
+    if (shown.worst_joint) {
+      one["worst_joint"] = sanitize(*shown.worst_joint);
     }
     list.push_back(std::move(one));
   }

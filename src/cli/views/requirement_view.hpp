@@ -1,7 +1,7 @@
-// What is required of an arm, and whether a design keeps it, as tables and JSON.
+// The requirements on an arm, and whether a design meets them, as tables and JSON.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,30 +13,27 @@
 
 namespace armwright {
 
-// Where a requirement has its value: "case 12, point 3", "case 7, joint_2"; or nothing known.
-struct WorstPlace {
-  std::optional<std::uint64_t> case_number;
-  std::optional<std::size_t> point;
-  std::optional<std::string> joint;
-};
-
+// A judged requirement and the place of its worst value, as far as the place is known.
 struct ShownRequirement {
   JudgedRequirement judged;
-  WorstPlace worst;
+  std::optional<std::uint64_t> worst_case = {};  // the case's number in its set, from 0
+  std::optional<std::size_t> worst_point = {};
+  std::optional<std::string> worst_joint = {};
 };
 
-// Judged on the worst of the cases that have a number. Empty if the problem requires nothing.
+// Judges each requirement on the worst of the cases that have a number. Returns an empty list if
+// the problem has no requirements.
 std::vector<ShownRequirement> judge_evaluation(const TrackingProblem& problem,
                                                const DesignEvaluation& evaluation);
 
-// Titles and a line each; the column of places only where they are known.
+// Returns a table with one row per requirement. It has a column of places if a place is known.
 std::string format_requirements(std::span<const ShownRequirement> requirements, const Style& style);
-// "5 %", "0.2 s".
+// Returns the limit with its unit: "5 %", "0.2 s".
 std::string describe_limit(const Limit& limit);
 
 nlohmann::json requirements_to_json(std::span<const ShownRequirement> requirements);
 
-// A requirement that is used as a constraint is missed.
+// Returns whether a requirement that is also a constraint is missed.
 bool is_constraint_missed(std::span<const ShownRequirement> requirements);
 
 }  // namespace armwright

@@ -20,14 +20,14 @@ struct RunFile {
 };
 constexpr RunFile kRunFiles[] = {
     {"winner.toml", "the winner, for evaluate and sweep"},
-    {"winner-trajectory.csv", "its motion on the first test case"},
-    {"front.csv", "the designs on the front, with what the validation set says of them"},
+    {"winner-trajectory.csv", "the winner's trajectory on the first test case"},
+    {"front.csv", "the designs on the front, with their results on the validation set"},
     {"result.json", "all numbers of this result"},
     {"convergence.csv", "the best value over the evaluations"},
     {"results.sqlite", "every evaluation, as SQL tables"},
-    {"journal", "every evaluation, as it was made: resuming reads it"},
-    {"optimizer.log", "what the optimizer printed"},
-    {"manifest.json", "what was asked for, and what it was made with"},
+    {"journal", "every evaluation; resuming reads it"},
+    {"optimizer.log", "the output of the optimizer"},
+    {"manifest.json", "the configuration, the hashes of the inputs and the build"},
 };
 
 std::optional<double> get_metric(const RunResult& result, const std::string& name) {
@@ -36,7 +36,7 @@ std::optional<double> get_metric(const RunResult& result, const std::string& nam
   return at < result.test.metrics.size() ? std::optional(result.test.metrics[at]) : std::nullopt;
 }
 
-// Robot problems have cases with errors in metres; of a function there is only its value.
+// Returns whether it is a robot problem, which has errors in metres. A function has only its value.
 bool is_tracking(const RunResult& result) {
   return std::find(result.metric_names.begin(), result.metric_names.end(), "total_torque") !=
          result.metric_names.end();
@@ -97,7 +97,8 @@ std::string format_function_test(const RunResult& result, const Style& style) {
   return table.format(style, 2);
 }
 
-// A constraint's value as a user thinks of it: what keeps the limit, or else g.
+// Returns the value of a constraint: the limited quantity if the constraint is a limit, otherwise
+// g.
 std::string format_constraint(const RunResult& result, std::size_t i, double g) {
   if (result.limits.empty()) {
     return format_quantity(g, result.constraints[i].unit) + (g > 0 ? " (violated)" : " (met)");
@@ -137,11 +138,11 @@ std::string format_constraints(const RunResult& result, const Style& style) {
   return style.bold("Constraints") + "\n" + table.format(style, 2);
 }
 
-// On the test set.
+// The requirements judged on the test set.
 std::string format_winner_requirements(const RunResult& result, const Style& style) {
   std::vector<ShownRequirement> shown;
   for (JudgedRequirement& judged : judge_requirements(result.requirements, result.test)) {
-    shown.push_back({std::move(judged), {}});
+    shown.push_back({.judged = std::move(judged)});
   }
   return format_requirements(shown, style);
 }
@@ -169,7 +170,7 @@ std::string format_published(const RunResult& result, const Style& style) {
 std::string format_design(const DesignFile& design, const Style& style) {
   const ControllerRow& controller = find_controller(design.design.controller);
   std::vector<Column> columns = {{"joint", false}};
-  for (const GainSpec& gain : controller.gains) {
+  for (const controllers::Gain& gain : controller.gains) {
     columns.push_back({fmt::format("{} [{}]", gain.name, gain.unit)});
   }
   columns.push_back({"min [N m]"});
@@ -186,8 +187,8 @@ std::string format_design(const DesignFile& design, const Style& style) {
     for (const double gain : joint.gains) {
       cells.push_back(format_significant(gain, 6));
     }
-    cells.push_back(format_significant(joint.limits.min_n_m, 6));
-    cells.push_back(format_significant(joint.limits.max_n_m, 6));
+    cells.push_back(format_significant(joint.limits.min, 6));
+    cells.push_back(format_significant(joint.limits.max, 6));
     if (stretched) {
       cells.push_back(format_significant(joint.length_scale, 4));
       cells.push_back(format_significant(joint.section_scale, 4));
@@ -210,14 +211,14 @@ std::string describe_no_winner(const RunResult& result) {
            sanitize(result.first_failure);
   }
   if (result.counts.feasible > 0) {
-    return "Of the designs that were good in training none has a number on the validation set, so "
+    return "None of the designs that were good in training has a number on the validation set, so "
            "there is no winner.";
   }
   std::string nearest;
   if (result.least_violation && result.limits.size() == 1) {
     const Limit& limit = result.limits.front();
     nearest = fmt::format(
-        " The nearest had {} {}, where {} are allowed.", sanitize(limit.quantity.name),
+        " The nearest had {} {}, but only {} is allowed.", sanitize(limit.quantity.name),
         format_quantity((1 + *result.least_violation) * limit.value, limit.quantity.unit),
         format_quantity(limit.value, limit.quantity.unit));
   } else if (result.least_violation) {
@@ -238,15 +239,14 @@ std::string describe_result(const RunResult& result, const std::filesystem::path
     text += fmt::format(", {}", format_count(counts.generations, "generation"));
   }
   if (counts.abandoned > 0) {
-    text += fmt::format(", {} of them dropped in races", counts.abandoned);
+    text += fmt::format(", {} of them abandoned by racing", counts.abandoned);
   }
   text += fmt::format("; {} failed, {} clipped to the bounds; ended by: {}\n\n", counts.failed,
                       counts.clipped, sanitize(result.end_reason));
   if (!result.failure.empty()) {
-    text +=
-        style.red("The optimizer failed: " + sanitize(result.failure)) +
-        "\nWhat it had asked for until then is kept and judged; the same command tries again from "
-        "there.\n\n";
+    text += style.red("The optimizer failed: " + sanitize(result.failure)) +
+            "\nIts evaluations until then are kept and judged. The same command tries again from "
+            "there.\n\n";
   }
   if (!result.winner) {
     text += style.red(describe_no_winner(result)) + "\n\n";

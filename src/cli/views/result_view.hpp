@@ -1,4 +1,4 @@
-// A run's result as optimize prints it at its end and show at any time.
+// A run's result as text. optimize prints it at the end of a run, and show at any time.
 #pragma once
 
 #include <filesystem>
@@ -11,22 +11,23 @@
 
 namespace armwright {
 
-// What was done, the winner, what the test set says of it, published numbers beside ours, and where
-// the files lie.
+// Returns the counts of the run, the winner, its errors on the test set, published numbers beside
+// ours, and the files in the run's folder.
 std::string describe_result(const RunResult& result, const std::filesystem::path& folder,
                             const Style& style);
 
-// The designs that were judged on the validation set, a line each.
+// Returns a table with one row per design that was judged on the validation set.
 std::string describe_judged(const RunResult& result, const Style& style);
 
-// A design's gains and limits, a line a joint.
+// Returns a table of a design's gains and effort limits, one row per joint.
 std::string format_design(const DesignFile& design, const Style& style);
 
-// Mean, median, 95th percentile, worst and failures, a row each; others may follow.
+// Returns a table with one row each for mean, median, 95th percentile, worst and failures. The
+// caller may add rows.
 Table make_summary_table(const ErrorSummary& summary);
 
-// The exit code of a run that has come to its end: kFailed if it found nothing feasible or its
-// winner has cases without a number.
+// Returns the exit code of a finished run. It is kFailed if the optimizer failed, if the run found
+// nothing feasible, or if the winner has cases without a number.
 int get_result_code(const RunResult& result);
 
 }  // namespace armwright

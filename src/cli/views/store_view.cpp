@@ -40,7 +40,7 @@ std::string make_repair_command(const StoreSurvey& survey, const std::string& pr
 
 std::string describe_journal(const RunSurvey& run) {
   if (!run.journal) {
-    return "nothing recorded that can be read";
+    return "no readable record";
   }
   return fmt::format("{} and {} recorded in {}",
                      format_count(run.journal->evaluations.size(), "evaluation"),
@@ -52,7 +52,7 @@ std::string describe_writer(const std::string& writer) {
   return writer.empty() ? "" : fmt::format("; being written now by {}", writer);
 }
 
-// Of a run by itself: its files one by one, those in order too.
+// Adds the intact files of a run. They are shown only if the folder is that of a run.
 void add_intact_files(const RunSurvey& run, Table& table) {
   const auto is_named = [&](const std::string& name) {
     return std::ranges::any_of(run.findings, [&](const Finding& finding) {
@@ -60,7 +60,7 @@ void add_intact_files(const RunSurvey& run, Table& table) {
     });
   };
   if (!is_named("manifest.json")) {
-    table.add_row({"intact", "manifest.json", "what was asked for"});
+    table.add_row({"intact", "manifest.json", "the configuration of the run"});
   }
   if (run.journal && !is_named("journal")) {
     table.add_row({"intact", "journal", describe_journal(run)});
@@ -127,7 +127,7 @@ std::string describe_head(const StoreSurvey& survey, const Style& style) {
   return text + table.format(style, 2);
 }
 
-// The commands, one a line.
+// Returns the commands that the user can try next, one per element.
 std::vector<std::string> list_steps(const StoreSurvey& survey, const std::string& program) {
   if (survey.is_record_lost) {
     return {};
@@ -198,7 +198,7 @@ json to_json(const RunSurvey& run) {
 
 std::string describe_kept(const RunRepair& run) {
   if (run.is_set_aside) {
-    return fmt::format("its manifest.json is lost: the run is made anew ({})",
+    return fmt::format("its manifest.json is lost: the run begins again ({})",
                        format_count(run.evaluations_lost, "evaluation"));
   }
   std::string text =
@@ -250,7 +250,7 @@ std::string describe_survey(const StoreSurvey& survey, const std::string& progra
   if (has_rows) {
     text += (is_run ? "" : "\n") + table.format(style, 2, get_text_width(Stream::out));
   }
-  text += survey.is_damaged() ? "" : "All that is there is intact.\n";
+  text += survey.is_damaged() ? "" : "All stored files are intact.\n";
   if (survey.is_record_lost) {
     for (const std::string& line :
          wrap_words(advise_on_lost_record(survey, program), get_text_width(Stream::out))) {
@@ -259,9 +259,10 @@ std::string describe_survey(const StoreSurvey& survey, const std::string& progra
   }
   const auto steps = list_steps(survey, program);
   if (!steps.empty()) {
-    text += survey.is_damaged() ? "To go on with what is intact, in a copy:\n" : "To go on:\n";
+    text +=
+        survey.is_damaged() ? "To resume from the intact records, in a copy:\n" : "To resume:\n";
     for (const std::string& step : steps) {
-      text += step.empty() ? "  the command that began it, with --out for the copy\n"
+      text += step.empty() ? "  the command that began it, with --out FOLDER for the copy\n"
                            : fmt::format("  {}\n", step);
     }
   }
@@ -295,15 +296,16 @@ std::string describe_repair(const StoreRepair& repair, const StoreSurvey& copy,
     table.add_row({run.name == "." ? "" : show(run.name), describe_kept(run)});
   }
   for (const auto& file : repair.kept_aside) {
-    table.add_row({show(file), "damaged, kept as NAME.damaged; it is made again"});
+    table.add_row({show(file), "damaged, kept as NAME.damaged; it will be made again"});
   }
   for (const auto& file : repair.left_out) {
-    table.add_row({show(file), "neither a file nor a folder: not copied"});
+    table.add_row({show(file), "neither a file nor a folder; not copied"});
   }
   text += table.format(Style(false), 2, get_text_width(Stream::out));
   const std::string command = quote(make_command(copy, program, repair.copy));
-  return text + (command.empty() ? "To go on: the command that began it, with --out for the copy\n"
-                                 : fmt::format("To go on:\n  {}\n", command));
+  return text + (command.empty()
+                     ? "To resume: the command that began it, with --out FOLDER for the copy\n"
+                     : fmt::format("To resume:\n  {}\n", command));
 }
 
 json to_json(const StoreRepair& repair, const StoreSurvey& copy, const std::string& program) {

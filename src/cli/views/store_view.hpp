@@ -1,4 +1,4 @@
-// What `armwright doctor` says of a folder, for people and for programs.
+// The findings of `armwright doctor FOLDER`, as text and as JSON.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -10,15 +10,17 @@
 
 namespace armwright {
 
-// FOLDER.repaired.
+// Returns FOLDER.repaired, the default folder of a repaired copy.
 std::filesystem::path choose_repaired_folder(const std::filesystem::path& folder);
 
-// What is intact, what is not, and what to do. `program`: as it was called.
+// Returns what is intact, what is damaged and what to do. `program` is the program's name as the
+// user typed it.
 std::string describe_survey(const StoreSurvey& survey, const std::string& program,
                             const Style& style);
 nlohmann::json to_json(const StoreSurvey& survey, const std::string& program);
 
-// What a repair has kept and dropped, and how to go on. `copy`: what is in it now.
+// Returns what a repair has kept and dropped, and the command that resumes the copy. `copy` is the
+// survey of the copy.
 std::string describe_repair(const StoreRepair& repair, const StoreSurvey& copy,
                             const std::string& program);
 nlohmann::json to_json(const StoreRepair& repair, const StoreSurvey& copy,

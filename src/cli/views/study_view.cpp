@@ -8,8 +8,9 @@
 #include "base/text.hpp"
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/table.hpp"
+#include "study/analysis/final_check.hpp"
+#include "study/analysis/study_tables.hpp"
 #include "study/analysis/verdict.hpp"
-#include "study/analysis/verdict_targets.hpp"
 
 namespace armwright {
 namespace {
@@ -28,7 +29,7 @@ std::string list_labels(const StudyPlan& plan, bool baselines) {
   return join(labels, ", ");
 }
 
-// The same without its unit, for a column where that stands already.
+// Returns the value without its unit, for a column that shows the unit already.
 std::string format_number(double value, const Quantity& quantity) {
   const std::string text = format_value(value, quantity);
   return text.substr(0, text.find(' '));
@@ -44,7 +45,7 @@ std::string describe_check(const std::optional<FinalCheck>& check, const Quantit
              : fmt::format("{}, {} of {} fail", value, check->errors.failures, check->errors.cases);
 }
 
-// The comparison with the problem's leader in a few characters.
+// Returns the comparison with the problem's leader: A12 and p.
 std::string describe_against_leader(const ProblemResult& problem, std::size_t optimizer) {
   const std::size_t leader = problem.order.front();
   if (optimizer == leader) {
@@ -223,8 +224,8 @@ std::string describe_cost(const StudyPlan& plan, double expected_s, unsigned job
       cost.training + cost.validation + cost.test, cost.training, cost.validation, cost.test);
   if (expected_s > 0) {
     text += fmt::format(
-        "about {} with --jobs {} (measured on a few simulations; optimizers that think long "
-        "take longer)\n",
+        "about {} with --jobs {} (measured on a few simulations; optimizers with much "
+        "computation of their own take longer)\n",
         format_duration(expected_s), jobs);
   }
   return text;
@@ -248,12 +249,32 @@ std::string describe_study(const StudyPlan& plan, const StudyResult& result,
   }
   return text +
          fmt::format(
-             "\nA12: how often a run of the table's first is better than one of this "
-             "optimizer's. p: of the\ndifference in pairs (Wilcoxon, after Holm); * below "
-             "{}. Cases to 1 %: expected, with restarts,\nuntil 1 % of the way from the "
-             "start to the best known is left. Cases failed: mean share of test cases with an "
-             "error above\n100 mm.\nTables: {}\n",
+             "\nA12: share of the pairs of runs in which the first optimizer of the table is "
+             "better "
+             "than this one.\np: p-value of the paired difference (Wilcoxon, after Holm); * below "
+             "{}. Cases to 1 %: expected number,\nwith restarts, until 1 % of the way from the "
+             "start to the best known value is left. Cases failed: mean\nshare of test cases "
+             "with an error above 100 mm.\nTables: {}\n",
              kSignificance, sanitize((folder / "tables").string()));
+}
+
+int end_study(const StudyPlan& plan, const std::filesystem::path& folder, unsigned jobs,
+              bool as_json, Session& session, ProgressBar& bar) {
+  StudyResult result = analyze_study(plan, folder);
+  if (!add_final_checks(plan, folder, jobs, session.stop, bar, result)) {
+    bar.clear();
+    return end_stopped(session, session.command_line);
+  }
+  bar.clear();
+  write_study_tables(plan, result, folder);
+  if (as_json) {
+    write_stdout(to_json(plan, result));
+  } else {
+    write_stdout(describe_study(plan, result, folder, make_style(Stream::out, session.color)));
+  }
+  const bool failed = std::ranges::any_of(
+      result.cells, [](const CellOutcome& cell) { return !cell.failure.empty(); });
+  return failed || !result.missing.empty() ? exit_code::kFailed : exit_code::kDone;
 }
 
 }  // namespace armwright

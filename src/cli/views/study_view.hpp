@@ -1,22 +1,32 @@
-// A comparison as `armwright compare` shows it: the plan before anything runs, tables and verdict
-// when all has.
+// A study as text: its plan before it runs, and its tables and verdict when its cells have ended.
 #pragma once
 
+#include <filesystem>
 #include <string>
 
+#include "cli/terminal/progress_bar.hpp"
+#include "cli/terminal/session.hpp"
 #include "cli/terminal/terminal.hpp"
 #include "study/analysis/study_result.hpp"
 #include "study/compare/study_folder.hpp"
 
 namespace armwright {
 
-// Problems, optimizers, and what is paired.
+// Returns a table of the problems, the optimizers, the budget and what is paired.
 std::string describe_plan(const StudyPlan& plan);
-// Cells, simulated cases, and how long it may take.
+// Returns the number of cells and of simulated cases. If `expected_s` is above 0, the expected time
+// with `jobs` threads is added.
 std::string describe_cost(const StudyPlan& plan, double expected_s, unsigned jobs);
 
-// A table a problem, the ranking over problems, the verdict.
+// Returns one table per problem, the ranking over all problems, and the verdict.
 std::string describe_study(const StudyPlan& plan, const StudyResult& result,
                            const std::filesystem::path& folder, const Style& style);
+
+// Ends a command that has all cells of a study: analyzes them, simulates the final checks with
+// `jobs` threads, writes the tables and prints the result (`as_json`: as JSON). The caller holds
+// the folder's lock. A cell that has not ended counts as a run that found nothing. Returns the exit
+// code. Throws Error{bad_data} or Error{io} if a cell cannot be read or a table cannot be written.
+int end_study(const StudyPlan& plan, const std::filesystem::path& folder, unsigned jobs,
+              bool as_json, Session& session, ProgressBar& bar);
 
 }  // namespace armwright

@@ -119,7 +119,7 @@ std::string conclude(const std::string& design, std::span<const VerifyRow> rows)
   const VerifyRow& own = rows.front();
   if (!own.summary.median) {
     return fmt::format(
-        "{} has no median error even under its own setting: there is nothing that could hold.",
+        "{} has no median error even in its own setting, so the other settings say nothing.",
         design);
   }
   Rows engines, substeps, masses, plants, mixed;
@@ -149,15 +149,15 @@ std::string conclude(const std::string& design, std::span<const VerifyRow> rows)
   });
   if (!all_hold(substeps)) {
     text +=
-        " More substeps are nearer to the real arm, so the design relies on the simulation's"
-        " own time step.";
+        " More substeps are closer to the real arm, so the design depends on the time step of the"
+        " simulation.";
   }
   add("Masses", masses, "with",
       [](const VerifySetting& s) { return fmt::format("{:+.0f} %", 100 * (s.mass_factor - 1)); });
   add("Perturbed plants", plants, "with", describe_plant);
   if (!mixed.empty()) {
     const auto mixed_holding = std::ranges::count(mixed, Verdict::holds, &VerifyRow::verdict);
-    text += fmt::format(" Where several of these change at once, it holds in {} of {}.",
+    text += fmt::format(" If several of these change at once, it holds in {} of {} settings.",
                         mixed_holding, mixed.size());
   }
   return text;

@@ -15,7 +15,7 @@ namespace {
 
 class GeneticAlgorithm : public Optimizer {
  public:
-  // `elite_size` comes beside the options because ga:simple has no such option.
+  // `elite_size` is a parameter because ga:simple has no such option.
   GeneticAlgorithm(const Options& options, std::int64_t elite_size)
       : population_size_(static_cast<std::size_t>(options.get_integer("population"))),
         elite_size_(static_cast<std::size_t>(elite_size)),

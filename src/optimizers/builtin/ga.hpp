@@ -1,22 +1,23 @@
-// The genetic algorithm of Gunnarsson 2010 (thesis), section 5.3 and Table A.3: real-coded,
-// generational, with an elite, binary probabilistic tournaments, arithmetic crossover and
-// multiplicative mutation on the variables' natural values. The thesis maximises fitness; here the
-// objective is minimised.
+// The genetic algorithm of Gunnarsson 2010 (thesis), section 5.3 and Table A.3. It is real-coded
+// and generational, with an elite, binary probabilistic tournaments, arithmetic crossover, and
+// multiplicative mutation on the natural values of the variables. The thesis maximises fitness;
+// this version minimises the objective.
 //
-// A generation: the elite, copied unchanged, then one child for each pair of parents. The whole
-// population is evaluated as one batch, the elite too, because the training cases may be new. Genes
-// outside the bounds are clipped by the evaluator; the population then carries the clipped values,
-// which are what the scores belong to.
+// A generation is the elite, copied unchanged, and one child per pair of parents. The whole
+// population is evaluated as one batch, including the elite, because the training cases may be new.
+// The evaluator moves genes into the bounds. The population then carries the moved values, since
+// the scores belong to them.
 //
-// Our extensions, none of which touches an unconstrained problem on logarithmic variables:
-// - A variable of linear scale is mutated by adding, not by multiplying, so that zero is not a
-//   trap and the sign can change. The step spans the same share of the box as the factor spans of
-//   a logarithmic box from base/100 to base*100.
+// Extensions of the thesis. None of them changes a run on an unconstrained problem with logarithmic
+// variables:
+// - A variable with a linear scale is mutated by addition, not by multiplication, so that it can
+//   leave zero and change its sign. The step covers the same share of the box as the factor covers
+//   of a logarithmic box from base/100 to base*100.
 // - Constraints: feasibility first (feasibility.hpp).
-// - `generations` and `include_prototype` as options.
-// Limits: several objectives count as their weighted sum. Crossover never leaves the span of the
-// parents (extent <= 1/2), so an optimum outside the first generation's span, a factor of 10 about
-// the start, is approached by mutations alone, which is slow.
+// - The options `generations` and `include_prototype`. Limits: several objectives count as their
+//   weighted sum. Crossover never leaves the span of the parents (extent <= 1/2). So an optimum
+//   outside the span of the first generation, a factor of 10 about the start, is reached by
+//   mutations alone, which is slow.
 #pragma once
 
 #include <cstddef>
@@ -29,6 +30,7 @@
 
 namespace armwright {
 
+// Returns the rows ga and ga-simple.
 std::vector<OptimizerRow> make_ga_rows();
 
 using Genome = std::vector<double>;
@@ -43,24 +45,27 @@ struct MutationSettings {
   double factor = 1;       // the gene is multiplied by exp(U(-ln factor, ln factor))
 };
 
-// Indices of the population, the fittest first; equals keep their order.
+// Returns the indices of the population, the fittest first. Equal ones keep their order.
 std::vector<std::size_t> rank(std::span<const Fitness> population);
 
-// Two distinct individuals at random; the fitter of them with the given probability, else the
-// other. Draws: first, second, upset.
+// Chooses two different individuals at random and returns the index of the fitter one with the
+// given probability, else of the other one. Draws in this order: first, second, whether the less
+// fit one wins.
 std::size_t select(std::span<const Fitness> population, double probability, RandomStream& random);
 
-// 0.5 (base + other) + sigma (base - other)
+// Returns 0.5 (base + other) + sigma (base - other).
 double calc_crossed_gene(double base, double other, double sigma);
-// One of the parents, at random, is the base and gives the genes that are not crossed. Draws: base;
-// for each gene crossed or not and, if it is, sigma.
+// Makes a child. One of the parents, chosen at random, is the base; it gives the genes that are not
+// crossed. Draws in this order: the base; then for each gene whether it is crossed and, if so,
+// sigma.
 Genome cross(const Genome& first, const Genome& second, const CrossoverSettings& settings,
              RandomStream& random);
 
-// `u` in [-1, 1). Logarithmic scale: gene * exp(u ln factor); linear: gene + u (ln factor / ln 100)
-// (upper - lower)/2.
+// Returns the mutated gene, for u in [-1, 1):
+//   logarithmic scale: gene * exp(u ln factor)
+//   linear scale:      gene + u (ln factor / ln 100) (upper - lower) / 2
 double calc_mutated_gene(const DecisionVariable& variable, double gene, double factor, double u);
-// Draws: for each gene mutated or not and, if it is, u.
+// Mutates the genome. Draws for each gene whether it is mutated and, if so, u.
 void mutate(Genome& genome, std::span<const DecisionVariable> variables,
             const MutationSettings& settings, RandomStream& random);
 

@@ -1,5 +1,5 @@
-// Random search: the start, then independent points, uniform over the box (uniform in the logarithm
-// for a logarithmic variable). What every other optimizer has to beat.
+// Random search: the start, then independent points that are uniform in the box (uniform in the
+// logarithm for a logarithmic variable). Every other optimizer has to be better than this.
 #pragma once
 
 #include "base/random.hpp"
@@ -7,9 +7,11 @@
 
 namespace armwright {
 
+// Returns the row random.
 std::vector<OptimizerRow> make_random_search_rows();
 
-// One coordinate: uniform between the bounds on the variable's own scale, never outside them.
+// Draws a value uniformly between the bounds, on the variable's own scale. It never lies outside
+// them.
 double draw_coordinate(const DecisionVariable& variable, RandomStream& random);
 
 }  // namespace armwright

@@ -1,4 +1,3 @@
-#include "optimizers/ceres/ceres.hpp"
 
 #include "base/error.hpp"
 #include "optimizers/ceres/ceres_backend.hpp"

@@ -1,42 +1,48 @@
-// The two optimizers that are made of Ceres Solver. Its headers are included by their .cpp files
-// and ceres_support.hpp only.
+// The two optimizers that use Ceres Solver. Only their .cpp files and ceres_support.hpp include its
+// headers.
 //
-// Both work in coordinates p of their own: p = 0 at the start and the box 10 wide in every
-// variable, on the variable's own scale. So a factor of ten is about one, trust regions and damping
-// mean the same for every variable and problem, and the start is met exactly.
+// Both work in coordinates p: p = 0 at the start, and the box is 10 wide in every variable, on the
+// variable's own scale. So a factor of ten is about 1, trust regions and damping mean the same for
+// every variable and problem, and p = 0 is exactly the start.
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "optimizers/interface/differences.hpp"
 #include "optimizers/interface/optimizer.hpp"
 
 namespace armwright {
 
+// Returns the rows ceres:lm and ceres:bfgs. In a build without Ceres they say so and cannot be
+// used.
+std::vector<OptimizerRow> make_ceres_rows();
+
 enum class ResidualTransform { automatic, logarithm, none };
 
-// Levenberg-Marquardt on Score::residuals (Levenberg 1944; Marquardt 1963). With the logarithm a
-// residual r is ln(1 + (r/f)^2), f = floor times the start's root mean square: the logarithm of its
-// share of the objective, level where that is small. Every share then counts by its ratio to what
-// it was. Either way the residuals are divided by the root of their number (and, without the
-// logarithm, by the start's root mean square), so that the damping means the same for every
-// problem.
+// Settings of Levenberg-Marquardt on Score::residuals (Levenberg 1944; Marquardt 1963). With the
+// logarithm, a residual r becomes
+//   ln(1 + (r / f)^2),  f = floor times the root mean square of the residuals at the start,
+// the logarithm of its share of the objective, and flat where that share is small. Every share then
+// counts by its ratio to the value at the start. In both cases the residuals are divided by the
+// square root of their number (and, without the logarithm, by the root mean square at the start),
+// so that the damping means the same for every problem.
 //
-// Simulations are rough: slopes over short distances are those of the roughness. So the differences
-// begin wide; each time that Ceres comes to its end, it starts again from the best point with half
-// the step, which also scales the residuals anew (the idea of implicit filtering; Gilmore and
-// Kelley 1995, An implicit filtering algorithm for optimization of functions with many local
-// minima).
+// Simulated objectives are rough: a slope over a short distance shows only the roughness. So the
+// differences begin wide. Each time Ceres ends, it starts again from the best point with half the
+// step and with newly scaled residuals. This is the idea of implicit filtering (Gilmore and Kelley
+// 1995, An implicit filtering algorithm for optimization of functions with many local minima).
 //
-// With exact derivatives there is no step; it starts again, with the residuals scaled anew, as long
-// as that gains something. Slopes without bounds, those of chaos, are cut to what a step can use.
+// With exact derivatives there is no step. Ceres starts again with newly scaled residuals as long
+// as this improves the result. Very large slopes, as of chaotic motion, are cut to a size that a
+// step can use.
 struct LevenbergSettings {
-  bool exact = false;                                          // derivatives
-  ResidualTransform transform = ResidualTransform::automatic;  // the logarithm where every variable
-                                                               // is logarithmic
+  bool exact = false;  // use exact derivatives
+  // automatic: the logarithm if every variable has a logarithmic scale
+  ResidualTransform transform = ResidualTransform::automatic;
   double floor = 0.1;
-  DifferenceSettings differences{.step = 0};  // the widest; 0: by the transform
-  double smallest_step = 0.0005;              // the narrowest, share of the box
+  DifferenceSettings differences{.step = 0};  // the first, widest step; 0: the transform decides
+  double smallest_step = 0.0005;              // the last, narrowest step, as a share of the box
   bool jacobi_scaling = false;
   double min_damping = 0.5;
   double initial_radius = 1;
@@ -44,8 +50,9 @@ struct LevenbergSettings {
   double parameter_tolerance = 1e-8;
 };
 
-// BFGS with Wolfe line searches on calc_merit(). The box is folded into the coordinates:
-// u = c + w/2 (sin(a + 2 p/10) - sin(a)), w the box's width, so that no point lies outside it.
+// Settings of BFGS with Wolfe line searches on calc_merit(). The coordinates map into the box, so
+// that no point lies outside:
+//   u = c + w/2 (sin(a + 2 p/10) - sin(a)),  w the width of the box.
 struct BfgsSettings {
   DifferenceSettings differences;
   double initial_step = 0.05;  // longest first step, share of the box
@@ -54,7 +61,7 @@ struct BfgsSettings {
   double constraint_weight = 1000;
 };
 
-// Only in a build with Ceres (ARMWRIGHT_WITH_CERES).
+// Make the optimizers. They exist only in a build with Ceres (ARMWRIGHT_WITH_CERES).
 std::unique_ptr<Optimizer> make_levenberg_marquardt(const LevenbergSettings& settings);
 std::unique_ptr<Optimizer> make_bfgs(const BfgsSettings& settings);
 

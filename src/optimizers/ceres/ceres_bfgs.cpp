@@ -11,11 +11,11 @@
 namespace armwright {
 namespace {
 
-// Coordinates that wrap round inside the box, for methods that know no bounds.
+// Coordinates that map into the box, for methods that do not handle bounds.
 class FoldedBox {
  public:
-  // At a bound the fold is flat and nothing could ever leave: a start there is moved in by `margin`
-  // (share of the box).
+  // At a bound the map is flat, and a search could never leave it. So a start on a bound is moved
+  // inside by `margin`, a share of the box.
   FoldedBox(const SearchSpace& space, double margin) : space_(space) {
     for (std::size_t i = 0; i < space.dimension(); ++i) {
       const double inset = margin * width(i);
@@ -64,7 +64,7 @@ class MeritFunction : public ceres::FirstOrderFunction {
       std::vector<double> p(parameters, parameters + NumParameters());
       std::ranges::transform(p, p.begin(), [this](double value) { return value * unit_; });
       const DifferencedFunction::Place& place =
-          function_.look_at(box_.to_coordinates(p.data()), gradient != nullptr);
+          function_.evaluate_place(box_.to_coordinates(p.data()), gradient != nullptr);
       if (place.values.empty()) {
         return false;
       }
@@ -107,7 +107,7 @@ class Bfgs : public Optimizer {
     options.function_tolerance = settings_.function_tolerance;
     options.parameter_tolerance = settings_.parameter_tolerance;
     options.callbacks.push_back(&callback);
-    // Ceres's first step is 1 in the largest component of its coordinates.
+    // The first step of Ceres is 1 in the largest component of its coordinates.
     const ceres::GradientProblem problem(
         new MeritFunction(function, box, settings_.initial_step * kCeresBoxWidth, held));
     std::vector<double> p(function.space().dimension(), 0.0);

@@ -18,8 +18,8 @@
 namespace armwright {
 namespace {
 
-// Larger sums of squares count as failures: Ceres goes on to square their slopes, and complains on
-// stderr of what is not finite.
+// A larger sum of squares counts as a failure: Ceres squares its slopes and prints a message for
+// numbers that are not finite.
 constexpr double kLargestSquareSum = 1e200;
 
 double calc_square_sum(const std::vector<double>& values) {
@@ -35,13 +35,14 @@ bool uses_logarithm(ResidualTransform transform, const ProblemDescription& probl
   });
 }
 
-// The residuals as Ceres sees them. The first usable ones, the start's, set the scale: the cost,
-// half the sum of squares, is that of a mean, so that the damping means the same for every problem.
+// The residuals in the form that Ceres gets. The first usable ones, those of the start, set the
+// scale: the cost (half the sum of squares) is that of a mean, so that the damping means the same
+// for every problem.
 class ResidualsOf {
  public:
   ResidualsOf(bool logarithm, double floor) : logarithm_(logarithm), floor_share_(floor) {}
 
-  // Empty for what failed: it has no residuals.
+  // Returns an empty vector for a failed evaluation.
   std::vector<double> operator()(const Score& score) {
     std::vector<double> residuals = score.residuals;
     const double square_sum = calc_square_sum(residuals);
@@ -60,7 +61,7 @@ class ResidualsOf {
     return residuals;
   }
 
-  // How fast each of them changes with the residual it is made of; after they were asked for.
+  // Returns the derivative of each value with respect to its residual. Call this after the values.
   std::vector<double> calc_slopes(const Score& score) const {
     std::vector<double> slopes = score.residuals;
     const auto root = std::sqrt(static_cast<double>(slopes.size()));
@@ -78,7 +79,7 @@ class ResidualsOf {
   double scale_ = 0;  // root mean square of the start's residuals
 };
 
-// The coordinates in which the box is 10 wide and `centre` is 0.
+// Coordinates in which the box is 10 wide and `centre` is 0.
 class CentredBox {
  public:
   CentredBox(const SearchSpace& space, std::vector<double> centre)
@@ -108,7 +109,7 @@ class CentredBox {
   std::vector<double> centre_;
 };
 
-// Steepest slope of a residual, in units of what its values are divided by and a tenth of the box.
+// The steepest slope of a residual, in units of the scale of its values per tenth of the box.
 constexpr double kSteepest = 10;
 
 class ResidualCost : public ceres::CostFunction {
@@ -126,7 +127,7 @@ class ResidualCost : public ceres::CostFunction {
     const std::size_t dimension = function_.space().dimension();
     const bool is_known = held_.run([&] {
       const DifferencedFunction::Place& place =
-          function_.look_at(box_.to_coordinates(parameters[0]), jacobian != nullptr);
+          function_.evaluate_place(box_.to_coordinates(parameters[0]), jacobian != nullptr);
       if (place.values.size() != residual_count_) {
         return false;
       }
@@ -145,18 +146,19 @@ class ResidualCost : public ceres::CostFunction {
     if (is_known || jacobian == nullptr) {
       return is_known;
     }
-    // A Jacobian is asked for only where the residuals are known, so this is the end of the run.
-    // Ceres would announce a failure on stderr, logging switched off or not; a place without slope
-    // makes it return in silence.
+    // Ceres asks for a Jacobian only where the residuals are known, so the run has ended here.
+    // Ceres would print a failure on stderr even with logging off; with slopes of zero it returns
+    // without a message.
     std::fill_n(residuals, residual_count_, 0.0);
     std::fill_n(jacobian, residual_count_ * dimension, 0.0);
     return true;
   }
 
  private:
-  // A motion that is about to lose control answers to gains without bounds, and the slope says
-  // nothing of what lies a step away. It keeps its direction (gradient clipping; Pascanu, Mikolov
-  // and Bengio 2013, On the difficulty of training recurrent neural networks).
+  // The slopes of a motion that is about to become unstable are almost unbounded and predict
+  // nothing at the distance of a step. They are shortened and keep their direction (gradient
+  // clipping; Pascanu, Mikolov and Bengio 2013, On the difficulty of training recurrent neural
+  // networks).
   void limit_steepness(std::span<double> row) const {
     const double steepest = kSteepest / std::sqrt(static_cast<double>(residual_count_));
     const double largest =
@@ -174,7 +176,7 @@ class ResidualCost : public ceres::CostFunction {
   std::size_t residual_count_;
 };
 
-// The widest differences, share of the box: what is simulated is rough, what is not is smooth.
+// The widest differences, as a share of the box. Simulated objectives are rough, others are smooth.
 constexpr double kRoughStep = 0.07;
 constexpr double kSmoothStep = 0.005;
 
@@ -218,7 +220,7 @@ class LevenbergMarquardt : public Optimizer {
           function.learn(*best);
         }
         const std::vector<double> centre = best ? best->coordinates : function.space().start();
-        const std::size_t residual_count = function.look_at(centre, false).values.size();
+        const std::size_t residual_count = function.evaluate_place(centre, false).values.size();
         if (residual_count == 0) {  // a start that fails offers nothing to descend from
           return false;
         }
@@ -246,7 +248,7 @@ class LevenbergMarquardt : public Optimizer {
           function.learn(*best);
         }
         const std::vector<double> centre = best ? best->coordinates : function.space().start();
-        const std::size_t residual_count = function.look_at(centre, false).values.size();
+        const std::size_t residual_count = function.evaluate_place(centre, false).values.size();
         if (residual_count == 0) {
           return false;
         }
@@ -281,7 +283,7 @@ class LevenbergMarquardt : public Optimizer {
     options.minimizer_progress_to_stdout = false;
     options.max_num_iterations = std::numeric_limits<int>::max();
     options.max_solver_time_in_seconds = std::numeric_limits<double>::max();
-    // Steps are cut off at the bounds; a search along them would cost evaluations.
+    // Steps are cut at the bounds. A line search along the bounds would cost evaluations.
     options.max_num_line_search_step_size_iterations = 0;
     options.jacobi_scaling = settings_.jacobi_scaling;
     options.min_lm_diagonal = settings_.min_damping;

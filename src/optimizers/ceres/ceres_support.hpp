@@ -1,4 +1,4 @@
-// What both optimizers made of Ceres share; included by their .cpp files only.
+// Code that both optimizers of Ceres share. Only their .cpp files include this header.
 #pragma once
 
 #include <ceres/ceres.h>
@@ -12,13 +12,14 @@ namespace armwright {
 
 constexpr double kCeresBoxWidth = 10;  // in the coordinates that Ceres sees
 
-// Exceptions must not pass through Ceres: the first one is held, every later question answered with
-// "failed" at once, and the held one thrown again when Ceres has returned.
+// Holds the first exception of the evaluator, since exceptions must not pass through Ceres. Every
+// later call fails at once. The exception is thrown again when Ceres has returned.
 class HeldException {
  public:
   bool any() const { return exception_ != nullptr; }
 
-  // Whether `action` ran to its end and returned true.
+  // Runs `action` and returns its result. Returns false if it throws, or if an exception is already
+  // held.
   template <typename Action>
   bool run(Action action) {
     if (any()) {
@@ -46,6 +47,7 @@ class HeldException {
   std::exception_ptr exception_;
 };
 
+// Stops Ceres after an iteration if the evaluator has stopped or thrown.
 class StopCallback : public ceres::IterationCallback {
  public:
   StopCallback(const HeldException& held, const Evaluator& evaluator)

@@ -52,7 +52,7 @@ std::vector<double> CmaBox::to_point(std::span<const double> u) const {
     const double lower = space_.lower()[i];
     const double upper = space_.upper()[i];
     const double share = calc_share_in_box(u[i]);
-    // From the nearer bound, so that either is met exactly.
+    // Computed from the nearer bound, so that both bounds are reached exactly.
     const double value =
         share < 0.5 ? lower + share * (upper - lower) : upper - (1 - share) * (upper - lower);
     coordinates.push_back(std::clamp(value, lower, upper));

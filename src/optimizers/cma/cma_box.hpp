@@ -1,11 +1,15 @@
-// From the unbounded space in which CMA-ES samples to the box, smoothly: an optimum on a bound
-// becomes an ordinary minimum inside, with no penalty to weigh and no heap of clipped points.
+// The map from the unbounded space in which CMA-ES samples to the box. It is smooth: an optimum on
+// a bound becomes an ordinary minimum inside. No penalty has to be weighted, and no points
+// accumulate on the bounds.
 //
-// Every coordinate is a share u of the box's width (SearchSpace coordinates). With a = 0.05 the map
-// is u itself on [a, 1 - a], (u + a)^2 / (4 a) on [-a, a], its mirror image at the other end, and
-// beyond [-a, 1 + a] the mirror image of what lies inside: continuous with its first derivative,
-// onto [0, 1], one-to-one on [-a, 1 + a]. Source: Hansen's implementations of CMA-ES have such a
-// map (boundary_transformation of c-cmaes, Hansen 2014); the width of the bent end is our choice.
+// Every coordinate u is a share of the box's width (SearchSpace coordinates). With a = 0.05 the map
+// is
+//   u                    on [a, 1 - a],
+//   (u + a)^2 / (4 a)    on [-a, a], and its mirror image at the other end,
+// and beyond [-a, 1 + a] the mirror image of the values inside. The map is continuous with its
+// first derivative, reaches all of [0, 1], and is one-to-one on [-a, 1 + a]. Source: Hansen's
+// implementations of CMA-ES have such a map (boundary_transformation of c-cmaes, Hansen 2014). The
+// width a of the curved end is our choice.
 #pragma once
 
 #include <span>
@@ -18,6 +22,7 @@ namespace armwright {
 double calc_share_in_box(double u);           // in [0, 1]
 double calc_preimage_of_share(double share);  // in [-a, 1 + a], for a share in [0, 1]
 
+// The box of a problem in the coordinates of CMA-ES.
 class CmaBox {
  public:
   explicit CmaBox(std::span<const DecisionVariable> variables) : space_(variables) {}

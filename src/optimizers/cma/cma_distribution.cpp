@@ -16,7 +16,7 @@ double choose(double given, double fallback) {
   return given > 0 ? given : fallback;
 }
 
-// (sum w)^2 / sum w^2
+// Returns (sum w)^2 / sum w^2.
 double calc_selection_mass(std::span<const double> weights) {
   double sum = 0;
   double squares = 0;
@@ -37,8 +37,8 @@ void scale_to_sum(std::span<double> weights, double sum) {
   }
 }
 
-// Turns the columns, n at a time, until they are at right angles (Gram and Schmidt, twice over
-// against rounding); they keep their lengths.
+// Rotates the columns, n at a time, until they are at right angles (Gram and Schmidt, done twice
+// against rounding errors). They keep their lengths.
 void make_orthogonal(Eigen::MatrixXd& z) {
   const Eigen::Index n = z.rows();
   for (Eigen::Index i = 0; i < z.cols(); ++i) {
@@ -68,7 +68,7 @@ CmaParameters make_cma_parameters(std::size_t dimension, const CmaSettings& sett
   p.mu = settings.mu > 0 ? settings.mu : p.population / 2;
   assert(p.population >= 2 && p.mu <= p.population);
 
-  // Another mu than the tutorial's moves the place where the logarithm passes zero.
+  // With another mu than the tutorial's, the logarithm passes zero at another place.
   const double zero = settings.mu > 0 ? static_cast<double>(p.mu) + 0.5
                                       : (static_cast<double>(p.population) + 1) / 2;
   for (std::size_t i = 1; i <= p.population; ++i) {
@@ -175,7 +175,7 @@ void CmaDistribution::update(std::span<const std::size_t> ranking) {
   }
   s.mean += sigma_ * mean_y;
 
-  // C^-1/2 <y>_w = B <z>_w, because y = B D z
+  // C^(-1/2) <y>_w = B <z>_w, because y = B D z
   s.sigma_path = (1 - p.c_sigma) * s.sigma_path +
                  std::sqrt(p.c_sigma * (2 - p.c_sigma) * p.mu_eff) * (s.axes * mean_z);
   const double norm = s.sigma_path.norm();
@@ -216,7 +216,7 @@ void CmaDistribution::decompose() {
   if (s.solver.info() != Eigen::Success) {
     return;  // the last decomposition is still one of a distribution near this one
   }
-  // Rounding may push the smallest below zero; the condition number then ends the run.
+  // Rounding may make the smallest eigenvalue negative. The condition number then ends the run.
   const double floor = 1e-20 * std::max(s.solver.eigenvalues().maxCoeff(), 1e-280);
   s.axes = s.solver.eigenvectors();
   s.lengths = s.solver.eigenvalues().cwiseMax(floor).cwiseSqrt();

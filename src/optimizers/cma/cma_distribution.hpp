@@ -1,21 +1,23 @@
-// The search distribution of the CMA evolution strategy: x = m + sigma y, y ~ N(0, C), and how one
-// ranked sample changes m, sigma and C.
+// The search distribution of the CMA evolution strategy, x = m + sigma y with y ~ N(0, C), and how
+// one ranked sample changes m, sigma and C:
 //
-//   m      <- m + sum_{i<=mu} w_i (x_i - m)                                   recombination
-//   p_s    <- (1 - c_s) p_s + sqrt(c_s (2 - c_s) mu_eff) C^-1/2 <y>_w         path of the step size
-//   sigma  <- sigma exp(c_s / d_s (|p_s| / E|N(0, I)| - 1))
-//   p_c    <- (1 - c_c) p_c + h sqrt(c_c (2 - c_c) mu_eff) <y>_w              path of the
-//   covariance C      <- (1 + c_1 delta(h) - c_1 - c_mu sum w) C + c_1 p_c p_c' + c_mu sum w_i' y_i
-//   y_i'
+//   recombination          m     <- m + sum_{i <= mu} w_i (x_i - m)
+//   path of the step size  p_s   <- (1 - c_s) p_s + sqrt(c_s (2 - c_s) mu_eff) C^(-1/2) <y>_w
+//   step size              sigma <- sigma exp(c_s / d_s (|p_s| / E|N(0, I)| - 1))
+//   path of the covariance p_c   <- (1 - c_c) p_c + h sqrt(c_c (2 - c_c) mu_eff) <y>_w
+//   covariance             C     <- (1 + c_1 delta(h) - c_1 - c_mu sum_i w_i) C
+//                                   + c_1 p_c p_c' + c_mu sum_i w_i' y_i y_i'
 //
-// i runs from the best individual to the worst; weights past mu are negative ("active" update) and
-// there w_i' = w_i n / |C^-1/2 y_i|^2, which keeps C positive definite; h holds p_c back while p_s
-// is long. Source: Hansen 2016, The CMA Evolution Strategy: A Tutorial (arXiv:1604.00772v2),
-// section 6, figure 6 and table 1. The y of a generation are drawn at right angles to each other in
-// C's own metric, n at a time: every one is still N(0, C), and none repeats what another has tried
-// (Wang, Emmerich and Baeck 2014, Mirrored orthogonal sampling with pairwise selection in evolution
-// strategies; without the mirroring). C is decomposed every max(1, floor(1 / (10 n (c_1 + c_mu))))
-// generations, as its appendix B.2 advises.
+// i counts from the best individual to the worst. The weights after mu are negative ("active"
+// update); for them w_i' = w_i n / |C^(-1/2) y_i|^2, which keeps C positive definite. h stops the
+// growth of p_c while p_s is long. Source: Hansen 2016, The CMA Evolution Strategy: A Tutorial
+// (arXiv:1604.00772v2), section 6, figure 6 and table 1.
+//
+// The y of a generation are drawn at right angles to each other in the metric of C, n at a time.
+// Each of them is still distributed as N(0, C), and none repeats the direction of another. Source:
+// Wang, Emmerich and Baeck 2014, Mirrored orthogonal sampling with pairwise selection in evolution
+// strategies; here without the mirroring. C is decomposed every max(1, floor(1 / (10 n (c_1 +
+// c_mu)))) generations, as appendix B.2 of the tutorial advises.
 #pragma once
 
 #include <cstddef>
@@ -28,7 +30,7 @@
 
 namespace armwright {
 
-// What a user may set; 0 is the tutorial's value everywhere.
+// The settings of a user. 0 means the value of the tutorial.
 struct CmaSettings {
   std::size_t population = 0;  // lambda
   std::size_t mu = 0;
@@ -41,26 +43,31 @@ struct CmaSettings {
   double c_c = 0;
 };
 
+// The complete parameters of a strategy.
 struct CmaParameters {
   std::size_t dimension = 0;
   std::size_t population = 0;
   std::size_t mu = 0;
-  std::vector<double> weights;  // one an individual, best first; the first mu are positive, sum 1
-  double mu_eff = 0;            // variance effective selection mass of the positive ones
+  std::vector<double>
+      weights;        // one per individual, best first; the first mu are positive, with the sum 1
+  double mu_eff = 0;  // variance-effective selection mass of the positive weights
   double c_1 = 0;
   double c_mu = 0;
   double c_sigma = 0;
   double d_sigma = 0;
   double c_c = 0;
-  bool orthogonal = true;                   // z of up to n individuals at right angles
+  bool orthogonal = true;                   // samples of up to n individuals are at right angles
   double expected_norm = 0;                 // E|N(0, I)|
   std::int64_t decomposition_interval = 1;  // generations
 };
 
-std::size_t calc_default_population(std::size_t dimension);  // 4 + floor(3 ln n)
-// Table 1 of the tutorial; population >= 2 and 1 <= mu <= population where they are not 0.
+// Returns 4 + floor(3 ln n).
+std::size_t calc_default_population(std::size_t dimension);
+// Completes the settings by table 1 of the tutorial. Requires population >= 2 and 1 <= mu <=
+// population where they are not 0.
 CmaParameters make_cma_parameters(std::size_t dimension, const CmaSettings& settings);
 
+// The distribution with its paths and step size.
 class CmaDistribution {
  public:
   CmaDistribution(CmaParameters parameters, std::span<const double> mean, double sigma);
@@ -70,9 +77,10 @@ class CmaDistribution {
 
   const CmaParameters& parameters() const { return parameters_; }
 
-  // `population` points, kept for update().
+  // Draws `population` points and keeps them for update().
   const std::vector<std::vector<double>>& sample(RandomStream& random);
-  // `ranking` holds the places of all points of the last sample, the best first.
+  // Adapts the distribution. `ranking` holds the indices of all points of the last sample, the best
+  // first.
   void update(std::span<const std::size_t> ranking);
   void scale_sigma(double factor);
 
@@ -82,7 +90,8 @@ class CmaDistribution {
   double calc_standard_deviation(std::size_t coordinate) const;  // sigma sqrt(C_ii)
   double covariance(std::size_t row, std::size_t column) const;
   std::span<const double> covariance_path() const;  // p_c
-  // sigma times the longest and the shortest axis of the ellipsoid, as of the last decomposition.
+  // Return sigma times the longest and the shortest axis of the ellipsoid at the last
+  // decomposition.
   double longest_axis() const;
   double shortest_axis() const;
   std::vector<double> calc_axis(std::size_t number) const;  // sigma d_i b_i

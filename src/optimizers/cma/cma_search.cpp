@@ -18,7 +18,7 @@
 namespace armwright {
 namespace {
 
-// What one run of the strategy begins with.
+// The values with which one run of the strategy begins.
 struct RunPlan {
   std::vector<double> mean;
   std::size_t population = 0;
@@ -47,8 +47,8 @@ class CmaSearch {
                       settings_.cma.mu, base));
     }
     base_population_ = base;
-    // The start is no sample of the distribution, so that it must not enter the update; evaluated
-    // alone, it shares the first generation's cases.
+    // The start is no sample of the distribution, so it must not enter the update. It is evaluated
+    // alone, on the cases of the first generation.
     evaluator_.begin_generation();
     if (!evaluate({box_.make_start()})) {
       return;
@@ -71,7 +71,7 @@ class CmaSearch {
     return u;
   }
 
-  // Auger and Hansen 2005: every restart has twice the population.
+  // Auger and Hansen 2005: every restart doubles the population.
   bool restart_larger() {
     large_population_ = std::max(large_population_, base_population_) * 2;
     return run({.mean = draw_start(),
@@ -79,8 +79,8 @@ class CmaSearch {
                 .sigma = settings_.restart_sigma});
   }
 
-  // Hansen 2009: the same with, in between and for as many evaluations, runs of a smaller
-  // population and step.
+  // Hansen 2009: the same, alternating with runs of a smaller population and step that use the same
+  // number of evaluations.
   bool restart_either() {
     const std::int64_t before = evaluations_;
     if (large_population_ == 0 || large_evaluations_ <= small_evaluations_) {
@@ -102,7 +102,7 @@ class CmaSearch {
     return goes_on;
   }
 
-  // One run until it has ended by itself (true) or the evaluator has stopped (false).
+  // Does one run. Returns true if it ended, false if the evaluator stopped.
   bool run(const RunPlan& plan) {
     CmaSettings cma = settings_.cma;
     cma.population = plan.population;
@@ -146,7 +146,7 @@ class CmaSearch {
     return true;
   }
 
-  // Nothing if the evaluator stopped before the last of them.
+  // Returns nothing if the evaluator stopped before the last point.
   std::optional<std::vector<double>> evaluate(const std::vector<std::vector<double>>& points) {
     std::vector<std::vector<double>> asked;
     asked.reserve(points.size());
@@ -176,8 +176,8 @@ class CmaSearch {
     return ranking;
   }
 
-  // A tenth of the generation, two points in a small one, on new cases; a fraction decides by
-  // chance (Hansen et al. 2009: r = max(0.1, 2 / lambda)).
+  // Evaluates a tenth of the generation again on new cases, or two points of a small generation. A
+  // fraction of a point is decided at random (Hansen et al. 2009: r = max(0.1, 2 / lambda)).
   std::optional<UncertaintyMeasure> evaluate_again(const std::vector<std::vector<double>>& points,
                                                    const std::vector<double>& values) {
     const double expected = std::max(0.1 * static_cast<double>(points.size()), 2.0);
@@ -195,8 +195,8 @@ class CmaSearch {
     return measure_uncertainty(values, *again);
   }
 
-  // The paper's treatment where more time cannot be spent on an evaluation: sigma grows. Never
-  // beyond the box's width, where there is nothing left to find.
+  // If an evaluation cannot take more time, the paper increases sigma. It never exceeds the width
+  // of the box here.
   void enlarge(CmaDistribution& distribution) const {
     const double factor = 1 + 2 / (static_cast<double>(box_.dimension()) + 10);
     if (distribution.longest_axis() * factor <= 1) {
@@ -204,7 +204,7 @@ class CmaSearch {
     }
   }
 
-  // A flat generation says nothing: look further (Hansen 2016, appendix B.2).
+  // All values of the generation are equal: increase sigma (Hansen 2016, appendix B.2).
   static void escape_plateau(CmaDistribution& distribution, const std::vector<double>& sorted) {
     const std::size_t place =
         static_cast<std::size_t>(std::ceil(0.7 * static_cast<double>(sorted.size())) - 1);

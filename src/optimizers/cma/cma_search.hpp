@@ -1,16 +1,22 @@
-// CMA-ES from beginning to end (Hansen 2016, The CMA Evolution Strategy: A Tutorial): generation
-// after generation of cma_distribution.hpp in the box of cma_box.hpp, begun again with larger
-// populations (Auger and Hansen 2005) or larger and smaller ones in turn (Hansen 2009) when
-// cma_termination.hpp says that it has converged.
+// The optimizer cmaes: the covariance matrix adaptation evolution strategy with active update,
+// bounds, restarts and, on request, handling of noise (Hansen 2016, The CMA Evolution Strategy: A
+// Tutorial). Each generation samples cma_distribution.hpp in the box of cma_box.hpp. When
+// cma_termination.hpp reports convergence, the strategy starts again: with larger populations
+// (Auger and Hansen 2005), or with larger and smaller ones alternately (Hansen 2009).
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "optimizers/cma/cma_distribution.hpp"
 #include "optimizers/cma/cma_termination.hpp"
 #include "optimizers/interface/evaluator.hpp"
+#include "optimizers/interface/optimizer.hpp"
 
 namespace armwright {
+
+// Returns the row cmaes.
+std::vector<OptimizerRow> make_cmaes_rows();
 
 enum class CmaRestarts { none, ipop, bipop };
 
@@ -18,16 +24,17 @@ struct CmaSearchSettings {
   CmaSettings cma;
   std::size_t batch_multiple = 1;  // populations are rounded up to a multiple of it
   double sigma = 0;                // initial standard deviation, share of the box
-  double restart_sigma = 0;        // likewise, of restarts
+  double restart_sigma = 0;        // the same for restarts
   CmaRestarts restarts = CmaRestarts::none;
   bool uncertainty_handling = false;  // cma_uncertainty.hpp
   CmaTolerances tolerances;
-  bool feasibility_first = false;  // feasibility.hpp; otherwise calc_merit() with the weight
+  bool feasibility_first =
+      false;  // rank by feasibility.hpp; otherwise by calc_merit() with the weight
   double constraint_weight = 0;
 };
 
-// Returns when the evaluator has stopped or the strategy has converged for the last time.
-// Error{usage} if there are to be more points of positive weight than points.
+// Minimises. Returns when the evaluator has stopped or the last restart has converged. Throws
+// Error{usage} if mu exceeds the population.
 void search_with_cma(const CmaSearchSettings& settings, Evaluator& evaluator, std::uint64_t seed);
 
 }  // namespace armwright

@@ -12,7 +12,7 @@ double calc_median(std::vector<double> values) {
   return *middle;
 }
 
-// The median of the latest three tenths is no better than that of the earliest three tenths.
+// True if the median of the last 30 % is no better than the median of the first 30 %.
 bool is_without_progress(std::span<const double> history) {
   const std::size_t share = history.size() * 3 / 10;
   const auto early = history.first(share);

@@ -1,6 +1,6 @@
-// When a run of CMA-ES has nothing more to win and the next may begin. Source: Hansen 2016 (the
-// tutorial, arXiv:1604.00772), appendix B.3; the limit on generations,
-// 100 + 150 (n + 3)^2 / sqrt(lambda), is pycma's (Hansen, option maxiter).
+// Decides when a run of CMA-ES cannot improve any more and the next one may begin. Source: Hansen
+// 2016 (the tutorial, arXiv:1604.00772), appendix B.3. The limit on generations, 100 + 150 (n +
+// 3)^2 / sqrt(lambda), is pycma's (Hansen, option maxiter).
 #pragma once
 
 #include <cstdint>
@@ -17,6 +17,7 @@ struct CmaTolerances {
   double step = 1e-12;      // TolX: share of the initial sigma
 };
 
+// The criteria, as the tutorial names them.
 enum class CmaEnd {
   none,
   tol_hist_fun,
@@ -34,7 +35,8 @@ class CmaTermination {
  public:
   CmaTermination(const CmaParameters& parameters, const CmaTolerances& tolerances, double sigma);
 
-  // Once after every update; `sorted_values` are those of the generation, the best first.
+  // Call this once after every update. `sorted_values` are the values of the generation, the best
+  // first. Returns the criterion that ends the run, or none.
   CmaEnd check(const CmaDistribution& distribution, std::span<const double> sorted_values);
 
  private:

@@ -1,4 +1,3 @@
-#include "optimizers/cma/cmaes.hpp"
 
 #include <utility>
 
@@ -51,7 +50,7 @@ class CmaEs : public Optimizer {
   CmaSearchSettings settings_;
 };
 
-// Less than for others: the steps shrink soon where the penalty bends sharply
+// Smaller than for other optimizers: steps shrink too early where the penalty bends sharply
 // (docs/constrained.md).
 OptionSpec make_weight_option() {
   OptionSpec option = make_constraint_weight_option();

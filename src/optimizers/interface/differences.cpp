@@ -46,7 +46,7 @@ void DifferencedFunction::remember_best(const std::vector<double>& coordinates,
   }
 }
 
-const DifferencedFunction::Place& DifferencedFunction::look_exactly(
+const DifferencedFunction::Place& DifferencedFunction::evaluate_exactly(
     const std::vector<double>& coordinates) {
   const Score score = function_.evaluate_with_jacobian(coordinates);
   remember_best(coordinates, score);
@@ -69,7 +69,7 @@ const DifferencedFunction::Place& DifferencedFunction::look_exactly(
   return place;
 }
 
-const DifferencedFunction::Place& DifferencedFunction::look_at(
+const DifferencedFunction::Place& DifferencedFunction::evaluate_place(
     const std::vector<double>& coordinates, bool with_derivatives) {
   const auto known = places_.find(coordinates);
   const bool is_known = known != places_.end();
@@ -78,7 +78,7 @@ const DifferencedFunction::Place& DifferencedFunction::look_at(
     return known->second;
   }
   if (with_derivatives && residual_slopes_) {
-    return look_exactly(coordinates);
+    return evaluate_exactly(coordinates);
   }
   std::vector<std::vector<double>> batch;
   if (!is_known) {
@@ -98,7 +98,7 @@ const DifferencedFunction::Place& DifferencedFunction::look_at(
   if (!with_derivatives || place.values.empty()) {
     return place;
   }
-  // A side's position and values, the base's own where there is nothing usable.
+  // The position and values of one side; those of the base point if the side is not usable.
   const auto look = [&](std::optional<std::size_t> side, std::size_t variable) {
     if (side) {
       std::vector<double> values = values_of_(scores[*side]);

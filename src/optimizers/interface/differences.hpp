@@ -1,19 +1,19 @@
-// Derivatives for optimizers that need some: of a vector of values (residuals, or one merit) with
-// respect to the coordinates of search_space.hpp. By differences, or exact where the problem offers
-// that.
+// Derivatives for optimizers that need them: of a vector of values (residuals, or one merit) with
+// respect to the coordinates of search_space.hpp. They come from finite differences, or from the
+// problem where it has exact ones.
 //
-// Differences: every shifted point is an
-// evaluation like any other: all those of one place are asked for as one batch and counted.
+// Finite differences. Every shifted point is an ordinary evaluation. All shifted points of one
+// place form one batch and count towards the budget.
 //
-//   forward: (v(u + h e_i) - v(u)) / h         the error falls with h, n points
-//   central: (v(u + h e_i) - v(u - h e_i)) / 2h  the error falls with h^2, 2n points
+//   forward: (v(u + h e_i) - v(u)) / h             error proportional to h,    n points
+//   central: (v(u + h e_i) - v(u - h e_i)) / (2 h)  error proportional to h^2, 2n points
 //
-// h is a share of the box. A shift that would leave the box goes the other way; where a side is
-// missing, or its evaluation failed, the base point stands for it, and where nothing is left the
+// h is a share of the box. A shift that would leave the box goes to the other side. If the
+// evaluation of one side is missing or failed, the base point replaces it. If no side is left, the
 // derivative is 0.
 //
-// Exact: the Jacobian of the residuals (Evaluator::evaluate_with_jacobian) and the chain rule. A
-// place whose values are known already is evaluated again for it.
+// Exact derivatives: the Jacobian of the residuals (Evaluator::evaluate_with_jacobian) and the
+// chain rule. A place whose values are known is evaluated again for its derivatives.
 #pragma once
 
 #include <functional>
@@ -32,24 +32,27 @@ struct DifferenceSettings {
   double step = 0.005;  // share of the box, at most 0.5
 };
 
-// What makes exact derivatives possible: those of each value with respect to the residual of the
-// same number, on which alone it depends. Empty where the evaluation failed.
+// Returns the derivative of each value with respect to the residual with the same index, the only
+// residual that it depends on. Empty if the evaluation failed. Exact derivatives need this
+// function.
 using ResidualSlopes = std::function<std::vector<double>(const Score&)>;
 
+// A function with derivatives on an Evaluator. It remembers every place, so that no place is
+// evaluated twice.
 class DifferencedFunction {
  public:
-  // What is differentiated; empty where the evaluation failed.
+  // Returns the values to differentiate. Empty if the evaluation failed.
   using ValuesOf = std::function<std::vector<double>(const Score&)>;
 
-  // A place in the box and what is known of it. Places are kept, so that none is asked for twice.
+  // The values and derivatives at one place of the box.
   struct Place {
     std::vector<double> values;                    // empty: failed
-    std::vector<std::vector<double>> derivatives;  // one column a variable; empty: not asked for
+    std::vector<std::vector<double>> derivatives;  // one column per variable; empty: not computed
   };
 
   DifferencedFunction(Evaluator& evaluator, ValuesOf values_of, const DifferenceSettings& settings)
       : function_(evaluator), values_of_(std::move(values_of)), settings_(settings) {}
-  // With exact derivatives.
+  // Makes a function with exact derivatives.
   DifferencedFunction(Evaluator& evaluator, ValuesOf values_of, ResidualSlopes residual_slopes)
       : function_(evaluator),
         values_of_(std::move(values_of)),
@@ -58,19 +61,20 @@ class DifferencedFunction {
   bool is_exact() const { return residual_slopes_ != nullptr; }
   const SearchSpace& space() const { return function_.space(); }
 
-  // Throw EvaluatorStopped, and whatever the evaluator throws. The derivatives of a failed place
-  // stay empty. Valid until the next call.
-  const Place& look_at(const std::vector<double>& coordinates, bool with_derivatives);
+  // Returns the values at a place and, on request, the derivatives. The derivatives of a failed
+  // place stay empty. The reference is valid until the next call. Throws EvaluatorStopped and every
+  // exception of the evaluator.
+  const Place& evaluate_place(const std::vector<double>& coordinates, bool with_derivatives);
 
-  // The evaluated point with the smallest objective (calc_scalar()), shifted ones included; none
-  // before the first that did not fail.
+  // The evaluated point with the smallest objective (calc_scalar()), including shifted points.
+  // Empty until one evaluation did not fail.
   struct Best {
     std::vector<double> coordinates;
     Score score;
   };
   const std::optional<Best>& best() const { return best_; }
 
-  // What is known already, which is not asked for again: another function's best.
+  // Adds a point that another function has evaluated, so that it is not evaluated again.
   void learn(const Best& known) {
     places_[known.coordinates].values = values_of_(known.score);
     best_ = known;
@@ -87,11 +91,11 @@ class DifferencedFunction {
 
   std::vector<Score> evaluate(const std::vector<std::vector<double>>& batch);
   void remember_best(const std::vector<double>& coordinates, const Score& score);
-  const Place& look_exactly(const std::vector<double>& coordinates);
+  const Place& evaluate_exactly(const std::vector<double>& coordinates);
 
   ScalarFunction function_;
   ValuesOf values_of_;
-  ResidualSlopes residual_slopes_;  // of exact derivatives
+  ResidualSlopes residual_slopes_;  // null: finite differences
   DifferenceSettings settings_;
   std::map<std::vector<double>, Place> places_;
   std::optional<Best> best_;

@@ -1,7 +1,7 @@
-// The only door from an optimizer to a problem. The run owns the implementation
-// (study/run_evaluator.hpp); it counts the budget, clips to the bounds, supplies the training
-// cases, journals everything and keeps the best feasible point. What an optimizer thinks is best is
-// never asked for; it may recommend points.
+// The interface through which an optimizer evaluates decision vectors. It is the optimizer's only
+// access to a problem. A run implements it (study/run/run_evaluator.hpp): it counts the budget,
+// moves points into the bounds, chooses the training cases, writes the journal and remembers the
+// best feasible point. An optimizer returns no result; it may recommend points.
 #pragma once
 
 #include <cstdint>
@@ -14,22 +14,22 @@
 
 namespace armwright {
 
-// What an optimizer learns of a point. Always finite: a failed evaluation shows as the problem's
-// penalty and its status.
+// The answer to one point. All numbers are finite: a failed evaluation has the problem's penalty as
+// objectives, and its status.
 struct Score {
   std::vector<double> objectives;
-  std::vector<double>
-      constraint_values;  // empty for a failed evaluation: take them as violated beyond measure
+  // Empty for a failed evaluation: count every constraint as violated by an infinite amount.
+  std::vector<double> constraint_values;
   std::vector<double> residuals;
-  std::vector<double> jacobian;  // of the residuals, if asked for: a row a residual, a column a
-                                 // decision variable, row after row; empty for a failed evaluation
+  // Derivatives of the residuals, if the optimizer asked for them: one row per residual, one column
+  // per decision variable, row-major. Empty for a failed evaluation.
+  std::vector<double> jacobian;
   EvaluationStatus status = EvaluationStatus::ok;
-  bool clipped =
-      false;  // the point lay outside the bounds and was evaluated at the nearest point inside
+  bool clipped = false;  // the point lay outside the bounds; the nearest point inside was evaluated
 };
 
-// What an evaluation with exact derivatives is charged, in evaluations: one simulation for the
-// values and one for every four variables or part of four.
+// Returns the price of one evaluation with exact derivatives, in evaluations: 1 for the values, and
+// 1 for every four variables (rounded up).
 constexpr std::int64_t calc_jacobian_charge(std::size_t variables) {
   return 1 + static_cast<std::int64_t>((variables + 3) / 4);
 }
@@ -39,26 +39,28 @@ class Evaluator {
   virtual ~Evaluator() = default;
   virtual const ProblemDescription& problem() const = 0;
 
-  // Evaluates the points in order. Fewer scores than points come back when the budget, the time or
-  // the user's patience ends within the batch; from then on stopped() holds and every further batch
-  // is answered with nothing.
+  // Evaluates the points in order and returns one score per point. Returns fewer scores if the
+  // budget ends, the time limit is reached or the user stops the run within the batch. From then on
+  // stopped() is true, and every further call returns an empty vector.
   virtual std::vector<Score> evaluate(std::span<const std::vector<double>> points) = 0;
-  // The same, with the exact derivatives of the residuals. Each costs calc_jacobian_charge()
-  // evaluations of the budget, which ends where there is less left. Only of problems that
-  // have a Jacobian, and through evaluators that pass this on: std::logic_error otherwise.
+  // Does the same with the exact derivatives of the residuals. Each point costs
+  // calc_jacobian_charge() evaluations; the budget ends where less is left. Throws std::logic_error
+  // if the problem has no Jacobian or this evaluator does not pass it on.
   virtual std::vector<Score> evaluate_with_jacobian(
       std::span<const std::vector<double>> /*points*/) {
     throw std::logic_error("this evaluator has no derivatives to give");
   }
   virtual bool stopped() const = 0;
 
-  // How many more candidates the budget allows at the current number of training cases each.
+  // Returns how many more candidates the budget allows, at the current number of training cases per
+  // candidate.
   virtual std::int64_t remaining() const = 0;
 
-  // Optimizers with generations call this before each of them, the first included: a `fresh`
-  // schedule moves on to the next training cases here.
+  // An optimizer with generations calls this before each generation, also before the first. A
+  // `fresh` schedule goes on to the next training cases here.
   virtual void begin_generation() = 0;
-  // A point worth judging at the end beside the best evaluated ones: a distribution's mean, say.
+  // Recommends a point as a candidate for the winner, besides the best evaluated ones; for example
+  // the mean of a distribution.
   virtual void recommend(std::span<const double> x) = 0;
 };
 

@@ -6,7 +6,7 @@
 namespace armwright {
 namespace {
 
-// What a failed evaluation counts as: more than any design violates, and a number still.
+// The violation of a failed evaluation: finite, and larger than that of any design.
 constexpr double kFailedViolation = 1e12;
 
 }  // namespace
@@ -30,7 +30,7 @@ std::vector<double> FeasibilityOrder::rate(std::span<const Score> scores) {
       largest_objective_ = std::max(largest_objective_, all.back().objective);
     }
   }
-  // No design had a number yet: any level will do.
+  // No design has had a number so far, so any level is possible.
   const double level = std::isfinite(largest_objective_) ? largest_objective_ : 0;
   std::vector<double> values;
   for (const Fitness& one : all) {

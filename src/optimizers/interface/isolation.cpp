@@ -15,8 +15,8 @@ namespace {
 
 enum class Question : std::uint8_t { evaluate, remaining, stopped, begin_generation, recommend };
 
-// Questions without a point to evaluate, one after the other: they cost no budget, break the
-// silence and, as recommendations, take our memory.
+// The limit for consecutive requests without a point to evaluate. Such requests cost no budget,
+// count as signs of life and, as recommendations, use memory of this process.
 constexpr int kMostIdleQuestions = 100000;
 
 const char* describe(Question question) {
@@ -35,7 +35,7 @@ const char* describe(Question question) {
   return "nothing that is known";
 }
 
-// The Evaluator in the child. A body with threads may ask from any of them, one at a time.
+// The Evaluator in the child. A body with threads may call it from any thread, one call at a time.
 class RemoteEvaluator : public Evaluator {
  public:
   RemoteEvaluator(ParentLink& parent, const ProblemDescription& problem)
@@ -95,7 +95,7 @@ class RemoteEvaluator : public Evaluator {
   mutable std::mutex mutex_;
 };
 
-// The parent's side: answers one question after the other from the real Evaluator.
+// The parent's side: answers the requests of the child with the real Evaluator.
 class Answerer {
  public:
   Answerer(const std::string& name, Evaluator& evaluator) : name_(name), evaluator_(evaluator) {}
@@ -159,7 +159,7 @@ class Answerer {
     }
   }
 
-  // `describe_doing` says at what it was caught.
+  // `describe_doing` says what the child was doing.
   void check_point(std::span<const double> point, const auto& describe_doing) const {
     const std::vector<DecisionVariable>& variables = evaluator_.problem().variables;
     if (point.size() != variables.size()) {

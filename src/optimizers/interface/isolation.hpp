@@ -1,6 +1,6 @@
-// Runs an optimizer where it can be abandoned: in a child process (fork), whose Evaluator asks this
-// process for every score. A crash, an exit, a hang or a hunger for memory costs the run, not the
-// program. Results are those of running it here.
+// Runs an optimizer in a child process, where it can be abandoned. The child's Evaluator asks this
+// process for every score. If the optimizer crashes, exits, hangs or takes too much memory, only
+// the run fails, not the program. The results are the same as without the child process.
 #pragma once
 
 #include <functional>
@@ -13,16 +13,16 @@ namespace armwright {
 
 class OutputLog;
 
-// Calls `body` in the child. Returns when it returns. Kills the child as soon as
-// evaluator.stopped() holds. Throws OptimizerFailure, with `name` in the message, if the child
-// throws, dies, falls silent, asks for nonsense or on and on without evaluating, or takes more
-// memory than allowed; Error{io} if there is no process to be had. What the child prints goes into
-// `log`, or else to our standard error.
+// Calls `body` in a child process and returns when `body` returns. Kills the child as soon as
+// evaluator.stopped() is true. The child's output goes to `log`, or to the standard error of this
+// process if there is no log. Throws OptimizerFailure, with `name` in its message, if the child
+// throws, dies, sends nothing for too long, sends invalid requests, keeps asking without
+// evaluating, or exceeds its memory limit. Throws Error{io} if no process can be started.
 void minimize_isolated(const std::string& name, const std::function<void(Evaluator&)>& body,
                        Evaluator& evaluator, const ProcessLimits& limits, OutputLog* log = nullptr);
 
-// The options silence_s, memory_mib and log of optimizers that run in a process of their own. They change no
-// result: a run may be resumed with other values.
+// Returns the options silence_s, memory_mib and log of optimizers that run in a process of their
+// own. They change no result: a run may be resumed with other values.
 std::vector<OptionSpec> make_watch_options();
 
 }  // namespace armwright

@@ -11,7 +11,7 @@
 namespace armwright {
 namespace {
 
-// What is allowed, as it stands in messages.
+// Returns what is allowed, for messages.
 std::string describe_allowed(const OptionSpec& spec) {
   if (std::holds_alternative<bool>(spec.fallback)) {
     return "true or false";
@@ -91,8 +91,8 @@ Options Options::parse(std::string_view optimizer, std::span<const OptionSpec> s
   return options;
 }
 
-// Asking for an option that was not declared, or as another type, is a bug of ours: at() and get()
-// throw what nobody catches.
+// A request for an undeclared option, or with another type, is a bug: at() and get() throw an
+// exception that no code catches.
 bool Options::get_bool(const std::string& name) const {
   return std::get<bool>(values_.at(name));
 }

@@ -1,7 +1,7 @@
-// Optimizers as rows: name, what it can do, its options, and how to make one. The shipped ones
-// stand in one explicit table; load_optimizer() makes a row of a user's plugin as well. An
-// optimizer minimises through the Evaluator it is handed and returns nothing; it is deterministic
-// given its seed, whatever the number of threads.
+// The interface of optimizers. An OptimizerRow describes an optimizer: its name, its capabilities,
+// its options, and a function that makes it. The shipped rows stand in optimizers/table;
+// load_optimizer() makes rows of plugins as well. An optimizer minimises through the Evaluator that
+// it gets and returns nothing. With the same seed it is deterministic, for any number of threads.
 #pragma once
 
 #include <cstdint>
@@ -22,22 +22,21 @@
 namespace armwright {
 
 struct Capabilities {
-  bool bounds =
-      true;  // proposes points inside the box by itself (the evaluator clips all the same)
+  bool bounds = true;  // proposes points inside the box (the evaluator also moves points into it)
   bool constraints = false;      // uses the constraint values
-  bool multi_objective = false;  // uses more than the first objective
-  bool batch = false;            // asks for several points at a time
-  bool noisy = false;            // copes with objectives that change with the training cases
+  bool multi_objective = false;  // uses every objective
+  bool batch = false;            // evaluates several points per call
+  bool noisy = false;            // works with objectives that change with the training cases
   bool residuals = false;        // uses the residual vector
   bool stochastic = false;       // uses its seed
-  bool generations = false;      // declares generations, so that a `fresh` schedule can serve it
-  bool local = false;  // descends from the start and ends by itself: `multistart:` can restart it
-  bool sampling = false;  // learns nothing from what it has seen; no contest with random search
-  bool paced = false;     // divides the budget up beforehand: a larger one changes the run from its
-                          // beginning, not from its end
+  bool generations = false;      // declares generations, which a `fresh` schedule needs
+  bool local = false;            // descends from the start and ends; `multistart:` can restart it
+  bool sampling = false;         // does not learn from evaluations; it need not beat random search
+  bool paced =
+      false;  // plans with the whole budget: another budget changes the run from its beginning
 };
 
-// What a problem must offer for an optimizer to make sense on it.
+// The least that a problem must have for an optimizer.
 struct Requirements {
   int objectives = 1;
   int variables = 1;
@@ -46,23 +45,30 @@ struct Requirements {
 
 using OptionValue = std::variant<bool, std::int64_t, double, std::string>;
 
-// One option: the default's type is the option's type.
+// One option of an optimizer. The type of `fallback`, its default, is the type of the option.
 struct OptionSpec {
   std::string name;
   std::string description;
   OptionValue fallback;
-  double lower = 0;  // numbers: the closed range allowed
+  double lower = 0;  // of a number: the closed range that is allowed
   double upper = 0;
-  std::vector<std::string> choices = {};  // text: what is allowed; empty: anything
+  std::vector<std::string> choices = {};  // of a text: the allowed values; empty: any text
   bool changes_result = true;             // false: a run may be resumed with another value
 };
 
-// Options that have been checked: every declared name has a value of the right type within its
+// Limits of the descriptions that plugins give of themselves, for shared libraries and programs
+// alike.
+inline constexpr double kLargestInteger =
+    9007199254740992;  // 2^53: doubles up to it tell integers apart
+inline constexpr std::size_t kMaxOptions = 1000;
+inline constexpr std::size_t kMaxChoices = 1000;  // per option
+
+// A complete set of checked options: every declared option has a value of its type and within its
 // range.
 class Options {
  public:
-  // `assignments` are KEY=VALUE texts. Error{usage} names the optimizer, the option, what was found
-  // and what is allowed.
+  // Reads KEY=VALUE texts. Throws Error{usage} with the optimizer, the option, the value and what
+  // is allowed.
   static Options parse(std::string_view optimizer, std::span<const OptionSpec> specs,
                        std::span<const std::string> assignments);
 
@@ -77,15 +83,15 @@ class Options {
 };
 std::string to_text(const OptionValue& value);
 
-// The optimizer itself is at fault: it crashed, hung, broke its own word. The run keeps what was
-// evaluated and is marked as failed; every other exception out of minimize() is the evaluator's.
+// A fault of the optimizer: it crashed, hung or broke its contract. The run keeps all evaluations
+// and is marked as failed. Every other exception out of minimize() comes from the evaluator.
 class OptimizerFailure : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
   OptimizerFailure(const std::string& what, std::vector<std::string> printed)
       : std::runtime_error(what), printed_(std::move(printed)) {}
 
-  // The last lines that its process printed, fit for a terminal.
+  // The last lines that its process printed, safe to show on a terminal.
   const std::vector<std::string>& printed() const { return printed_; }
 
  private:
@@ -95,14 +101,14 @@ class OptimizerFailure : public std::runtime_error {
 class Optimizer {
  public:
   virtual ~Optimizer() = default;
-  // Returns when evaluator.stopped() or when it has nothing more to try. Throws OptimizerFailure,
-  // and whatever the evaluator throws.
+  // Minimises. Returns when evaluator.stopped() is true, or when there is nothing more to try.
+  // Throws OptimizerFailure and every exception of the evaluator.
   virtual void minimize(Evaluator& evaluator, std::uint64_t seed) = 0;
-  // Whether it can work on the problem with the options it was made with; explain_unsuitable() has
-  // asked already what does not depend on them. Error{usage} says what to do.
+  // Checks whether the options of this optimizer fit the problem. explain_unsuitable() has checked
+  // before what does not depend on options. Throws Error{usage} that says what to do.
   virtual void check_problem(const ProblemDescription& /*problem*/) const {}
-  // For those that run in processes of their own: where what these print goes from now on. What is
-  // there already is removed. Error{io}.
+  // For optimizers in a process of their own: writes what the process prints to `file` from now on.
+  // Removes an earlier content. Throws Error{io}.
   virtual void log_to(const std::filesystem::path& /*file*/) {}
 };
 
@@ -114,15 +120,15 @@ struct OptimizerRow {
   std::vector<OptionSpec> options;
   std::function<std::unique_ptr<Optimizer>(const Options& options)> make;
   Requirements requirements = {};
-  std::string backend = {};  // what the build must have: "NLopt (CMake option ...)"; empty: nothing
-  // When it runs in a child process (isolation.hpp): "always", "with local=cobyla"; empty: never.
+  std::string backend = {};  // the library that it needs: "NLopt (CMake option ...)"; empty: none
+  // When it runs in a child process (isolation.hpp): "always", "with local=cobyla". Empty: never.
   std::string isolated = {};
-  std::string unfit = {};        // why it is offered in no build; empty: it is
-  std::string unavailable = {};  // why it cannot be used here, whatever the reason; empty if it can
-  std::map<std::string, std::string> input_hashes =
-      {};  // of a plugin: file -> SHA-256, so that a resumed run knows it again
-  // Of an optimizer that lives in a program that uses this library: what it says of itself, so that
-  // what is recorded of it can be read without that program (foreign_optimizer.hpp).
+  std::string unfit = {};        // why no build offers it; empty: builds offer it
+  std::string unavailable = {};  // why it cannot be used here; empty: it can
+  // Of a plugin: file -> SHA-256, so that a resumed run recognises the plugin.
+  std::map<std::string, std::string> input_hashes = {};
+  // Of an optimizer of a host program: its description, so that its recorded runs can be read
+  // without that program (plugins/host_optimizer.hpp).
   std::string description = {};
 };
 

@@ -1,7 +1,8 @@
-// An Evaluator as wrapped libraries want to see it: a function of coordinates (search_space.hpp)
-// that they call when they like, and that ends the run by an exception.
+// An Evaluator in the form that wrapped libraries need: a function of coordinates
+// (search_space.hpp) that a library calls at any time, and that ends the run by an exception.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -10,19 +11,28 @@
 
 namespace armwright {
 
-// Thrown through a wrapped library when the evaluator has stopped; the adapter catches it and
-// returns. It carries nothing: the evaluator has kept everything.
+// Thrown through a wrapped library when the evaluator has stopped. The adapter catches it and
+// returns. It has no content, because the evaluator keeps all results.
 struct EvaluatorStopped {};
 
-// The weight of constraint violations for optimizers that know no constraints, and its option.
+// Returns the option for the weight of constraint violations, for optimizers that do not handle
+// constraints.
 OptionSpec make_constraint_weight_option();
 
-// f + weight * s * sum of max(0, g): an exact penalty for optimizers that know no constraints
-// (Fletcher 1983, Penalty functions). f is calc_scalar() of the objectives, s the problem's
-// violation_scale, so that a weight means the same in whatever unit f is; a failed evaluation is
-// its penalty. Limits: its minimum is the constrained one only where weight * s exceeds the
-// constraints' multipliers, and the higher it is, the sharper the bend that a search has to follow.
+// Returns an exact penalty function for optimizers that do not handle constraints (Fletcher 1983,
+// Penalty functions):
+//   merit = f + weight * s * sum of max(0, g)
+// f is calc_scalar() of the objectives. s is the problem's violation_scale, so that a weight means
+// the same in every unit of f. A failed evaluation has its penalty as f. Limits: the minimum of the
+// merit is the constrained minimum only if weight * s exceeds the constraints' multipliers. A
+// higher weight makes the bend at a constraint sharper and the search harder.
 double calc_merit(const ProblemDescription& problem, const Score& score, double constraint_weight);
+
+// Returns a seed for libraries whose random numbers begin at one of 2^32 places. A seed below 2^32
+// stays as it is; of a larger one both halves count.
+inline std::uint32_t fold_seed(std::uint64_t seed) {
+  return static_cast<std::uint32_t>(seed ^ (seed >> 32));
+}
 
 class ScalarFunction {
  public:
@@ -32,7 +42,7 @@ class ScalarFunction {
   const SearchSpace& space() const { return space_; }
   Evaluator& evaluator() const { return evaluator_; }
 
-  // Throw EvaluatorStopped unless every point got its score.
+  // Evaluate points. Throw EvaluatorStopped unless every point has its score.
   Score evaluate(std::span<const double> coordinates);
   Score evaluate_point(const std::vector<double>& point);  // a decision vector
   std::vector<Score> evaluate_batch(std::span<const std::vector<double>> coordinates);

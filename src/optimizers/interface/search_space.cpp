@@ -15,7 +15,7 @@ double to_coordinate(const DecisionVariable& variable, double value) {
 SearchSpace::SearchSpace(std::span<const DecisionVariable> variables)
     : variables_(variables.begin(), variables.end()) {
   for (const DecisionVariable& variable : variables_) {
-    // The bound of the larger magnitude is the upper one here, also for negative variables.
+    // Here the upper bound is the one with the larger magnitude, also for negative variables.
     const auto [lower, upper] = std::minmax(
         {to_coordinate(variable, variable.lower), to_coordinate(variable, variable.upper)});
     lower_.push_back(lower);

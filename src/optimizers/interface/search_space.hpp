@@ -1,9 +1,9 @@
-// The coordinates in which optimizers work that know nothing of scales: a linear variable as it is
-// (bit for bit, so that a wrapped library asks for the very points it would ask for alone), a
-// logarithmic one as the logarithm of its magnitude; the sign is put back.
+// The coordinates for optimizers that do not handle scales. A linear variable stays as it is, bit
+// for bit, so that a wrapped library evaluates the same points as it does alone. A logarithmic
+// variable becomes the logarithm of its magnitude; to_point() restores the sign.
 //
-// A factor of ten is 2.3 of these coordinates. A step given as a share of the box means the same on
-// either scale: a share of (upper - lower) in these coordinates.
+// A factor of ten is 2.3 in these coordinates. A step that is a share of the box means the same on
+// both scales: a share of (upper - lower) in these coordinates.
 #pragma once
 
 #include <cstddef>
@@ -24,15 +24,16 @@ class SearchSpace {
   const std::vector<double>& upper() const { return upper_; }
   const std::vector<double>& start() const { return start_; }
 
-  // A decision vector. What lies in the box of these coordinates comes out inside the bounds; what
-  // lies outside comes out outside.
+  // Returns the decision vector. Coordinates inside their box give a point inside the bounds;
+  // coordinates outside give a point outside.
   std::vector<double> to_point(std::span<const double> coordinates) const;
   std::vector<double> to_coordinates(std::span<const double> x) const;
-  // How fast the point changes with each coordinate: 1, or of a logarithmic variable its value.
+  // Returns the derivative of each variable with respect to its coordinate: 1 for a linear
+  // variable, the value of the variable for a logarithmic one.
   std::vector<double> calc_point_slopes(std::span<const double> coordinates) const;
 
-  // Coordinates drawn uniformly between `lower` and `upper`, one number of the stream each. Those
-  // lie in the box but for roundings; what is drawn lies in it.
+  // Draws coordinates uniformly between `lower` and `upper`; each takes one number of the stream.
+  // `lower` and `upper` lie in the box except for rounding. The result always lies in the box.
   std::vector<double> draw_between(std::span<const double> lower, std::span<const double> upper,
                                    RandomStream& random) const;
 

@@ -1,4 +1,3 @@
-#include "optimizers/nlopt/nlopt.hpp"
 
 #include <fmt/format.h>
 
@@ -157,7 +156,7 @@ std::vector<OptionSpec> make_options(const NloptAlgorithm& algorithm) {
   return options;
 }
 
-// Which of the options lead into a child process.
+// Returns which options make the algorithm run in a child process.
 std::string explain_isolation(const NloptAlgorithm& algorithm,
                               std::span<const OptionSpec> options) {
   const auto local = std::ranges::find(options, "local", &OptionSpec::name);

@@ -8,12 +8,12 @@
 namespace armwright {
 namespace {
 
-// A failed evaluation violates every constraint by this: more than any design does, and still a
-// number that linear models of the constraints survive.
+// The violation of every constraint by a failed evaluation: larger than that of any design, and
+// small enough for linear models of the constraints.
 constexpr double kFailedConstraint = 1e9;
 
-// COBYLA and PRAXIS can ask for NaN for ever once they have begun; after so many in a row the start
-// is given up.
+// COBYLA and PRAXIS can ask for NaN without end once they have begun. After so many consecutive NaN
+// the search from this start ends.
 constexpr std::int64_t kLongestNanSequence = 1000;
 
 bool is_finite(std::span<const double> values) {
@@ -22,19 +22,19 @@ bool is_finite(std::span<const double> values) {
 
 }  // namespace
 
-void NloptQuestions::begin(std::function<void()> stop_solver) {
+void NloptAdapter::begin(std::function<void()> stop_solver) {
   stop_solver_ = std::move(stop_solver);
   calls_ = 0;
   nan_sequence_ = 0;
 }
 
-void NloptQuestions::rethrow() const {
+void NloptAdapter::rethrow() const {
   if (exception_) {
     std::rethrow_exception(exception_);
   }
 }
 
-double NloptQuestions::ask_objective(std::span<const double> coordinates) {
+double NloptAdapter::ask_objective(std::span<const double> coordinates) {
   ++calls_;
   Answer* answer = find(coordinates);
   if (answer == nullptr || answer->is_objective_used) {
@@ -47,7 +47,7 @@ double NloptQuestions::ask_objective(std::span<const double> coordinates) {
   return answer->objective;
 }
 
-double NloptQuestions::ask_constraint(std::span<const double> coordinates, std::size_t index) {
+double NloptAdapter::ask_constraint(std::span<const double> coordinates, std::size_t index) {
   ++calls_;
   const Answer* answer = find(coordinates);
   if (answer == nullptr) {
@@ -56,13 +56,13 @@ double NloptQuestions::ask_constraint(std::span<const double> coordinates, std::
   return answer == nullptr ? kFailedConstraint : answer->constraint_values[index];
 }
 
-NloptQuestions::Answer* NloptQuestions::find(std::span<const double> coordinates) {
+NloptAdapter::Answer* NloptAdapter::find(std::span<const double> coordinates) {
   const auto found = std::ranges::find_if(
       answers_, [&](const Answer& answer) { return same_bits(answer.coordinates, coordinates); });
   return found == answers_.end() ? nullptr : &*found;
 }
 
-NloptQuestions::Answer* NloptQuestions::evaluate(std::span<const double> coordinates) {
+NloptAdapter::Answer* NloptAdapter::evaluate(std::span<const double> coordinates) {
   if (has_ended()) {
     stop_solver();
     return nullptr;
@@ -86,17 +86,17 @@ NloptQuestions::Answer* NloptQuestions::evaluate(std::span<const double> coordin
   return nullptr;
 }
 
-// Not at the first point: ORIG_DIRECT stopped there reads what it has not written yet, and now
-// and then it crashes. It is stopped at the second.
-void NloptQuestions::stop_solver() {
+// Does not stop at the first point: ORIG_DIRECT would then read memory that it has not written, and
+// sometimes crash. It is stopped at the second point.
+void NloptAdapter::stop_solver() {
   const std::int64_t calls_a_point = 1 + std::ssize(function_.evaluator().problem().constraints);
   if (calls_ > calls_a_point) {
     stop_solver_();
   }
 }
 
-NloptQuestions::Answer& NloptQuestions::remember(std::span<const double> coordinates,
-                                                 const Score& score) {
+NloptAdapter::Answer& NloptAdapter::remember(std::span<const double> coordinates,
+                                             const Score& score) {
   const ProblemDescription& problem = function_.evaluator().problem();
   Answer& answer = answers_[next_answer_];
   next_answer_ = (next_answer_ + 1) % answers_.size();

@@ -1,9 +1,10 @@
-// What NLopt asks about, point by point: objective and constraints in separate calls, and whatever
-// the evaluator does in between has to wait until C code has returned. Knows nothing of nlopt.h.
+// Answers the questions of one NLopt search, one point at a time. NLopt asks for the objective and
+// for each constraint in separate calls; this class keeps the latest evaluations to answer them. It
+// holds the exceptions of the evaluator until the C code has returned. It does not need nlopt.h.
 //
-// NLopt is answered in finite numbers only: a failed evaluation by its penalty and by constraints
-// violated beyond measure, a point that is none (some of the algorithms ask about NaN) by the worst
-// objective seen, without an evaluation.
+// NLopt gets finite numbers only. A failed evaluation answers with its penalty and with strongly
+// violated constraints. A point with a coordinate that is not finite (some algorithms ask for NaN)
+// is not evaluated; it gets the worst objective so far.
 #pragma once
 
 #include <array>
@@ -19,24 +20,24 @@
 
 namespace armwright {
 
-class NloptQuestions {
+class NloptAdapter {
  public:
-  NloptQuestions(const NloptSettings& settings, Evaluator& evaluator)
+  NloptAdapter(const NloptSettings& settings, Evaluator& evaluator)
       : settings_(settings), function_(evaluator) {}
 
   const SearchSpace& space() const { return function_.space(); }
-  // A search begins; `stop_solver` is called when there is no more to come for it.
+  // Begins a search. Calls `stop_solver` when the evaluator has stopped or thrown.
   void begin(std::function<void()> stop_solver);
   bool has_ended() const { return has_stopped_ || exception_ != nullptr; }
-  // What the evaluator threw, if it did.
+  // Throws the exception that the evaluator threw, if it did.
   void rethrow() const;
 
   bool has_best() const { return !best_.coordinates.empty(); }
   const std::vector<double>& best_coordinates() const { return best_.coordinates; }
   std::pair<double, double> best_rank() const { return {best_.violation, best_.objective}; }
 
-  // Every question for the objective is an evaluation, as it is to the bare library, unless the
-  // constraints at that point came first.
+  // Answer NLopt. Every call for the objective is one evaluation, as with NLopt alone, unless a
+  // constraint at the same point was asked for before.
   double ask_objective(std::span<const double> coordinates);
   double ask_constraint(std::span<const double> coordinates, std::size_t index);
 
@@ -50,7 +51,7 @@ class NloptQuestions {
   };
 
   Answer* find(std::span<const double> coordinates);
-  // Null if there is no answer: nobody is asked about points that are none, nor after the end.
+  // Returns null for a point with a coordinate that is not finite, and after the end of the search.
   Answer* evaluate(std::span<const double> coordinates);
   Answer& remember(std::span<const double> coordinates, const Score& score);
   void stop_solver();

@@ -1,44 +1,50 @@
-// The gradient-free algorithms of NLopt and what is known about each. No part of the library: the
-// table is the same whether armwright was built with NLopt or not.
+// The gradient-free algorithms of NLopt and their known properties. This header needs no NLopt: the
+// table is the same in builds with and without it.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "optimizers/interface/optimizer.hpp"
+
 namespace armwright {
 
-// How an algorithm searches, which decides on its options.
+// Returns one row per gradient-free algorithm of NLopt. In a build without NLopt they say so and
+// cannot be used.
+std::vector<OptimizerRow> make_nlopt_rows();
+
+// The way in which an algorithm searches. It decides which options the algorithm has.
 enum class NloptKind {
-  local,     // from the start, with a step; ends by itself
-  dividing,  // DIRECT: cuts the box up
-  drawing,   // populations of random points
-  starting,  // MLSL: starts a local optimizer again and again
-  wrapping,  // AUGLAG: a local optimizer under multipliers
-  covering   // AGS: a space-filling curve
+  local,     // searches from the start with a step, and ends
+  dividing,  // DIRECT: divides the box
+  drawing,   // draws populations of random points
+  starting,  // MLSL: starts a local optimizer many times
+  wrapping,  // AUGLAG: a local optimizer on an augmented Lagrangian
+  covering   // AGS: follows a space-filling curve
 };
 
-// What NLopt 2.7.1 is known for beyond its documentation.
+// One algorithm of NLopt 2.7.1, with properties that its documentation does not mention.
 struct NloptAlgorithm {
-  std::string name;        // behind "nlopt:"
-  std::string nlopt_name;  // without its prefix
+  std::string name;        // without "nlopt:"
+  std::string nlopt_name;  // NLopt's own name without its prefix
   NloptKind kind = NloptKind::local;
   std::string summary;
   std::string source;
   bool takes_constraints = false;
   bool is_stochastic = false;
   bool leaves_box = false;
-  // It can go round in circles without asking for a point, and then nothing inside this process
-  // stops it.
+  // It can loop forever without asking for a point. Only the end of its process stops it then.
   bool isolated = false;
-  std::int64_t restarts = 20;  // of those that end by themselves
-  bool needs_pace = false;     // is told the number of evaluations, for its storage only
+  std::int64_t restarts = 20;  // default of the option, for algorithms that end
+  bool needs_pace = false;     // it needs the number of evaluations, only to allocate its storage
   int smallest_dimension = 1;
   int largest_dimension = 0;  // 0: any
-  std::string unfit = {};     // why it is not offered, although the library has it
+  std::string unfit = {};     // why armwright does not offer it; empty: it does
 };
 
 const std::vector<NloptAlgorithm>& nlopt_algorithms();
-const NloptAlgorithm& find_nlopt_algorithm(const std::string& name);  // one that is there
+// Returns the algorithm of that name, which must be in the table.
+const NloptAlgorithm& find_nlopt_algorithm(const std::string& name);
 
 }  // namespace armwright

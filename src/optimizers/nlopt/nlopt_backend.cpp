@@ -11,7 +11,7 @@
 #include <memory>
 #include <type_traits>
 
-#include "optimizers/interface/seed.hpp"
+#include "optimizers/interface/scalar_function.hpp"
 #include "optimizers/nlopt/nlopt_adapter.hpp"
 
 namespace armwright {
@@ -19,20 +19,20 @@ namespace {
 
 using NloptHandle = std::unique_ptr<std::remove_pointer_t<nlopt_opt>, decltype(&nlopt_destroy)>;
 
-// ORIG_DIRECT reserves room for all its evaluations at once, for 100 000 if it is not told how many
-// there will be. So many fit into some hundreds of MiB.
+// ORIG_DIRECT allocates memory for all its evaluations at once; for 100 000 if it does not know
+// their number. This many need a few hundred MiB.
 constexpr std::int64_t kMostPacedEvaluations = 1'000'000;
 
-// A restart steps at least this share of the box: below, coordinates stop changing.
+// The smallest first step of a restart, as a share of the box. Below it coordinates stop changing.
 constexpr double kSmallestRestartScale = 1e-9;
 
 struct ConstraintQuestion {
-  NloptQuestions* questions = nullptr;
+  NloptAdapter* questions = nullptr;
   std::size_t index = 0;
 };
 
 double call_objective(unsigned n, const double* x, double* /*gradient*/, void* data) {
-  return static_cast<NloptQuestions*>(data)->ask_objective({x, n});
+  return static_cast<NloptAdapter*>(data)->ask_objective({x, n});
 }
 
 double call_constraint(unsigned n, const double* x, double* /*gradient*/, void* data) {
@@ -111,7 +111,7 @@ class Search {
     }
     apply(nlopt_set_lower_bounds(handle.get(), space.lower().data()), "the bounds");
     apply(nlopt_set_upper_bounds(handle.get(), space.upper().data()), "the bounds");
-    // MLSL reads this array whether it is there or not.
+    // MLSL reads this array even if it was never set.
     const std::vector<double> none(space.dimension(), 0.0);
     apply(nlopt_set_xtol_abs(handle.get(), none.data()), "xtol_abs");
     return handle;
@@ -130,7 +130,7 @@ class Search {
     apply(nlopt_set_ftol_rel(solver, settings_.ftol_rel), "option 'ftol_rel'");
   }
 
-  // The step in every coordinate, and into NLopt's solver that takes steps.
+  // Sets the step of every coordinate, in the NLopt solver that uses steps.
   void set_step(nlopt_opt solver, std::span<const double> from, double scale) const {
     const SearchSpace& space = questions_.space();
     std::vector<double> step(space.dimension());
@@ -159,7 +159,8 @@ class Search {
     double value = 0;
     const nlopt_result result = nlopt_optimize(solver_.get(), from.data(), &value);
     questions_.rethrow();
-    // What it found is not read: the evaluator knows better (COBYLA returns its last point).
+    // The point that NLopt returns is not used, since the evaluator knows the best one (COBYLA
+    // returns its last point).
     const bool is_normal_end =
         result > 0 || result == NLOPT_ROUNDOFF_LIMITED || result == NLOPT_FORCED_STOP;
     if (!is_normal_end && !is_over()) {
@@ -174,7 +175,7 @@ class Search {
 
   const NloptSettings& settings_;
   Evaluator& evaluator_;
-  NloptQuestions questions_;
+  NloptAdapter questions_;
   std::vector<ConstraintQuestion> constraints_;
   NloptHandle solver_;
   NloptHandle local_;

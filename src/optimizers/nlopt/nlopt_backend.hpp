@@ -1,10 +1,10 @@
 // Runs one gradient-free algorithm of NLopt (Johnson 2007, The NLopt nonlinear-optimization
-// package) on an Evaluator. The only place that knows nlopt.h.
+// package) on an Evaluator. Only its .cpp file includes nlopt.h.
 //
-// NLopt works in SearchSpace coordinates u and is told f(u) (the merit with penalised constraints,
-// or the objective and g(u) <= 0 apart where the algorithm takes constraints), the box and a start.
-// For linear variables and restarts = 0 it asks for the very points that the bare library asks for
-// with the same settings, seeded with fold_seed(seed) (seed.hpp).
+// NLopt works in SearchSpace coordinates u. It gets the box, a start, and f(u): the merit with
+// penalised constraints, or, for an algorithm that takes constraints, the objective and g(u) <= 0
+// separately. With linear variables and restarts = 0 it evaluates the same points as NLopt alone
+// with the same settings and the seed fold_seed(seed).
 #pragma once
 
 #include <cstdint>
@@ -17,23 +17,23 @@ namespace armwright {
 struct NloptSettings {
   std::string optimizer;           // "nlopt:cobyla", for messages
   std::string algorithm;           // NLopt's own name without its prefix: "LN_COBYLA"
-  std::string local = {};          // likewise, of the local optimizer inside; empty: has none
-  bool takes_constraints = false;  // NLopt is told the constraints apart
-  bool is_paced = false;           // storage is by the number of evaluations: tell NLopt how many
-  double initial_step = 0;         // share of the box; 0: what NLopt finds by itself
+  std::string local = {};          // the same of its local optimizer; empty: it has none
+  bool takes_constraints = false;  // NLopt gets the constraints separately
+  bool is_paced = false;           // NLopt gets the number of evaluations, to allocate its storage
+  double initial_step = 0;         // share of the box; 0: NLopt chooses
   double xtol_rel = 0;             // ends when a step is smaller than this times |u|; 0: never
   double ftol_rel = 0;             // ends when a change is smaller than this times |f|; 0: never
-  std::int64_t population = 0;     // 0: NLopt's own
+  std::int64_t population = 0;     // 0: NLopt chooses
   std::int64_t restarts = 0;
-  bool tolerances_are_local = false;  // the tolerances end the local optimizer's runs only
+  bool tolerances_are_local = false;  // the tolerances apply only to runs of the local optimizer
   double constraint_weight = 0;
 };
 
-// Empty, or why there is no NLopt here.
+// Returns why this build has no NLopt; empty if it has.
 std::string explain_missing_nlopt();
 
-// Returns when the evaluator has stopped or NLopt has nothing more to try. Throws what the
-// evaluator throws, and OptimizerFailure when NLopt refuses or fails.
+// Minimises. Returns when the evaluator has stopped or NLopt has ended. Throws every exception of
+// the evaluator, and OptimizerFailure if NLopt refuses the settings or fails.
 void minimize_with_nlopt(const NloptSettings& settings, Evaluator& evaluator, std::uint64_t seed);
 
 }  // namespace armwright

@@ -1,4 +1,3 @@
-#include "optimizers/pagmo/pagmo.hpp"
 
 #include <utility>
 

@@ -30,17 +30,17 @@
 namespace armwright {
 namespace {
 
-// Never remember anything between two calls of evolve(): an Optimizer keeps nothing between runs.
+// Value of pagmo's option `memory`: off. An Optimizer keeps no state between runs.
 constexpr bool kMemory = false;
-// The differential evolutions would end where the population has become flat; evolve() is called
-// again anyway, so that ending would only cost them what they have adapted.
+// Tolerances of the differential evolutions: off. They would end when the population has become
+// flat; evolve() is called again anyway, and ending would only lose their adapted parameters.
 constexpr double kNoTolerance = 0;
-// Stop criteria of the ant colonies that must never come first.
+// Stop criteria of the ant colonies that must never apply.
 constexpr unsigned kNever = 1'000'000'000;
-// pagmo: "choose by yourself".
+// The value with which pagmo chooses the parameter.
 constexpr double kAutomatic = -1;
 
-// Options of one row, in the types that pagmo takes.
+// The options of one row in the types of pagmo.
 class Reader {
  public:
   explicit Reader(const Options& options) : options_(options) {}

@@ -1,4 +1,5 @@
-// pagmo's algorithms by name. For pagmo_backend.cpp only: this header shows pagmo's types.
+// Makes pagmo's algorithms by name. Only pagmo_backend.cpp includes this header, because it shows
+// types of pagmo.
 #pragma once
 
 #include <pagmo/algorithm.hpp>
@@ -8,17 +9,19 @@
 
 namespace armwright {
 
-// More generations than any budget holds: the methods without a schedule end with the budget.
+// More generations than any budget allows. A method without a schedule of its own ends with the
+// budget.
 constexpr unsigned kEndlessGenerations = 1'000'000'000;
 
-// What is known only when a run begins.
+// The values that are known only when a run begins.
 struct PagmoPlan {
   unsigned generations = kEndlessGenerations;  // for annealing: temperatures
-  double scale = 1;  // a temperature of 1: the magnitude of the objective at the start
+  double scale = 1;  // what a temperature of 1 means: the magnitude of the objective at the start
   unsigned seed = 0;
 };
 
-// The algorithm with the row's options. Throws what pagmo throws at options it refuses.
+// Makes the algorithm with the options of its row. Throws the exceptions of pagmo for options that
+// pagmo refuses.
 pagmo::algorithm make_pagmo_algorithm(const std::string& name, const Options& options,
                                       const PagmoPlan& plan);
 

@@ -14,14 +14,14 @@
 #include <vector>
 
 #include "base/random.hpp"
-#include "optimizers/interface/seed.hpp"
+#include "optimizers/interface/scalar_function.hpp"
 #include "optimizers/pagmo/pagmo_algorithms.hpp"
 #include "optimizers/pagmo/pagmo_bridge.hpp"
 
 namespace armwright {
 namespace {
 
-// pagmo's messages are several lines; the last says what is wrong.
+// pagmo's messages have several lines; the last one says what is wrong.
 std::string get_reason(const std::exception& error) {
   const std::string text = error.what();
   const std::string mark = "what: ";
@@ -71,7 +71,7 @@ class PagmoOptimizer : public Optimizer {
 
   bool has_option(const std::string& name) const { return options_.values().contains(name); }
 
-  // What pagmo would find out only after the first population has been evaluated.
+  // Checks what pagmo would find only after the evaluation of the first population.
   void require_options_that_fit() const {
     const std::int64_t population = population_size();
     if (has_option("ker") && options_.get_integer("ker") > population) {
@@ -124,7 +124,7 @@ class PagmoOptimizer : public Optimizer {
     return make_pagmo_algorithm(method_.algorithm, options_, plan);
   }
 
-  // Evaluations between two steps of a schedule.
+  // The number of evaluations between two steps of a schedule.
   std::int64_t calc_generation_cost(std::size_t dimension) const {
     if (method_.algorithm == "ihs") {
       return 1;
@@ -136,8 +136,8 @@ class PagmoOptimizer : public Optimizer {
     return population_size();
   }
 
-  // The start, and points drawn uniformly from a box about it: `spread` times the whole box in
-  // size, centred on the start, cut off at the bounds.
+  // The start, and points that are uniform in a box around it. That box has `spread` times the size
+  // of the whole box and is cut at the bounds.
   pagmo::population make_population(PagmoBridge& bridge, const pagmo::problem& problem,
                                     std::uint64_t seed) const {
     const SearchSpace& space = bridge.space();
@@ -160,7 +160,7 @@ class PagmoOptimizer : public Optimizer {
   pagmo::population evaluate_population(PagmoBridge& bridge, const pagmo::problem& problem,
                                         std::span<const std::vector<double>> individuals,
                                         unsigned seed) const {
-    // Only a method that asks for batches later begins with one.
+    // Only a method that evaluates batches later begins with a batch.
     const std::size_t batch = method_.batch ? individuals.size() : 1;
     pagmo::population population(problem, 0, seed);
     for (std::size_t from = 0; from < individuals.size(); from += batch) {

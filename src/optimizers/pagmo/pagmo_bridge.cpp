@@ -8,8 +8,8 @@
 namespace armwright {
 namespace {
 
-// Stands for each constraint of a failed evaluation. Finite, because the methods add and square
-// violations.
+// The value of each constraint of a failed evaluation. It is finite, because the methods add and
+// square violations.
 constexpr double kViolatedBeyondMeasure = 1e12;
 
 }  // namespace
@@ -58,7 +58,7 @@ std::vector<double> PagmoBridge::calc_fitness(const Score& score) const {
   }
   std::vector<double> fitness = {calc_scalar(problem(), score.objectives)};
   if (score.constraint_values.size() == constraint_count()) {
-    // Some methods weigh objective and constraints against each other.
+    // Some methods compare the objective with the constraints.
     std::ranges::transform(score.constraint_values, std::back_inserter(fitness),
                            [this](double g) { return problem().violation_scale * g; });
   } else {

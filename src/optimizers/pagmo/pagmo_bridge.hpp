@@ -1,5 +1,5 @@
-// An Evaluator as pagmo wants to see a problem. No header of pagmo is needed for it: pagmo takes
-// any class that has the members it calls.
+// An Evaluator in the form of a pagmo problem. This header needs no header of pagmo, because pagmo
+// accepts any class with the member functions that it calls.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace armwright {
 
-// Scores as pagmo's fitness vectors: objectives first, then constraints.
+// Evaluates points and returns pagmo's fitness vectors: the objectives, then the constraints.
 class PagmoBridge {
  public:
   PagmoBridge(const PagmoMethod& method, const Options& options, Evaluator& evaluator);
@@ -26,7 +26,7 @@ class PagmoBridge {
     return method_.constraints ? problem().constraints.size() : 0;
   }
   std::int64_t evaluation_count() const { return evaluation_count_; }
-  // An exception passed through the library that is not the library's own.
+  // True after an exception of the evaluator has passed through pagmo.
   bool has_thrown() const { return has_thrown_; }
 
   std::vector<std::vector<double>> evaluate(std::span<const std::vector<double>> coordinates);
@@ -42,20 +42,21 @@ class PagmoBridge {
   bool has_thrown_ = false;
 };
 
-// The problem, default-constructible and copyable as pagmo wants it. All copies share the bridge.
+// The problem as pagmo needs it: default-constructible and copyable. All copies share the bridge.
 struct BridgedPagmoProblem {
   PagmoBridge* bridge = nullptr;
 
   std::vector<double> fitness(const std::vector<double>& coordinates) const {
     return bridge->evaluate({&coordinates, 1}).front();
   }
-  // pagmo lays points and fitness vectors end to end.
+  // Evaluates many points. pagmo stores points and fitness vectors one after the other in one
+  // vector.
   std::vector<double> batch_fitness(const std::vector<double>& all) const;
 
   std::pair<std::vector<double>, std::vector<double>> get_bounds() const {
     return {bridge->space().lower(), bridge->space().upper()};
   }
-  // pagmo asks a default-constructed one for these as well.
+  // pagmo calls these on a default-constructed object as well.
   std::size_t get_nobj() const { return bridge == nullptr ? 1 : bridge->objective_count(); }
   std::size_t get_nic() const { return bridge == nullptr ? 0 : bridge->constraint_count(); }
 };

@@ -5,8 +5,8 @@
 namespace armwright::pagmo_options {
 namespace {
 
-// Wide first populations are wasted on robots: with gains drawn over two decades, 93 % of the arms
-// lose control. A share of 0.15 of such a box is a factor of 2 either way.
+// A wide first population is wasted on robots: with gains that are drawn over two decades, 93 % of
+// the arms become unstable. A share of 0.15 of such a box is a factor of 2 in both directions.
 constexpr double kSpread = 0.15;
 
 }  // namespace

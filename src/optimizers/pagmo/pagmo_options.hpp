@@ -1,5 +1,5 @@
-// Short words for the options of pagmo's rows. Options keep pagmo's names, so that pagmo's
-// documentation explains them.
+// Short functions that declare the options of pagmo's rows. Options keep pagmo's names, so that the
+// documentation of pagmo explains them.
 #pragma once
 
 #include <cstdint>
@@ -14,11 +14,11 @@ OptionSpec number(std::string name, std::string description, double fallback, do
                   double upper);
 OptionSpec count(std::string name, std::string description, std::int64_t fallback, double lower,
                  double upper);
-// The first choice is the default.
+// Declares a choice. The first one is the default.
 OptionSpec choice(std::string name, std::string description, std::vector<std::string> choices);
 
-// The first population: its size, the fewest that the method works with, how wide it lies; and then
-// the others.
+// Returns the options of the first population (its size with the smallest allowed one, and its
+// width), followed by `others`.
 std::vector<OptionSpec> population(std::int64_t size, double fewest,
                                    std::vector<OptionSpec> others = {},
                                    std::string description = "individuals");

@@ -18,7 +18,7 @@ class ForeignOptimizer : public Optimizer {
   explicit ForeignOptimizer(std::string name) : name_(std::move(name)) {}
 
   void minimize(Evaluator& /*evaluator*/, std::uint64_t /*seed*/) override {
-    throw Error(ErrorKind::usage, explain_foreign(name_));
+    throw Error(ErrorKind::usage, explain_host_optimizer(name_));
   }
 
  private:
@@ -27,11 +27,11 @@ class ForeignOptimizer : public Optimizer {
 
 }  // namespace
 
-bool is_foreign_name(std::string_view name) {
+bool is_host_name(std::string_view name) {
   return name.starts_with(kPythonPrefix);
 }
 
-std::string explain_foreign(std::string_view name) {
+std::string explain_host_optimizer(std::string_view name) {
   return fmt::format(
       "optimizer '{}' is a class in somebody's Python program, and runs only there: "
       "armwright.optimize() and armwright.compare() take it as it is, and the same call goes on "
@@ -40,12 +40,12 @@ std::string explain_foreign(std::string_view name) {
       sanitize(name));
 }
 
-OptimizerRow read_foreign_row(const std::string& name, const std::string& description) {
+OptimizerRow read_host_row(const std::string& name, const std::string& description) {
   const auto refuse = [&](std::string_view why) {
     throw Error(ErrorKind::bad_data,
                 fmt::format("optimizer '{}': its description {}", sanitize(name), sanitize(why)));
   };
-  if (!is_foreign_name(name)) {
+  if (!is_host_name(name)) {
     refuse(
         fmt::format("is not needed; only of an optimizer in Python, whose name begins with "
                     "'{}', one is recorded",
@@ -63,7 +63,7 @@ OptimizerRow read_foreign_row(const std::string& name, const std::string& descri
   row.name = name;
   row.description = description;
   row.isolated = {};
-  row.unavailable = explain_foreign(name);
+  row.unavailable = explain_host_optimizer(name);
   row.make = [name](const Options&) -> std::unique_ptr<Optimizer> {
     return std::make_unique<ForeignOptimizer>(name);
   };

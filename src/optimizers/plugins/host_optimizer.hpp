@@ -1,9 +1,9 @@
-// Optimizers that live in a program that uses this library, as a class of Python's does, and can
-// run only there. Such a program makes rows of them itself; everywhere else what was recorded of
-// them can be read, and asking for a run says where to.
+// Optimizers of a host program that uses this library, for example a class in Python. They can run
+// only in that program, which makes their rows. Other programs can read what was recorded of them.
+// If a user asks for a run there, a message says where it is possible.
 //
-// Their names begin with what they are written in: "python:mine". They describe themselves as
-// plugins do (docs/plugin-protocol.md, the message `description`), but for the name.
+// The names begin with the host's language: "python:mine". The descriptions are those of plugins
+// (docs/plugin-protocol.md, the message `description`), without the name.
 #pragma once
 
 #include <string>
@@ -15,12 +15,13 @@ namespace armwright {
 
 inline constexpr std::string_view kPythonPrefix = "python:";
 
-bool is_foreign_name(std::string_view name);
-// What to do instead of running it here.
-std::string explain_foreign(std::string_view name);
+// Returns whether a name means an optimizer of a host program.
+bool is_host_name(std::string_view name);
+// Returns a message that says how to run it.
+std::string explain_host_optimizer(std::string_view name);
 
-// The row of a recorded description: an optimizer made of it refuses to minimize with Error{usage}.
-// Who can run it puts another `make` into the row. Error{bad_data} if it is no description.
-OptimizerRow read_foreign_row(const std::string& name, const std::string& description);
+// Makes a row from a recorded description. Its optimizer throws Error{usage} in minimize(). The
+// host program replaces the row's `make`. Throws Error{bad_data} if the text is no description.
+OptimizerRow read_host_row(const std::string& name, const std::string& description);
 
 }  // namespace armwright

@@ -1,4 +1,3 @@
-#include "optimizers/plugins/message_fields.hpp"
 
 #include <fmt/format.h>
 
@@ -65,7 +64,7 @@ std::string read_name(const json& object, const std::string& where) {
   return name;
 }
 
-// Whether or not a number is written with a point, it is one.
+// A number counts as a number with or without a decimal point.
 double read_number(const json& object, const char* key, const std::string& where) {
   const json& value = require(object, key, where);
   if (!value.is_number() || !std::isfinite(value.get<double>())) {

@@ -14,7 +14,7 @@
 namespace armwright {
 namespace {
 
-// The problem in the border's form, with what it points to.
+// The problem in the form of the C interface, with the memory that it points to.
 class ProblemView {
  public:
   explicit ProblemView(const ProblemDescription& problem) {
@@ -121,7 +121,7 @@ class Call {
   }
 
  private:
-  // After the first exception nothing is asked for any more: everything looks stopped.
+  // After the first exception every function answers as if the run had stopped.
   template <typename Result, typename Body>
   static Result guard(void* self, Result at_the_end, Body&& body) {
     Call& call = *static_cast<Call*>(self);

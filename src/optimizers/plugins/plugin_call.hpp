@@ -1,6 +1,6 @@
-// Calls a plugin's minimize() (include/armwright/plugin.h) with an Evaluator of ours behind the
-// border's function pointers. No exception crosses the border: what our side throws is held until
-// the plugin has returned.
+// Calls a plugin's minimize() (include/armwright/plugin.h) with an Evaluator behind the function
+// pointers of the C interface. No exception crosses this interface: exceptions of our side are held
+// until the plugin has returned.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace armwright {
 
-// Throws ChildFailure if the plugin throws, returns a failure or asks for an option that it has not
-// declared, and whatever the evaluator throws.
+// Throws ChildFailure if the plugin throws, returns a failure, or reads an option that it has not
+// declared. Throws every exception of the evaluator.
 void call_plugin(const struct armwright_plugin& plugin, const Options& options,
                  Evaluator& evaluator, std::uint64_t seed);
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "base/text.hpp"
-#include "optimizers/plugins/plugin_limits.hpp"
+#include "optimizers/interface/optimizer.hpp"
 
 namespace armwright {
 namespace {

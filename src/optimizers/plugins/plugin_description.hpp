@@ -1,5 +1,6 @@
-// What a plugin in a shared library says of itself (include/armwright/plugin.h), read with distrust
-// in the process that has opened it, and as bytes for the one that must not.
+// The description that a plugin in a shared library gives of itself (include/armwright/plugin.h).
+// The process that has opened the library checks every field; the parent process gets the
+// description as bytes.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +16,8 @@
 
 namespace armwright {
 
-// Why a library is no plugin: the end of a sentence that begins with its name.
+// Says why a library is no plugin. The text completes a sentence that begins with the library's
+// name.
 class PluginRefusal : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -27,12 +29,13 @@ struct PluginDescription {
   std::vector<OptionSpec> options;
 };
 
-// To be called in the process that is to call it. The library stays open: what it has started may
-// still run. Throws PluginRefusal.
+// Opens a plugin. Call this in the process that will call the plugin. The library stays open,
+// because its threads may still run. Throws PluginRefusal.
 const struct armwright_plugin& open_plugin(const std::filesystem::path& file);
 
-// `own_options`: names that are taken. The plugin's own name is checked and left: the user's word
-// for it counts. Throws PluginRefusal.
+// Reads and checks the description. `own_options` are names that the plugin may not use. The
+// plugin's own name is checked but not used; the name that the user typed counts. Throws
+// PluginRefusal.
 PluginDescription describe_plugin(const struct armwright_plugin& plugin,
                                   std::span<const std::string> own_options);
 

@@ -1,4 +1,4 @@
-// What a plugin in another process says of itself, made a row of.
+// Makes a row of the description that a plugin in another process gives.
 
 #include <fmt/format.h>
 
@@ -7,9 +7,8 @@
 #include <utility>
 
 #include "base/text.hpp"
-#include "optimizers/interface/capability_names.hpp"
-#include "optimizers/plugins/message_fields.hpp"
-#include "optimizers/plugins/plugin_limits.hpp"
+#include "optimizers/interface/capability_table.hpp"
+#include "optimizers/interface/optimizer.hpp"
 #include "optimizers/plugins/plugin_messages.hpp"
 #include "optimizers/plugins/plugin_process.hpp"
 
@@ -94,9 +93,9 @@ OptionSpec read_option(const json& object) {
 Capabilities read_capabilities(const json& list) {
   Capabilities capabilities;
   std::vector<std::string> names;
-  for (const auto& [name, member] : kCapabilityNames) {
-    names.emplace_back(name);
-    capabilities.*member = false;
+  for (const CapabilityRow& row : kCapabilityTable) {
+    names.emplace_back(row.name);
+    capabilities.*row.member = false;
   }
   for (const json& one : list) {
     const std::string text = one.is_string() ? one.get<std::string>() : quote(one);
@@ -105,7 +104,7 @@ Capabilities read_capabilities(const json& list) {
       throw ProtocolError("described itself with an " +
                           describe_unknown("capability", text, names));
     }
-    capabilities.*(kCapabilityNames[static_cast<std::size_t>(found - names.begin())].member) = true;
+    capabilities.*(kCapabilityTable[static_cast<std::size_t>(found - names.begin())].member) = true;
   }
   return capabilities;
 }

@@ -24,7 +24,7 @@ namespace armwright {
 namespace {
 
 constexpr std::size_t kMaxLibraryBytes = std::size_t{1} << 30;
-// The options that every library has beside its own.
+// The options that every library has in addition to its own.
 std::vector<OptionSpec> make_own_options() {
   std::vector<OptionSpec> options = {
       {.name = "isolate",
@@ -36,7 +36,7 @@ std::vector<OptionSpec> make_own_options() {
   return options;
 }
 
-// Opens the library in a child, which sends (true, description) or (false, why not).
+// Opens the library in a child process, which sends (true, description) or (false, reason).
 PluginDescription describe(const std::filesystem::path& file, const ProcessLimits& limits) {
   std::vector<std::string> own_options;
   for (const OptionSpec& option : make_own_options()) {
@@ -75,7 +75,7 @@ PluginDescription describe(const std::filesystem::path& file, const ProcessLimit
   }
 }
 
-// Holds a plugin to what it has declared, whatever process it runs in.
+// Checks that a plugin does only what it has declared, in any process.
 class StrictEvaluator : public Evaluator {
  public:
   StrictEvaluator(const std::string& name, bool keeps_bounds, Evaluator& evaluator)
@@ -99,7 +99,7 @@ class StrictEvaluator : public Evaluator {
   }
 
  private:
-  // `describe_doing` says at what it was caught.
+  // `describe_doing` says what the plugin was doing.
   void check(std::span<const double> x, const auto& describe_doing) const {
     const std::vector<DecisionVariable>& variables = problem().variables;
     for (std::size_t i = 0; i < x.size(); ++i) {
@@ -182,7 +182,7 @@ class LibraryOptimizer : public Optimizer {
   }
 
  private:
-  // Not before: whoever makes an optimizer may still find that there is nothing to run.
+  // Not earlier, because a caller may make an optimizer and then have nothing to run.
   void open_log() {
     if (!log_) {
       log_ = std::make_unique<OutputLog>(options_.get_text("log"),

@@ -1,6 +1,6 @@
-// Optimizers in shared libraries (include/armwright/plugin.h). The library is opened in a child
-// process only: this process learns its description as bytes, and every run calls it in a child of
-// its own, unless the user wants it here (isolate=false).
+// Optimizers in shared libraries (include/armwright/plugin.h). Only a child process opens the
+// library. This process gets the description as bytes, and each run calls the library in a child
+// process of its own, unless the user sets isolate=false.
 #pragma once
 
 #include <filesystem>
@@ -13,17 +13,18 @@
 
 namespace armwright {
 
-// A row named `name` (default: the path as given), whose options are the plugin's, isolate and
-// make_watch_options(). Error{bad_data}, with the reason and what to do, if the file is no plugin
-// that can be used.
+// Returns a row named `name` (default: the path). Its options are those of the plugin, isolate, and
+// make_watch_options(). Throws Error{bad_data}, with the reason and the remedy, if the file is no
+// usable plugin.
 OptimizerRow load_library_plugin(const std::filesystem::path& file, const std::string& name = "",
                                  const ProcessLimits& loading = {.silence_s = 20});
 
-// Whether a name of an optimizer means a file: it has a slash or ends in ".so".
+// Returns whether an optimizer's name means a file: it has a slash or ends in ".so".
 bool is_library_name(std::string_view name);
 
-// NAME.so or libNAME.so in the folders of the environment's ARMWRIGHT_PLUGINS (separated by colons)
-// and in ../lib/armwright/plugins beside the program, whichever comes first.
+// Searches NAME.so and libNAME.so in the folders of the environment variable ARMWRIGHT_PLUGINS
+// (separated by colons), then in ../lib/armwright/plugins beside the program. Returns the first one
+// found.
 std::optional<std::filesystem::path> find_library_plugin(std::string_view name);
 
 }  // namespace armwright

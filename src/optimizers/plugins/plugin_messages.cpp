@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "base/text.hpp"
-#include "optimizers/plugins/message_fields.hpp"
 #include "optimizers/plugins/plugin_process.hpp"
 
 namespace armwright {
@@ -15,14 +14,14 @@ namespace {
 
 using nlohmann::json;
 
-// Writing, comparing and copying JSON call themselves once a level; no message of the protocol
-// comes near it.
+// Writing, comparing and copying JSON recurse once per level. No message of the protocol needs so
+// many levels.
 constexpr int kDeepest = 16;
 
-// With the type first, as people read it.
+// Writes the type first, for readers.
 using OrderedJson = nlohmann::ordered_json;
 
-// Names of problems come from files: never refuse to send one.
+// Names of problems come from files; every name can be sent.
 std::string to_line(const OrderedJson& message) {
   return message.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
 }
@@ -70,7 +69,7 @@ OrderedJson describe_quantities(std::span<const Quantity> quantities) {
   return list;
 }
 
-// As the protocol has it: what people read may have a blank.
+// The protocol's spelling has no blanks, unlike the one for readers.
 const char* get_status_name(EvaluationStatus status) {
   return status == EvaluationStatus::timed_out ? "timed_out" : to_string(status);
 }

@@ -34,8 +34,8 @@ std::vector<std::string> watch_option_names() {
   return names;
 }
 
-// Nothing if it is given up before it has answered. Silence is a failure like any other here: the
-// option silence_s has no say in it.
+// Returns nothing if `is_given_up` becomes true before the answer. Silence is an ordinary failure
+// here; the option silence_s does not apply.
 std::optional<json> ask_for_description(LineProcess& child, double loading_s,
                                         const std::function<bool()>& is_given_up) {
   try {
@@ -84,7 +84,7 @@ class ProcessPlugin : public Optimizer {
   }
 
  private:
-  // Not before: whoever makes an optimizer may still find that there is nothing to run.
+  // Not earlier, because a caller may make an optimizer and then have nothing to run.
   void open_log() {
     if (!log_) {
       log_ = std::make_unique<OutputLog>(options_.get_text("log"),
@@ -92,7 +92,7 @@ class ProcessPlugin : public Optimizer {
     }
   }
 
-  // One process, from its start to its end: destroyed is killed.
+  // One process from its start to its end. The destructor kills it.
   class Conversation {
    public:
     Conversation(ProcessPlugin& plugin, Evaluator& evaluator, std::int64_t& evaluations)
@@ -179,7 +179,7 @@ class ProcessPlugin : public Optimizer {
                   stopped ? kFarewell_s : plugin_.silence_s_);
     }
 
-    // The run has stopped and the process has had its time to notice.
+    // The run has stopped, and the process has had enough time to notice.
     bool is_over() {
       if (!end_ && evaluator_.stopped()) {
         end_ = make_end();
@@ -223,7 +223,7 @@ class ProcessPlugin : public Optimizer {
   std::unique_ptr<OutputLog> log_;  // from the first minimize() on, or log_to()
 };
 
-// The script, the program: what decides how it behaves.
+// Hashes the files that decide the behaviour: the program and the script.
 std::map<std::string, std::string> hash_files(const std::vector<std::string>& words) {
   constexpr std::size_t kLargestFile = std::size_t{1} << 30;
   std::map<std::string, std::string> hashes;

@@ -1,5 +1,5 @@
-// Optimizers that are programs of their own, in any language: lines of JSON over standard input and
-// output, ask and tell. docs/plugin-protocol.md is the protocol.
+// Optimizers that are programs, in any language. They exchange lines of JSON with armwright over
+// standard input and output, by the protocol of docs/plugin-protocol.md.
 #pragma once
 
 #include <string_view>
@@ -11,11 +11,11 @@ namespace armwright {
 // The version of the protocol that this program speaks.
 inline constexpr int kPluginProtocol = 1;
 
-// `command` is what stands behind "exec:", split as a shell would, but no shell runs. The program
-// is started once to describe itself, and again for every minimize(). Error{usage} if there is no
-// such program, Error{bad_data} if it does not describe itself as the protocol wants it.
-// `loading_s`: how long it may take to describe itself, each time: interpreters and their libraries
-// load slowly.
+// Returns the row of a program. `command` is the text after "exec:"; it is split into words as by a
+// shell, but no shell runs. The program is started once to describe itself, and once for every
+// minimize(). `loading_s` is the longest time for each start until the description arrives;
+// interpreters and their libraries load slowly. Throws Error{usage} if there is no such program,
+// and Error{bad_data} if its description breaks the protocol.
 OptimizerRow load_process_plugin(std::string_view command, double loading_s = 60);
 
 }  // namespace armwright

@@ -14,7 +14,7 @@
 namespace armwright {
 namespace {
 
-// The same problem from another start, with an allowance of its own.
+// The same problem with another start and a limited number of evaluations.
 class StartedElsewhere : public Evaluator {
  public:
   StartedElsewhere(Evaluator& evaluator, ProblemDescription problem, std::int64_t allowance)
@@ -75,8 +75,8 @@ class Multistart : public Optimizer {
     RandomStream random("optimizer/multistart", seed);
     const SearchSpace space(evaluator.problem().variables);
     const std::int64_t allowance = evaluations_per_start_ == 0 ? INT64_MAX : evaluations_per_start_;
-    // Nothing asked for twice in a row: the inner optimizer has no use for this problem, and would
-    // keep us here for ever.
+    // Two consecutive starts without an evaluation: the inner optimizer cannot work on this
+    // problem, and the loop would never end.
     int idle_starts = 0;
     for (bool is_first = true; !evaluator.stopped() && idle_starts < 2; is_first = false) {
       ProblemDescription problem = evaluator.problem();
@@ -126,7 +126,7 @@ std::vector<OptionSpec> make_multistart_options() {
            .upper = 1e12}};
 }
 
-// The inner optimizer's part of the options, which have been checked.
+// Returns the checked options of the inner optimizer.
 Options select_inner(const OptimizerRow& inner, const Options& options) {
   std::vector<std::string> assignments;
   for (const OptionSpec& spec : inner.options) {

@@ -9,10 +9,10 @@
 #include "optimizers/builtin/ga.hpp"
 #include "optimizers/builtin/latin_hypercube.hpp"
 #include "optimizers/builtin/random_search.hpp"
-#include "optimizers/ceres/ceres.hpp"
-#include "optimizers/cma/cmaes.hpp"
-#include "optimizers/nlopt/nlopt.hpp"
-#include "optimizers/pagmo/pagmo.hpp"
+#include "optimizers/ceres/ceres_backend.hpp"
+#include "optimizers/cma/cma_search.hpp"
+#include "optimizers/nlopt/nlopt_algorithms.hpp"
+#include "optimizers/pagmo/pagmo_backend.hpp"
 #include "optimizers/plugins/host_optimizer.hpp"
 #include "optimizers/plugins/plugin_library.hpp"
 #include "optimizers/plugins/plugin_process.hpp"
@@ -48,7 +48,7 @@ const OptimizerRow& find_optimizer(std::string_view name) {
 }
 
 OptimizerRow load_optimizer(std::string_view name) {
-  // It stands in results and reports, which are UTF-8.
+  // The name appears in results and reports, which are UTF-8.
   if (sanitize(name) != name) {
     throw Error(ErrorKind::usage,
                 fmt::format("optimizer '{}': this name is not printable UTF-8; rename the file",
@@ -70,8 +70,8 @@ OptimizerRow load_optimizer(std::string_view name) {
     }
     return row;
   }
-  if (is_foreign_name(name)) {
-    throw Error(ErrorKind::usage, explain_foreign(name));
+  if (is_host_name(name)) {
+    throw Error(ErrorKind::usage, explain_host_optimizer(name));
   }
   if (is_library_name(name)) {
     return load_library_plugin(name);

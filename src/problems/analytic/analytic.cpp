@@ -9,14 +9,13 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "problems/analytic/analytic_functions.hpp"
 
 namespace armwright {
 namespace {
 
-// More than any of the functions reaches inside its box (largest: the 1000-dimensional ellipsoid,
-// below 1e10), yet small enough that models fitted through it keep their digits: its square is far
-// from overflow and its spacing is 1e-4.
+// Larger than every value that a function has inside its box; the largest is below 1e10, of the
+// 1000-dimensional ellipsoid. Small enough that a model fitted through it keeps its digits: its
+// square is far from overflow, and the spacing of numbers near it is 1e-4.
 constexpr double kPenalty = 1e12;
 
 double calc_shift(int index) {
@@ -24,40 +23,30 @@ double calc_shift(int index) {
   return 4 * (multiple - std::floor(multiple) - 0.5);
 }
 
-const AnalyticDefinition& find_definition(std::string_view name) {
-  for (const AnalyticDefinition& definition : analytic_definitions()) {
-    if (definition.row.name == name) {
-      return definition;
-    }
-  }
-  throw Error(ErrorKind::usage, describe_unknown("analytic function", name, analytic_names()));
-}
-
 class AnalyticProblem : public Problem {
  public:
-  AnalyticProblem(const AnalyticDefinition& definition, int dimension) : definition_(definition) {
-    description_.name = definition.row.name;
-    description_.summary = fmt::format("{}; {} {}", definition.row.summary, dimension,
+  AnalyticProblem(const AnalyticFunction& function, int dimension) : function_(function) {
+    description_.name = function.name;
+    description_.summary = fmt::format("{}; {} {}", function.summary, dimension,
                                        dimension == 1 ? "variable" : "variables");
     for (int i = 0; i < dimension; ++i) {
       const auto place = static_cast<std::size_t>(i);
-      const double start =
-          definition.start.size() == 1 ? definition.start[0] : definition.start[place];
+      const double start = function.start.size() == 1 ? function.start[0] : function.start[place];
       description_.variables.push_back({.name = fmt::format("x_{}", i + 1),
                                         .unit = "",
-                                        .lower = definition.lower,
-                                        .upper = definition.upper,
+                                        .lower = function.lower,
+                                        .upper = function.upper,
                                         .start = start});
-      const bool shifted = definition.minimiser.empty();
+      const bool shifted = function.minimiser.empty();
       shift_.push_back(shifted ? calc_shift(i) : 0);
-      description_.known_optimum.push_back(shifted ? shift_.back() : definition.minimiser[place]);
+      description_.known_optimum.push_back(shifted ? shift_.back() : function.minimiser[place]);
     }
     description_.objectives = {{"f", ""}};
-    for (int i = 0; i < definition.constraint_count; ++i) {
+    for (int i = 0; i < function.constraint_count; ++i) {
       description_.constraints.push_back({fmt::format("g_{}", i + 1), ""});
     }
     description_.cost_unit = "function evaluation";
-    description_.has_residuals = definition.calc_residuals != nullptr;
+    description_.has_residuals = function.calc_residuals != nullptr;
   }
 
   const ProblemDescription& description() const override { return description_; }
@@ -70,18 +59,19 @@ class AnalyticProblem : public Problem {
       for (std::size_t i = 0; i < z.size(); ++i) {
         z[i] = jobs[job].x[i] - shift_[i];
       }
-      outcomes[job].error = definition_.calc_value(z);
-      if (definition_.calc_constraints != nullptr) {
-        outcomes[job].metrics = definition_.calc_constraints(z);
+      outcomes[job].error = function_.calc_value(z);
+      if (function_.calc_constraints != nullptr) {
+        outcomes[job].metrics = function_.calc_constraints(z);
       }
-      if (jobs[job].residuals && definition_.calc_residuals != nullptr) {
-        outcomes[job].residuals = definition_.calc_residuals(z);
+      if (jobs[job].residuals && function_.calc_residuals != nullptr) {
+        outcomes[job].residuals = function_.calc_residuals(z);
       }
     }
     return outcomes;
   }
 
-  // The mean over the cases that yielded a number; an outcome's metrics are its constraint values.
+  // Takes the mean over the cases that have an error. The metrics of an outcome are its constraint
+  // values.
   Evaluation aggregate(std::span<const double> /*x*/,
                        std::span<const CaseOutcome> outcomes) const override {
     Evaluation evaluation;
@@ -119,7 +109,8 @@ class AnalyticProblem : public Problem {
   std::vector<double> penalty_objectives() const override { return {kPenalty}; }
 
  private:
-  // Those of every case that yielded a number, so scaled that their squares add up to the mean.
+  // Returns the residuals of all cases that have an error, divided by sqrt(count). The sum of their
+  // squares is then the mean over these `count` cases.
   static std::vector<double> collect_residuals(std::span<const CaseOutcome> outcomes,
                                                double count) {
     std::vector<double> residuals;
@@ -136,49 +127,43 @@ class AnalyticProblem : public Problem {
     return residuals;
   }
 
-  const AnalyticDefinition& definition_;  // lives as long as the program
+  const AnalyticFunction& function_;  // a row of the table, which lives as long as the program
   ProblemDescription description_;
   std::vector<double> shift_;
 };
 
 }  // namespace
 
-const std::vector<AnalyticRow>& analytic_table() {
-  static const std::vector<AnalyticRow> rows = [] {
-    std::vector<AnalyticRow> collected;
-    for (const AnalyticDefinition& definition : analytic_definitions()) {
-      collected.push_back(definition.row);
-    }
-    return collected;
-  }();
-  return rows;
-}
-
 std::vector<std::string> analytic_names() {
   std::vector<std::string> names;
-  for (const AnalyticDefinition& definition : analytic_definitions()) {
-    names.push_back(definition.row.name);
+  for (const AnalyticFunction& function : analytic_table()) {
+    names.push_back(function.name);
   }
   return names;
 }
 
-const AnalyticRow& find_analytic(std::string_view name) {
-  return find_definition(name).row;
+const AnalyticFunction& find_analytic(std::string_view name) {
+  for (const AnalyticFunction& function : analytic_table()) {
+    if (function.name == name) {
+      return function;
+    }
+  }
+  throw Error(ErrorKind::usage, describe_unknown("analytic function", name, analytic_names()));
 }
 
 std::unique_ptr<Problem> make_analytic(std::string_view name, int dimension) {
-  const AnalyticDefinition& definition = find_definition(name);
-  const AnalyticRow& row = definition.row;
-  if (dimension < row.smallest_dimension || dimension > row.largest_dimension) {
+  const AnalyticFunction& function = find_analytic(name);
+  if (dimension < function.smallest_dimension || dimension > function.largest_dimension) {
     throw Error(
         ErrorKind::usage,
-        row.smallest_dimension == row.largest_dimension
-            ? fmt::format("analytic function '{}': dimension is {}; it must be {}", row.name,
-                          dimension, row.smallest_dimension)
+        function.smallest_dimension == function.largest_dimension
+            ? fmt::format("analytic function '{}': dimension is {}; it must be {}", function.name,
+                          dimension, function.smallest_dimension)
             : fmt::format("analytic function '{}': dimension is {}; it must be between {} and {}",
-                          row.name, dimension, row.smallest_dimension, row.largest_dimension));
+                          function.name, dimension, function.smallest_dimension,
+                          function.largest_dimension));
   }
-  return std::make_unique<AnalyticProblem>(definition, dimension);
+  return std::make_unique<AnalyticProblem>(function, dimension);
 }
 
 std::unique_ptr<Problem> make_analytic(std::string_view name) {

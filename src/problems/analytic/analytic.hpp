@@ -1,5 +1,5 @@
-// Analytic test functions: optimization problems whose minimiser is known and whose evaluation
-// costs nothing. They show whether an optimizer works before a robot is spent on it.
+// Analytic test functions: optimization problems with a known minimiser that cost almost nothing to
+// evaluate. They show whether an optimizer works before it is used on a robot.
 //
 // With z = x - s, i = 1..n, all on a box of equal sides, minimum 0 at x = s:
 //   sphere      sum z_i^2
@@ -14,15 +14,16 @@
 // every function. It moves the minimiser away from the centre of the box, from the start and from
 // any pattern that an optimizer might favour by construction.
 //
-// All but the last are sums of squares and carry their residuals, two a pair or variable where they
-// have two terms: rosenbrock's 10 (y_{i+1} - y_i^2) and 1 - y_i, rastrigin's z_i and
-// sqrt(20) sin(pi z_i).
+// All functions but the last are sums of squares and have residuals. Rosenbrock has two residuals
+// per pair of neighbouring variables: 10 (y_{i+1} - y_i^2) and 1 - y_i. Rastrigin has two residuals
+// per variable: z_i and sqrt(20) sin(pi z_i).
 //
-// A test case is one function evaluation; the functions are deterministic, so every case gives the
-// same value. Sources: see AnalyticRow::source of each.
+// A test case is one function evaluation. The functions are deterministic, so every case gives the
+// same value. Each AnalyticFunction names its source.
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,21 +32,35 @@
 
 namespace armwright {
 
-struct AnalyticRow {
+// A row of the table of analytic functions. The functions take z; all sizes are the dimension n.
+struct AnalyticFunction {
+  using Point = std::span<const double>;
+
   std::string name;
   std::string summary;
   std::string source;
   int smallest_dimension = 1;
   int largest_dimension = 1000;
   int default_dimension = 10;
+  double lower = 0;  // bounds of every variable
+  double upper = 0;
+  std::vector<double> start = {};      // one number: the same for every variable
+  std::vector<double> minimiser = {};  // empty: the shift s; otherwise s = 0
+  int constraint_count = 0;
+  double (*calc_value)(Point) = nullptr;
+  std::vector<double> (*calc_constraints)(Point) = nullptr;  // null: no constraints
+  std::vector<double> (*calc_residuals)(Point) = nullptr;    // null: no residuals
 };
 
-const std::vector<AnalyticRow>& analytic_table();
+// Returns all functions. The table lives as long as the program.
+const std::vector<AnalyticFunction>& analytic_table();
 std::vector<std::string> analytic_names();
-const AnalyticRow& find_analytic(std::string_view name);  // Error{usage} if there is none
+// Throws Error{usage} for an unknown name.
+const AnalyticFunction& find_analytic(std::string_view name);
 
-// Error{usage} for an unknown name or a dimension that the function does not have.
+// Makes the problem of a function. Throws Error{usage} for an unknown name and for a dimension that
+// the function does not have. Without a dimension, uses the default one.
 std::unique_ptr<Problem> make_analytic(std::string_view name, int dimension);
-std::unique_ptr<Problem> make_analytic(std::string_view name);  // of the default dimension
+std::unique_ptr<Problem> make_analytic(std::string_view name);
 
 }  // namespace armwright

@@ -1,14 +1,16 @@
-#include "problems/analytic/analytic_functions.hpp"
-
+// The formulas of the analytic functions over z, and the table of all functions.
 #include <cmath>
 #include <numbers>
+
+#include "problems/analytic/analytic.hpp"
 
 namespace armwright {
 namespace {
 
-using Point = AnalyticPoint;
+using Point = AnalyticFunction::Point;
 
-// Off the centre of the box, and outside (-2, 2), where the coordinates of the minimiser lie.
+// The start of every variable. It lies off the centre of the box and outside (-2, 2), the range of
+// the minimiser's coordinates.
 constexpr double kStart = -2.5;
 
 double calc_sphere(Point z) {
@@ -51,7 +53,7 @@ double calc_rastrigin(Point z) {
   return sum;
 }
 
-// What the functions are the squares of; the sum of those is the value up to rounding.
+// The sum of the squared residuals is the function's value up to rounding.
 std::vector<double> calc_sphere_residuals(Point z) {
   return {z.begin(), z.end()};
 }
@@ -100,56 +102,56 @@ std::vector<double> calc_rosen_suzuki_constraints(Point x) {
 
 }  // namespace
 
-const std::vector<AnalyticDefinition>& analytic_definitions() {
-  static const std::vector<AnalyticDefinition> table = {
-      {.row = {.name = "sphere",
-               .summary = "Sum of squares; the easiest function there is",
-               .source = "De Jong 1975, An analysis of the behavior of a class of genetic adaptive "
-                         "systems, F1"},
+const std::vector<AnalyticFunction>& analytic_table() {
+  static const std::vector<AnalyticFunction> table = {
+      {.name = "sphere",
+       .summary = "Sum of squares; the easiest function there is",
+       .source = "De Jong 1975, An analysis of the behavior of a class of genetic adaptive "
+                 "systems, F1",
        .lower = -5,
        .upper = 5,
        .start = {kStart},
        .calc_value = calc_sphere,
        .calc_residuals = calc_sphere_residuals},
-      {.row = {.name = "ellipsoid",
-               .summary = "Separable quadratic of condition number 1e6",
-               .source = "Hansen, Finck, Ros and Auger 2009, Real-parameter black-box optimization "
-                         "benchmarking: noiseless functions definitions, f2 without oscillation"},
+      {.name = "ellipsoid",
+       .summary = "Separable quadratic of condition number 1e6",
+       .source = "Hansen, Finck, Ros and Auger 2009, Real-parameter black-box optimization "
+                 "benchmarking: noiseless functions definitions, f2 without oscillation",
        .lower = -5,
        .upper = 5,
        .start = {kStart},
        .calc_value = calc_ellipsoid,
        .calc_residuals = calc_ellipsoid_residuals},
-      {.row = {.name = "rosenbrock",
-               .summary = "A long, bent, flat valley",
-               .source = "Rosenbrock 1960, An automatic method for finding the greatest or least "
-                         "value of a function; chained to n variables",
-               .smallest_dimension = 2},
+      {.name = "rosenbrock",
+       .summary = "A long, bent, flat valley",
+       .source = "Rosenbrock 1960, An automatic method for finding the greatest or least "
+                 "value of a function; chained to n variables",
+       .smallest_dimension = 2,
        .lower = -5,
        .upper = 5,
        .start = {kStart},
        .calc_value = calc_rosenbrock,
        .calc_residuals = calc_rosenbrock_residuals},
-      {.row = {.name = "rastrigin",
-               .summary = "A bowl with a regular grid of local minima",
-               .source = "Rastrigin 1974, Systems of extremal control; Muehlenbein, Schomisch and "
-                         "Born 1991 for n variables"},
+      {.name = "rastrigin",
+       .summary = "A bowl with a regular grid of local minima",
+       .source = "Rastrigin 1974, Systems of extremal control; Muehlenbein, Schomisch and "
+                 "Born 1991 for n variables",
        .lower = -5.12,
        .upper = 5.12,
        .start = {kStart},
        .calc_value = calc_rastrigin,
        .calc_residuals = calc_rastrigin_residuals},
-      {.row = {.name = "constrained",
-               .summary = "Rosen-Suzuki: a convex quadratic under three quadratic constraints",
-               .source = "Rosen and Suzuki 1965, Construction of nonlinear programming test "
-                         "problems; Hock and Schittkowski 1981, problem 43 (our box and start)",
-               .smallest_dimension = 4,
-               .largest_dimension = 4,
-               .default_dimension = 4},
+      {.name = "constrained",
+       .summary = "Rosen-Suzuki: a convex quadratic under three quadratic constraints",
+       .source = "Rosen and Suzuki 1965, Construction of nonlinear programming test "
+                 "problems; Hock and Schittkowski 1981, problem 43 (our box and start)",
+       .smallest_dimension = 4,
+       .largest_dimension = 4,
+       .default_dimension = 4,
        .lower = -4,
        .upper = 5,
-       .start = {-1, -1, -1,
-                 0.5},  // feasible; the source's origin shares a coordinate with the minimiser
+       // Feasible. The source starts at the origin, which shares a coordinate with the minimiser.
+       .start = {-1, -1, -1, 0.5},
        .minimiser = {0, 1, 2, -1},
        .constraint_count = 3,
        .calc_value = calc_rosen_suzuki,

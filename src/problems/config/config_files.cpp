@@ -25,7 +25,7 @@ std::string get_singular(std::string_view kind) {
 }
 
 bool is_file(const std::filesystem::path& path) {
-  std::error_code ignored;  // a file that cannot even be looked at is as good as none
+  std::error_code ignored;  // a file whose type cannot be read counts as missing
   return std::filesystem::is_regular_file(path, ignored);
 }
 
@@ -52,18 +52,19 @@ std::string describe_missing(std::string_view kind, const std::filesystem::path&
                             : text;
 }
 
-// The shared object that this code is part of; empty if that is the program itself.
+// Returns the shared object that this code is part of. Empty if it is part of the program itself.
 std::filesystem::path find_own_library() {
   static const char place = 0;
   Dl_info info;
   link_map* object = nullptr;
   const bool known =
       dladdr1(&place, &info, reinterpret_cast<void**>(&object), RTLD_DL_LINKMAP) != 0;
-  return known && object != nullptr ? object->l_name : "";  // the program's has no name
+  return known && object != nullptr ? object->l_name : "";  // the program itself has no name here
 }
 
-// Where the configuration lies beside a library: of PREFIX/lib/python3/dist-packages/armwright/*.so
-// PREFIX is four folders above its own. If nowhere, where it should be in the highest of them.
+// Returns the configuration's folder for a shared object. PREFIX of
+// PREFIX/lib/python3/dist-packages/armwright/*.so is four folders above the object's own. If no
+// folder has the configuration, it returns the expected place in the highest of them.
 std::filesystem::path find_beside(const std::filesystem::path& library) {
   constexpr int kMostLevels = 4;
   std::filesystem::path folder = std::filesystem::absolute(library).parent_path();
@@ -108,8 +109,7 @@ std::filesystem::path resolve_config(std::string_view kind, std::string_view nam
   const std::string extension = get_extension(kind);
   const std::filesystem::path path(name_or_path);
   const bool has_folder = name_or_path.find('/') != std::string_view::npos;
-  const bool is_xacro =
-      kind == "robots" && path.extension() == ".xacro";  // which load_urdf() refuses
+  const bool is_xacro = kind == "robots" && path.extension() == ".xacro";  // load_urdf() refuses it
   if (has_folder || path.extension() == extension || is_xacro) {
     for (const auto& candidate : {beside / path, path}) {
       if (is_file(candidate)) {

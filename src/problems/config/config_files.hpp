@@ -1,4 +1,4 @@
-// Where the shipped configuration lies, and how a user's name for one of its files becomes a path.
+// Finds the shipped configuration, and the path of a file that a user names.
 #pragma once
 
 #include <filesystem>
@@ -8,22 +8,23 @@
 
 namespace armwright {
 
-// The folder with robots/, problems/ and designs/: $ARMWRIGHT_CONFIGS if set, else
-// ../share/armwright/configs seen from the running program (the build tree and an installation look
-// alike). Where this code is part of a shared object, as in Python's module, the running program is
-// somebody else's: then share/armwright/configs in the nearest folder above that object that has
-// it. Error{usage} says where it was looked for.
+// Returns the folder with robots/, problems/ and designs/. It is $ARMWRIGHT_CONFIGS if that is set,
+// else ../share/armwright/configs as seen from the running program; the build tree and an
+// installation have the same layout. If this code is part of a shared object (Python's module), it
+// is share/armwright/configs in the nearest folder above that object that has it. Throws
+// Error{usage} that names the folder that was expected.
 std::filesystem::path find_config_folder();
 
-// What a user typed for a file of `kind` ("problems", "designs", "robots", "studies"): a path if it
-// has a slash or the kind's extension, otherwise the name of a shipped file. A relative path is
-// looked for in `beside` first (the folder of the file that names it), then in the current folder,
-// and without a slash among the shipped files. Error{usage} with the valid names and the nearest.
+// Returns the path of a file of `kind` ("problems", "designs", "robots", "studies",
+// "perturbations", "reproductions") that a user names. A text with a slash or with the kind's
+// extension is a path, any other text the name of a shipped file. A relative path is looked for in
+// `beside` first (the folder of the file that names it), then in the current folder, and without a
+// slash among the shipped files. Throws Error{usage} with the valid names and the nearest one.
 std::filesystem::path resolve_config(std::string_view kind, std::string_view name_or_path,
                                      const std::filesystem::path& beside = {});
 
-// Names of the shipped files of a kind, sorted; those that begin with an underscore are only there
-// to be extended.
+// Returns the names of the shipped files of a kind, sorted. It leaves out names that begin with an
+// underscore: these files are there only to be extended.
 std::vector<std::string> list_configs(std::string_view kind);
 
 }  // namespace armwright

@@ -2,14 +2,101 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "base/config.hpp"
 #include "base/text.hpp"
 #include "problems/config/config_files.hpp"
 
 namespace armwright {
 namespace {
 
-// Of a link, as much as any arm would want.
-constexpr Range kScale{.lower = 0.01, .upper = 100};
+constexpr Range kScaleRange{.lower = 0.01, .upper = 100};  // more than any arm needs
+constexpr Range kPublishedRange{.lower = 0, .lower_open = true};
+
+const Setting<std::string> kDesignName{"name", kNoDefault,
+                                       "name of the design (default: the file's name)"};
+const Setting<std::string> kDesignTitle{"title", "", "one line"};
+const Setting<std::string> kDesignSource{"source", "", "source of the design"};
+const Setting<std::string> kDesignController{
+    "controller", controller_names, "pid",
+    "control law of all joints (armwright list controllers)"};
+const Setting<double> kDesignSpeed{"speed_m_per_s",
+                                   {.lower = 0.01, .upper = 100},
+                                   kNoDefault,
+                                   "nominal speed (default: the task's)"};
+
+const Setting<std::string> kDriveName{"name", "", "name of the joint; joints count from the base"};
+const Setting<double> kDriveEffortMin{
+    "effort_min_n_m",
+    {.upper = 0},
+    kNoDefault,
+    "largest effort in the negative direction; for joints that slide in N"};
+const Setting<double> kDriveEffortMax{
+    "effort_max_n_m",
+    {.lower = 0},
+    kNoDefault,
+    "largest effort in the positive direction; for joints that slide in N"};
+const Setting<double> kDriveLengthScale{"length_scale", kScaleRange, 1,
+                                        "factor on the length of the link that the joint moves"};
+const Setting<double> kDriveSectionScale{"section_scale", kScaleRange, 1,
+                                         "factor on the cross-section of that link"};
+
+const Setting<std::string> kPublishedLabel{"label", kNoDefault,
+                                           "name of this published result in tables"};
+const Setting<std::string> kPublishedProblem{"problem", kNoDefault,
+                                             "shipped problem of the published result"};
+const Setting<std::vector<std::string>> kPublishedSet{
+    "set", kNoDefault, "changes to that problem, a list of KEY=VALUE"};
+const Setting<double> kPublishedError{"error_m", kPublishedRange, kNoDefault,
+                                      "the published error"};
+const Setting<double> kPublishedTorque{"total_torque_n_m", kPublishedRange, kNoDefault,
+                                       "the published total torque"};
+const Setting<std::string> kPublishedWhere{"where", "", "place in the source that reports it"};
+const SettingTable kPublishedSettings{
+    .key = "published",
+    .is_array = true,
+    .settings = {&kPublishedLabel, &kPublishedProblem, &kPublishedSet, &kPublishedError,
+                 &kPublishedTorque, &kPublishedWhere}};
+
+// Returns the gains of all controllers, each key once.
+const std::vector<Setting<double>>& get_gain_settings() {
+  static const std::vector<Setting<double>> settings = [] {
+    std::vector<Setting<double>> all;
+    for (const ControllerRow& controller : controller_table()) {
+      for (const controllers::Gain& gain : controller.gains) {
+        const auto found = std::ranges::find(all, gain.key, &Setting<double>::key);
+        if (found != all.end()) {
+          found->meaning += ", " + controller.name;
+          continue;
+        }
+        all.emplace_back(gain.key, gain.any_sign ? Range{} : Range{.lower = 0}, kNoDefault,
+                         "gain of the controllers " + controller.name);
+        all.back().unit = gain.unit;
+      }
+    }
+    return all;
+  }();
+  return settings;
+}
+
+const Setting<double>& find_gain_setting(const controllers::Gain& gain) {
+  return *std::ranges::find(get_gain_settings(), gain.key, &Setting<double>::key);
+}
+
+const SettingTable& get_drive_settings() {
+  static const SettingTable settings = [] {
+    SettingTable table{.key = "joint",
+                       .is_array = true,
+                       .settings = {&kDriveName, &kDriveEffortMin, &kDriveEffortMax,
+                                    &kDriveLengthScale, &kDriveSectionScale}};
+    for (const Setting<double>& gain : get_gain_settings()) {
+      table.settings.push_back(&gain);
+    }
+    return table;
+  }();
+  return settings;
+}
 
 std::string quote(std::string_view text) {
   std::string quoted = "\"";
@@ -34,65 +121,64 @@ std::string quote(std::string_view text) {
 
 PublishedResult read_published(const ConfigTable& table) {
   PublishedResult published;
-  published.label = table.get_string("label");
-  published.problem = table.get_string("problem");
-  if (table.has("set")) {
-    published.overrides = table.get_strings("set");
-  }
-  const Range positive{.lower = 0, .lower_open = true};
-  if (table.has("error_m")) {
-    published.error_m = table.get_number("error_m", positive);
-  }
-  if (table.has("total_torque_n_m")) {
-    published.total_torque_n_m = table.get_number("total_torque_n_m", positive);
-  }
-  published.where = table.get_string("where", "");
+  published.label = table.get(kPublishedLabel);
+  published.problem = table.get(kPublishedProblem);
+  published.overrides = table.get_or(kPublishedSet, {});
+  published.error_m = table.find(kPublishedError);
+  published.total_torque_n_m = table.find(kPublishedTorque);
+  published.where = table.get(kPublishedWhere);
   return published;
+}
+
+JointDrive read_drive(const ConfigTable& joint, const ControllerRow& controller) {
+  // Every key counts as known before the first value is read. So a message about a missing key
+  // never takes a right key for its mistyped name.
+  for (const controllers::Gain& gain : controller.gains) {
+    joint.has(find_gain_setting(gain));
+  }
+  for (const auto* setting :
+       {&kDriveEffortMin, &kDriveEffortMax, &kDriveLengthScale, &kDriveSectionScale}) {
+    joint.has(*setting);
+  }
+  JointDrive drive;
+  for (const controllers::Gain& gain : controller.gains) {
+    drive.gains.push_back(joint.get(find_gain_setting(gain)));
+  }
+  drive.limits.min = joint.get(kDriveEffortMin);
+  drive.limits.max = joint.get(kDriveEffortMax);
+  drive.length_scale = joint.get(kDriveLengthScale);
+  drive.section_scale = joint.get(kDriveSectionScale);
+  return drive;
 }
 
 }  // namespace
 
-DesignFile load_design(std::string_view name_or_path) {
-  const auto path = resolve_config("designs", name_or_path);
-  return read_design(ConfigTable::load(path), path.stem().string());
+const SettingTable& design_settings() {
+  static const SettingTable settings{
+      .key = "",
+      .settings = {&kDesignName, &kDesignTitle, &kDesignSource, &kDesignController, &kDesignSpeed},
+      .tables = {&get_drive_settings(), &kPublishedSettings}};
+  return settings;
 }
 
-DesignFile read_design(const ConfigTable& table, const std::string& name) {
+DesignFile load_design(std::string_view name_or_path) {
+  const auto path = resolve_config("designs", name_or_path);
+  const ConfigTable table = ConfigTable::load(design_settings(), path);
   DesignFile file;
-  file.name = table.get_string("name", name);
-  file.title = table.get_string("title", "");
-  file.source = table.get_string("source", "");
-  file.design.controller = table.get_choice("controller", controller_names(), "pid");
-  if (table.has("speed_m_per_s")) {
-    file.design.speed_m_per_s = table.get_number("speed_m_per_s", {.lower = 0.01, .upper = 100});
-  }
+  file.name = table.get_or(kDesignName, path.stem().string());
+  file.title = table.get(kDesignTitle);
+  file.source = table.get(kDesignSource);
+  file.design.controller = table.get(kDesignController);
+  file.design.speed_m_per_s = table.find(kDesignSpeed);
   const ControllerRow& controller = find_controller(file.design.controller);
-  for (const ConfigTable& joint : table.get_tables("joint")) {
-    file.joint_names.push_back(joint.get_string("name", ""));
-    // Every key is known before one is missed: a hint at a mistyped one then never names a right
-    // one.
-    for (const GainSpec& gain : controller.gains) {
-      joint.has(gain.key);
-    }
-    joint.has("effort_min_n_m");
-    joint.has("effort_max_n_m");
-    joint.has("length_scale");
-    joint.has("section_scale");
-    JointDrive drive;
-    for (const GainSpec& gain : controller.gains) {
-      drive.gains.push_back(
-          joint.get_number(gain.key, gain.any_sign ? Range{} : Range{.lower = 0}));
-    }
-    drive.limits.min_n_m = joint.get_number("effort_min_n_m", {.upper = 0});
-    drive.limits.max_n_m = joint.get_number("effort_max_n_m", {.lower = 0});
-    drive.length_scale = joint.get_number_or("length_scale", 1, kScale);
-    drive.section_scale = joint.get_number_or("section_scale", 1, kScale);
-    file.design.joints.push_back(std::move(drive));
+  for (const ConfigTable& joint : table.get_tables(get_drive_settings())) {
+    file.joint_names.push_back(joint.get(kDriveName));
+    file.design.joints.push_back(read_drive(joint, controller));
   }
   if (file.design.joints.empty()) {
-    table.refuse("joint", "a design must have at least one joint, [[joint]]");
+    table.refuse(get_drive_settings().key, "a design must have at least one joint, [[joint]]");
   }
-  for (const ConfigTable& published : table.get_tables_or_empty("published")) {
+  for (const ConfigTable& published : table.get_tables_or_empty(kPublishedSettings)) {
     file.published.push_back(read_published(published));
   }
   table.refuse_unknown();
@@ -114,7 +200,7 @@ std::string to_toml(const DesignFile& file) {
       text += fmt::format("{} = {}\n", controller.gains[g].key, format_exact(joint.gains.at(g)));
     }
     text += fmt::format("effort_min_n_m = {}\neffort_max_n_m = {}\n",
-                        format_exact(joint.limits.min_n_m), format_exact(joint.limits.max_n_m));
+                        format_exact(joint.limits.min), format_exact(joint.limits.max));
     if (joint.length_scale != 1) {
       text += fmt::format("length_scale = {}\n", format_exact(joint.length_scale));
     }

@@ -1,7 +1,7 @@
-// Designs as TOML files: the controllers' gains and the effort limits of every joint, where the
-// design changes them the links (length_scale, section_scale; without them 1) and the speed
-// (speed_m_per_s; without it the task's), and, for published ones, what was reported of them under
-// which conditions.
+// Designs as TOML files. A design has the controllers' gains and the effort limits of every joint.
+// If it changes the robot it has the scales of links (length_scale, section_scale; default 1), and
+// if it changes the task the speed (speed_m_per_s; default: the task's). Files of published designs
+// also have the results that were reported for them, each with its conditions.
 #pragma once
 
 #include <filesystem>
@@ -10,17 +10,17 @@
 #include <string_view>
 #include <vector>
 
-#include "base/config.hpp"
-#include "sim/tracking/tracking.hpp"
+#include "base/setting.hpp"
+#include "sim/tracking/design.hpp"
 
 namespace armwright {
 
 // One published evaluation of a design.
 struct PublishedResult {
   std::string label;                   // "A.10 with the 20 kg load"
-  std::string problem;                 // shipped problem that it was evaluated on
-  std::vector<std::string> overrides;  // KEY=VALUE, on top of the problem
-  std::optional<double> error_m;       // nothing: the source gives no number
+  std::string problem;                 // the shipped problem of the evaluation
+  std::vector<std::string> overrides;  // KEY=VALUE texts, applied to the problem
+  std::optional<double> error_m;       // empty: the source gives no number
   std::optional<double> total_torque_n_m;
   std::string where;  // "thesis, Fig. 6.13"
 };
@@ -34,14 +34,15 @@ struct DesignFile {
   std::vector<PublishedResult> published;
 };
 
-// Reads a shipped design by name or a file by path. Error{usage} names file, line, field, value and
-// what is allowed.
+// Reads a shipped design by name, or a file by path. Throws Error{usage} that names file, line,
+// field, value and what is allowed, Error{io} for a file that cannot be read.
 DesignFile load_design(std::string_view name_or_path);
 
-// Of a table that was read already; `name` is what the design is called unless it says so itself.
-DesignFile read_design(const ConfigTable& table, const std::string& name);
-
-// The design as a file that load_design reads back bit for bit; without what was published of it.
+// Returns the design as a file that load_design() reads back bit for bit, without what was
+// published about it.
 std::string to_toml(const DesignFile& file);
+
+// Returns the declarations of every setting of a design's file, with the gains of all controllers.
+const SettingTable& design_settings();
 
 }  // namespace armwright

@@ -1,5 +1,3 @@
-#include "problems/config/path_file.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,11 +8,12 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "problems/config/problem_readers.hpp"
 
 namespace armwright {
 namespace {
 
-constexpr double kShortestQuaternion = 0.5;  // anything shorter is no rounding
+constexpr double kShortestQuaternion = 0.5;  // rounding does not shorten a unit quaternion so far
 
 struct Row {
   double time_s = 0;
@@ -22,14 +21,14 @@ struct Row {
   Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
 };
 
-// A row in between, as far along as `time_s` says.
+// Returns the row at `time_s` between two rows.
 Row interpolate(const Row& from, const Row& to, double time_s) {
   const double share = (time_s - from.time_s) / (to.time_s - from.time_s);
   return {time_s, from.place_m + share * (to.place_m - from.place_m),
           from.turn.slerp(share, to.turn)};
 }
 
-// "x_m,y_m,z_m", with what may stand beside it.
+// The places of the columns in each row.
 struct Columns {
   std::size_t count = 0;
   std::optional<std::size_t> time;

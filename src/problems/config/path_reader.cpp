@@ -1,5 +1,3 @@
-#include "problems/config/path_reader.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -8,10 +6,9 @@
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
-#include "problems/config/path_file.hpp"
-#include "problems/config/task_reader.hpp"
+#include "problems/config/problem_readers.hpp"
 #include "sim/tracking/reference_signal.hpp"
-#include "sim/tracking/test_case_file.hpp"
+#include "sim/tracking/test_case.hpp"
 
 namespace armwright {
 namespace {
@@ -19,35 +16,68 @@ namespace {
 constexpr std::size_t kPathLimit_bytes = std::size_t{64} << 20;
 constexpr Range kAnyPlace{.lower = -kFarthestPlace_m, .upper = kFarthestPlace_m};
 
+const Setting<std::string> kPathKind{"kind", one_of({"points", "line", "circle", "file"}),
+                                     kNoDefault, "a path of your own in place of generated cases"};
+const Setting<std::vector<double>> kPathFrom{"from_m", kAnyPlace, kNoDefault,
+                                             "for the kind line: one end, three numbers"};
+const Setting<std::vector<double>> kPathTo{"to_m", kAnyPlace, kNoDefault,
+                                           "for the kind line: the other end, three numbers"};
+const Setting<std::vector<double>> kPathCentre{"centre_m", kAnyPlace, kNoDefault,
+                                               "for the kind circle: its centre, three numbers"};
+const Setting<std::vector<double>> kPathNormal{
+    "normal", kDirectionRange, kNoDefault,
+    "for the kind circle: the target moves counterclockwise about this direction, three numbers"};
+const Setting<double> kPathRadius{
+    "radius_m", {.lower = 1e-4, .upper = 100}, kNoDefault, "for the kind circle: its radius"};
+const Setting<std::vector<double>> kPathStart{
+    "start", kDirectionRange, kNoDefault,
+    "for the kind circle: direction from the centre to the point where the path begins, three "
+    "numbers"};
+const Setting<int> kPathRepeats{
+    "repeats",
+    {.lower = 1, .upper = 1000},
+    1,
+    "how often the target moves along a line and back, or round a circle"};
+const Setting<std::string> kPathFile{
+    "file", kNoDefault, "for the kind file: CSV file, looked for beside this file (docs/tasks.md)"};
+
+const Setting<std::vector<double>> kPointPosition{
+    "position_m", kAnyPlace, kNoDefault,
+    "for the kind points: position of the point, three numbers; the first point is the start"};
+const Setting<std::vector<double>> kPointRpy{
+    "rpy_rad", kAngleRange, kNoDefault,
+    "the tool's orientation at the point: roll, pitch and yaw; either all points have it or none"};
+
+const SettingTable kPointSettings{
+    .key = "point", .is_array = true, .settings = {&kPointPosition, &kPointRpy}};
+
 TestCase make_points(const ConfigTable& table) {
   TestCase path;
-  const auto points = table.get_tables_or_empty("point");
+  const auto points = table.get_tables_or_empty(kPointSettings);
   if (points.size() < 2) {
-    table.refuse("point", "a path needs two [[path.point]] tables or more, the start first");
+    table.refuse(kPointSettings.key,
+                 "a path needs two [[path.point]] tables or more, the start first");
   }
   for (const ConfigTable& point : points) {
-    path.points_m.push_back(read_vector(point, "position_m", kAnyPlace, "x, y and z in metres"));
-    if (point.has("rpy_rad")) {
-      path.turns.emplace_back(make_turn(
-          read_vector(point, "rpy_rad", {.lower = -7, .upper = 7}, "roll, pitch and yaw in rad")));
+    path.points_m.push_back(read_vector(point, kPointPosition, "x, y and z in metres"));
+    if (point.has(kPointRpy)) {
+      path.turns.emplace_back(
+          make_turn(read_vector(point, kPointRpy, "roll, pitch and yaw in rad")));
     }
   }
   if (!path.turns.empty() && path.turns.size() != path.points_m.size()) {
-    table.refuse("point", "rpy_rad must be given for all points or for none");
+    table.refuse(kPointSettings.key, "rpy_rad must be given for all points or for none");
   }
   return path;
 }
 
-int read_repeats(const ConfigTable& table) {
-  return static_cast<int>(table.get_integer_or("repeats", 1, 1, 1000));
-}
-
 TestCase make_line(const ConfigTable& table) {
-  const Eigen::Vector3d from_m = read_vector(table, "from_m", kAnyPlace, "x, y and z in metres");
-  const Eigen::Vector3d to_m = read_vector(table, "to_m", kAnyPlace, "x, y and z in metres");
+  const Eigen::Vector3d from_m = read_vector(table, kPathFrom, "x, y and z in metres");
+  const Eigen::Vector3d to_m = read_vector(table, kPathTo, "x, y and z in metres");
   TestCase path;
   path.points_m.push_back(from_m);
-  for (int i = 0; i < read_repeats(table); ++i) {
+  const int repeats = table.get(kPathRepeats);
+  for (int i = 0; i < repeats; ++i) {
     path.points_m.push_back(to_m);
     path.points_m.push_back(from_m);
   }
@@ -55,34 +85,34 @@ TestCase make_line(const ConfigTable& table) {
 }
 
 TestCase make_circle(const ConfigTable& table, const TrackingTask& task) {
-  const Eigen::Vector3d centre_m =
-      read_vector(table, "centre_m", kAnyPlace, "x, y and z in metres");
-  const Eigen::Vector3d normal = read_direction(table, "normal");
-  const double radius_m = table.get_number("radius_m", {.lower = 1e-4, .upper = 100});
-  const int repeats = read_repeats(table);
+  const Eigen::Vector3d centre_m = read_vector(table, kPathCentre, "x, y and z in metres");
+  const Eigen::Vector3d normal = read_direction(table, kPathNormal);
+  const double radius_m = table.get(kPathRadius);
+  const int repeats = table.get(kPathRepeats);
   Eigen::Vector3d first;
-  if (table.has("start")) {
-    first = read_direction(table, "start");
+  if (table.has(kPathStart)) {
+    first = read_direction(table, kPathStart);
   } else {
     first = std::abs(normal.x()) < 0.9 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
   }
   first -= first.dot(normal) * normal;
   if (!(first.norm() > 1e-6)) {
-    table.refuse("start", "it must not be parallel to path.normal");
+    table.refuse(kPathStart, "it must not be parallel to path.normal");
   }
   first.normalize();
   const Eigen::Vector3d second = normal.cross(first);
   if (task.signal == SignalShape::step) {
-    table.refuse("kind", "a circle needs a reference signal that moves; task.signal is \"step\"");
+    table.refuse(kPathKind,
+                 "a circle needs a reference signal that moves; task.signal is \"step\"");
   }
   const double length_m = 2 * std::numbers::pi * radius_m * repeats;
   const ReferenceSignal signal(task.signal, length_m, task.speed_m_per_s,
                                task.trapezoid_acceleration_m_per_s2);
   const double steps = std::ceil(signal.duration_s() / task.control_period_s - 1e-9);
   if (steps > kMostPathPoints) {
-    table.refuse("radius_m", fmt::format("the circle would take {:.3g} control periods, possible "
-                                         "are {}; raise task.speed_m_per_s",
-                                         steps, kMostPathPoints));
+    table.refuse(kPathRadius, fmt::format("the circle would take {:.3g} control periods, possible "
+                                          "are {}; raise task.speed_m_per_s",
+                                          steps, kMostPathPoints));
   }
   TestCase path;
   path.continuous = true;
@@ -97,12 +127,17 @@ TestCase make_circle(const ConfigTable& table, const TrackingTask& task) {
 
 }  // namespace
 
+const SettingTable kPathSettings{
+    .key = "path",
+    .settings = {&kPathKind, &kPathFrom, &kPathTo, &kPathCentre, &kPathNormal, &kPathRadius,
+                 &kPathStart, &kPathRepeats, &kPathFile},
+    .tables = {&kPointSettings}};
+
 std::optional<ReadPath> read_path(const ConfigTable& table, const TrackingTask& task) {
-  static const std::vector<std::string> kinds = {"points", "line", "circle", "file"};
-  if (!table.has("kind")) {
+  if (!table.has(kPathKind)) {
     return std::nullopt;  // other keys without it are refused as unknown
   }
-  const std::string kind = table.get_choice("kind", kinds);
+  const std::string kind = table.get(kPathKind);
   ReadPath path;
   if (kind == "points") {
     path.the_case = make_points(table);
@@ -111,24 +146,24 @@ std::optional<ReadPath> read_path(const ConfigTable& table, const TrackingTask& 
   } else if (kind == "circle") {
     path.the_case = make_circle(table, task);
   } else {
-    const std::filesystem::path named = table.get_string("file");
+    const std::filesystem::path named = table.get(kPathFile);
     const std::filesystem::path beside = table.file().parent_path() / named;
     std::error_code ignored;
     path.file = std::filesystem::is_regular_file(beside, ignored) ? beside : named;
     if (!std::filesystem::is_regular_file(*path.file, ignored)) {
-      table.refuse("file", fmt::format("there is no such file, in {} or in the current folder",
-                                       sanitize(table.file().parent_path().string())));
+      table.refuse(kPathFile, fmt::format("there is no such file, in {} or in the current folder",
+                                          sanitize(table.file().parent_path().string())));
     }
     path.the_case =
         parse_path(read_file(*path.file, kPathLimit_bytes), sanitize(path.file->string()), task);
   }
   if (!path.the_case.continuous) {
     if (const auto fault = find_fault(path.the_case)) {
-      table.refuse("kind", fmt::format("point {} {}", fault->point, fault->what));
+      table.refuse(kPathKind, fmt::format("point {} {}", fault->point, fault->what));
     }
   }
   if (!path.the_case.turns.empty() && task.tool.orientation == ToolOrientation::free) {
-    table.refuse("kind",
+    table.refuse(kPathKind,
                  "the path says how the tool is turned, which does not count where "
                  "task.orientation is \"free\"; set it to \"pose\" or \"pointing\"");
   }

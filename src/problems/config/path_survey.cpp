@@ -21,7 +21,7 @@ struct Found {
   std::uint64_t number = 0;
 };
 
-// The worst of every joint and kind comes first; that of all cases is kept.
+// The worst fault per joint and kind, over all cases.
 class Findings {
  public:
   void add(const PathFault& fault, const std::string& set, std::uint64_t number) {
@@ -48,10 +48,10 @@ class Findings {
 }  // namespace
 
 std::vector<std::string> check_paths(const LoadedProblem& problem) {
-  if (problem.tracking == nullptr) {
+  if (problem.tracking() == nullptr) {
     return {};
   }
-  const TrackingSetup& setup = problem.tracking->setup();
+  const TrackingSetup& setup = problem.tracking()->setup();
   std::vector<std::string> lines;
   for (const std::string& note : setup.robot().notes) {
     lines.push_back("robot: " + note);
@@ -60,17 +60,17 @@ std::vector<std::string> check_paths(const LoadedProblem& problem) {
   if (policy == LimitPolicy::ignore) {
     return lines;
   }
-  // Tables are made without looking: the survey itself does, and tells all that it sees.
+  // With "warn", tables are made without an error, so that the survey can report every fault.
   TrackingTask task = setup.task();
   task.limits = LimitPolicy::warn;
-  const TrackingSetup looking(problem.tracking->config().robot, task);
+  const TrackingSetup looking(problem.tracking()->config().robot, task);
   Findings findings;
   std::uint64_t looked_at = 0;
   std::uint64_t faulty = 0;
-  const bool is_path = problem.tracking->config().path.has_value();
+  const bool is_path = problem.tracking()->config().path.has_value();
   for (const std::string& name :
        {problem.sets.training, problem.sets.validation, problem.sets.test}) {
-    const TestSet set = problem.tracking->get_set(name);
+    const TestSet set = problem.tracking()->get_set(name);
     for (std::uint64_t number = 0; number < (is_path ? 1 : kCasesOfSet); ++number) {
       const TargetTable table = looking.make_targets(set.make_case(number));
       ++looked_at;
@@ -86,7 +86,7 @@ std::vector<std::string> check_paths(const LoadedProblem& problem) {
       }
     }
     if (is_path) {
-      break;  // the same in all sets
+      break;  // every set has the same path
     }
   }
   for (std::string& line : findings.describe_all(setup.robot())) {

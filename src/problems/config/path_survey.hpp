@@ -1,5 +1,5 @@
-// Whether an arm can do what a problem asks of it, looked at on some cases before any of them is
-// simulated (sim/path_check.hpp).
+// Checks on some cases whether a robot can follow the paths of a problem, before any of them is
+// simulated (sim/tracking/path_check.hpp).
 #pragma once
 
 #include <string>
@@ -9,11 +9,10 @@
 
 namespace armwright {
 
-// What a user should know of the problem's robot and of its paths, a line each: what of its URDF is
-// not simulated; and, where task.limits is not "ignore", what the first cases of the training,
-// validation and test sets ask of its joints that they cannot do, the worst of every kind and
-// joint. Error{bad_data} where task.limits is "enforce" and there is any of that. Nothing for
-// functions.
+// Returns messages for the user, one line each: the parts of the URDF that are not simulated; and,
+// unless task.limits is "ignore", the joint limits that the first cases of the training, validation
+// and test sets exceed, the worst per kind of limit and joint. Empty for functions. Throws
+// Error{bad_data} if task.limits is "enforce" and a limit is exceeded.
 std::vector<std::string> check_paths(const LoadedProblem& problem);
 
 }  // namespace armwright

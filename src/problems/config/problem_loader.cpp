@@ -2,94 +2,152 @@
 
 #include <fmt/format.h>
 
-#include <utility>
-
-#include "base/config.hpp"
 #include "base/error.hpp"
+#include "base/file.hpp"
+#include "base/hash.hpp"
 #include "base/text.hpp"
-#include "base/toml_text.hpp"
 #include "problems/analytic/analytic.hpp"
 #include "problems/config/config_files.hpp"
 #include "problems/config/design_file.hpp"
-#include "problems/config/problem_tables.hpp"
-#include "problems/config/tracking_loader.hpp"
+#include "problems/config/problem_readers.hpp"
 
 namespace armwright {
 namespace {
 
-CaseSets read_sets(const ConfigTable& table, CaseSets sets) {
-  const auto read_name = [&](std::string_view key, std::string_view prefix, std::string& name) {
-    name = table.get_string(key, name);
+constexpr std::size_t kInputLimit_bytes = std::size_t{8} << 20;
+
+const Setting<std::string> kTitle{"title", kNoDefault,
+                                  "one line, for lists and reports (default: the name)"};
+const Setting<std::string> kDescription{"description", "", "some lines more"};
+const Setting<std::string> kProblemKind{
+    "kind", one_of({"tracking", "analytic"}), kNoDefault,
+    "tracking: a robot follows a moving target; analytic: a function with a known optimum"};
+const Setting<std::string> kProblemName{
+    "name", kNoDefault,
+    "name of the problem and of its runs' folders (default: the file's name); {robot} in it stands "
+    "for the name of the URDF file"};
+
+const Setting<std::string> kSetsTraining{
+    "training", CaseSets{}.training,
+    "name of the training set, train/ID; another name has other cases"};
+const Setting<std::string> kSetsValidation{"validation", CaseSets{}.validation,
+                                           "name of the validation set, validation/ID"};
+const Setting<std::string> kSetsTest{"test", CaseSets{}.test, "name of the test set, test/ID"};
+const Setting<int> kSetsValidationCases{
+    "validation_cases",
+    {.lower = 1, .upper = kMostCases},
+    CaseSets{}.validation_cases,
+    "validation cases, on which the winner is chosen (for the kind analytic: 1)"};
+const Setting<int> kSetsTestCases{
+    "test_cases",
+    {.lower = 1, .upper = kMostCases},
+    CaseSets{}.test_cases,
+    "test cases, on which the winner is judged (for the kind analytic: 1)"};
+const SettingTable kSetsSettings{.key = "sets",
+                                 .settings = {&kSetsTraining, &kSetsValidation, &kSetsTest,
+                                              &kSetsValidationCases, &kSetsTestCases}};
+
+const Setting<std::string> kRunOptimizer{"optimizer", "ga", "optimizer of armwright optimize"};
+const Setting<std::int64_t> kRunBudget{"budget",
+                                       {.lower = 0, .upper = 1e12},
+                                       10000,
+                                       "training cases that armwright optimize may simulate"};
+const SettingTable kRunSettings{.key = "run", .settings = {&kRunOptimizer, &kRunBudget}};
+
+const Setting<std::string> kSweepParameter{"parameter", kNoDefault,
+                                           "setting that armwright sweep changes"};
+const Setting<std::vector<double>> kSweepValues{
+    "values", kNoDefault, "values of the setting, in the order of evaluation"};
+const Setting<std::string> kSweepDesign{"design", kNoDefault, "design that is evaluated"};
+const SettingTable kSweepSettings{.key = "sweep",
+                                  .settings = {&kSweepParameter, &kSweepValues, &kSweepDesign}};
+
+constexpr Range kAboveZero{.lower = 0, .lower_open = true};
+const Setting<double> kWinnerError{"error_m", kAboveZero, kNoDefault,
+                                   "error of the winner that the source reports, for comparison"};
+const Setting<double> kWinnerTorque{"total_torque_n_m", kAboveZero, kNoDefault,
+                                    "total torque of that winner"};
+const Setting<std::string> kWinnerDesign{"design", kNoDefault, "design file of that winner"};
+const Setting<std::string> kWinnerWhere{"where", "", "place in the source that reports it"};
+const SettingTable kWinnerSettings{
+    .key = "published", .settings = {&kWinnerError, &kWinnerTorque, &kWinnerDesign, &kWinnerWhere}};
+
+const Setting<std::string> kFunctionName{"name", analytic_names, kNoDefault,
+                                         "for the kind analytic: the function"};
+const Setting<int> kFunctionDimension{
+    "dimension",
+    {.lower = static_cast<double>(AnalyticFunction{}.smallest_dimension),
+     .upper = static_cast<double>(AnalyticFunction{}.largest_dimension)},
+    AnalyticFunction{}.default_dimension,
+    "for the kind analytic: number of variables (rosenbrock: at least 2; constrained: 4)"};
+const SettingTable kFunctionSettings{.key = "function",
+                                     .settings = {&kFunctionName, &kFunctionDimension}};
+
+// Reads the sets. `otherwise` holds the numbers of cases if the table lacks them.
+CaseSets read_sets(const ConfigTable& table, const CaseSets& otherwise) {
+  const auto read_name = [&](const Setting<std::string>& setting, std::string_view prefix) {
+    const std::string name = table.get(setting);
     if (name.rfind(prefix, 0) != 0 || name.size() == prefix.size()) {
-      table.refuse(key, fmt::format("a {} set must be named {}ID, as in {}1", key, prefix, prefix));
+      table.refuse(setting, fmt::format("a {} set must be named {}ID, as in {}1", setting.key,
+                                        prefix, prefix));
     }
+    return name;
   };
-  read_name("training", "train/", sets.training);
-  read_name("validation", "validation/", sets.validation);
-  read_name("test", "test/", sets.test);
-  sets.validation_cases = static_cast<int>(
-      table.get_integer_or("validation_cases", sets.validation_cases, 1, kMostCases));
-  sets.test_cases =
-      static_cast<int>(table.get_integer_or("test_cases", sets.test_cases, 1, kMostCases));
+  CaseSets sets;
+  sets.training = read_name(kSetsTraining, "train/");
+  sets.validation = read_name(kSetsValidation, "validation/");
+  sets.test = read_name(kSetsTest, "test/");
+  sets.validation_cases = table.get_or(kSetsValidationCases, otherwise.validation_cases);
+  sets.test_cases = table.get_or(kSetsTestCases, otherwise.test_cases);
   return sets;
 }
 
-void read_schedule(const ConfigTable& table, LoadedProblem& loaded) {
-  loaded.schedule = read_schedule_table(table);
-  loaded.fixed_cases =
-      static_cast<int>(table.get_integer_or("fixed_cases", loaded.fixed_cases, 1, kMostCases));
-}
-
-// The same for whoever reads the file later: a shipped name stays a name.
-std::string read_design_name(const ConfigTable& table, std::string_view key) {
-  const std::string name = table.get_string(key);
-  const auto path = resolve_named(table, key, "designs");
+// Returns a name or path that means the same wherever it is read: a shipped name stays a name.
+std::string read_design_name(const ConfigTable& table, const Setting<std::string>& setting) {
+  const std::string name = table.get(setting);
+  const auto path = resolve_named(table, setting, "designs");
   return path.stem() == name ? name : path.string();
 }
 
 PublishedWinner read_published_winner(const ConfigTable& table) {
   PublishedWinner published;
-  if (table.has("error_m")) {
-    published.error_m = table.get_number("error_m", {.lower = 0, .lower_open = true});
+  published.error_m = table.find(kWinnerError);
+  published.total_torque_n_m = table.find(kWinnerTorque);
+  if (table.has(kWinnerDesign)) {
+    published.design = read_design_name(table, kWinnerDesign);
   }
-  if (table.has("total_torque_n_m")) {
-    published.total_torque_n_m =
-        table.get_number("total_torque_n_m", {.lower = 0, .lower_open = true});
-  }
-  if (table.has("design")) {
-    published.design = read_design_name(table, "design");
-  }
-  published.where = table.get_string("where", "");
+  published.where = table.get(kWinnerWhere);
   return published;
 }
 
 SweepPlan read_sweep(const ConfigTable& table, const TrackingProblem& problem) {
   SweepPlan sweep;
-  sweep.parameter = table.get_string("parameter");
-  sweep.values = table.get_numbers("values");
+  sweep.parameter = table.get(kSweepParameter);
+  sweep.values = table.get(kSweepValues);
   if (sweep.values.empty()) {
-    table.refuse("values", "it must hold at least one number");
+    table.refuse(kSweepValues, "it must hold at least one number");
   }
-  sweep.design = read_design_name(table, "design");
+  sweep.design = read_design_name(table, kSweepDesign);
   try {
     problem.check_design(load_design(sweep.design).design);
   } catch (const Error& error) {
-    table.refuse("design", error.what());
+    table.refuse(kSweepDesign, error.what());
   }
   return sweep;
 }
 
 constexpr std::string_view kRobotInName = "{robot}";
 
-// The file's own, unless it gives another. "{robot}" in that stands for the name of the URDF's
-// file; files that extend such a one are named after themselves.
+// Returns the problem's name: the file's name, or the name that the file gives. "{robot}" in it
+// stands for the name of the URDF file. A file that extends a file with such a name is named after
+// itself.
 std::string read_name(const ConfigTable& table, const std::filesystem::path& path) {
-  std::string name = table.get_string("name", path.stem().string());
+  std::string name = table.get_or(kProblemName, path.stem().string());
   if (const std::size_t at = name.find(kRobotInName); at != std::string::npos) {
     if (table.files().size() > 1) {
       name = path.stem().string();
     } else {
-      const std::filesystem::path urdf = table.get_table("robot").get_string("urdf");
+      const std::filesystem::path urdf = table.get_table(kRobotSettings).get(kRobotUrdf);
       name.replace(at, kRobotInName.size(), urdf.stem().string());
     }
   }
@@ -100,99 +158,116 @@ std::string read_name(const ConfigTable& table, const std::filesystem::path& pat
                             sanitize(path.string())));
   }
   if (name.empty() || name.find('/') != std::string::npos || name.front() == '.') {
-    table.refuse("name", "it names folders: it must not be empty, begin with '.' or hold '/'");
+    table.refuse(kProblemName,
+                 "it names folders: it must not be empty, begin with '.' or hold '/'");
   }
   return name;
 }
 
-// A path is always the same, and so are its simulations unless plants are perturbed: one of each is
-// enough, whatever the file says of generated cases.
-void settle_path(LoadedProblem& loaded, std::vector<std::string>& settled) {
-  const TrackingConfig& config = loaded.tracking->config();
+// Settles one case per set if the problem has a path of its own and no perturbed plants: every
+// simulation of a design is then the same, whatever the file says of generated cases.
+void settle_path(const ConfigTable& table, LoadedProblem& loaded) {
+  const TrackingConfig& config = loaded.tracking()->config();
   if (!config.path || config.perturbation.changes_anything()) {
     return;
   }
   loaded.sets.validation_cases = 1;
   loaded.sets.test_cases = 1;
-  loaded.schedule = {Schedule::Kind::fixed, 1};
-  loaded.fixed_cases = 1;
-  settled.insert(settled.end(),
-                 {"sets.validation_cases=1", "sets.test_cases=1", "schedule.kind=fixed",
-                  "schedule.cases=1", "schedule.fixed_cases=1"});
+  const ConfigTable sets = table.get_table_or_empty(kSetsSettings);
+  sets.settle(kSetsValidationCases, loaded.sets.validation_cases);
+  sets.settle(kSetsTestCases, loaded.sets.test_cases);
+  settle_one_case(table.get_table_or_empty(kScheduleSettings), loaded);
 }
 
 void load_analytic(const ConfigTable& table, LoadedProblem& loaded) {
-  const ConfigTable function = table.get_table("function");
-  const std::string name = function.get_choice("name", analytic_names());
-  const AnalyticRow& row = find_analytic(name);
-  const auto dimension = static_cast<int>(function.get_integer_or(
-      "dimension", row.default_dimension, row.smallest_dimension, row.largest_dimension));
-  loaded.problem = make_analytic(name, dimension);
+  const ConfigTable function = table.get_table(kFunctionSettings);
+  const std::string name = function.get(kFunctionName);
+  const AnalyticFunction& row = find_analytic(name);
+  const Range dimensions{.lower = static_cast<double>(row.smallest_dimension),
+                         .upper = static_cast<double>(row.largest_dimension)};
+  loaded.problem = make_analytic(
+      name, function.get_or(kFunctionDimension.within(dimensions), row.default_dimension));
 }
 
 }  // namespace
 
-LoadedProblem load_problem_tables(const std::filesystem::path& path, const ReadTable& read_table,
-                                  std::span<const std::string> overrides,
-                                  std::span<const EngineRow> engines) {
-  const ConfigTable table = read_table(overrides);
+const SettingTable& problem_settings() {
+  static const SettingTable settings{
+      .key = "",
+      .settings = {&kTitle, &kDescription, &kProblemKind, &kProblemName},
+      .tables = {&kRobotSettings, &kTaskSettings, &kControlSettings, &kWorkspaceSettings,
+                 &kPathSettings, &kPhysicsSettings, &kTrainingSettings, &kScheduleSettings,
+                 &kRacingSettings, &kSetsSettings, &kRunSettings, &kObjectiveSettings,
+                 &kVariableSettings, &kMotorSettings, &kRequirementSettings, &kPerturbationSettings,
+                 &kSweepSettings, &kWinnerSettings, &kFunctionSettings}};
+  return settings;
+}
+
+void add_input(LoadedProblem& loaded, const std::filesystem::path& file) {
+  loaded.input_hashes[file.filename().string()] =
+      calc_sha256_hex(read_file(file, kInputLimit_bytes));
+}
+
+std::filesystem::path resolve_named(const ConfigTable& table, const Setting<std::string>& setting,
+                                    std::string_view kind) {
+  const std::string name = table.get(setting);
+  try {
+    return resolve_config(kind, name, table.file().parent_path());
+  } catch (const Error& error) {
+    table.refuse(setting, error.what());
+  }
+}
+
+LoadedProblem read_problem(const ConfigTable& table, const std::filesystem::path& path,
+                           std::span<const EngineRow> engines) {
   LoadedProblem loaded;
   loaded.name = read_name(table, path);
-  loaded.title = table.get_string("title", loaded.name);
-  table.get_string("description", "");
-  static const std::vector<std::string> kinds = {"tracking", "analytic"};
-  const bool analytic = table.get_choice("kind", kinds) == "analytic";
-  read_schedule(table.get_table_or_empty("schedule"), loaded);
-  loaded.racing = read_racing_table(table.get_table_or_empty("racing"));
+  loaded.title = table.get_or(kTitle, loaded.name);
+  table.get(kDescription);
+  const bool analytic = table.get(kProblemKind) == "analytic";
+  read_schedule_table(table.get_table_or_empty(kScheduleSettings), loaded);
+  loaded.racing = read_racing_table(table.get_table_or_empty(kRacingSettings));
   CaseSets usual;
-  if (analytic) {  // a function has no cases to tell apart
+  if (analytic) {  // every case of a function is the same
     usual.validation_cases = 1;
     usual.test_cases = 1;
   }
-  loaded.sets = read_sets(table.get_table_or_empty("sets"), usual);
-  const ConfigTable run = table.get_table_or_empty("run");
-  loaded.optimizer = run.get_string("optimizer", "ga");
-  loaded.budget = run.get_integer_or("budget", 10000, 0, 1'000'000'000'000);
-  loaded.published = read_published_winner(table.get_table_or_empty("published"));
-  std::vector<std::string> settled;
+  loaded.sets = read_sets(table.get_table_or_empty(kSetsSettings), usual);
+  const ConfigTable run = table.get_table_or_empty(kRunSettings);
+  loaded.optimizer = run.get(kRunOptimizer);
+  loaded.budget = run.get(kRunBudget);
+  loaded.published = read_published_winner(table.get_table_or_empty(kWinnerSettings));
   if (analytic) {
     load_analytic(table, loaded);
   } else {
-    settled = load_tracking(table, engines, loaded);
-    if (table.get_string("name", "").find(kRobotInName) != std::string::npos) {
-      settled.push_back("name=" + quote_toml(loaded.name));
+    load_tracking(table, engines, loaded);
+    if (table.get_or(kProblemName, "").find(kRobotInName) != std::string::npos) {
+      table.settle(kProblemName, loaded.name);
     }
-    settle_path(loaded, settled);
-    if (table.has("sweep")) {
-      loaded.sweep = read_sweep(table.get_table("sweep"), *loaded.tracking);
+    settle_path(table, loaded);
+    if (table.has(kSweepSettings.key)) {
+      loaded.sweep = read_sweep(table.get_table(kSweepSettings), *loaded.tracking());
     }
   }
   table.refuse_unknown();
-  if (settled.empty()) {
-    loaded.resolved_json = table.to_json();
-  } else {
-    settled.insert(settled.begin(), overrides.begin(), overrides.end());
-    loaded.resolved_json = read_table(settled).to_json();
-  }
+  loaded.resolved_json = table.to_json();
   return loaded;
 }
 
 LoadedProblem load_problem(std::string_view name_or_path, std::span<const std::string> overrides,
                            std::span<const EngineRow> engines) {
   const auto path = resolve_config("problems", name_or_path);
-  return load_problem_tables(
-      path,
-      [&](std::span<const std::string> all) {
-        return ConfigTable::load(path, all, find_config_folder() / "problems");
-      },
-      overrides, engines);
+  return read_problem(
+      ConfigTable::load(problem_settings(), path, overrides, find_config_folder() / "problems"),
+      path, engines);
 }
 
 std::vector<ProblemTitle> list_problems() {
   std::vector<ProblemTitle> titles;
   for (const std::string& name : list_configs("problems")) {
-    const ConfigTable table = ConfigTable::load(resolve_config("problems", name));
-    titles.push_back({name, table.get_string("title", "")});
+    const ConfigTable table =
+        ConfigTable::load(problem_settings(), resolve_config("problems", name));
+    titles.push_back({name, table.get_or(kTitle, "")});
   }
   return titles;
 }

@@ -1,7 +1,7 @@
-// From a name or a TOML file to a problem that is ready to run, with the settings that go with it.
-// Everything is validated here, before the first evaluation; messages name file, line, field, value
-// and what is allowed. Files that a problem names by a relative path are looked for beside it
-// first.
+// Loads problems: from a shipped name, a TOML file or the record of a run to a problem that is
+// ready to run, with the settings that belong to it. Every setting is checked here, before the
+// first evaluation. Messages name file, line, field, value and what is allowed. Files that a
+// problem names by a relative path are looked for beside the problem's file first.
 #pragma once
 
 #include <filesystem>
@@ -13,12 +13,15 @@
 #include <string_view>
 #include <vector>
 
+#include "base/setting.hpp"
 #include "problems/interface/problem.hpp"
 #include "problems/interface/schedule.hpp"
 #include "problems/tracking/tracking_problem.hpp"
+#include "sim/engines/engine_table.hpp"
 
 namespace armwright {
 
+// The names of the three sets of test cases, and how many cases are judged.
 struct CaseSets {
   std::string training = "train/1";
   std::string validation = "validation/1";
@@ -27,7 +30,7 @@ struct CaseSets {
   int test_cases = 500;
 };
 
-// What the source of a problem reports of its winner.
+// The result that the source of a problem reports for its winner.
 struct PublishedWinner {
   std::optional<double> error_m;
   std::optional<double> total_torque_n_m;
@@ -35,44 +38,64 @@ struct PublishedWinner {
   std::string where;
 };
 
-// A sweep of one setting with a given design, without optimization.
+// A sweep: one design is evaluated at several values of one setting, without optimization.
 struct SweepPlan {
-  std::string parameter;  // "task.speed_m_per_s"
+  std::string parameter;  // the setting, "task.speed_m_per_s"
   std::vector<double> values;
   std::string design;
 };
 
 struct LoadedProblem {
-  std::string name;   // also of folders
+  std::string name;   // folders of its runs have it too
   std::string title;  // one line
   std::shared_ptr<const Problem> problem;
-  std::shared_ptr<const TrackingProblem>
-      tracking;  // the same object; null for an analytic function
+  // Returns the tracking problem; null for an analytic function. Valid as long as `problem`.
+  const TrackingProblem* tracking() const { return problem->tracking(); }
   Schedule schedule;
-  int fixed_cases = 5;  // K for optimizers without generations where the schedule needs them
+  int fixed_cases = 5;  // K for optimizers without generations, if the schedule needs generations
   Racing racing;
   CaseSets sets;
-  std::string optimizer;    // what `optimize` uses unless told otherwise
-  std::int64_t budget = 0;  // in cases, likewise
+  std::string optimizer;    // default of `armwright optimize`
+  std::int64_t budget = 0;  // the same, in training cases
   PublishedWinner published;
   std::optional<SweepPlan> sweep;
-  // The whole configuration after inheritance and overrides; of engines with SIMD with the level
-  // that they use, and of perturbed plants with what a preset says in place of its name.
+  // The whole configuration as JSON, with inheritance, overrides and settled values: the SIMD level
+  // of engines with SIMD, the contents of a perturbation preset, and what is proposed for a robot.
   std::string resolved_json;
   std::map<std::string, std::string>
       input_hashes;  // file name -> SHA-256 of every file that the configuration refers to
 };
 
-// `overrides` are KEY=VALUE texts on top of the file ("task.speed_m_per_s=2"); `engines` are those
-// to choose from.
+// Loads a shipped problem by name, or a file. `overrides` are KEY=VALUE texts that replace values
+// of the file ("task.speed_m_per_s=2"). `engines` are the engines to choose from. Throws
+// Error{usage} for a wrong setting, Error{bad_data} for a wrong file that a setting names,
+// Error{io} for a file that cannot be read.
 LoadedProblem load_problem(std::string_view name_or_path,
                            std::span<const std::string> overrides = {},
                            std::span<const EngineRow> engines = engine_table());
+
+// Loads the problem that a run recorded as LoadedProblem::resolved_json, also of a replicate
+// (make_replicate). It does not read the problem's file. Files that the configuration names by a
+// relative path are looked for in `beside` first; the caller must compare input_hashes to see
+// whether they have changed. Throws Error as load_problem(), and Error{bad_data} for other texts.
+LoadedProblem load_recorded_problem(const std::string& resolved_json, const std::string& name,
+                                    const std::filesystem::path& beside);
+
+// Returns the problem as one replicate of a comparison has it: with another training set
+// ("train/NAME") and another start (one value per variable, within the bounds). Everything that
+// decides what a design is worth is the same. The resolved configuration holds both as
+// "sets.training" and "replicate.start".
+LoadedProblem make_replicate(const LoadedProblem& problem, const std::string& training_set,
+                             const std::vector<double>& start);
 
 struct ProblemTitle {
   std::string name;
   std::string title;
 };
+// Returns the shipped problems, by name.
 std::vector<ProblemTitle> list_problems();
+
+// Returns the declarations of every setting of a problem's file.
+const SettingTable& problem_settings();
 
 }  // namespace armwright

@@ -1,5 +1,4 @@
-#include "problems/config/recorded_problem.hpp"
-
+// Problems that are loaded again from the record of a run.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -9,13 +8,12 @@
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "base/toml_text.hpp"
-#include "problems/config/problem_tables.hpp"
-#include "problems/config/replicate.hpp"
+#include "problems/config/problem_readers.hpp"
 
 namespace armwright {
 namespace {
 
-// JSON as TOML: a line for each key at the top, everything below it inline.
+// Returns a JSON value as TOML in one line.
 std::string write_toml(const nlohmann::json& value) {
   const auto write_scalar = [](const nlohmann::json& scalar) {
     return scalar.is_string() ? quote_toml(scalar.get<std::string>()) : scalar.dump();
@@ -36,7 +34,7 @@ std::string write_toml(const nlohmann::json& value) {
   return write_scalar(value);
 }
 
-// Keys that were renamed since.
+// Gives keys their present names, where they were renamed after the run.
 void rename_old_keys(nlohmann::json& resolved) {
   if (resolved.contains("task") && resolved.at("task").contains("control_period_s")) {
     nlohmann::json& task = resolved.at("task");
@@ -69,12 +67,8 @@ LoadedProblem load_recorded_problem(const std::string& resolved_json, const std:
                             sanitize(name), sanitize(error.what())));
   }
   const auto path = beside / (name + ".toml");
-  LoadedProblem loaded = load_problem_tables(
-      path,
-      [&](std::span<const std::string> all) {
-        return ConfigTable::parse(toml, path.string(), all);
-      },
-      {}, engine_table());
+  LoadedProblem loaded = read_problem(ConfigTable::parse(problem_settings(), toml, path.string()),
+                                      path, engine_table());
   if (!start.empty()) {
     if (start.size() != loaded.problem->description().variables.size()) {
       throw Error(ErrorKind::bad_data,

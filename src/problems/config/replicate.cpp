@@ -1,12 +1,13 @@
-#include "problems/config/replicate.hpp"
-
 #include <cassert>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "problems/config/problem_loader.hpp"
+
 namespace armwright {
 namespace {
 
+// A problem with another start.
 class StartedElsewhere final : public Problem {
  public:
   StartedElsewhere(std::shared_ptr<const Problem> problem, const std::vector<double>& start)
@@ -18,6 +19,7 @@ class StartedElsewhere final : public Problem {
   }
 
   const ProblemDescription& description() const override { return description_; }
+  const TrackingProblem* tracking() const override { return problem_->tracking(); }
   BatchSize batch_size(CaseRole role) const override { return problem_->batch_size(role); }
   std::vector<CaseOutcome> simulate(std::span<const CaseJob> jobs) const override {
     return problem_->simulate(jobs);

@@ -1,112 +1,192 @@
-#include "problems/config/task_reader.hpp"
-
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "base/error.hpp"
-#include "problems/tracking/tracking_description.hpp"
+#include "problems/config/problem_readers.hpp"
+#include "problems/tracking/tracking_config.hpp"
+#include "sim/tracking/reference_signal.hpp"
 
 namespace armwright {
+
+const Setting<std::string> kTaskOrientation{
+    "orientation", tool_orientation_names, "free",
+    "which part of the tool's orientation counts beside its position: none, the direction of its "
+    "axis, or the whole pose"};
+const Setting<bool> kTaskCountFirstPoint{
+    "count_first_point", TrackingTask{}.count_first_point,
+    "whether the first move, which starts from rest, counts (default: false; with a [path] true)"};
+const Setting<double> kTaskSpeed{"speed_m_per_s",
+                                 {.lower = 0.01, .upper = 100},
+                                 TrackingTask{}.speed_m_per_s,
+                                 "nominal speed of the target"};
+const Setting<double> kTaskDistanceLimit{
+    "distance_limit_m",
+    {.lower = 0, .upper = 100},
+    TrackingTask{}.distance_limit_m,
+    "a move shorter than this takes as long as a move of this length"};
+const Setting<std::vector<double>> kTaskHome{
+    "home",
+    {.lower = -1000, .upper = 1000},
+    kNoDefault,
+    "joint positions where the search for the first posture begins: one number per joint, rad or m "
+    "(default: the middle of the ranges)"};
+const Setting<std::vector<double>> kTaskToolRpy{
+    "tool_rpy_rad", kAngleRange, kNoDefault,
+    "orientation of the tool in the world: roll, pitch and yaw, three numbers"};
+
+const Setting<std::string> kControlController{
+    "controller", controller_names, kNoDefault,
+    "control law of all joints (armwright list controllers; default: that of the start)"};
+
+const Setting<std::vector<double>> kWorkspaceCentre{
+    "centre_m",
+    {.lower = -1000, .upper = 1000},
+    kNoDefault,
+    "centre of the sphere in which test cases lie, three numbers"};
+const Setting<double> kWorkspaceRadius{
+    "radius_m", {.lower = 1e-3, .upper = 100}, WorkspaceSphere{}.radius_m, "radius of that sphere"};
+const Setting<std::vector<double>> kWorkspaceNormal{
+    "normal", kDirectionRange, kNoDefault,
+    "test cases lie in the disc of the sphere across this direction, three numbers"};
+const Setting<double> kWorkspaceShortestMove{
+    "shortest_move_m",
+    {.lower = 1e-6, .upper = 2 * WorkspaceSphere{}.radius_m},
+    WorkspaceSphere{}.shortest_move_m,
+    "shortest move between two points of a test case; at most twice the radius"};
+
 namespace {
 
-template <class Enum>
-Enum read_enum(const ConfigTable& table, std::string_view key,
-               const std::vector<std::string>& names, Enum fallback) {
-  const std::string name = table.get_choice(key, names, names[static_cast<std::size_t>(fallback)]);
-  return static_cast<Enum>(std::ranges::find(names, name) - names.begin());
-}
+const Setting<std::string> kTaskSignal{
+    "signal", signal_names, "complex",
+    "how the target moves from point to point (armwright list signals)"};
+const Setting<double> kTaskTrapezoidAcceleration{"trapezoid_acceleration_m_per_s2",
+                                                 {.lower = 0, .upper = 1e6, .lower_open = true},
+                                                 TrackingTask{}.trapezoid_acceleration_m_per_s2,
+                                                 "acceleration of the signal trapezoid"};
+const Setting<double> kTaskRest{
+    "rest_s",
+    {.lower = 0, .upper = 60},
+    TrackingTask{}.rest_s,
+    "how long the target rests after each move; the error counts during the rest"};
+const Setting<bool> kTaskIkBug{"ik_bug", TrackingTask{}.ik_bug,
+                               "whether to repeat the thesis's error in its inverse kinematics"};
+const Setting<double> kTaskLoad{
+    "load_kg", {.lower = 0, .upper = 1000}, TrackingTask{}.load_kg, "mass at the tool"};
+const Setting<std::string> kTaskKinematics{
+    "kinematics", kinematics_names, "auto",
+    "inverse kinematics; auto: the closed form if the arm is a palletiser, else numeric"};
+const Setting<std::string> kTaskLimits{
+    "limits", limit_policy_names, "ignore",
+    "what happens if a path exceeds joint ranges or speeds, or meets singularities: nothing, a "
+    "warning or an error"};
+const Setting<std::vector<double>> kTaskToolAxis{
+    "tool_axis", kDirectionRange, kNoDefault,
+    "direction in the tip's frame that points, three numbers (default: z)"};
+const Setting<double> kTaskOrientationArm{
+    "orientation_arm_m",
+    {.lower = 1e-3, .upper = 100},
+    ToolTask{}.arm_m,
+    "position error that an orientation error of 1 rad counts as"};
+
+const Setting<double> kControlPeriod{"period_s",
+                                     {.lower = 1e-5, .upper = 0.1},
+                                     TrackingTask{}.control_period_s,
+                                     "sample period of the controllers"};
+
+const Setting<int> kWorkspacePoints{"points",
+                                    {.lower = 3, .upper = 1000},
+                                    WorkspaceSphere{}.points,
+                                    "points of a test case, the one where it begins not counted"};
 
 ToolTask read_tool(const ConfigTable& table) {
   ToolTask tool;
-  tool.orientation = read_enum(table, "orientation", tool_orientation_names(), tool.orientation);
-  if (table.has("tool_rpy_rad")) {
-    tool.turn = make_turn(read_vector(table, "tool_rpy_rad", {.lower = -7, .upper = 7},
-                                      "roll, pitch and yaw in rad"));
+  tool.orientation = static_cast<ToolOrientation>(table.get_choice(kTaskOrientation));
+  if (table.has(kTaskToolRpy)) {
+    tool.turn = make_turn(read_vector(table, kTaskToolRpy, "roll, pitch and yaw in rad"));
   }
-  if (table.has("tool_axis")) {
-    tool.axis = read_direction(table, "tool_axis");
+  if (table.has(kTaskToolAxis)) {
+    tool.axis = read_direction(table, kTaskToolAxis);
   }
-  tool.arm_m = table.get_number_or("orientation_arm_m", tool.arm_m, {.lower = 1e-3, .upper = 100});
+  tool.arm_m = table.get(kTaskOrientationArm);
   return tool;
 }
 
 }  // namespace
 
-Eigen::Vector3d read_vector(const ConfigTable& table, std::string_view key, Range range,
+const SettingTable kTaskSettings{
+    .key = "task",
+    .settings = {&kTaskSignal, &kTaskSpeed, &kTaskDistanceLimit, &kTaskTrapezoidAcceleration,
+                 &kTaskRest, &kTaskCountFirstPoint, &kTaskIkBug, &kTaskLoad, &kTaskKinematics,
+                 &kTaskLimits, &kTaskOrientation, &kTaskToolRpy, &kTaskToolAxis,
+                 &kTaskOrientationArm, &kTaskHome}};
+const SettingTable kControlSettings{.key = "control",
+                                    .settings = {&kControlPeriod, &kControlController}};
+const SettingTable kWorkspaceSettings{
+    .key = "workspace",
+    .settings = {&kWorkspaceCentre, &kWorkspaceRadius, &kWorkspaceNormal, &kWorkspaceShortestMove,
+                 &kWorkspacePoints}};
+
+Eigen::Vector3d read_vector(const ConfigTable& table, const Setting<std::vector<double>>& setting,
                             std::string_view what) {
-  const auto numbers = table.get_numbers(key, range);
+  const auto numbers = table.get(setting);
   if (numbers.size() != 3) {
-    table.refuse(key, fmt::format("it must be three numbers: {}", what));
+    table.refuse(setting, fmt::format("it must be three numbers: {}", what));
   }
   return {numbers[0], numbers[1], numbers[2]};
 }
 
-Eigen::Vector3d read_direction(const ConfigTable& table, std::string_view key) {
-  const Eigen::Vector3d vector =
-      read_vector(table, key, {.lower = -1e6, .upper = 1e6}, "a direction's x, y and z");
+Eigen::Vector3d read_direction(const ConfigTable& table,
+                               const Setting<std::vector<double>>& setting) {
+  const Eigen::Vector3d vector = read_vector(table, setting, "a direction's x, y and z");
   if (!(vector.norm() > 1e-9)) {
-    table.refuse(key, "it must point somewhere: one of the three numbers must not be 0");
+    table.refuse(setting, "it must point somewhere: one of the three numbers must not be 0");
   }
   return vector.normalized();
 }
 
-TrackingTask read_task(const ConfigTable& table, const ConfigTable& physics,
-                       const ConfigTable& control) {
+TrackingTask read_task(const ConfigTable& table, const ConfigTable& control) {
   TrackingTask task;
-  task.signal = find_signal(table.get_choice("signal", signal_names(), "complex"));
-  task.speed_m_per_s =
-      table.get_number_or("speed_m_per_s", task.speed_m_per_s, {.lower = 0.01, .upper = 100});
-  task.distance_limit_m =
-      table.get_number_or("distance_limit_m", task.distance_limit_m, {.lower = 0, .upper = 100});
-  task.trapezoid_acceleration_m_per_s2 =
-      table.get_number_or("trapezoid_acceleration_m_per_s2", task.trapezoid_acceleration_m_per_s2,
-                          {.lower = 0, .upper = 1e6, .lower_open = true});
-  task.rest_s = table.get_number_or("rest_s", task.rest_s, {.lower = 0, .upper = 60});
-  task.count_first_point = table.get_bool_or("count_first_point", task.count_first_point);
-  task.ik_bug = table.get_bool_or("ik_bug", task.ik_bug);
-  task.load_kg = table.get_number_or("load_kg", task.load_kg, {.lower = 0, .upper = 1000});
-  task.kinematics = read_enum(table, "kinematics", kinematics_names(), task.kinematics);
-  task.limits = read_enum(table, "limits", limit_policy_names(), task.limits);
+  task.signal = find_signal(table.get(kTaskSignal));
+  task.speed_m_per_s = table.get(kTaskSpeed);
+  task.distance_limit_m = table.get(kTaskDistanceLimit);
+  task.trapezoid_acceleration_m_per_s2 = table.get(kTaskTrapezoidAcceleration);
+  task.rest_s = table.get(kTaskRest);
+  task.count_first_point = table.get(kTaskCountFirstPoint);
+  task.ik_bug = table.get(kTaskIkBug);
+  task.load_kg = table.get(kTaskLoad);
+  task.kinematics = static_cast<KinematicsChoice>(table.get_choice(kTaskKinematics));
+  task.limits = static_cast<LimitPolicy>(table.get_choice(kTaskLimits));
   task.tool = read_tool(table);
-  if (table.has("home")) {
-    task.home = table.get_numbers("home", {.lower = -1000, .upper = 1000});
+  if (const auto home = table.find(kTaskHome)) {
+    task.home = *home;
   }
   if (task.kinematics == KinematicsChoice::palletiser &&
       task.tool.orientation != ToolOrientation::free) {
-    table.refuse("kinematics",
+    table.refuse(kTaskKinematics,
                  "the closed form of a palletiser says nothing of the tool's orientation; set "
                  "task.orientation to \"free\" or kinematics to \"numeric\"");
   }
-  task.control_period_s =
-      control.get_number_or("period_s", task.control_period_s, {.lower = 1e-5, .upper = 0.1});
-
-  PhysicsSettings& p = task.physics;
-  p.gravity_m_per_s2 =
-      physics.get_number_or("gravity_m_per_s2", p.gravity_m_per_s2, {.lower = 0, .upper = 1000});
-  p.substeps = static_cast<int>(physics.get_integer_or("substeps", p.substeps, 1, 1000));
-  p.erp = physics.get_number_or("erp", p.erp, {.lower = 0, .upper = 1});
-  p.cfm = physics.get_number_or("cfm", p.cfm, {.lower = 0, .upper = 1});
+  task.control_period_s = control.get(kControlPeriod);
   return task;
 }
 
 WorkspaceSphere read_workspace(const ConfigTable& table) {
   WorkspaceSphere sphere;
-  if (table.has("centre_m")) {
-    sphere.centre_m =
-        read_vector(table, "centre_m", {.lower = -1000, .upper = 1000}, "x, y and z in metres");
+  if (table.has(kWorkspaceCentre)) {
+    sphere.centre_m = read_vector(table, kWorkspaceCentre, "x, y and z in metres");
   }
-  if (table.has("normal")) {
-    sphere.normal = read_direction(table, "normal");
+  if (table.has(kWorkspaceNormal)) {
+    sphere.normal = read_direction(table, kWorkspaceNormal);
   }
-  sphere.radius_m = table.get_number_or("radius_m", sphere.radius_m, {.lower = 1e-3, .upper = 100});
-  sphere.shortest_move_m = table.get_number_or("shortest_move_m", sphere.shortest_move_m,
-                                               {.lower = 1e-6, .upper = 2 * sphere.radius_m});
-  sphere.points = static_cast<int>(table.get_integer_or("points", sphere.points, 3, 1000));
+  sphere.radius_m = table.get(kWorkspaceRadius);
+  sphere.shortest_move_m = table.get(kWorkspaceShortestMove.within(
+      {.lower = kWorkspaceShortestMove.range.lower, .upper = 2 * sphere.radius_m}));
+  sphere.points = table.get(kWorkspacePoints);
   try {
     TestSet::make_generated("test/1", sphere);
   } catch (const Error& error) {
-    table.refuse(table.has("shortest_move_m") ? "shortest_move_m" : "radius_m", error.what());
+    table.refuse(
+        table.has(kWorkspaceShortestMove) ? kWorkspaceShortestMove.key : kWorkspaceRadius.key,
+        error.what());
   }
   return sphere;
 }
@@ -120,10 +200,10 @@ void check_length(const ConfigTable& table, const ConfigTable& control,
         "control.period_s or task.speed_m_per_s, or lower task.distance_limit_m, "
         "task.rest_s or workspace.points",
         periods, kMostPeriods);
-    if (control.has("period_s")) {
-      control.refuse("period_s", must);
+    if (control.has(kControlPeriod)) {
+      control.refuse(kControlPeriod, must);
     }
-    table.refuse("speed_m_per_s", must);
+    table.refuse(kTaskSpeed, must);
   }
 }
 

@@ -1,118 +1,92 @@
-#include "problems/config/tracking_loader.hpp"
-
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <iterator>
 #include <utility>
 
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/hash.hpp"
 #include "base/text.hpp"
-#include "problems/config/config_files.hpp"
-#include "problems/config/design_file.hpp"
-#include "problems/config/objective_reader.hpp"
-#include "problems/config/parameter_reader.hpp"
-#include "problems/config/path_reader.hpp"
-#include "problems/config/perturbation_reader.hpp"
-#include "problems/config/requirement_reader.hpp"
-#include "problems/config/robot_proposal.hpp"
-#include "problems/config/task_reader.hpp"
-#include "problems/tracking/tracking_description.hpp"
+#include "problems/config/problem_readers.hpp"
 #include "sim/robot/mesh_file.hpp"
-#include "sim/tracking/design_conversion.hpp"
-#include "sim/tracking/designed_arm.hpp"
 
 namespace armwright {
+
+const Setting<std::string> kRobotUrdf{
+    "urdf", kNoDefault, "the robot: a URDF beside this file, or the name of a shipped one"};
+
 namespace {
 
-constexpr std::size_t kInputLimit_bytes = std::size_t{8} << 20;
-// The speed is a variable: its start, and that a case fits at the slowest.
-void set_start_speed(const ConfigTable& variables, TrackingConfig& config) {
-  TrackingTask slowest = make_task(config.task, config.start);
-  config.start.speed_m_per_s = slowest.speed_m_per_s;
-  slowest.speed_m_per_s /= config.speed_bounds_factor;
-  const double periods = calc_case_duration_s(config, slowest) / slowest.control_period_s;
-  if (periods > kMostPeriods) {
-    variables.refuse(
-        variables.has("speed_bounds_factor") ? "speed_bounds_factor" : "task",
-        fmt::format("a test case at the slowest speed would take {:.3g} control periods, possible "
-                    "are {:.3g}; lower speed_bounds_factor",
-                    periods, kMostPeriods));
-  }
-}
+const Setting<std::string> kRobotBase{"base", "",
+                                      "link that stands still (default: the root of the tree)"};
+const Setting<std::string> kRobotTip{
+    "tip", "",
+    "link whose frame is the tool (default: the last link of the chain, if there is one chain)"};
+const Setting<double> kRobotDensity{
+    "density_kg_per_m3",
+    {.lower = 1, .upper = 30'000},
+    0,
+    "density that gives links without <inertial> the mass of their shapes; 0: such links are "
+    "refused"};
+const Setting<double> kRobotMassScale{"mass_scale",
+                                      {.lower = 0.01, .upper = 100},
+                                      TrackingConfig{}.mass_scale,
+                                      "factor on every mass and inertia of the robot"};
+const Setting<bool> kRobotPropose{
+    "propose", false,
+    "whether values that the file leaves out of workspace, pace and controllers are proposed from "
+    "the URDF"};
 
-// The start under the controller that the problem names, and the tables that it wants.
-void apply_controller(const ConfigTable& control, TrackingConfig& config) {
-  if (control.has("controller")) {
-    const std::string name = control.get_choice("controller", controller_names());
-    try {
-      config.start = convert_design(config.start, name, config.task.control_period_s);
-    } catch (const Error& error) {
-      control.refuse("controller", error.what());
-    }
-  }
-  config.task.feed_forward = find_controller(config.start.controller).feed_forward;
-}
+const Setting<double> kTrainingCutoff{
+    "cutoff_error_m",
+    {.lower = kFailureError_m, .upper = 1e6},
+    TrackingConfig{}.cutoff_error_m,
+    "a training case ends at this error, and each of its remaining points counts as this error"};
 
-// What is wrong with a robot is wrong with its file.
-template <class Call>
-auto name_file(const std::filesystem::path& urdf, const Call& call) {
-  try {
-    return call();
-  } catch (const Error& error) {
-    if (error.kind() != ErrorKind::bad_data) {
-      throw;
-    }
-    throw Error(ErrorKind::bad_data, fmt::format("{}: {}", sanitize(urdf.string()), error.what()));
-  }
-}
+const Setting<double> kMotorsTorquePerMass{
+    "torque_per_mass_n_m_per_kg",
+    {.lower = 0, .upper = 1e9},
+    TrackingConfig{}.torque_per_mass_n_m_per_kg,
+    "every joint carries a motor with the mass effort limit / this; 0: motors have no mass"};
 
 std::shared_ptr<const TrackingProblem> make_tracking(TrackingConfig config,
                                                      const ConfigTable& variables,
                                                      const std::filesystem::path& urdf) {
+  std::shared_ptr<const TrackingProblem> problem;
   try {
-    return name_file(urdf, [&] { return std::make_shared<TrackingProblem>(std::move(config)); });
+    name_robot_file(urdf, [&] { problem = std::make_shared<TrackingProblem>(std::move(config)); });
+    return problem;
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::usage) {
       throw;
     }
-    variables.refuse("start", error.what());
+    variables.refuse(kVariablesStart, error.what());
   }
 }
 
-void add_input(LoadedProblem& loaded, const std::filesystem::path& file) {
-  loaded.input_hashes[file.filename().string()] =
-      calc_sha256_hex(read_file(file, kInputLimit_bytes));
-}
-
-// The path, if there is one, and what is left to be proposed; what of it is settled.
-std::vector<std::string> read_path_and_proposal(const ConfigTable& table, TrackingConfig& config,
-                                                LoadedProblem& loaded) {
-  if (const auto path = read_path(table.get_table_or_empty("path"), config.task)) {
+// Reads the path, if there is one, and proposes what is left out.
+void read_path_and_proposal(const ConfigTable& table, TrackingConfig& config,
+                            LoadedProblem& loaded) {
+  if (const auto path = read_path(table.get_table_or_empty(kPathSettings), config.task)) {
     config.path = path->the_case;
-    // Every move was asked for, the first included, unless the file says otherwise.
+    // The user chose every move, so that the first one counts unless the file says otherwise.
     config.task.count_first_point =
-        table.get_table_or_empty("task").get_bool_or("count_first_point", true);
+        table.get_table_or_empty(kTaskSettings).get_or(kTaskCountFirstPoint, true);
     if (path->file) {
       add_input(loaded, *path->file);
     }
   }
-  if (!table.get_table("robot").get_bool_or("propose", false)) {
-    return {};
+  if (table.get_table(kRobotSettings).get(kRobotPropose)) {
+    apply_proposal(table, config);
   }
-  return apply_proposal(table, config);
 }
 
-// The arm that [robot] describes, as it is in the file.
+// Returns the robot that [robot] describes, with the masses of its file.
 RobotModel load_robot(const ConfigTable& table, const std::filesystem::path& urdf,
                       LoadedProblem& loaded) {
   RobotOptions options;
-  options.base = table.get_string("base", "");
-  options.tip = table.get_string("tip", "");
-  options.density_kg_per_m3 =
-      table.get_number_or("density_kg_per_m3", 0, {.lower = 1, .upper = 30'000});
+  options.base = table.get(kRobotBase);
+  options.tip = table.get(kRobotTip);
+  options.density_kg_per_m3 = table.get(kRobotDensity);
   try {
     RobotModel robot = load_urdf(urdf, options);
     add_input(loaded, urdf);
@@ -121,100 +95,64 @@ RobotModel load_robot(const ConfigTable& table, const std::filesystem::path& urd
     }
     return robot;
   } catch (const RobotOptionError& error) {
-    table.refuse(table.has(error.option()) ? error.option() : "urdf", error.what());
+    table.refuse(table.has(error.option()) ? error.option() : kRobotUrdf.key, error.what());
   }
 }
 
 }  // namespace
 
-std::filesystem::path resolve_named(const ConfigTable& table, std::string_view key,
-                                    std::string_view kind) {
-  const std::string name = table.get_string(key);
+const SettingTable kRobotSettings{.key = "robot",
+                                  .settings = {&kRobotUrdf, &kRobotBase, &kRobotTip, &kRobotDensity,
+                                               &kRobotMassScale, &kRobotPropose}};
+const SettingTable kTrainingSettings{.key = "training", .settings = {&kTrainingCutoff}};
+const SettingTable kMotorSettings{.key = "motors", .settings = {&kMotorsTorquePerMass}};
+
+void name_robot_file(const std::filesystem::path& urdf, const std::function<void()>& call) {
   try {
-    return resolve_config(kind, name, table.file().parent_path());
+    call();
   } catch (const Error& error) {
-    table.refuse(key, error.what());
+    if (error.kind() != ErrorKind::bad_data) {
+      throw;
+    }
+    throw Error(ErrorKind::bad_data, fmt::format("{}: {}", sanitize(urdf.string()), error.what()));
   }
 }
 
-std::vector<std::string> load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
-                                       LoadedProblem& loaded) {
+void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
+                   LoadedProblem& loaded) {
   TrackingConfig config;
   config.name = loaded.name;
   config.summary = loaded.title;
-  const ConfigTable robot = table.get_table("robot");
-  const auto urdf = resolve_named(robot, "urdf", "robots");
-  config.mass_scale = robot.get_number_or("mass_scale", 1, {.lower = 0.01, .upper = 100});
+  const ConfigTable robot = table.get_table(kRobotSettings);
+  const auto urdf = resolve_named(robot, kRobotUrdf, "robots");
+  config.mass_scale = robot.get(kRobotMassScale);
   config.robot = scale_masses(load_robot(robot, urdf, loaded), config.mass_scale);
 
-  const ConfigTable physics = table.get_table_or_empty("physics");
-  ChosenEngines chosen = choose_engines(physics, engines);
-  config.engines = std::move(chosen.engines);
-  const ConfigTable task = table.get_table_or_empty("task");
-  const ConfigTable control = table.get_table_or_empty("control");
-  config.task = read_task(task, physics, control);
+  const ConfigTable physics = table.get_table_or_empty(kPhysicsSettings);
+  config.engines = read_engines(physics, engines);
+  const ConfigTable task = table.get_table_or_empty(kTaskSettings);
+  const ConfigTable control = table.get_table_or_empty(kControlSettings);
+  config.task = read_task(task, control);
+  config.task.physics = read_physics(physics);
   if (!config.task.home.empty() && config.task.home.size() != config.robot.joint_count()) {
-    task.refuse("home", fmt::format("it must hold {} numbers, one a joint of the robot",
-                                    config.robot.joint_count()));
+    task.refuse(kTaskHome, fmt::format("it must hold {} numbers, one a joint of the robot",
+                                       config.robot.joint_count()));
   }
-  config.workspace = read_workspace(table.get_table_or_empty("workspace"));
-  std::vector<std::string> proposed =
-      name_file(urdf, [&] { return read_path_and_proposal(table, config, loaded); });
+  config.workspace = read_workspace(table.get_table_or_empty(kWorkspaceSettings));
+  name_robot_file(urdf, [&] { read_path_and_proposal(table, config, loaded); });
   check_length(task, control, config);
-  config.objective = read_objective(table.get_table_or_empty("objective"));
-  config.cutoff_error_m = table.get_table_or_empty("training")
-                              .get_number_or("cutoff_error_m", config.cutoff_error_m,
-                                             {.lower = kFailureError_m, .upper = 1e6});
+  config.objective = read_objective(table.get_table_or_empty(kObjectiveSettings));
+  config.cutoff_error_m = table.get_table_or_empty(kTrainingSettings).get(kTrainingCutoff);
 
-  const ConfigTable variables = table.get_table("variables");
-  if (variables.get_string("start") == kProposedStart) {
-    config.start = name_file(urdf, [&] { return propose_start(config); });
-  } else {
-    const auto start = resolve_named(variables, "start", "designs");
-    config.start = load_design(start.string()).design;
-    add_input(loaded, start);
-  }
-  config.within_effort_limits = variables.get_bool_or("within_effort_limits", false);
-  config.bounds_factor = variables.get_number_or("bounds_factor", config.bounds_factor,
-                                                 {.lower = 1, .upper = 1e9, .lower_open = true});
-  if (config.start.joints.size() != config.robot.joint_count()) {
-    variables.refuse("start",
-                     fmt::format("that design has {} joints and robot '{}' has {}; designs are "
-                                 "made for one robot: take another robot.urdf, or start from a "
-                                 "design made for this one (variables.start=proposed makes one)",
-                                 config.start.joints.size(), sanitize(config.robot.name),
-                                 config.robot.joint_count()));
-  }
-  apply_controller(control, config);
-  config.parameters = read_parameters(variables, config);
-  const Range factor{.lower = 1, .upper = 100, .lower_open = true};
-  config.length_bounds_factor =
-      variables.get_number_or("length_bounds_factor", config.length_bounds_factor, factor);
-  config.section_bounds_factor =
-      variables.get_number_or("section_bounds_factor", config.section_bounds_factor, factor);
-  config.speed_bounds_factor =
-      variables.get_number_or("speed_bounds_factor", config.speed_bounds_factor, factor);
-  if (changes_speed(config)) {
-    set_start_speed(variables, config);
-  }
-  config.torque_per_mass_n_m_per_kg = table.get_table_or_empty("motors").get_number_or(
-      "torque_per_mass_n_m_per_kg", 0, {.lower = 0, .upper = 1e9});
-  ReadPerturbation perturbation =
-      read_perturbation(table.get_table_or_empty("perturbation"), config.robot.joint_count());
-  config.perturbation = std::move(perturbation.perturbation);
-  if (perturbation.preset) {
-    add_input(loaded, *perturbation.preset);
-  }
-  check_limits(table.get_table_or_empty("objective"), config);
-  config.requirements = read_requirements(table.get_tables_or_empty("requirement"), config);
-  loaded.tracking = make_tracking(std::move(config), variables, urdf);
-  loaded.problem = loaded.tracking;
-  std::vector<std::string> settled = std::move(perturbation.settled);
-  std::ranges::move(proposed, std::back_inserter(settled));
-  if (chosen.simd) {  // what "auto" has come to decides the last bits of every result
-    settled.push_back(fmt::format("physics.simd={}", to_string(*chosen.simd)));
-  }
-  return settled;
+  const ConfigTable variables = table.get_table(kVariableSettings);
+  read_variables(variables, control, urdf, config, loaded);
+  config.torque_per_mass_n_m_per_kg =
+      table.get_table_or_empty(kMotorSettings).get(kMotorsTorquePerMass);
+  config.perturbation = read_perturbation(table.get_table_or_empty(kPerturbationSettings),
+                                          config.robot.joint_count(), loaded);
+  check_limits(table.get_table_or_empty(kObjectiveSettings), config);
+  config.requirements = read_requirements(table.get_tables_or_empty(kRequirementSettings), config);
+  loaded.problem = make_tracking(std::move(config), variables, urdf);
 }
 
 }  // namespace armwright

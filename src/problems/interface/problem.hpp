@@ -1,10 +1,9 @@
-// What every optimization problem looks like to the rest of the program: robots and analytic
-// functions alike.
+// The interface of every optimization problem: robot arms and analytic functions.
 //
-// The work is cut along its unit of cost, the simulated test case: `simulate` takes any mixture of
-// (decision vector, case) pairs in any order, so that threads, ranks or SIMD lanes can share it out
-// freely; `aggregate` makes one evaluation of a candidate's case outcomes. Both are const,
-// thread-safe and pure: a result depends on its own pair only.
+// The unit of cost is the simulated test case. Problem::simulate() takes any mixture of (decision
+// vector, case) pairs in any order, so threads, ranks and SIMD lanes can share the pairs freely.
+// Problem::aggregate() makes one evaluation from the case outcomes of one decision vector. Both
+// functions are const, thread-safe and pure: each result depends on its own input only.
 #pragma once
 
 #include <cstdint>
@@ -18,11 +17,13 @@
 
 namespace armwright {
 
-enum class Scale {
-  linear,
-  logarithmic
-};  // logarithmic: bounds and start have one sign and are not zero
+class TrackingProblem;
 
+// How a variable spans its box. For `logarithmic`, both bounds and the start value have the same
+// sign and none of them is zero.
+enum class Scale { linear, logarithmic };
+
+// One entry of the decision vector.
 struct DecisionVariable {
   std::string name;  // "joint_2.p"
   std::string unit;
@@ -32,59 +33,66 @@ struct DecisionVariable {
   Scale scale = Scale::linear;
 };
 
+// The name and the unit of a number.
 struct Quantity {
   std::string name;
   std::string unit;
 };
 
-// A quantity that shall not exceed a value.
+// A quantity and the value that it shall not exceed.
 struct Limit {
   Quantity quantity;
   double value = 0;  // > 0
 };
 
-// A metric that shall not exceed a limit: always shown and judged (requirement_grade.hpp), and
-// where it is a constraint, one of `limits` too.
+// A metric that shall not exceed a limit. Reports always show and grade it (requirement_grade.hpp).
+// If it is a constraint, ProblemDescription::limits has the same limit.
 struct RequiredMetric {
-  std::size_t metric = 0;  // index into the metrics
-  Limit limit;             // its name in words
+  std::size_t metric = 0;  // index into ProblemDescription::metrics
+  Limit limit;             // limit.quantity.name is in words
   bool is_constraint = false;
 };
 
-// What is fixed about a problem. Objectives are minimised; a constraint g is met where g <= 0.
+// The properties of a problem that never change. Objectives are minimised. A constraint g is met
+// if g <= 0.
 struct ProblemDescription {
   std::string name;
   std::string summary;
   std::vector<DecisionVariable> variables;
   std::vector<Quantity> objectives;  // at least one
   std::vector<Quantity> constraints;
-  // What the constraints stand for, as many as there are: g = quantity / value - 1. Empty: nothing
-  // is known of them but g.
+  // One limit per constraint, with g = quantity / value - 1. Empty if a constraint is known by its
+  // g only.
   std::vector<Limit> limits;
-  // What a violation of 1 is worth in units of calc_scalar(): optimizers that add violations to the
-  // objective multiply them by it, whatever unit the objective has.
+  // The cost of a violation of 1, in the unit of calc_scalar(). Optimizers that add violations to
+  // the objective multiply the violations by it.
   double violation_scale = 1;
-  std::vector<Quantity> metrics;  // of an evaluation, beside the objectives
+  std::vector<Quantity> metrics;  // the further numbers of an evaluation, beside the objectives
   std::vector<RequiredMetric> requirements;
-  std::string cost_unit;              // what one case is: "simulated test case"
-  std::vector<double> known_optimum;  // analytic functions: a minimiser; empty if unknown
-  // Several objectives as one number, where one is needed: the sum of weight times objective. As
-  // many as objectives; empty: the first objective alone.
+  std::string cost_unit;  // the name of one case: "simulated test case"
+  // A case with a larger error counts as failed. Infinity if the error of a case is no failure,
+  // however large it is.
+  double failure_error = std::numeric_limits<double>::infinity();
+  std::vector<double> known_optimum;  // a minimiser of an analytic function; empty if unknown
+  // The weights of calc_scalar(), one per objective. If empty, calc_scalar() returns the first
+  // objective.
   std::vector<double> objective_weights;
-  // Evaluations carry residuals: calc_scalar() of the objectives is the sum of their squares, or
-  // the logarithm of that sum. Otherwise what to do about it, if anything can be done.
+  // True if evaluations have residuals: calc_scalar() of the objectives is the sum of the squared
+  // residuals, or the logarithm of that sum. If false, `residuals_advice` tells the user how to get
+  // residuals; it is empty if there is no way.
   bool has_residuals = false;
   std::string residuals_advice;
-  // The residuals' exact derivatives can be asked for (CaseJob::jacobian); otherwise what to do
-  // about it, if anything can be done.
+  // True if the exact derivatives of the residuals are available (CaseJob::jacobian). If false,
+  // `jacobian_advice` tells the user how to get them; it is empty if there is no way.
   bool has_jacobian = false;
   std::string jacobian_advice;
 };
 
+// The purpose of a set of cases.
 enum class CaseRole : std::uint8_t { training, validation, test };
 
-// Which cases a candidate is evaluated on. In training a problem may cut hopeless cases off; in
-// validation and test it never does.
+// The cases that a decision vector is evaluated on. A problem may end a bad simulation early in
+// training, but never in validation or test.
 struct CaseBlock {
   CaseRole role = CaseRole::training;
   std::string set;  // "train/1"
@@ -92,98 +100,116 @@ struct CaseBlock {
 };
 
 enum class EvaluationStatus : std::uint8_t {
-  ok,           // every case ran to its end (in training: or to its cut-off)
+  ok,           // every case ran to its end or, in training, to its cut-off
   diverged,     // at least one simulation diverged
   unreachable,  // at least one case has a target that the arm cannot reach
   timed_out,
-  failed,     // anything else; the reason says what
-  abandoned,  // at least one case was given up, as its job allowed, or never begun, as the
-              // candidate had lost a race: the numbers are bounds, or of some cases only
+  failed,     // any other failure; the reason describes it
+  abandoned,  // at least one case was ended early because its job allowed that, or was never
+              // started because the candidate had lost a race; the numbers are lower bounds or
+              // cover some of the cases only
 };
 const char* to_string(EvaluationStatus status);
 
+// One decision vector to be simulated on one case. The caller owns `x` and `block`.
 struct CaseJob {
   std::span<const double> x;
   const CaseBlock* block = nullptr;
   std::uint64_t number = 0;
-  bool residuals = false;  // the outcome shall carry them, where the problem has them
-  bool jacobian = false;   // with their derivatives, likewise
-  // A case may be given up as soon as its error is certain to exceed this; outcomes of cases that
-  // are not given up do not depend on it. For callers who have no use for the exact number then.
+  bool residuals = false;  // asks for residuals, if the problem has them
+  bool jacobian = false;   // asks for the derivatives of the residuals, if the problem has them
+  // The simulation may end as soon as the error of the case is certain to exceed this bound. The
+  // outcome of a case that runs to its end does not depend on the bound.
   double abandon_above = std::numeric_limits<double>::infinity();
 };
 
+// The result of one CaseJob.
 struct CaseOutcome {
   EvaluationStatus status = EvaluationStatus::ok;
-  std::string reason;  // for every status but ok
-  double error = 0;    // the case's own error, finite whenever `has_error`; of an abandoned case
-                       // what it is at least, above its job's bound
-  bool has_error =
-      true;  // false: the simulation failed and, outside training, no number stands for it
-  std::vector<double> metrics;    // the problem's own; `aggregate` knows what they mean
-  std::vector<double> residuals;  // what the error is made of, if asked for; never of a case that
-                                  // was abandoned
-  // Their derivatives, if asked for: a row a residual, a column a decision variable, row after row.
+  std::string reason;  // empty if the status is ok
+  // The error of the case, finite if `has_error`. For an abandoned case, a lower bound of the error
+  // that lies above the bound of the job.
+  double error = 0;
+  // False if the simulation failed and no number replaces its error. In training, a problem may
+  // give a failed simulation an error.
+  bool has_error = true;
+  std::vector<double> metrics;  // the layout is private to the problem; `aggregate` reads it
+  // The residuals of the case, if the job asked for them; empty if the case was abandoned.
+  std::vector<double> residuals;
+  // The derivatives of the residuals, if the job asked for them. Row-major: one row per residual,
+  // one column per decision variable.
   std::vector<double> jacobian;
 };
 
-// Of an evaluation with status `abandoned` the objectives and the errors of abandoned cases are
-// lower bounds, the metrics those up to where the cases were abandoned, and there are no residuals.
+// The result of one decision vector on all cases of a block. If the status is `abandoned`, the
+// objectives and the errors of the abandoned cases are lower bounds, the metrics of these cases
+// cover the simulated part only, and there are no residuals.
 struct Evaluation {
   EvaluationStatus status = EvaluationStatus::ok;
   std::string reason;                     // of the first case with that status
-  std::vector<double> objectives;         // finite; empty if no case yielded a number
-  std::vector<double> constraint_values;  // g, one a constraint; finite
-  std::vector<double> case_errors;  // one a case, in the block's order; a case without error: NaN,
-                                    // never shown as a number
-  std::vector<double> metrics;      // as described; finite, or empty with the objectives
-  std::vector<double> residuals;    // if the outcomes carry them
-  std::vector<double> jacobian;     // of the residuals, like an outcome's, if the outcomes have one
-  int failed_cases = 0;             // cases that yielded no error
+  std::vector<double> objectives;         // finite; empty if no case has an error
+  std::vector<double> constraint_values;  // g, one per constraint; finite
+  // One error per case, in the order of the block. NaN for a case without an error; user interfaces
+  // never show it as a number.
+  std::vector<double> case_errors;
+  std::vector<double> metrics;    // as described; finite; empty if the objectives are empty
+  std::vector<double> residuals;  // if the outcomes have them
+  std::vector<double> jacobian;   // of the residuals, laid out as in CaseOutcome
+  int failed_cases = 0;           // the number of cases without an error
 };
 
-// One number for what may be several objectives: their weighted sum.
+// Returns the objectives as one number: the sum of weight times objective. Without weights, returns
+// the first objective.
 double calc_scalar(std::span<const double> weights, std::span<const double> objectives);
 double calc_scalar(const ProblemDescription& problem, std::span<const double> objectives);
-// What that number is.
+// Returns the name and the unit of that number.
 Quantity get_scalar_quantity(std::span<const Quantity> objectives);
 
-// It has objectives, which are no mere bounds, and every constraint is met.
+// Returns true if the evaluation has objectives, is not abandoned, and meets every constraint.
 bool is_feasible(const Evaluation& evaluation);
-// By how much constraints are violated: the sum of max(0, g).
+// Returns the total violation of the constraints: the sum of max(0, g).
 double calc_violation(std::span<const double> constraint_values);
 
+// An optimization problem.
 class Problem {
  public:
   virtual ~Problem() = default;
   virtual const ProblemDescription& description() const = 0;
 
-  // How many jobs one call of simulate() should get where cases of that role are many.
+  // Returns the tracking problem that this problem is or wraps; null for all other problems.
+  virtual const TrackingProblem* tracking() const { return nullptr; }
+
+  // Returns how many jobs one call of simulate() should get if there are many cases of that role.
   virtual BatchSize batch_size(CaseRole /*role*/) const { return {}; }
 
-  // One outcome a job, in the jobs' order. Never throws for what a decision vector does; x lies
-  // within the bounds. Quickest where neighbours share their decision vector or their case.
+  // Returns one outcome per job, in the order of the jobs. Each x must lie within the bounds. A
+  // failed simulation is a status, never an exception. Fastest if neighbouring jobs share their
+  // decision vector or their case.
   virtual std::vector<CaseOutcome> simulate(std::span<const CaseJob> jobs) const = 0;
+  // Returns the evaluation of `x` from the outcomes of all cases of a block, in the block's order.
   virtual Evaluation aggregate(std::span<const double> x,
                                std::span<const CaseOutcome> outcomes) const = 0;
 
-  // What calc_scalar() of the objectives on all `cases` of a block is at least, given the outcomes
-  // of the first of them (or of none). Nothing if the objectives are not known to grow with the
-  // errors of further cases; whether there is a bound does not depend on the outcomes.
+  // Returns a lower bound of calc_scalar() of the objectives on a block of `cases` cases, from the
+  // outcomes of the first cases; `outcomes` may be empty. Returns nothing if the objectives are not
+  // known to grow with the errors of further cases. The values of the outcomes do not decide
+  // whether there is a bound.
   virtual std::optional<double> calc_lower_bound(std::span<const double> /*x*/,
                                                  std::span<const CaseOutcome> /*outcomes*/,
                                                  std::size_t /*cases*/) const {
     return std::nullopt;
   }
 
-  // What an optimizer is told of an evaluation that yielded no objectives: finite and worse than
-  // any design that works.
+  // Returns the objectives that an optimizer gets for an evaluation without objectives: finite, and
+  // worse than those of any design that works.
   virtual std::vector<double> penalty_objectives() const = 0;
 
-  // Gives back what is kept of cases for the next time, which costs time alone. Thread-safe.
+  // Frees the data that the problem caches per case. Later calls compute the data again; results do
+  // not change. Thread-safe.
   virtual void forget_cases() const {}
 
-  // Both steps for one candidate on all cases of a block, residuals included.
+  // Simulates one decision vector on all cases of a block and aggregates the outcomes. Asks for
+  // residuals always, and for their derivatives if `jacobian`.
   Evaluation evaluate(std::span<const double> x, const CaseBlock& block,
                       bool jacobian = false) const;
 };

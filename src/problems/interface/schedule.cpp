@@ -12,9 +12,6 @@
 namespace armwright {
 namespace {
 
-constexpr int kLargestEta = 1000;
-constexpr double kLargestMargin = 1e6;
-
 constexpr std::array kScheduleKinds = {std::pair{"fixed", Schedule::Kind::fixed},
                                        std::pair{"fresh", Schedule::Kind::fresh},
                                        std::pair{"coevolution", Schedule::Kind::coevolution}};
@@ -61,6 +58,14 @@ const char* to_string(Schedule::Kind kind) {
 
 const char* to_string(Racing::Kind kind) {
   return find_name(kRacingKinds, kind);
+}
+
+std::vector<std::string> schedule_kind_names() {
+  return list_names(kScheduleKinds);
+}
+
+std::vector<std::string> racing_kind_names() {
+  return list_names(kRacingKinds);
 }
 
 std::optional<Schedule::Kind> find_schedule_kind(std::string_view name) {
@@ -124,35 +129,6 @@ std::string to_text(const Racing& racing) {
       return fmt::format("abandonment:{}:{}", format_exact(racing.margin), racing.chunk_cases);
   }
   return "none";
-}
-
-Schedule read_schedule_table(const ConfigTable& table) {
-  Schedule schedule;
-  schedule.kind =
-      *find_schedule_kind(table.get_choice("kind", list_names(kScheduleKinds), "fixed"));
-  const bool bred = schedule.kind == Schedule::Kind::coevolution;
-  const int least = bred ? kFewestBredCases : 1;
-  schedule.cases = static_cast<int>(bred ? table.get_integer("cases", least, kMostCases)
-                                         : table.get_integer_or("cases", 1, least, kMostCases));
-  return schedule;
-}
-
-Racing read_racing_table(const ConfigTable& table) {
-  Racing racing;
-  racing.kind =
-      *find_kind(kRacingKinds, table.get_choice("kind", list_names(kRacingKinds), "none"));
-  // Read where they count only: elsewhere they are refused, as they would change nothing.
-  if (racing.kind == Racing::Kind::halving) {
-    racing.first_cases =
-        static_cast<int>(table.get_integer_or("first_cases", racing.first_cases, 1, kMostCases));
-    racing.eta = static_cast<int>(table.get_integer_or("eta", racing.eta, 2, kLargestEta));
-  } else if (racing.kind == Racing::Kind::abandonment) {
-    racing.margin =
-        table.get_number_or("margin", racing.margin, {.lower = 1, .upper = kLargestMargin});
-    racing.chunk_cases =
-        static_cast<int>(table.get_integer_or("chunk_cases", racing.chunk_cases, 1, kMostCases));
-  }
-  return racing;
 }
 
 }  // namespace armwright

@@ -1,5 +1,4 @@
-// What is made once of a test case, however many designs and threads ask, and kept within a memory
-// bound. Value: a type with size_bytes().
+// A cache of values that depend on a test case only, within a memory limit.
 #pragma once
 
 #include <atomic>
@@ -13,25 +12,31 @@
 
 namespace armwright {
 
+// A thread-safe map from test cases to values. Each value is made once and shared by all designs
+// and threads. `Value` must have size_bytes().
 template <class Value>
 class CaseCache {
  public:
   explicit CaseCache(std::size_t limit_bytes) : limit_bytes_(limit_bytes) {}
 
-  // The value of case `number` of the set of that name: the one kept, or what `make` returns.
-  // Thread-safe. Two threads that ask for the same case at the same time make it once; the oldest
-  // values go when the limit is reached (they live on as long as somebody holds them).
+  // Returns the value of case `number` of the set with that name. Calls make() if the cache does
+  // not hold it. If two threads ask for the same case at the same time, one makes the value and the
+  // other waits. Drops the oldest values at the limit, but never the last one; a dropped value
+  // lives as long as a caller holds it. Throws what make() throws.
   template <class Make>
   std::shared_ptr<const Value> get(const std::string& set, std::uint64_t number, const Make& make);
-  void clear();  // thread-safe; values live on as long as somebody holds them
-  std::uint64_t computed() const { return computed_; }  // values made so far
+  // Drops all values. Thread-safe.
+  void clear();
+  // Returns the number of values made so far.
+  std::uint64_t computed() const { return computed_; }
 
  private:
   struct Entry {
-    std::mutex mutex;   // held while the value is made: whoever else asks for it waits
-    bool made = false;  // not std::call_once, which does not agree everywhere with exceptions
+    std::mutex mutex;  // locked while the value is made; other threads wait for it
+    bool made =
+        false;  // replaces std::call_once, which not every platform combines with exceptions
     Value value;
-    bool counted = false;
+    bool counted = false;  // its size is in size_bytes_
   };
   using Key = std::pair<std::string, std::uint64_t>;
 
@@ -69,7 +74,9 @@ std::shared_ptr<const Value> CaseCache<Value>::get(const std::string& set, std::
     const std::lock_guard lock(mutex_);
     if (!entry->counted) {
       entry->counted = true;
-      oldest_first_.push_back(key);  // only now: one that cannot be made must not block the others
+      // The list holds made values only. A case whose value cannot be made must not stop the cache
+      // from dropping others.
+      oldest_first_.push_back(key);
       size_bytes_ += entry->value.size_bytes();
     }
     while (size_bytes_ > limit_bytes_ && oldest_first_.size() > 1) {
@@ -86,7 +93,7 @@ template <class Value>
 void CaseCache<Value>::clear() {
   const std::lock_guard lock(mutex_);
   for (const Key& key : oldest_first_) {
-    entries_.erase(key);  // one that is being made is not in the list, and stays
+    entries_.erase(key);  // a value that is being made is not in the list, so it stays
   }
   oldest_first_.clear();
   size_bytes_ = 0;

@@ -55,9 +55,16 @@ void Plant::change_design(ArmDesign& design) const {
     for (std::size_t k = 0; k < joint.gains.size(); ++k) {
       joint.gains[k] *= gain_factors[i][k];
     }
-    joint.limits.min_n_m *= limit_factors[i];
-    joint.limits.max_n_m *= limit_factors[i];
+    joint.limits.min *= limit_factors[i];
+    joint.limits.max *= limit_factors[i];
   }
+}
+
+std::size_t Plant::size_bytes() const {
+  // An estimate that is rather too large. In each form of the arm, a joint has about fifty numbers,
+  // a name and its factors.
+  constexpr std::size_t kJoint_bytes = 4096;
+  return sizeof *this + mass_factors.size() * kJoint_bytes;
 }
 
 Plant draw_plant(const Perturbation& perturbation, std::size_t joints, double substep_s,
@@ -70,14 +77,13 @@ Plant draw_plant(const Perturbation& perturbation, std::size_t joints, double su
   PlantVariation variation;
   for (std::size_t i = 0; i < joints; ++i) {
     plant.mass_factors.push_back(1 + p.mass_relative * (2 * random.uniform() - 1));
-    variation.viscous_friction_n_m_s_per_rad.push_back(
-        get_size(p.viscous_friction_n_m_s_per_rad, i) * random.uniform());
-    variation.coulomb_friction_n_m.push_back(get_size(p.coulomb_friction_n_m, i) *
-                                             random.uniform());
+    variation.viscous_friction.push_back(get_size(p.viscous_friction_n_m_s_per_rad, i) *
+                                         random.uniform());
+    variation.coulomb_friction.push_back(get_size(p.coulomb_friction_n_m, i) * random.uniform());
     variation.torque_ripple.push_back(p.torque_ripple_relative * random.uniform());
     variation.ripple_phase_rad.push_back(2 * std::numbers::pi * random.uniform());
   }
-  // Normal numbers take as many from the stream as they need, so they come last.
+  // A normal number takes an unknown count of numbers from the stream, so these come last.
   for (std::size_t i = 0; i < joints; ++i) {
     plant.limit_factors.push_back(std::exp(-p.effort_limit_sigma * std::abs(random.normal())));
   }
@@ -92,8 +98,8 @@ Plant draw_plant(const Perturbation& perturbation, std::size_t joints, double su
     plant.load_kg = lower + (upper - lower) * load_share;
   }
   if (p.changes_loop()) {
-    variation.friction_transition_rad_per_s = p.friction_transition_rad_per_s;
-    variation.quantisation_rad = p.quantisation_rad;
+    variation.friction_transition_rate = p.friction_transition_rad_per_s;
+    variation.quantum = p.quantisation_rad;
     variation.delay_substeps = static_cast<int>(std::lround(p.delay_s * delay_share / substep_s));
     variation.ripple_cycles_per_turn = p.ripple_cycles_per_turn;
     plant.variation = std::move(variation);

@@ -1,19 +1,19 @@
-// Plants that differ from the one that a design was made for, drawn like test cases: the table
-// [perturbation] of a problem. Plant k of a set of cases is a pure function of (name of the plants'
-// set, name of the cases' set, k); it depends on nothing else, and each of its numbers comes from
-// its own place in the stream, so that switching one kind on leaves the others as they were.
+// Plants that differ from the nominal one, drawn per test case: the table [perturbation] of a
+// problem. Plant k of a set of cases is a pure function of (name of the plants' set, name of the
+// cases' set, k). Each of its numbers has a fixed place in the random stream, so switching one kind
+// of perturbation on does not change the others.
 //
 // With U uniform in [0, 1), N standard normal, each drawn anew for every number:
 //   mass_relative x        each moving link's mass and inertia tensor times 1 + x (2 U - 1)
-//   load_kg [l, u]         the load is l + (u - l) U, instead of the task's
-//   viscous, coulomb       of each joint b = B U, c = C U (sim/plant_variation.hpp)
+//   load_kg [l, u]         the load is l + (u - l) U and replaces the task's
+//   viscous, coulomb       of each joint b = B U, c = C U (sim/tracking/plant_variation.hpp)
 //   quantisation_rad       the same in every plant
 //   delay_s d              d U, rounded to whole plant substeps
 //   torque_ripple r        of each joint a = r U, its phase 2 pi U
 //   effort_limit_sigma s   both effort limits of each joint times exp(-s |N|)
 //   gain_sigma s           each gain times exp(s N)
-// Inverse kinematics and targets are those of the nominal arm; torque that is counted is that of
-// the design's own limits.
+// Inverse kinematics and targets are those of the nominal arm. The total torque counts the effort
+// limits of the unperturbed design.
 #pragma once
 
 #include <cstdint>
@@ -24,18 +24,23 @@
 #include <vector>
 
 #include "problems/interface/problem.hpp"
+#include "sim/tracking/design.hpp"
 #include "sim/tracking/plant_variation.hpp"
-#include "sim/tracking/tracking.hpp"
+#include "sim/tracking/task.hpp"
+#include "sim/tracking/tracking_setup.hpp"
 
 namespace armwright {
 
+// The ranges and spreads that plants are drawn from.
 struct Perturbation {
+  // The roles of the cases that have perturbed plants; `judging` is validation and test.
   enum class Where { training, judging, everywhere };
   std::string set = "plant/1";
   Where where = Where::everywhere;
   double mass_relative = 0;
-  std::optional<std::pair<double, double>> load_kg;  // nothing: the task's own
-  std::vector<double> viscous_friction_n_m_s_per_rad, coulomb_friction_n_m;  // empty: none
+  std::optional<std::pair<double, double>> load_kg;  // nothing: the task's load
+  // One number per joint; empty: no friction.
+  std::vector<double> viscous_friction_n_m_s_per_rad, coulomb_friction_n_m;
   double friction_transition_rad_per_s = 0.05;
   double quantisation_rad = 0;
   double delay_s = 0;
@@ -45,32 +50,41 @@ struct Perturbation {
   double gain_sigma = 0;
 
   bool operator==(const Perturbation&) const = default;
+  // Returns true if cases of that role have perturbed plants.
   bool applies_to(CaseRole role) const;
-  bool changes_arm() const { return mass_relative > 0 || load_kg; }
-  bool changes_loop() const;  // anything of PlantVariation
+  bool changes_arm() const { return mass_relative > 0 || load_kg; }  // masses or load
+  bool changes_loop() const;                                         // a part of PlantVariation
   bool changes_design() const { return effort_limit_sigma > 0 || gain_sigma > 0; }
   bool changes_anything() const { return changes_arm() || changes_loop() || changes_design(); }
 };
 
-// One plant.
+// One perturbed plant.
 struct Plant {
-  std::vector<double> mass_factors;  // one a moving link
-  std::optional<double> load_kg;
-  std::vector<double> limit_factors;              // one a joint
-  std::vector<std::vector<double>> gain_factors;  // of each joint, kMostGains of them
+  std::vector<double> mass_factors;               // one per moving link
+  std::optional<double> load_kg;                  // nothing: the task's load
+  std::vector<double> limit_factors;              // one per joint
+  std::vector<std::vector<double>> gain_factors;  // kMostGains per joint
   std::optional<PlantVariation> variation;
+  // The problem's own arm and task with this plant's masses and load. Nothing if both are nominal.
+  // TrackingInputs sets it.
+  std::optional<TrackingSetup> setup;
 
-  static constexpr std::size_t kMostGains = 16;  // of one joint
+  static constexpr std::size_t kMostGains = 16;  // per joint
 
-  // The arm without its load, and the task with the plant's.
+  // Returns the arm with this plant's masses; neither arm has its load.
   RobotModel make_arm(RobotModel nominal) const;
+  // Returns the task with this plant's load.
   TrackingTask make_task(TrackingTask nominal) const;
-  // What the controllers of this plant turn a design into; linear, so that it holds for changes of
-  // a design as well. std::logic_error for more than kMostGains gains.
+  // Changes a design's gains and effort limits into those that this plant has. The change is
+  // linear, so it is right for directions in the design space too. Throws std::logic_error if a
+  // joint has more than kMostGains gains.
   void change_design(ArmDesign& design) const;
+  // Returns the memory that the plant takes, rounded up generously.
+  std::size_t size_bytes() const;
 };
 
-// The lists of friction are empty or have one number a joint.
+// Returns plant `number` for the cases of `case_set`, without `setup`. `substep_s` is the length of
+// a plant substep.
 Plant draw_plant(const Perturbation& perturbation, std::size_t joints, double substep_s,
                  std::string_view case_set, std::uint64_t number);
 

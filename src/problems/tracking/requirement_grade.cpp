@@ -5,6 +5,9 @@
 namespace armwright {
 namespace {
 
+// The largest ratio r that is graded as met.
+constexpr double kMostMet = 0.9;
+
 RequirementGrade calc_grade(std::optional<double> ratio, bool complete) {
   if (ratio && *ratio > 1) {
     return RequirementGrade::missed;
@@ -12,7 +15,7 @@ RequirementGrade calc_grade(std::optional<double> ratio, bool complete) {
   if (!ratio || !complete) {
     return RequirementGrade::unknown;
   }
-  return *ratio > kMargin ? RequirementGrade::tight : RequirementGrade::met;
+  return *ratio > kMostMet ? RequirementGrade::tight : RequirementGrade::met;
 }
 
 }  // namespace

@@ -1,11 +1,12 @@
-// The traffic lights: whether what is required is met, and which limit binds.
+// The grades of requirements: whether each limit is kept, and which limit binds.
 //
 // With r = value / limit, as in the constraint g = r - 1:
-//   met      green    r <= kMargin
-//   tight    yellow   kMargin < r <= 1: met, but within 10 % of the limit
+//   met      green    r <= 0.9
+//   tight    yellow   0.9 < r <= 1: met, but within 10 % of the limit
 //   missed   red      r > 1
-//   unknown  grey     no value, or r <= 1 and a case has no number: that one could be the worst
-// The limit with the largest r of all that have a value binds.
+//   unknown  grey     no value; or r <= 1 while a case has no error, because that case could be the
+//                     worst
+// The requirement with the largest r binds; requirements without a value do not take part.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +22,7 @@ enum class RequirementGrade : std::uint8_t { met, tight, missed, unknown };
 const char* to_string(RequirementGrade grade);  // "met", ...
 const char* get_light(RequirementGrade grade);  // "green", ...
 
-inline constexpr double kMargin = 0.9;
-
+// A requirement with its value and its grade.
 struct JudgedRequirement {
   RequiredMetric requirement;
   std::optional<double> value;
@@ -31,11 +31,12 @@ struct JudgedRequirement {
   bool binds = false;
 };
 
-// One value a requirement; `complete`: no case is without a number.
+// Grades the requirements. `values` has one value per requirement. `complete` says that every case
+// has an error.
 std::vector<JudgedRequirement> judge_requirements(std::span<const RequiredMetric> requirements,
                                                   std::span<const std::optional<double>> values,
                                                   bool complete);
-// The same of an evaluation's metrics.
+// Grades the requirements with the metrics of an evaluation.
 std::vector<JudgedRequirement> judge_requirements(std::span<const RequiredMetric> requirements,
                                                   const Evaluation& evaluation);
 

@@ -1,52 +1,100 @@
-// All that a tracking problem is made of, as a problem's file says it.
+// The parts of a tracking problem as its file gives them, and what follows from them: the decision
+// variables with their bounds, and the names and units of objectives, constraints and metrics.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "problems/tracking/engine_choice.hpp"
+#include "problems/interface/problem.hpp"
 #include "problems/tracking/perturbation.hpp"
 #include "problems/tracking/requirement.hpp"
 #include "problems/tracking/tracking_objective.hpp"
-#include "sim/tracking/tracking.hpp"
+#include "sim/tracking/design.hpp"
+#include "sim/tracking/physics_engine.hpp"
+#include "sim/tracking/task.hpp"
+#include "sim/tracking/test_case.hpp"
 
 namespace armwright {
 
-// One number of the design that is optimized.
-struct DesignParameter {
-  enum class Kind { gain, effort_min, effort_max, length_scale, section_scale, speed };
-  std::size_t joint = 0;  // not of the speed
-  Kind kind = Kind::gain;
-  std::size_t gain = 0;  // which one, for a gain
+// The engines of a problem. Training may use another engine, or another precision, than validation,
+// test and every evaluation of a given design.
+struct EnginePair {
+  std::shared_ptr<const PhysicsEngine> training;
+  std::shared_ptr<const PhysicsEngine> judging;  // may be the same
+  std::string training_name;
+  std::string judging_name;
+
+  const PhysicsEngine& get(CaseRole role) const {
+    return role == CaseRole::training ? *training : *judging;
+  }
 };
 
-// What variables.start says where the design is to be made from the robot
-// (problems/robot_proposal.hpp), and what commands call a problem's start whatever it is.
+// A number of the design that is a decision variable.
+struct DesignParameter {
+  enum class Kind { gain, effort_min, effort_max, length_scale, section_scale, speed };
+  std::size_t joint = 0;  // unused for the speed
+  Kind kind = Kind::gain;
+  std::size_t gain = 0;  // for a gain: its index among the controller's gains
+};
+
+// The value of variables.start that asks for a start made from the robot
+// (problems/config/robot_proposal.hpp).
 inline constexpr const char* kProposedStart = "proposed";
+// The name that commands use for a problem's start, whatever it was made from.
 inline constexpr const char* kStartDesign = "start";
 
 struct TrackingConfig {
   std::string name;
   std::string summary;
   RobotModel robot;
-  double mass_scale = 1;  // what its masses were multiplied by when it was loaded
+  double mass_scale = 1;  // the factor that all masses were multiplied by when the robot was loaded
   TrackingTask task;
   WorkspaceSphere workspace;
-  std::optional<TestCase> path;  // in place of cases generated in the workspace
-  EnginePair engines;            // both must be there (choose_engines)
+  std::optional<TestCase> path;  // replaces the cases that are generated in the workspace
+  EnginePair engines;            // both must be set
   double cutoff_error_m = 1.0;   // training only
   TrackingObjective objective;
   Perturbation perturbation;
   ArmDesign start;
   std::vector<DesignParameter> parameters;
   double bounds_factor = 100;
-  bool within_effort_limits = false;  // variables end at the limits of the robot's joints
+  bool within_effort_limits = false;  // limits the bounds of efforts to the robot's effort limits
   double length_bounds_factor = 1.5;
   double section_bounds_factor = 2;
   double speed_bounds_factor = 2;
-  double torque_per_mass_n_m_per_kg = 0;  // of the motors; 0: they weigh nothing
+  double torque_per_mass_n_m_per_kg = 0;  // of the motors; 0: motors have no mass
   std::vector<Requirement> requirements;
 };
+
+// Returns the number of a design that a parameter stands for. For the speed, the design must have a
+// speed of its own.
+double& get_parameter(ArmDesign& design, const DesignParameter& parameter);
+
+// Returns true for the two effort limits.
+bool is_effort(const DesignParameter& parameter);
+// Returns the parameter's factor: its bounds are the start value divided by it and times it.
+double get_bounds_factor(const TrackingConfig& config, const DesignParameter& parameter);
+
+// Return true if a decision variable changes the links or the speed.
+bool changes_links(const TrackingConfig& config);
+bool changes_speed(const TrackingConfig& config);
+
+// Returns the distance (m) that the tip moves to each point of a case. Empty for a continuous path,
+// which has no moves.
+std::vector<double> list_moves_m(const TrackingConfig& config);
+// Returns the duration (s) of a case under `task`. The rounding of each move to whole control
+// periods is not included.
+double calc_case_duration_s(const TrackingConfig& config, const TrackingTask& task);
+
+// Return true if evaluations have the metrics "duration" and "moving_mass". Other problems do not
+// have them, so that their records stay the same.
+bool has_duration_metric(const TrackingConfig& config);
+bool has_mass_metric(const TrackingConfig& config);
+
+// Throws Error{usage} if a variable has no bounds because it starts at 0, starts beyond the joint's
+// effort limit, or spans more than floating-point numbers can hold.
+ProblemDescription make_tracking_description(const TrackingConfig& config);
 
 }  // namespace armwright

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <type_traits>
 #include <utility>
 
 #include "base/error.hpp"
@@ -10,17 +11,28 @@
 namespace armwright {
 namespace {
 
-// Some 4000 cases of the thesis's task: above what a run comes back to, and little enough for many
-// problems in one process.
+// About 4000 cases of the thesis's task. This is more than a run uses repeatedly, and small enough
+// for many problems in one process.
 constexpr std::size_t kTargetCache_bytes = std::size_t{128} << 20;
+constexpr std::size_t kPlantCache_bytes = std::size_t{64} << 20;
+
+// Removes the visuals, which simulations do not use.
+RobotModel strip_visuals(RobotModel robot) {
+  robot.base.visuals.clear();
+  for (Link& link : robot.links) {
+    link.visuals.clear();
+  }
+  return robot;
+}
 
 }  // namespace
 
 TrackingInputs::TrackingInputs(const TrackingConfig& config)
     : config_(config),
       setup_(std::make_shared<TrackingSetup>(config.robot, config.task)),
+      plant_robot_(strip_visuals(config.robot)),
       targets_(kTargetCache_bytes),
-      plants_(config.perturbation, config.robot, config.task) {}
+      plants_(kPlantCache_bytes) {}
 
 void TrackingInputs::forget_cases() const {
   targets_.clear();
@@ -42,7 +54,7 @@ std::shared_ptr<const TrackingSetup> TrackingInputs::get_setup(const ArmDesign& 
   return std::make_shared<TrackingSetup>(make_robot(design), make_task(design));
 }
 
-// Motors move no target, but efforts in advance are those of the arm with them.
+// The mass of motors does not change the targets, but it changes the feed-forward efforts.
 bool TrackingInputs::has_own_targets(const ArmDesign& design) const {
   return is_stretched(design) || design.speed_m_per_s ||
          (config_.torque_per_mass_n_m_per_kg > 0 && config_.task.feed_forward != FeedForward::none);
@@ -58,53 +70,70 @@ void TrackingInputs::check_points(const TargetTable& table, const TestSet& set,
   }
 }
 
-TrackingInputs::OfCase TrackingInputs::prepare(CaseRole role, const TestSet& set,
-                                               std::uint64_t number) const {
-  auto targets = targets_.get(*setup_, set, number);
-  check_points(*targets, set, number);
-  return {set, number, std::move(targets), plants_.get(role, set.name(), number)};
+Plant TrackingInputs::make_plant(const TestSet& set, std::uint64_t number) const {
+  const TrackingTask& task = config_.task;
+  Plant plant = draw_plant(config_.perturbation, plant_robot_.joint_count(),
+                           task.control_period_s / task.physics.substeps, set.name(), number);
+  if (config_.perturbation.changes_arm()) {
+    plant.setup.emplace(plant.make_arm(plant_robot_), plant.make_task(task));
+  }
+  return plant;
 }
 
-TrackingJob TrackingInputs::make_job(const OfDesign& of_design, const OfCase& of_case,
-                                     Kept& kept) const {
-  const ArmDesign& design = *of_design.design;
-  const TrackingSetup& setup = *of_design.setup;
-  const bool is_nominal = of_design.setup == setup_;
+TrackingInputs::PreparedCase TrackingInputs::prepare_case(CaseRole role, const TestSet& set,
+                                                          std::uint64_t number) const {
+  auto targets =
+      targets_.get(set.name(), number, [&] { return setup_->make_targets(set.make_case(number)); });
+  check_points(*targets, set, number);
+  PreparedCase prepared{set, number, std::move(targets), nullptr};
+  if (config_.perturbation.applies_to(role)) {
+    prepared.plant = plants_.get(set.name(), number, [&] { return make_plant(set, number); });
+  }
+  return prepared;
+}
+
+TrackingJob TrackingInputs::make_job(const ArmDesign& design, const TrackingSetup& setup,
+                                     const PreparedCase& prepared,
+                                     std::vector<std::shared_ptr<const void>>& owned) const {
+  // Moves an object to the heap, appends it to `owned` and returns it.
+  const auto own = [&](auto&& object) {
+    auto kept = std::make_shared<const std::remove_cvref_t<decltype(object)>>(
+        std::forward<decltype(object)>(object));
+    owned.push_back(kept);
+    return kept.get();
+  };
+  const bool is_nominal = &setup == setup_.get();
   TrackingJob job;
   job.design = &design;
-  job.targets = of_case.targets.get();
+  job.targets = prepared.targets.get();
   job.setup = is_nominal ? nullptr : &setup;
   if (!is_nominal && has_own_targets(design)) {
-    kept.targets.push_back(std::make_shared<const TargetTable>(
-        setup.make_targets(of_case.set.make_case(of_case.number))));
-    job.targets = kept.targets.back().get();
+    job.targets = own(setup.make_targets(prepared.set.make_case(prepared.number)));
   }
-  if (of_case.plant == nullptr) {
+  if (prepared.plant == nullptr) {
     return job;
   }
-  const Plant& plant = of_case.plant->plant;
+  const Plant& plant = *prepared.plant;
   job.variation = plant.variation ? &*plant.variation : nullptr;
-  if (of_case.plant->setup) {
-    job.setup = &*of_case.plant->setup;
-    if (!is_nominal) {
-      kept.setups.push_back(std::make_shared<const TrackingSetup>(
-          plant.make_arm(make_robot(design)), plant.make_task(make_task(design))));
-      job.setup = kept.setups.back().get();
-    }
+  if (plant.setup) {
+    job.setup = is_nominal ? &*plant.setup
+                           : own(TrackingSetup(plant.make_arm(make_robot(design)),
+                                               plant.make_task(make_task(design))));
   }
   if (config_.perturbation.changes_design()) {
-    plant.change_design(kept.designs.emplace_back(design));
-    job.design = &kept.designs.back();
+    ArmDesign changed = design;
+    plant.change_design(changed);
+    job.design = own(std::move(changed));
   }
   return job;
 }
 
-std::vector<ArmDesign> TrackingInputs::change_directions(
-    const OfCase& of_case, std::span<const ArmDesign> directions) const {
+std::vector<ArmDesign> TrackingInputs::perturb_directions(
+    const PreparedCase& prepared, std::span<const ArmDesign> directions) const {
   std::vector<ArmDesign> changed(directions.begin(), directions.end());
-  if (of_case.plant != nullptr && config_.perturbation.changes_design()) {
+  if (prepared.plant != nullptr && config_.perturbation.changes_design()) {
     for (ArmDesign& direction : changed) {
-      of_case.plant->plant.change_design(direction);
+      prepared.plant->change_design(direction);
     }
   }
   return changed;

@@ -36,7 +36,7 @@ double calc_cvar(std::span<const double> errors_m, double share) {
   return sum / counted;
 }
 
-// The parts of a sum without unit.
+// Returns the sum of the terms without unit.
 double calc_sum(const TrackingObjective& objective, const ObjectiveTerms& terms) {
   double sum = terms.error_m / objective.error_scale_m;
   if (objective.has_torque()) {
@@ -51,7 +51,7 @@ double calc_sum(const TrackingObjective& objective, const ObjectiveTerms& terms)
   return sum;
 }
 
-// "error, torque and energy".
+// Returns the name of the sum: "error, torque and energy".
 std::string describe_sum(const TrackingObjective& objective) {
   std::vector<std::string> parts = {describe_error(objective)};
   if (objective.has_torque()) {
@@ -135,7 +135,7 @@ double calc_error_statistic(const TrackingObjective& objective, std::span<const 
 
 std::vector<double> calc_objectives(const TrackingObjective& objective,
                                     const ObjectiveTerms& terms) {
-  // No arm comes near it: keeps the logarithm finite whatever happens.
+  // Far below the value of any arm; it keeps the logarithm finite.
   constexpr double kLeast = 1e-300;
   const auto apply_scale = [&](double value) {
     return objective.logarithm ? std::log(std::max(value, kLeast)) : value;
@@ -174,7 +174,7 @@ std::vector<double> calc_constraints(const TrackingObjective& objective,
 std::vector<double> calc_residuals(const TrackingObjective& objective, const ArmDesign& design,
                                    const ObjectiveTerms& terms,
                                    std::span<const CaseOutcome> outcomes, double cases) {
-  // error_vs_torque's are those of its weighted sum.
+  // The residuals of error_vs_torque are those of its weighted sum.
   const bool has_scale = objective.is_sum() || objective.kind == Kind::error_vs_torque;
   std::vector<double> residuals;
   for (const CaseOutcome& outcome : outcomes) {
@@ -186,7 +186,7 @@ std::vector<double> calc_residuals(const TrackingObjective& objective, const Arm
   }
   if (objective.has_torque()) {
     for (const JointDrive& joint : design.joints) {
-      residuals.push_back(std::sqrt(objective.torque_weight * calc_largest_torque_n_m(joint) /
+      residuals.push_back(std::sqrt(objective.torque_weight * calc_largest_effort(joint) /
                                     objective.torque_scale_n_m));
     }
   }
@@ -207,7 +207,7 @@ std::vector<double> calc_jacobian(const TrackingObjective& objective, const ArmD
                                   std::span<const double> residuals) {
   std::vector<double> jacobian;
   const std::size_t n = directions.size();
-  // A residual r = sqrt(c v) of a value v: dr = r / (2 v) dv.
+  // For a residual r = sqrt(c v) of a value v: dr = r / (2 v) dv.
   const auto calc_share = [](double residual, double value) {
     return value > 0 ? residual / (2 * value) : 0;
   };
@@ -217,7 +217,7 @@ std::vector<double> calc_jacobian(const TrackingObjective& objective, const ArmD
       continue;
     }
     if (outcome.jacobian.empty()) {
-      return {};  // not asked for
+      return {};  // the jobs did not ask for derivatives
     }
     for (std::size_t k = 0; k < outcome.residuals.size(); ++k, ++row) {
       const double share = calc_share(residuals[row], outcome.residuals[k]);
@@ -229,14 +229,13 @@ std::vector<double> calc_jacobian(const TrackingObjective& objective, const ArmD
   const std::size_t drives = objective.has_torque() ? design.joints.size() : 0;
   for (std::size_t joint = 0; joint < drives; ++joint, ++row) {
     const EffortLimits& limits = design.joints[joint].limits;
-    const double share = calc_share(residuals[row], calc_largest_torque_n_m(design.joints[joint]));
+    const double share = calc_share(residuals[row], calc_largest_effort(design.joints[joint]));
     for (const ArmDesign& direction : directions) {
       const EffortLimits& change = direction.joints[joint].limits;
-      jacobian.push_back(share *
-                         (-limits.min_n_m < limits.max_n_m ? change.max_n_m : -change.min_n_m));
+      jacobian.push_back(share * (-limits.min < limits.max ? change.max : -change.min));
     }
   }
-  jacobian.resize(residuals.size() * n, 0.0);  // a case takes as long whatever the gains
+  jacobian.resize(residuals.size() * n, 0.0);  // the duration does not depend on the gains
   return jacobian;
 }
 

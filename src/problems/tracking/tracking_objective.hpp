@@ -1,19 +1,19 @@
-// What an evaluation of the tracking problem is judged by: the arithmetic that makes objectives,
-// constraints and residuals of what was simulated.
+// The objectives of the tracking problem: the arithmetic that turns simulated cases into
+// objectives, constraints and residuals.
 //
 // The error e (m) is a statistic of the cases' positional errors e_1, ..., e_L:
 //   mean                their mean
-//   worst               the largest
-//   cvar                the mean of the worst share s of them, the conditional value at risk
-//                       (Rockafellar and Uryasev 2000, Optimization of conditional value-at-risk):
-//                       sorted from the worst on, the first k = floor(s L) count whole, the next
-//                       one s L - k, and the sum is divided by s L. s = 1 is the mean, s = 1/L the
-//                       worst, and e is continuous in s and in every e_l.
+//   worst               the largest of them
+//   cvar                the conditional value at risk, the mean of their worst share s
+//                       (Rockafellar and Uryasev 2000, Optimization of conditional value-at-risk).
+//                       Sorted from the worst on, the first k = floor(s L) errors count whole, the
+//                       next one counts s L - k, and the sum is divided by s L. s = 1 is the mean
+//                       and s = 1/L the worst. e is continuous in s and in every e_l.
 //   mean_with_failures  their mean + failure_penalty_m times the share of the cases in which the
-//                       arm lost its target: e_l above kFailureError_m, or diverged, or without
-//                       any number
-// Cases without a number (validation and test only) count nowhere else. None of these falls where
-// an e_l rises: of lower bounds of the e_l they make a lower bound of e.
+//                       arm lost its target: e_l is above kFailureError_m, or the case diverged or
+//                       has no error
+// Cases without an error (validation and test only) count nowhere else. No statistic falls if an
+// e_l rises, so lower bounds of the e_l give a lower bound of e.
 //
 // Objectives:
 //   error              e (m)
@@ -22,20 +22,24 @@
 //   error_vs_torque    e (m) and tau (N m) as two objectives; as one number, error_and_torque
 //   torque_with_error_limit  tau (N m) where e <= e_max
 //   error_with_torque_limit  e (m) where tau <= tau_max
-// To the first two, w_E E / E_0 + w_T T / T_0 can be added, E the mean over the cases of the
-// joints' positive mechanical work (J), T that of their durations (s); `error` then is e / e_0 and
-// that. All but error_vs_torque also as their natural logarithm: the same minimiser, but steps of
-// equal ratio count alike, which wrapped local methods like.
+// The first two can have the further terms w_E E / E_0 + w_T T / T_0. E is the mean over the cases
+// of the joints' positive mechanical work (J), T the mean of the cases' durations (s). With them,
+// `error` is e / e_0 plus these terms. Every objective but error_vs_torque can be replaced by its
+// natural logarithm: it has the same minimiser, and steps of equal ratio count alike, which suits
+// local methods from libraries.
 //
-// A limit is one constraint, g = e / e_max - 1 or tau / tau_max - 1, in the logarithm's problem
-// too. e counts a training case that was cut off or diverged as the objectives do: 1 m for each
-// point from there on. Where no case has a number there is no g either.
+// A limit is one constraint, g = e / e_max - 1 or tau / tau_max - 1, for logarithms too. In e, each
+// point of a training case from its cut-off or divergence on counts as the cut-off error (1 m by
+// default), as in the objectives. If no case has an error, there is no g.
 //
-// Residuals, of the statistic `mean` and the kinds without a limit: sqrt(e_kl / (K_l L)) of each
-// point k that counts, K_l of them, in each of L cases l, divided by sqrt(e_0) where the objective
-// is a sum of parts without unit; then sqrt(w tau_j / tau_0) of each joint j where it has torque,
-// sqrt(w_E E / E_0) and sqrt(w_T T / T_0) where they have a weight. The sum of their squares is the
-// objective before the logarithm.
+// Residuals exist for the statistic `mean` and the objectives without a limit. They are, in order:
+//   sqrt(e_kl / (K_l L))      for each counted point k of each case l, with K_l counted points and
+//                             L cases; e_kl is divided by e_0 first if the objective is a sum of
+//                             terms without unit
+//   sqrt(w tau_j / tau_0)     for each joint j, if the objective has torque
+//   sqrt(w_E E / E_0)         if w_E > 0
+//   sqrt(w_T T / T_0)         if w_T > 0
+// The sum of their squares is the objective before the logarithm.
 #pragma once
 
 #include <span>
@@ -43,13 +47,14 @@
 #include <vector>
 
 #include "problems/interface/problem.hpp"
-#include "sim/tracking/tracking.hpp"
+#include "sim/tracking/design.hpp"
 
 namespace armwright {
 
-// A case whose error exceeds this counts as failed in every summary (the arm lost its target).
+// A case with a larger error counts as failed: the arm lost its target.
 inline constexpr double kFailureError_m = 0.1;
 
+// The choice of objective, and its parameters.
 struct TrackingObjective {
   enum class Kind {
     error,
@@ -61,27 +66,27 @@ struct TrackingObjective {
   enum class Statistic { mean, worst, cvar, mean_with_failures };
 
   Kind kind = Kind::error;
-  bool logarithm = false;             // not of error_vs_torque
+  bool logarithm = false;             // never for error_vs_torque
   double torque_weight = 0;           // w
-  double error_scale_m = 0.0058;      // e_0: the thesis's Q1 winner
-  double torque_scale_n_m = 963686;   // tau_0: the same
-  double error_limit_m = 0;           // e_max, of torque_with_error_limit
-  double total_torque_limit_n_m = 0;  // tau_max, of error_with_torque_limit
+  double error_scale_m = 0.0058;      // e_0: of the thesis's Q1 winner
+  double torque_scale_n_m = 963686;   // tau_0: of the same winner
+  double error_limit_m = 0;           // e_max of torque_with_error_limit
+  double total_torque_limit_n_m = 0;  // tau_max of error_with_torque_limit
   Statistic statistic = Statistic::mean;
   double cvar_share = 0.1;       // s, 0 < s <= 1
-  double failure_penalty_m = 1;  // what a case costs in which the arm lost its target
-  double energy_weight = 0;      // w_E, of error and error_and_torque
+  double failure_penalty_m = 1;  // the cost of a case in which the arm lost its target
+  double energy_weight = 0;      // w_E, for error and error_and_torque
   double energy_scale_j = 1;     // E_0
-  double duration_weight = 0;    // w_T, of the same
+  double duration_weight = 0;    // w_T, for the same objectives
   double duration_scale_s = 1;   // T_0
 
   bool has_torque() const { return kind != Kind::error && kind != Kind::error_with_torque_limit; }
-  // One number made of parts without unit.
+  // Returns true if the objective is one number, a sum of terms without unit.
   bool is_sum() const;
   bool has_residuals() const;
 };
 
-// What objectives are made of.
+// The numbers of an evaluation that objectives and constraints are computed from.
 struct ObjectiveTerms {
   double error_m = 0;     // e
   double torque_n_m = 0;  // tau
@@ -89,27 +94,29 @@ struct ObjectiveTerms {
   double duration_s = 0;  // T
 };
 
-// "error", "worst error", "error of the worst 10 %", "error with failures".
+// Returns the name of e: "error", "worst error", "error of the worst 10 %" or
+// "error with failures".
 std::string describe_error(const TrackingObjective& objective);
-// Names and units, in the order of calc_objectives().
+// Returns the names and units of the objectives, in the order of calc_objectives().
 std::vector<Quantity> describe_objectives(const TrackingObjective& objective);
 
-// e of the errors of the cases that have one; there must be one. `lost_share` of all the cases
-// count as failures.
+// Returns e from the errors of the cases that have one; there must be at least one. `lost_share` is
+// the share of all cases in which the arm lost its target.
 double calc_error_statistic(const TrackingObjective& objective, std::span<const double> errors_m,
                             double lost_share);
 std::vector<double> calc_objectives(const TrackingObjective& objective,
                                     const ObjectiveTerms& terms);
 std::vector<double> calc_constraints(const TrackingObjective& objective,
                                      const ObjectiveTerms& terms);
-// Of outcomes whose residuals are the errors (m) of the points that count; `cases` is how many of
-// the outcomes have an error.
+// Returns the residuals. The residuals of the outcomes must be the errors (m) of the counted
+// points. `cases` is the number of outcomes that have an error.
 std::vector<double> calc_residuals(const TrackingObjective& objective, const ArmDesign& design,
                                    const ObjectiveTerms& terms,
                                    std::span<const CaseOutcome> outcomes, double cases);
-// The derivatives of calc_residuals()'s `residuals` along `directions` of the design, which change
-// neither the arm nor the task; empty if the outcomes carry none. Not of objectives with energy,
-// whose derivatives nobody computes.
+// Returns the derivatives of `residuals`, which calc_residuals() returned, along `directions` of
+// the design: one row per residual, one column per direction. Empty if the outcomes have no
+// derivatives. The directions must change neither the arm nor the task. The objective must have no
+// energy term, because its derivatives are not available.
 std::vector<double> calc_jacobian(const TrackingObjective& objective, const ArmDesign& design,
                                   std::span<const ArmDesign> directions,
                                   std::span<const CaseOutcome> outcomes,

@@ -13,18 +13,14 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "problems/tracking/tracking_description.hpp"
 #include "sim/tracking/designed_arm.hpp"
 
 namespace armwright {
 namespace {
 
-// What simulate() puts into a case's metrics before the peaks and root-mean-squares of the joints'
-// efforts. The duration is that of the whole case, wherever its simulation ended.
-enum CaseMetric : std::size_t { kEnergy, kSaturation, kDuration, kFirstJointMetric };
-
-// The residuals of an outcome are the errors (m) of the points that count; aggregate() scales them.
-// `own_targets`: the job's are those of its design alone.
+// Returns the outcome of a simulated job, without the requirements' metrics. Its residuals are the
+// errors (m) of the counted points; aggregate() scales them. `own_targets` says that the targets of
+// the job are those of its design, not the nominal ones.
 CaseOutcome make_outcome(TrackingResult result, const TrackingTask& task, CaseRole role,
                          const TrackingJob& job, bool own_targets, bool residuals) {
   const TargetTable& targets = *job.targets;
@@ -32,17 +28,16 @@ CaseOutcome make_outcome(TrackingResult result, const TrackingTask& task, CaseRo
   outcome.reason = std::move(result.reason);
   switch (result.status) {
     case SimulationStatus::ok:
-    case SimulationStatus::cut_off:  // an ordinary, bad result of training: the error counts as the
-                                     // limit from there on
+    case SimulationStatus::cut_off:  // a valid, bad result of training
       break;
     case SimulationStatus::diverged:
       outcome.status = EvaluationStatus::diverged;
-      // In training it counts like a cut-off; nowhere else does a number stand for it.
+      // In training it counts like a cut-off. Elsewhere it has no error.
       outcome.has_error = role == CaseRole::training;
       break;
     case SimulationStatus::abandoned:
       outcome.status = EvaluationStatus::abandoned;
-      residuals = false;  // those of some points only would be a vector of another length
+      residuals = false;  // the vector would be shorter, as points are missing
       break;
     case SimulationStatus::unreachable:
       outcome.status = EvaluationStatus::unreachable;
@@ -50,12 +45,12 @@ CaseOutcome make_outcome(TrackingResult result, const TrackingTask& task, CaseRo
         outcome.has_error = false;
         return outcome;
       }
-      // The design's own doing: were the case left out, an arm that reaches the easy ones only
-      // would be the best.
+      // The design caused it. If the case did not count, the best arm would be one that reaches the
+      // easy cases only.
       result.mean_error_m = job.cutoff_m;
       result.point_error_m.assign(targets.segments.size(), job.cutoff_m);
-      result.peak_effort_n_m.assign(targets.joints, 0);
-      result.rms_effort_n_m.assign(targets.joints, 0);
+      result.peak_effort.assign(targets.joints, 0);
+      result.rms_effort.assign(targets.joints, 0);
       result.saturated_share.assign(targets.joints, 0);
       break;
   }
@@ -64,21 +59,23 @@ CaseOutcome make_outcome(TrackingResult result, const TrackingTask& task, CaseRo
     outcome.residuals.assign(result.point_error_m.begin() + (task.count_first_point ? 0 : 1),
                              result.point_error_m.end());
   }
-  const double joints = static_cast<double>(result.saturated_share.size());
+  const std::size_t joints = result.peak_effort.size();
   double saturation = 0;
   for (const double share : result.saturated_share) {
-    saturation += share / joints;
+    saturation += share / static_cast<double>(result.saturated_share.size());
   }
-  outcome.metrics.reserve(kFirstJointMetric + 2 * result.peak_effort_n_m.size());
-  outcome.metrics.assign({result.energy_j, saturation, targets.steps * task.control_period_s});
-  for (std::size_t i = 0; i < result.peak_effort_n_m.size(); ++i) {
-    outcome.metrics.push_back(result.peak_effort_n_m[i]);
-    outcome.metrics.push_back(result.rms_effort_n_m[i]);
+  outcome.metrics.resize(case_metrics::first_requirement(joints));
+  outcome.metrics[case_metrics::kEnergy] = result.energy_j;
+  outcome.metrics[case_metrics::kSaturatedShare] = saturation;
+  outcome.metrics[case_metrics::kDuration] = targets.steps * task.control_period_s;
+  for (std::size_t i = 0; i < joints; ++i) {
+    outcome.metrics[case_metrics::peak_effort(i)] = result.peak_effort[i];
+    outcome.metrics[case_metrics::rms_effort(i)] = result.rms_effort[i];
   }
   return outcome;
 }
 
-// Of every parameter: a design that is 1 there and 0 elsewhere.
+// Returns one design per parameter: the parameter is 1, all other numbers are 0.
 std::vector<ArmDesign> make_directions(const TrackingConfig& config) {
   ArmDesign zero = config.start;
   for (JointDrive& joint : zero.joints) {
@@ -104,7 +101,7 @@ TrackingProblem::TrackingProblem(TrackingConfig config)
   check_design(config_.start);
   description_ = make_tracking_description(config_);
   check_bounds();
-  set_jacobian();
+  describe_jacobian();
   directions_ = make_directions(config_);
 }
 
@@ -112,8 +109,8 @@ void TrackingProblem::check_bounds() const {
   if (!changes_links(config_)) {
     return;
   }
-  // Each variable at either end, the others at the start: links are stretched independently of each
-  // other, so that what one of them does not allow shows there.
+  // Tests each variable at either bound, with the others at the start. Links are stretched
+  // independently of each other, so this finds every link that cannot be stretched that far.
   for (const DesignParameter& parameter : config_.parameters) {
     const double factor = get_bounds_factor(config_, parameter);
     for (const double scale : {1 / factor, factor}) {
@@ -124,23 +121,24 @@ void TrackingProblem::check_bounds() const {
   }
 }
 
-void TrackingProblem::set_jacobian() {
+void TrackingProblem::describe_jacobian() {
   std::string& advice = description_.jacobian_advice;
   if (config_.objective.energy_weight > 0) {
     advice = "the energy in the objective has no derivatives; set objective.energy_weight to 0";
   } else if (changes_links(config_) || changes_speed(config_)) {
     advice =
-        "there are none to variables that change the arm or the task; leave length_scale, "
+        "variables that change the arm or the task have no derivatives; leave length_scale, "
         "section_scale and speed out of [variables]";
   } else if (config_.torque_per_mass_n_m_per_kg > 0 &&
              std::ranges::any_of(config_.parameters, is_effort)) {
     advice =
-        "there are none to the masses of motors; leave [motors] out, or effort_min and effort_max "
+        "the masses of motors have no derivatives; leave [motors] out, or effort_min and "
+        "effort_max "
         "out of [variables]";
   } else if (config_.perturbation.applies_to(CaseRole::training) &&
              config_.perturbation.changes_loop()) {
     advice =
-        "there are none under friction, quantisation, delay or torque ripple in training; leave "
+        "friction, quantisation, delay and torque ripple in training have no derivatives; leave "
         "these out of [perturbation] or set apply_to to judging";
   } else if (!config_.engines.training->has_derivatives()) {
     advice =
@@ -163,8 +161,8 @@ void TrackingProblem::check_design(const ArmDesign& design) const {
   if (controller.feed_forward != FeedForward::none &&
       controller.feed_forward != config_.task.feed_forward) {
     throw Error(ErrorKind::usage,
-                fmt::format("the design is for controller '{}', whose efforts in advance problem "
-                            "{} does not make; set control.controller to '{}'",
+                fmt::format("the design is for controller '{}', whose feed-forward efforts "
+                            "problem {} does not compute; set control.controller to '{}'",
                             controller.name, config_.name, controller.name));
   }
 }
@@ -178,7 +176,7 @@ TestSet TrackingProblem::get_set(const std::string& name) const {
   if (found != sets_.end()) {
     return found->second;
   }
-  if (name.starts_with("file:")) {  // any other name generates cases, but never those of the file
+  if (name.starts_with("file:")) {  // a generated set must not replace the cases of a file
     throw Error(ErrorKind::usage,
                 fmt::format("problem {} has no test cases named {}; load the file they came from",
                             config_.name, sanitize(name)));
@@ -220,18 +218,18 @@ BatchSize TrackingProblem::batch_size(CaseRole role) const {
 }
 
 std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs) const {
-  // By where the decision vector lies. Nothing is taken from the maps before the simulation ends.
+  // The engine's jobs point into `candidates`, `cases` and `owned` until the simulation ends.
   struct Candidate {
     ArmDesign design;
-    TrackingInputs::OfDesign inputs;
+    std::shared_ptr<const TrackingSetup> setup;
   };
-  std::unordered_map<const double*, Candidate> candidates;
-  // An engine with SIMD needs some 60 us for a job: sets, tables and plants are looked up once for
-  // all neighbours that share a block.
+  std::unordered_map<const double*, Candidate> candidates;  // by the address of the decision vector
+  // An engine with SIMD needs only about 60 us per job. So sets, tables and plants are looked up
+  // once for all neighbouring jobs that share a block.
   std::optional<TestSet> set;
-  std::deque<std::unordered_map<std::uint64_t, TrackingInputs::OfCase>> cases;
-  std::vector<const TrackingInputs::OfCase*> case_of_job;
-  TrackingInputs::Kept kept;
+  std::deque<std::unordered_map<std::uint64_t, TrackingInputs::PreparedCase>> cases;
+  std::vector<const TrackingInputs::PreparedCase*> case_of_job;
+  std::vector<std::shared_ptr<const void>> owned;
   std::vector<TrackingJob> tracking;
   tracking.reserve(jobs.size());
   for (std::size_t i = 0; i < jobs.size(); ++i) {
@@ -239,7 +237,7 @@ std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs
     const auto [candidate, is_new] = candidates.try_emplace(job.x.data());
     if (is_new) {
       candidate->second.design = make_design(job.x);
-      candidate->second.inputs = inputs_.prepare(candidate->second.design);
+      candidate->second.setup = inputs_.get_setup(candidate->second.design);
     }
     if (i == 0 || job.block != jobs[i - 1].block) {
       set = get_set(job.block->set);
@@ -248,20 +246,20 @@ std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs
     auto its_case = cases.back().find(job.number);
     if (its_case == cases.back().end()) {
       its_case = cases.back()
-                     .emplace(job.number, inputs_.prepare(job.block->role, *set, job.number))
+                     .emplace(job.number, inputs_.prepare_case(job.block->role, *set, job.number))
                      .first;
       check_moves(config_.requirements, config_.task, *its_case->second.targets, set->name(),
                   job.number);
     }
     case_of_job.push_back(&its_case->second);
-    TrackingJob& one =
-        tracking.emplace_back(inputs_.make_job(candidate->second.inputs, its_case->second, kept));
+    TrackingJob& one = tracking.emplace_back(inputs_.make_job(
+        candidate->second.design, *candidate->second.setup, its_case->second, owned));
     one.abandon_above_m = job.abandon_above;
     if (job.block->role == CaseRole::training) {
       one.cutoff_m = config_.cutoff_error_m;
     }
   }
-  auto results = simulate(jobs, tracking);
+  auto results = run_engines(jobs, tracking);
   std::vector<CaseOutcome> outcomes;
   outcomes.reserve(jobs.size());
   for (std::size_t i = 0; i < jobs.size(); ++i) {
@@ -278,7 +276,7 @@ std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs
     if (jobs[i].jacobian && engine.has_derivatives() && tracking[i].variation == nullptr &&
         !outcomes[i].residuals.empty()) {
       outcomes[i].jacobian = engine.calc_derivatives(
-          inputs_.setup(), tracking[i], inputs_.change_directions(*case_of_job[i], directions_));
+          inputs_.setup(), tracking[i], inputs_.perturb_directions(*case_of_job[i], directions_));
       const std::size_t counted = outcomes[i].residuals.size() * directions_.size();
       outcomes[i].jacobian.erase(outcomes[i].jacobian.begin(),
                                  outcomes[i].jacobian.end() - static_cast<std::ptrdiff_t>(counted));
@@ -287,8 +285,8 @@ std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs
   return outcomes;
 }
 
-std::vector<MeasuredCase> TrackingProblem::simulate(std::span<const CaseJob> jobs,
-                                                    std::span<const TrackingJob> tracking) const {
+std::vector<MeasuredCase> TrackingProblem::run_engines(
+    std::span<const CaseJob> jobs, std::span<const TrackingJob> tracking) const {
   std::vector<MeasuredCase> results;
   results.reserve(jobs.size());
   for (std::size_t first = 0; first < jobs.size();) {
@@ -329,13 +327,13 @@ std::vector<MeasuredCase> TrackingProblem::simulate_judged(
     const ArmDesign& design, const TestSet& set, std::uint64_t first, std::size_t count,
     RecordingOptions recording, std::span<const Requirement> requirements) const {
   check_design(design);
-  const TrackingInputs::OfDesign of_design = inputs_.prepare(design);
-  std::deque<TrackingInputs::OfCase> cases;
-  TrackingInputs::Kept kept;
+  const auto design_setup = inputs_.get_setup(design);
+  std::deque<TrackingInputs::PreparedCase> cases;
+  std::vector<std::shared_ptr<const void>> owned;
   std::vector<TrackingJob> jobs;
   for (std::size_t i = 0; i < count; ++i) {
-    cases.push_back(inputs_.prepare(CaseRole::test, set, first + i));
-    jobs.push_back(inputs_.make_job(of_design, cases.back(), kept));
+    cases.push_back(inputs_.prepare_case(CaseRole::test, set, first + i));
+    jobs.push_back(inputs_.make_job(design, *design_setup, cases.back(), owned));
     jobs.back().recording = recording;
   }
   return simulate_measured(*config_.engines.judging, inputs_.setup(), jobs, requirements);
@@ -345,12 +343,16 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
                                       std::span<const CaseOutcome> outcomes) const {
   Evaluation evaluation;
   const std::size_t joints = config_.robot.joint_count();
-  std::vector<double> sums(kFirstJointMetric + 2 * joints);
+  double energy_sum_j = 0;
+  double saturation_sum = 0;
+  double duration_sum_s = 0;
+  std::vector<double> peak_efforts(joints);
+  std::vector<double> rms_effort_sums(joints);
   double failures = 0;
-  double lost = 0;  // failures, and what diverged on its last points only
+  double lost = 0;  // failures, and cases with a small error that diverged on their last points
   std::vector<double> errors_m;
   for (const CaseOutcome& outcome : outcomes) {
-    // That the numbers are bounds matters more than why others are missing.
+    // The status `abandoned` replaces any other, because it says that the numbers are bounds.
     const bool is_first_abandoned = outcome.status == EvaluationStatus::abandoned &&
                                     evaluation.status != EvaluationStatus::abandoned;
     if (is_first_abandoned ||
@@ -370,12 +372,12 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
     const bool failed = outcome.error > kFailureError_m;
     failures += failed ? 1 : 0;
     lost += failed || outcome.status == EvaluationStatus::diverged ? 1 : 0;
-    sums[kDuration] += outcome.metrics[kDuration];
-    sums[kEnergy] += outcome.metrics[kEnergy];
-    sums[kSaturation] += outcome.metrics[kSaturation];
-    for (std::size_t i = kFirstJointMetric; i < sums.size(); i += 2) {
-      sums[i] = std::max(sums[i], outcome.metrics[i]);
-      sums[i + 1] += outcome.metrics[i + 1];
+    duration_sum_s += outcome.metrics[case_metrics::kDuration];
+    energy_sum_j += outcome.metrics[case_metrics::kEnergy];
+    saturation_sum += outcome.metrics[case_metrics::kSaturatedShare];
+    for (std::size_t i = 0; i < joints; ++i) {
+      peak_efforts[i] = std::max(peak_efforts[i], outcome.metrics[case_metrics::peak_effort(i)]);
+      rms_effort_sums[i] += outcome.metrics[case_metrics::rms_effort(i)];
     }
   }
   if (errors_m.empty()) {
@@ -388,14 +390,15 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
   ObjectiveTerms terms;
   terms.error_m =
       calc_error_statistic(objective, errors_m, lost / static_cast<double>(outcomes.size()));
-  terms.torque_n_m = calc_total_torque_n_m(design);
-  terms.energy_j = sums[kEnergy] / numbers;
-  terms.duration_s = sums[kDuration] / numbers;
+  terms.torque_n_m = calc_total_effort(design);
+  terms.energy_j = energy_sum_j / numbers;
+  terms.duration_s = duration_sum_s / numbers;
   evaluation.objectives = calc_objectives(objective, terms);
   evaluation.constraint_values = calc_constraints(objective, terms);
-  const auto required = calc_worst_required(outcomes, config_.requirements.size());
+  const auto required = calc_worst_required(outcomes, case_metrics::first_requirement(joints),
+                                            config_.requirements.size());
   append_constraints(config_.requirements, required, evaluation.constraint_values);
-  // Asked for and not abandoned: a case with an error has a residual for each point that counts.
+  // A case with an error has residuals if they were asked for and the case was not abandoned.
   const bool has_residuals =
       description_.has_residuals && std::ranges::all_of(outcomes, [](const CaseOutcome& outcome) {
         return !outcome.has_error || !outcome.residuals.empty();
@@ -406,16 +409,16 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
         calc_jacobian(objective, design, directions_, outcomes, evaluation.residuals);
   }
   evaluation.metrics = {mean_error, terms.torque_n_m, failures, terms.energy_j,
-                        sums[kSaturation] / numbers};
+                        saturation_sum / numbers};
   if (has_duration_metric(config_)) {
     evaluation.metrics.push_back(terms.duration_s);
   }
   if (has_mass_metric(config_)) {
     evaluation.metrics.push_back(calc_moving_mass_kg(make_robot(design)) + config_.task.load_kg);
   }
-  for (std::size_t i = kFirstJointMetric; i < sums.size(); i += 2) {
-    evaluation.metrics.push_back(sums[i]);
-    evaluation.metrics.push_back(sums[i + 1] / numbers);
+  for (std::size_t i = 0; i < joints; ++i) {
+    evaluation.metrics.push_back(peak_efforts[i]);
+    evaluation.metrics.push_back(rms_effort_sums[i] / numbers);
   }
   evaluation.metrics.insert(evaluation.metrics.end(), required.begin(), required.end());
   return evaluation;
@@ -427,11 +430,12 @@ std::optional<double> TrackingProblem::calc_lower_bound(std::span<const double> 
   if (description_.objectives.size() > 1 || !description_.constraints.empty()) {
     return std::nullopt;
   }
-  // Errors and what efforts cost are never negative: no objective is smaller with a further case
-  // than with one that is perfect and costs nothing.
+  // Errors and costs are never negative. So no further case makes an objective smaller than a
+  // perfect case without any cost does.
   CaseOutcome perfect;
   perfect.metrics.assign(
-      kFirstJointMetric + 2 * config_.robot.joint_count() + config_.requirements.size(), 0.0);
+      case_metrics::first_requirement(config_.robot.joint_count()) + config_.requirements.size(),
+      0.0);
   std::vector<CaseOutcome> all(cases, perfect);
   std::ranges::copy(outcomes, all.begin());
   const Evaluation evaluation = aggregate(x, all);
@@ -440,9 +444,9 @@ std::optional<double> TrackingProblem::calc_lower_bound(std::span<const double> 
 }
 
 std::vector<double> TrackingProblem::penalty_objectives() const {
-  // Ten times the error of a design that is cut off at once on every case, and as much torque as
-  // the box allows; where torque alone is minimised, ten times that. As much energy as this torque
-  // has after a turn of every joint on every move.
+  // The error is ten times that of a design that is cut off at the first point of every case. The
+  // torque is the most that the bounds allow, or ten times that if only torque is minimised. The
+  // energy is that of this torque over one turn of every joint per move.
   const TrackingObjective& objective = config_.objective;
   ArmDesign strongest = config_.start;
   for (const DesignParameter& parameter : config_.parameters) {
@@ -454,7 +458,7 @@ std::vector<double> TrackingProblem::penalty_objectives() const {
   if (changes_speed(config_)) {
     slowest.speed_m_per_s /= config_.speed_bounds_factor;
   }
-  const double torque_n_m = calc_total_torque_n_m(strongest);
+  const double torque_n_m = calc_total_effort(strongest);
   const bool is_torque = objective.kind == TrackingObjective::Kind::torque_with_error_limit;
   ObjectiveTerms terms;
   terms.error_m = 10 * config_.cutoff_error_m;

@@ -1,11 +1,14 @@
-// The thesis's problem: tune the controllers and effort limits of an arm so that its tip follows a
-// moving target; what it is judged by is in tracking_objective.hpp. Decision variables: any of the
-// controllers' gains and effort limits of any joints, in natural units, bounded by a factor around
-// the start values, sign kept, or by a range to either side where the gain has one (GainSpec); and
-// of how long and wide links are, and of the task's speed. What is not a variable keeps its start
-// value. Where a design or its motors change the arm or the task (sim/designed_arm.hpp), it is
-// simulated with a setup of its own, and its targets are its own where they differ. A training case
-// of which such an arm cannot reach a target counts as if it had been cut off at once.
+// The problem of the thesis: tune the controllers and effort limits of an arm so that its tip
+// follows a moving target. tracking_objective.hpp has the objectives.
+//
+// Decision variables: any of the controllers' gains and effort limits of any joints in natural
+// units, the lengths and widths of links, and the task's speed. A variable is bounded by a factor
+// around its start value, with the same sign, or by a range to either side if the gain has one
+// (controllers::Gain). A number that is not a variable keeps its start value.
+//
+// If a design or its motors change the arm or the task (sim/tracking/designed_arm.hpp), the design
+// is simulated with its own setup and, where they differ, its own targets. If such an arm cannot
+// reach a target of a training case, the case counts as cut off at its first point.
 #pragma once
 
 #include <map>
@@ -16,21 +19,44 @@
 #include <vector>
 
 #include "problems/interface/problem.hpp"
-#include "problems/tracking/requirement_meter.hpp"
 #include "problems/tracking/tracking_config.hpp"
 #include "problems/tracking/tracking_inputs.hpp"
 
 namespace armwright {
 
+// The layout of CaseOutcome::metrics: the index of each number of a case. The case executor sends
+// the numbers in this order.
+namespace case_metrics {
+
+inline constexpr std::size_t kEnergy = 0;          // J
+inline constexpr std::size_t kSaturatedShare = 1;  // the mean over the joints
+inline constexpr std::size_t kDuration = 2;        // s, of the whole case, even if it ended early
+inline constexpr std::size_t kFirstJoint = 3;
+inline constexpr std::size_t kPerJoint = 2;
+constexpr std::size_t peak_effort(std::size_t joint) {  // N m, or N for a joint that slides
+  return kFirstJoint + kPerJoint * joint;
+}
+constexpr std::size_t rms_effort(std::size_t joint) {  // the root mean square, in the same unit
+  return peak_effort(joint) + 1;
+}
+// The first of the requirements' metrics, one per requirement.
+constexpr std::size_t first_requirement(std::size_t joints) {
+  return peak_effort(joints);
+}
+
+}  // namespace case_metrics
+
+// The tracking problem. All const functions are thread-safe.
 class TrackingProblem final : public Problem {
  public:
-  // Error{usage} if the design is for another robot or a variable has no bounds; Error{bad_data} if
-  // the robot does not suit the task.
+  // Throws Error{usage} if the start is for another robot or a variable has no bounds, and
+  // Error{bad_data} if the robot does not suit the task.
   explicit TrackingProblem(TrackingConfig config);
   TrackingProblem(const TrackingProblem&) = delete;
   TrackingProblem& operator=(const TrackingProblem&) = delete;
 
   const ProblemDescription& description() const override { return description_; }
+  const TrackingProblem* tracking() const override { return this; }
   BatchSize batch_size(CaseRole role) const override;
   void forget_cases() const override { inputs_.forget_cases(); }
   std::vector<CaseOutcome> simulate(std::span<const CaseJob> jobs) const override;
@@ -41,31 +67,37 @@ class TrackingProblem final : public Problem {
                                          std::size_t cases) const override;
   std::vector<double> penalty_objectives() const override;
 
-  // Makes a finite set (a file of test cases) available under its name. Before the first evaluation
-  // only.
+  // Makes a set from a file of test cases available under its name. Must be called before the first
+  // evaluation.
   void add_set(const TestSet& set);
-  // A set that was added, or the generated one of that name. Error{usage} for the name of a file
-  // that was not.
+  // Returns the added set of that name or, without one, the generated set. Throws Error{usage} for
+  // the name of a file's set that was not added.
   TestSet get_set(const std::string& name) const;
 
+  // Returns the design that a decision vector stands for.
   ArmDesign make_design(std::span<const double> x) const;
-  std::vector<double> make_vector(
-      const ArmDesign& design) const;  // the variables of a design; bounds are not checked
-  // A design on one case, as it is judged: without cut-off, with whatever recording is asked for.
-  // Error{usage} if the design is for another robot, Error{bad_data} if the case has no point that
-  // counts.
+  // Returns the decision vector of a design; it may lie outside the bounds. Throws Error{usage} if
+  // the design is for another robot or another controller.
+  std::vector<double> make_vector(const ArmDesign& design) const;
+  // Throws Error{usage} if the design is for another robot, or for a controller whose feed-forward
+  // efforts this problem does not compute.
+  void check_design(const ArmDesign& design) const;
+
+  // Simulates a design on one case as in validation and test: with the judging engine and without
+  // cut-off. Throws Error{bad_data} if no point of the case counts, and Error{usage} as
+  // check_design().
   TrackingResult track(const ArmDesign& design, const TestSet& set, std::uint64_t number,
                        RecordingOptions recording = {}) const;
-  // The same on the cases first, ..., first + count - 1, in one batch.
+  // Simulates the cases first, ..., first + count - 1 likewise, in one batch.
   std::vector<TrackingResult> track(const ArmDesign& design, const TestSet& set,
                                     std::uint64_t first, std::size_t count,
                                     RecordingOptions recording) const;
-  // The same with what is required of them.
+  // Simulates them likewise and measures the problem's requirements.
   std::vector<MeasuredCase> measure(const ArmDesign& design, const TestSet& set,
                                     std::uint64_t first, std::size_t count) const;
-  void check_design(const ArmDesign& design) const;
-  // The arm of a design without its load, its task, and both ready to be simulated; the problem's
-  // own where the design changes nothing.
+
+  // Return the arm of a design without its load, its task, and the setup of both. They are the
+  // problem's own if the design changes neither.
   RobotModel make_robot(const ArmDesign& design) const { return inputs_.make_robot(design); }
   TrackingTask make_task(const ArmDesign& design) const { return inputs_.make_task(design); }
   std::shared_ptr<const TrackingSetup> get_setup(const ArmDesign& design) const {
@@ -74,24 +106,25 @@ class TrackingProblem final : public Problem {
 
   const TrackingConfig& config() const { return config_; }
   const TrackingSetup& setup() const { return inputs_.setup(); }  // of the nominal arm and task
-  const TargetCache& targets() const { return inputs_.targets(); }
+  const CaseCache<TargetTable>& targets() const { return inputs_.targets(); }
 
  private:
-  // One result a job of `tracking`, each from the engine of its case's role.
-  std::vector<MeasuredCase> simulate(std::span<const CaseJob> jobs,
-                                     std::span<const TrackingJob> tracking) const;
-  // Cases first, ..., first + count - 1, as they are judged.
+  // Simulates `tracking`, the engines' jobs of `jobs`. The role of each case chooses its engine.
+  // Returns one measured case per job.
+  std::vector<MeasuredCase> run_engines(std::span<const CaseJob> jobs,
+                                        std::span<const TrackingJob> tracking) const;
+  // Simulates the cases first, ..., first + count - 1 with the judging engine, without cut-off.
   std::vector<MeasuredCase> simulate_judged(const ArmDesign& design, const TestSet& set,
                                             std::uint64_t first, std::size_t count,
                                             RecordingOptions recording,
                                             std::span<const Requirement> requirements) const;
-  void check_bounds() const;  // that every design within them is an arm
-  void set_jacobian();
+  void check_bounds() const;  // throws if a design within the bounds is no arm
+  void describe_jacobian();
 
   TrackingConfig config_;
-  TrackingInputs inputs_;  // refers to the configuration
+  TrackingInputs inputs_;  // refers to config_
   ProblemDescription description_;
-  std::vector<ArmDesign> directions_;  // how the design changes with each variable
+  std::vector<ArmDesign> directions_;  // per variable, the derivative of the design
   std::map<std::string, TestSet> sets_;
 };
 

@@ -15,6 +15,7 @@
 #include "report/deliverables/html_table.hpp"
 #include "report/formats/html_text.hpp"
 #include "sim/tracking/designed_arm.hpp"
+#include "sim/tracking/reference_signal.hpp"
 
 namespace armwright {
 namespace {
@@ -151,7 +152,7 @@ std::string make_results(const FinishedArm& arm) {
       "work of all joints, clamped the share of control periods that ask for more effort than the "
       "limits allow: means over the cases. Total torque, the sum of each joint's larger limit: "
       "{:.6g} {}.</p>\n",
-      kMillimetresPerMetre * get_failure_error(result), calc_total_torque_n_m(arm.design),
+      kMillimetresPerMetre * get_failure_error(result), calc_total_effort(arm.design),
       escape_html(list_units(arm.config().robot, "N m")));
   return html;
 }
@@ -225,9 +226,9 @@ std::string make_joints(const FinishedArm& arm) {
         [&](std::size_t i) { return fmt::format("{:.6g}", drive(i).gains[k]); });
   }
   add(label_with_unit(robot, "lowest effort", "N m"),
-      [&](std::size_t i) { return fmt::format("{:.6g}", drive(i).limits.min_n_m); });
+      [&](std::size_t i) { return fmt::format("{:.6g}", drive(i).limits.min); });
   add(label_with_unit(robot, "highest effort", "N m"),
-      [&](std::size_t i) { return fmt::format("{:.6g}", drive(i).limits.max_n_m); });
+      [&](std::size_t i) { return fmt::format("{:.6g}", drive(i).limits.max); });
   for (const auto& [label, metric] :
        {std::pair{"peak used", "peak_effort"}, std::pair{"RMS used", "rms_effort"}}) {
     add(label_with_unit(robot, label, "N m"), [&, name = metric](std::size_t i) {

@@ -106,9 +106,9 @@ void write_urdf(const FinishedArm& arm, const fs::path& folder) {
   for (std::size_t i = 0; i < arm.design.joints.size(); ++i) {
     const Joint& joint = arm.config().robot.joints[i];
     const JointDrive& drive = arm.design.joints[i];
-    efforts.push_back({joint.name, calc_largest_torque_n_m(drive)});
-    comment += fmt::format("  {}: {} to {} {}\n", joint.name, format_exact(drive.limits.min_n_m),
-                           format_exact(drive.limits.max_n_m), get_joint_unit("N m", joint.kind));
+    efforts.push_back({joint.name, calc_largest_effort(drive)});
+    comment += fmt::format("  {}: {} to {} {}\n", joint.name, format_exact(drive.limits.min),
+                           format_exact(drive.limits.max), get_joint_unit("N m", joint.kind));
   }
   comment += "Everything else is as it was; meshes with relative names are looked for beside it.";
   write_output_file(folder / file.filename(),

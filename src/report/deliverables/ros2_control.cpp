@@ -57,12 +57,11 @@ void check_pid(const Ros2ControlInput& input) {
   }
   for (std::size_t i = 0; i < input.robot.joint_count(); ++i) {
     const EffortLimits& limits = input.design.joints[i].limits;
-    if (!(limits.min_n_m < limits.max_n_m)) {
-      throw Error(
-          ErrorKind::usage,
-          fmt::format("{}: the effort limits are {} to {}, which allow no effort; ROS 2 "
-                      "wants a lower limit below the upper one",
-                      sanitize(input.robot.joints[i].name), limits.min_n_m, limits.max_n_m));
+    if (!(limits.min < limits.max)) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("{}: the effort limits are {} to {}, which allow no effort; ROS 2 "
+                              "wants a lower limit below the upper one",
+                              sanitize(input.robot.joints[i].name), limits.min, limits.max));
     }
   }
 }
@@ -115,10 +114,10 @@ std::string make_joint_gains(const Joint& joint, const JointDrive& drive,
   const bool slides = joint.kind == JointKind::prismatic;
   const auto unit = [&](const char* of_turning) { return get_joint_unit(of_turning, joint.kind); };
   const EffortLimits& limits = drive.limits;
-  std::string text = fmt::format(
-      "      {}:  # {}: p in {}, i in {}, d in {}; effort {:.6g} to {:.6g} {}\n",
-      quote_yaml(joint.name), slides ? "slides" : "turns", unit("N m/rad"), unit("N m/(rad s)"),
-      unit("N m s/rad"), limits.min_n_m, limits.max_n_m, unit("N m"));
+  std::string text =
+      fmt::format("      {}:  # {}: p in {}, i in {}, d in {}; effort {:.6g} to {:.6g} {}\n",
+                  quote_yaml(joint.name), slides ? "slides" : "turns", unit("N m/rad"),
+                  unit("N m/(rad s)"), unit("N m s/rad"), limits.min, limits.max, unit("N m"));
   const auto add = [&](const char* key, double value) {
     text += fmt::format("        {}: {}\n", key, format_yaml(value));
   };
@@ -126,14 +125,14 @@ std::string make_joint_gains(const Joint& joint, const JointDrive& drive,
   add("i", drive.gains[1]);
   add("d", drive.gains[2]);
   if (distribution.symmetric_integral) {
-    add("i_clamp", calc_largest_torque_n_m(drive));
+    add("i_clamp", calc_largest_effort(drive));
   } else {
-    add("i_clamp_max", limits.max_n_m);
-    add("i_clamp_min", limits.min_n_m);
+    add("i_clamp_max", limits.max);
+    add("i_clamp_min", limits.min);
   }
   if (distribution.clamps_output) {
-    add("u_clamp_max", limits.max_n_m);
-    add("u_clamp_min", limits.min_n_m);
+    add("u_clamp_max", limits.max);
+    add("u_clamp_min", limits.min);
     text += "        antiwindup_strategy: \"conditional_integration\"\n";
   }
   add("ff_velocity_scale", 0);

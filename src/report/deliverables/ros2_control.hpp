@@ -20,7 +20,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/tracking/tracking.hpp"
+#include "sim/tracking/design.hpp"
 
 namespace armwright {
 

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "base/text.hpp"
-#include "problems/tracking/tracking_description.hpp"
+#include "problems/tracking/tracking_config.hpp"
 #include "report/evidence/distance_response.hpp"
 #include "report/evidence/page_json.hpp"
 #include "report/evidence/signals.hpp"
@@ -108,7 +108,7 @@ json make_result_rows(const std::vector<ShownDesign>& designs) {
                     {"worst_m", finite_or_null(summary.worst)},
                     {"failures", summary.failures},
                     {"cases", summary.cases},
-                    {"total_torque_n_m", calc_total_torque_n_m(design.named.design)},
+                    {"total_torque_n_m", calc_total_effort(design.named.design)},
                     {"published_mean_m", finite_or_null(design.published_mean_m)},
                     {"published_torque_n_m", finite_or_null(design.published_torque_n_m)},
                     {"where", design.where}});

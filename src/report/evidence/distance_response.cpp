@@ -1,6 +1,6 @@
 #include "report/evidence/distance_response.hpp"
 
-#include "problems/tracking/tracking_description.hpp"
+#include "problems/tracking/tracking_config.hpp"
 #include "report/evidence/page_json.hpp"
 
 namespace armwright {

@@ -30,7 +30,7 @@ void append(std::vector<float>& all, std::span<const double> values) {
 // recorded may be no number already.
 bool is_drawable(const TrajectorySample& sample) {
   const auto fits = [](double value) { return std::isfinite(static_cast<float>(value)); };
-  return std::ranges::all_of(sample.q_rad, fits) && std::ranges::all_of(sample.effort_n_m, fits) &&
+  return std::ranges::all_of(sample.q, fits) && std::ranges::all_of(sample.effort, fits) &&
          fits((sample.tip_m - sample.target_m).norm());
 }
 
@@ -41,8 +41,8 @@ json make_motion(const std::string& design, const TrackingResult& result) {
     if (!is_drawable(sample)) {
       break;
     }
-    append(q, sample.q_rad);
-    append(effort, sample.effort_n_m);
+    append(q, sample.q);
+    append(effort, sample.effort);
     error.push_back(static_cast<float>(result.error_series_m[steps]));
     ++steps;
   }
@@ -99,7 +99,7 @@ json make_case(const TrackingSetup& setup, const ReplayRequest& request) {
       append(target, {place.data(), 3});
     }
   }
-  append(target_q, targets.angles_rad);  // none where a target is out of reach
+  append(target_q, targets.joint_positions);  // none where a target is out of reach
   return {{"id", make_case_id(request.set.name(), request.number)},
           {"label", request.label},
           {"set", request.set.name()},
@@ -109,7 +109,7 @@ json make_case(const TrackingSetup& setup, const ReplayRequest& request) {
           {"steps", targets.steps},
           {"target_m", pack_f32(target)},
           {"target_q", pack_f32(target_q)},
-          {"start_q", finite_or_null(targets.start_rad)},
+          {"start_q", finite_or_null(targets.start_positions)},
           {"motions", json::array()}};
 }
 
@@ -122,11 +122,11 @@ std::string make_case_id(const std::string& set, std::uint64_t number) {
 json make_design_info(const NamedDesign& design) {
   json limits = json::array();
   for (const JointDrive& joint : design.design.joints) {
-    limits.push_back({finite_or_null(joint.limits.min_n_m), finite_or_null(joint.limits.max_n_m)});
+    limits.push_back({finite_or_null(joint.limits.min), finite_or_null(joint.limits.max)});
   }
   return {{"id", design.id},
           {"name", design.name},
-          {"total_torque_n_m", finite_or_null(calc_total_torque_n_m(design.design))},
+          {"total_torque_n_m", finite_or_null(calc_total_effort(design.design))},
           {"effort_limits", std::move(limits)}};
 }
 

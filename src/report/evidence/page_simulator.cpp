@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <utility>
 
-#include "study/executor/case_runner.hpp"
-
 namespace armwright {
 
 void PageSimulator::report(std::uint64_t more_cases) {
   done_ += more_cases;
   expected_ = std::max(expected_, done_);
   Progress progress;
-  progress.phase = Progress::Phase::test;
+  progress.phase = CaseRole::test;
   progress.done = done_;
   progress.total = expected_;
   observer_.on_progress(progress);
@@ -63,9 +61,8 @@ std::vector<TrackingResult> PageSimulator::evaluate(const TrackingProblem& probl
 Evaluation PageSimulator::evaluate(const Problem& problem, std::span<const double> x,
                                    const CaseBlock& block) {
   Evaluation evaluation;
-  CaseRunner runner(problem, executor_, stop_);
-  runner.run(std::span(&x, 1), block, false,
-             [&](std::size_t, Evaluation done) { evaluation = std::move(done); });
+  executor_.evaluate(problem, std::span(&x, 1), block, {}, stop_,
+                     [&](std::size_t, Evaluation done) { evaluation = std::move(done); });
   if (stop_.requested()) {
     throw PageStopped{};
   }

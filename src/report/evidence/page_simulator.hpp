@@ -10,7 +10,6 @@
 #include "base/stop_signal.hpp"
 #include "problems/tracking/tracking_problem.hpp"
 #include "study/executor/case_executor.hpp"
-#include "study/executor/thread_pool.hpp"
 #include "study/run/run_observer.hpp"
 
 namespace armwright {

@@ -9,11 +9,11 @@
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "problems/config/config_files.hpp"
-#include "problems/config/recorded_problem.hpp"
+#include "problems/config/problem_loader.hpp"
 #include "sim/simd/simd_level.hpp"
 #include "study/compare/incumbents.hpp"
-#include "study/run/record_files.hpp"
 #include "study/run/run.hpp"
+#include "study/run/run_folder.hpp"
 
 namespace armwright {
 namespace {

@@ -37,7 +37,7 @@ struct RecordedRun {
   std::vector<std::string> notes;
 
   // The arm's problem, or null.
-  const TrackingProblem* tracking() const { return problem ? problem->tracking.get() : nullptr; }
+  const TrackingProblem* tracking() const { return problem ? problem->tracking() : nullptr; }
   // Of the problem; without it what the result tells: objectives and constraints, no variables.
   ProblemDescription describe() const;
   // The winner's decision vector, or of a run under way the best so far; empty if there is none.

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/tracking/tracking.hpp"
+#include "sim/tracking/task.hpp"
 
 namespace armwright {
 

@@ -12,8 +12,8 @@
 #include "base/text.hpp"
 #include "study/journal/journal.hpp"
 #include "study/run/json_values.hpp"
-#include "study/run/record_files.hpp"
 #include "study/run/run.hpp"
+#include "study/run/run_folder.hpp"
 
 namespace armwright {
 namespace {

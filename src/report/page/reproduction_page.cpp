@@ -86,7 +86,7 @@ class ReproductionPage {
             {"rows", make_rows()},
             {"runs", make_runs()},
             {"responses", std::move(responses)},
-            {"signals", make_signals(load_problem("q1-complex").tracking->config().task, false)},
+            {"signals", make_signals(load_problem("q1-complex").tracking()->config().task, false)},
             {"sweep", std::move(sweep)},
             {"momentary", std::move(replays.momentary)}};
   }

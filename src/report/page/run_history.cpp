@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "report/evidence/page_json.hpp"
-#include "study/statistics/spread.hpp"
+#include "study/statistics/summary.hpp"
 
 namespace armwright {
 namespace {

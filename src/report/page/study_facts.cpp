@@ -26,10 +26,10 @@ std::string join_different(const StudyPlan& plan, const auto& describe) {
 }
 
 std::string describe_engine(const StudyProblem& problem) {
-  if (!problem.loaded.tracking) {
+  if (!problem.loaded.tracking()) {
     return "";
   }
-  const EnginePair& engines = problem.loaded.tracking->config().engines;
+  const EnginePair& engines = problem.loaded.tracking()->config().engines;
   return engines.training_name == engines.judging_name
              ? engines.training_name
              : fmt::format("{} (judged on {})", engines.training_name, engines.judging_name);

@@ -6,8 +6,7 @@
 
 #include "report/evidence/page_json.hpp"
 #include "report/page/study_parts.hpp"
-#include "study/statistics/cliques.hpp"
-#include "study/statistics/ranks.hpp"
+#include "study/statistics/ranking.hpp"
 
 namespace armwright {
 namespace {

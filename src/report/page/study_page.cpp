@@ -95,7 +95,7 @@ std::optional<std::string> make_study_page(const std::filesystem::path& folder,
                              result.missing.size(), total));
   }
   const bool has_arm = std::ranges::any_of(plan.problems, [](const StudyProblem& problem) {
-    return problem.loaded.tracking != nullptr;
+    return problem.loaded.tracking() != nullptr;
   });
   if (has_arm && !options.simulate) {
     notes.emplace_back("Nothing was simulated for this page, so there is no replay.");

@@ -6,8 +6,8 @@
 #include "base/text.hpp"
 #include "report/evidence/page_json.hpp"
 #include "report/page/study_parts.hpp"
-#include "study/analysis/verdict_targets.hpp"
-#include "study/statistics/spread.hpp"
+#include "study/analysis/verdict.hpp"
+#include "study/statistics/summary.hpp"
 
 namespace armwright {
 namespace {

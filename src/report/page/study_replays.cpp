@@ -40,7 +40,8 @@ std::vector<BestDesign> find_best_designs(const StudyPlan& plan, const StudyResu
     if (cell == nullptr || designs.size() >= kMostDesigns) {
       continue;
     }
-    const TrackingProblem& its_problem = *get_problem(plan, {problem, o, cell->replicate}).tracking;
+    const TrackingProblem& its_problem =
+        *get_problem(plan, {problem, o, cell->replicate}).tracking();
     NamedDesign named{fmt::format("optimizer-{}", o),
                       fmt::format("{}, replicate {}", label, cell->replicate),
                       its_problem.make_design(cell->x), &its_problem};
@@ -60,7 +61,7 @@ std::vector<ReplayRequest> choose_cases(const StudyPlan& plan, const StudyProble
                                         const std::filesystem::path& folder,
                                         std::span<const std::string> asked_for) {
   const CaseSets& sets = problem.loaded.sets;
-  ReplayList replays(*problem.loaded.tracking);
+  ReplayList replays(*problem.loaded.tracking());
   replays.add(sets.test, 0, "the first of the test set");
   if (!designs.empty()) {
     const CellOutcome& cell = *designs.front().cell;
@@ -128,7 +129,7 @@ json make_study_replays(const StudyPlan& plan, const StudyResult& result,
                         PageSimulator& simulator, json& robots, std::vector<std::string>& notes) {
   std::vector<std::size_t> shown;
   for (std::size_t p = 0; p < plan.problems.size() && shown.size() < kMostProblemsShown; ++p) {
-    if (plan.problems[p].loaded.tracking) {
+    if (plan.problems[p].loaded.tracking()) {
       shown.push_back(p);
     }
   }
@@ -136,7 +137,7 @@ json make_study_replays(const StudyPlan& plan, const StudyResult& result,
   std::vector<std::string> smaller;
   for (const std::size_t p : shown) {
     const StudyProblem& problem = plan.problems[p];
-    const TrackingProblem& tracking = *problem.loaded.tracking;
+    const TrackingProblem& tracking = *problem.loaded.tracking();
     const auto best = find_best_designs(plan, result, p, notes);
     const auto requests = choose_cases(plan, problem, best, folder, cases);
     std::vector<NamedDesign> designs;

@@ -37,7 +37,7 @@ class Executor {
            RunObserver& observer)
       : plan_(plan), work_(work), stop_(stop), observer_(observer) {
     for (const PlannedPart& part : plan_.parts) {
-      share_.total += is_there(part) ? 0 : part.cases;
+      progress_.total += is_there(part) ? 0 : part.cases;
     }
   }
 
@@ -67,18 +67,18 @@ class Executor {
   }
 
   std::optional<PartResult> make_result(const PlannedPart& part) {
-    const TrackingProblem& problem = *part.problem.tracking;
+    const TrackingProblem& problem = *part.problem.tracking();
     const auto design = find_design(part);
     if (!design) {
       return std::nullopt;
     }
     const ChosenCases cases{problem.get_set(part.problem.sets.test), part.cases};
     const auto evaluation =
-        evaluate_with_progress(problem, *design, cases, work_.jobs, stop_, observer_, share_);
+        evaluate_with_progress(problem, *design, cases, work_.jobs, stop_, observer_, progress_);
     if (!evaluation) {
       return std::nullopt;
     }
-    share_.done_before += part.cases;
+    progress_.done += part.cases;
     const auto points = static_cast<std::size_t>(problem.config().workspace.points);
     return PartResult{.part = part.part,
                       .inputs_sha256 = calc_inputs_hash(plan_, part),
@@ -128,7 +128,7 @@ class Executor {
   const ReproductionWork& work_;
   StopSignal& stop_;
   RunObserver& observer_;
-  BarShare share_;
+  Progress progress_;
 };
 
 }  // namespace
@@ -153,9 +153,9 @@ std::vector<std::string> make_run_words(const std::string& program, const RunPla
           "--seed",
           std::to_string(run.seed),
           "--engine",
-          run.problem.tracking->config().engines.training_name,
+          run.problem.tracking()->config().engines.training_name,
           "--judging-engine",
-          run.problem.tracking->config().engines.judging_name,
+          run.problem.tracking()->config().engines.judging_name,
           "--out",
           folder.string()};
 }

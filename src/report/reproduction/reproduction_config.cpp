@@ -6,31 +6,55 @@
 namespace armwright {
 namespace {
 
-std::vector<std::string> get_strings_or_empty(const ConfigTable& table, std::string_view key) {
-  return table.has(key) ? table.get_strings(key) : std::vector<std::string>{};
-}
+// These files are not on the page of settings, so that the declarations have no meanings. The
+// header explains what the values are for.
+const Setting<std::string> kReproLabel("label", kNoDefault, "");
+const Setting<std::string> kReproDesign("design", kNoDefault, "");
+const Setting<std::string> kReproProblem("problem", kNoDefault, "");
+const Setting<std::string> kReproId("id", kNoDefault, "");
+const Setting<std::string> kReproTitle("title", kNoDefault, "");
+const Setting<std::string> kReproThesis("thesis", kNoDefault, "");
+const Setting<std::string> kReproName("name", kNoDefault, "");
+const Setting<std::string> kReproOf("of", kNoDefault, "");
+const Setting<std::string> kReproOptimizer("optimizer", kNoDefault, "");
+const Setting<std::string> kReproEngine("engine", kNoDefault, "");
+const Setting<std::string> kReproSweep("sweep", kNoDefault, "");
+const Setting<std::string> kReproRun("run", kNoDefault, "");
+const Setting<std::string> kReproReplay("replay", kNoDefault, "");
+const Setting<std::string> kReproTrainingCase("training_case", kNoDefault, "");
+const Setting<std::string> kReproRemark("remark", "", "");
+const Setting<std::string> kReproWhere("where", "", "");
+const Setting<std::vector<std::string>> kReproSet("set", kNoDefault, "");
+const Setting<std::vector<std::string>> kReproBeside("beside", kNoDefault, "");
+const Setting<std::int64_t> kReproSeed("seed", {.lower = 0, .upper = 1e9}, kNoDefault, "");
+const Setting<double> kReproTorque("total_torque_n_m", {.lower = 0, .lower_open = true}, kNoDefault,
+                                   "");
+const SettingTable kReproSeriesTable{.key = "series", .is_array = true};
+const SettingTable kReproRunsTable{.key = "runs", .is_array = true};
+const SettingTable kReproUnpublishedTable{.key = "unpublished", .is_array = true};
+const SettingTable kReproReevaluationTable{.key = "reevaluation", .is_array = true};
+const SettingTable kReproFigureTable{.key = "figure", .is_array = true};
+const SettingTable kReproReplayTable{.key = "replay", .is_array = true};
+const SettingTable kReproMomentaryTable{.key = "momentary", .is_array = true};
 
 UnpublishedConfig read_unpublished(const ConfigTable& table) {
-  UnpublishedConfig design{.label = table.get_string("label"),
-                           .design = table.get_string("design"),
-                           .problem = table.get_string("problem"),
+  UnpublishedConfig design{.label = table.get(kReproLabel),
+                           .design = table.get(kReproDesign),
+                           .problem = table.get(kReproProblem),
                            .total_torque_n_m = {},
-                           .where = table.get_string("where", "")};
-  if (table.has("total_torque_n_m")) {
-    design.total_torque_n_m =
-        table.get_number("total_torque_n_m", Range{.lower = 0, .lower_open = true});
-  }
+                           .where = table.get(kReproWhere)};
+  design.total_torque_n_m = table.find(kReproTorque);
   return design;
 }
 
 ResponseFigureConfig read_figure(const ConfigTable& table) {
-  ResponseFigureConfig figure{.id = table.get_string("id"),
-                              .title = table.get_string("title"),
-                              .thesis = table.get_string("thesis"),
-                              .remark = table.get_string("remark", ""),
+  ResponseFigureConfig figure{.id = table.get(kReproId),
+                              .title = table.get(kReproTitle),
+                              .thesis = table.get(kReproThesis),
+                              .remark = table.get(kReproRemark),
                               .series = {}};
-  for (const ConfigTable& series : table.get_tables("series")) {
-    figure.series.push_back({series.get_string("name"), series.get_string("of")});
+  for (const ConfigTable& series : table.get_tables(kReproSeriesTable)) {
+    figure.series.push_back({series.get(kReproName), series.get(kReproOf)});
   }
   return figure;
 }
@@ -38,36 +62,33 @@ ResponseFigureConfig read_figure(const ConfigTable& table) {
 }  // namespace
 
 ReproductionConfig load_reproduction_config(const std::string& name_or_path) {
-  constexpr std::int64_t kLargestSeed = 1'000'000'000;
   const ConfigTable table = ConfigTable::load(resolve_config("reproductions", name_or_path));
   ReproductionConfig config;
-  config.title = table.get_string("title");
-  config.remark = table.get_string("remark", "");
-  config.optimizer = table.get_string("optimizer");
-  config.seed = static_cast<std::uint64_t>(table.get_integer("seed", 0, kLargestSeed));
-  config.engine = table.get_string("engine");
-  for (const ConfigTable& run : table.get_tables_or_empty("runs")) {
-    config.runs.push_back({run.get_string("label"), run.get_string("problem")});
+  config.title = table.get(kReproTitle);
+  config.remark = table.get(kReproRemark);
+  config.optimizer = table.get(kReproOptimizer);
+  config.seed = static_cast<std::uint64_t>(table.get(kReproSeed));
+  config.engine = table.get(kReproEngine);
+  for (const ConfigTable& run : table.get_tables_or_empty(kReproRunsTable)) {
+    config.runs.push_back({run.get(kReproLabel), run.get(kReproProblem)});
   }
-  for (const ConfigTable& design : table.get_tables_or_empty("unpublished")) {
+  for (const ConfigTable& design : table.get_tables_or_empty(kReproUnpublishedTable)) {
     config.unpublished.push_back(read_unpublished(design));
   }
-  config.sweep = table.get_string("sweep");
-  for (const ConfigTable& again : table.get_tables_or_empty("reevaluation")) {
-    config.reevaluations.push_back({again.get_string("label"), again.get_string("run"),
-                                    get_strings_or_empty(again, "set"),
-                                    again.get_string("where", "")});
+  config.sweep = table.get(kReproSweep);
+  for (const ConfigTable& again : table.get_tables_or_empty(kReproReevaluationTable)) {
+    config.reevaluations.push_back({again.get(kReproLabel), again.get(kReproRun),
+                                    again.get_or(kReproSet, {}), again.get(kReproWhere)});
   }
-  for (const ConfigTable& figure : table.get_tables_or_empty("figure")) {
+  for (const ConfigTable& figure : table.get_tables_or_empty(kReproFigureTable)) {
     config.figures.push_back(read_figure(figure));
   }
-  for (const ConfigTable& replay : table.get_tables_or_empty("replay")) {
-    config.replays.push_back({replay.get_string("id"), replay.get_string("title"),
-                              replay.get_string("of"), get_strings_or_empty(replay, "beside"),
-                              replay.get_string("training_case")});
+  for (const ConfigTable& replay : table.get_tables_or_empty(kReproReplayTable)) {
+    config.replays.push_back({replay.get(kReproId), replay.get(kReproTitle), replay.get(kReproOf),
+                              replay.get_or(kReproBeside, {}), replay.get(kReproTrainingCase)});
   }
-  for (const ConfigTable& momentary : table.get_tables_or_empty("momentary")) {
-    config.momentary.push_back({momentary.get_string("name"), momentary.get_string("replay")});
+  for (const ConfigTable& momentary : table.get_tables_or_empty(kReproMomentaryTable)) {
+    config.momentary.push_back({momentary.get(kReproName), momentary.get(kReproReplay)});
   }
   table.refuse_unknown();
   return config;

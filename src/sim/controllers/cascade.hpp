@@ -1,11 +1,11 @@
-// The cascade of industrial drives: P on the position asks for a speed, PI on the speed for an
-// effort.
+// The cascade of industrial drives: a P controller on the position gives a speed setpoint, and a PI
+// controller on the speed gives the effort.
 //   v_ref = kp e + share (r - r_prev) / h,   e_v = v_ref - (y - y_prev) / h,
 //   u = kv e_v + ki sum(e_v) h,
 // r the setpoint, y the measurement, differences the short way round and zero in the first step.
-// With share = 1 it is a PID of P = kv kp + ki, I = ki kp and D = kv, but for where its integral
-// begins. Of a PID it starts with kv = D, kp = P / D, ki = I D / P and share = 1: the same I and D,
-// and a P larger by ki.
+// With share = 1 it is a PID of P = kv kp + ki, I = ki kp and D = kv, except that its integral
+// begins at another value. Converted from a PID it starts with kv = D, kp = P / D, ki = I D / P and
+// share = 1: the same I and D, and a P that is larger by ki.
 #pragma once
 
 #include "sim/controllers/law.hpp"
@@ -35,8 +35,8 @@ struct Cascade {
   template <class In, class V = typename In::Value>
   ARMWRIGHT_INLINE static V calc(const In& in, Fields<V> gain, Fields<V> state) {
     V& integral = state[0];
-    const V target_speed = in.calc_rate(in.wrap_turns(take_change(in, in.setpoint, state[1])));
-    const V speed = in.calc_rate(in.wrap_turns(take_change(in, in.measurement, state[2])));
+    const V target_speed = in.calc_rate(in.wrap_turns(update_change(in, in.setpoint, state[1])));
+    const V speed = in.calc_rate(in.wrap_turns(update_change(in, in.measurement, state[2])));
     const V speed_error = gain[0] * in.error + gain[3] * target_speed - speed;
     integral = in.integrate(integral, speed_error);
     return gain[1] * speed_error + gain[2] * integral;

@@ -31,16 +31,16 @@ void check(std::span<const double> gains, EffortLimits limits, JointKind kind) {
                                                 Law::kName, Law::kGains[k].key, gains[k]));
     }
   }
-  if (!(limits.min_n_m <= limits.max_n_m)) {
+  if (!(limits.min <= limits.max)) {
     throw Error(ErrorKind::usage,
                 fmt::format("controller '{}': the effort limits are {} to {} {}; the lower must "
                             "not exceed the upper",
-                            Law::kName, limits.min_n_m, limits.max_n_m,
+                            Law::kName, limits.min, limits.max,
                             kind == JointKind::prismatic ? "N" : "N m"));
   }
 }
 
-// What the joint's law is told, but for the error.
+// Makes the input of a joint's law for one step.
 template <class Input>
 Input make_input(double setpoint, double measurement, double dt_s, double feed_forward,
                  EffortLimits limits, JointKind kind, bool first, bool saturated) {
@@ -49,7 +49,7 @@ Input make_input(double setpoint, double measurement, double dt_s, double feed_f
   in.measurement = measurement;
   in.feed_forward = feed_forward;
   in.integrating = saturated ? 0.0 : 1.0;
-  in.effort_limit = std::max(limits.max_n_m, -limits.min_n_m);
+  in.effort_limit = std::max(limits.max, -limits.min);
   in.period_s = dt_s;
   in.frequency_hz = 1 / dt_s;
   in.turns = kind == JointKind::revolute;
@@ -65,7 +65,7 @@ struct PidInput : LawInput {
   ControllerNumber calc_rate(ControllerNumber change) const { return change / period_s; }
 };
 
-// One joint under any law.
+// The controller of one joint under any law.
 template <class Law>
 class LawController final : public Controller {
  public:
@@ -84,8 +84,8 @@ class LawController final : public Controller {
                                     Fields<ControllerNumber>{states_.data(), 1})
                               .v;
     first_ = false;
-    saturated_ = wanted < limits_.min_n_m || wanted > limits_.max_n_m;
-    return std::clamp(wanted, limits_.min_n_m, limits_.max_n_m);
+    saturated_ = wanted < limits_.min || wanted > limits_.max;
+    return std::clamp(wanted, limits_.min, limits_.max);
   }
   void reset() override {
     states_.fill(ControllerNumber(0));
@@ -102,15 +102,6 @@ class LawController final : public Controller {
   bool first_ = true;
   bool saturated_ = false;
 };
-
-template <class Law>
-std::vector<GainSpec> make_gain_specs() {
-  std::vector<GainSpec> specs;
-  for (const controllers::Gain& gain : Law::kGains) {
-    specs.push_back({gain.name, gain.key, gain.unit, gain.range, gain.any_sign});
-  }
-  return specs;
-}
 
 template <class Law>
 std::unique_ptr<Controller> make_controller(std::span<const double> gains, EffortLimits limits,
@@ -133,9 +124,9 @@ std::unique_ptr<Controller> make_controller(std::span<const double> gains, Effor
 
 template <class... Laws>
 std::vector<ControllerRow> make_table(controllers::LawList<Laws...>) {
-  std::vector<ControllerRow> table = {{Laws::kName, Laws::kSummary, Laws::kFormula,
-                                       make_gain_specs<Laws>(), Laws::kFeedForward, 0,
-                                       Laws::kStates, Laws::convert, make_controller<Laws>}...};
+  std::vector<ControllerRow> table = {{Laws::kName, Laws::kSummary, Laws::kFormula, Laws::kGains,
+                                       Laws::kFeedForward, 0, Laws::kStates, Laws::convert,
+                                       make_controller<Laws>}...};
   for (std::size_t i = 0; i < table.size(); ++i) {
     table[i].law = static_cast<int>(i);
   }
@@ -151,9 +142,8 @@ void replace_all(std::string& text, std::string_view from, std::string_view to) 
 
 }  // namespace
 
-PidController::PidController(double p_n_m_per_rad, double i_n_m_per_rad_s, double d_n_m_s_per_rad,
-                             EffortLimits limits, JointKind kind)
-    : gains_{p_n_m_per_rad, i_n_m_per_rad_s, d_n_m_s_per_rad}, limits_(limits), kind_(kind) {
+PidController::PidController(double p, double i, double d, EffortLimits limits, JointKind kind)
+    : gains_{p, i, d}, limits_(limits), kind_(kind) {
   check<controllers::Pid>(gains_, limits, kind);
 }
 
@@ -167,8 +157,8 @@ double PidController::step(double setpoint, double measurement, double dt_s, dou
                             .v;
   states_ = {states[0].v, states[1].v};
   first_ = false;
-  saturated_ = wanted < limits_.min_n_m || wanted > limits_.max_n_m;
-  return std::clamp(wanted, limits_.min_n_m, limits_.max_n_m);
+  saturated_ = wanted < limits_.min || wanted > limits_.max;
+  return std::clamp(wanted, limits_.min, limits_.max);
 }
 
 void PidController::reset() {

@@ -1,15 +1,16 @@
-// What a control law is made of. A law is a struct of its own file in this folder and a row of
-// laws.hpp; the same code runs on one number (TrackingLoop), on packs of SIMD lanes and on numbers
-// that carry derivatives. It has
+// The parts of a control law. A law is a struct in a file of this folder and a row of laws.hpp. The
+// same code runs on one number (TrackingLoop), on packs of SIMD lanes and on numbers that carry
+// derivatives. A law has these members:
 //   kName, kSummary, kFormula    texts
 //   kGains                       its design variables, an array of Gain
-//   kStates                      how many numbers it keeps from step to step, all 0 at first
-//   kFeedForward                 which table it wants in `feed_forward`
-//   convert(PidStart, own)       its own gains, made of a PID's
-//   calc(in, gain, state)        the effort that it wants; updates its state
-// Clamping is done for all alike: u = min(max, max(min, wanted)). Anti-windup: after a clamped step
-// `integrating` is 0, otherwise 1, and every integral is summed as integral + integrating x h x
-// integrand. For lanes there are no branches on numbers: select(), min() and max() instead.
+//   kStates                      count of numbers that it keeps from step to step, all 0 at first
+//   kFeedForward                 which efforts it needs in `feed_forward`
+//   convert(PidStart, own)       computes start values of its gains from those of a PID
+//   calc(in, gain, state)        returns the wanted effort and updates its state
+// All efforts are clamped alike: u = min(max, max(min, wanted)). Anti-windup: `integrating` is 0
+// after a clamped step, otherwise 1, and every integral is summed as
+//   integral + integrating x h x integrand.
+// Lanes cannot branch on numbers: use select(), min() and max() instead.
 #pragma once
 
 #include "sim/controllers/law_types.hpp"
@@ -28,21 +29,22 @@ struct Fields {
   ARMWRIGHT_INLINE V& operator[](int k) const { return first[k * stride]; }
 };
 
-// One joint in one control period. Angles in rad and efforts in N m; m and N if it slides.
+// The input of a law: one joint in one control period. Positions in rad and efforts in N m for a
+// revolute joint, in m and N for a prismatic one.
 template <class V>
 struct LawInput {
   using Value = V;
   V setpoint;     // the target at the end of the period
-  V measurement;  // at its start; lanes count turns, other engines do not
-  V error;        // setpoint - measurement, wrapped to half a turn if the joint turns
+  V measurement;  // at the start of the period; lanes count turns, other engines do not
+  V error;        // setpoint - measurement; within half a turn if the joint is revolute
   V feed_forward;
   V integrating;
   V effort_limit;  // the larger of both limits
   V period_s, frequency_hz;
-  bool turns;
-  bool first;  // of the test case
+  bool turns;  // the joint is revolute
+  bool first;  // this is the first control period of the test case
 
-  // A difference of two positions, the short way round.
+  // Returns a difference of two positions, the short way round if the joint is revolute.
   ARMWRIGHT_INLINE V wrap_turns(V difference) const {
     using lanes::wrap;
     return turns ? wrap(difference) : difference;
@@ -53,9 +55,10 @@ struct LawInput {
   }
 };
 
-// By how much a value has changed since the step before; 0 in the first.
+// Returns the change of a value since the step before (0 in the first step), and stores the value
+// as the previous one.
 template <class In, class V = typename In::Value>
-ARMWRIGHT_INLINE V take_change(const In& in, V value, V& previous) {
+ARMWRIGHT_INLINE V update_change(const In& in, V value, V& previous) {
   if (in.first) {
     previous = value;
   }
@@ -64,11 +67,11 @@ ARMWRIGHT_INLINE V take_change(const In& in, V value, V& previous) {
   return change;
 }
 
-// P e + I sum(e) h + D (e - e_prev) / h; the state is the sum and e_prev.
+// Returns P e + I sum(e) h + D (e - e_prev) / h. The state is the sum and e_prev.
 template <class In, class V = typename In::Value>
 ARMWRIGHT_INLINE V calc_pid(const In& in, V p, V i, V d, Fields<V> state) {
   const V integral = in.integrate(state[0], in.error);
-  const V rate = in.calc_rate(take_change(in, in.error, state[1]));
+  const V rate = in.calc_rate(update_change(in, in.error, state[1]));
   state[0] = integral;
   return p * in.error + i * integral + d * rate;
 }

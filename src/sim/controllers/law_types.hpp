@@ -1,28 +1,28 @@
-// What a control law says of itself besides its formula, in plain types: laws are compiled for
-// every instruction set (lane_pack.hpp) and must not bring the standard library along.
+// Facts about a control law besides its formula, in plain types. Laws are compiled for every
+// instruction set (lane_pack.hpp), so they must not include the standard library.
 #pragma once
 
 #include <cstdint>
 
 namespace armwright {
 
-// Efforts that are known before anything moves, tabulated once a test case for the arm that the
-// problem says (articulated/feed_forward.hpp).
+// Efforts that are known before a simulation starts. They are tabulated once per test case, for the
+// nominal arm of the problem (sim/tracking/feed_forward.cpp).
 enum class FeedForward : std::uint8_t { none, gravity, inverse_dynamics };
 
 namespace controllers {
 
 struct Gain {
-  const char* name;
-  const char* key;  // with its unit, as in design files
-  const char* unit;
-  // As a decision variable: 0, a factor around its start, on a logarithmic scale; otherwise linear,
-  // this far to either side, but never below 0 unless it may have any sign.
+  const char* name;  // "p"
+  const char* key;   // with its unit, as in design files: "p_n_m_per_rad"
+  const char* unit;  // "N m/rad"
+  // Bounds as a decision variable. 0: a factor around its start, on a logarithmic scale. Otherwise
+  // linear, this far to either side of the start, but not below 0 unless it may have any sign.
   double range = 0;
   bool any_sign = false;
 };
 
-// A joint's PID, of which a law makes its own first gains.
+// A joint's PID, from which a law computes the start values of its own gains.
 struct PidStart {
   double p, i, d;
   double effort_limit;  // the larger of both limits, max(-min, max)

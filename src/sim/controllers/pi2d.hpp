@@ -1,7 +1,8 @@
-// A PID with a second integrator, which the thesis proposed for ramps and left untested:
+// A PID with a second integrator, which the thesis proposed for ramps but did not test:
 //   S_k = S_(k-1) + e_k h,   SS_k = SS_(k-1) + S_k h,
 //   u = P e + I S + I2 SS + D (e - e_prev) / h.
-// Neither integrates after a clamped step. Of a PID it starts with I2 = 0.1 I per second.
+// Neither integral grows after a clamped step. Converted from a PID it starts with I2 = 0.1 I per
+// second.
 #pragma once
 
 #include "sim/controllers/law.hpp"

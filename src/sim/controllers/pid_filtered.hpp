@@ -2,10 +2,11 @@
 // Control, sections 3.3 and 3.4):
 //   u = P (e - (1 - b) w) + I sum(e) h + D f,
 //   f_k = (T f_(k-1) + (e_k - e_(k-1)) - (1 - c) (r_k - r_(k-1))) / (T + h),
-// T the filter's time constant, by backward differences: b and c weigh how P and D see the setpoint
-// r, and w = r - r_1 is the way that it has gone since the first step, added up of differences the
-// short way round; the source weighs r itself and lets the integral begin in balance, which is the
-// same. With b = c = 1 and T = 0 it is the PID. It starts with b = c = 1 and T = h / 10.
+// by backward differences. T is the filter's time constant; b and c weigh how P and D see the
+// setpoint r. w = r - r_1 is the way of the setpoint since the first step, summed from differences
+// taken the short way round. The source weighs r itself and lets the integral begin in balance,
+// which is equivalent. With b = c = 1 and T = 0 it is the PID. It starts with b = c = 1 and
+// T = h / 10.
 #pragma once
 
 #include "sim/controllers/law.hpp"
@@ -44,8 +45,8 @@ struct PidFiltered {
     V& way = state[3];
     V& rate = state[4];
     integral = in.integrate(integral, in.error);
-    const V change = take_change(in, in.error, state[1]);
-    const V moved = in.wrap_turns(take_change(in, in.setpoint, state[2]));
+    const V change = update_change(in, in.error, state[1]);
+    const V moved = in.wrap_turns(update_change(in, in.setpoint, state[2]));
     way += moved;
     const V filter_s = gain[3];
     const V one = V(1);

@@ -1,28 +1,35 @@
 // The equations of motion of a chain (chain_model.hpp) for a pack of lanes:
-//   M(q) qdd + b(q, qd) = tau,
-// b by a recursive Newton-Euler pass at qdd = 0 (Luh, Walker and Paul 1980), M from composite rigid
-// bodies (Walker and Orin 1982), qdd by M = L D L'.
+//   M(q) qdd + b(q, qd) = tau.
+// The bias b comes from a recursive Newton-Euler pass at qdd = 0 (Luh, Walker and Paul 1980), the
+// mass matrix M from composite rigid bodies (Walker and Orin 1982), and qdd from the factors M = L
+// D L'.
 //
-// Consecutive joints with parallel axes are treated in one frame, that of the group's last link: in
-// it spins of all links of the group differ by their component along the axis only, so vectors and
-// composite bodies are not rotated from joint to joint; the links' constant moments are instead.
-// With U = [wd]x + [w]x[w]x of a link (acceleration of a point r of it: a + U r), its first moments
-// s and second moments K, what moves it is
-//   force  U s + m a,   moment about the origin  axial vector of (U K) + s x a,
+// Consecutive joints with parallel axes form a group. All links of a group are treated in one
+// frame, that of the group's last link. In it the angular velocities of the group's links differ
+// only in the component along the axis. So vectors and composite bodies need no rotation from joint
+// to joint; only the links' constant moments are rotated.
+//
+// Let U = [wd]x + [w]x[w]x of a link, with w its angular velocity and wd its derivative; a point r
+// of the link has the acceleration a + U r. With the link's mass m, first moments s and second
+// moments K, the force and the moment about the origin that move the link are
+//   force   U s + m a,
+//   moment  axial vector of (U K) + s x a,
 // where a includes gravity as an upward acceleration of the base.
 //
-// V: a lane type (lane_pack.hpp). Chain: what is known of the chain when the code is compiled
-// (chain_shape.hpp).
+// V is a lane type (lane_pack.hpp). Chain is a ChainShape, the facts about the chain that are known
+// when the code is compiled (chain_shape.hpp).
 #pragma once
 
 #include "sim/dynamics/chain_posture.hpp"
 
 namespace armwright::articulated {
 
+// The equations of motion of one chain in one pack of lanes. The caller owns the model's numbers
+// and, for a chain of any length, calc_dynamics_packs() packs of scratch memory.
 template <class V, class Chain>
 class ChainDynamics : public ChainPosture<V, Chain> {
   using Posture = ChainPosture<V, Chain>;
-  using Posture::arm_x_, Posture::arm_y_, Posture::c_, Posture::s_;  // what is set for a posture
+  using Posture::arm_x_, Posture::arm_y_, Posture::c_, Posture::s_;  // set for a posture
   using Posture::chain_;
   using Posture::get, Posture::joints, Posture::single;
   using Posture::turn_inwards, Posture::turn_outwards, Posture::twist_inwards;
@@ -40,7 +47,8 @@ class ChainDynamics : public ChainPosture<V, Chain> {
     }
   }
 
-  // M and b of the posture that was set.
+  // Computes M and b for the posture that set_posture() has set; q and rate have one pack per
+  // joint.
   ARMWRIGHT_INLINE void calc_equations(const V* q, const V* rate) {
     go_outwards(q, rate);
     come_back(q);
@@ -50,9 +58,9 @@ class ChainDynamics : public ChainPosture<V, Chain> {
   }
   ARMWRIGHT_INLINE V bias(int row) const { return bias_[row]; }
 
-  // qdd = M^-1 (tau - b); destroys M.
+  // Computes qdd = M^-1 (tau - b). Overwrites M.
   ARMWRIGHT_INLINE void solve(const V* effort, V* acceleration) {
-    // M = L D L' in place: L below the diagonal, 1 / D on it, D L' above it.
+    // Factors M = L D L' in place: L below the diagonal, 1 / D on it, D L' above it.
     chain_.for_up([&](auto j) __attribute__((always_inline)) {
       V diagonal = entry(j, j);
       V sum = effort[j] - bias_[j];
@@ -90,7 +98,7 @@ class ChainDynamics : public ChainPosture<V, Chain> {
 
   ARMWRIGHT_INLINE V& entry(int row, int column) { return mass_[row * joints() + column]; }
 
-  // The link's moments in its group's frame.
+  // Rotate the link's constant moments into its group's frame.
   ARMWRIGHT_INLINE void turn_first_moments(int i) {
     sx_[i] = get(kMomentX, i);
     sy_[i] = get(kMomentY, i);
@@ -110,13 +118,13 @@ class ChainDynamics : public ChainPosture<V, Chain> {
     }
   }
 
-  // How a link moves, in its group's frame.
+  // The motion of a link, in its group's frame.
   struct Motion {
-    Vec3<V> a;      // of its origin, less gravity
-    Vec3<V> w, wd;  // spin of the link before the group
+    Vec3<V> a;      // acceleration of its origin minus gravity
+    Vec3<V> w, wd;  // angular velocity of the link before the group, and its derivative
     V u11, u12, u13, u21, u22, u23, u31, u32, u33;
-    V turned;  // by how much the link spins faster about the group's axis than that
-    // Of the group.
+    V turned;  // angular velocity of the link about the group's axis relative to w
+    // Terms that are the same for all links of the group.
     V w11, w22, b31, b32, wx_twice, wy_twice;
   };
 
@@ -156,8 +164,8 @@ class ChainDynamics : public ChainPosture<V, Chain> {
     });
   }
 
-  // In the group on the fixed base all moves in planes across its axis, and only forces in these
-  // planes and moments about the axis do work.
+  // Handles a link of the group on the fixed base. All points of these links move in planes
+  // perpendicular to the axis. Only forces in these planes and moments about the axis do work.
   ARMWRIGHT_INLINE void pass_base_link(int i, Motion& m, const V* rate) {
     turn_first_moments(i);
     if (i > 0) {
@@ -175,7 +183,7 @@ class ChainDynamics : public ChainPosture<V, Chain> {
 
   ARMWRIGHT_INLINE void enter_group(int i, Motion& m) {
     const bool from_base = i > 0 && chain_.in_base_group(i - 1);
-    const bool steady = i == 0 || from_base || chain_.in_first_group(i - 1);  // wd of the base is 0
+    const bool steady = i == 0 || from_base || chain_.in_first_group(i - 1);  // wd is 0
     if (from_base) {  // U = diag(u11, u11, 0), w = (0, 0, turned)
       m.a.x += m.u11 * get(kOffsetX, i);
       if (!chain_.along_x(i)) {
@@ -263,7 +271,7 @@ class ChainDynamics : public ChainPosture<V, Chain> {
     load_link(i, m);
   }
 
-  // What moves link i: force and moment about its frame's origin.
+  // Computes the force that moves link i and the moment about its frame's origin.
   ARMWRIGHT_INLINE void load_link(int i, const Motion& m) {
     const V sx = sx_[i], sy = sy_[i];
     const V xx = xx_[i], xy = xy_[i], xz = xz_[i], yy = yy_[i], yz = yz_[i];
@@ -285,9 +293,9 @@ class ChainDynamics : public ChainPosture<V, Chain> {
     }
   }
 
-  // The bodies from some link on: their forces and moments at qdd = 0, and their moments of mass as
-  // if they were one body, about the link's origin; mass stands for something only where joints
-  // slide (chain_model.hpp).
+  // The composite body of a link and all links after it: their forces and moments at qdd = 0, and
+  // their moments of mass, about the link's origin. `mass` is only used if joints may be prismatic
+  // (chain_model.hpp).
   struct Outer {
     Vec3<V> f, n;
     V xx, xy, xz, yy, yz, zz;
@@ -338,7 +346,7 @@ class ChainDynamics : public ChainPosture<V, Chain> {
     } else if (i > 0) {
       leave_group(i, o);
       if (chain_.in_base_group(i - 1)) {
-        o.xx += o.yy;  // from here on: the moment of inertia about the axis
+        o.xx += o.yy;  // xx is the moment of inertia about the axis from here on
       }
     }
   }
@@ -387,7 +395,7 @@ class ChainDynamics : public ChainPosture<V, Chain> {
     o.h.z += way * o.mass;
   }
 
-  // To the origin of the joint before in the same group.
+  // Moves the reference point to the origin of the joint before in the same group.
   template <class Index>
   ARMWRIGHT_INLINE void shift_in_group(Index i, Outer& o) {
     const V x = arm_x_[i];
@@ -398,7 +406,7 @@ class ChainDynamics : public ChainPosture<V, Chain> {
     chain_.for_from(
         i, [&](auto j) __attribute__((always_inline)) {
           cnz_[j] += x * cfy_[j] - y * cfx_[j];
-          // Forces of the group's own turning joints have no component along the axis.
+          // Forces of the group's own revolute joints have no component along the axis.
           if (Chain::kSliding || !chain_.in_same_group(i, j)) {
             cnx_[j] += y * cfz_[j];
             cny_[j] -= x * cfz_[j];
@@ -424,7 +432,7 @@ class ChainDynamics : public ChainPosture<V, Chain> {
     }
   }
 
-  // To the frame of the link before the group, another group's.
+  // Transforms to the frame of the link before the group, which belongs to another group.
   template <class Index>
   ARMWRIGHT_INLINE void leave_group(Index i, Outer& o) {
     const V x = get(kOffsetX, i);
@@ -519,8 +527,8 @@ class ChainDynamics : public ChainPosture<V, Chain> {
 
   List xx_, xy_, xz_, yy_, yz_, sx_, sy_;  // moments in the group's frame
   List bias_;
-  List fx_, fy_, fz_, nx_, ny_, nz_;                   // of the links, at qdd = 0
-  List cfx_, cfy_, cfz_, cnx_, cny_, cnz_;             // of the joints, for qdd_i = 1 alone
+  List fx_, fy_, fz_, nx_, ny_, nz_;                   // forces and moments of links at qdd = 0
+  List cfx_, cfy_, cfz_, cnx_, cny_, cnz_;             // per joint i, for qdd_i = 1 alone
   PackList<V, Chain::kJoints * Chain::kJoints> mass_;  // row-major
 };
 

@@ -8,9 +8,10 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// Directions that differ by less are the same but for the rounding of the file's rotations.
+// Directions that differ by less are treated as equal; rotations in the file are rounded.
 constexpr double kSameDirection = 1e-12;
-// Sine of the angle between axes from which on sliding origins along them is well conditioned.
+// The least sine of the angle between two axes for which sliding origins along them is well
+// conditioned.
 constexpr double kWellApart = 0.1;
 
 Vector3d make_perpendicular(const Vector3d& axis) {
@@ -29,16 +30,16 @@ double snap(double value) {
 
 }  // namespace
 
-// Directions and places in the world with all joints at zero until connect(), then as in the
-// frames' transforms.
+// A link while the model is built. Before connect(), x, z and origin are given in the world with
+// all joints at zero. connect() computes the parameters of the frames' transforms from them.
 struct ChainModel::Link {
   bool prismatic = false;
   bool same_axis = false;
   Vector3d x, z, origin;
   double angle = 0;
   double twist_cos = 1, twist_sin = 0;
-  Vector3d offset = Vector3d::Zero();  // in the frame before
-  // Moments about the frame's origin, along its axes.
+  Vector3d offset = Vector3d::Zero();  // in the frame of the link before
+  // Mass and moments about the frame's origin, in the frame's axes.
   double mass = 0;
   Vector3d first = Vector3d::Zero();
   Matrix3d second = Matrix3d::Zero();
@@ -76,7 +77,8 @@ ChainModel::ChainModel(const RobotModel& robot, double gravity_m_per_s2) {
   singles[kGravityX] = tilted_gravity_ ? up.x() : 0;
   singles[kGravityZ] = up.z();
 
-  Eigen::Isometry3d last = Eigen::Isometry3d::Identity();  // URDF's pose of the last link at zero
+  Eigen::Isometry3d last =
+      Eigen::Isometry3d::Identity();  // the last link's pose in URDF, all joints at zero
   for (const Joint& joint : robot.joints) {
     last = last * joint.origin;
   }
@@ -107,13 +109,14 @@ void ChainModel::place_frames(const RobotModel& robot, std::vector<Link>& links,
       links[i].same_axis = (links[i].z - links[i - 1].z).norm() < kSameDirection;
     }
   }
-  // Origins of a group at the same height along its axis.
+  // Moves all origins of a group to the same height along the group's axis.
   for (std::size_t i = 1; i < n; ++i) {
     if (links[i].same_axis) {
       links[i].origin -= links[i].z.dot(links[i].origin - links[i - 1].origin) * links[i].z;
     }
   }
-  // x axes: perpendicular to the next group's axis, or towards the next joint of the group.
+  // Chooses the x axes: perpendicular to the next group's axis, or towards the next joint of the
+  // group.
   for (std::size_t i = 0; i < n; ++i) {
     links[i].x = make_perpendicular(links[i].z);
     if (i + 1 == n) {
@@ -125,7 +128,7 @@ void ChainModel::place_frames(const RobotModel& robot, std::vector<Link>& links,
       links[i].x = x.normalized();
     }
   }
-  // Groups slide along their axes.
+  // Slides the groups' origins along their axes to remove components of offsets.
   const auto slide = [&](std::size_t first, double way_m) {
     for (std::size_t i = first; i < n && (i == first || links[i].same_axis); ++i) {
       links[i].origin += way_m * links[first].z;
@@ -139,7 +142,8 @@ void ChainModel::place_frames(const RobotModel& robot, std::vector<Link>& links,
     const Link& before = links[i - 1];
     const double sine = before.z.cross(links[i].z).norm();
     if (sine > kWellApart) {
-      // z of the new group is (0, -sine, cosine) in the frame before: its y component goes.
+      // In the frame before, the new group's z axis is (0, -sine, cosine). The slide makes the
+      // offset's y component 0.
       const Vector3d y = before.z.cross(before.x);
       slide(i, y.dot(links[i].origin - before.origin) / sine);
     }
@@ -149,7 +153,7 @@ void ChainModel::place_frames(const RobotModel& robot, std::vector<Link>& links,
     }
   }
 
-  // The base: gravity in its x-z plane.
+  // Turns the base's frame so that gravity lies in its x-z plane.
   const Vector3d up(0, 0, 1);
   const Vector3d across = up - up.dot(links[0].z) * links[0].z;
   tilted_gravity_ = gravity_m_per_s2 != 0 && across.norm() > kSameDirection;
@@ -159,7 +163,7 @@ void ChainModel::place_frames(const RobotModel& robot, std::vector<Link>& links,
   base_pose_.linear().col(2) = links[0].z;
   base_pose_.translation() = links[0].origin;
 
-  // Moments of mass about the new origins.
+  // Computes the moments of mass about the new origins.
   pose = Eigen::Isometry3d::Identity();
   for (std::size_t i = 0; i < n; ++i) {
     pose = pose * robot.joints[i].origin;
@@ -187,7 +191,8 @@ void ChainModel::connect(std::vector<Link>& links) {
       const Vector3d way = link.origin - before.origin;
       link.offset = {way.dot(before.x), way.dot(before.z.cross(before.x)), way.dot(before.z)};
       if (!link.same_axis) {
-        // Of a small twist the cosine alone rounds to one; it must not without its sine.
+        // For a small twist the cosine rounds to 1 before the sine becomes 0. The cosine is set to
+        // exactly +-1 only if the sine is 0.
         link.twist_cos = snap(before.z.dot(link.z));
         link.twist_sin = link.twist_cos == 0 ? 1 : snap(before.z.cross(link.z).norm());
         if (link.twist_sin == 0) {
@@ -195,7 +200,7 @@ void ChainModel::connect(std::vector<Link>& links) {
         }
       }
     }
-    // Lengths below 1e-12 m are rounding.
+    // Lengths below 1e-12 m are rounding errors.
     for (double* component : {&link.offset.y(), &link.offset.z()}) {
       *component = std::abs(*component) < kSameDirection ? 0 : *component;
     }
@@ -212,7 +217,7 @@ void ChainModel::reduce(std::vector<Link>& links) {
     Link& link = links[i];
     Matrix3d twist;
     twist << 1, 0, 0, 0, link.twist_cos, -link.twist_sin, 0, link.twist_sin, link.twist_cos;
-    Link nowhere;  // what moves to the base moves nobody
+    Link nowhere;  // takes the mass that moves to the fixed base; it has no effect
     Link& before = i > 0 ? links[i - 1] : nowhere;
     if (link.prismatic) {
       const Matrix3d turn =

@@ -1,8 +1,9 @@
-// Where a chain (chain_model.hpp) is, for a pack of lanes: sines and cosines of its angles, once a
-// step, and what follows from them alone: the tip, and turns between the frames of groups.
+// The posture of a chain (chain_model.hpp) in all lanes: the sines and cosines of its angles,
+// computed once per step, and the quantities that depend only on them. These are the tip's position
+// and the rotations between the frames of groups.
 //
-// V: a lane type (lane_pack.hpp). Chain: what is known of the chain when the code is compiled
-// (chain_shape.hpp).
+// V is a lane type (lane_pack.hpp). Chain is a ChainShape, the facts about the chain that are known
+// when the code is compiled (chain_shape.hpp).
 #pragma once
 
 #include "sim/dynamics/chain_shape.hpp"
@@ -15,8 +16,9 @@ struct Vec3 {
   V x, y, z;
 };
 
+// Rotates (x, y) by the angle with cosine c and sine s; rotate_back() rotates by its opposite.
 template <class V>
-ARMWRIGHT_INLINE void rotate(V c, V s, V& x, V& y) {  // by the angle of c, s
+ARMWRIGHT_INLINE void rotate(V c, V s, V& x, V& y) {
   const V turned = c * x - s * y;
   y = s * x + c * y;
   x = turned;
@@ -27,7 +29,7 @@ ARMWRIGHT_INLINE void rotate_back(V c, V s, V& x, V& y) {
   y = c * y - s * x;
   x = turned;
 }
-// The symmetric tensor (xx, xy; xy, yy) likewise.
+// Rotates the symmetric tensor (xx, xy; xy, yy) by the same angle.
 template <class V>
 ARMWRIGHT_INLINE void rotate_tensor(V c, V s, V& xx, V& xy, V& yy) {
   const V cs = c * s;
@@ -40,11 +42,14 @@ ARMWRIGHT_INLINE void rotate_tensor(V c, V s, V& xx, V& xy, V& yy) {
   yy = trace - xx;
 }
 
+// The posture of one chain in one pack of lanes. Points to the model's numbers; the caller owns
+// them.
 template <class V, class Chain>
 class ChainPosture {
  public:
-  // Everything that follows from the angles alone. The first joint's own sine and cosine are needed
-  // for the tip and under gravity that is not parallel to its axis.
+  // Computes all quantities that depend only on the positions q, one pack per joint. The first
+  // joint's sine and cosine are only needed for the tip (`with_first`) and for gravity that is not
+  // parallel to its axis.
   ARMWRIGHT_INLINE void set_posture(const V* q, bool with_first) {
     V angle = V(0);
     chain_.for_down(
@@ -61,11 +66,11 @@ class ChainPosture {
         });
   }
 
-  // Where the tip is in the base's frame; after set_posture(q, true).
+  // Returns the tip's position in the base's frame (m). Requires set_posture(q, true).
   ARMWRIGHT_INLINE Vec3<V> calc_tip(const V* q) const {
     return calc_place(q, {single(kTipX), single(kTipY), single(kTipZ)});
   }
-  // Likewise a tool point.
+  // Returns a tool point's position in the base's frame (m). Requires set_posture(q, true).
   ARMWRIGHT_INLINE Vec3<V> calc_tool_point(const V* q, int point) const {
     const V* const p = model_ + kModelFields * joints() + kToolX + 3 * point;
     return calc_place(q, {p[0], p[1], p[2]});
@@ -74,7 +79,7 @@ class ChainPosture {
  protected:
   using List = PackList<V, Chain::kJoints>;
 
-  // A point p of the last link's frame in the base's.
+  // Transforms a point p from the last link's frame to the base's frame.
   ARMWRIGHT_INLINE Vec3<V> calc_place(const V* q, Vec3<V> p) const {
     chain_.for_down(
         chain_.end(), [&](auto i) __attribute__((always_inline)) {
@@ -115,7 +120,8 @@ class ChainPosture {
     return model_[kModelFields * joints() + field];
   }
 
-  // Between the frame before a group and the group's, turned by the twist alone.
+  // Rotate by the twist between a group's frame and the frame before the group. "Inwards" is
+  // towards the base, "outwards" towards the tip.
   ARMWRIGHT_INLINE void twist_inwards(int i, V& y, V& z) const {
     if (chain_.right_angle(i)) {
       const V turned = y;
@@ -145,8 +151,8 @@ class ChainPosture {
 
   Chain chain_;
   const V* model_;
-  List c_, s_;          // of the angle from joint i to its group's end
-  List arm_x_, arm_y_;  // offset of joint i from the one before in its group
+  List c_, s_;          // cosine and sine of the angle from joint i to its group's end
+  List arm_x_, arm_y_;  // offset of joint i from the joint before in its group
 };
 
 }  // namespace armwright::articulated

@@ -1,10 +1,10 @@
-// What is known of a chain when the kernels are compiled, and loops over its joints that are
-// unrolled as far as that allows.
+// The facts about a chain that are known when the kernels are compiled, and loops over its joints
+// that are unrolled if the facts allow it.
 //
-// A shape is how groups, twists and offsets follow each other (JointFlag of chain_layout.hpp, four
-// bits a joint, the first joint's lowest). Where it is known, nothing is left to decide when the
-// code runs; kAnyShape decides while it runs and does the same arithmetic, so results agree to the
-// last bit but for what the compiler makes of them.
+// A shape is the sequence of a chain's groups, twists and offsets: four bits of JointFlag
+// (chain_layout.hpp) per joint, the first joint's lowest. For a known shape the compiler resolves
+// every branch on it. kAnyShape makes the same decisions at run time and does the same arithmetic.
+// So the results are the same, except for differences in the last bits that the compiler causes.
 #pragma once
 
 #include "sim/dynamics/chain_layout.hpp"
@@ -12,7 +12,8 @@
 
 namespace armwright::articulated {
 
-// A list of n packs: inside the object, or in memory of the caller's.
+// A list of N packs inside the object, or, for N = 0, of any number of packs in the caller's
+// memory. place() takes that memory: it advances `memory` by `size` packs.
 template <class V, int N>
 struct PackList {
   V values[N];
@@ -31,7 +32,7 @@ struct PackList<V, 0> {
   }
 };
 
-// A joint's number that the compiler knows.
+// A joint's number that is known at compile time.
 template <int I>
 struct JointIndex {
   static constexpr int kValue = I;
@@ -42,12 +43,14 @@ using Shape = std::uint64_t;
 inline constexpr Shape kAnyShape = ~Shape{0};
 inline constexpr int kShapeBits = 4;
 
-// A vertical axis, then three parallel ones across it: palletisers, and the thesis's arm.
+// A vertical axis, then three parallel axes perpendicular to it: palletising arms, such as the
+// thesis's.
 inline constexpr Shape kPalletiser = Shape{kAlongX} | Shape{kRightAngle | kAlongX} << kShapeBits |
                                      Shape{kSameAxis | kAlongX} << 2 * kShapeBits |
                                      Shape{kSameAxis | kAlongX} << 3 * kShapeBits;
 
-// Whether flags that are set in the shape hold; more may.
+// Returns whether the flags contain all flags of the shape. They may contain more, except
+// kPrismatic and kSameAxis, which must be equal.
 ARMWRIGHT_INLINE bool has_shape(const std::uint8_t* flags, int joints, Shape shape) {
   for (int i = 0; i < joints; ++i) {
     const int wanted = static_cast<int>(shape >> (kShapeBits * i)) & ((1 << kShapeBits) - 1);
@@ -59,8 +62,9 @@ ARMWRIGHT_INLINE bool has_shape(const std::uint8_t* flags, int joints, Shape sha
   return true;
 }
 
-// N: number of joints, 0 for any. kSlidingJoints: there may be prismatic ones; otherwise masses and
-// some moments are zero throughout (chain_model.hpp) and left out.
+// The shape of one chain. N is the number of joints, or 0 for any number. kSlidingJoints says that
+// joints may be prismatic. If it is false, masses and some moments are always zero
+// (chain_model.hpp), and the kernels leave them out.
 template <int N, Shape kShape, bool kSlidingJoints>
 class ChainShape {
  public:
@@ -100,7 +104,8 @@ class ChainShape {
   ARMWRIGHT_INLINE constexpr bool last_of_group(int i) const {
     return i + 1 == joints() || !same_axis(i + 1);
   }
-  // The group on the base, and whether it is treated as the special case that it is.
+  // in_first_group(): whether joint i belongs to the group on the base. in_base_group(): whether
+  // the kernels also use their shorter code for that group, which needs revolute joints.
   ARMWRIGHT_INLINE constexpr bool in_first_group(int i) const {
     if constexpr (!kSliding && !kKnown) {
       return i < base_end_;
@@ -123,7 +128,8 @@ class ChainShape {
     return in_same_group(i, joints() - 1);
   }
 
-  // Loops: body(i) for joints in ascending or descending order; i is an int or a JointIndex.
+  // Loops that call body(i) for joints in ascending or descending order. i is a JointIndex for a
+  // known shape and an int otherwise.
   ARMWRIGHT_INLINE auto end() const {
     if constexpr (kKnown) {
       return JointIndex<N>{};

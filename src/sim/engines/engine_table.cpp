@@ -8,8 +8,8 @@
 #include "base/text.hpp"
 #include "sim/engines/articulated/articulated_engine.hpp"
 #include "sim/engines/ode/ode_arm.hpp"
+#include "sim/tracking/engine_support.hpp"
 #include "sim/tracking/tracking_loop.hpp"
-#include "sim/tracking/tracking_result.hpp"
 #ifdef ARMWRIGHT_WITH_MUJOCO
 #include "sim/engines/mujoco/mujoco_arm.hpp"
 #endif
@@ -17,8 +17,8 @@
 namespace armwright {
 namespace {
 
-// For engines that step one arm at a time. `make_arm` makes the arm of a job whose targets can be
-// reached, at its start.
+// Simulates jobs for engines that step one arm at a time. `make_arm` makes the arm of a job at its
+// start. It is not called for a job whose targets are out of reach.
 template <class MakeArm>
 std::vector<TrackingResult> simulate_one_by_one(const TrackingSetup& setup,
                                                 std::span<const TrackingJob> jobs,
@@ -32,41 +32,50 @@ std::vector<TrackingResult> simulate_one_by_one(const TrackingSetup& setup,
       continue;
     }
     const TrackingSetup& own = job.choose_setup(setup);
-    auto arm = make_arm(own, job.targets->start_rad);
+    auto arm = make_arm(own, job.targets->start_positions);
     results.push_back(TrackingLoop(own, job).run(arm));
   }
   return results;
 }
 
-class OdeEngine final : public PhysicsEngine {
- public:
-  std::vector<TrackingResult> simulate(const TrackingSetup& setup,
-                                       std::span<const TrackingJob> jobs) const override {
-    return simulate_one_by_one(setup, jobs,
-                               [](const TrackingSetup& own, std::span<const double> start) {
-                                 return OdeArm(own.robot(), start, own.task().physics);
-                               });
-  }
-  BatchSize batch_size() const override { return {}; }
-};
+std::vector<TrackingResult> simulate_in_ode(const TrackingSetup& setup,
+                                            std::span<const TrackingJob> jobs) {
+  return simulate_one_by_one(setup, jobs,
+                             [](const TrackingSetup& own, std::span<const double> start) {
+                               return OdeArm(own.robot(), start, own.task().physics);
+                             });
+}
 
 #ifdef ARMWRIGHT_WITH_MUJOCO
-class MujocoEngine final : public PhysicsEngine {
- public:
-  std::vector<TrackingResult> simulate(const TrackingSetup& setup,
-                                       std::span<const TrackingJob> jobs) const override {
-    const MujocoModel model(setup.robot(), setup.task().physics);
-    return simulate_one_by_one(
-        setup, jobs, [&](const TrackingSetup& own, std::span<const double> start) {
-          return &own == &setup ? MujocoArm(model, start)
-                                : MujocoArm(own.robot(), start, own.task().physics);
-        });
-  }
-  BatchSize batch_size() const override { return {}; }
-};
+std::vector<TrackingResult> simulate_in_mujoco(const TrackingSetup& setup,
+                                               std::span<const TrackingJob> jobs) {
+  const MujocoModel model(setup.robot(), setup.task().physics);
+  return simulate_one_by_one(
+      setup, jobs, [&](const TrackingSetup& own, std::span<const double> start) {
+        return &own == &setup ? MujocoArm(model, start)
+                              : MujocoArm(own.robot(), start, own.task().physics);
+      });
+}
 #endif
 
-// What to do about a choice that an engine does not have.
+// An engine that steps one arm at a time.
+class OneByOneEngine final : public PhysicsEngine {
+ public:
+  using Simulate = std::vector<TrackingResult> (*)(const TrackingSetup& setup,
+                                                   std::span<const TrackingJob> jobs);
+  explicit OneByOneEngine(Simulate function) : simulate_(function) {}
+
+  std::vector<TrackingResult> simulate(const TrackingSetup& setup,
+                                       std::span<const TrackingJob> jobs) const override {
+    return simulate_(setup, jobs);
+  }
+  BatchSize batch_size() const override { return {}; }
+
+ private:
+  Simulate simulate_;
+};
+
+// Returns the advice for a choice that an engine does not have.
 std::string describe_engines_with_simd() {
   std::vector<std::string> names;
   for (const EngineRow& row : engine_table()) {
@@ -85,14 +94,14 @@ const std::vector<EngineRow>& engine_table() {
   static const std::vector<EngineRow> table = {
       {"ode", "Open Dynamics Engine, maximal coordinates, dWorldStep: the reference", false,
        [](const EngineOptions&) -> std::unique_ptr<PhysicsEngine> {
-         return std::make_unique<OdeEngine>();
+         return std::make_unique<OneByOneEngine>(simulate_in_ode);
        }},
       {"articulated", "joint coordinates, many simulations at once in SIMD lanes", true,
        make_articulated_engine},
 #ifdef ARMWRIGHT_WITH_MUJOCO
       {"mujoco", "MuJoCo, joint coordinates, semi-implicit Euler: to check the others with", false,
        [](const EngineOptions&) -> std::unique_ptr<PhysicsEngine> {
-         return std::make_unique<MujocoEngine>();
+         return std::make_unique<OneByOneEngine>(simulate_in_mujoco);
        }},
 #endif
   };

@@ -15,11 +15,11 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr std::size_t kJoints = 4;
 
-// Deviations of a robot from the ideal that are only its file's rounding: a micrometre, a
-// microradian.
+// Deviations from the ideal geometry up to this size (m or rad) count as rounding in the robot's
+// file.
 constexpr double kGeometryTolerance = 1e-6;
 
-// Without libm's atan2 and hypot, whose last bits depend on its version.
+// These functions avoid atan2 and hypot of libm, whose last bits depend on libm's version.
 double calc_elevation(const Eigen::Vector3d& v) {
   return targets::calc_angle(v.z(), v.x());
 }
@@ -27,7 +27,8 @@ double calc_length(const Eigen::Vector3d& v) {
   return std::sqrt(v.x() * v.x() + v.z() * v.z());
 }
 
-// The pose of the link that a joint at q moves, from the pose of the link that carries the joint.
+// Returns the pose of the link that the joint at q moves, given the pose of the link that carries
+// the joint.
 Eigen::Isometry3d calc_next_pose(const Eigen::Isometry3d& pose, const Joint& joint, double q) {
   if (joint.kind == JointKind::prismatic) {
     return pose * joint.origin * Eigen::Translation3d(q * joint.axis);
@@ -45,7 +46,8 @@ std::string describe(const Eigen::Vector3d& v) {
                           sanitize(model.name), what));
 }
 
-// +1 or -1 where the axis is `expected` or its opposite in the world.
+// Returns +1 if the axis is `expected` in the world, or -1 if it is the opposite. Throws
+// Error{bad_data} otherwise.
 double find_axis_sign(const RobotModel& model, std::size_t joint, const Eigen::Isometry3d& pose,
                       const Eigen::Vector3d& expected, std::string_view expected_name) {
   const Eigen::Vector3d axis = pose.linear() * model.joints[joint].axis;
@@ -64,7 +66,7 @@ double find_axis_sign(const RobotModel& model, std::size_t joint, const Eigen::I
 
 double wrap_angle(double angle_rad) {
   if (std::abs(angle_rad) <= kPi) {
-    return angle_rad;  // exactly what the division below yields, without its cost
+    return angle_rad;  // the computation below gives the same value at a higher cost
   }
   return std::remainder(angle_rad, 2 * kPi);
 }
@@ -161,7 +163,7 @@ std::optional<ElbowUpKinematics> ElbowUpKinematics::make_if_suited(const RobotMo
                                                                    bool ik_bug) {
   try {
     return ElbowUpKinematics(model, ik_bug);
-  } catch (const Error&) {  // says why, which nobody wants to know here
+  } catch (const Error&) {  // the reason is not needed here
     return std::nullopt;
   }
 }

@@ -21,10 +21,10 @@ using Error6 = Eigen::Matrix<double, 6, 1>;
 using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0,
                              NumericKinematics::kMostJoints, NumericKinematics::kMostJoints>;
 
-// Of the arm's length: far below what any controller resolves.
+// Allowed error as a fraction of the arm's length; far below the accuracy of any controller.
 constexpr double kTolerance = 1e-10;
-constexpr double kDamping = 1e-9;  // of the largest diagonal element, where the error is nothing
-// Along a path a step begins next to its end; from nothing it takes its time.
+constexpr double kDamping = 1e-9;  // the least mu^2, as a fraction of the largest (J^T J)_ii
+// Following a path starts near the solution and needs few iterations; a search needs more.
 constexpr int kFollowIterations = 30;
 constexpr double kFollowStep = 0.5;  // rad or m
 constexpr int kSearchIterations = 200;
@@ -34,10 +34,11 @@ constexpr double kRelaxationShare = 0.2;
 constexpr double kRelaxed = 1e-7;
 constexpr int kRestarts = 60;
 constexpr int kRankPostures = 20;
-constexpr double kNoMotion = 1e-6;  // of the largest singular value
-// How far joints without ranges are drawn apart: revolute ones a turn, prismatic ones this.
+constexpr double kNoMotion =
+    1e-6;  // smaller singular values, as a fraction of the largest, count as 0
+// Joints without range are drawn from one turn (revolute) or from +-kSlide_m (prismatic).
 constexpr double kSlide_m = 1;
-constexpr double kShortest_m = 1e-3;  // an arm, so that nothing is divided by zero
+constexpr double kShortest_m = 1e-3;  // the least length of an arm; avoids a division by zero
 
 Matrix3d make_cross(const Vector3d& a) {
   Matrix3d cross;
@@ -45,7 +46,7 @@ Matrix3d make_cross(const Vector3d& a) {
   return cross;
 }
 
-// The vector along the axis of a rotation, as long as its angle in [0, pi].
+// Returns the rotation vector: along the rotation's axis, with the angle in [0, pi] as its length.
 Vector3d calc_rotation_vector(const Matrix3d& turn) {
   const Eigen::AngleAxisd rotation(turn);
   return rotation.angle() * rotation.axis();
@@ -76,7 +77,7 @@ std::string describe_task(ToolOrientation orientation) {
 struct NumericKinematics::Posture {
   Vector3d axis[kMostJoints];
   Vector3d place[kMostJoints];
-  Matrix3d turn;  // of the tip's frame
+  Matrix3d turn;  // orientation of the tip's frame
   Vector3d tip;
 };
 
@@ -153,7 +154,7 @@ void NumericKinematics::check_task(const RobotModel& robot) const {
     throw Error(
         ErrorKind::bad_data,
         fmt::format("the joints of robot '{}' move its tool in {} independent directions at most, "
-                    "but task.orientation = \"{}\" is about the {}; choose another orientation",
+                    "but task.orientation = \"{}\" tracks the {}; choose another orientation",
                     sanitize(robot.name), rank_,
                     tool_orientation_names()[static_cast<std::size_t>(tool_.orientation)],
                     describe_task(tool_.orientation)));
@@ -166,7 +167,7 @@ std::vector<double> NumericKinematics::draw_posture(RandomStream& random) const 
     const double widest = part.slides ? kSlide_m : std::numbers::pi;
     double lower = std::max(part.lower, -widest);
     double upper = std::min(part.upper, widest);
-    if (lower > upper) {  // a range that lies beyond
+    if (lower > upper) {  // the range lies outside +-widest
       lower = part.lower;
       upper = part.upper;
     }
@@ -205,7 +206,7 @@ Error6 NumericKinematics::calc_error(const ToolPose& target, const Posture& post
     case ToolOrientation::free:
       break;
     case ToolOrientation::pointing: {
-      // The turn that takes the tool's axis to where it should point.
+      // The rotation vector that turns the tool's axis to its target.
       const Vector3d is = posture.turn * tool_.axis;
       const Vector3d should = target.turn * tool_.axis;
       const Vector3d across = is.cross(should);
@@ -213,7 +214,7 @@ Error6 NumericKinematics::calc_error(const ToolPose& target, const Posture& post
       const double angle = std::atan2(sine, is.dot(should));
       if (sine > 0) {
         error.tail<3>() = tool_.arm_m * angle / sine * across;
-      } else if (angle > 1) {  // the opposite: any axis across will do
+      } else if (angle > 1) {  // opposite directions: any perpendicular axis is right
         error.tail<3>() = tool_.arm_m * angle * is.unitOrthogonal();
       }
       break;
@@ -238,7 +239,8 @@ NumericKinematics::Jacobian NumericKinematics::calc_jacobian(const Posture& post
     jacobian.col(i).head<3>() = axis.cross(posture.tip - posture.place[i]);
     if (tool_.orientation == ToolOrientation::pose) {
       jacobian.col(i).tail<3>() = tool_.arm_m * axis;
-    } else if (tool_.orientation == ToolOrientation::pointing) {  // turns about it do not count
+    } else if (tool_.orientation ==
+               ToolOrientation::pointing) {  // turns about the tool's axis are free
       jacobian.col(i).tail<3>() = tool_.arm_m * (axis - axis.dot(pointing) * pointing);
     }
   }
@@ -322,7 +324,7 @@ bool NumericKinematics::improve(const Jacobian& jacobian, const Error6& error, c
     if (worst < 0) {
       break;
     }
-    // That joint goes to the end of its range, whatever the others do.
+    // This joint is held at the end of its range; the others are solved again.
     const Part& part = chain_[static_cast<std::size_t>(worst)];
     const double way = std::clamp(q[worst] + step[worst], part.lower, part.upper) - q[worst];
     right -= way * normal.col(worst);
@@ -334,7 +336,7 @@ bool NumericKinematics::improve(const Jacobian& jacobian, const Error6& error, c
   }
   q += step;
   if (within_limits_) {
-    for (Eigen::Index i = 0; i < n; ++i) {  // what rounding may have left beyond
+    for (Eigen::Index i = 0; i < n; ++i) {  // rounding may leave a joint outside its range
       const Part& part = chain_[static_cast<std::size_t>(i)];
       q[i] = std::clamp(q[i], part.lower, part.upper);
     }

@@ -1,5 +1,5 @@
-// The formulas of targets.hpp for any lane type V of double. Only files compiled for one
-// instruction set include this, without fused multiply-add, and name their own `Isa` in V
+// The formulas of targets.hpp for any lane type V of double. Only files that are compiled for one
+// instruction set, without fused multiply-add, include this header. Each uses its own `Isa` in V
 // (lane_pack.hpp).
 #pragma once
 
@@ -24,7 +24,7 @@ ARMWRIGHT_INLINE V calc_distance(const SignalCurve& curve, V t) {
     case SignalShape::step:
       return s;
     case SignalShape::ramp:
-      s = V(curve.speed_m_per_s) * t;  // before t_m it cannot round to above ds
+      s = V(curve.speed_m_per_s) * t;  // before t_m rounding cannot exceed ds
       break;
     case SignalShape::trapezoid: {
       const V plateau = acceleration * ramp_up * (t - V(0.5) * ramp_up);
@@ -37,7 +37,7 @@ ARMWRIGHT_INLINE V calc_distance(const SignalCurve& curve, V t) {
                  V(0.5) * acceleration * t * t);
       break;
     case SignalShape::complex: {
-      // In x = v t / ds = t / t_m; the speed peaks at x = 0.4, where both pieces give ds / 2.
+      // x = v t / ds = t / t_m. The speed peaks at x = 0.4, where both pieces give ds / 2.
       const V x = t / V(curve.duration_s);
       const V rest = V(1.0) - x;
       s = select(x > V(0.4), whole * (V(1.0) - V(125.0 / 54.0) * rest * rest * rest),
@@ -53,12 +53,12 @@ struct Point {
   V x, y, z;
 };
 
-// `step` may be any whole numbers, one a lane.
+// Returns the target's position in each lane. `step` has one whole number per lane.
 template <class V>
 ARMWRIGHT_INLINE Point<V> calc_position(const Move& move, V step) {
   const V time = (step + V(1.0)) * V(move.period_s);
   const V share = calc_distance(move.curve, time) / V(move.curve.distance_m);
-  // From t_m on the point itself, not the start plus a rounded move.
+  // From t_m on this is exactly the end point, not the start plus a rounded move.
   const auto moving = time < V(move.curve.duration_s);
   const auto place = [&](int i) __attribute__((always_inline)) {
     return select(moving, V(move.from_m[i]) + V(move.way_m[i]) * share, V(move.to_m[i]));
@@ -66,7 +66,8 @@ ARMWRIGHT_INLINE Point<V> calc_position(const Move& move, V step) {
   return {place(0), place(1), place(2)};
 }
 
-// The wrist, which hangs above the target, from the shoulder in the arm's vertical plane.
+// The wrist's position relative to the shoulder in the arm's vertical plane; the wrist is above the
+// target.
 template <class V>
 struct Wrist {
   V forward, up, squared_distance;  // f, e, b^2
@@ -84,7 +85,8 @@ ARMWRIGHT_INLINE Wrist<V> calc_wrist(const ElbowUpArm& arm, Point<V> target) {
   return wrist;
 }
 
-// One bit a lane, set where the target is within reach. Elsewhere the angles are of no use.
+// Writes the four angles of each lane. Returns one bit per lane, set if the target is within reach;
+// the angles of other lanes are invalid.
 template <class V>
 ARMWRIGHT_INLINE unsigned solve(const ElbowUpArm& arm, Point<V> target, V* angles) {
   const double a = arm.forearm_m;
@@ -93,12 +95,13 @@ ARMWRIGHT_INLINE unsigned solve(const ElbowUpArm& arm, Point<V> target, V* angle
   const V nearest = (a - c) * (a - c);
   const Wrist<V> wrist = calc_wrist(arm, target);
   const V b2 = wrist.squared_distance;
-  // The first bits catch what is no number and a wrist in the shoulder.
+  // The first comparison excludes NaN and a wrist that coincides with the shoulder.
   const unsigned reached =
       find_less(V(0.0), b2) & ~find_less(farthest, b2) & ~find_less(b2, nearest);
 
-  // The upper arm's elevation is the wrist's plus beta: the direction (f, e) turned by an angle
-  // with the tangent area / along. Where the wrist's is positive the sum is, even if it exceeds pi.
+  // The upper arm's elevation is the wrist's elevation plus beta: the direction (f, e) is turned by
+  // an angle with the tangent area / along. If the wrist's elevation is positive, so is the sum,
+  // also beyond pi.
   const V area = sqrt((farthest - b2) * (b2 - nearest));
   const V along = b2 + V(c * c - a * a);
   const V direction =
@@ -110,8 +113,8 @@ ARMWRIGHT_INLINE unsigned solve(const ElbowUpArm& arm, Point<V> target, V* angle
   const V forearm_elevation = upper_arm_elevation - bend;
   constexpr double kLastLinkElevation = -1.57079632679489661923;
 
-  // A positive rotation about +y tips a link down, so the angles of joints 2 to i add up to its
-  // elevation at angle zero less the one it is to have.
+  // A positive rotation about +y tips a link down. So the angles of joints 2 to i add up to the
+  // link's elevation at angle zero minus its wanted elevation.
   const V q2 = V(arm.upper_arm_zero_rad) - upper_arm_elevation;
   const V q23 = V(arm.forearm_zero_rad) - forearm_elevation;
   const V q234 = arm.last_link_zero_rad - kLastLinkElevation;
@@ -122,7 +125,7 @@ ARMWRIGHT_INLINE unsigned solve(const ElbowUpArm& arm, Point<V> target, V* angle
   return reached;
 }
 
-// From four packs to four numbers a lane, for the first `count` lanes.
+// Writes four packs as rows of four numbers, one row per lane, for the first `count` lanes.
 template <class V>
 ARMWRIGHT_INLINE void write_rows(const V* angles, int count, double* rows) {
   double numbers[4][V::kLanes];
@@ -134,6 +137,7 @@ ARMWRIGHT_INLINE void write_rows(const V* angles, int count, double* rows) {
   }
 }
 
+// Implements SolveMove (targets.hpp) for one lane type.
 template <class V>
 ARMWRIGHT_INLINE int solve_move(const ElbowUpArm& arm, const Move& move, int steps, double* rows) {
   constexpr int kLanes = V::kLanes;

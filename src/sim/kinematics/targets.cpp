@@ -17,7 +17,7 @@ SolveMove get_solve_move(SimdLevel level) {
       break;
   }
 #else
-  (void)level;  // no other is supported
+  (void)level;  // only `scalar` is supported
 #endif
   return solve_move_scalar;
 }

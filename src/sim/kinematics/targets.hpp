@@ -1,11 +1,13 @@
-// Where the moving target is and which joint angles put an elbow-up arm's tip there: plain numbers
-// and functions on them, behind ReferenceSignal, ElbowUpKinematics and TrackingSetup. Their
-// formulas are written once (target_kernel.hpp), for one number or a SIMD register of them.
+// The position of the moving target and the joint angles that put an elbow-up arm's tip there.
+// ReferenceSignal, ElbowUpKinematics and TrackingSetup use these plain structs and functions. The
+// formulas are written once (target_kernel.hpp), for one number or for a SIMD register of numbers.
 //
-// The angles feed every engine, so they are the same bits at every SIMD level and on every machine:
-// correctly rounded operations only, in the same order, none fused.
+// Every engine uses these angles. Therefore they have the same bits at every SIMD level and on
+// every machine: the code uses only correctly rounded operations, in a fixed order, without fused
+// multiply-add.
 //
-// Nothing of the standard library here: this is compiled for every instruction set (lane_pack.hpp).
+// This header does not use templates of the standard library, because it is compiled for every
+// instruction set (lane_pack.hpp).
 #pragma once
 
 #include <cstdint>
@@ -17,20 +19,20 @@ enum class SignalShape { step, ramp, trapezoid, triangular, complex };
 
 namespace targets {
 
-// The numbers of a ReferenceSignal; see there.
+// The parameters of a ReferenceSignal, which explains them.
 struct SignalCurve {
   SignalShape shape = SignalShape::complex;
   double distance_m = 0;
   double speed_m_per_s = 0;
   double duration_s = 0;             // t_m
-  double ramp_up_s = 0;              // trapezoid: how long it accelerates
-  double acceleration_m_per_s2 = 0;  // trapezoid and triangular: the one used
+  double ramp_up_s = 0;              // trapezoid: duration of the acceleration
+  double acceleration_m_per_s2 = 0;  // trapezoid and triangular only
 };
 
-// The numbers of an ElbowUpKinematics; see there.
+// The parameters of an ElbowUpKinematics, which explains them.
 struct ElbowUpArm {
-  double sign[4] = {};            // -1 where a joint's axis is the opposite of +z (the first) or +y
-  double shoulder_radius_m = 0;   // g: of joint 2 from the first axis
+  double sign[4] = {};            // -1 if an axis points along -z (joint 1) or -y, else +1
+  double shoulder_radius_m = 0;   // g: distance of joint 2 from the first axis
   double shoulder_height_m = 0;   // h
   double upper_arm_m = 0;         // c
   double forearm_m = 0;           // a
@@ -38,11 +40,11 @@ struct ElbowUpArm {
   double upper_arm_zero_rad = 0;  // elevation of each part at angle 0
   double forearm_zero_rad = 0;
   double last_link_zero_rad = 0;
-  double shoulder_offset_m = 0;  // o: the thesis's error puts it that far beside the arm's plane
+  double shoulder_offset_m = 0;  // o: kIkBugOffset_m with the thesis's error, else 0
 };
 
-// The target's move from one point to the next. At the end of step k its clock shows (k + 1) h;
-// from t_m on it is at the second point, exactly.
+// A move of the target from one point to the next. At the end of step k (from 0) the move's time is
+// (k + 1) h. From the time t_m on, the target is exactly at the second point.
 struct Move {
   double from_m[3] = {};
   double to_m[3] = {};
@@ -51,20 +53,26 @@ struct Move {
   double period_s = 0;  // h
 };
 
-double calc_angle(double y, double x);  // atan2; lane_trigonometry.hpp says how exact
+// Returns atan2(y, x) in rad; lane_trigonometry.hpp states the error.
+double calc_angle(double y, double x);
+// Returns how far the target has moved along its way after t_s (m).
 double calc_distance(const SignalCurve& curve, double t_s);
+// Writes the target's position at the end of the step (m).
 void calc_position(const Move& move, int step, double position_m[3]);
-// How far the wrist is from the shoulder with the tip at the target.
+// Returns the distance of the wrist from the shoulder (m) with the tip at the target.
 double calc_wrist_distance(const ElbowUpArm& arm, const double target_m[3]);
-// False, and the angles untouched, if the target is out of reach.
+// Writes the four angles (rad) for a tip at the target. Returns false and leaves them unchanged if
+// the target is out of reach.
 bool solve(const ElbowUpArm& arm, const double target_m[3], double angles_rad[4]);
 
-// The angles for steps 0 to `steps` - 1 of the move, four a step. Returns how many steps can be
-// reached before the first that cannot, the angles behind them being of no use.
+// Writes the angles (rad) for steps 0 to `steps` - 1 of the move, four per step. Returns the number
+// of steps before the first one whose target is out of reach; the angles of later steps are
+// invalid.
 using SolveMove = int (*)(const ElbowUpArm& arm, const Move& move, int steps, double* angles_rad);
-SolveMove get_solve_move(SimdLevel level);  // the level must be supported by this CPU
+// Returns the function for the level, which this CPU must support.
+SolveMove get_solve_move(SimdLevel level);
 
-// Each defined in a file that is compiled for its instruction set.
+// Each function is defined in a file that is compiled for its instruction set.
 int solve_move_scalar(const ElbowUpArm& arm, const Move& move, int steps, double* angles_rad);
 int solve_move_sse2(const ElbowUpArm& arm, const Move& move, int steps, double* angles_rad);
 int solve_move_avx2(const ElbowUpArm& arm, const Move& move, int steps, double* angles_rad);

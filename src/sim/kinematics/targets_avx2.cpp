@@ -1,5 +1,6 @@
-// The targets with AVX2, without FMA: src/CMakeLists.txt compiles this file for it.
-// Nothing may be included here that other files share functions with.
+// The targets with AVX2, without FMA; src/CMakeLists.txt sets the compiler's options for this file.
+// It must not include headers whose functions other files use too, because the linker could merge
+// them.
 #include "sim/kinematics/target_kernel.hpp"
 
 #if defined(__x86_64__)
@@ -7,7 +8,7 @@
 namespace armwright::targets {
 
 struct Avx2Level;
-// Two at a time: one waits too long for its own results.
+// Two packs at a time, because a single one waits too long for its own results.
 using Numbers = lanes::Pair<lanes::Pack<double, 4, Avx2Level>>;
 
 int solve_move_avx2(const ElbowUpArm& arm, const Move& move, int steps, double* angles_rad) {

@@ -1,5 +1,6 @@
-// The targets with AVX-512 (F, VL, DQ, BW), nothing fused: src/CMakeLists.txt
-// compiles this file for it. Nothing may be included here that other files share functions with.
+// The targets with AVX-512 (F, VL, DQ, BW), without fused multiply-add; src/CMakeLists.txt sets the
+// compiler's options for this file. It must not include headers whose functions other files use
+// too, because the linker could merge them.
 #include "sim/kinematics/target_kernel.hpp"
 
 #if defined(__x86_64__)

@@ -1,4 +1,4 @@
-// The targets one by one, on any machine, and the functions that are asked for one only.
+// The targets one by one, for any machine, and the functions of targets.hpp for a single target.
 #include "sim/kinematics/target_kernel.hpp"
 
 namespace armwright::targets {

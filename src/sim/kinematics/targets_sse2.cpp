@@ -1,4 +1,4 @@
-// The targets with SSE2, which every x86-64 has.
+// The targets with SSE2, which every x86-64 CPU supports.
 #include "sim/kinematics/target_kernel.hpp"
 
 #if defined(__x86_64__)
@@ -6,7 +6,7 @@
 namespace armwright::targets {
 
 struct Sse2Level;
-// Two at a time: one waits too long for its own results.
+// Two packs at a time, because a single one waits too long for its own results.
 using Numbers = lanes::Pair<lanes::Pack<double, 2, Sse2Level>>;
 
 int solve_move_sse2(const ElbowUpArm& arm, const Move& move, int steps, double* angles_rad) {

@@ -36,7 +36,7 @@ Eigen::Matrix3d make_turn(const Eigen::Vector3d& rpy_rad) {
 Eigen::Vector3d calc_rpy(const Eigen::Matrix3d& turn) {
   const double across = std::hypot(turn(0, 0), turn(1, 0));
   const double pitch = std::atan2(-turn(2, 0), across);
-  // Looking straight up or down roll and yaw turn about the same axis: all of it is called yaw.
+  // At a pitch of +-pi/2 roll and yaw turn about the same axis. The whole turn counts as yaw.
   constexpr double kVertical = 1e-9;
   if (across < kVertical) {
     return {0, pitch, std::atan2(-turn(0, 1), turn(1, 1))};

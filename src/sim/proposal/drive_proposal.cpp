@@ -11,6 +11,7 @@
 #include "base/text.hpp"
 #include "sim/engines/articulated/articulated_arm.hpp"
 #include "sim/proposal/workspace_proposal.hpp"
+#include "sim/tracking/tracking_setup.hpp"
 
 namespace armwright {
 namespace {
@@ -22,15 +23,15 @@ constexpr int kSlowdowns = 20;
 
 constexpr double kBandwidth_rad_per_s = 10;
 constexpr double kDampingRatio = 0.7;
-// Of the 2 at which sampled damping diverges.
+// The largest h D (M^-1)_ii; sampled damping diverges at 2.
 constexpr double kMostSampledDamping = 0.7;
 constexpr double kEffortReserve = 2;
 constexpr double kUsualEffortShare = 0.1;
 constexpr double kMostReserve = 10;
 constexpr double kLeastAcceleration = 5;  // rad/s^2 or m/s^2
-constexpr int kStepsBetween = 20;         // at which the mass matrix is looked at
+constexpr int kStepsBetween = 20;         // steps between two evaluations of the mass matrix
 
-// The largest efforts that inverse dynamics asks for on the path, and the largest M_ii.
+// The largest efforts of inverse dynamics on the path and the largest M_ii, one per joint.
 struct Demand {
   std::vector<double> efforts;
   std::vector<double> inertia;
@@ -41,7 +42,7 @@ Demand calc_demand(const TrackingSetup& setup, const std::vector<TargetTable>& t
   const std::size_t n = setup.robot().joint_count();
   const std::vector<double> nothing(n, 0);
   Demand demand{nothing, nothing, nothing};
-  ArticulatedArm arm(setup.robot(), tables.front().start_rad, setup.task().physics);
+  ArticulatedArm arm(setup.robot(), tables.front().start_positions, setup.task().physics);
   const std::vector<double> rest(n, 0);
   for (const TargetTable& table : tables) {
     for (int step = 0; step < table.steps; ++step) {
@@ -50,7 +51,7 @@ Demand calc_demand(const TrackingSetup& setup, const std::vector<TargetTable>& t
         demand.efforts[i] = std::max(demand.efforts[i], std::abs(efforts[i]));
       }
       if (step % kStepsBetween == 0) {
-        arm.set_state(table.angles(step), rest);
+        arm.set_state(table.positions(step), rest);
         const Eigen::MatrixXd mass = arm.calc_mass_matrix();
         const Eigen::MatrixXd inverse = mass.inverse();
         for (std::size_t i = 0; i < n; ++i) {
@@ -77,7 +78,7 @@ std::vector<TargetTable> make_tables(const RobotModel& robot, const TrackingSetu
   return tables;
 }
 
-// The joint that is asked for most of what its limit allows, and how much of it.
+// Returns the joint that uses the largest share of its limit, and that share.
 template <class GetShare>
 std::pair<std::size_t, double> find_busiest(std::size_t joints, const GetShare& get_share) {
   std::pair<std::size_t, double> busiest{0, 0};
@@ -95,7 +96,7 @@ std::pair<std::size_t, double> find_busiest(std::size_t joints, const GetShare& 
 double propose_speed(const RobotModel& robot, TrackingTask task,
                      const std::vector<TestCase>& cases) {
   if (task.limits == LimitPolicy::enforce) {
-    task.limits = LimitPolicy::warn;  // what it is too quick for is found out here
+    task.limits = LimitPolicy::warn;  // this function itself finds the speed that the limits allow
   }
   coarsen(task);
   task.feed_forward = FeedForward::inverse_dynamics;
@@ -106,14 +107,14 @@ double propose_speed(const RobotModel& robot, TrackingTask task,
     const std::vector<TargetTable> tables = make_tables(robot, setup, cases);
     std::vector<double> speeds(n, 0);
     for (const TargetTable& table : tables) {
-      std::span<const double> before = table.start_rad;
+      std::span<const double> before = table.start_positions;
       for (int step = 0; step < table.steps; ++step) {
         for (std::size_t i = 0; i < n; ++i) {
           const double way =
-              calc_displacement(robot.joints[i].kind, before[i], table.angles(step)[i]);
+              calc_displacement(robot.joints[i].kind, before[i], table.positions(step)[i]);
           speeds[i] = std::max(speeds[i], std::abs(way) / task.control_period_s);
         }
-        before = table.angles(step);
+        before = table.positions(step);
       }
     }
     const double fastest = find_busiest(n, [&](std::size_t i) {
@@ -133,7 +134,7 @@ double propose_speed(const RobotModel& robot, TrackingTask task,
     }
     if (round >= kSlowdowns) {
       if (share < 1) {
-        return task.speed_m_per_s;  // it can be held, but hardly more
+        return task.speed_m_per_s;  // the joint can hold the arm with a small reserve
       }
       refuse_proposal(
           robot,
@@ -171,7 +172,7 @@ ArmDesign propose_design(const RobotModel& robot, TrackingTask task,
     const double own = robot.joints[i].effort_limit;
     const double needed =
         std::max(kEffortReserve * demand.efforts[i], kLeastAcceleration * demand.inertia[i]);
-    // A tenth of what the joint can do, where that is not out of all proportion.
+    // A tenth of the joint's limit, but at most kMostReserve times the needed effort.
     const double usual =
         std::isfinite(own) ? std::min(kUsualEffortShare * own, kMostReserve * needed) : 0;
     const double limit = std::min(std::max(needed, usual), own);

@@ -17,21 +17,22 @@ namespace armwright {
 namespace {
 
 constexpr int kPostures = 400;
-constexpr std::size_t kHomes = 24;  // that a workspace is looked for about
+constexpr std::size_t kHomes = 24;  // postures around which a workspace is tried
 constexpr std::size_t kQuickCases = 3;
 constexpr int kCases = 8;
 constexpr int kMostPoints = 25;
 constexpr double kLook_s = 0.01;
 constexpr double kRest_s = 0.1;
-// Of the arm's length.
+// Fractions of the arm's length.
 constexpr double kLargestRadius = 0.35;
 constexpr double kSmallestRadius = 0.01;
 constexpr double kRadiusStep = 0.8;
-constexpr double kKeepOff = 1.15;      // radii between the sphere's centre and the first joint
-constexpr double kStepOfRadius = 0.1;  // how far apart a move is looked at
+constexpr double kKeepOff = 1.15;      // radii from the sphere's centre to the first joint
+constexpr double kStepOfRadius = 0.1;  // distance of the checked points on a move
 constexpr double kSafeDexterity = 3 * kSingularDexterity;
-constexpr double kKeepOffEnds = 0.02;  // of half a joint's range
-// The thesis's shape of cases: moves from the diameter down to a sixteenth of the radius.
+constexpr double kKeepOffEnds = 0.02;  // fraction of half a joint's range
+// As in the thesis's cases, moves are at most a diameter and at least a sixteenth of the radius
+// long.
 constexpr double kShortestOfRadius = 1.0 / 16;
 
 double calc_length_m(const RobotModel& robot) {
@@ -47,7 +48,8 @@ double calc_length_m(const RobotModel& robot) {
   return length_m;
 }
 
-// How far the joint that is nearest to an end of its range is from the middle: 1 at the end.
+// Returns the largest relative distance of a joint from the middle of its range: 0 in the middle, 1
+// at an end.
 double calc_excursion(const NumericKinematics& kinematics, const RobotModel& robot,
                       std::span<const double> q) {
   double farthest = 0;
@@ -60,10 +62,11 @@ double calc_excursion(const NumericKinematics& kinematics, const RobotModel& rob
   return farthest;
 }
 
-// How far a posture is from singularities and from the ends of the joints' ranges, in [0, 1].
+// Returns how far a posture is from singularities and from the ends of the joints' ranges, in [0,
+// 1].
 double calc_ease(const NumericKinematics& kinematics, const RobotModel& robot,
                  std::span<const double> q) {
-  // Ends of ranges hurt only those who come close.
+  // Only joints near an end of their range reduce the value.
   const double margin = std::max(0.0, 1 - calc_excursion(kinematics, robot, q));
   return kinematics.calc_dexterity(q) * std::min(1.0, 3 * margin);
 }
@@ -89,7 +92,7 @@ std::vector<std::vector<double>> choose_homes(const NumericKinematics& kinematic
   return homes;
 }
 
-// The normal of the plane that the tip moves in; nothing if it moves in space.
+// Returns the normal of the plane in which the tip moves, or nothing if it moves in space.
 std::optional<Eigen::Vector3d> find_plane(const NumericKinematics& kinematics,
                                           const RobotModel& robot, const ToolTask& tool,
                                           double length_m) {
@@ -108,7 +111,7 @@ std::optional<Eigen::Vector3d> find_plane(const NumericKinematics& kinematics,
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(
       Eigen::MatrixXd(kinematics.calc_jacobian(first).topRows<3>()), Eigen::ComputeFullU);
   Eigen::Vector3d normal = svd.matrixU().col(2);
-  // Of both normals the one that points up or, if it does neither, to the left or forwards.
+  // Chooses the normal that points up; if it is horizontal, the one that points left or forwards.
   const double sign = std::abs(normal.z()) > 1e-9   ? normal.z()
                       : std::abs(normal.y()) > 1e-9 ? normal.y()
                                                     : normal.x();
@@ -123,7 +126,7 @@ std::optional<Eigen::Vector3d> find_plane(const NumericKinematics& kinematics,
                       "move it in one plane (robot.tip can name another link)");
     }
   }
-  // Axes of a drawing come out as such.
+  // Components that are only rounding errors become exactly 0.
   for (double& part : normal) {
     part = std::abs(part) < 1e-9 ? 0 : part;
   }
@@ -135,7 +138,8 @@ bool touches_an_end(const NumericKinematics& kinematics, const RobotModel& robot
   return calc_excursion(kinematics, robot, q) > 1 - kKeepOffEnds;
 }
 
-// Whether straight moves through the case's points can be followed, looked at coarsely.
+// Returns whether the arm can follow straight moves through the points of the cases; checks
+// coarsely spaced points.
 bool can_follow(const NumericKinematics& kinematics, const RobotModel& robot,
                 const WorkspaceSphere& sphere, const Eigen::Matrix3d& turn, std::vector<double> q) {
   const std::size_t n = q.size();
@@ -167,7 +171,7 @@ bool can_follow(const NumericKinematics& kinematics, const RobotModel& robot,
   return true;
 }
 
-// The same by the tables of targets themselves, whichever kinematics make them.
+// Returns the same, checked with the target tables that simulations use.
 bool has_good_tables(const RobotModel& robot, TrackingTask task, const WorkspaceProposal& place) {
   coarsen(task);
   task.limits = LimitPolicy::warn;
@@ -183,7 +187,7 @@ bool has_good_tables(const RobotModel& robot, TrackingTask task, const Workspace
       return false;
     }
     for (int step = 0; step < table.steps; ++step) {
-      if (touches_an_end(*kinematics, robot, table.angles(step))) {
+      if (touches_an_end(*kinematics, robot, table.positions(step))) {
         return false;
       }
     }
@@ -251,7 +255,7 @@ WorkspaceProposal propose_workspace(const RobotModel& robot, const TrackingTask&
   }
   while (best && best->sphere.radius_m >= smallest_m) {
     const bool is_good = has_good_tables(robot, task, *best);
-    // Once more when it is good: room for unseen cases.
+    // A good sphere is made smaller once more, as a margin for cases that were not checked.
     set_radius(best->sphere, kRadiusStep * best->sphere.radius_m);
     if (is_good) {
       return *best;

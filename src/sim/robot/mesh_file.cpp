@@ -35,8 +35,8 @@ bool is_file(const std::filesystem::path& path) {
 
 #ifdef ARMWRIGHT_WITH_ASSIMP
 
-// Materials, textures and parts in other files stay closed: only shapes are wanted, and a mesh from
-// elsewhere must not make us read what it names.
+// Refuses to open any other file (materials, textures, parts). Only shapes are needed, and a mesh
+// from an untrusted source must not make armwright read files that it names.
 class NoFiles : public Assimp::IOSystem {
  public:
   bool Exists(const char*) const override { return false; }
@@ -50,7 +50,7 @@ std::string find_format(const std::filesystem::path& file) {
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
   if (ending != ".stl" && ending != ".obj" && ending != ".dae") {
-    fail(file, "not a mesh that can be read; these are: .stl, .obj, .dae");
+    fail(file, "this type of file is not a mesh; allowed are .stl, .obj and .dae");
   }
   return ending.substr(1);
 }
@@ -69,11 +69,11 @@ void append(TriangleMesh& mesh, const aiMesh& part, const std::filesystem::path&
   for (unsigned i = 0; i < part.mNumFaces; ++i) {
     const aiFace& face = part.mFaces[i];
     if (face.mNumIndices != 3) {
-      continue;  // a point or a line, which has no area
+      continue;  // a point or a line has no area
     }
     for (unsigned k = 0; k < 3; ++k) {
       if (face.mIndices[k] >= part.mNumVertices) {
-        fail(file, "a triangle has a vertex that is not there");
+        fail(file, "a triangle refers to a vertex that does not exist");
       }
       mesh.indices.push_back(first + face.mIndices[k]);
     }
@@ -101,7 +101,7 @@ std::optional<std::filesystem::path> find_mesh(const std::string& name,
   std::error_code error;
   std::filesystem::path here = std::filesystem::absolute(folder, error).lexically_normal();
   if (here.filename().empty()) {
-    here = here.parent_path();  // "a/b/" ends in nothing
+    here = here.parent_path();  // "a/b/" has an empty file name
   }
   for (;; here = here.parent_path()) {
     if (is_file(here / wanted)) {
@@ -130,7 +130,7 @@ TriangleMesh read_mesh(const std::filesystem::path& file) {
   const std::string content = read_file(file, kMeshFileLimit_bytes);
   Assimp::Importer importer;
   importer.SetIOHandler(new NoFiles);  // the importer deletes it
-  // URDF takes a mesh in the file's own axes, whatever Collada calls up.
+  // URDF uses a mesh in the file's own axes and ignores Collada's up axis.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   importer.SetPropertyInteger(
       AI_CONFIG_PP_RVC_FLAGS,

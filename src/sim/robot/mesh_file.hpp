@@ -1,5 +1,5 @@
-// Meshes that a URDF names: where they lie and what is in them. Read with Assimp, which is an
-// optional library of the build (ARMWRIGHT_WITH_ASSIMP).
+// Finds and reads the mesh files that a URDF names. Reading needs Assimp, which is an optional
+// library of the build (ARMWRIGHT_WITH_ASSIMP).
 #pragma once
 
 #include <cstddef>
@@ -11,26 +11,30 @@
 
 namespace armwright {
 
+// The largest mesh file that read_mesh() accepts.
 inline constexpr std::size_t kMeshFileLimit_bytes = std::size_t{64} << 20;
 
 struct TriangleMesh {
-  std::vector<float> positions;        // 3 a vertex
-  std::vector<std::uint32_t> indices;  // 3 a triangle
+  std::vector<float> positions;        // three coordinates per vertex, in the mesh's units
+  std::vector<std::uint32_t> indices;  // three vertex numbers per triangle
 };
 
-// The file that `name` means in a URDF of the folder: "package://NAME/REST" is NAME/REST beside the
-// folder or one of its parents, or REST in that of them which is called NAME; "file://PATH" and
-// absolute paths stand for themselves; anything else is looked for in the folder, then in its
-// parents. Nothing if there is no such file.
+// Returns the path of the mesh file `name`, as a URDF in `folder` refers to it, or nothing if the
+// file does not exist. The forms of `name`:
+//   package://NAME/REST     NAME/REST beside the folder or beside one of its parents, or REST in
+//                           the folder or parent that is called NAME
+//   file://PATH, /PATH      the path itself
+//   any other               that path in the folder, then in each of its parents
 std::optional<std::filesystem::path> find_mesh(const std::string& name,
                                                const std::filesystem::path& folder);
 
-// Whether this build can read any.
+// Returns whether this build can read mesh files (built with Assimp).
 bool can_read_meshes();
 
-// All triangles of an STL (binary or text), OBJ or Collada file of that size, in its own axes and
-// in units of it (Collada: in m). No other file is opened, whatever it refers to. Error{bad_data}
-// names the file and says what is wrong with it; Error{io} if it cannot be read.
+// Returns all triangles of an STL (binary or text), OBJ or Collada file, in the file's axes and
+// units (Collada: in m). Opens no other file that this one refers to. Throws Error{bad_data} if the
+// file exceeds kMeshFileLimit_bytes, has another format or is damaged; the message names the file.
+// Throws Error{io} if the file cannot be read.
 TriangleMesh read_mesh(const std::filesystem::path& file);
 
 }  // namespace armwright

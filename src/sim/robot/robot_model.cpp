@@ -21,7 +21,7 @@ Eigen::Matrix3d calc_point_inertia(double mass_kg, const Eigen::Vector3d& r) {
 
 Inertial combine(const Inertial& a, const Inertial& b) {
   if (a.mass_kg == 0 || b.mass_kg == 0) {
-    return a.mass_kg == 0 ? b : a;  // to the last bit, whatever the other's frame
+    return a.mass_kg == 0 ? b : a;  // unchanged to the last bit
   }
   Inertial sum;
   sum.mass_kg = a.mass_kg + b.mass_kg;
@@ -67,10 +67,10 @@ RobotModel add_load(RobotModel model, double mass_kg) {
   if (model.links.empty() || tip.norm() == 0) {
     throw Error(
         ErrorKind::bad_data,
-        fmt::format("robot '{}' cannot carry a load: its tip is the origin of its last link, which "
-                    "leaves open "
-                    "where the flange points; add a link without mass on a fixed joint at the tip",
-                    sanitize(model.name)));
+        fmt::format(
+            "robot '{}' cannot carry a load: its tip is the origin of its last link, so the "
+            "flange has no direction; add a link without mass on a fixed joint at the tip",
+            sanitize(model.name)));
   }
   const Eigen::Vector3d direction = tip.normalized();
 

@@ -1,11 +1,10 @@
-// A robot arm as the rest of the program sees it: a serial chain of revolute and prismatic joints
-// on a fixed base, read from URDF behind our own strict validation (urdfdom 3.0.1 takes mass "nan",
-// "1.5kg" and the like as 0, accepts negative masses and inertia tensors that no body can have, and
-// crashes on deep nesting).
+// The model of a robot arm: a serial chain of revolute and prismatic joints on a fixed base. It is
+// read from a URDF file. The reader validates everything that it uses; for example, it refuses
+// values that are not finite numbers, negative masses, and inertia tensors that no body can have.
 //
-// Frames: a link's frame is its joint's frame (URDF's convention); that of a prismatic joint moves
-// with the link. Links joined by fixed joints are lumped into the link that carries them. SI units,
-// angles in rad.
+// Frames: a link's frame is its joint's frame, as in URDF. The frame of a prismatic joint moves
+// with its link. A link on a fixed joint becomes part of the link that carries it. Units are SI;
+// angles are in rad.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -18,21 +17,25 @@
 
 namespace armwright {
 
+// The mass properties of a rigid body.
 struct Inertial {
   double mass_kg = 0;
   Eigen::Vector3d com_m = Eigen::Vector3d::Zero();  // in the link's frame
   Eigen::Matrix3d inertia_kg_m2 =
-      Eigen::Matrix3d::Zero();  // about the centre of mass, along the link's axes
+      Eigen::Matrix3d::Zero();  // about the centre of mass, in the link's axes
 };
 
-// Rigidly joins two bodies given in the same frame (parallel-axis theorem).
+// Returns the mass properties of two rigidly joined bodies, both given in the same frame
+// (parallel-axis theorem).
 Inertial combine(const Inertial& a, const Inertial& b);
-// The same body seen from a frame in which its old frame has the pose `pose`.
+// Returns the same body expressed in another frame; `pose` is the pose of its old frame in that
+// frame.
 Inertial transform(const Inertial& body, const Eigen::Isometry3d& pose);
 
 enum class ShapeKind { box, cylinder, sphere, mesh };
 
-// What a link looks like; never used in a simulation.
+// One visual shape of a link. Simulations do not use it; it can give a link its mass
+// (RobotOptions).
 struct VisualShape {
   ShapeKind kind = ShapeKind::box;
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();  // box: edges; cylinder: radius, length, 0;
@@ -48,8 +51,9 @@ struct Link {
   std::vector<VisualShape> visuals;
 };
 
-// A revolute joint turns about its axis by an angle in rad (a continuous one is revolute with
-// infinite limits); a prismatic joint moves along it by a distance in m.
+// A revolute joint turns about its axis; its position is an angle in rad. A continuous joint of
+// URDF is revolute with infinite limits. A prismatic joint moves along its axis; its position is a
+// distance in m.
 enum class JointKind { revolute, prismatic };
 
 struct Joint {
@@ -64,7 +68,7 @@ struct Joint {
   double effort_limit = 0;  // N m or N
 };
 
-// A mesh that a link's mass was taken from.
+// A mesh file from which the mass of a link was computed.
 struct MassFile {
   std::string name;  // as written in the URDF
   std::filesystem::path path;
@@ -72,38 +76,40 @@ struct MassFile {
 
 struct RobotModel {
   std::string name;
-  Link base;                  // fixed to the world, its frame is the world's
+  Link base;                  // fixed to the world; its frame is the world's
   std::vector<Joint> joints;  // from the base to the tip
   std::vector<Link> links;    // links[i] is moved by joints[i]
   Eigen::Isometry3d tip_pose =
       Eigen::Isometry3d::Identity();  // tool centre point in the last link's frame
-  // Points of the tool, in the last link's frame, whose distance from their targets is measured;
-  // none: the tool centre point's. At most four (sim/tool_task.hpp makes them).
+  // The points of the tool whose distances from their targets are measured, in the last link's
+  // frame. At most four (make_tool_points() of sim/kinematics/tool_task.hpp). Empty: the tool
+  // centre point is measured.
   std::vector<Eigen::Vector3d> tool_points_m;
-  // What the file says and no simulation does, and what was done on the user's behalf: a whole line
-  // each, fit for a terminal.
+  // Notes for the user, one line each, safe to print on a terminal. They name the parts of the file
+  // that simulations ignore and the assumptions that the reader made.
   std::vector<std::string> notes;
-  // The meshes that masses were taken from.
+  // The mesh files from which masses were computed.
   std::vector<MassFile> mass_files;
 
   std::size_t joint_count() const { return joints.size(); }
 };
 
-// What of a URDF is simulated, and how.
+// Options that select the simulated chain of a URDF and give links a mass.
 struct RobotOptions {
-  std::string base = {};         // the link that the chain begins at; empty: the root
-  std::string tip = {};          // the link that it ends at; empty: the only leaf below the base
-  double density_kg_per_m3 = 0;  // of moving links without <inertial>; 0: they have no mass
+  std::string base = {};         // the chain's first link; empty: the root
+  std::string tip = {};          // the chain's last link; empty: the only leaf below the base
+  double density_kg_per_m3 = 0;  // density of moving links without <inertial>; 0: no mass
 };
 
-// An option does not fit the file. The message begins with the file's name.
+// An Error{usage}: a member of RobotOptions does not fit the file. The message begins with the
+// file's name.
 class RobotOptionError final : public Error {
  public:
   RobotOptionError(std::string option, const std::string& message,
                    std::vector<std::string> leaves = {})
       : Error(ErrorKind::usage, message), option_(std::move(option)), leaves_(std::move(leaves)) {}
-  // The member's name; "tip" also where it must be given and is not. Then leaves() has the ends of
-  // the branches, in the file's order.
+  // Returns the name of the member of RobotOptions. It is "tip" also if the tip is missing but
+  // needed; then leaves() returns the links at the ends of the branches, in the file's order.
   const std::string& option() const { return option_; }
   const std::vector<std::string>& leaves() const { return leaves_; }
 
@@ -112,39 +118,54 @@ class RobotOptionError final : public Error {
   std::vector<std::string> leaves_;
 };
 
-// Reads and validates a URDF. Its links are a tree; the chain runs from the link `options.base`
-// down to the link `options.tip`, and its joints move. All others are held at position 0, or at the
-// end of their range that is nearest to it, and their links lumped into those that carry them: what
-// hangs beside the chain or beyond the tip into a moving link, what is above or beside `base` into
-// the fixed base. The world's frame is the root link's, the tip's frame the tool centre point.
+// Reads and validates a URDF. load_urdf() reads the file `file`; parse_urdf() reads the text `xml`
+// and uses `name` as the file's name in messages and to find meshes.
 //
-// Of a URDF are used: inertial, visual, joint origins, axes and limits. A limit of effort or
-// velocity of 0, a placeholder, is none. At a density the moving links without <inertial> get mass,
-// centre of mass and inertia of their visual shapes (shape_mass.hpp). `notes` says what was done
-// and what is left out (docs/robots.md).
+// The links of a URDF form a tree. The chain runs from the link `options.base` down to the link
+// `options.tip`; only the joints between them move. Every other joint is held at position 0, or at
+// the end of its range that is nearest to 0. Its links become part of the link that carries them.
+// Links beside the chain or beyond the tip become part of a moving link; links above or beside
+// `base` become part of the fixed base. The world's frame is the root link's frame. The tip's frame
+// is the tool centre point.
 //
-// Throws RobotOptionError for a base or tip that is no link, a base that is not above the tip, no
-// moving joint between them, several leaves and no tip named, a density that is not finite and >=
-// 0. Throws Error{bad_data} "FILE:LINE: what is wrong, what is allowed" for: a file over 8 MiB or
-// nested deeper than 64; document types; anything that is not a finite number where one belongs;
-// misspelt elements and attributes; xacro; names used twice; links that are no tree; a moving link
-// without mass; mass <= 0; an inertia that is not symmetric positive definite or violates the
-// triangle inequality of principal moments (all zero, with mass 0: no mass); a zero axis; on the
-// chain a revolute or prismatic joint without limits, lower > upper, speed or effort limits < 0,
-// mimic, and any type but revolute, continuous, prismatic and fixed; a mesh that gives no mass; all
-// that urdfdom itself refuses. load_urdf(): Error{io} if the file cannot be read.
+// The reader uses the inertial and visual elements and the joints' origins, axes and limits. An
+// effort or velocity limit of 0 is a placeholder and means no limit. If `options.density_kg_per_m3`
+// is positive, each moving link without <inertial> gets the mass properties of its visual shapes
+// (shape_mass.hpp). RobotModel::notes names these assumptions and all parts that are ignored
+// (docs/robots.md).
+//
+// Throws RobotOptionError if
+// - the base or tip is not a link, or the base is not above the tip,
+// - no joint between them moves,
+// - there are several leaves and no tip is given,
+// - the density is not finite or is negative.
+//
+// Throws Error{bad_data} "FILE:LINE: what is wrong, what is allowed" for
+// - a file over 8 MiB, nesting deeper than 64, document types, a version other than 1.0, xacro,
+// - misspelt elements and attributes, and values that are not finite numbers,
+// - names used twice, and links that do not form a tree,
+// - a moving link without mass, or a mass <= 0 (mass 0 with an all-zero inertia means no mass),
+// - an inertia that is not symmetric positive definite or violates the triangle inequality of the
+//   principal moments,
+// - a mesh that is needed for a mass and cannot give one,
+// - a zero axis,
+// - on the chain: a revolute or prismatic joint without limits, lower > upper, speed or effort
+//   limits < 0, mimic, and any type except revolute, continuous, prismatic and fixed.
+//
+// load_urdf() throws Error{io} if the file cannot be read.
 RobotModel load_urdf(const std::filesystem::path& file, const RobotOptions& options = {});
 RobotModel parse_urdf(std::string_view xml, const std::string& name,
                       const RobotOptions& options = {});
 
-// A steel block on the flange: `mass_kg` as a box of 0.16825 x 0.16825 x 0.09 m (the thesis's load,
-// section 6.4) whose short side points along the last link, its centre 45 mm beyond the tip. Other
-// masses keep the shape and scale the density. Error{usage} unless the mass is finite and >= 0;
-// Error{bad_data} if the tip lies in the last joint, which leaves no direction.
+// Returns the robot with a steel block on its flange. The block is a box of 0.16825 x 0.16825 x
+// 0.09 m (the thesis's load, section 6.4). Its short side points along the last link and its centre
+// lies 45 mm beyond the tip. `mass_kg` changes the density, not the shape. Throws Error{usage} if
+// the mass is not finite or is negative, Error{bad_data} if the tip lies in the last joint, because
+// then the last link has no direction.
 RobotModel add_load(RobotModel model, double mass_kg);
 
-// Every moving link's mass and inertia times `factor`, as if of another density. Error{usage}
-// unless it is finite and > 0.
+// Returns the robot with the mass and inertia of each moving link multiplied by `factor`, as if its
+// density were changed. Throws Error{usage} if the factor is not finite and positive.
 RobotModel scale_masses(RobotModel model, double factor);
 
 }  // namespace armwright

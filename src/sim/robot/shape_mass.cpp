@@ -16,8 +16,8 @@ namespace {
 
 using std::numbers::pi;
 
-// Less than this part of the cube of a mesh's diagonal is no volume but rounding: a sheet of metal
-// of 1 m by 1 m by 1 um has three times as much.
+// A volume below this fraction of the cube of the mesh's diagonal counts as rounding error. For
+// comparison: a metal sheet of 1 m by 1 m by 1 um has three times this fraction.
 constexpr double kThinnest = 1e-7;
 
 constexpr std::string_view kRemedy = "repair the mesh, or give the link an <inertial> element";
@@ -26,7 +26,8 @@ Inertial make_body(double mass_kg, double ixx, double iyy, double izz) {
   return {mass_kg, Eigen::Vector3d::Zero(), Eigen::Vector3d(ixx, iyy, izz).asDiagonal()};
 }
 
-// Solids about their centres (any table of moments of inertia); a cylinder's axis is z.
+// The mass properties of solids about their centres, from the standard formulas. A cylinder's axis
+// is z.
 Inertial make_box(const Eigen::Vector3d& edges, double density_kg_per_m3) {
   const double mass = density_kg_per_m3 * edges.prod();
   const Eigen::Vector3d squares = edges.cwiseAbs2() * (mass / 12);
@@ -56,9 +57,9 @@ Inertial calc_file_inertial(const VisualShape& shape, double density_kg_per_m3,
   file = find_mesh(shape.mesh_file, folder);
   if (!file) {
     throw Error(ErrorKind::bad_data,
-                fmt::format("there is no mesh '{}' in the URDF's folder and those above, which "
-                            "gives the link its mass; put it there, or give the link an "
-                            "<inertial> element",
+                fmt::format("there is no mesh '{}' in the URDF's folder and the folders above it, "
+                            "but the link's mass comes from this mesh; put it there, or give the "
+                            "link an <inertial> element",
                             name));
   }
   const TriangleMesh mesh = read_mesh(*file);
@@ -82,14 +83,14 @@ std::optional<std::string> find_gap(const TriangleMesh& mesh) {
   std::map<Point, std::uint32_t> points;
   std::vector<std::uint32_t> merged;
   for (std::size_t i = 0; i < mesh.positions.size(); i += 3) {
-    // -0 is 0
+    // Adding 0 turns -0 into 0.
     const Point point{mesh.positions[i] + 0.0F, mesh.positions[i + 1] + 0.0F,
                       mesh.positions[i + 2] + 0.0F};
     merged.push_back(
         points.emplace(point, static_cast<std::uint32_t>(points.size())).first->second);
   }
-  // Of each edge, how many triangles have it, and how many more of them run along it one way than
-  // the other: the boundary, which a closed surface lacks.
+  // Counts per edge its triangles, and the difference between the numbers of triangles that run
+  // along it in each direction. In a closed surface this difference is 0 at every edge.
   struct Edge {
     int triangles = 0;
     int direction = 0;
@@ -150,8 +151,8 @@ Inertial calc_mesh_inertial(const TriangleMesh& mesh, const Eigen::Vector3d& sca
   if (!(volume > kThinnest * diagonal_m * diagonal_m * diagonal_m)) {
     throw Error(ErrorKind::bad_data,
                 fmt::format("its volume is {:.3g} m3{}", volume,
-                            volume < 0 ? ", as if its triangles showed their backs outside"
-                                       : ", of a sheet without thickness"));
+                            volume < 0 ? ", as if its triangles faced inwards"
+                                       : ", like that of a sheet without thickness"));
   }
   const Eigen::Vector3d com = first / volume;
   const Eigen::Matrix3d about_com = second - volume * com * com.transpose();

@@ -1,11 +1,12 @@
-// Mass, centre of mass and inertia of solid shapes of one density. A mesh is the solid that its
-// triangles enclose: its integrals of 1, r and r r^T are sums over the tetrahedra between the
-// triangles and one point, signed by the triangles' orientation,
+// Computes mass, centre of mass and inertia of solid shapes of uniform density. A mesh stands for
+// the solid that its triangles enclose. Each triangle forms a tetrahedron with one common point.
+// The integrals of 1, r and r r^T over the solid are sums over these tetrahedra, with the signs of
+// the triangles' orientations:
 //   V = sum d/6,  int r dV = sum d/24 s,  int r r^T dV = sum d/120 (s s^T + a a^T + b b^T + c c^T)
-// with corners a, b, c from that point, d = a . (b x c) and s = a + b + c (the divergence theorem;
-// as B. Mirtich, "Fast and accurate computation of polyhedral mass properties", J. Graphics Tools
-// 1(2), 1996, and D. Eberly, "Polyhedral mass properties (revisited)", 2002, come to it by way of
-// surface and line integrals).
+// Here a, b, c are the triangle's corners relative to the common point, d = a . (b x c), and s = a
+// + b + c. This follows from the divergence theorem. B. Mirtich, "Fast and accurate computation of
+// polyhedral mass properties", J. Graphics Tools 1(2), 1996, and D. Eberly, "Polyhedral mass
+// properties (revisited)", 2002, derive it from surface and line integrals.
 #pragma once
 
 #include <filesystem>
@@ -17,19 +18,21 @@
 
 namespace armwright {
 
-// Why a mesh encloses no solid: edges whose triangles are missing or lie the other way round. The
-// corners of triangles are the same where they have the same coordinates. Nothing if it is closed.
+// Returns nothing if the mesh is closed; otherwise the reason why it encloses no solid: an edge
+// lacks a triangle, or two triangles at an edge have opposite orientations. Corners with equal
+// coordinates count as the same corner.
 std::optional<std::string> find_gap(const TriangleMesh& mesh);
 
-// Of a mesh without gap, in the frame in which `scale` stretches its coordinates; a mirroring scale
-// turns the triangles round as well. A volume that is not positive (triangles that show their backs
-// outside, or a sheet without thickness) is an Error{bad_data} that says so.
+// Returns the mass properties of a mesh without gaps, after `scale` has multiplied its coordinates.
+// A scale that mirrors the mesh also reverses the triangles' orientation. Throws Error{bad_data} if
+// the volume is not positive: the triangles face inwards, or the mesh is a sheet without thickness.
 Inertial calc_mesh_inertial(const TriangleMesh& mesh, const Eigen::Vector3d& scale,
                             double density_kg_per_m3);
 
-// Of any shape, in the link's frame. Meshes are looked for from `folder`; `file` gets the one that
-// was read. Error{bad_data} "what is wrong, what to do" for a mesh that is not there, cannot be
-// read, or is no solid, and for a shape too small to have an inertia.
+// Returns the mass properties of any shape, in the link's frame. Searches meshes from `folder`
+// (find_mesh()) and writes the path of the mesh that it read into `file`. Throws Error{bad_data}
+// "what is wrong, what to do" for a mesh that does not exist, cannot be read or is not a solid, and
+// for a shape that is too small to have an inertia.
 Inertial calc_shape_inertial(const VisualShape& shape, double density_kg_per_m3,
                              const std::filesystem::path& folder,
                              std::optional<std::filesystem::path>& file);

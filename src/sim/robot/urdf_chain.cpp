@@ -10,7 +10,7 @@
 namespace armwright {
 namespace {
 
-// Names in the order of the file, the first dozen of them.
+// Returns the first twelve names as text, and the number of the others.
 std::string list_names(const std::vector<std::string>& names, std::string_view separator) {
   constexpr std::size_t kShown = 12;
   std::vector<std::string> shown;
@@ -21,7 +21,7 @@ std::string list_names(const std::vector<std::string>& names, std::string_view s
          (names.size() > kShown ? fmt::format(" and {} more", names.size() - kShown) : "");
 }
 
-// Links and joints as a tree.
+// The links and joints as a tree.
 class Tree {
  public:
   Tree(const std::vector<UrdfLink>& links, const std::vector<UrdfJoint>& joints,
@@ -30,11 +30,10 @@ class Tree {
     for (const UrdfJoint& joint : joints) {
       const auto [other, inserted] = joint_above_.emplace(joint.child, &joint);
       if (!inserted) {
-        fail_urdf(
-            name_, joint.line,
-            fmt::format(
-                "link '{}' is the child of the joints '{}' and '{}'; a link hangs on one joint",
-                joint.child, other->second->name, joint.name));
+        fail_urdf(name_, joint.line,
+                  fmt::format("link '{}' is the child of the joints '{}' and '{}'; a link can have "
+                              "only one parent joint",
+                              joint.child, other->second->name, joint.name));
       }
       children_[joint.parent].push_back(joint.child);
     }
@@ -77,7 +76,7 @@ class Tree {
     return leaves;
   }
 
-  // The joints from the root down to that link.
+  // Returns the joints from the root down to the link.
   std::vector<const UrdfJoint*> find_way(const std::string& link) const {
     std::vector<const UrdfJoint*> way;
     for (auto joint = joint_above_.find(link); joint != joint_above_.end();
@@ -95,17 +94,18 @@ class Tree {
         continue;
       }
       if (root_ != nullptr) {
-        fail_urdf(name_, link.line,
-                  fmt::format("the links '{}' and '{}' both hang on no joint; exactly one link is "
-                              "the root: join them by a joint or remove one",
-                              root_->name, link.name));
+        fail_urdf(
+            name_, link.line,
+            fmt::format("the links '{}' and '{}' both have no parent joint; exactly one link is "
+                        "the root: connect them by a joint or remove one",
+                        root_->name, link.name));
       }
       root_ = &link;
     }
     if (root_ == nullptr) {
       fail_urdf(name_, links_.front().line,
                 fmt::format(
-                    "the links form a cycle, {}; one link must be the root that hangs on no joint",
+                    "the links form a cycle, {}; one link must be the root, without a parent joint",
                     describe_cycle(links_.front())));
     }
   }
@@ -115,16 +115,17 @@ class Tree {
     for (const UrdfLink& link : links_) {
       if (!on_root.contains(link.name)) {
         fail_urdf(name_, link.line,
-                  fmt::format("the links form a cycle, {}; every link must hang on the root '{}'",
-                              describe_cycle(link), root_->name));
+                  fmt::format(
+                      "the links form a cycle, {}; joints must connect every link to the root '{}'",
+                      describe_cycle(link), root_->name));
       }
     }
   }
 
-  // "'a' -> 'b' -> 'a'": follows the joints down from a link that has no root above it.
+  // Returns the cycle above a link that no root carries, as "'a' -> 'b' -> 'a'".
   std::string describe_cycle(const UrdfLink& start) const {
-    // Going up never ends on such a link, so after as many steps as there are joints we are on the
-    // cycle itself.
+    // From such a link one can go up without end. So after as many steps as there are joints, the
+    // link is on the cycle itself.
     std::string on_cycle = start.name;
     for (std::size_t i = 0; i < joint_above_.size(); ++i) {
       on_cycle = joint_above_.at(on_cycle)->parent;
@@ -161,8 +162,8 @@ class Chooser {
       first = std::find_if(way.begin(), way.end(),
                            [&](const UrdfJoint* joint) { return joint->child == chain.base; });
       if (first == way.end()) {
-        fail("base", fmt::format("the base '{}' is not above the tip '{}', to which the way from "
-                                 "the root is {}; name one of these",
+        fail("base", fmt::format("the base '{}' is not above the tip '{}', and the path from "
+                                 "the root to the tip is {}; name one of these",
                                  chain.base, chain.tip, describe_way(way)));
       }
       ++first;

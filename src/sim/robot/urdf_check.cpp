@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "base/text.hpp"
@@ -10,18 +11,34 @@ namespace armwright {
 
 using tinyxml2::XMLElement;
 
-void UrdfWriter::write(const char* attribute, const std::vector<double>& numbers) {
-  std::vector<std::string> texts;
-  for (const double number : numbers) {
-    texts.push_back(format_exact(number));
-  }
-  write(attribute, join(texts, " "));
+namespace {
+
+// Returns the rotation Rz(yaw) Ry(pitch) Rx(roll), computed from its normalized quaternion. The
+// order of the operations must not change: it decides the last bits of all results of robots with
+// rotated frames, and it is the same as in version 1.0.
+Eigen::Matrix3d make_rotation(double roll, double pitch, double yaw) {
+  const double phi = roll / 2.0;
+  const double the = pitch / 2.0;
+  const double psi = yaw / 2.0;
+  double x =
+      std::sin(phi) * std::cos(the) * std::cos(psi) - std::cos(phi) * std::sin(the) * std::sin(psi);
+  double y =
+      std::cos(phi) * std::sin(the) * std::cos(psi) + std::sin(phi) * std::cos(the) * std::sin(psi);
+  double z =
+      std::cos(phi) * std::cos(the) * std::sin(psi) - std::sin(phi) * std::sin(the) * std::cos(psi);
+  double w =
+      std::cos(phi) * std::cos(the) * std::cos(psi) + std::sin(phi) * std::sin(the) * std::sin(psi);
+  const double norm = std::sqrt(x * x + y * y + z * z + w * w);
+  return Eigen::Quaterniond(w / norm, x / norm, y / norm, z / norm).toRotationMatrix();
 }
 
-void copy_origin(const XMLElement& parent, const UrdfXml& xml, UrdfWriter& out) {
+}  // namespace
+
+Eigen::Isometry3d read_origin(const XMLElement& parent, const UrdfXml& xml) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   const XMLElement* origin = xml.find_only(parent, "origin");
   if (origin == nullptr) {
-    return;
+    return pose;
   }
   xml.check_names(*origin, {}, {"xyz", "rpy"});
   if (origin->Attribute("quat_xyzw") != nullptr) {
@@ -29,10 +46,9 @@ void copy_origin(const XMLElement& parent, const UrdfXml& xml, UrdfWriter& out) 
   }
   const std::vector<double> xyz = xml.read_numbers(*origin, "xyz", 3, {0, 0, 0});
   const std::vector<double> rpy = xml.read_numbers(*origin, "rpy", 3, {0, 0, 0});
-  out.open("origin");
-  out.write("xyz", xyz);
-  out.write("rpy", rpy);
-  out.close();
+  pose.translation() = Eigen::Vector3d(xyz[0], xyz[1], xyz[2]);
+  pose.linear() = make_rotation(rpy[0], rpy[1], rpy[2]);
+  return pose;
 }
 
 namespace {
@@ -40,7 +56,7 @@ namespace {
 std::string explain(const tinyxml2::XMLDocument& document) {
   switch (document.ErrorID()) {
     case tinyxml2::XML_ERROR_MISMATCHED_ELEMENT:
-      return "an element is closed by another name, or not at all";
+      return "an element has a closing tag of another name, or none";
     case tinyxml2::XML_ERROR_PARSING_ATTRIBUTE:
       return "an attribute is malformed or given twice; they are written name=\"value\"";
     case tinyxml2::XML_ERROR_PARSING_TEXT:
@@ -68,7 +84,8 @@ const XMLElement& find_robot(const tinyxml2::XMLDocument& document, const UrdfXm
   return *robot;
 }
 
-// Names and how they hang together, before anything else of links and joints is read.
+// The names of links and joints and the links that each joint connects. They are read before
+// anything else of links and joints.
 class Index {
  public:
   Index(const XMLElement& robot, UrdfXml& xml) : xml_(xml) {
@@ -128,7 +145,7 @@ class Index {
     joints.push_back(std::move(joint));
   }
 
-  // The link that <parent> or <child> names.
+  // Returns the name of the link that <parent> or <child> refers to.
   std::string read_end(const XMLElement& joint, const char* end) const {
     const XMLElement& element =
         xml_.get_only(joint, end, "a joint needs a parent and a child link");
@@ -145,6 +162,15 @@ class Index {
   std::set<std::string> link_names_, joint_names_;
 };
 
+// Throws unless the version is 1.0, the only version of URDF.
+void check_version(const XMLElement& robot, const UrdfXml& xml) {
+  const std::string version = xml.get_text(robot, "version");
+  if (version != "1.0") {
+    xml.fail(robot, fmt::format("<robot>: version is '{}'; it must be 1.0, or left out",
+                                shorten(version)));
+  }
+}
+
 }  // namespace
 
 CheckedUrdf check_urdf(std::string_view xml_text, const std::string& name,
@@ -160,30 +186,25 @@ CheckedUrdf check_urdf(std::string_view xml_text, const std::string& name,
   xml.check_names(robot,
                   {"link", "joint", "material", "transmission", "gazebo", "sensor", "ros2_control"},
                   {"name", "version"});
-  UrdfWriter out;
-  out.open("robot");
-  out.write("name", xml.get_text(robot, "name"));
-  if (robot.Attribute("version") != nullptr) {
-    out.write("version", xml.get_text(robot, "version"));
-  }
-  LinkChecker links(robot, xml, out);
-  const Index index(robot, xml);
   CheckedUrdf checked;
+  checked.name = xml.get_text(robot, "name");
+  if (robot.Attribute("version") != nullptr) {
+    check_version(robot, xml);
+  }
+  LinkChecker links(robot, xml);
+  Index index(robot, xml);
   checked.chain = choose_chain(index.links, index.joints, options, name);
-  auto link = index.links.begin();
+  checked.links = std::move(index.links);
+  checked.joints = std::move(index.joints);
   for (const XMLElement* e = robot.FirstChildElement("link"); e != nullptr;
        e = e->NextSiblingElement("link")) {
-    links.check(*e, (link++)->name);
+    checked.bodies.push_back(links.read(*e, checked.links[checked.bodies.size()].name));
   }
-  JointChecker joints(checked.chain, xml, out);
-  auto joint = index.joints.begin();
+  JointChecker joints(checked.chain, xml);
   for (const XMLElement* e = robot.FirstChildElement("joint"); e != nullptr;
        e = e->NextSiblingElement("joint")) {
-    joints.check(*e, *joint++);
+    checked.placements.push_back(joints.read(*e, checked.joints[checked.placements.size()]));
   }
-  out.close();
-  checked.xml = out.text();
-  checked.held = joints.held();
   checked.notes = links.make_notes();
   for (std::string& note : joints.make_notes()) {
     checked.notes.push_back(std::move(note));

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string_view>
 
 #include "base/text.hpp"
 #include "sim/robot/urdf_parts.hpp"
@@ -12,14 +14,16 @@ using tinyxml2::XMLElement;
 
 namespace {
 
-// An axis shorter than this has no direction worth the name.
+// The direction of an axis shorter than this is not reliable.
 constexpr double kShortestAxis = 1e-6;
+
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 struct Range {
   double lower = 0, upper = 0;
 };
 
-// <limit>'s ends, each 0 where it is not given.
+// Returns the lower and upper limit; a limit that is not given is 0.
 Range read_range(const XMLElement& limit, bool prismatic, const UrdfXml& xml) {
   const Range range{xml.read_number(limit, "lower", 0.0), xml.read_number(limit, "upper", 0.0)};
   if (range.lower > range.upper) {
@@ -31,31 +35,23 @@ Range read_range(const XMLElement& limit, bool prismatic, const UrdfXml& xml) {
 
 }  // namespace
 
-void JointChecker::check(const XMLElement& element, const UrdfJoint& joint) {
+UrdfPlacement JointChecker::read(const XMLElement& element, const UrdfJoint& joint) {
   xml_.set_context(fmt::format("joint '{}'", joint.name));
   xml_.check_names(element,
                    {"parent", "child", "origin", "axis", "limit", "dynamics", "mimic",
                     "calibration", "safety_controller"},
                    {"name", "type"});
-  const bool moves = chain_.joints.contains(joint.name);
-  out_.open("joint");
-  out_.write("name", joint.name);
-  out_.write("type", moves ? joint.type : "fixed");
-  for (const auto& [end, link] : {std::pair("parent", joint.parent), {"child", joint.child}}) {
-    out_.open(end);
-    out_.write("link", link);
-    out_.close();
-  }
-  copy_origin(element, xml_, out_);
-  if (moves) {
-    write_moving(element, joint);
+  UrdfPlacement placement;
+  placement.origin = read_origin(element, xml_);
+  if (chain_.joints.contains(joint.name)) {
+    placement.motion = read_motion(element, joint);
   } else if (joint.type != "fixed") {
-    held_.emplace(joint.name, hold(element, joint));
+    hold(element, joint, placement);
   }
-  out_.close();
+  return placement;
 }
 
-void JointChecker::write_moving(const XMLElement& element, const UrdfJoint& joint) {
+Joint JointChecker::read_motion(const XMLElement& element, const UrdfJoint& joint) {
   if (joint.type == "floating" || joint.type == "planar") {
     xml_.fail(element,
               fmt::format("the type is '{}'; between base '{}' and tip '{}' only revolute, "
@@ -69,18 +65,22 @@ void JointChecker::write_moving(const XMLElement& element, const UrdfJoint& join
                                   "--tip), remove the element, or make the joint fixed",
                                   chain_.base, chain_.tip));
   }
-  out_.open("axis");
-  out_.write("xyz", read_axis(element));
-  out_.close();
-  write_limit(element, joint);
+  Joint motion;
+  motion.name = joint.name;
+  motion.kind = joint.type == "prismatic" ? JointKind::prismatic : JointKind::revolute;
+  motion.axis = read_axis(element).normalized();
+  read_limit(element, joint, motion);
   note_extras(element, joint);
+  return motion;
 }
 
-// At 0, or at the end of its range nearest to that. Floating and planar joints have no position and
-// stay at their origin.
-HeldJoint JointChecker::hold(const XMLElement& element, const UrdfJoint& joint) const {
+// Holds a joint at position 0, or at the end of its range that is nearest to 0. Floating and planar
+// joints stay at their origin.
+void JointChecker::hold(const XMLElement& element, const UrdfJoint& joint,
+                        UrdfPlacement& placement) const {
   if (joint.type == "floating" || joint.type == "planar") {
-    return {joint.line, Eigen::Isometry3d::Identity(), "its origin"};
+    placement.held_at = "its origin";
+    return;
   }
   const bool prismatic = joint.type == "prismatic";
   double position = 0;
@@ -89,21 +89,17 @@ HeldJoint JointChecker::hold(const XMLElement& element, const UrdfJoint& joint) 
     const Range range = read_range(*limit, prismatic, xml_);
     position = std::clamp(0.0, range.lower, range.upper);
   }
-  HeldJoint held;
-  held.line = joint.line;
-  held.place = fmt::format("{} {}", position, prismatic ? "m" : "rad");
-  const std::vector<double> xyz = read_axis(element);
-  const Eigen::Vector3d axis = Eigen::Vector3d(xyz[0], xyz[1], xyz[2]).normalized();
+  placement.held_at = fmt::format("{} {}", position, prismatic ? "m" : "rad");
+  const Eigen::Vector3d axis = read_axis(element).normalized();
   if (position != 0 && prismatic) {
-    held.motion.translation() = position * axis;
+    placement.held_pose.translation() = position * axis;
   } else if (position != 0) {
-    held.motion.linear() = Eigen::AngleAxisd(position, axis).toRotationMatrix();
+    placement.held_pose.linear() = Eigen::AngleAxisd(position, axis).toRotationMatrix();
   }
-  return held;
 }
 
-std::vector<double> JointChecker::read_axis(const XMLElement& element) const {
-  std::vector<double> axis{1, 0, 0};  // URDF's default
+Eigen::Vector3d JointChecker::read_axis(const XMLElement& element) const {
+  std::vector<double> axis{1, 0, 0};  // the default in URDF
   if (const XMLElement* given = xml_.find_only(element, "axis")) {
     xml_.check_names(*given, {}, {"xyz"});
     axis = xml_.read_numbers(*given, "xyz", 3);
@@ -113,12 +109,16 @@ std::vector<double> JointChecker::read_axis(const XMLElement& element) const {
                             shorten(given->Attribute("xyz"))));
     }
   }
-  return axis;
+  return {axis[0], axis[1], axis[2]};
 }
 
-void JointChecker::write_limit(const XMLElement& element, const UrdfJoint& joint) {
+void JointChecker::read_limit(const XMLElement& element, const UrdfJoint& joint, Joint& motion) {
   const bool prismatic = joint.type == "prismatic";
   const bool bounded = joint.type != "continuous";
+  motion.lower = -kNoLimit;
+  motion.upper = kNoLimit;
+  motion.speed_limit = kNoLimit;
+  motion.effort_limit = kNoLimit;
   const XMLElement* limit = xml_.find_only(element, "limit");
   if (limit == nullptr) {
     if (prismatic) {
@@ -135,26 +135,26 @@ void JointChecker::write_limit(const XMLElement& element, const UrdfJoint& joint
     return;
   }
   xml_.check_names(*limit, {}, {"lower", "upper", "velocity", "effort"});
-  out_.open("limit");
   if (bounded) {
     const Range range = read_range(*limit, prismatic, xml_);
-    out_.write("lower", {range.lower});
-    out_.write("upper", {range.upper});
+    motion.lower = range.lower;
+    motion.upper = range.upper;
   }
   for (const char* attribute : {"velocity", "effort"}) {
     const double value = xml_.read_number(*limit, attribute);
     if (value < 0) {
       xml_.fail(*limit, fmt::format("<limit>: {} is {}; it must be >= 0", attribute, value));
     }
-    if (value == 0) {  // build_model() makes infinity of it
+    if (value == 0) {  // a placeholder for no limit
       without_limit_[attribute].push_back(fmt::format("'{}'", joint.name));
+    } else {
+      (std::string_view(attribute) == "velocity" ? motion.speed_limit : motion.effort_limit) =
+          value;
     }
-    out_.write(attribute, {value});
   }
-  out_.close();
 }
 
-// What would change how the joint moves, and is not simulated.
+// Notes elements that would change the joint's motion but are not simulated.
 void JointChecker::note_extras(const XMLElement& element, const UrdfJoint& joint) {
   if (xml_.find_only(element, "safety_controller") != nullptr) {
     softly_limited_.push_back(fmt::format("'{}'", joint.name));

@@ -12,8 +12,8 @@ using tinyxml2::XMLElement;
 
 namespace {
 
-// How far the largest principal moment may exceed the sum of the others: the rounding of a plate's
-// moments to three digits.
+// The largest principal moment may exceed the sum of the others by this fraction, because a thin
+// plate's moments can be rounded to three digits.
 constexpr double kTriangleTolerance = 1e-3;
 
 constexpr const char* kEntries[3][3] = {
@@ -41,15 +41,15 @@ void check_tensor(const XMLElement& element, const Eigen::Matrix3d& tensor, cons
              found + "; all must be > 0 (a positive definite tensor about the centre of mass)");
   }
   if (!(moments[0] + moments[1] >= (1 - kTriangleTolerance) * moments[2])) {
-    xml.fail(element,
-             found + "; no body has these: the largest must not exceed the sum of the other two");
+    xml.fail(
+        element,
+        found + "; no body has such moments: the largest must not exceed the sum of the other two");
   }
 }
 
 }  // namespace
 
-LinkChecker::LinkChecker(const XMLElement& robot, UrdfXml& xml, UrdfWriter& out)
-    : xml_(xml), out_(out) {
+LinkChecker::LinkChecker(const XMLElement& robot, UrdfXml& xml) : xml_(xml) {
   collect_colors(robot);
   for (const XMLElement* link = robot.FirstChildElement("link"); link != nullptr;
        link = link->NextSiblingElement("link")) {
@@ -60,7 +60,7 @@ LinkChecker::LinkChecker(const XMLElement& robot, UrdfXml& xml, UrdfWriter& out)
   }
 }
 
-// Materials are defined at the top or in the visual that uses them first.
+// Materials are defined at the top level or in the visual that uses them first.
 void LinkChecker::collect_colors(const XMLElement& holder) {
   for (const XMLElement* e = holder.FirstChildElement("material"); e != nullptr;
        e = e->NextSiblingElement("material")) {
@@ -84,22 +84,22 @@ void LinkChecker::collect_colors(const XMLElement& holder) {
   }
 }
 
-void LinkChecker::check(const XMLElement& link, const std::string& link_name) {
+UrdfBody LinkChecker::read(const XMLElement& link, const std::string& link_name) {
   xml_.set_context(fmt::format("link '{}'", link_name));
   xml_.check_names(link, {"inertial", "visual", "collision", "sensor"}, {"name", "type"});
-  out_.open("link");
-  out_.write("name", link_name);
+  UrdfBody body;
   if (const XMLElement* inertial = xml_.find_only(link, "inertial")) {
-    check_inertial(*inertial, link_name);
+    body.inertial = read_inertial(*inertial, link_name);
   }
   for (const XMLElement* visual = link.FirstChildElement("visual"); visual != nullptr;
        visual = visual->NextSiblingElement("visual")) {
-    check_visual(*visual);
+    body.shapes.push_back(read_visual(*visual));
   }
-  out_.close();
+  return body;
 }
 
-void LinkChecker::check_inertial(const XMLElement& element, const std::string& link_name) {
+std::optional<Inertial> LinkChecker::read_inertial(const XMLElement& element,
+                                                   const std::string& link_name) {
   xml_.check_names(element, {"origin", "mass", "inertia"}, {});
   const XMLElement& mass =
       xml_.get_only(element, "mass",
@@ -114,7 +114,7 @@ void LinkChecker::check_inertial(const XMLElement& element, const std::string& l
   const Eigen::Matrix3d tensor = read_tensor(inertia, xml_);
   if (mass_kg == 0 && tensor.isZero(0)) {
     massless_.push_back(fmt::format("'{}'", link_name));
-    return;
+    return std::nullopt;
   }
   if (mass_kg == 0) {
     xml_.fail(mass,
@@ -122,77 +122,69 @@ void LinkChecker::check_inertial(const XMLElement& element, const std::string& l
               "or no <inertial>)");
   }
   check_tensor(inertia, tensor, xml_);
-  out_.open("inertial");
-  copy_origin(element, xml_, out_);
-  out_.open("mass");
-  out_.write("value", {mass_kg});
-  out_.close();
-  out_.open("inertia");
-  for (int row = 0; row < 3; ++row) {
-    for (int column = row; column < 3; ++column) {
-      out_.write(kEntries[row][column], {tensor(row, column)});
-    }
-  }
-  out_.close();
-  out_.close();
+  // The matrix is symmetric because URDF names each off-diagonal entry once.
+  const Inertial body{mass_kg, Eigen::Vector3d::Zero(), tensor};
+  return transform(body, read_origin(element, xml_));
 }
 
-void LinkChecker::check_visual(const XMLElement& element) {
+VisualShape LinkChecker::read_visual(const XMLElement& element) {
   xml_.check_names(element, {"origin", "geometry", "material"}, {"name"});
-  out_.open("visual");
-  copy_origin(element, xml_, out_);
+  VisualShape shape;
+  shape.pose = read_origin(element, xml_);
   const XMLElement& geometry = xml_.get_only(element, "geometry", "a visual needs one");
-  const std::vector<std::string> shapes{"box", "cylinder", "sphere", "mesh"};
-  const XMLElement* shape = geometry.FirstChildElement();
-  if (shape == nullptr || shape->NextSiblingElement() != nullptr) {
-    xml_.fail(geometry, fmt::format("<geometry> must hold exactly one of {}", join(shapes, ", ")));
+  const std::vector<std::string> kinds{"box", "cylinder", "sphere", "mesh"};
+  const XMLElement* child = geometry.FirstChildElement();
+  if (child == nullptr || child->NextSiblingElement() != nullptr) {
+    xml_.fail(geometry, fmt::format("<geometry> must hold exactly one of {}", join(kinds, ", ")));
   }
-  xml_.check_names(geometry, shapes, {});
-  out_.open("geometry");
-  check_shape(*shape, shapes);
-  out_.close();
+  xml_.check_names(geometry, kinds, {});
+  read_shape(*child, kinds, shape);
   if (const XMLElement* material = xml_.find_only(element, "material")) {
-    write_color(*material);
+    read_color(*material, shape);
   }
-  out_.close();
+  return shape;
 }
 
-void LinkChecker::check_shape(const XMLElement& shape, const std::vector<std::string>& shapes) {
-  const std::string kind = shape.Name();
-  out_.open(kind.c_str());
+void LinkChecker::read_shape(const XMLElement& element, const std::vector<std::string>& kinds,
+                             VisualShape& shape) {
+  const std::string kind = element.Name();
   if (kind == "box") {
-    xml_.check_names(shape, {}, {"size"});
-    const std::vector<double> size = xml_.read_numbers(shape, "size", 3);
+    xml_.check_names(element, {}, {"size"});
+    const std::vector<double> size = xml_.read_numbers(element, "size", 3);
     if (*std::min_element(size.begin(), size.end()) <= 0) {
-      xml_.fail(shape, fmt::format("<box>: size is '{}'; all three edges must be > 0",
-                                   shorten(shape.Attribute("size"))));
+      xml_.fail(element, fmt::format("<box>: size is '{}'; all three edges must be > 0",
+                                     shorten(element.Attribute("size"))));
     }
-    out_.write("size", size);
+    shape.kind = ShapeKind::box;
+    shape.size_m = Eigen::Vector3d(size[0], size[1], size[2]);
   } else if (kind == "cylinder") {
-    xml_.check_names(shape, {}, {"radius", "length"});
-    out_.write("radius", {xml_.read_positive(shape, "radius")});
-    out_.write("length", {xml_.read_positive(shape, "length")});
+    xml_.check_names(element, {}, {"radius", "length"});
+    shape.kind = ShapeKind::cylinder;
+    const double radius = xml_.read_positive(element, "radius");
+    shape.size_m = Eigen::Vector3d(radius, xml_.read_positive(element, "length"), 0);
   } else if (kind == "sphere") {
-    xml_.check_names(shape, {}, {"radius"});
-    out_.write("radius", {xml_.read_positive(shape, "radius")});
+    xml_.check_names(element, {}, {"radius"});
+    shape.kind = ShapeKind::sphere;
+    shape.size_m = Eigen::Vector3d(xml_.read_positive(element, "radius"), 0, 0);
   } else if (kind == "mesh") {
-    xml_.check_names(shape, {}, {"filename", "scale"});
-    out_.write("filename", xml_.get_text(shape, "filename"));
-    out_.write("scale", xml_.read_numbers(shape, "scale", 3, {1, 1, 1}));
+    xml_.check_names(element, {}, {"filename", "scale"});
+    shape.kind = ShapeKind::mesh;
+    shape.mesh_file = xml_.get_text(element, "filename");
+    const std::vector<double> scale = xml_.read_numbers(element, "scale", 3, {1, 1, 1});
+    shape.size_m = Eigen::Vector3d(scale[0], scale[1], scale[2]);
   } else {
-    xml_.fail(shape,
-              describe_unknown("shape", kind, shapes) +
+    xml_.fail(element,
+              describe_unknown("shape", kind, kinds) +
                   (kind == "capsule" ? " (write a capsule as three <visual>, a cylinder and "
-                                       "a sphere at each end, or leave it out: visuals count "
-                                       "for looks, and for mass at a density)"
+                                       "a sphere at each end, or leave it out: visuals only "
+                                       "give looks, and mass if robot.density_kg_per_m3 is set)"
                                      : ""));
   }
-  out_.close();
 }
 
-// Under a name of its own, as urdfdom takes the first colour it saw for every material of that
-// name ("", say).
-void LinkChecker::write_color(const XMLElement& material) {
+// Sets the shape's colour. A material without a colour takes the colour of the first material of
+// the same name.
+void LinkChecker::read_color(const XMLElement& material, VisualShape& shape) {
   std::vector<double> rgba = own_colors_.at(&material);
   if (rgba.empty() && material.FirstChildElement("texture") == nullptr) {
     const std::string wanted = xml_.get_text(material, "name");
@@ -207,14 +199,12 @@ void LinkChecker::write_color(const XMLElement& material) {
     rgba = found->second;
   }
   if (rgba.empty()) {
-    return;  // a texture only
+    return;  // it has only a texture
   }
-  out_.open("material");
-  out_.write("name", fmt::format("material_{}", ++materials_));
-  out_.open("color");
-  out_.write("rgba", rgba);
-  out_.close();
-  out_.close();
+  for (int i = 0; i < 4; ++i) {
+    shape.rgba[i] = static_cast<float>(
+        rgba[static_cast<std::size_t>(i)]);  // rounded to float, as in version 1.0
+  }
 }
 
 std::vector<std::string> LinkChecker::make_notes() const {

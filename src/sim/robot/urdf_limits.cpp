@@ -16,16 +16,17 @@ namespace {
 
 constexpr std::string_view kXmlBlanks = " \t\r\n";
 
-// "<NAME ...>", "<NAME .../>" or "</NAME>".
+// A tag: "<NAME ...>", "<NAME .../>" or "</NAME>".
 struct Tag {
   std::size_t begin = 0;
-  std::size_t end = 0;  // behind the '>'
+  std::size_t end = 0;  // after the '>'
   std::string_view name;
   bool opens = true;
   bool closes = false;
 };
 
-// The tags of a text that scan_urdf() has passed: comments, CDATA and instructions end, quotes too.
+// Iterates over the tags of a text. scan_urdf() has accepted the text, so comments, CDATA sections,
+// processing instructions and quotes are closed.
 class Tags {
  public:
   explicit Tags(std::string_view xml) : xml_(xml) {}
@@ -75,7 +76,7 @@ struct TextRange {
   std::size_t begin = 0, end = 0;
 };
 
-// Where an attribute's value stands, without its quotes.
+// Returns the place of an attribute's value, without its quotes.
 std::optional<TextRange> find_attribute(std::string_view xml, const Tag& tag,
                                         std::string_view wanted) {
   std::size_t at = tag.begin + 1 + tag.name.size();
@@ -113,7 +114,8 @@ void append_utf8(std::string& text, unsigned long code) {
   }
 }
 
-// An attribute's text as XML means it: the predefined entities and characters by number.
+// Returns an attribute's text with the predefined entities and numeric character references
+// replaced.
 std::string decode(std::string_view raw) {
   static const std::map<std::string_view, char> known = {
       {"lt", '<'}, {"gt", '>'}, {"amp", '&'}, {"quot", '"'}, {"apos", '\''}};
@@ -142,7 +144,7 @@ struct Edit {
   std::string text;
 };
 
-// Before "</joint>", on a line of its own if that has one.
+// Inserts a <limit> before "</joint>", on a line of its own if "</joint>" has its own line.
 Edit insert_limit(std::string_view xml, const Tag& closing, const std::string& effort) {
   std::string text = fmt::format("<limit effort=\"{}\" velocity=\"{}\"/>", effort,
                                  format_exact(kNoVelocityLimit_rad_per_s));
@@ -155,13 +157,13 @@ Edit insert_limit(std::string_view xml, const Tag& closing, const std::string& e
   return {{closing.begin, closing.begin}, std::move(text)};
 }
 
-// One edit a joint that is asked for.
+// Returns one edit per joint in `efforts` and removes the joint from `efforts`.
 std::vector<Edit> find_edits(std::string_view xml, std::map<std::string, double>& efforts) {
   constexpr std::size_t kJointDepth = 2;  // <robot><joint>
   std::vector<Edit> edits;
   Tags tags(xml);
   std::size_t depth = 0;
-  std::string effort;  // of the joint at hand, if it is asked for and has no edit yet
+  std::string effort;  // of the current joint, if it needs an edit and has none yet
   while (const auto tag = tags.next()) {
     if (tag->opens) {
       ++depth;
@@ -189,7 +191,7 @@ std::vector<Edit> find_edits(std::string_view xml, std::map<std::string, double>
   return edits;
 }
 
-// "--" may not stand in a comment.
+// Returns the text as an XML comment. XML forbids "--" in a comment, so a blank separates them.
 std::string make_comment(std::string_view text) {
   std::string comment = "<!--\n";
   for (const char c : text) {

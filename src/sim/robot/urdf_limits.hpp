@@ -1,7 +1,7 @@
-// A URDF with other effort limits, and every other byte as it was: comments, extensions, links and
-// joints that are not of the chain, how numbers are written.
+// Changes the effort limits in the text of a URDF and leaves every other byte as it was.
 //
-// Only what load_urdf() accepts may be given: here nothing but the places of elements is looked at.
+// The text must be one that load_urdf() accepts. This code only finds the elements' places and
+// validates nothing.
 #pragma once
 
 #include <span>
@@ -10,19 +10,21 @@
 
 namespace armwright {
 
+// The new effort limit of one joint.
 struct JointEffort {
   std::string joint;
-  double effort = 0;  // N m, or N of a joint that slides
+  double effort = 0;  // N m, or N for a prismatic joint
 };
 
-// URDF asks for a velocity in every <limit>; a continuous joint without <limit> has none to give.
-// Faster than any joint, and what strict readers take for a number, which infinity is not.
+// The velocity that is written into a new <limit>. URDF requires a velocity there, but a continuous
+// joint without <limit> has none. The value is faster than any joint. It is finite because strict
+// readers refuse infinity.
 inline constexpr double kNoVelocityLimit_rad_per_s = 1e6;
 
-// Sets <limit effort="..."> of these joints; a joint without <limit> gets one, with
-// kNoVelocityLimit_rad_per_s. `comment` is put at the beginning, behind the XML declaration; what
-// would end it early is told apart by blanks. `name` is the file's in messages. Error{bad_data} if
-// a joint is not there.
+// Returns the text with <limit effort="..."> of these joints replaced. A joint without <limit> gets
+// one, with kNoVelocityLimit_rad_per_s. Inserts `comment` as an XML comment after the XML
+// declaration; inserts blanks where the comment's text would end it early. `name` is the file's
+// name in messages. Throws Error{bad_data} if a joint does not exist.
 std::string set_effort_limits(std::string_view xml, const std::string& name,
                               std::span<const JointEffort> efforts, std::string_view comment);
 

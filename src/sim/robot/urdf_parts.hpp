@@ -1,86 +1,113 @@
-// What urdf_check.cpp is made of: the parts of a URDF read strictly and written again as plain XML.
-// Private to the .cpp files urdf_check*.cpp.
+// Strict reading of XML elements, links and joints. Only urdf_xml.cpp and urdf_check*.cpp include
+// this header. Every error is Error{bad_data} and names the file, the line, the link or joint, the
+// element and the attribute.
 #pragma once
 
 #include <tinyxml2.h>
 
-#include <initializer_list>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sim/robot/urdf.hpp"
-#include "sim/robot/urdf_xml.hpp"
 
 namespace armwright {
 
-class UrdfWriter {
- public:
-  UrdfWriter() : printer_(nullptr, true) {}
+// Returns the beginning of a text from a file, safe to print in a message.
+std::string shorten(std::string_view text);
 
-  void open(const char* element) { printer_.OpenElement(element); }
-  void close() { printer_.CloseElement(); }
-  void write(const char* attribute, const std::string& text) {
-    printer_.PushAttribute(attribute, text.c_str());
-  }
-  void write(const char* attribute, const std::vector<double>& numbers);
-  void write(const char* attribute, std::initializer_list<double> numbers) {
-    write(attribute, std::vector<double>(numbers));
-  }
-  std::string text() const { return printer_.CStr(); }
+// A reader of single XML elements that throws for everything it does not accept.
+class UrdfXml {
+ public:
+  // `name` is the file's name in messages.
+  explicit UrdfXml(std::string name) : name_(std::move(name)) {}
+
+  // Sets how messages name the current link or joint, for example "link 'link_1'".
+  void set_context(std::string where) { where_ = std::move(where); }
+  // Throws Error{bad_data} with the file's name, the element's line and the context.
+  [[noreturn]] void fail(const tinyxml2::XMLElement& element, const std::string& what) const;
+
+  // Throws for a child or attribute whose name looks misspelt, and for elements of xacro. Ignores
+  // other extensions of URDF.
+  void check_names(const tinyxml2::XMLElement& element, const std::vector<std::string>& children,
+                   const std::vector<std::string>& attributes) const;
+
+  // Return the only child of that name and throw if there is a second one. If there is none,
+  // find_only() returns null and get_only() throws.
+  const tinyxml2::XMLElement* find_only(const tinyxml2::XMLElement& parent,
+                                        const char* child_name) const;
+  const tinyxml2::XMLElement& get_only(const tinyxml2::XMLElement& parent, const char* child_name,
+                                       const char* hint) const;
+
+  // Returns an attribute's text. Throws if it is missing, empty or not printable.
+  std::string get_text(const tinyxml2::XMLElement& element, const char* attribute) const;
+
+  // Returns the `count` finite numbers of an attribute, or `fallback` if the attribute is missing.
+  // Throws if it is missing and `fallback` is empty.
+  std::vector<double> read_numbers(const tinyxml2::XMLElement& element, const char* attribute,
+                                   std::size_t count,
+                                   const std::vector<double>& fallback = {}) const;
+  double read_number(const tinyxml2::XMLElement& element, const char* attribute) const;
+  double read_number(const tinyxml2::XMLElement& element, const char* attribute,
+                     double fallback) const;
+  double read_positive(const tinyxml2::XMLElement& element, const char* attribute) const;
 
  private:
-  tinyxml2::XMLPrinter printer_;
+  void check_spelling(const tinyxml2::XMLElement& at, const std::string& what,
+                      const std::string& found, const std::vector<std::string>& valid) const;
+  void refuse_xacro(const tinyxml2::XMLElement& element, const char* attribute,
+                    std::string_view text) const;
+
+  std::string name_;
+  std::string where_ = "the file";
 };
 
-// The <origin> of an element, if it has one.
-void copy_origin(const tinyxml2::XMLElement& parent, const UrdfXml& xml, UrdfWriter& out);
+// Returns the pose of an element's <origin>, or the identity if it has none.
+Eigen::Isometry3d read_origin(const tinyxml2::XMLElement& parent, const UrdfXml& xml);
 
-// Links: mass and looks.
+// A reader of <link> elements: their mass and visual shapes.
 class LinkChecker {
  public:
-  // Materials are known before the links that use them.
-  LinkChecker(const tinyxml2::XMLElement& robot, UrdfXml& xml, UrdfWriter& out);
+  // Reads the robot's materials, which links refer to by name.
+  LinkChecker(const tinyxml2::XMLElement& robot, UrdfXml& xml);
 
-  void check(const tinyxml2::XMLElement& link, const std::string& link_name);
+  UrdfBody read(const tinyxml2::XMLElement& link, const std::string& link_name);
   std::vector<std::string> make_notes() const;
 
  private:
   void collect_colors(const tinyxml2::XMLElement& holder);
-  void check_inertial(const tinyxml2::XMLElement& element, const std::string& link_name);
-  void check_visual(const tinyxml2::XMLElement& element);
-  void check_shape(const tinyxml2::XMLElement& shape, const std::vector<std::string>& shapes);
-  void write_color(const tinyxml2::XMLElement& material);
+  std::optional<Inertial> read_inertial(const tinyxml2::XMLElement& element,
+                                        const std::string& link_name);
+  VisualShape read_visual(const tinyxml2::XMLElement& element);
+  void read_shape(const tinyxml2::XMLElement& element, const std::vector<std::string>& kinds,
+                  VisualShape& shape);
+  void read_color(const tinyxml2::XMLElement& material, VisualShape& shape);
 
   UrdfXml& xml_;
-  UrdfWriter& out_;
-  std::map<std::string, std::vector<double>> colors_;  // of materials, empty: a texture only
-  std::map<const tinyxml2::XMLElement*, std::vector<double>> own_colors_;  // of each <material>
-  int materials_ = 0;
+  std::map<std::string, std::vector<double>> colors_;  // by material; empty: only a texture
+  std::map<const tinyxml2::XMLElement*, std::vector<double>> own_colors_;  // by <material>
   std::vector<std::string> massless_;
 };
 
-// Joints: where they are and how far they go.
+// A reader of <joint> elements: their origins, axes and limits.
 class JointChecker {
  public:
-  JointChecker(const UrdfChain& chain, UrdfXml& xml, UrdfWriter& out)
-      : chain_(chain), xml_(xml), out_(out) {}
+  JointChecker(const UrdfChain& chain, UrdfXml& xml) : chain_(chain), xml_(xml) {}
 
-  void check(const tinyxml2::XMLElement& element, const UrdfJoint& joint);
-  const std::map<std::string, HeldJoint>& held() const { return held_; }
+  UrdfPlacement read(const tinyxml2::XMLElement& element, const UrdfJoint& joint);
   std::vector<std::string> make_notes() const;
 
  private:
-  void write_moving(const tinyxml2::XMLElement& element, const UrdfJoint& joint);
-  HeldJoint hold(const tinyxml2::XMLElement& element, const UrdfJoint& joint) const;
-  std::vector<double> read_axis(const tinyxml2::XMLElement& element) const;
-  void write_limit(const tinyxml2::XMLElement& element, const UrdfJoint& joint);
+  Joint read_motion(const tinyxml2::XMLElement& element, const UrdfJoint& joint);
+  void hold(const tinyxml2::XMLElement& element, const UrdfJoint& joint,
+            UrdfPlacement& placement) const;
+  Eigen::Vector3d read_axis(const tinyxml2::XMLElement& element) const;
+  void read_limit(const tinyxml2::XMLElement& element, const UrdfJoint& joint, Joint& motion);
   void note_extras(const tinyxml2::XMLElement& element, const UrdfJoint& joint);
 
   const UrdfChain& chain_;
   UrdfXml& xml_;
-  UrdfWriter& out_;
-  std::map<std::string, HeldJoint> held_;
   std::vector<std::string> rubbing_, softly_limited_;              // joints, in the file's order
   std::map<std::string, std::vector<std::string>> without_limit_;  // by attribute of <limit>
 };

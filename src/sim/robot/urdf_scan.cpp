@@ -64,7 +64,7 @@ class Scanner {
     advance(at + end.size());
   }
 
-  // An opening tag up to its '>', which may also stand inside quotes.
+  // Skips an opening tag up to its '>'. A '>' inside quotes does not end the tag.
   void scan_tag() {
     const OpenElement element{rest_.substr(1, rest_.find_first_of(" \t\r\n/>", 1) - 1), line_};
     if (++elements_ > kUrdfElementLimit) {
@@ -102,8 +102,8 @@ class Scanner {
                      sanitize(element.tag.substr(0, 40))));
   }
 
-  // Of the entities only the five predefined ones and characters by number mean anything without a
-  // document type.
+  // Throws for a NUL byte and for an unknown entity. Without a document type only the five
+  // predefined entities and numeric character references are valid.
   void check_entity() const {
     if (rest_.front() == '\0') {
       fail("contains a NUL byte; a URDF is plain text in UTF-8");

@@ -1,5 +1,3 @@
-#include "sim/robot/urdf_xml.hpp"
-
 #include <fmt/format.h>
 #include <tinyxml2.h>
 
@@ -7,7 +5,7 @@
 #include <cmath>
 
 #include "base/text.hpp"
-#include "sim/robot/urdf.hpp"
+#include "sim/robot/urdf_parts.hpp"
 
 namespace armwright {
 
@@ -15,7 +13,8 @@ using tinyxml2::XMLElement;
 
 namespace {
 
-// Larger numbers are mistakes, and their squares and products must not overflow.
+// The largest accepted number. Larger ones are mistakes, and squares and products must not
+// overflow.
 constexpr double kLargest = 1e18;
 
 }  // namespace
@@ -42,7 +41,8 @@ void UrdfXml::check_names(const XMLElement& element, const std::vector<std::stri
   for (const XMLElement* child = element.FirstChildElement(); child != nullptr;
        child = child->NextSiblingElement()) {
     if (std::string_view(child->Name()).starts_with("xacro:")) {
-      fail(*child, fmt::format("<{}> is of xacro; {}", shorten(child->Name()), kXacroAdvice));
+      fail(*child,
+           fmt::format("<{}> is an element of xacro; {}", shorten(child->Name()), kXacroAdvice));
     }
     check_spelling(*child, fmt::format("element in <{}>", element.Name()), child->Name(), children);
   }

@@ -1,32 +1,37 @@
 // Sine, cosine and rounding for all lanes at once, without branches and tables.
 //
-// Range: |x| <= 1e6 (double), 1e4 (float); beyond it the result is wrong, and far beyond not
-// finite. The engine takes a joint that has turned farther for diverged. Error within the range: at
-// most two units in the last place of the larger of sine and cosine; absolute, 2.2e-16 (double) or
-// 9e-8 (float). The argument is reduced to [-pi/4, pi/4] by pi/2 in three parts, of which the first
-// two have at least 20 (float: 13) trailing zero bits, so that their products with the quadrant are
-// exact (Cody and Waite 1980). Coefficients: double, fdlibm's kernels of sine and cosine (Sun
-// Microsystems 1993); float, Cephes' sinf and cosf (Moshier 1992).
+// Range: |x| <= 1e6 (double), 1e4 (float). Beyond it the result is wrong, and far beyond it is not
+// finite. The engine treats a joint that has turned farther as diverged.
+//
+// Error within the range: at most two units in the last place of the larger of sine and cosine. The
+// absolute error is at most 2.2e-16 (double) or 9e-8 (float).
+//
+// Method: the argument is reduced to [-pi/4, pi/4] by subtracting multiples of pi/2, which is
+// stored in three parts. The first two parts have at least 20 (float: 13) trailing zero bits, so
+// their products with the quadrant's number are exact (Cody and Waite 1980). The polynomial
+// coefficients are those of fdlibm's sine and cosine kernels for double (Sun Microsystems 1993) and
+// of Cephes' sinf and cosf for float (Moshier 1992).
 #pragma once
 
 #include "sim/simd/lane_pack.hpp"
 
 namespace armwright::lanes {
 
-// The nearest integer (ties to even) of |x| < 2^51 (double), 2^22 (float): adding 1.5 x 2^52 leaves
-// no room for a fraction.
+// The constant that rounds to the nearest integer (ties to even) for |x| < 2^51 (double), 2^22
+// (float). After adding 1.5 x 2^52 (float: 1.5 x 2^23) the sum has no bits left for a fraction.
 template <class T>
 inline constexpr T kRounder = T{6755399441055744.0};
 template <>
 inline constexpr float kRounder<float> = 12582912.0F;
 
+// Returns x rounded to the nearest integer, in the range of kRounder.
 template <class V>
 ARMWRIGHT_INLINE V round_to_integer(V x) {
   const V rounder = kRounder<typename V::Scalar>;
   return (x + rounder) - rounder;
 }
 
-// x less the nearest multiple of 2 pi; exactly x where |x| < pi.
+// Returns x minus the nearest multiple of 2 pi. Returns exactly x if |x| < pi.
 template <class V>
 ARMWRIGHT_INLINE V wrap(V x) {
   using T = typename V::Scalar;
@@ -79,8 +84,9 @@ struct HalfPi<float> {
   static constexpr float kThird = 7.54978995489188216e-8F;
 };
 
-// With s, c of the reduced argument and the quadrant's number as an integer in the lowest bits of
-// `rounded`: swaps them in odd quadrants and sets their signs.
+// Turns the sine s and cosine c of the reduced argument into those of the argument: swaps them in
+// odd quadrants and sets their signs. The lowest bits of `rounded` hold the quadrant's number as an
+// integer.
 template <class T, int W, class Isa>
 ARMWRIGHT_INLINE void place_in_quadrant(Pack<T, W, Isa> rounded, Pack<T, W, Isa>& s,
                                         Pack<T, W, Isa>& c) {
@@ -113,6 +119,7 @@ ARMWRIGHT_INLINE void place_in_quadrant(Single<T, Isa> rounded, Single<T, Isa>& 
 
 }  // namespace detail
 
+// Computes sine and cosine of x (rad) in every lane; range and error as stated at the top.
 template <class V>
 ARMWRIGHT_INLINE void calc_sine_cosine(V x, V& sine, V& cosine) {
   using T = typename V::Scalar;

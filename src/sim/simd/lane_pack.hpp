@@ -1,11 +1,13 @@
-// A pack of numbers that go through the same arithmetic side by side, one a SIMD lane, on the
-// compiler's vector types. The dynamics are written once for any "lane type" V: a Pack, a Pair of
-// packs, a Single (one lane), or a lane of numbers that carry derivatives along. A lane type has
-// the type Scalar, the constant kLanes, + - * / and the free functions below.
+// Packs of numbers for SIMD code: one number per lane, the same arithmetic in every lane. They use
+// the compiler's vector types.
 //
-// Code that includes this header is compiled once for every instruction set. `Isa` is in the type,
-// so that no two of these compilations ever share a function; for the same reason nothing here uses
-// the standard library's templates.
+// The dynamics are written once, as templates over a "lane type" V. A lane type is a Pack, a Pair
+// of packs, a Single (one lane), or a type whose numbers carry derivatives. It has the type Scalar,
+// the constant kLanes, the operators + - * / and the free functions below.
+//
+// Code that includes this header is compiled once per instruction set. The type parameter `Isa`
+// makes the types of these compilations different, so the linker never merges their functions. For
+// the same reason this header does not use templates of the standard library.
 #pragma once
 
 #include <cstdint>
@@ -17,6 +19,7 @@
 
 namespace armwright::lanes {
 
+// The integer type that is as wide as T.
 template <class T>
 struct Bits;
 template <>
@@ -28,13 +31,15 @@ struct Bits<float> {
   using Type = std::int32_t;
 };
 
-// GCC ignores vector_size on a dependent type unless the type is a member of another template.
+// The compiler's vector type of W numbers. It is a member of a template of its own because GCC
+// otherwise ignores vector_size on a dependent type.
 template <class T, int W>
 struct VectorOf {
   typedef T Type __attribute__((vector_size(sizeof(T) * W)));
 };
 
-// W numbers of type T. Comparisons yield a Mask: all bits of a lane set where they hold.
+// W numbers of type T. A comparison returns a Mask. All bits of a mask's lane are set if the
+// comparison holds there; otherwise none is.
 template <class T, int W, class Isa>
 struct Pack {
   using Scalar = T;
@@ -83,7 +88,7 @@ ARMWRIGHT_PACK typename ARMWRIGHT_P::Mask operator>(ARMWRIGHT_P a, ARMWRIGHT_P b
   return a.v > b.v;
 }
 
-// yes where the mask is set, no elsewhere.
+// Returns `yes` in lanes where the mask is set and `no` elsewhere.
 ARMWRIGHT_PACK ARMWRIGHT_P select(typename ARMWRIGHT_P::Mask mask, ARMWRIGHT_P yes,
                                   ARMWRIGHT_P no) {
   return mask ? yes.v : no.v;
@@ -95,8 +100,8 @@ ARMWRIGHT_PACK ARMWRIGHT_P abs(ARMWRIGHT_P a) {
   return reinterpret_cast<typename P::Vector>(reinterpret_cast<typename P::Mask>(a.v) &
                                               (kMagnitude - typename P::Mask{}));
 }
-// The smaller and the larger; the second where they do not compare. The compiler does not take the
-// machine's own instruction for a < b ? a : b, since it must not assume that numbers compare.
+// min() and max() return b in lanes where a or b is NaN, as the machine's instructions do. They use
+// intrinsics because the compiler does not always turn a < b ? a : b into that instruction.
 ARMWRIGHT_PACK ARMWRIGHT_P min(ARMWRIGHT_P a, ARMWRIGHT_P b) {
 #if defined(__x86_64__)
   if constexpr (sizeof(a.v) == 16 && sizeof(T) == 8) {
@@ -146,7 +151,7 @@ ARMWRIGHT_PACK ARMWRIGHT_P max(ARMWRIGHT_P a, ARMWRIGHT_P b) {
   return a.v > b.v ? a.v : b.v;
 }
 
-// One bit a lane, the first lane's lowest, set where a < b holds.
+// Returns one bit per lane, set if a < b holds there. The first lane has the lowest bit.
 ARMWRIGHT_PACK std::uint32_t find_less(ARMWRIGHT_P a, ARMWRIGHT_P b) {
   const typename ARMWRIGHT_P::Mask mask = a.v < b.v;
 #if defined(__AVX512F__)
@@ -180,7 +185,7 @@ ARMWRIGHT_PACK std::uint32_t find_less(ARMWRIGHT_P a, ARMWRIGHT_P b) {
 #undef ARMWRIGHT_PACK
 #undef ARMWRIGHT_P
 
-// One number, for machines without SIMD.
+// A lane type of one number, for machines without SIMD.
 template <class T, class Isa>
 struct Single {
   using Scalar = T;
@@ -239,8 +244,8 @@ ARMWRIGHT_ONE std::uint32_t find_less(ARMWRIGHT_S a, ARMWRIGHT_S b) {
 #undef ARMWRIGHT_ONE
 #undef ARMWRIGHT_S
 
-// Two packs side by side. Steps of the dynamics wait for each other's results; two independent
-// chains of them keep the processor busy.
+// A lane type of two packs. Each operation of the dynamics waits for the result of an earlier one;
+// two independent sequences of operations use the processor better.
 template <class P>
 struct Pair {
   using Scalar = typename P::Scalar;
@@ -251,8 +256,8 @@ struct Pair {
   P first, second;
 
   Pair() = default;
-  // Spelt out: left to itself the compiler copies in pieces of 16 bytes, which cannot be forwarded
-  // to the wider loads that follow.
+  // The copies are written out because GCC's own copy stores pieces of 16 bytes. The processor
+  // cannot forward these to the wider loads that follow, which is slow.
   ARMWRIGHT_INLINE Pair(const Pair& other) : first(other.first), second(other.second) {}
   ARMWRIGHT_INLINE Pair& operator=(const Pair& other) {
     first = other.first;

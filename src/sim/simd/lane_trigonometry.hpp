@@ -1,7 +1,8 @@
-// Square root and the angle of a point for all lanes at once, without branches and tables. Only
-// operations that IEEE 754 rounds correctly, in the same order for every lane type: compiled
-// without fused multiply-add the results are the same bits for any number of lanes and on any
-// machine.
+// Square root and the angle of a point for all lanes at once, without branches and tables.
+//
+// The code uses only operations that IEEE 754 rounds correctly, in the same order for every lane
+// type. It must be compiled without fused multiply-add. Then the results have the same bits for any
+// number of lanes and on any machine.
 #pragma once
 
 #include "sim/simd/lane_pack.hpp"
@@ -40,7 +41,7 @@ ARMWRIGHT_INLINE Pair<P> sqrt(Pair<P> a) {
   return {sqrt(a.first), sqrt(a.second)};
 }
 
-// a with its sign changed where b is negative, -0 included.
+// Returns a with its sign changed in lanes where b is negative (-0 counts as negative).
 template <int W, class Isa>
 ARMWRIGHT_INLINE Pack<double, W, Isa> flip_sign(Pack<double, W, Isa> a, Pack<double, W, Isa> b) {
   using P = Pack<double, W, Isa>;
@@ -59,8 +60,8 @@ ARMWRIGHT_INLINE Pair<P> flip_sign(Pair<P> a, Pair<P> b) {
 
 namespace detail {
 
-// atan(x) for |x| <= 7/16 within 1 unit in the last place. Coefficients: fdlibm's atan (Sun
-// Microsystems 1993).
+// Returns atan(x) for |x| <= 7/16, with an error of at most 1 unit in the last place. Coefficients:
+// fdlibm's atan (Sun Microsystems 1993).
 template <class V>
 ARMWRIGHT_INLINE V calc_atan_polynomial(V x) {
   const V z = x * x;
@@ -82,23 +83,24 @@ ARMWRIGHT_INLINE V calc_atan_polynomial(V x) {
 
 }  // namespace detail
 
-// The angle of the point (x, y), y >= +0, in [0, pi]; 0 at the origin. For x, y up to 8e307. Error:
-// at most 4e-16 absolute, and 4e-16 relative where the angle is below pi/8 and y/x no subnormal.
+// Returns the angle (rad) of the point (x, y) with y >= +0, in [0, pi], and 0 at the origin. |x|
+// and y are at most 8e307. Error: at most 4e-16 absolute; also at most 4e-16 relative if the angle
+// is below pi/8 and y/x is not subnormal.
 //
-// The point is mirrored into the octant 0 <= y <= x and turned back by pi/4 where it lies beyond
-// pi/8, so that the ratio is at most tan(pi/8) and one division does. The angle is a number of
-// eighths of a turn plus or minus the arc tangent of that ratio.
+// Method: the point is mirrored into the octant 0 <= y <= x. If its angle there exceeds pi/8, it is
+// turned back by pi/4. The ratio is then at most tan(pi/8), and one division is enough. The result
+// is a multiple of pi/4 plus or minus the arc tangent of that ratio.
 template <class V>
 ARMWRIGHT_INLINE V calc_angle_above(V y, V x) {
   static_assert(sizeof(typename V::Scalar) == sizeof(double));
   constexpr double kTanEighthPi = 0.41421356237309504880;
-  constexpr double kSmallest = 4.9406564584124654e-324;  // no ratio but that of the origin needs it
-  // pi/4 in two parts; the first has three trailing zero bits, so that its multiples are exact.
+  constexpr double kSmallest = 4.9406564584124654e-324;  // avoids 0 / 0 at the origin
+  // pi/4 in two parts. The first has three trailing zero bits, so its multiples are exact.
   constexpr double kEighthHigh = 7.85398163397448278999e-01;
   constexpr double kEighthLow = 3.06161699786838301793e-17;
   const V zero = 0.0;
   const V width = flip_sign(x, x);
-  // Of two that do not compare these yield the second: no number in, no number out.
+  // min() and max() return their second argument if one is NaN, so a NaN reaches the result.
   const V small = min(width, y);
   const V large = max(y, width);
 
@@ -117,7 +119,7 @@ ARMWRIGHT_INLINE V calc_angle_above(V y, V x) {
   return eighths * V(kEighthHigh) + (eighths * V(kEighthLow) + rest);
 }
 
-// The angle of any point, in [-pi, pi], with the sign of y. x = -0 is x = 0.
+// Returns the angle (rad) of any point, in [-pi, pi], with the sign of y. x = -0 counts as 0.
 template <class V>
 ARMWRIGHT_INLINE V calc_atan2(V y, V x) {
   return flip_sign(calc_angle_above(flip_sign(y, y), x), y);

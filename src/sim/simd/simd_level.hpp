@@ -1,5 +1,6 @@
-// Instruction sets that a batched engine can use, chosen at run time. Results differ between levels
-// in the last bits, but not between machines, threads or batches at the same level.
+// The instruction sets that a batched engine can use; the level is chosen at run time. Results of
+// different levels differ in the last bits. At the same level they are identical on all machines
+// and for any number of threads and any batch size.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +13,16 @@ namespace armwright {
 enum class SimdLevel : std::uint8_t { scalar, sse2, avx2, avx512 };  // in ascending order
 
 const char* to_string(SimdLevel level);
-std::vector<std::string> simd_names();            // all, in ascending order
-SimdLevel parse_simd(std::string_view name);      // Error{usage} if there is none of that name
-bool is_supported(SimdLevel level);               // by the CPU this runs on; scalar always is
-std::vector<std::string> supported_simd_names();  // those, in ascending order
-SimdLevel find_best_simd();  // the highest supported, and not above $ARMWRIGHT_SIMD if that is set
+// Returns the names of all levels, in ascending order.
+std::vector<std::string> simd_names();
+// Throws Error{usage} if no level has that name.
+SimdLevel parse_simd(std::string_view name);
+// Returns whether this CPU supports the level. Every CPU supports `scalar`.
+bool is_supported(SimdLevel level);
+// Returns the names of the levels that this CPU supports, in ascending order.
+std::vector<std::string> supported_simd_names();
+// Returns the highest level that this CPU supports. The environment variable ARMWRIGHT_SIMD, if
+// set, limits it.
+SimdLevel find_best_simd();
 
 }  // namespace armwright

@@ -19,7 +19,8 @@ Inertial map_linearly(const Inertial& body, const Eigen::Matrix3d& map, double m
   return {mass_factor * body.mass_kg, map * body.com_m, after.trace() * identity - after};
 }
 
-// Pictures stay boxes, cylinders and spheres: their edges are stretched, their angles kept.
+// Stretches a picture. Boxes, cylinders and spheres stay such: their edges are stretched and their
+// angles kept.
 void stretch_visual(VisualShape& visual, const Eigen::Matrix3d& map) {
   const Eigen::Vector3d factor = (map * visual.pose.linear()).colwise().norm();
   switch (visual.kind) {
@@ -84,7 +85,7 @@ RobotModel make_robot(const RobotModel& nominal, const ArmDesign& design,
   }
   for (std::size_t i = 1; torque_per_mass_n_m_per_kg > 0 && i < design.joints.size(); ++i) {
     Inertial motor;
-    motor.mass_kg = calc_largest_torque_n_m(design.joints[i]) / torque_per_mass_n_m_per_kg;
+    motor.mass_kg = calc_largest_effort(design.joints[i]) / torque_per_mass_n_m_per_kg;
     motor.com_m = robot.joints[i].origin.translation();
     Inertial& carrier = robot.links[i - 1].inertial;
     carrier = combine(carrier, motor);

@@ -1,35 +1,43 @@
 // The arm and the task of a design: what an ArmDesign changes beside controllers and limits.
 //
-// Stretching. The link that a joint moves becomes L times as long, along the vector d from its
-// joint to the next one (or to the tip), and its section S times as large, that is sqrt(S) times as
-// wide in every direction across d: each of its points r goes to
+// Stretching. The link that a joint moves becomes L times as long, along the unit vector d from its
+// joint to the next one (or to the tip), and its section S times as large. It is then sqrt(S) times
+// as wide in every direction perpendicular to d. Each of its points r moves to
 //   A r,  A = sqrt(S) 1 + (L - sqrt(S)) d d'.
-// At the same density its mass becomes det A = L S times as large, its centre of mass A com, its
-// second moments about it K = integral of r r' dm become L S A K A', and its inertia
-// tr(K) 1 - K. The next joint and what it carries move with the link's end and are not turned.
+// At the same density, with K the second moments about the centre of mass (integral of r r' dm),
+//   mass            becomes det A = L S times as large
+//   centre of mass  becomes A com
+//   K               becomes L S A K A', and the inertia is tr(K) 1 - K
+// The next joint, and everything that it carries, moves with the link's end and is not turned.
 //
-// Motors. A motor of torque per mass k weighs tau / k, tau the larger of its joint's two limits. It
-// is a point mass at its joint's origin that the link before carries; that of joint 1 stands on the
-// base and moves nothing. Motors come on top of the masses that the robot's file has.
+// Motors. A motor of torque per mass k weighs tau / k, with tau the larger of its joint's two
+// effort limits. It is a point mass at its joint's origin, carried by the link before. The motor of
+// joint 1 stands on the base and moves nothing. Motors are added to the masses that the robot's
+// file has.
 #pragma once
 
-#include "sim/tracking/tracking.hpp"
+#include "sim/robot/robot_model.hpp"
+#include "sim/tracking/design.hpp"
+#include "sim/tracking/task.hpp"
 
 namespace armwright {
 
-// Error{usage} unless both scales are finite and > 0; Error{bad_data} if the next joint or the tip
-// lies in the link's own joint, which leaves no direction.
+// Returns the model with one link stretched. Throws Error{usage} unless both scales are finite and
+// > 0, and Error{bad_data} if the next joint or the tip lies in the link's own joint: the link then
+// has no direction.
 RobotModel stretch_link(RobotModel model, std::size_t link, double length_scale,
                         double section_scale);
 
-// The arm of a design, without load. `torque_per_mass_n_m_per_kg` of its motors; 0: they weigh
-// nothing.
+// Returns the arm of a design, without load. `torque_per_mass_n_m_per_kg` is that of the motors;
+// with 0 they weigh nothing. Throws what stretch_link() throws.
 RobotModel make_robot(const RobotModel& nominal, const ArmDesign& design,
                       double torque_per_mass_n_m_per_kg);
+// Returns the task with the design's speed, if the design has one.
 TrackingTask make_task(TrackingTask nominal, const ArmDesign& design);
 
-// Whether stretched links make it another arm than the robot's.
+// Returns whether the design changes the size of any link.
 bool is_stretched(const ArmDesign& design);
-double calc_moving_mass_kg(const RobotModel& model);  // of all links but the base
+// Returns the mass of all links but the base.
+double calc_moving_mass_kg(const RobotModel& model);
 
 }  // namespace armwright

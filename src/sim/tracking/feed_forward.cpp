@@ -1,42 +1,57 @@
-#include "sim/tracking/feed_forward.hpp"
-
+// Feed-forward efforts: the efforts that an arm's model predicts for the targets of a test case, by
+// discrete inverse dynamics. With theta_k the target at the end of control period k, theta_(-1) the
+// start, h the control period, and differences of revolute joints taken the short way round,
+//   v_k = (theta_k - theta_(k-1)) / h,   a_k = (v_k - v_(k-1)) / h,   v_(-1) = 0,
+//   inverse_dynamics:  tau_k = M(theta_(k-1)) a_k + b(theta_(k-1), v_(k-1)),
+//   gravity:           tau_k = b(theta_(k-1), 0).
+// With the efforts of inverse_dynamics, one step of semi-implicit Euler takes this arm exactly from
+// the target at the period's start to the target at its end. With those of gravity, an arm at rest
+// stays at rest. If a control period has more than one step, the arm ends beside the target; the
+// distance grows with h.
 #include <algorithm>
 #include <vector>
 
 #include "sim/dynamics/chain_dynamics.hpp"
+#include "sim/dynamics/chain_model.hpp"
 #include "sim/kinematics/kinematics.hpp"
+#include "sim/tracking/tracking_setup.hpp"
 
-namespace armwright::articulated {
+namespace armwright {
 namespace {
 
 struct FeedForwardLevel;  // tags the code that this file instantiates
 using FeedForwardNumber = lanes::Single<double, FeedForwardLevel>;
-using AnyChain = ChainShape<0, kAnyShape, true>;
+using FeedForwardChain = articulated::ChainShape<0, articulated::kAnyShape, true>;
 
 }  // namespace
 
-void fill_feed_forward(const ChainModel& chain, FeedForward kind, double period_s,
-                       TargetTable& table) {
+void TrackingSetup::fill_feed_forward(TargetTable& table) const {
+  const FeedForward kind = task_.feed_forward;
   if (kind == FeedForward::none) {
     return;
   }
+  const articulated::ChainModel& chain = *chain_;
+  const double period_s = task_.control_period_s;
   const std::size_t n = table.joints;
   const auto joint_kind = [&](std::size_t i) {
-    return (chain.flags()[i] & kPrismatic) == 0 ? JointKind::revolute : JointKind::prismatic;
+    return (chain.flags()[i] & articulated::kPrismatic) == 0 ? JointKind::revolute
+                                                             : JointKind::prismatic;
   };
   const std::vector<FeedForwardNumber> model(chain.numbers().begin(), chain.numbers().end());
   std::vector<FeedForwardNumber> scratch(
-      static_cast<std::size_t>(calc_dynamics_packs(chain.joints())), FeedForwardNumber(0));
+      static_cast<std::size_t>(articulated::calc_dynamics_packs(chain.joints())),
+      FeedForwardNumber(0));
   FeedForwardNumber* memory = scratch.data();
-  ChainDynamics<FeedForwardNumber, AnyChain> dynamics(
-      AnyChain(chain.joints(), chain.flags().data(), chain.tilted_gravity()), model.data(), memory);
-  // The state at the start of the period, and the acceleration in it.
+  articulated::ChainDynamics<FeedForwardNumber, FeedForwardChain> dynamics(
+      FeedForwardChain(chain.joints(), chain.flags().data(), chain.tilted_gravity()), model.data(),
+      memory);
+  // The state at the start of the period, and the acceleration during it.
   std::vector<FeedForwardNumber> q(n), rate(n, FeedForwardNumber(0)),
       acceleration(n, FeedForwardNumber(0));
-  const double* before = table.start_rad.data();
-  table.feed_forward_n_m.resize(table.angles_rad.size());
+  const double* before = table.start_positions.data();
+  table.feed_forward_effort.resize(table.joint_positions.size());
   for (int step = 0; step < table.steps; ++step) {
-    const double* const target = table.angles(step).data();
+    const double* const target = table.positions(step).data();
     std::vector<FeedForwardNumber> next = rate;
     if (kind == FeedForward::inverse_dynamics) {
       for (std::size_t i = 0; i < n; ++i) {
@@ -49,7 +64,7 @@ void fill_feed_forward(const ChainModel& chain, FeedForward kind, double period_
     }
     dynamics.set_posture(q.data(), true);
     dynamics.calc_equations(q.data(), rate.data());
-    double* const efforts = table.feed_forward_n_m.data() + static_cast<std::size_t>(step) * n;
+    double* const efforts = table.feed_forward_effort.data() + static_cast<std::size_t>(step) * n;
     for (std::size_t i = 0; i < n; ++i) {
       double effort = dynamics.bias(static_cast<int>(i)).v;
       for (std::size_t j = 0; j < n; ++j) {
@@ -64,4 +79,4 @@ void fill_feed_forward(const ChainModel& chain, FeedForward kind, double period_
   }
 }
 
-}  // namespace armwright::articulated
+}  // namespace armwright

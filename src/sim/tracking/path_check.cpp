@@ -11,11 +11,12 @@
 namespace armwright {
 namespace {
 
-// Rounding of angles at the end of a range or at a joint's full speed.
+// Tolerance for the rounding of positions at the end of a range and of speeds at the limit.
 constexpr double kRounding = 1e-6;
-// Singular values cost far more than positions: so often a path is looked at for them.
+// Singular values cost far more than positions, so they are computed only every so many steps.
 constexpr int kStepsBetween = 5;
 
+// The worst fault of one kind so far.
 struct Worst {
   std::optional<PathFault> fault;
   double excess = 0;
@@ -28,7 +29,8 @@ struct Worst {
   }
 };
 
-// How much a joint is beyond its range; an angle counts as the turn nearest to the middle.
+// Returns by how much a joint is beyond its range (negative inside). If `wrapped`, an angle is
+// replaced by the turn nearest to the middle of the range.
 double calc_excess(const Joint& joint, bool wrapped, double& position) {
   if (!std::isfinite(joint.lower) || !std::isfinite(joint.upper)) {
     return 0;
@@ -48,11 +50,11 @@ std::vector<PathFault> find_path_faults(const TrackingSetup& setup, const Target
   const auto kinematics = setup.get_kinematics();
   std::vector<Worst> positions(table.joints), speeds(table.joints);
   Worst singular;
-  std::span<const double> before = table.start_rad;
+  std::span<const double> before = table.start_positions;
   for (std::size_t k = 0; k < table.segments.size(); ++k) {
     const Segment& segment = table.segments[k];
     for (int step = segment.first_step; step < segment.first_step + segment.steps; ++step) {
-      const std::span<const double> q = table.angles(step);
+      const std::span<const double> q = table.positions(step);
       PathFault fault;
       fault.point = k + 1;
       fault.time_s = (step + 1) * period_s;

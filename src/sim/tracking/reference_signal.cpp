@@ -48,8 +48,7 @@ ReferenceSignal::ReferenceSignal(SignalShape shape, double distance_m, double sp
   require_positive("the duration (distance / speed)", curve_.duration_s, "s");
   if (curve_.shape == SignalShape::trapezoid) {
     require_positive("the acceleration", acceleration_m_per_s2, "m/s^2");
-    // The plateau ds = a t_a (t_m - t_a) solved for t_a, in the form that does not cancel where a
-    // is large.
+    // Solves ds = a t_a (t_m - t_a) for t_a, in the form that does not cancel if a is large.
     const double rest_s2 =
         curve_.duration_s * curve_.duration_s - 4 * distance_m / acceleration_m_per_s2;
     if (rest_s2 >= 0) {

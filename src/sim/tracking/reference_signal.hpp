@@ -1,6 +1,6 @@
-// How the target moves from one trajectory point to the next: the distance s(t) covered after t
-// seconds (thesis section 5.2.3). All reach the distance ds at t_m = ds / v, v the average speed,
-// and stay there.
+// The reference signal of a move: the distance s(t) that the target has covered after t seconds
+// (thesis section 5.2.3). With v the average speed, every shape reaches the distance ds at
+// t_m = ds / v and stays there.
 //   step        s = ds
 //   ramp        s = v t
 //   trapezoid   constant acceleration a, plateau, deceleration; triangular where a is too small
@@ -17,12 +17,15 @@
 
 namespace armwright {
 
-const std::vector<std::string>& signal_names();    // in the order of the enum
-SignalShape find_signal(const std::string& name);  // the name must be one of signal_names()
+const std::vector<std::string>& signal_names();  // in the order of the enum
+// Returns the shape of that name. Throws Error{usage} if there is none.
+SignalShape find_signal(const std::string& name);
 
+// A move of one distance at one speed. Immutable.
 class ReferenceSignal {
  public:
-  // distance_m > 0, speed_m_per_s > 0; the acceleration matters to the trapezoid only.
+  // Throws Error{usage} unless distance, speed and duration are finite and > 0, and for a trapezoid
+  // also the acceleration. The other shapes do not use the acceleration.
   ReferenceSignal(SignalShape shape, double distance_m, double speed_m_per_s,
                   double acceleration_m_per_s2);
 

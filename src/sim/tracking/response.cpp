@@ -8,7 +8,7 @@
 namespace armwright {
 namespace {
 
-// When s first reaches `level_m` (s); nothing if it does not.
+// Returns the first time (s) at which s reaches `level_m`; nothing if it does not.
 std::optional<double> find_first_time_s(const TipMove& move, double level_m) {
   const std::vector<double>& along_m = move.along_m;
   const auto reached =
@@ -68,7 +68,7 @@ double calc_rise_time_s(const TipMove& move) {
   constexpr double kBegin = 0.1;
   constexpr double kEnd = 0.9;
   const auto end_s = find_first_time_s(move, kEnd * move.length_m);
-  // What has come to 90 % has come to 10 % no later.
+  // A tip that reaches 90 % has reached 10 % before or at the same time.
   return end_s ? *end_s - *find_first_time_s(move, kBegin * move.length_m) : calc_end_s(move);
 }
 
@@ -92,8 +92,8 @@ std::vector<double> calc_joint_speeds(const RobotModel& robot, const TargetTable
                                       const TrackingResult& result, double period_s) {
   const std::size_t joints = targets.joints;
   std::vector<double> speeds(joints);
-  std::span<const double> before(targets.start_rad);
-  const std::span<const double> angles(result.angles_rad);
+  std::span<const double> before(targets.start_positions);
+  const std::span<const double> angles(result.joint_positions);
   for (std::size_t at = 0; at + joints <= angles.size(); at += joints) {
     const auto now = angles.subspan(at, joints);
     for (std::size_t i = 0; i < joints; ++i) {

@@ -11,19 +11,17 @@
 #include "base/hash.hpp"
 #include "base/random.hpp"
 #include "base/text.hpp"
-#include "sim/tracking/bred_case.hpp"
-#include "sim/tracking/test_case_file.hpp"
 
 namespace armwright {
 namespace {
 
-// From a point on the surface a direction at distance ds stays inside with probability (1 - ds/2r)
-// / 2. The largest ratio keeps the redrawing of one point at some thousand draws; the published
-// 0.05 m, 25 points need about fourteen.
+// A move of length ds from a point on the surface ends inside with probability (1 - ds/2r) / 2.
+// With the largest ratio, one point needs some thousand draws; with the published 0.05 m and 25
+// points it needs about fourteen.
 constexpr double kLargestRatio = 0.999;  // of one move to the one before
 constexpr int kMostPoints = 1000;
-constexpr double kFinestMove =
-    1e-6;  // of the coordinates' size; less would drown in their rounding
+// As a share of the coordinates' size. Shorter moves would be lost in the coordinates' rounding.
+constexpr double kFinestMove = 1e-6;
 
 [[noreturn]] void refuse(const std::string& message) {
   throw Error(ErrorKind::usage, "workspace sphere: " + message);
@@ -55,9 +53,9 @@ void check_sphere(const WorkspaceSphere& sphere) {
   }
 }
 
-// A uniformly random point on the unit sphere by rejection in the disc (Marsaglia 1972, Ann. Math.
-// Statist. 43). It needs no function but the square root, which IEEE 754 rounds exactly: the same
-// bits with every mathematical library.
+// Draws a uniformly random point on the unit sphere by rejection in the disc (Marsaglia 1972, Ann.
+// Math. Statist. 43). The only function that it needs is the square root, which IEEE 754 rounds
+// exactly. The bits are therefore the same with every mathematical library.
 Eigen::Vector3d draw_direction(RandomStream& random) {
   while (true) {
     const double u = random.uniform(-1, 1);
@@ -70,8 +68,7 @@ Eigen::Vector3d draw_direction(RandomStream& random) {
   }
 }
 
-// A uniformly random direction in the plane across `normal`, likewise: rejection in the disc, and
-// the square root alone.
+// Draws a uniformly random direction in the plane perpendicular to `normal`, by the same method.
 Eigen::Vector3d draw_direction(RandomStream& random, const Eigen::Vector3d& normal) {
   const Eigen::Vector3d first = normal.unitOrthogonal();
   const Eigen::Vector3d second = normal.cross(first);
@@ -102,7 +99,7 @@ void append_little_endian(std::string& bytes, std::uint64_t word) {
   }
 }
 
-// `get_stream(k)` gives the numbers that point k is drawn from.
+// Generates a case. `get_stream(k)` returns the random numbers for point k.
 template <class GetStream>
 TestCase make_case(const WorkspaceSphere& sphere, const GetStream& get_stream) {
   TestCase made;
@@ -130,8 +127,8 @@ double WorkspaceSphere::calc_move_m(int k) const {
   if (k == 1) {
     return radius_m;
   }
-  // In long double because double pow differs in the last bit between libraries; rounded to double,
-  // this one does not.
+  // The power of doubles differs in the last bit between libraries. The power of long doubles,
+  // rounded to double, does not.
   const double exponent = static_cast<double>(k - 2) / (points - 2);
   const double ratio = shortest_move_m / (2 * radius_m);
   return 2 * radius_m * static_cast<double>(std::pow(static_cast<long double>(ratio), exponent));
@@ -144,7 +141,7 @@ TestCase make_test_case(std::string_view set_name, std::uint64_t number,
     RandomStream random(set_name, number);
     return make_case(sphere, [&](int) -> RandomStream& { return random; });
   }
-  std::optional<RandomStream> own;  // every point's: how often one is redrawn is its own affair
+  std::optional<RandomStream> own;  // each point has one, so redrawing it does not affect others
   return make_case(sphere, [&](int k) -> RandomStream& {
     own.emplace(fmt::format("{}/{}", set_name, k),
                 get_key(number, find_key_place(k, sphere.points)));

@@ -1,5 +1,3 @@
-#include "sim/tracking/test_case_file.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,32 +10,33 @@
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
+#include "sim/tracking/test_case.hpp"
 
 namespace armwright {
 namespace {
 
 constexpr std::size_t kLargestFile_bytes = std::size_t{256} << 20;
 constexpr std::size_t kDeepestNesting = 8;  // the cases need 4, the rest is for ignored keys
-constexpr double kFarthest_m = 100;         // no arm reaches that far, but millimetres do
+constexpr double kFarthest_m = 100;         // coordinates beyond it are probably in millimetres
 constexpr std::string_view kHeader = "case,point,x_m,y_m,z_m";
 
 [[noreturn]] void refuse(const std::string& where, const std::string& what) {
   throw Error(ErrorKind::bad_data, where + ": " + what);
 }
 
-// A part of the file for a message: printable and short, whatever the file holds.
+// Returns a part of the file for a message, made printable and shortened.
 std::string quote(std::string_view text) {
   constexpr std::size_t kLongest = 80;
   return sanitize(text.substr(0, kLongest)) + (text.size() > kLongest ? "..." : "");
 }
 
-// Takes the parser's events and builds the cases, so that nothing but numbers in the right places
-// is ever stored.
+// Builds the cases from the parser's events. It stores only numbers in the right places, so memory
+// does not depend on what else the file has.
 class JsonCases final : public nlohmann::json_sax<nlohmann::json> {
  public:
   JsonCases(const std::string& name, std::string_view text) : name_(name), text_(text) {}
 
-  std::vector<TestCase> take_cases() {
+  std::vector<TestCase> finish() {
     if (!found_) {
       refuse(name_, "has no \"cases\"; it must be {\"cases\": [[[x, y, z], ...], ...]} in metres");
     }
@@ -47,18 +46,20 @@ class JsonCases final : public nlohmann::json_sax<nlohmann::json> {
     return std::move(cases_);
   }
 
-  bool null() override { return take_other("null"); }
-  bool boolean(bool value) override { return take_other(value ? "true" : "false"); }
+  bool null() override { return handle_other("null"); }
+  bool boolean(bool value) override { return handle_other(value ? "true" : "false"); }
   bool number_integer(number_integer_t value) override {
-    // Only numbers with a minus sign come here, so that this zero is the negative one.
-    return take_number(value == 0 ? -0.0 : static_cast<double>(value));
+    // The parser calls this for numbers with a minus sign only, so a zero is the negative zero.
+    return handle_number(value == 0 ? -0.0 : static_cast<double>(value));
   }
   bool number_unsigned(number_unsigned_t value) override {
-    return take_number(static_cast<double>(value));
+    return handle_number(static_cast<double>(value));
   }
-  bool number_float(number_float_t value, const string_t&) override { return take_number(value); }
-  bool string(string_t& value) override { return take_other(fmt::format("\"{}\"", quote(value))); }
-  bool binary(binary_t&) override { return take_other("binary"); }
+  bool number_float(number_float_t value, const string_t&) override { return handle_number(value); }
+  bool string(string_t& value) override {
+    return handle_other(fmt::format("\"{}\"", quote(value)));
+  }
+  bool binary(binary_t&) override { return handle_other("binary"); }
 
   bool key(string_t& key) override {
     if (depth_ == 1) {
@@ -72,7 +73,7 @@ class JsonCases final : public nlohmann::json_sax<nlohmann::json> {
 
   bool start_object(std::size_t) override {
     if (depth_ > 0 && reading_) {
-      take_other("an object");
+      handle_other("an object");
     }
     return enter();
   }
@@ -90,7 +91,7 @@ class JsonCases final : public nlohmann::json_sax<nlohmann::json> {
     } else if (reading_ && depth_ == 3) {
       coordinates_ = 0;
     } else if (reading_ && depth_ == 4) {
-      take_other("an array");
+      handle_other("an array");
     }
     return enter();
   }
@@ -116,7 +117,8 @@ class JsonCases final : public nlohmann::json_sax<nlohmann::json> {
     const auto end = text_.begin() + static_cast<std::ptrdiff_t>(
                                          std::min(position > 0 ? position - 1 : 0, text_.size()));
     std::string_view what = error.what();
-    what.remove_prefix(std::min(what.find("] "), what.size() - 2) + 2);  // the library's own number
+    what.remove_prefix(std::min(what.find("] "), what.size() - 2) +
+                       2);  // the library's number of the error
     if (what.starts_with("parse error at ")) {
       what.remove_prefix(what.find(": ") + 2);
     }
@@ -137,9 +139,9 @@ class JsonCases final : public nlohmann::json_sax<nlohmann::json> {
     return fmt::format("case {}, point {}", cases_.size() - 1, cases_.back().points_m.size());
   }
 
-  bool take_number(double value) {
+  bool handle_number(double value) {
     if (!reading_ || depth_ != 4) {
-      return !reading_ && depth_ > 0 ? true : take_other(format_exact(value));
+      return !reading_ && depth_ > 0 ? true : handle_other(format_exact(value));
     }
     if (coordinates_ < point_.size()) {
       point_[coordinates_] = value;
@@ -148,8 +150,9 @@ class JsonCases final : public nlohmann::json_sax<nlohmann::json> {
     return true;
   }
 
-  // Anything but a number at its place: wrong within the cases, ignored elsewhere.
-  bool take_other(const std::string& found) {
+  // Handles every value but a number at its place: refuses it within the cases, ignores it
+  // elsewhere.
+  bool handle_other(const std::string& found) {
     if (depth_ == 0) {
       refuse(name_, fmt::format("is {}; it must be an object with the key \"cases\"", found));
     }
@@ -185,18 +188,19 @@ class JsonCases final : public nlohmann::json_sax<nlohmann::json> {
 std::vector<TestCase> parse_json(const std::string& name, std::string_view text) {
   JsonCases cases(name, text);
   nlohmann::json::sax_parse(text.begin(), text.end(), &cases);
-  return cases.take_cases();
+  return cases.finish();
 }
 
-std::string_view take_until(std::string_view& text, char separator) {
+// Removes the text up to the separator, and the separator, and returns that text.
+std::string_view cut_until(std::string_view& text, char separator) {
   const std::size_t at = text.find(separator);
   const std::string_view part = text.substr(0, at);
   text.remove_prefix(at == std::string_view::npos ? text.size() : at + 1);
   return part;
 }
 
-std::string_view take_line(std::string_view& text) {
-  std::string_view line = take_until(text, '\n');
+std::string_view cut_line(std::string_view& text) {
+  std::string_view line = cut_until(text, '\n');
   if (line.ends_with('\r')) {  // RFC 4180 ends lines with CR LF
     line.remove_suffix(1);
   }
@@ -215,16 +219,16 @@ CsvRow parse_row(const std::string& where, std::string_view line) {
     refuse(where, fmt::format("a row must have exactly 5 fields: {}; '{}' has {}", kHeader,
                               quote(line), fields));
   }
-  const auto take_integer = [&](const char* column) {
-    const std::string_view field = take_until(line, ',');
+  const auto parse_next_integer = [&](const char* column) {
+    const std::string_view field = cut_until(line, ',');
     const auto value = parse_integer(field);
     if (!value || *value < 0) {
       refuse(where, fmt::format("{} is '{}'; it must be an integer >= 0", column, quote(field)));
     }
     return *value;
   };
-  const auto take_number = [&](const char* column) {
-    const std::string_view field = take_until(line, ',');
+  const auto parse_next_number = [&](const char* column) {
+    const std::string_view field = cut_until(line, ',');
     const auto value = parse_finite(field);
     if (!value) {
       refuse(where, fmt::format("{} is '{}'; it must be a finite number, in m, with nothing around",
@@ -233,18 +237,18 @@ CsvRow parse_row(const std::string& where, std::string_view line) {
     return *value;
   };
   CsvRow row;
-  row.number = take_integer("case");
-  row.point = take_integer("point");
+  row.number = parse_next_integer("case");
+  row.point = parse_next_integer("point");
   for (int axis = 0; axis < 3; ++axis) {
     constexpr std::array<const char*, 3> kColumns = {"x_m", "y_m", "z_m"};
-    row.point_m[axis] = take_number(kColumns[static_cast<std::size_t>(axis)]);
+    row.point_m[axis] = parse_next_number(kColumns[static_cast<std::size_t>(axis)]);
   }
   return row;
 }
 
 std::vector<TestCase> parse_csv(const std::string& name, std::string_view text) {
   std::size_t line_number = 1;
-  const std::string_view header = take_line(text);
+  const std::string_view header = cut_line(text);
   if (header != kHeader) {
     refuse(name + ":1", fmt::format("the first line is '{}'; it must be {} (CSV), or the file must "
                                     "begin with {{ (JSON)",
@@ -263,7 +267,7 @@ std::vector<TestCase> parse_csv(const std::string& name, std::string_view text) 
   };
   while (!text.empty()) {
     const std::string where = fmt::format("{}:{}", name, ++line_number);
-    const CsvRow row = parse_row(where, take_line(text));
+    const CsvRow row = parse_row(where, cut_line(text));
     const auto current = static_cast<long long>(cases.size()) - 1;
     const auto next_point =
         cases.empty() ? 0 : static_cast<long long>(cases.back().points_m.size());

@@ -1,32 +1,60 @@
 // One tracking simulation, written once for every engine that steps a single arm: the timeline, the
-// controllers and the measures. `Arm` needs step(effort, dt), read_angles(q), read_rates(qd),
-// tip_position_m() and tool_point_m(point), and throws DivergenceError when it cannot go on.
+// controllers and the measures. An `Arm` needs the member functions step(effort, dt),
+// read_positions(q), read_rates(qd), tip_position_m() and tool_point_m(point). It throws
+// DivergenceError if it cannot be stepped any further.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "sim/tracking/arm_plant.hpp"
-#include "sim/tracking/tracking.hpp"
-#include "sim/tracking/tracking_result.hpp"
+#include "sim/tracking/engine_support.hpp"
+#include "sim/tracking/simulation.hpp"
 
 namespace armwright {
 
+// The perturbations of one arm's plant (plant_variation.hpp), for an engine that steps single arms.
+class ArmPlant {
+ public:
+  // Starts at rest with joint positions q (rad or m). All arguments but q must outlive the object.
+  ArmPlant(const PlantVariation& variation, const RobotModel& robot, std::span<const double> q);
+
+  // Returns the joint positions as the controllers measure them now: delayed and rounded.
+  std::span<const double> measure();
+  // Returns the efforts (N m or N) that act on the joints during a substep, given the controllers'
+  // efforts and the joints' state at its start. The next call overwrites them.
+  std::span<const double> calc_effort(std::span<const double> effort, std::span<const double> q,
+                                      std::span<const double> qd);
+  // Stores the joint positions that a substep ended with.
+  void remember(std::span<const double> q);
+
+ private:
+  const PlantVariation& variation_;
+  const RobotModel& robot_;
+  std::vector<std::vector<double>> past_;  // a ring of joint positions: one more than the delay
+  std::size_t newest_ = 0;
+  std::vector<double> measured_, acting_effort_;
+};
+
+// One simulation of one job.
 class TrackingLoop {
  public:
+  // Both arguments must outlive the object. Throws Error{usage} if the design's numbers make no
+  // controller, or if the job lacks feed-forward efforts.
   TrackingLoop(const TrackingSetup& setup, const TrackingJob& job);
 
+  // Simulates the job on an arm at its start. Call it once.
   template <class Arm>
   TrackingResult run(Arm& arm);
 
  private:
   template <class Arm>
-  void step(Arm& arm, int step);  // counted from the beginning of the case
-  // A substep of a perturbed plant.
+  void step(Arm& arm, int step);  // steps count from the beginning of the case
+  // Steps a perturbed plant by one substep.
   template <class Arm>
   void step_perturbed(Arm& arm);
-  // At the end of a segment's move: of the tip, or the mean over the tool points.
+  // Returns the squared error (m^2) at the end of a segment's move: that of the tip, or the mean
+  // over the tool points.
   template <class Arm>
   double calc_squared_error(const Arm& arm, const Segment& segment) const;
   template <class Arm>
@@ -39,14 +67,14 @@ class TrackingLoop {
   std::vector<std::unique_ptr<Controller>> controllers_;
   bool has_feed_forward_ = false;
   std::vector<double> q_, q_before_, effort_;
-  std::optional<ArmPlant> plant_;  // if it is perturbed
+  std::optional<ArmPlant> plant_;  // empty: the nominal plant
   std::vector<double> plant_q_, plant_rate_;
   TrackingResult result_;
 };
 
 template <class Arm>
 void TrackingLoop::step(Arm& arm, int step) {
-  const auto targets = job_.targets->angles(step);
+  const auto targets = job_.targets->positions(step);
   const std::span<const double> measured = plant_ ? plant_->measure() : q_;
   for (std::size_t i = 0; i < q_.size(); ++i) {
     const double feed_forward = has_feed_forward_ ? job_.targets->feed_forward(step)[i] : 0;
@@ -60,12 +88,12 @@ void TrackingLoop::step(Arm& arm, int step) {
     }
   }
   q_.swap(q_before_);
-  arm.read_angles(q_);
+  arm.read_positions(q_);
   ++result_.steps;
   for (std::size_t i = 0; i < q_.size(); ++i) {
     const double magnitude = std::abs(effort_[i]);
-    result_.peak_effort_n_m[i] = std::max(result_.peak_effort_n_m[i], magnitude);
-    result_.rms_effort_n_m[i] += magnitude * magnitude;
+    result_.peak_effort[i] = std::max(result_.peak_effort[i], magnitude);
+    result_.rms_effort[i] += magnitude * magnitude;
     result_.saturated_share[i] += controllers_[i]->saturated() ? 1 : 0;
     result_.energy_j += std::max(
         0.0, effort_[i] * calc_displacement(setup_.robot().joints[i].kind, q_before_[i], q_[i]));
@@ -75,8 +103,8 @@ void TrackingLoop::step(Arm& arm, int step) {
 template <class Arm>
 void TrackingLoop::step_perturbed(Arm& arm) {
   arm.read_rates(plant_rate_);
-  arm.step(plant_->calc_torque(effort_, plant_q_, plant_rate_), substep_s_);
-  arm.read_angles(plant_q_);
+  arm.step(plant_->calc_effort(effort_, plant_q_, plant_rate_), substep_s_);
+  arm.read_positions(plant_q_);
   plant_->remember(plant_q_);
 }
 
@@ -99,17 +127,17 @@ void TrackingLoop::record(const Arm& arm, const Segment& segment, int step) {
   const Eigen::Vector3d tip = arm.tip_position_m();
   if (job_.recording.motion) {
     result_.tips_m.push_back(tip);
-    result_.angles_rad.insert(result_.angles_rad.end(), q_.begin(), q_.end());
+    result_.joint_positions.insert(result_.joint_positions.end(), q_.begin(), q_.end());
   }
   if (!job_.recording.error_series && !job_.recording.trajectory) {
-    return;  // the target's position would cost more than the rest
+    return;  // the target's position costs more to compute than all the rest
   }
   const Eigen::Vector3d target = setup_.calc_target_position(segment, step);
   if (job_.recording.error_series) {
     result_.error_series_m.push_back((tip - target).norm());
   }
   if (job_.recording.trajectory) {
-    const auto targets = job_.targets->angles(segment.first_step + step);
+    const auto targets = job_.targets->positions(segment.first_step + step);
     result_.trajectory.push_back({result_.steps * period_s_, q_,
                                   std::vector<double>(targets.begin(), targets.end()), effort_, tip,
                                   target});
@@ -120,7 +148,7 @@ template <class Arm>
 TrackingResult TrackingLoop::run(Arm& arm) {
   const bool recording = job_.recording.any();
   try {
-    arm.read_angles(q_);
+    arm.read_positions(q_);
     if (job_.variation != nullptr) {
       plant_.emplace(*job_.variation, setup_.robot(), q_);
       plant_q_ = q_;

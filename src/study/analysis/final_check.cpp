@@ -11,8 +11,8 @@
 #include "base/file.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
-#include "study/compare/escape.hpp"
-#include "study/executor/case_runner.hpp"
+#include "study/compare/study_plan.hpp"
+#include "study/executor/case_executor.hpp"
 #include "study/run/json_values.hpp"
 
 namespace armwright {
@@ -31,7 +31,7 @@ std::optional<FinalCheck> load_check(const std::filesystem::path& file, const St
     const json j = json::parse(read_json_file(file, kCheckLimit_bytes));
     if (j.at("engine") != plan.final_engine ||
         !same_bits(j.at("x").get<std::vector<double>>(), cell.x)) {
-      return std::nullopt;  // of an earlier, smaller plan
+      return std::nullopt;  // another design or engine, from an earlier plan
     }
     return FinalCheck{cell.replicate, plan.final_engine, value_from_json(j.at("value")),
                       summary_from_json(j.at("test"))};
@@ -54,7 +54,7 @@ void save_check(const std::filesystem::path& file, const FinalCheck& check,
   write_file_atomically(file, j.dump(1) + "\n");
 }
 
-// The problem as the optimizer has it, but judged on the final engine.
+// Loads the problem with the settings of the optimizer, but with the final engine.
 LoadedProblem load_on_engine(const StudyProblem& problem, const StudyOptimizer& optimizer,
                              const std::string& engine) {
   constexpr std::string_view kReplaced[] = {"physics.engine", "physics.judging_engine",
@@ -71,7 +71,7 @@ LoadedProblem load_on_engine(const StudyProblem& problem, const StudyOptimizer& 
   return load_problem(problem.name, settings);
 }
 
-// What the file holds is the objective; a study may compare something else.
+// Returns the check with the value that the study compares. The file holds the objective.
 FinalCheck as_compared(const StudyPlan& plan, FinalCheck check) {
   if (plan.value == StudyValue::failures && check.errors.cases > 0) {
     check.value =
@@ -80,13 +80,13 @@ FinalCheck as_compared(const StudyPlan& plan, FinalCheck check) {
   return check;
 }
 
-// Adds what is recorded; of the rest `on_missing` is told the cell, its outcome, the file and
-// where the check belongs.
+// Adds the recorded checks. For each of the others, calls `on_missing` with the cell, its outcome,
+// the file, and the place for the check.
 void visit_checks(const StudyPlan& plan, const std::filesystem::path& study, StudyResult& result,
                   const auto& on_missing) {
   for (std::size_t p = 0; p < plan.problems.size() && !plan.final_engine.empty(); ++p) {
     const StudyProblem& problem = plan.problems[p];
-    for (std::size_t o = 0; o < plan.optimizers.size() && problem.loaded.tracking; ++o) {
+    for (std::size_t o = 0; o < plan.optimizers.size() && problem.loaded.tracking(); ++o) {
       const std::string& optimizer = plan.optimizers[o].label;
       const CellOutcome* best = find_best_cell(result.cells, problem.label, optimizer);
       if (best == nullptr) {
@@ -138,7 +138,7 @@ bool add_final_checks(const StudyPlan& plan, const std::filesystem::path& study,
                  missing.push_back({cell, &best, file, &check});
                });
   Progress progress;
-  progress.phase = Progress::Phase::test;
+  progress.phase = CaseRole::test;
   for (const Missing& one : missing) {
     progress.total +=
         static_cast<std::uint64_t>(plan.problems[one.cell.problem].loaded.sets.test_cases);
@@ -153,9 +153,8 @@ bool add_final_checks(const StudyPlan& plan, const std::filesystem::path& study,
     std::iota(block.numbers.begin(), block.numbers.end(), std::uint64_t{0});
     Evaluation evaluation;
     const std::span<const double> x = one.best->x;
-    CaseRunner(*judged.problem, executor, stop)
-        .run({&x, 1}, block, false,
-             [&](std::size_t, Evaluation done) { evaluation = std::move(done); });
+    executor.evaluate(*judged.problem, {&x, 1}, block, {}, stop,
+                      [&](std::size_t, Evaluation done) { evaluation = std::move(done); });
     if (stop.requested()) {
       return false;
     }

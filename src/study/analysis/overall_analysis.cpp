@@ -1,11 +1,10 @@
-// analyze_overall() and analyze_study(): what holds over problems.
+// Implements analyze_overall() and analyze_study(): the statistics over all problems.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 
 #include "study/analysis/study_result.hpp"
-#include "study/analysis/study_values.hpp"
-#include "study/statistics/profiles.hpp"
+#include "study/statistics/running_time.hpp"
 #include "study/statistics/values.hpp"
 
 namespace armwright {
@@ -21,13 +20,13 @@ std::vector<double> make_grid(double first, double last, int steps) {
 
 double calc_share_left(const ProblemResult& problem, double median) {
   if (problem.has_front || !std::isfinite(median)) {
-    return median;  // a share already; or nothing found, nothing done
+    return median;  // already a share, or infinite
   }
   const double way = problem.start - problem.best_known;
   return way > 0 ? (median - problem.best_known) / way : 0;
 }
 
-// What it cost every optimizer to converge on every (problem, replicate), in evaluations.
+// The costs, in evaluations, of every optimizer to converge on every (problem, replicate).
 struct Costs {
   std::vector<std::vector<double>> table;
   std::vector<int> dimensions;
@@ -46,7 +45,7 @@ Costs calc_costs(const StudyPlan& plan, std::span<const CellOutcome> cells, doub
       double best = kInfinity;
       double start = kInfinity;
       for (std::size_t o = 0; o < optimizers; ++o) {
-        start = std::min(start, get_cell(o).start_value);  // one and the same, but where missing
+        start = std::min(start, get_cell(o).start_value);  // infinite for missing cells
         for (const CurvePoint& point : get_cell(o).curve) {
           best = std::min(best, point.value);
         }
@@ -65,7 +64,7 @@ Costs calc_costs(const StudyPlan& plan, std::span<const CellOutcome> cells, doub
   return costs;
 }
 
-// A cell that has not ended: as if its optimizer had found nothing.
+// Makes the outcome of a cell that has not ended: its optimizer counts as having found nothing.
 CellOutcome make_missing(const StudyPlan& plan, const Cell& cell) {
   CellOutcome outcome;
   outcome.problem = plan.problems[cell.problem].label;
@@ -85,7 +84,7 @@ CellOutcome make_missing(const StudyPlan& plan, const Cell& cell) {
 OverallResult analyze_overall(const StudyPlan& plan, std::span<const ProblemResult> problems,
                               std::span<const CellOutcome> cells) {
   OverallResult overall;
-  std::vector<std::vector<double>> medians;  // a row a problem
+  std::vector<std::vector<double>> medians;  // one row per problem
   std::vector<std::vector<double>> by_optimizer(plan.optimizers.size());
   for (const ProblemResult& problem : problems) {
     auto& row = medians.emplace_back();
@@ -124,7 +123,7 @@ OverallResult analyze_overall(const StudyPlan& plan, std::span<const ProblemResu
 
 namespace {
 
-// Over the problems that have all their cells.
+// Analyzes only the problems that have all their cells.
 OverallResult analyze_complete(const StudyPlan& plan, const StudyResult& result) {
   StudyPlan complete = plan;
   complete.problems.clear();

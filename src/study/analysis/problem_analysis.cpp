@@ -1,4 +1,4 @@
-// analyze_problem(): one problem's statistics.
+// Implements analyze_problem(): the statistics of one problem.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,10 +7,9 @@
 #include <tuple>
 
 #include "study/analysis/study_result.hpp"
-#include "study/analysis/study_values.hpp"
-#include "study/statistics/holm.hpp"
 #include "study/statistics/pareto.hpp"
-#include "study/statistics/profiles.hpp"
+#include "study/statistics/running_time.hpp"
+#include "study/statistics/significance.hpp"
 #include "study/statistics/values.hpp"
 
 namespace armwright {
@@ -19,8 +18,9 @@ namespace {
 constexpr int kEcdfTargets = 31;
 constexpr double kEcdfDecades = 3;
 
-// Where the hypervolume is measured from: a tenth of its extent beyond the front of all runs
-// together. It depends on who takes part, as best known values do.
+// Returns the reference point of the hypervolume. It lies beyond the common front of all runs by a
+// tenth of the front's extent. Like the best known value, it depends on the optimizers that take
+// part.
 std::vector<double> calc_reference_point(std::span<const CellOutcome> cells, std::size_t objectives,
                                          std::vector<double>& ideal) {
   std::vector<std::vector<double>> all;
@@ -42,7 +42,8 @@ std::vector<double> calc_reference_point(std::span<const CellOutcome> cells, std
   return reference;
 }
 
-// The share of the box between ideal and reference point that the front leaves undominated.
+// Returns the share of the box from the ideal to the reference point that the front does not
+// dominate.
 double calc_missed_volume(const CellOutcome& cell, std::span<const double> ideal,
                           std::span<const double> reference) {
   double box = 1;
@@ -52,7 +53,8 @@ double calc_missed_volume(const CellOutcome& cell, std::span<const double> ideal
   return 1 - calc_hypervolume(cell.front, reference) / box;
 }
 
-// Values between the best known and the start, on a logarithmic scale of what is left of the way.
+// Returns target values between the best known and the start value. The share of the distance that
+// is left decreases logarithmically.
 std::vector<double> make_targets(double best, double start) {
   std::vector<double> targets;
   if (!std::isfinite(best) || !std::isfinite(start)) {
@@ -82,14 +84,14 @@ void set_best_and_start(std::span<const CellOutcome> cells, ProblemResult& resul
   }
   result.start = starts.empty() ? kInfinity : calc_spread(starts).median;
   if (!std::isfinite(result.start) && std::isfinite(worst)) {
-    result.start = worst;  // nothing else tells how far the way was
+    result.start = worst;  // the only other measure of the distance
   }
 }
 
 void add_running_times(const StudyPlan& plan, const ProblemResult& problem,
                        std::span<const CellOutcome* const> runs, const std::string& stream,
                        OptimizerResult& result) {
-  std::vector<double> times;  // a pair of run and target each
+  std::vector<double> times;  // one per pair of run and target
   for (const CellOutcome* run : runs) {
     for (const double target : problem.targets) {
       times.push_back(calc_cost_to_target(make_trace(*run), target));
@@ -112,7 +114,7 @@ void add_running_times(const StudyPlan& plan, const ProblemResult& problem,
     for (const CellOutcome* run : runs) {
       const double cost = calc_cost_to_target(make_trace(*run), time.target);
       const bool reached = std::isfinite(cost);
-      // One that ended early has spent no more than that, whether it had reached the target or not.
+      // A run that ended early has only spent its own cases, whether it reached the target or not.
       const double spent =
           run->cases > 0 ? static_cast<double>(run->cases) : static_cast<double>(plan.budget);
       trials.push_back({std::min(cost, spent), reached});
@@ -140,7 +142,7 @@ void add_curve(const ProblemResult& problem, std::span<const CellOutcome* const>
   }
 }
 
-// Ranks, tests and pairs, over replicates.
+// Computes ranks, tests and pairs over the replicates.
 void compare_optimizers(std::span<const std::vector<double>> values, ProblemResult& result) {
   std::vector<std::vector<double>> blocks(values.front().size());
   for (std::size_t r = 0; r < blocks.size(); ++r) {
@@ -258,7 +260,7 @@ ProblemResult analyze_problem(const StudyPlan& plan, std::size_t number,
     compare_optimizers(values, result);
   }
   add_targets(plan, all_runs, complete, result);
-  if (problem.loaded.tracking) {
+  if (problem.loaded.tracking()) {
     add_failures(all_runs, complete, result);
   }
   result.order.resize(values.size());

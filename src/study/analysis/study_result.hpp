@@ -1,66 +1,69 @@
-// What a comparison has found: every number that its tables and its verdict show, computed from the
-// cells and nothing else. The same cells give the same bytes.
+// The findings of a comparison: every number in its tables and its verdict. All are computed from
+// the cells alone; the same cells give the same bytes.
 //
-// Each optimizer has one value a replicate: of one objective the winner's on the test set
-// (calc_test_value()), or the share of test cases in which it fails if the plan asks for that; of
-// several the share of the hypervolume that its front misses. Pairs are
-// replicates: the same training cases and the same start. Running times come from curves on the
-// test set: the budget from which on every incumbent, re-simulated there, is at the target or
-// below; they are as coarse as the checkpoints. Of several objectives curves, running times and
-// profiles are of their weighted sum.
+// Each optimizer has one value per replicate. For one objective it is the winner's value on the
+// test set (calc_test_value()). If the plan asks for failures, it is the share of test cases in
+// which the winner fails. For several objectives it is the share of the hypervolume that the
+// optimizer's front misses. A pair of values belongs to one replicate: both runs had the same
+// training cases and start.
 //
-// Fixed targets are another thing: there a run counts as somebody uses it who stops it early and
-// takes the design that is best on the validation set by then (choices.hpp). It has reached the
-// target at the first checkpoint at which the design so chosen meets it on the test set, whatever
-// comes after: a running time must not depend on how much longer the run was given.
+// Running times come from curves on the test set. The running time to a target is the budget from
+// which on every incumbent is at the target or below. The incumbents are simulated again on the
+// test set. Running times are as coarse as the checkpoints. For several objectives, curves, running
+// times and profiles use the weighted sum of the objectives.
+//
+// Fixed targets are evaluated differently. They model a user who stops a run early and takes the
+// design that is best on the validation set at that time (choices.hpp). A run reaches a fixed
+// target at the first checkpoint at which this design meets the target on the test set, whatever
+// follows. A running time must not depend on how much longer the run went on.
 #pragma once
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "study/compare/cell.hpp"
-#include "study/statistics/bootstrap.hpp"
-#include "study/statistics/effect_size.hpp"
-#include "study/statistics/friedman.hpp"
 #include "study/statistics/ranking.hpp"
 #include "study/statistics/running_time.hpp"
-#include "study/statistics/spread.hpp"
-#include "study/statistics/wilcoxon.hpp"
+#include "study/statistics/significance.hpp"
+#include "study/statistics/summary.hpp"
 
 namespace armwright {
 
 inline constexpr double kSignificance = 0.05;
-// Of fewer pairs no outcome is significant: 2 / 2^5 > 0.05.
+// With fewer pairs no outcome is significant: 2 / 2^5 > 0.05.
 inline constexpr int kFewestPairs = 6;
 inline constexpr double kIntervalLevel = 0.95;
 inline constexpr int kResamples = 2000;
-// Targets of expected running times: this share of the way from the start to the best known is
-// left.
+// Targets of expected running times: the share of the distance from the start value to the best
+// known value that is left.
 inline constexpr double kRunningTimeTargets[] = {0.1, 0.01, 0.001};
-// Of profiles (Moré and Wild 2009).
+// The tolerances of data and performance profiles (Moré and Wild 2009).
 inline constexpr double kProfileTolerances[] = {1e-1, 1e-3, 1e-5};
 
+// The running time of one optimizer to one target value.
 struct RunningTime {
-  double target = 0;    // the value
-  int reached = 0;      // replicates
+  double target = 0;    // value on the test set
+  int reached = 0;      // number of replicates that reach it
   double expected = 0;  // simulated cases, with restarts; infinite if never reached
   Interval interval;
 };
 
-// To a fixed target.
+// The running time of one optimizer to one fixed target.
 struct TargetTime {
-  std::vector<Trial> trials;  // one a replicate
-  int reached = 0;
-  int kept = 0;         // of these, runs whose last choice, the winner, meets it as well
-  double expected = 0;  // simulated cases, with restarts; infinite if never reached
-  Interval interval;    // over replicates; infinite where too few of them reached it
-  // Of the plan's reference, if it has one: the expected running time divided by the reference's.
+  std::vector<Trial> trials;  // one per replicate
+  int reached = 0;            // number of replicates that reach the target
+  int kept = 0;               // those whose last choice, the winner, meets the target as well
+  double expected = 0;        // simulated cases, with restarts; infinite if never reached
+  Interval interval;          // over replicates; infinite if too few of them reach the target
+  // The expected running time divided by the reference's; empty if the plan has no reference.
   std::optional<RunningTimeRatio> ratio;
 };
 
-// The best design of an optimizer on a problem, by the validation set, on another engine.
+// The result of simulating an optimizer's best design (chosen on the validation set) on another
+// engine.
 struct FinalCheck {
   int replicate = 0;
   std::string engine;
@@ -68,75 +71,81 @@ struct FinalCheck {
   ErrorSummary errors;
 };
 
+// The statistics of one optimizer on one problem.
 struct OptimizerResult {
-  std::vector<double> values;  // one a replicate
-  int infinite = 0;            // replicates without a value
-  int infeasible = 0;          // of these, whose winner violates a constraint on the test set
-  int failed = 0;              // in which the optimizer itself failed
+  std::vector<double> values;  // one per replicate
+  int infinite = 0;            // number of replicates without a value
+  int infeasible = 0;          // those of them whose winner violates a constraint on the test set
+  int failed = 0;              // number of replicates in which the optimizer itself failed
   Spread spread;
   Interval median_interval;
   double mean_rank = 0;
-  double anytime_area = 0;  // of the runtime ECDF over all targets
+  double anytime_area = 0;  // area under the runtime ECDF over all targets
   std::vector<RunningTime> running_times;
-  std::vector<TargetTime> target_times;  // of ProblemResult::fixed_targets
-  // Of arms: in which share of the test cases the winner fails, one a replicate; infinite for a run
-  // without one.
+  std::vector<TargetTime> target_times;  // one per entry of ProblemResult::fixed_targets
+  // Only for arms: the share of test cases in which the winner fails, one per replicate; infinite
+  // for a run without a winner.
   std::vector<double> failure_shares;
   Spread failure_spread;
   double mean_failure_share = 0;
   std::vector<double> ecdf;   // at ProblemResult::checkpoints
   std::vector<Spread> curve;  // likewise
-  double cases = 0;           // of the budget that were used, median
+  double cases = 0;           // charged to the budget, median over replicates
   std::optional<FinalCheck> final_check;
 };
 
+// The comparison of two optimizers.
 struct PairResult {
-  std::size_t a = 0;  // optimizers; a's median is not worse than b's
+  std::size_t a = 0;  // index of an optimizer; a's median is not worse than b's
   std::size_t b = 0;
   SignedRankTest test;
   double p_holm = 1;
-  double a12 = 0.5;  // that a run of a is better than one of b
+  double a12 = 0.5;  // probability that a run of a is better than a run of b
   WinTieLoss wins;
   bool is_significant() const {
     return test.pairs + test.zeros >= kFewestPairs && p_holm < kSignificance;
   }
-  // And in which direction: the pairs may say otherwise than the medians.
+  // Returns whether `winner` is significantly better than the other one. The ranks of the pairs
+  // decide, which may contradict the medians.
   bool is_beaten_by(std::size_t winner) const {
     const bool a_is_better = test.negative_rank_sum > test.positive_rank_sum;
     return is_significant() && winner == (a_is_better ? a : b);
   }
 };
 
+// The statistics of one problem.
 struct ProblemResult {
   std::string label;
-  Quantity quantity;  // what the values are
+  Quantity quantity;  // name and unit of the values
   bool has_front = false;
   std::vector<double> reference_point;  // of the hypervolume
-  double best_known = 0;  // of all values on the way, on the test set; may be infinite
-  double start = 0;       // median value of the starts
+  double best_known = 0;                // best value on the test set in all curves; may be infinite
+  double start = 0;                     // median value of the start points
   std::vector<std::int64_t> checkpoints;
   std::vector<double> targets;
   std::vector<OptimizerResult> optimizers;
-  std::optional<FriedmanTest> friedman;    // blocks are replicates; nothing of fewer than 2
-  std::vector<PairResult> pairs;           // every two, Holm's correction over all of the problem
-  std::vector<std::size_t> fixed_targets;  // of the plan, those that are asked of this problem
-  std::vector<PairResult> failure_pairs;   // as `pairs`, of failure shares; of arms alone
+  std::optional<FriedmanTest> friedman;    // blocks are replicates; empty for fewer than 2
+  std::vector<PairResult> pairs;           // every two optimizers; Holm's correction over all pairs
+  std::vector<std::size_t> fixed_targets;  // indices of the plan's targets for this problem
+  std::vector<PairResult> failure_pairs;   // as `pairs`, for failure shares; only for arms
   std::vector<std::size_t> order;          // by median, then mean rank, then the plan's order
 };
 
+// A data or performance profile at one tolerance.
 struct Profile {
   double tolerance = 0;
-  std::vector<std::vector<double>> shares;  // a row an optimizer, at the abscissae
+  std::vector<std::vector<double>> shares;  // one row per optimizer, one column per abscissa
 };
 
-// Over problems, each counting once, by its medians. What pairs compare is the share of the way
-// from the start to the best known that the median leaves, which means the same on every problem.
+// The statistics over all problems. Each problem counts once, with its medians. Pairs compare the
+// share of the distance from the start value to the best known value that the median leaves. This
+// share has the same meaning on every problem.
 struct OverallResult {
   RankingStability ranking;
   std::optional<FriedmanTest> friedman;
   std::vector<PairResult> pairs;
-  std::vector<double> kappas;  // abscissae of data profiles: simplex gradients
-  std::vector<double> alphas;  // and of performance profiles: times the quickest's cost
+  std::vector<double> kappas;  // abscissae of data profiles: cost in simplex gradients
+  std::vector<double> alphas;  // abscissae of performance profiles: cost / cost of the fastest
   std::vector<Profile> data_profiles;
   std::vector<Profile> performance_profiles;
 };
@@ -145,34 +154,54 @@ struct StudyResult {
   std::vector<CellOutcome> cells;  // problem by problem, optimizer by optimizer, by replicate
   std::vector<ProblemResult> problems;
   OverallResult overall;
-  std::vector<Cell> missing;      // that have not ended
-  bool missing_left_out = false;  // they are not in `cells`
+  std::vector<Cell> missing;      // cells that have not ended
+  bool missing_left_out = false;  // `cells` lacks the missing ones
 };
 
-// What becomes of cells that have not ended: they count as if they had found nothing, which is the
-// final word on a study; or they are left out, which shows a study that is under way as far as it
-// is. Then a problem without all its cells has neither ranks nor pairs, and `overall` is of the
-// others (nothing is in it if there is none).
+// Treatment of cells that have not ended.
+// - count_as_infinite: they count as if they had found nothing. This is the final result of a
+// study. - left_out: they are ignored, which shows the progress of a running study. A problem that
+// lacks
+//   cells then has neither ranks nor pairs. `overall` covers the other problems and is empty if
+//   there are none.
 enum class MissingCells { count_as_infinite, left_out };
 
-// From the study's folder, which is only read. Error{bad_data} for a cell that cannot be read.
+// Analyzes the cells in the study's folder, which is only read. Throws Error{bad_data} for a cell
+// that cannot be read.
 StudyResult analyze_study(const StudyPlan& plan, const std::filesystem::path& study,
                           MissingCells missing = MissingCells::count_as_infinite);
 
-// The share of test cases in which the winner fails; infinite if there is none.
+// Returns the share of test cases in which the winner fails; infinite if there is no winner.
 double calc_failure_share(const CellOutcome& cell);
-// The cell as a study whose value is failures sees it: shares of failing test cases instead of
-// objectives, on the way as well.
+// Returns the cell as needed by a study that compares failures. Shares of failing test cases
+// replace all objectives, those of the curve included.
 CellOutcome count_failures_only(CellOutcome cell, const CaseSets& sets);
 
-// The try that a run is to reach a target: what it cost, and whether it did.
+// Returns the trial of one run to reach a fixed target: its cost in simulated cases and whether it
+// reached the target.
 Trial make_target_trial(const StudyPlan& plan, const StudyTarget& target, const CellOutcome& cell);
 
-// The parts of it. Of a problem without all its cells, an optimizer's numbers are of those that are
-// there, infinite if none is, and nothing is compared.
+// The functions below are the parts of analyze_study().
+
+// Analyzes one problem. If cells are missing, an optimizer's numbers come from the cells that exist
+// (infinite if none exists), and optimizers are not compared.
 ProblemResult analyze_problem(const StudyPlan& plan, std::size_t problem,
                               std::span<const CellOutcome> cells);
 OverallResult analyze_overall(const StudyPlan& plan, std::span<const ProblemResult> problems,
                               std::span<const CellOutcome> cells);
+
+// Returns for each checkpoint the worst value on the test set from there on: the quality that the
+// run keeps. The best value so far would be a selection on the test set and profit from luck.
+std::vector<TracePoint> make_trace(const CellOutcome& cell);
+
+// Compares every two optimizers. values[o][i] and values[p][i] form a pair.
+std::vector<PairResult> compare_pairs(std::span<const std::vector<double>> values);
+
+// Set the target times and the failure shares of all optimizers; optimizer `o` has the cells
+// `runs[o]`. Pairs are compared only if `complete`.
+void add_targets(const StudyPlan& plan, std::span<const std::vector<const CellOutcome*>> runs,
+                 bool complete, ProblemResult& result);
+void add_failures(std::span<const std::vector<const CellOutcome*>> runs, bool complete,
+                  ProblemResult& result);
 
 }  // namespace armwright

@@ -9,7 +9,6 @@
 #include "base/file.hpp"
 #include "base/text.hpp"
 #include "study/analysis/final_check.hpp"
-#include "study/analysis/target_tables.hpp"
 #include "study/analysis/verdict.hpp"
 #include "study/compare/case_sets.hpp"
 #include "study/compare/study_folder.hpp"
@@ -21,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-// A value that is not there is an empty field; an infinite one, which counts, is "inf".
+// Formats a value. An infinite one counts and is written as "inf"; a missing one is an empty field.
 std::string number(double value) {
   return format_exact(value);
 }
@@ -51,7 +50,7 @@ std::string make_cells(const StudyResult& result) {
   return csv;
 }
 
-// The winners' objectives and metrics on the test set, a row each.
+// Has one row per objective and metric of every winner, on the test set.
 std::string make_metrics(const StudyPlan& plan, std::span<const CellOutcome> cells) {
   std::string csv = "problem,optimizer,replicate,kind,name,unit,value\n";
   for (const CellOutcome& cell : cells) {
@@ -59,7 +58,7 @@ std::string make_metrics(const StudyPlan& plan, std::span<const CellOutcome> cel
     const ProblemDescription& description = problem->loaded.problem->description();
     const auto add = [&](const char* kind, std::span<const Quantity> names,
                          std::span<const double> values) {
-      for (std::size_t i = 0; i < values.size(); ++i) {  // none of a run without a winner
+      for (std::size_t i = 0; i < values.size(); ++i) {  // a run without a winner has no values
         csv += fmt::format("{},{},{},{},{},{},{}\n", quote_csv(cell.problem),
                            quote_csv(cell.optimizer), cell.replicate, kind,
                            quote_csv(names[i].name), quote_csv(names[i].unit), number(values[i]));
@@ -71,7 +70,7 @@ std::string make_metrics(const StudyPlan& plan, std::span<const CellOutcome> cel
   return csv;
 }
 
-// The same of every optimizer's best run, by the validation set.
+// Has the same rows for every optimizer's best run on the validation set.
 std::string make_best(const StudyPlan& plan, const StudyResult& result) {
   std::vector<CellOutcome> best;
   for (const StudyProblem& problem : plan.problems) {
@@ -131,7 +130,7 @@ constexpr const char* kPairsHead =
     "problem,a,b,pairs_that_differ,ties,rank_sum_a_worse,rank_sum_b_worse,exact,p,p_holm,"
     "a12_a_better,wins_a,ties_a,losses_a,significant\n";
 
-// Of the shares of failing test cases.
+// Compares every two optimizers by the shares of failing test cases.
 std::string make_failure_pairs(const StudyPlan& plan, const StudyResult& result) {
   std::string csv = kPairsHead;
   for (const ProblemResult& problem : result.problems) {

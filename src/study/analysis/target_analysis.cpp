@@ -1,11 +1,11 @@
-// What a problem's cells say of fixed targets and of failed test cases.
+// Implements the analysis of fixed targets and of failing test cases.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "study/analysis/study_values.hpp"
+#include "study/analysis/study_result.hpp"
 #include "study/statistics/values.hpp"
 
 namespace armwright {
@@ -34,7 +34,7 @@ TargetTime make_time(const std::string& stream, std::vector<Trial> trials) {
 }  // namespace
 
 Trial make_target_trial(const StudyPlan& plan, const StudyTarget& target, const CellOutcome& cell) {
-  // One that ended early has spent no more than that, whether it had reached the target or not.
+  // A run that ended early has only spent its own cases, whether it reached the target or not.
   const std::int64_t spent = cell.cases > 0 ? static_cast<std::int64_t>(cell.cases) : plan.budget;
   const auto first = std::ranges::find_if(
       cell.choices, [&](const CurvePoint& point) { return meets(target, point); });

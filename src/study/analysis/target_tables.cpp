@@ -1,11 +1,10 @@
-#include "study/analysis/target_tables.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/text.hpp"
+#include "study/analysis/study_tables.hpp"
 #include "study/run/json_values.hpp"
 
 namespace armwright {

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "base/text.hpp"
-#include "study/analysis/verdict_targets.hpp"
 
 namespace armwright {
 namespace {
@@ -38,7 +37,8 @@ std::string format_a12(double a12) {
   return fmt::format("{:.2f}", a12);
 }
 
-// Whom the first of the order beats, and whom it cannot be told apart from.
+// The optimizers that the first one in the order beats, and those that do not differ significantly
+// from it.
 struct Standing {
   std::vector<const PairResult*> beaten;
   std::vector<std::size_t> equal;
@@ -78,18 +78,19 @@ std::string describe_beaten(const StudyPlan& plan, std::size_t best,
                      one ? format_p(worst_p) : format_p_value(worst_p));
 }
 
-// "at 5000 simulations": what every optimizer had.
+// Returns "at 5000 simulations", the budget of every optimizer.
 std::string describe_budget(const StudyPlan& plan) {
   return fmt::format("at {} simulations", plan.budget);
 }
 
-// Whether the clearest of all differences, after Holm's correction over so many tests, would be.
+// Returns whether the largest possible difference is significant after Holm's correction over so
+// many tests.
 bool can_be_significant(std::ptrdiff_t pairs_of_values, std::size_t tests) {
   const double least_p = std::ldexp(2.0, -static_cast<int>(pairs_of_values));
   return least_p * static_cast<double>(tests) < kSignificance;
 }
 
-// With which the clearest of all differences would be significant.
+// Returns the fewest replicates with which the largest possible difference is significant.
 int calc_fewest_replicates(std::size_t pairs) {
   int replicates = kFewestPairs;
   while (!can_be_significant(replicates, pairs)) {
@@ -150,7 +151,7 @@ std::vector<std::string> describe_problem(const StudyPlan& plan, const ProblemRe
   return sentences;
 }
 
-// By the share of test cases in which they fail, beside what the study compares.
+// Compares the shares of failing test cases, in addition to the value that the study compares.
 std::vector<std::string> describe_failures(const StudyPlan& plan, const ProblemResult& problem) {
   const bool some_fail = std::ranges::any_of(problem.optimizers, [](const OptimizerResult& one) {
     return std::ranges::any_of(one.failure_shares, [](double share) { return share > 0; });
@@ -220,9 +221,9 @@ std::vector<std::string> describe_overall(const StudyPlan& plan, const StudyResu
   return sentences;
 }
 
-// Methods for which racing was asked for and changes nothing, and why.
+// Lists the methods for which racing is on but has no effect, with the reasons.
 std::vector<std::string> describe_raceless(const StudyPlan& plan) {
-  std::vector<std::pair<std::string, std::vector<std::string>>> raceless;  // by the reason
+  std::vector<std::pair<std::string, std::vector<std::string>>> raceless;  // with the reason as key
   for (std::size_t o = 0; o < plan.optimizers.size(); ++o) {
     for (std::size_t p = 0; p < plan.problems.size(); ++p) {
       const Cell cell{p, o, 1};

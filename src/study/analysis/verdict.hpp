@@ -1,4 +1,4 @@
-// The verdict in plain words, from the statistics and nothing else.
+// Writes the verdict of a study in plain words. The verdict uses only the statistics in the result.
 #pragma once
 
 #include <string>
@@ -8,10 +8,17 @@
 
 namespace armwright {
 
-// One sentence or two a line: problem by problem, then over problems, then what limits it.
+// Returns one or two sentences per line: first each problem, then all problems together, then the
+// limits of the verdict.
 std::vector<std::string> describe_verdict(const StudyPlan& plan, const StudyResult& result);
 
-// "= 0.0004", "< 1e-06"
+// Returns "'published' (objective at most 0.0428, at most 0 of 500 test cases failing)".
+std::string describe_target(const StudyProblem& problem, const StudyTarget& target);
+// Returns the verdict's sentences on the fixed targets of one problem.
+std::vector<std::string> describe_target_verdict(const StudyPlan& plan, const StudyProblem& problem,
+                                                 const ProblemResult& result);
+
+// Returns "= 0.0004" or "< 1e-06".
 std::string format_p(double p);
 
 }  // namespace armwright

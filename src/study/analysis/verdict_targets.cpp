@@ -1,16 +1,15 @@
-#include "study/analysis/verdict_targets.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/text.hpp"
+#include "study/analysis/verdict.hpp"
 
 namespace armwright {
 namespace {
 
-// Of the reference's expected running time: what a verdict points out.
+// The verdict points out ratios to the reference's expected running time up to this one.
 constexpr double kFewSimulations = 0.1;
 
 std::string format_cases(double cases) {
@@ -43,7 +42,7 @@ double count_spent(const TargetTime& time) {
   return spent;
 }
 
-// Labels of the optimizers whose time is so.
+// Returns the labels of the optimizers whose target time meets the condition.
 template <typename Condition>
 std::string list_where(const StudyPlan& plan, const ProblemResult& result, std::size_t target,
                        Condition&& is_so) {

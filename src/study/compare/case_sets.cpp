@@ -16,7 +16,7 @@ namespace {
 
 using Visitor = std::function<void(UsedSet& set, const std::vector<TestCase>& cases)>;
 
-// Those of a problem's cells: of every kind the one with the most cases.
+// Returns the schedules of a problem's cells: for every kind the one with the most cases.
 std::vector<Schedule> list_schedules(const StudyPlan& plan, std::size_t problem) {
   std::map<Schedule::Kind, Schedule> largest;
   for (std::size_t o = 0; o < plan.optimizers.size(); ++o) {
@@ -31,11 +31,11 @@ std::vector<Schedule> list_schedules(const StudyPlan& plan, std::size_t problem)
   return schedules;
 }
 
-// Of a replicate's training set itself: methods share its beginning.
+// Returns the number of cases of a replicate's training set. All methods use its beginning.
 std::int64_t count_training_cases(const StudyPlan& plan, std::span<const Schedule> schedules) {
   std::int64_t cases = 0;
   for (const Schedule& schedule : schedules) {
-    // Of fresh cases no more than the budget pays for.
+    // Fresh cases: at most as many as the budget pays for.
     constexpr std::int64_t kMostHashed = 10'000;
     if (schedule.kind == Schedule::Kind::fresh) {
       cases = std::max(cases, std::min(plan.budget, kMostHashed));
@@ -46,13 +46,13 @@ std::int64_t count_training_cases(const StudyPlan& plan, std::span<const Schedul
   return cases;
 }
 
-// They are all made, and their hashes kept, before anything runs.
+// Limits the number of cases: all are generated and hashed before any cell runs.
 void check_count(const StudyPlan& plan) {
   constexpr std::int64_t kMostCompared = 1'000'000;
   std::int64_t count = 0;
   for (std::size_t p = 0; p < plan.problems.size(); ++p) {
     const LoadedProblem& problem = plan.problems[p].loaded;
-    if (problem.tracking) {
+    if (problem.tracking()) {
       count += std::int64_t{problem.sets.test_cases} + problem.sets.validation_cases +
                plan.replicates * count_training_cases(plan, list_schedules(plan, p));
     }
@@ -69,12 +69,12 @@ void check_count(const StudyPlan& plan) {
 void visit_sets(const StudyPlan& plan, const Visitor& visit) {
   for (std::size_t p = 0; p < plan.problems.size(); ++p) {
     const StudyProblem& problem = plan.problems[p];
-    const auto meet_numbers = [&](const char* role, const std::string& name,
-                                  std::span<const std::uint64_t> numbers) {
+    const auto visit_numbers = [&](const char* role, const std::string& name,
+                                   std::span<const std::uint64_t> numbers) {
       UsedSet set{problem.label, role, name, static_cast<int>(numbers.size()), ""};
       std::vector<TestCase> cases;
-      if (problem.loaded.tracking) {
-        const TestSet source = problem.loaded.tracking->get_set(name);
+      if (problem.loaded.tracking()) {
+        const TestSet source = problem.loaded.tracking()->get_set(name);
         for (const std::uint64_t number : numbers) {
           cases.push_back(source.make_case(number));
         }
@@ -82,26 +82,26 @@ void visit_sets(const StudyPlan& plan, const Visitor& visit) {
       }
       visit(set, cases);
     };
-    const auto meet = [&](const char* role, const std::string& name, int count) {
+    const auto visit_first = [&](const char* role, const std::string& name, int count) {
       std::vector<std::uint64_t> numbers(static_cast<std::size_t>(count));
       std::iota(numbers.begin(), numbers.end(), std::uint64_t{0});
-      meet_numbers(role, name, numbers);
+      visit_numbers(role, name, numbers);
     };
     const CaseSets& sets = problem.loaded.sets;
-    meet("test", sets.test, sets.test_cases);
-    meet("validation", sets.validation, sets.validation_cases);
+    visit_first("test", sets.test, sets.test_cases);
+    visit_first("validation", sets.validation, sets.validation_cases);
     for (int replicate = 1; replicate <= plan.replicates; ++replicate) {
       const std::string name = make_training_set_name(plan, {p, 0, replicate});
       const auto schedules = list_schedules(plan, p);
       const std::int64_t cases = count_training_cases(plan, schedules);
       if (cases > 0) {
-        meet("training", name, static_cast<int>(cases));
+        visit_first("training", name, static_cast<int>(cases));
       }
       for (const Schedule& schedule : schedules) {
         if (schedule.kind == Schedule::Kind::coevolution) {
-          // What they will be bred into is nobody's to know; they come from a space of their own.
+          // The cases that breeding will produce are unknown, but they come from a separate space.
           const std::string bred = get_training_set(name, schedule);
-          meet_numbers("training", bred, CaseBreeder(bred, schedule.cases).genomes());
+          visit_numbers("training", bred, CaseBreeder(bred, schedule.cases).genomes());
         }
       }
     }

@@ -12,7 +12,7 @@
 #include "study/compare/choices.hpp"
 #include "study/compare/incumbents.hpp"
 #include "study/run/json_values.hpp"
-#include "study/run/record_files.hpp"
+#include "study/run/run_folder.hpp"
 #include "study/statistics/values.hpp"
 
 namespace armwright {
@@ -46,7 +46,7 @@ void set_winner(const LoadedProblem& loaded, const JudgedCandidate& winner, cons
   outcome.metrics = test.metrics;
 }
 
-// A design on the test set, or that there is none.
+// Makes the point of a design on the test set; `evaluation` is null if there is no design.
 CurvePoint make_point(const RunPlan& run, std::int64_t budget, const Evaluation* evaluation,
                       double tolerance) {
   if (evaluation == nullptr) {
@@ -56,7 +56,7 @@ CurvePoint make_point(const RunPlan& run, std::int64_t budget, const Evaluation*
           summarize_errors(run.problem, *evaluation).failures};
 }
 
-// What the designs along the way are worth on the test set. False if stopped.
+// Evaluates the designs along the run on the test set. Returns false if stopped.
 bool test_progress(const StudyPlan& plan, const Cell& cell, const RunPlan& run,
                    const RunResult& result, const CellRequest& where, StopSignal& stop,
                    CellOutcome& outcome) {
@@ -84,7 +84,7 @@ bool test_progress(const StudyPlan& plan, const Cell& cell, const RunPlan& run,
   for (std::size_t i = 0; has_front && i < result.judged.size(); ++i) {
     designs.push_back(result.judged[i].candidate.x);
   }
-  std::vector<Choice> choices;
+  std::vector<std::optional<JudgedCandidate>> choices;
   if (needs_choices(plan)) {
     auto made = make_choices(run, journal.training, result, checkpoints, executor, stop);
     if (!made) {
@@ -92,9 +92,9 @@ bool test_progress(const StudyPlan& plan, const Cell& cell, const RunPlan& run,
     }
     choices = std::move(*made);
   }
-  for (const Choice& choice : choices) {
-    if (choice.chosen) {
-      designs.push_back(choice.chosen->candidate.x);
+  for (const auto& choice : choices) {
+    if (choice) {
+      designs.push_back(choice->candidate.x);
     }
   }
   DesignBench bench(run.problem, CaseRole::test, executor, stop);
@@ -111,12 +111,12 @@ bool test_progress(const StudyPlan& plan, const Cell& cell, const RunPlan& run,
         run, budget, incumbent == nullptr ? nullptr : &bench.get(find_design(*incumbent)),
         tolerance));
   }
-  for (const Choice& choice : choices) {
-    const Evaluation* evaluation = choice.chosen ? &bench.get(choice.chosen->candidate.x) : nullptr;
-    outcome.choices.push_back(make_point(run, choice.budget, evaluation, tolerance));
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    const Evaluation* evaluation = choices[i] ? &bench.get(choices[i]->candidate.x) : nullptr;
+    outcome.choices.push_back(make_point(run, checkpoints[i], evaluation, tolerance));
   }
-  if (plan.judge_along && !choices.empty() && choices.back().chosen) {
-    const JudgedCandidate& winner = *choices.back().chosen;
+  if (plan.judge_along && !choices.empty() && choices.back()) {
+    const JudgedCandidate& winner = *choices.back();
     set_winner(run.problem, winner, bench.get(winner.candidate.x), tolerance, outcome);
   }
   for (std::size_t i = 0; has_front && i < result.judged.size(); ++i) {
@@ -153,7 +153,7 @@ std::vector<CurvePoint> points_from_json(const json& list) {
   return points;
 }
 
-// Whether the cell holds what is asked of it.
+// Returns whether the recorded outcome has every value that the plan asks for.
 bool answers(const StudyPlan& plan, const CellOutcome& outcome) {
   const bool has_failures = outcome.start_failures.has_value();
   return (!needs_choices(plan) || !outcome.choices.empty()) &&
@@ -283,7 +283,7 @@ std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
     return std::nullopt;
   }
   write_file_atomically(request.folder / "cell.json", to_json(outcome));
-  // Of many problems in one process each would keep its own.
+  // One process may run cells of many problems; each problem would keep its cases in memory.
   request.plan.problem.problem->forget_cases();
   return outcome;
 }

@@ -1,6 +1,6 @@
-// One cell of a comparison: a run, and what its designs are worth where no optimizer has been, on
-// the test set. Curves show the incumbents at certain budgets, re-simulated there: true quality,
-// not luck in training.
+// Runs one cell of a comparison and evaluates its designs on the test set, which no optimizer sees.
+// The cell's curve shows the incumbents at certain budgets. They are simulated again on the test
+// set, so a curve shows true quality and not luck in training.
 #pragma once
 
 #include <cstdint>
@@ -15,19 +15,22 @@
 
 namespace armwright {
 
-// The value of a design on the test set, to be minimised: the (scalar) objective; infinite if it
-// has none, if a case is without number, or if a constraint is violated by more than `tolerance`.
+// Returns the value of a design on the test set, to be minimised: the (scalar) objective. The value
+// is infinite without an objective, with a failed case, or with a constraint violation above
+// `tolerance`.
 double calc_test_value(const ProblemDescription& problem, const Evaluation& evaluation,
                        double tolerance);
 
+// One point of a cell's curve: a budget and the design that belongs to it.
 struct CurvePoint {
-  std::int64_t budget = 0;
-  double value = 0;  // of the incumbent at that budget; infinite before there is one
-  // Test cases in which it fails, all before there is one; nothing in cells of versions before
-  // these were recorded.
+  std::int64_t budget = 0;  // simulated training cases
+  double value = 0;         // on the test set; infinite while the run has no design
+  // Number of test cases in which the design fails; all of them while the run has no design. Empty
+  // for cells that were recorded by versions which did not count failures.
   std::optional<std::uint64_t> failures;
 };
 
+// The record of a finished cell (cell.json).
 struct CellOutcome {
   std::string problem;    // label
   std::string optimizer;  // label
@@ -35,12 +38,12 @@ struct CellOutcome {
   int replicate = 1;
   std::string configuration_sha256;  // of the problem
   std::string end_reason;
-  std::string failure;  // of the optimizer; empty if it did not fail
+  std::string failure;  // the optimizer's error; empty if it did not fail
   std::uint64_t evaluations = 0;
-  std::uint64_t cases = 0;  // of the budget
+  std::uint64_t cases = 0;  // charged to the budget
   std::uint64_t clipped = 0;
   std::uint64_t failed_evaluations = 0;
-  // The winner, as chosen on the validation set. Without one all values are infinite.
+  // The winner, chosen on the validation set. All values are infinite if there is no winner.
   std::vector<double> x;
   double validation_value = 0;
   double value = 0;
@@ -48,39 +51,43 @@ struct CellOutcome {
   ErrorSummary errors;   // on the test set
   std::vector<double> objectives;
   std::vector<double> metrics;
-  // The place that all optimizers started from.
+  // The start point, which is the same for all optimizers.
   double start_value = 0;
-  std::optional<std::uint64_t> start_failures;  // as in CurvePoint
+  std::optional<std::uint64_t> start_failures;  // as CurvePoint::failures
   std::vector<CurvePoint> curve;
-  // Of a plan with targets: the winner that the run would have had if it had ended at that budget,
-  // by the validation set (choices.hpp).
+  // Only for plans with targets: the winner on the validation set if the run had ended at that
+  // budget (choices.hpp).
   std::vector<CurvePoint> choices;
-  // Several objectives: those of all judged designs on the test set that have a value there.
+  // Only for several objectives: the objectives on the test set of all judged designs that have a
+  // value there.
   std::vector<std::vector<double>> front;
 };
 
 std::string to_json(const CellOutcome& outcome);
+// Reads the text of a cell.json. Throws Error{bad_data} with the name of `file`.
 CellOutcome parse_cell(const std::string& json, const std::filesystem::path& file);
 
-// Runs the cell, or goes on with it, and writes cell.json last: where that is, nothing is left to
-// do. Nothing if stopped.
+// Runs the cell or resumes it. Writes cell.json last, so a cell that has this file is finished.
+// Returns nothing if `stop` ended the cell.
 std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
                                     const std::filesystem::path& study, StopSignal& stop,
                                     RunObserver& observer);
 
-// The same in any folder and on several threads, which changes nothing of what it finds.
+// Where and how to run a cell. None of this changes the outcome.
 struct CellRequest {
   std::filesystem::path folder;
-  unsigned jobs = 1;
+  unsigned jobs = 1;                           // threads
   std::vector<std::string> command_line = {};  // for the manifest
-  CaseExecutor* executor = nullptr;            // instead of `jobs` threads of its own
+  CaseExecutor* executor = nullptr;  // used instead of `jobs` threads; not owned; may be null
 };
 std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
                                     const CellRequest& where, StopSignal& stop,
                                     RunObserver& observer);
-// What is recorded of a cell; nothing if it has not ended, or was recorded before the plan asked
-// for what it lacks, which run_cell() adds from its journal. Error{bad_data} if it is another
-// one's.
+
+// Returns the recorded outcome of a cell. Returns nothing if the cell has not ended, or if
+// its record lacks values that the plan asks for now. In the latter case run_cell() adds them from
+// the journal.
+// Throws Error{bad_data} if the record belongs to another cell or cannot be read.
 std::optional<CellOutcome> load_cell(const StudyPlan& plan, const Cell& cell,
                                      const std::filesystem::path& study);
 

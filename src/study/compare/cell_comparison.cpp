@@ -55,7 +55,7 @@ bool is_same(const T& a, const T& b) {
   return a == b;
 }
 
-// Looks for the first field in which two records differ.
+// Finds the first field in which two records differ.
 class FieldSearch {
  public:
   template <class T>
@@ -75,7 +75,7 @@ class FieldSearch {
       }
     }
   }
-  std::optional<CellDifference> take(std::string where) {
+  std::optional<CellDifference> make_difference(std::string where) {
     if (found_) {
       found_->where = std::move(where);
     }
@@ -86,7 +86,7 @@ class FieldSearch {
   std::optional<CellDifference> found_;
 };
 
-// In the order of cause and effect.
+// Compares fields in the order of cause and effect.
 std::optional<CellDifference> compare_records(const EvaluationRecord& a, const EvaluationRecord& b,
                                               std::string where) {
   FieldSearch search;
@@ -109,7 +109,7 @@ std::optional<CellDifference> compare_records(const EvaluationRecord& a, const E
   search.meet("metrics", before.metrics, after.metrics);
   search.meet("residuals", before.residuals, after.residuals);
   search.meet("jacobian", before.jacobian, after.jacobian);
-  return search.take(std::move(where));
+  return search.make_difference(std::move(where));
 }
 
 template <class Records>
@@ -125,7 +125,7 @@ void compare_lists(const Records& recorded, const Records& now, const char* what
   }
 }
 
-// Threads decide in which order they are written.
+// Sorts the judgements, because threads decide the order in which they are written.
 void sort_judgements(std::vector<EvaluationRecord>& judgements) {
   std::ranges::stable_sort(judgements, {}, [](const EvaluationRecord& record) {
     return std::tuple(record.cases.role, record.index);
@@ -149,10 +149,10 @@ void compare_journals(const std::filesystem::path& recorded, const std::filesyst
   end.meet("ended", before.ended, after.ended);
   end.meet("reason", before.end.reason, after.end.reason);
   end.meet("evaluations", before.end.evaluations, after.end.evaluations);
-  comparison.difference = end.take("the journal's end");
+  comparison.difference = end.make_difference("the journal's end");
 }
 
-// "candidates.0.x.3", from "/candidates/0/x/3"
+// Returns "candidates.0.x.3" for the JSON pointer "/candidates/0/x/3".
 std::string name_field(std::string pointer) {
   pointer.erase(0, 1);
   std::ranges::replace(pointer, '/', '.');
@@ -201,7 +201,7 @@ void compare_file(const std::filesystem::path& recorded, const std::filesystem::
     return;
   }
   if (!was_there) {
-    return;  // winner.toml, where there is no winner or no arm
+    return;  // winner.toml is missing if there is no winner or no arm
   }
   const std::string before = read_file(recorded / file, kFileLimit_bytes);
   const std::string after = read_file(now / file, kFileLimit_bytes);
@@ -230,7 +230,7 @@ json read_manifest(const std::filesystem::path& folder) {
   try {
     json manifest = json::parse(read_json_file(file, kFileLimit_bytes));
     for (const char* part : {"configuration", "build"}) {
-      manifest.at(part).get<std::map<std::string, json>>();  // both are objects
+      manifest.at(part).get<std::map<std::string, json>>();  // throws unless both are objects
     }
     return manifest;
   } catch (const json::exception& error) {
@@ -262,11 +262,11 @@ std::vector<std::string> list_likely_causes(const std::filesystem::path& recorde
        describe_differences(before["configuration"].dump(), after["configuration"].dump())) {
     causes.push_back("The configuration is another one: " + difference + ".");
   }
-  // What both have recorded: another version may know of more or less.
+  // Compares only fields that both manifests have: another version may record more or fewer.
   json build_before = json::object();
   json build_after = json::object();
   for (const auto& [key, value] : after["build"].items()) {
-    if (key != "host" && before["build"].contains(key)) {  // a host computes nothing by itself
+    if (key != "host" && before["build"].contains(key)) {  // does not change a result
       build_before[key] = before["build"][key];
       build_after[key] = value;
     }

@@ -1,4 +1,4 @@
-// Two runs of one cell side by side, to the last bit: does what was found come out again?
+// Compares two runs of one cell bit by bit, to show whether a recorded result can be reproduced.
 #pragma once
 
 #include <cstddef>
@@ -9,29 +9,32 @@
 
 namespace armwright {
 
+// One difference between the two runs.
 struct CellDifference {
   std::string where;     // "evaluation 17", "result.json"
   std::string field;     // "x[3]", "winner.candidate"
-  std::string recorded;  // "absent" for what is not there
+  std::string recorded;  // "absent" if the field is missing
   std::string now;
 };
 
 struct CellComparison {
-  // What was found to be the same.
+  // Counts and names of the parts that are identical.
   std::size_t evaluations = 0;
   std::size_t judgements = 0;
   std::vector<std::string> files;
-  std::optional<CellDifference> difference;  // the first; nothing if the runs are identical
+  std::optional<CellDifference> difference;  // the first one; nothing if the runs are identical
 };
 
-// Both folders hold a cell that has ended. Evaluations are taken in the order of their index, as
-// threads decide in which order they come into the journal; then judgements; then result.json,
-// winner.toml and cell.json. Error{io} or Error{bad_data} names a file that cannot be read.
+// Compares two folders that each hold a finished cell. Evaluations are compared first, in the order
+// of their index, because threads decide their order in the journal. Judgements follow, then
+// result.json, winner.toml and cell.json. Throws Error{io} or Error{bad_data} that names a file
+// which cannot be read.
 CellComparison compare_cells(const std::filesystem::path& recorded,
                              const std::filesystem::path& now);
 
-// What the two manifests say that could explain a difference, a sentence each: another version,
-// compiler or CPU, another configuration, a changed file. If they say nothing, what is left.
+// Returns one sentence per difference between the two manifests that could explain different
+// results: another version, compiler or CPU, another configuration, a changed file. If the
+// manifests agree, one sentence lists the causes that remain. Throws Error{bad_data} or Error{io}.
 std::vector<std::string> list_likely_causes(const std::filesystem::path& recorded,
                                             const std::filesystem::path& now);
 

@@ -27,7 +27,8 @@ std::string make_note(Note kind, std::string_view text, std::uint64_t number = 0
   return packet.bytes();
 }
 
-// In the worker: passes on what the run says, progress at most a few times a second.
+// Sends the messages and the progress of a run to the parent, progress at most a few times per
+// second.
 class Reporter final : public RunObserver {
  public:
   explicit Reporter(ParentLink& parent) : parent_(parent) {}
@@ -35,7 +36,7 @@ class Reporter final : public RunObserver {
   void on_progress(const Progress& progress) override {
     constexpr std::chrono::milliseconds kInterval{200};
     const auto now = Clock::now();
-    if (progress.phase == Progress::Phase::training && now - last_ >= kInterval) {
+    if (progress.phase == CaseRole::training && now - last_ >= kInterval) {
       last_ = now;
       parent_.send(make_note(Note::progress, "", progress.done));
     }
@@ -50,8 +51,8 @@ class Reporter final : public RunObserver {
   Clock::time_point last_ = Clock::now();
 };
 
-// Lets the parent simulate what a cell asks for. A replicate's problem is simulated as the one that
-// it was made of.
+// Lets the parent simulate the batches of a cell. A replicate's problem is simulated as the problem
+// of the plan from which it was made.
 class ParentExecutor final : public CaseExecutor {
  public:
   ParentExecutor(const StudyPlan& plan, const Cell& cell, ParentLink& parent) : parent_(parent) {
@@ -67,7 +68,7 @@ class ParentExecutor final : public CaseExecutor {
     PacketWriter packet;
     put_batch(packet, batch);
     parent_.send(make_note(Note::batch, packet.bytes(), problem_));
-    std::exception_ptr failure;  // of the batch's taker: the answers are read to their end
+    std::exception_ptr failure;  // thrown by the batch; the answers are still read to their end
     while (true) {
       const std::string message = parent_.receive();
       PacketReader answer(message);
@@ -81,7 +82,7 @@ class ParentExecutor final : public CaseExecutor {
       const auto first = answer.get<std::uint64_t>();
       try {
         if (!failure) {
-          batch.take(first, get_outcomes(answer));
+          batch.deliver(first, get_outcomes(answer));
         }
       } catch (...) {
         failure = std::current_exception();
@@ -97,15 +98,15 @@ class ParentExecutor final : public CaseExecutor {
   std::uint64_t problem_ = 0;
 };
 
-// A signal handler reaches nothing but globals; a worker is a process of its own, and has but one.
+// Global, because a signal handler can reach only globals. A worker process has only one.
 std::atomic<StopSignal*> g_worker_stop = nullptr;
 
 extern "C" void stop_worker(int /*signal*/) {
   g_worker_stop.load()->request(StopReason::terminated);
 }
 
-// The study's lock is ours, so whoever holds a cell's is a worker of a process that was killed, and
-// about to die with it.
+// Runs the cell as soon as its lock is free. This comparison holds the study's lock, so a process
+// with the cell's lock is a worker of a killed comparison and will end soon.
 void run_when_free(const StudyPlan& plan, const Cell& cell, const CellRequest& where,
                    StopSignal& stop, RunObserver& observer) {
   constexpr int kMostTries = 100;
@@ -130,7 +131,7 @@ void work_on_cells(const StudyPlan& plan, std::span<const Cell> cells,
   StopSignal stop;
   g_worker_stop = &stop;
   std::signal(SIGTERM, stop_worker);
-  std::signal(SIGXFSZ, SIG_IGN);  // an error of write()
+  std::signal(SIGXFSZ, SIG_IGN);  // write() then returns an error instead
   while (true) {
     const std::string order = parent.receive();
     const auto number = PacketReader(order).get<std::uint64_t>();
@@ -147,7 +148,7 @@ void work_on_cells(const StudyPlan& plan, std::span<const Cell> cells,
     } catch (const Error& error) {
       if (error.kind() == ErrorKind::io) {
         parent.send(make_note(Note::io_error, error.what()));
-        return;  // the comparison ends with it and hands over nothing more
+        return;  // the comparison ends and orders no more cells
       }
       parent.send(make_note(Note::broken, error.what()));
     }

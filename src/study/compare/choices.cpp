@@ -1,18 +1,17 @@
 #include "study/compare/choices.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 
 #include "base/bits.hpp"
 #include "study/run/candidate_pool.hpp"
-#include "study/run/judge.hpp"
+#include "study/run/winner_selection.hpp"
 #include "study/statistics/summary.hpp"
 
 namespace armwright {
 namespace {
 
-// The candidates that would have been judged at each of the budgets.
+// Returns per budget the candidates that would be judged if the run ended there.
 std::vector<std::vector<Candidate>> select_along(const RunPlan& run,
                                                  const RecordedEvaluations& training,
                                                  std::span<const std::int64_t> budgets) {
@@ -45,7 +44,7 @@ std::vector<std::vector<Candidate>> select_along(const RunPlan& run,
 
 DesignBench::DesignBench(const LoadedProblem& problem, CaseRole role, CaseExecutor& executor,
                          StopSignal& stop)
-    : stop_(stop), runner_(*problem.problem, executor, stop) {
+    : problem_(*problem.problem), executor_(executor), stop_(stop) {
   const bool is_test = role == CaseRole::test;
   block_.role = role;
   block_.set = is_test ? problem.sets.test : problem.sets.validation;
@@ -67,9 +66,10 @@ bool DesignBench::add(std::span<const std::vector<double>> designs) {
     designs_.emplace_back(x.begin(), x.end());
   }
   evaluations_.resize(designs_.size());
-  runner_.run(candidates, block_, false, [&](std::size_t candidate, Evaluation evaluation) {
-    evaluations_[first + candidate] = std::move(evaluation);
-  });
+  executor_.evaluate(problem_, candidates, block_, {}, stop_,
+                     [&](std::size_t candidate, Evaluation evaluation) {
+                       evaluations_[first + candidate] = std::move(evaluation);
+                     });
   return !stop_.requested();
 }
 
@@ -83,15 +83,12 @@ const Evaluation* DesignBench::find(std::span<const double> x) const {
 }
 
 ErrorSummary summarize_errors(const LoadedProblem& problem, const Evaluation& evaluation) {
-  const double limit = problem.tracking ? kFailureError_m : std::numeric_limits<double>::infinity();
-  return summarize(evaluation.case_errors, limit);
+  return summarize(evaluation.case_errors, problem.problem->description().failure_error);
 }
 
-std::optional<std::vector<Choice>> make_choices(const RunPlan& run,
-                                                const RecordedEvaluations& training,
-                                                const RunResult& result,
-                                                std::span<const std::int64_t> budgets,
-                                                CaseExecutor& executor, StopSignal& stop) {
+std::optional<std::vector<std::optional<JudgedCandidate>>> make_choices(
+    const RunPlan& run, const RecordedEvaluations& training, const RunResult& result,
+    std::span<const std::int64_t> budgets, CaseExecutor& executor, StopSignal& stop) {
   const auto selections = select_along(run, training, budgets);
   std::vector<std::vector<double>> designs;
   for (const auto& selection : selections) {
@@ -103,11 +100,11 @@ std::optional<std::vector<Choice>> make_choices(const RunPlan& run,
   if (!bench.add(designs)) {
     return std::nullopt;
   }
-  std::vector<Choice> choices;
+  std::vector<std::optional<JudgedCandidate>> choices;
   for (std::size_t i = 0; i < budgets.size(); ++i) {
     std::vector<JudgedCandidate> judged;
-    if (i > 0 && choices.back().chosen) {
-      judged.push_back(*choices.back().chosen);
+    if (i > 0 && choices.back()) {
+      judged.push_back(*choices.back());
     }
     for (const Candidate& candidate : selections[i]) {
       judged.push_back({candidate, bench.get(candidate.x)});
@@ -115,8 +112,8 @@ std::optional<std::vector<Choice>> make_choices(const RunPlan& run,
     if (i + 1 == budgets.size() && result.winner) {
       judged.push_back(result.judged[*result.winner]);
     }
-    const auto best = Judge::choose_winner(run.problem.problem->description(), judged);
-    choices.push_back({budgets[i], best ? std::optional(judged[*best]) : std::nullopt});
+    const auto best = choose_winner(run.problem.problem->description(), judged);
+    choices.push_back(best ? std::optional(judged[*best]) : std::nullopt);
   }
   return choices;
 }

@@ -1,7 +1,8 @@
-// What somebody who stops a run early has of it: at each of some budgets the design that is best on
-// the validation set of all that were candidates for the win then or at the budgets before. No
-// incumbent, which is good in training, and not the best so far on the test set, which would be a
-// selection there.
+// Determines the design that a user would get who stops a run early. At each given budget this is
+// the design that is best on the validation set. It is chosen among all designs that were
+// candidates for the winner at that budget or at an earlier one. The incumbent would not do: it is
+// the best in training. Neither would the best design on the test set so far: that would be a
+// selection on the test set.
 #pragma once
 
 #include <cstdint>
@@ -9,50 +10,46 @@
 #include <span>
 #include <vector>
 
-#include "study/executor/case_runner.hpp"
+#include "study/executor/case_executor.hpp"
 #include "study/journal/journal.hpp"
 #include "study/run/run_plan.hpp"
 #include "study/run/run_result.hpp"
 
 namespace armwright {
 
-// Designs on the whole validation or test set of a problem, each but once.
+// Evaluates designs on the whole validation or test set of a problem, each design only once.
 class DesignBench {
  public:
-  // All of these outlive it.
+  // Keeps references to all arguments; they must outlive this object.
   DesignBench(const LoadedProblem& problem, CaseRole role, CaseExecutor& executor,
               StopSignal& stop);
 
-  // False if stopped.
+  // Evaluates the designs that are new. Returns false if stopped.
   bool add(std::span<const std::vector<double>> designs);
+  // Returns the evaluation of a design that was added before.
   const Evaluation& get(std::span<const double> x) const { return *find(x); }
 
  private:
   const Evaluation* find(std::span<const double> x) const;
 
+  const Problem& problem_;
+  CaseExecutor& executor_;
   StopSignal& stop_;
-  CaseRunner runner_;
   CaseBlock block_;
   std::vector<std::vector<double>> designs_;
   std::vector<Evaluation> evaluations_;
 };
 
-// A case of an arm fails with an error above kFailureError_m, one of a function never.
+// Summarises the errors of an evaluation. A case of an arm fails if its error is above
+// kFailureError_m. A case of a function never fails.
 ErrorSummary summarize_errors(const LoadedProblem& problem, const Evaluation& evaluation);
 
-struct Choice {
-  std::int64_t budget = 0;
-  // Nothing before there is a candidate.
-  std::optional<JudgedCandidate> chosen;
-};
-
-// `training` is the run's journal, in order; `budgets` increase. The last choice has the run's own
-// winner among its candidates; before, what an optimizer recommends without evaluating it, which no
-// journal holds, is not. Nothing if stopped.
-std::optional<std::vector<Choice>> make_choices(const RunPlan& run,
-                                                const RecordedEvaluations& training,
-                                                const RunResult& result,
-                                                std::span<const std::int64_t> budgets,
-                                                CaseExecutor& executor, StopSignal& stop);
+// Returns one choice per budget; it is empty where the run has no candidate yet. Returns nothing if
+// stopped. `training` holds the run's journal in order; `budgets` must increase. The last choice
+// has the run's own winner among its candidates. Earlier choices lack designs that an optimizer
+// recommends without evaluating them, because no journal records these.
+std::optional<std::vector<std::optional<JudgedCandidate>>> make_choices(
+    const RunPlan& run, const RecordedEvaluations& training, const RunResult& result,
+    std::span<const std::int64_t> budgets, CaseExecutor& executor, StopSignal& stop);
 
 }  // namespace armwright

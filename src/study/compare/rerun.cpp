@@ -7,12 +7,12 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "study/compare/escape.hpp"
+#include "study/compare/study_plan.hpp"
 
 namespace armwright {
 namespace {
 
-// A label as people and as folders have it.
+// Returns a label as the plan writes it and as folder names do.
 std::vector<std::string> list_forms(const std::string& label) {
   std::vector<std::string> forms = {label};
   if (escape_name(label) != label) {
@@ -37,8 +37,8 @@ std::vector<std::string> list_optimizer_labels(const StudyPlan& plan) {
   return labels;
 }
 
-// All ways to read "PROBLEM/OPTIMIZER", as labels may hold slashes. Names of folders have none but
-// that one: whatever is one is nothing else.
+// Returns all ways to read "PROBLEM/OPTIMIZER"; labels may contain slashes. A name written with
+// folder names has no other slash, so it is read in only one way.
 std::vector<Cell> find_readings(const StudyPlan& plan, std::string_view head) {
   std::vector<Cell> readings;
   for (std::size_t p = 0; p < plan.problems.size(); ++p) {
@@ -61,7 +61,7 @@ std::vector<Cell> find_readings(const StudyPlan& plan, std::string_view head) {
   return readings;
 }
 
-// Which part of it nobody knows.
+// Throws with the part of the name that is unknown.
 [[noreturn]] void refuse_head(const StudyPlan& plan, std::string_view head) {
   for (const StudyProblem& problem : plan.problems) {
     for (const std::string& form : list_forms(problem.label)) {
@@ -100,7 +100,7 @@ Cell find_cell(const StudyPlan& plan, std::string_view name) {
   if (readings.size() > 1) {
     throw Error(
         ErrorKind::usage,
-        fmt::format("'{}' can be read as two cells; name it as its folder: {}", sanitize(name),
+        fmt::format("'{}' fits two cells; name the cell as its folder is named: {}", sanitize(name),
                     make_cell_path(plan, readings[0]).lexically_relative("cells").string()));
   }
   if (*replicate < 1 || *replicate > plan.replicates) {

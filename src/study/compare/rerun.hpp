@@ -1,5 +1,5 @@
-// One cell of a comparison run anew, from the recorded plan and into a folder of its own: the
-// comparison's own cells stay as they are.
+// Finds the cell and the folder for running one cell of a comparison again from the recorded plan.
+// The new run has a folder of its own, so the comparison's cells stay as they are.
 #pragma once
 
 #include <filesystem>
@@ -10,16 +10,16 @@
 
 namespace armwright {
 
-// "PROBLEM/OPTIMIZER/rNN", with labels as the plan has them or as folders are named. Error{usage}
-// for a name that is in neither way a cell of the plan's, or in two ways.
+// Returns the cell with the name "PROBLEM/OPTIMIZER/rNN". Labels may be written as in the plan or
+// as in folder names. Throws Error{usage} if the name fits no cell of the plan, or two cells.
 Cell find_cell(const StudyPlan& plan, std::string_view name);
 
-// STUDY/reruns/PROBLEM/OPTIMIZER/rNN, or the first of rNN-002, rNN-003, ... whose run has not come
-// to its end: one that was interrupted goes on.
+// Returns STUDY/reruns/PROBLEM/OPTIMIZER/rNN, or the first of rNN-002, rNN-003, ... that does not
+// hold a finished run. An interrupted run is therefore resumed. Creates nothing.
 std::filesystem::path choose_rerun_folder(const std::filesystem::path& study, const StudyPlan& plan,
                                           const Cell& cell);
 
-// Whether the run of a cell in a folder has come to its end.
+// Returns whether the folder holds a cell's run that has ended.
 bool has_ended(const std::filesystem::path& folder);
 
 }  // namespace armwright

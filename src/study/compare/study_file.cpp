@@ -1,8 +1,7 @@
-// make_study_plan(): from a file, flags, or both.
+// make_study_plan(): loads and checks what a study's file and flags name.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "base/error.hpp"
 #include "base/file.hpp"
@@ -13,133 +12,18 @@
 #include "problems/config/config_files.hpp"
 #include "sim/simd/simd_level.hpp"
 #include "study/compare/case_sets.hpp"
-#include "study/compare/escape.hpp"
 #include "study/compare/study_methods.hpp"
 #include "study/compare/study_plan.hpp"
+#include "study/compare/study_reader.hpp"
 
 namespace armwright {
 namespace {
 
-constexpr std::int64_t kMostBudget = 1'000'000'000'000;
-constexpr int kMostReplicates = 10'000;
-constexpr int kMostSelected = 10'000;
-constexpr int kMostCheckpoints = 1000;
-constexpr std::size_t kMostNamed = 200;          // problems, and optimizers
+constexpr std::size_t kMostNamed = 200;          // of problems, and of optimizers
 constexpr std::uint64_t kMostCells = 1'000'000;  // problems x optimizers x replicates
 
-struct NamedOptimizer {
-  std::string name;
-  std::string label;
-  std::vector<std::string> options;
-  bool baseline = false;  // a resolved plan says so
-  std::optional<Schedule> schedule;
-  std::vector<std::string> settings;
-  // A resolved plan has these of a foreign optimizer.
-  std::string description = {};
-  std::vector<std::string> inputs = {};  // "NAME HASH"
-};
-
-struct NamedProblem {
-  std::string name;
-  std::string label;
-  std::vector<std::string> settings;
-  std::optional<Schedule> schedule;
-  std::string configuration_sha256;  // as recorded by a resolved plan; empty: not known
-};
-
-// What file and flags say, before it is looked up.
-struct RawPlan {
-  std::vector<NamedProblem> problems;
-  std::vector<NamedOptimizer> optimizers;
-  std::vector<std::string> settings;       // of every problem, under its own
-  std::vector<std::string> last_settings;  // over its own
-  std::optional<Schedule> schedule;
-};
-
-std::vector<std::string> get_strings_or_none(const ConfigTable& table, std::string_view key) {
-  return table.has(key) ? table.get_strings(key) : std::vector<std::string>{};
-}
-
-std::optional<Schedule> read_schedule_key(const ConfigTable& table) {
-  if (!table.has("schedule")) {
-    return std::nullopt;
-  }
-  const auto schedule = read_schedule(table.get_string("schedule"));
-  if (!schedule) {
-    table.refuse("schedule", fmt::format("it must be {}", kScheduleForms));
-  }
-  return schedule;
-}
-
-// Keys that would give one optimizer more than another.
-void refuse_privileges(const ConfigTable& table) {
-  for (const char* key : {"budget", "replicates", "seed", "start_spread", "sets"}) {
-    if (table.has(key)) {
-      table.refuse(key,
-                   "it is the same for every optimizer of a comparison: it belongs to the top "
-                   "of the file");
-    }
-  }
-}
-
-RawPlan read_file_plan(const ConfigTable& table, StudyPlan& plan) {
-  RawPlan raw;
-  plan.title = table.get_string("title", "");
-  table.get_string("description", "");
-  plan.name = table.get_string("name", "");
-  table.get_string("plan_sha256", "");  // check_plan_hash() has looked at the text
-  plan.seed = static_cast<std::uint64_t>(
-      table.get_integer_or("seed", 1, 0, std::numeric_limits<std::int64_t>::max()));
-  plan.replicates =
-      static_cast<int>(table.get_integer_or("replicates", plan.replicates, 1, kMostReplicates));
-  plan.budget = table.get_integer_or("budget", 0, 1, kMostBudget);
-  plan.start_spread =
-      table.get_number_or("start_spread", plan.start_spread, {.lower = 0, .upper = 2});
-  plan.checkpoints =
-      static_cast<int>(table.get_integer_or("checkpoints", plan.checkpoints, 1, kMostCheckpoints));
-  plan.first_checkpoint =
-      table.get_integer_or("first_checkpoint", plan.first_checkpoint, 1, kMostBudget);
-  plan.constraint_tolerance = table.get_number_or("constraint_tolerance", plan.constraint_tolerance,
-                                                  {.lower = 0, .upper = 1});
-  plan.final_engine = table.get_string("final_engine", "");
-  plan.baselines = table.get_bool_or("baselines", true);
-  const ConfigTable selection = table.get_table_or_empty("selection");
-  plan.selection.last =
-      static_cast<int>(selection.get_integer_or("last", plan.selection.last, 1, kMostSelected));
-  plan.selection.best =
-      static_cast<int>(selection.get_integer_or("best", plan.selection.best, 0, kMostSelected));
-  plan.judge_along = selection.get_bool_or("along", false);
-  read_targets(table, plan);
-  raw.schedule = read_schedule_key(table);
-  raw.settings = get_strings_or_none(table, "set");
-  for (const std::string& name : get_strings_or_none(table, "problems")) {
-    raw.problems.push_back({name, "", {}, {}, ""});
-  }
-  for (const ConfigTable& problem : table.get_tables_or_empty("problem")) {
-    raw.problems.push_back({problem.get_string("name"), problem.get_string("label", ""),
-                            get_strings_or_none(problem, "set"), read_schedule_key(problem),
-                            problem.get_string("configuration_sha256", "")});
-    for (const char* key : {"training_set", "validation_set", "test_set"}) {
-      problem.get_string(key, "");  // of a resolved plan: they follow from the rest
-    }
-  }
-  for (const std::string& name : get_strings_or_none(table, "optimizers")) {
-    raw.optimizers.push_back({name, "", {}, false, {}, {}});
-  }
-  for (const ConfigTable& optimizer : table.get_tables_or_empty("optimizer")) {
-    refuse_privileges(optimizer);
-    raw.optimizers.push_back(
-        {optimizer.get_string("name"), optimizer.get_string("label", ""),
-         get_strings_or_none(optimizer, "options"), optimizer.get_bool_or("baseline", false),
-         read_schedule_key(optimizer), read_method_settings(optimizer),
-         optimizer.get_string("description", ""), get_strings_or_none(optimizer, "inputs")});
-  }
-  table.refuse_unknown();
-  return raw;
-}
-
-// Numbers that are each allowed, but together make a plan that takes hours to check and more memory
-// than there is. Before anything is loaded.
+// Refuses numbers that are each allowed, but together make a plan that takes hours to check and
+// more memory than there is. It runs before anything is loaded.
 void check_size(const RawPlan& raw, const StudyPlan& plan) {
   const auto refuse = [](std::string_view what, std::uint64_t count, std::uint64_t most) {
     throw Error(ErrorKind::usage, fmt::format("the study has {} {}; at most {} are possible: make "
@@ -168,7 +52,9 @@ std::string make_study_name(const StudyPlan& plan) {
   return name.substr(0, kLongest);
 }
 
-// Only the same cases for all make a pair: of fresh ones, optimizers without generations see none.
+// Returns the schedule that was asked for, else a fixed one: runs are compared in pairs, which need
+// the same training cases for every optimizer. An optimizer without generations cannot have fresh
+// cases.
 Schedule choose_study_schedule(const LoadedProblem& problem, const std::optional<Schedule>& asked) {
   if (asked) {
     return *asked;
@@ -184,7 +70,7 @@ void refuse_repeated(std::string_view what, std::span<const std::string> labels)
       throw Error(ErrorKind::usage,
                   fmt::format("{} label '{}' is not printable text", what, sanitize(*label)));
     }
-    // A cell's folder is named after it, and names may have 255 bytes.
+    // A cell's folder has this name, and a name may have 255 bytes.
     constexpr std::size_t kLongestName = 250;
     if (escape_name(*label).size() > kLongestName) {
       throw Error(ErrorKind::usage,
@@ -202,8 +88,8 @@ void refuse_repeated(std::string_view what, std::span<const std::string> labels)
   }
 }
 
-// A plan made where "auto" came to another SIMD level is the same plan on that level, if this
-// machine has it. False if none of its levels gives what is recorded.
+// Loads the problem on the SIMD level that the plan was made with: "auto" may choose another level
+// on this machine. Returns false if no level of this machine gives the recorded configuration.
 bool load_on_recorded_simd(const NamedProblem& named, StudyProblem& problem) {
   for (const std::string& level : supported_simd_names()) {
     std::vector<std::string> settings = problem.settings;
@@ -215,7 +101,7 @@ bool load_on_recorded_simd(const NamedProblem& named, StudyProblem& problem) {
         return true;
       }
     } catch (const Error&) {
-      return false;  // of a function, or its engine has no SIMD
+      return false;  // the problem is a function, or its engine has no SIMD
     }
   }
   return false;
@@ -262,9 +148,9 @@ OptimizerRow find_row(const NamedOptimizer& named, std::span<const OptimizerRow>
     return *row;
   }
   if (named.description.empty()) {
-    return load_optimizer(named.name);  // what it reads says what its inputs are
+    return load_optimizer(named.name);  // loading it also finds its inputs
   }
-  OptimizerRow recorded = read_foreign_row(named.name, named.description);
+  OptimizerRow recorded = read_host_row(named.name, named.description);
   for (const std::string& input : named.inputs) {
     const std::size_t blank = std::min(input.rfind(' '), input.size());
     recorded.input_hashes[input.substr(0, blank)] = input.substr(std::min(blank + 1, input.size()));
@@ -301,7 +187,8 @@ void load_optimizers(const RawPlan& raw, std::span<const OptimizerRow> rows, Stu
   }
   const auto add = [&](std::string_view name) {
     try {
-      plan.optimizers.push_back(load_study_optimizer({std::string(name), "", {}, true, {}, {}}));
+      plan.optimizers.push_back(
+          load_study_optimizer({.name = std::string(name), .baseline = true}));
     } catch (const Error& error) {
       throw Error(error.kind(),
                   fmt::format("{} (it stands in every comparison as a baseline; name another local "
@@ -386,25 +273,12 @@ void check_plan_hash(const std::filesystem::path& path) {
 }
 
 void keep_baselines(const std::filesystem::path& recorded, StudyPlan& plan) {
-  for (const ConfigTable& table : ConfigTable::load(recorded).get_tables_or_empty("optimizer")) {
-    const std::string label = table.get_string("label");
-    if (table.get_bool_or("baseline", false) &&
-        std::ranges::find(plan.optimizers, label, &StudyOptimizer::label) ==
-            plan.optimizers.end()) {
-      plan.optimizers.push_back(load_study_optimizer(
-          {table.get_string("name"), label, table.get_strings("options"), true, {}, {}}));
+  for (const NamedOptimizer& baseline : read_baselines(recorded)) {
+    if (std::ranges::find(plan.optimizers, baseline.label, &StudyOptimizer::label) ==
+        plan.optimizers.end()) {
+      plan.optimizers.push_back(load_study_optimizer(baseline));
     }
   }
-}
-
-std::string read_study_title(const std::string& file) {
-  return ConfigTable::load(resolve_config("studies", file)).get_string("title", "");
-}
-
-std::vector<AskedKey> ask_study_keys(const ConfigTable& table) {
-  StudyPlan plan;
-  read_file_plan(table, plan);
-  return table.asked();
 }
 
 StudyPlan make_study_plan(const StudyRequest& request) {
@@ -412,7 +286,7 @@ StudyPlan make_study_plan(const StudyRequest& request) {
   RawPlan raw;
   if (!request.file.empty()) {
     const auto path = resolve_config("studies", request.file);
-    raw = read_file_plan(ConfigTable::load(path), plan);
+    raw = read_study_file(path, plan);
     check_plan_hash(path);
     if (plan.name.empty()) {
       plan.name = path.stem().string();
@@ -421,13 +295,13 @@ StudyPlan make_study_plan(const StudyRequest& request) {
   if (!request.problems.empty()) {
     raw.problems.clear();
     for (const std::string& name : request.problems) {
-      raw.problems.push_back({name, "", {}, {}, ""});
+      raw.problems.push_back({.name = name});
     }
   }
   if (!request.optimizers.empty()) {
     raw.optimizers.clear();
     for (const std::string& name : request.optimizers) {
-      raw.optimizers.push_back({name, "", {}, false, {}, {}});
+      raw.optimizers.push_back({.name = name});
     }
   }
   raw.last_settings = request.settings;
@@ -455,7 +329,7 @@ StudyPlan make_study_plan(const StudyRequest& request) {
     find_engine(plan.final_engine);
   }
   for (const StudyProblem& problem : plan.problems) {
-    if (plan.start_spread == 0 && !problem.loaded.tracking) {
+    if (plan.start_spread == 0 && !problem.loaded.tracking()) {
       throw Error(ErrorKind::usage,
                   fmt::format("start_spread is 0, and {} has no training cases: the replicates of "
                               "a deterministic optimizer would all be the same run; it must be "

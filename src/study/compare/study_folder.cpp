@@ -11,7 +11,7 @@
 #include "base/hash.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
-#include "study/compare/escape.hpp"
+#include "study/compare/study_plan.hpp"
 
 namespace armwright {
 namespace {
@@ -21,7 +21,7 @@ using nlohmann::json;
 constexpr const char* kPlanFile = "study.toml";
 constexpr std::size_t kPlanLimit_bytes = std::size_t{16} << 20;
 
-// A JSON string is a TOML string.
+// Returns the text as a JSON string, which is also a TOML string.
 std::string quote(const std::string& text) {
   return json(text).dump(-1, ' ', true, json::error_handler_t::replace);
 }
@@ -50,7 +50,7 @@ std::string format_toml_number(double value) {
   return digits.find_first_of(".e") == std::string::npos ? digits + ".0" : digits;
 }
 
-// What is asked of the cells, besides; plans that ask nothing say nothing of it.
+// Returns `value`, `reference` and the targets as TOML; keys with their default are left out.
 std::string make_questions(const StudyPlan& plan) {
   std::string text;
   if (plan.value == StudyValue::failures) {
@@ -135,7 +135,7 @@ std::filesystem::path get_problem_file(const std::filesystem::path& folder,
   return folder / "problems" / (escape_name(label) + ".json");
 }
 
-// What differs between a problem's recorded configuration and the present one.
+// Returns the differences between a problem's recorded configuration and the present one.
 std::vector<std::string> describe_problem_change(const std::filesystem::path& folder,
                                                  const StudyProblem& problem) {
   const auto file = get_problem_file(folder, problem.label);
@@ -184,8 +184,8 @@ void check_study_folder(const std::filesystem::path& folder) {
               std::filesystem::exists(folder, ignored)
                   ? fmt::format("{} is not the folder of a study: it has no {}",
                                 sanitize(folder.string()), kPlanFile)
-                  : fmt::format("there is no folder '{}'; name that of a study, results/NAME "
-                                "unless --out said otherwise",
+                  : fmt::format("there is no folder '{}'; name the folder of a study, "
+                                "results/NAME or the one given to --out",
                                 sanitize(folder.string())));
 }
 
@@ -235,14 +235,14 @@ void StudyFolder::extend(const StudyPlan& plan, const std::string& text) {
   json now = json::parse(ConfigTable::parse(text, file.string()).to_json());
   std::vector<std::string> differences;
   for (const char* key : {"problem", "optimizer"}) {
-    // Which file a problem came from and who asked for a baseline do not matter.
+    // The file of a problem and the origin of a baseline may differ.
     const char* ignored = key == std::string_view("problem") ? "name" : "baseline";
     const json before = index_by_label(recorded.at(key), ignored);
     const json after = index_by_label(now.at(key), ignored);
     for (const auto& [label, entry] : before.items()) {
       if (!after.contains(label)) {
         differences.push_back(
-            fmt::format("{} {} is recorded, and the plan leaves it out", key, sanitize(label)));
+            fmt::format("{} {} is recorded, but the plan lacks it", key, sanitize(label)));
         continue;
       }
       for (const std::string& difference :
@@ -270,8 +270,7 @@ void StudyFolder::extend(const StudyPlan& plan, const std::string& text) {
   if (replicates <= plan.replicates) {
     now["replicates"] = replicates;
   }
-  // What is asked of the cells may change: what they lack for the answer is made from their
-  // journals.
+  // These keys may change: values that the cells lack are computed from their journals.
   constexpr const char* kQuestions[] = {"value", "reference", "target"};
   if (std::ranges::any_of(kQuestions, [&](const char* key) {
         return recorded.value(key, json()) != now.value(key, json());
@@ -289,9 +288,9 @@ void StudyFolder::extend(const StudyPlan& plan, const std::string& text) {
   if (!differences.empty()) {
     throw Error(
         ErrorKind::usage,
-        fmt::format("{} holds a study whose cells would not compare with those of this "
-                    "plan:\n  {}\nA plan may only grow. Go on with the recorded one, or use "
-                    "--new or --out for another folder",
+        fmt::format("{} holds a study whose cells could not be compared with those of "
+                    "this plan:\n  {}\nA plan may only grow. Use the recorded plan, or choose "
+                    "another folder with --new or --out",
                     path_.string(), join(differences, "\n  ")));
   }
   if (!additions_.empty()) {

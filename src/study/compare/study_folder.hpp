@@ -1,10 +1,13 @@
-// A study's folder: study.toml (the resolved plan with its hash, written before anything runs),
-// problems/LABEL.json (each problem's whole configuration), cells/PROBLEM/OPTIMIZER/rNN (the runs),
-// and what is derived from these: result.json, verdict.txt, tables/.
+// A study's folder:
 //
-// A plan may grow: more replicates, problems, optimizers. What is there must stay comparable, and
-// stay: nothing recorded may be changed or left out, but for what is asked of the cells afterwards
-// (targets, reference, value). The plan before an extension is kept as
+//   study.toml                    the resolved plan with its hash, written before any cell runs
+//   problems/LABEL.json           the whole configuration of each problem
+//   cells/PROBLEM/OPTIMIZER/rNN   the runs
+//   result.json, verdict.txt, tables/   derived from the files above
+//
+// A plan may grow: more replicates, problems or optimizers. Recorded entries must not be changed or
+// left out, so that all cells stay comparable. Only targets, reference and value may change,
+// because they are evaluated after the runs. The plans before each extension are kept as
 // study-001.toml, study-002.toml, ...
 #pragma once
 
@@ -17,14 +20,16 @@
 
 namespace armwright {
 
+// A study's folder that this process has locked for writing.
 class StudyFolder {
  public:
-  // Creates the folder, or opens it to go on; takes the lock. Error{busy}; Error{io}; Error{usage}
-  // with every difference that would make recorded cells incomparable.
+  // Creates the folder, or opens it to resume the study, and takes its lock. Throws Error{busy} if
+  // another process has the lock, Error{bad_data} if the recorded plan is damaged, or Error{io}.
+  // Throws Error{usage} with every difference that would make recorded cells incomparable.
   StudyFolder(const std::filesystem::path& path, const StudyPlan& plan);
 
   const std::filesystem::path& path() const { return path_; }
-  // What the plan has that the recorded one had not; empty if nothing.
+  // Returns one text per part of the plan that the recorded plan did not have; empty if it has all.
   const std::vector<std::string>& additions() const { return additions_; }
 
  private:
@@ -35,18 +40,19 @@ class StudyFolder {
   std::vector<std::string> additions_;
 };
 
-// The resolved plan as TOML, which make_study_plan() reads again. Its first key is the SHA-256 of
-// the text after it.
+// Returns the resolved plan as TOML, which make_study_plan() can read again. Its first key is the
+// SHA-256 of the text after it.
 std::string to_toml(const StudyPlan& plan);
 std::string calc_plan_hash(const StudyPlan& plan);
 
-// Whether a folder is a study's.
+// Returns whether the folder is a study's.
 bool is_study_folder(const std::filesystem::path& path);
-// Error{usage} if it is none, or not there.
+// Throws Error{usage} if the folder does not exist or is not a study's.
 void check_study_folder(const std::filesystem::path& folder);
-// The plan with what a folder's plan has beside it by itself: baselines. Before StudyFolder.
+// Adds to `plan` the baselines that the folder's recorded plan has. To be called before the
+// constructor of StudyFolder.
 void adopt_recorded(const std::filesystem::path& folder, StudyPlan& plan);
-// The plan that a study's folder records.
+// Returns the plan that a study's folder records. Throws Error{usage} or Error{bad_data}.
 StudyPlan load_study_plan(const std::filesystem::path& folder);
 
 }  // namespace armwright

@@ -15,9 +15,9 @@ namespace {
 
 using nlohmann::json;
 
-// How training goes. With what kind of controller the designs have, kController, that is a
-// method's; all else is what is asked of a design. So is the rest of [control]: the plant is
-// integrated in steps of the control period.
+// Tables that define training. A method may change these tables and the kind of controller
+// (kController). All other settings are requirements on a design. The rest of [control] is one too:
+// the plant is integrated in steps of the control period.
 constexpr const char* kMethodTables[] = {"racing", "schedule", "perturbation"};
 constexpr std::string_view kController = "control.controller";
 
@@ -30,18 +30,19 @@ std::string get_key(std::string_view setting) {
   return std::string(key.substr(0, key.find_last_not_of(' ') + 1));
 }
 
-// The perturbation that designs meet in validation and tests; nothing if there is none, whatever
-// its table says.
+// Returns the perturbation of validation and test cases; nothing if these are not perturbed, even
+// if the table has values.
 std::optional<Perturbation> get_judged_perturbation(const LoadedProblem& problem) {
-  if (!problem.tracking || !problem.tracking->config().perturbation.applies_to(CaseRole::test)) {
+  if (!problem.tracking() ||
+      !problem.tracking()->config().perturbation.applies_to(CaseRole::test)) {
     return {};
   }
-  Perturbation perturbation = problem.tracking->config().perturbation;
-  perturbation.where = Perturbation::Where::judging;  // whether training has it as well
+  Perturbation perturbation = problem.tracking()->config().perturbation;
+  perturbation.where = Perturbation::Where::judging;  // training may differ
   return perturbation;
 }
 
-// The configuration without what may be a method's own.
+// Returns the configuration without the settings that a method may change.
 json leave_method_out(const LoadedProblem& problem) {
   json resolved = json::parse(problem.resolved_json);
   for (const char* table : kMethodTables) {
@@ -59,7 +60,7 @@ json leave_method_out(const LoadedProblem& problem) {
 LoadedProblem load_method(const StudyProblem& problem, const StudyOptimizer& optimizer) {
   std::vector<std::string> settings = problem.settings;
   settings.insert(settings.end(), optimizer.settings.begin(), optimizer.settings.end());
-  // The level that the problem was settled on, which may be the recorded one.
+  // The SIMD level in use for the problem, which may be a recorded one.
   const json resolved = json::parse(problem.loaded.resolved_json);
   if (resolved.contains("physics") && resolved["physics"].contains("simd")) {
     settings.push_back("physics.simd=" + resolved["physics"]["simd"].get<std::string>());
@@ -68,13 +69,13 @@ LoadedProblem load_method(const StudyProblem& problem, const StudyOptimizer& opt
   if (get_judged_perturbation(loaded) != get_judged_perturbation(problem.loaded)) {
     throw Error(ErrorKind::usage,
                 fmt::format("optimizer {} on {}: its designs would be judged on other plants than "
-                            "those of the others; a perturbation of its own must have "
+                            "the designs of other optimizers; a perturbation in `set` needs "
                             "perturbation.apply_to=training",
                             optimizer.label, problem.label));
   }
   if (leave_method_out(loaded) != leave_method_out(problem.loaded)) {
     throw Error(ErrorKind::usage,
-                fmt::format("optimizer {} on {}: its settings change what is asked of a design",
+                fmt::format("optimizer {} on {}: its settings change the requirements on a design",
                             optimizer.label, problem.label));
   }
   return loaded;
@@ -82,28 +83,23 @@ LoadedProblem load_method(const StudyProblem& problem, const StudyOptimizer& opt
 
 }  // namespace
 
-std::vector<std::string> read_method_settings(const ConfigTable& optimizer) {
-  if (!optimizer.has("set")) {
-    return {};
-  }
-  const std::vector<std::string> settings = optimizer.get_strings("set");
+void check_method_settings(const ConfigTable& optimizer, const AnySetting& set,
+                           const std::vector<std::string>& settings) {
   for (const std::string& setting : settings) {
     const std::string key = get_key(setting);
     if (key != kController &&
         std::ranges::find(kMethodTables, get_table(setting)) == std::end(kMethodTables)) {
       optimizer.refuse(
-          "set",
-          fmt::format("{} is the same for every optimizer of a comparison. Of an optimizer's "
-                      "own may be how its budget is spent in training and what controls its "
-                      "designs: schedule = \"KIND:K\", and in `set` racing.*, schedule.*, "
-                      "perturbation.* and {}",
-                      sanitize(key), kController));
+          set, fmt::format("{} is the same for every optimizer of a comparison. An optimizer may "
+                           "only set how it spends its budget in training, and its controller: "
+                           "schedule = \"KIND:K\", and in `set` racing.*, schedule.*, "
+                           "perturbation.* and {}",
+                           sanitize(key), kController));
     }
     if (key == "schedule.kind" || key == "schedule.cases" || key == "schedule.fixed_cases") {
-      optimizer.refuse("set", fmt::format("for {} write schedule = \"KIND:K\"", key));
+      optimizer.refuse(set, fmt::format("for {} write schedule = \"KIND:K\"", key));
     }
   }
-  return settings;
 }
 
 void load_methods(StudyPlan& plan) {
@@ -113,33 +109,6 @@ void load_methods(StudyPlan& plan) {
         optimizer.loaded.insert_or_assign(problem.label, load_method(problem, optimizer));
       }
     }
-  }
-}
-
-void read_targets(const ConfigTable& table, StudyPlan& plan) {
-  constexpr std::int64_t kMostFailures = 1'000'000;
-  const std::vector<std::string> values = {"objective", "failures"};
-  plan.value = table.get_choice("value", values, "objective") == "failures" ? StudyValue::failures
-                                                                            : StudyValue::objective;
-  plan.reference = table.get_string("reference", "");
-  for (const ConfigTable& one : table.get_tables_or_empty("target")) {
-    StudyTarget target;
-    target.label = one.get_string("label");
-    if (one.has("problems")) {
-      target.problems = one.get_strings("problems");
-    }
-    if (one.has("value")) {
-      target.value = one.get_number("value");
-    }
-    if (one.has("failures")) {
-      target.failures = one.get_integer("failures", 0, kMostFailures);
-    }
-    if (!target.value && !target.failures) {
-      one.refuse("label",
-                 "it must have a value (the objective on the test set at most), failures (the most "
-                 "test cases with an error above 100 mm), or both");
-    }
-    plan.targets.push_back(std::move(target));
   }
 }
 
@@ -170,7 +139,7 @@ void check_targets(StudyPlan& plan) {
         throw Error(ErrorKind::usage, fmt::format("target '{}': {}", target.label,
                                                   describe_unknown("problem", problem, problems)));
       }
-      if (target.failures && !found->loaded.tracking) {
+      if (target.failures && !found->loaded.tracking()) {
         throw Error(ErrorKind::usage,
                     fmt::format("target '{}' counts failing test cases, and {} is a function, "
                                 "which has none",
@@ -180,12 +149,13 @@ void check_targets(StudyPlan& plan) {
   }
   if (plan.value == StudyValue::failures) {
     for (const StudyProblem& problem : plan.problems) {
-      if (!problem.loaded.tracking || problem.loaded.problem->description().objectives.size() > 1) {
+      if (!problem.loaded.tracking() ||
+          problem.loaded.problem->description().objectives.size() > 1) {
         throw Error(ErrorKind::usage,
-                    fmt::format("value is \"failures\": that compares arms by the share of test "
-                                "cases in which they fail, and {} is {}",
+                    fmt::format("value is \"failures\", which compares arms by their share of "
+                                "failing test cases, but {} is {}",
                                 problem.label,
-                                problem.loaded.tracking ? "judged by its front" : "a function"));
+                                problem.loaded.tracking() ? "judged by its front" : "a function"));
       }
     }
   }
@@ -203,8 +173,8 @@ void check_targets(StudyPlan& plan) {
   }
   if (plan.targets.empty()) {
     throw Error(ErrorKind::usage,
-                "reference names an optimizer whose expected running times to targets those of the "
-                "others are divided by, and the study has no [[target]]");
+                "reference is set, but the study has no [[target]]; the expected running times to "
+                "targets are divided by those of the reference");
   }
 }
 

@@ -1,4 +1,4 @@
-// What a study file says of targets and of methods. Internal to study/compare.
+// Reads and checks the parts of a study file about targets and methods. Internal to study/compare.
 #pragma once
 
 #include <string>
@@ -9,16 +9,15 @@
 
 namespace armwright {
 
-// `value`, `reference` and [[target]] of a study file.
-void read_targets(const ConfigTable& table, StudyPlan& plan);
-// Completes and checks them, once problems and optimizers are loaded. Error{usage}.
+// Completes and checks the targets, once problems and optimizers are loaded. Throws Error{usage}.
 void check_targets(StudyPlan& plan);
 
-// `set` of an [[optimizer]]. Error{usage} for a key that would change what is asked of a
-// design.
-std::vector<std::string> read_method_settings(const ConfigTable& optimizer);
-// Loads every problem anew for the optimizers with settings of their own. Error{usage} if one would
-// be judged in another way than the others.
+// Refuses, at the key of `set`, settings of an [[optimizer]] that would change what a design is
+// worth. Throws Error{usage}.
+void check_method_settings(const ConfigTable& optimizer, const AnySetting& set,
+                           const std::vector<std::string>& settings);
+// Loads every problem again for each optimizer that has settings of its own. Throws Error{usage} if
+// the settings would change how the optimizer's designs are judged.
 void load_methods(StudyPlan& plan);
 
 }  // namespace armwright

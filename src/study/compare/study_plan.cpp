@@ -12,9 +12,8 @@
 #include "base/random.hpp"
 #include "base/text.hpp"
 #include "optimizers/interface/search_space.hpp"
-#include "problems/config/replicate.hpp"
-#include "sim/tracking/design_conversion.hpp"
-#include "study/compare/escape.hpp"
+#include "problems/config/problem_loader.hpp"
+#include "sim/tracking/design.hpp"
 
 namespace armwright {
 namespace {
@@ -24,8 +23,8 @@ std::string make_stream(const StudyPlan& plan, const Cell& cell) {
                      cell.replicate);
 }
 
-// A draw from the box of the given share about a problem's own start, as far as that lies within
-// the bounds.
+// Draws a point from a box around a problem's own start; the box is cut off at the bounds.
+// `start_spread` is its width as a fraction of the bounds' width.
 std::vector<double> draw_near_start(std::span<const DecisionVariable> variables,
                                     double start_spread, const std::string& stream) {
   const SearchSpace space({variables.begin(), variables.end()});
@@ -40,13 +39,13 @@ std::vector<double> draw_near_start(std::span<const DecisionVariable> variables,
   return space.to_point(space.draw_between(lower, upper, random));
 }
 
-// A start of the problem as a method with another controller begins from it: the same PID, turned
-// into that controller. Drawn in the method's own variables instead, it would be another start,
-// and weights of a network, moved a share of their range each, no controller at all.
+// Converts a start of the problem for a method with another controller: the same PID, expressed as
+// that controller. A draw in the method's own variables would be a different start. Network weights
+// that are each moved by a fraction of their range would not control the arm at all.
 std::vector<double> convert_start(const StudyPlan& plan, const Cell& cell,
                                   const std::vector<double>& start) {
-  const TrackingProblem& own = *get_problem(plan, cell).tracking;
-  const ArmDesign design = plan.problems[cell.problem].loaded.tracking->make_design(start);
+  const TrackingProblem& own = *get_problem(plan, cell).tracking();
+  const ArmDesign design = plan.problems[cell.problem].loaded.tracking()->make_design(start);
   std::vector<double> own_start;
   try {
     const TrackingConfig& config = own.config();
@@ -64,7 +63,7 @@ std::vector<double> convert_start(const StudyPlan& plan, const Cell& cell,
   return own_start;
 }
 
-// The same for every method of a replicate.
+// Draws the start, which is the same for every method of a replicate.
 std::vector<double> draw_start(const StudyPlan& plan, const Cell& cell) {
   const LoadedProblem& problem = plan.problems[cell.problem].loaded;
   const std::vector<double> start =
@@ -72,12 +71,12 @@ std::vector<double> draw_start(const StudyPlan& plan, const Cell& cell) {
                       make_stream(plan, cell) + "/start");
   const LoadedProblem& own = get_problem(plan, cell);
   const bool has_own_controller =
-      problem.tracking && own.tracking &&
-      own.tracking->config().start.controller != problem.tracking->config().start.controller;
+      problem.tracking() && own.tracking() &&
+      own.tracking()->config().start.controller != problem.tracking()->config().start.controller;
   return has_own_controller ? convert_start(plan, cell, start) : start;
 }
 
-// 63 bits of the cell's name, so that it can be typed as --seed.
+// Returns 63 bits of the hash of the cell's name, so that a user can type it after --seed.
 std::uint64_t make_seed(const std::string& stream) {
   const auto hash = calc_sha256(stream);
   std::uint64_t seed = 0;
@@ -196,17 +195,32 @@ StudyCost calc_cost(const StudyPlan& plan) {
     const auto tested = static_cast<std::int64_t>(list_checkpoints(plan, p).size());
     cost.cells += runs;
     cost.training += runs * plan.budget;
-    // With targets also the winners that there would have been at the checkpoints.
+    // With targets, the winners at all checkpoints are chosen and tested as well.
     const bool has_targets = !plan.targets.empty() || plan.judge_along;
     cost.validation += runs * judged * (has_targets ? tested : 1) * sets.validation_cases;
-    // The winner, the start, the incumbents at the checkpoints, a front.
+    // Tested designs: the winner, the start, the incumbents at the checkpoints, and a front.
     cost.test +=
         runs * (2 + tested * (has_targets ? 2 : 1) + (fronts ? judged : 0)) * sets.test_cases;
-    if (!plan.final_engine.empty() && problem.loaded.tracking) {
+    if (!plan.final_engine.empty() && problem.loaded.tracking()) {
       cost.test += static_cast<std::int64_t>(plan.optimizers.size()) * sets.test_cases;
     }
   }
   return cost;
+}
+
+std::string escape_name(std::string_view name) {
+  std::string escaped;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const char c = name[i];
+    const bool is_letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+    const bool is_digit = c >= '0' && c <= '9';
+    if (is_letter || is_digit || c == '_' || c == '-' || (c == '.' && i > 0)) {
+      escaped += c;
+    } else {
+      escaped += fmt::format("%{:02X}", static_cast<unsigned char>(c));
+    }
+  }
+  return escaped;
 }
 
 }  // namespace armwright

@@ -1,16 +1,17 @@
-// The plan of a comparison: problems x optimizers x replicates, all on the same footing.
+// The plan of a comparison: problems x optimizers x replicates, under equal conditions.
 //
-// A cell is one run: optimizer `o` on problem `p` in replicate `r`. What a replicate gives is the
-// same for every optimizer: the training cases (set train/STUDY-SEED-P-R), the place to start from
-// (a uniform draw from a box about the problem's own start, on the variables' scales) and, through
-// the training cases, all noise. The optimizer's own random numbers come from a stream named after
-// the cell. Nothing derives from the plan as a whole, so that it can be extended.
+// A cell is one run: optimizer `o` on problem `p` in replicate `r`. In one replicate every
+// optimizer gets the same training cases (set train/STUDY-SEED-P-R) and the same start point. The
+// start is a uniform draw from a box around the problem's own start, on the variables' scales. All
+// noise comes with the training cases, so it is the same too. The optimizer's own random numbers
+// come from a stream named after the cell. No random number depends on the plan as a whole, so a
+// plan can be extended.
 //
-// There is one budget, in simulated training cases, for all optimizers: a plan in which one of them
-// would get more cannot be written. How the budget is spent (schedule, racing, perturbed plants in
-// training), and what kind of controller designs have, is the problem's, unless an optimizer's
-// entry says otherwise and so makes a method of it: "ga on one fresh case a generation" beside "ga
-// on five fixed ones". What is asked of a design is the same for all.
+// All optimizers have the same budget, in simulated training cases; a plan cannot give one of them
+// more. The problem defines how the budget is spent (schedule, racing, perturbed plants in
+// training) and which controller the designs have. An optimizer's entry may override these settings
+// and then defines a method: "ga on one fresh case per generation" beside "ga on five fixed ones".
+// The requirements on a design are the same for all methods.
 #pragma once
 
 #include <cstdint>
@@ -22,143 +23,154 @@
 #include <string_view>
 #include <vector>
 
-#include "base/config.hpp"
+#include "base/setting.hpp"
 #include "study/run/run_plan.hpp"
 
 namespace armwright {
 
 struct StudyProblem {
-  std::string label;                  // unique in the plan: what tables, folders and streams say
-  std::string name;                   // as asked for: a shipped name or a path
-  std::vector<std::string> settings;  // KEY=VALUE, all that is changed about it
+  std::string label;  // unique in the plan; used in tables, folder names and random streams
+  std::string name;   // as the user wrote it: a shipped name or a path
+  std::vector<std::string> settings;  // KEY=VALUE, every change to the problem's settings
   LoadedProblem loaded;
   Schedule schedule;
 };
 
 struct StudyOptimizer {
   std::string label;                 // unique in the plan
-  std::string name;                  // as asked for
+  std::string name;                  // as the user wrote it
   std::vector<std::string> options;  // KEY=VALUE
-  bool baseline = false;             // not asked for: every comparison has it unless told otherwise
+  bool baseline = false;             // added by armwright, unless the plan turns baselines off
   OptimizerRow row;
   Options parsed;
-  // A method's own: a schedule instead of the problem's, and KEY=VALUE over the problem's settings,
-  // which change nothing of what is asked of a design (study_methods.hpp).
+  // Only for methods: a schedule that replaces the problem's, and KEY=VALUE settings that override
+  // the problem's. They do not change the requirements on a design (study_methods.hpp).
   std::optional<Schedule> schedule;
   std::vector<std::string> settings;
-  std::map<std::string, LoadedProblem> loaded;  // with these settings, by the problem's label
+  std::map<std::string, LoadedProblem> loaded;  // with these settings; key: problem label
 };
 
-// A fixed target: what a design must be worth on the test set, at least one of the two.
+// A fixed target: the quality that a design must have on the test set. At least one of `value` and
+// `failures` is set.
 struct StudyTarget {
   std::string label;                     // unique in the plan
   std::vector<std::string> problems;     // labels
-  std::optional<double> value;           // the objective at most
-  std::optional<std::int64_t> failures;  // this many failing test cases at most
+  std::optional<double> value;           // largest allowed objective
+  std::optional<std::int64_t> failures;  // largest allowed number of failing test cases
 };
 
-// What the value of a run is: the winner's objective on the test set, or the share of test cases
-// in which it fails.
+// Defines the value of a run: the winner's objective on the test set, or the share of test cases in
+// which the winner fails.
 enum class StudyValue : std::uint8_t { objective, failures };
 
 struct StudyPlan {
-  std::string name;  // of its folder
+  std::string name;  // the name of the study's folder
   std::string title;
   std::uint64_t seed = 1;
   int replicates = 15;
-  std::int64_t budget = 0;  // simulated training cases a cell
-  // Width of the box that starts are drawn from, as a share of the bounds' box.
+  std::int64_t budget = 0;  // simulated training cases per cell
+  // Width of the box from which starts are drawn, as a fraction of the bounds' width.
   double start_spread = 0.1;
   Selection selection{.last = 5, .best = 5};
-  // The winner is the best, on the validation set, of the candidates at all checkpoints, not only
-  // of those at the end: whoever trains on few cases for long ends with designs that hold on no
-  // others.
+  // If true, the winner is the best candidate of all checkpoints on the validation set, instead of
+  // the best candidate at the end. Long training on few cases can end with designs that fail on all
+  // other cases.
   bool judge_along = false;
-  // By how much a constraint may be violated on validation and test sets, which nobody trained on,
-  // for a design to count as feasible there.
+  // A design counts as feasible on validation and test sets if it violates each constraint by at
+  // most this much. No design was trained on those sets.
   double constraint_tolerance = 0;
-  int checkpoints = 20;  // budgets, logarithmically spaced, at which incumbents are tested
-  std::int64_t first_checkpoint = 1;  // the smallest of them, in cases; of a smaller budget itself
-  std::string final_engine;  // the best design of every optimizer and problem once more; or empty
-  bool baselines = true;     // random search and a local search are in the pool by themselves
+  int checkpoints = 20;  // number of budgets at which incumbents are tested, log-spaced
+  // The smallest checkpoint, in cases; a smaller budget is its own only checkpoint.
+  std::int64_t first_checkpoint = 1;
+  // Engine that simulates the best design of every optimizer and problem again; empty for none.
+  std::string final_engine;
+  bool baselines = true;  // adds a random search and a local search to the optimizers
   StudyValue value = StudyValue::objective;
   std::vector<StudyTarget> targets;
-  std::string reference;  // optimizer (label) that expected running times are divided by; or none
+  // Label of the optimizer by whose expected running times the others' are divided; may be empty.
+  std::string reference;
   std::vector<StudyProblem> problems;
   std::vector<StudyOptimizer> optimizers;
 };
 
-// What stands in every comparison: a method that does not beat these is of no use.
+// The baselines, which are part of every comparison: a useful method must beat both.
 inline constexpr std::string_view kRandomBaseline = "random";
 inline constexpr std::string_view kLocalBaseline = "nlopt:neldermead";
 
-// What a plan can be made of: a file, flags, or both; flags come last.
+// The input of make_study_plan(): a file, flags, or both. Flags override the file.
 struct StudyRequest {
-  std::string file;  // a path, or the name of a shipped study; empty: flags alone
+  std::string file;  // a path, or the name of a shipped study; empty: only flags
   std::vector<std::string> problems;
   std::vector<std::string> optimizers;
-  std::vector<std::string> settings;  // of every problem
+  std::vector<std::string> settings;  // for every problem
   std::optional<int> replicates;
   std::optional<std::int64_t> budget;
   std::optional<Schedule> schedule;
   std::optional<std::uint64_t> seed;
   bool baselines = true;
-  // Optimizers that live in the program that asks, by their names (foreign_optimizer.hpp).
+  // Optimizers that the calling program implements itself, by name (foreign_optimizer.hpp).
   std::vector<OptimizerRow> rows = {};
 };
 
-// Reads, completes and checks everything. Error{usage} or Error{bad_data}.
+// Reads, completes and checks the whole plan. Throws Error{usage} or Error{bad_data}.
 StudyPlan make_study_plan(const StudyRequest& request);
 
-// SHA-256 of a problem's resolved configuration and of the files that it refers to.
+// Returns the SHA-256 of a problem's resolved configuration and of the files that it refers to.
 std::string calc_configuration_hash(const LoadedProblem& problem);
 
-// Error{bad_data} if the file is a resolved plan (to_toml()) that was changed since.
+// Throws Error{bad_data} if the file is a resolved plan (to_toml()) that was changed later.
 void check_plan_hash(const std::filesystem::path& path);
 
-// Baselines that a recorded plan has and this one would do without, having grown others of its
-// kind, stay in it.
+// Adds to `plan` the baselines of the recorded plan that `plan` lacks. A grown plan may contain an
+// optimizer of the same kind and then gets no baseline of its own.
 void keep_baselines(const std::filesystem::path& recorded, StudyPlan& plan);
 
-// Of a study's file alone, without loading what it names.
+// Returns the title in a study's file, without loading what the file names.
 std::string read_study_title(const std::string& file);
 
-// What is asked of a study's file as far as its table goes, without loading what it names.
-std::vector<AskedKey> ask_study_keys(const ConfigTable& table);
+// Returns the declarations of every setting of a study's file.
+const SettingTable& study_settings();
 
+// One run of the plan, as indices into its lists.
 struct Cell {
   std::size_t problem = 0;
   std::size_t optimizer = 0;
   int replicate = 1;  // from 1
 };
-// Replicate by replicate, so that an interrupted study has something of everything.
+// Returns all cells, replicate by replicate, so that an interrupted study has cells of every
+// problem and optimizer.
 std::vector<Cell> list_cells(const StudyPlan& plan);
 
-// All that cells train on: the problems, then those of methods, in the plan's order.
+// Returns every problem that cells train on: the plan's problems, then the methods' versions of
+// them, in the plan's order. The pointers are valid as long as `plan` is.
 std::vector<const LoadedProblem*> list_problems(const StudyPlan& plan);
-// The problem as the cell's optimizer trains on it.
+// Returns the problem with the settings that the cell's optimizer trains on.
 const LoadedProblem& get_problem(const StudyPlan& plan, const Cell& cell);
 Schedule get_schedule(const StudyPlan& plan, const Cell& cell);
 
-// The replicate's training cases, the same for every optimizer.
+// Returns the name of the replicate's training set, which is the same for every optimizer.
 std::string make_training_set_name(const StudyPlan& plan, const Cell& cell);
-// Of one objective without constraints the plan's; otherwise at least as many as `optimize` judges,
-// since a front, and designs that keep a limit on unseen cases, are not found among the last few.
+// Returns how many candidates are judged on the validation set. For one objective without
+// constraints this is the plan's selection. Otherwise it is at least the number that `optimize`
+// judges. The last few candidates may hold no front, and no design that keeps a limit on unseen
+// cases.
 Selection choose_selection(const StudyPlan& plan, const StudyProblem& problem);
-// The run that the cell is.
+// Returns the plan of the cell's run.
 RunPlan make_run_plan(const StudyPlan& plan, const Cell& cell);
-// "cells/q1-complex/ga/r01", relative to the study's folder.
+// Returns "cells/q1-complex/ga/r01", relative to the study's folder.
 std::filesystem::path make_cell_path(const StudyPlan& plan, const Cell& cell);
 
-// Budgets at which incumbents are tested: from `first` cases, but at least one evaluation, to the
-// whole, logarithmically spaced, whole evaluations, without repetitions.
+// Returns at most `count` budgets at which incumbents are tested, in cases. They run from `first`
+// (at least one evaluation of `cases` cases) to `budget`, logarithmically spaced. They are rounded
+// to whole evaluations, and each is listed once.
 std::vector<std::int64_t> calc_checkpoints(std::int64_t first, std::int64_t budget, int cases,
                                            int count);
 
-// Those of a problem: the same for all optimizers, in evaluations by the problem's own schedule.
+// Returns the checkpoints of a problem. They are the same for all optimizers and use the
+// evaluations of the problem's own schedule.
 std::vector<std::int64_t> list_checkpoints(const StudyPlan& plan, std::size_t problem);
 
-// How many test cases the whole plan simulates at most.
+// The largest numbers of cases that the whole plan can simulate, per split.
 struct StudyCost {
   std::int64_t cells = 0;
   std::int64_t training = 0;
@@ -166,5 +178,10 @@ struct StudyCost {
   std::int64_t test = 0;
 };
 StudyCost calc_cost(const StudyPlan& plan);
+
+// Turns a name that a user chose into a file name. Letters, digits, '_', '-' and (except at the
+// beginning) '.' stay; any other byte becomes %XX. Two different names never become the same one,
+// and no file name is hidden or leads out of its folder.
+std::string escape_name(std::string_view name);
 
 }  // namespace armwright

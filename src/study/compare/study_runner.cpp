@@ -52,11 +52,11 @@ class Runner {
     std::vector<std::thread> threads;
     try {
       for (auto& worker : workers) {
-        threads.emplace_back([this, &worker] { guard([&] { attend(worker); }); });
+        threads.emplace_back([this, &worker] { guard([&] { run_worker(worker); }); });
       }
     } catch (const std::system_error&) {
       warn_of_fewer(threads.size() + 1, workers.size());
-      guard([&] { attend(workers[threads.size()]); });
+      guard([&] { run_worker(workers[threads.size()]); });
     }
     for (std::thread& thread : threads) {
       thread.join();
@@ -71,16 +71,17 @@ class Runner {
   }
 
  private:
-  // Their optimizers' processes; who simulates for them is another matter. With ranks a cell waits
-  // for answers most of the time, and one whose optimizer asks for one point after the other
-  // leaves most ranks idle: a few more than there are threads keep all of them at work.
+  // Returns the number of worker processes. With ranks, a cell waits for answers most of the time.
+  // A cell whose optimizer asks for one point after the other leaves most ranks idle. A few more
+  // cells than threads keep all ranks busy.
   std::size_t count_at_once(unsigned jobs) const {
     constexpr std::size_t kMore = 2, kMost = 64;
     return coordinator_ == nullptr ? jobs
                                    : std::min(kMost, coordinator_->estimate_threads() + kMore);
   }
 
-  // Before there are threads. As many as the system grants, if it grants any.
+  // Starts the workers before this process has threads. Starts fewer, but at least one, if the
+  // system grants no more.
   std::vector<std::unique_ptr<ChildProcess>> start_workers(std::size_t count) {
     std::vector<std::unique_ptr<ChildProcess>> workers;
     try {
@@ -108,7 +109,7 @@ class Runner {
   }
 
   std::unique_ptr<ChildProcess> start_worker() {
-    // A cell takes as long and as much as it takes: the optimizers' own processes are watched.
+    // A cell has no limits of time and memory. The processes of optimizers have their own limits.
     const ProcessLimits limits{.silence_s = std::numeric_limits<double>::infinity(),
                                .memory_mib = 1e9};
     return std::make_unique<ChildProcess>(
@@ -134,9 +135,9 @@ class Runner {
     return failure_ != nullptr || stop_.requested();
   }
 
-  // Hands cells to one worker, and to a new one in its place if it dies. A cell whose process dies
-  // is tried once more: what killed it may have had nothing to do with it.
-  void attend(std::unique_ptr<ChildProcess>& worker) {
+  // Gives cells to one worker, and replaces the worker if it dies. A cell whose process dies is
+  // tried once more, because the cause of its death may lie outside the cell.
+  void run_worker(std::unique_ptr<ChildProcess>& worker) {
     for (std::size_t number = next_++; number < cells_.size() && !must_end(); number = next_++) {
       const CasesInUse use(*this, number);
       std::string death;
@@ -150,13 +151,13 @@ class Runner {
     }
   }
 
-  // False if the worker has died of it.
+  // Returns false if the worker died during the cell.
   bool hand_over(ChildProcess& worker, std::size_t number, std::string& death) {
     try {
       PacketWriter order;
       order.put(std::uint64_t{number});
       if (!worker.send(order.bytes(), [this] { return must_end(); }) && !follow(worker, number)) {
-        // In the midst of a cell: its optimizer may have processes of its own to be ended.
+        // The cell has not ended, and its optimizer may have processes that the worker must end.
         constexpr std::chrono::seconds kPatience{3};
         worker.end_gently(kPatience);
       }
@@ -167,7 +168,7 @@ class Runner {
     return true;
   }
 
-  // Until the cell is done or broken. False if everything is over before that.
+  // Handles messages until the cell is done or broken. Returns false if the study ends before that.
   bool follow(ChildProcess& worker, std::size_t number) {
     std::string message;
     while (worker.receive([this] { return must_end(); }, message) == ChildProcess::Event::message) {
@@ -198,7 +199,7 @@ class Runner {
     return false;
   }
 
-  // For a cell whose process shares out what it has to simulate.
+  // Simulates a batch for the process of a cell.
   void simulate(ChildProcess& worker, std::uint64_t problem, const std::string& bytes) {
     ReceivedBatch received;
     PacketReader packet(bytes);
@@ -229,8 +230,8 @@ class Runner {
     answer(last);
   }
 
-  // While a cell is under way; with the last of a problem its cases are forgotten, here and
-  // elsewhere: of many problems each would keep its own.
+  // Counts the running cells of each problem while it lives. When the last one ends, the problem's
+  // test cases are forgotten here and in the ranks; otherwise every problem would keep its cases.
   class CasesInUse {
    public:
     CasesInUse(Runner& runner, std::size_t number)
@@ -276,14 +277,14 @@ class Runner {
   const std::filesystem::path study_;
   StopSignal& stop_;
   RunObserver& observer_;
-  Coordinator* const coordinator_;  // who simulates for the cells; null: their processes do
+  Coordinator* const coordinator_;  // simulates for the cells; null if their processes do
   const std::vector<const LoadedProblem*> problems_;
-  std::vector<Cell> cells_;  // that have not ended
+  std::vector<Cell> cells_;  // those that have not ended
   std::atomic<std::size_t> next_ = 0;
-  std::mutex mutex_;  // of all below
+  std::mutex mutex_;  // guards all members below
   Progress progress_;
-  std::vector<std::uint64_t> under_way_;          // cases counted of each cell
-  std::map<const Problem*, std::size_t> in_use_;  // by how many cells
+  std::vector<std::uint64_t> under_way_;          // counted cases per cell
+  std::map<const Problem*, std::size_t> in_use_;  // number of cells that use it
   CellsResult result_;
   std::exception_ptr failure_;
 };

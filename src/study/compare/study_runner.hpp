@@ -1,6 +1,6 @@
-// Runs the cells of a study, several at a time, each in a process of its own: a library that
-// crashes takes one cell with it, not the study. Results do not depend on how many processes there
-// are, nor on which of them does what.
+// Runs the cells of a study, several at a time, each in a worker process. If a library crashes, the
+// study loses one cell and goes on. The results depend neither on the number of processes nor on
+// which process runs which cell.
 #pragma once
 
 #include <filesystem>
@@ -14,21 +14,22 @@ namespace armwright {
 
 class Coordinator;
 
-// A cell that did not come to its end, through no decision of its optimizer's.
+// A cell that did not end, for a reason other than a decision of its optimizer.
 struct BrokenCell {
   Cell cell;
   std::string reason;
 };
 
 struct CellsResult {
-  bool stopped = false;  // by `stop`: the rest can be gone on with
+  bool stopped = false;  // `stop` ended the run; the same command resumes it
   std::vector<BrokenCell> broken;
 };
 
-// Those of the plan's cells that have no cell.json yet. Progress counts training cases of the whole
-// plan. A stop ends the processes at once; their journals have all but the last moments. Error{io}
-// ends the study: what fills one cell's disk fills all. With a coordinator for the plan's problems
-// (list_problems()) it simulates for all cells, of which more are then under way than `jobs`.
+// Runs the cells of the plan that have no cell.json yet, in `jobs` processes. `observer` sees the
+// training cases of the whole plan as progress. A stop ends the processes at once; their journals
+// lack only the last moments. With a coordinator for the plan's problems (list_problems()) the
+// coordinator simulates for all cells, and more than `jobs` cells run at a time. Throws Error{io}
+// and ends the study when a cell cannot write: the other cells use the same disk.
 CellsResult run_cells(const StudyPlan& plan, const std::filesystem::path& study, unsigned jobs,
                       StopSignal& stop, RunObserver& observer, Coordinator* coordinator = nullptr);
 

@@ -11,7 +11,7 @@ namespace armwright {
 
 MemoryEvaluator ContractTrial::run(const MemoryEvaluatorSettings& settings,
                                    std::uint64_t seed) const {
-  MemoryEvaluator evaluator(*problem.problem, settings);
+  MemoryEvaluator evaluator(problem, settings);
   row.make(options)->minimize(evaluator, seed);
   return evaluator;
 }
@@ -26,14 +26,14 @@ ContractFinding make_exempt(std::string why) {
 
 ContractFinding check_on_all(const OptimizerRow& row, const Options& options,
                              const std::function<std::string(const ContractTrial&)>& find_fault) {
-  const std::vector<ContractProblem> problems = make_contract_problems(row);
+  const auto problems = make_contract_problems(row);
   if (problems.empty()) {
     return make_broken("none of the problems it could be tried on suits it");
   }
-  for (const ContractProblem& problem : problems) {
-    const std::string fault = find_fault({row, options, problem});
+  for (const auto& problem : problems) {
+    const std::string fault = find_fault({row, options, *problem});
     if (!fault.empty()) {
-      return make_broken(fmt::format("on {}: {}", problem.name, fault));
+      return make_broken(fmt::format("on {}: {}", problem->description().name, fault));
     }
   }
   return {};

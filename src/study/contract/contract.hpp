@@ -1,6 +1,7 @@
-// What every optimizer must do, whatever it is: never more than the budget, the same with the same
-// seed, stop when told to, survive failing evaluations, resume by replay, leave nothing behind. One
-// suite for all: the tests run it over the whole table, `armwright check-plugin` over a user's own.
+// The contract of optimizers: what every optimizer must do. It keeps the budget, gives the same
+// result with the same seed, stops when told to, survives failing evaluations, resumes by replay,
+// and leaves nothing behind. The tests run this suite over all optimizers of the table, and
+// `armwright check-plugin` over a user's own one.
 #pragma once
 
 #include <string>
@@ -10,7 +11,11 @@
 
 namespace armwright {
 
-enum class ContractOutcome { held, broken, exempt };
+enum class ContractOutcome {
+  held,
+  broken,
+  exempt  // the optimizer declares that the promise does not apply to it
+};
 
 struct ContractFinding {
   ContractOutcome outcome = ContractOutcome::held;
@@ -19,13 +24,13 @@ struct ContractFinding {
 
 struct ContractCheck {
   const char* name;     // one word for tests: "Budget"
-  const char* promise;  // "asks for no more evaluations than the budget allows"
+  const char* promise;  // "asks for no more than the budget allows"
   ContractFinding (*run)(const OptimizerRow& row, const Options& options);
 };
 
 const std::vector<ContractCheck>& contract_checks();
 
-// Runs one check; an exception that comes out of the optimizer breaks it.
+// Runs one check. An exception that the optimizer throws counts as `broken`.
 ContractFinding run_contract_check(const ContractCheck& check, const OptimizerRow& row,
                                    const Options& options);
 

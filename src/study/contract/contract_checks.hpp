@@ -1,38 +1,47 @@
-// The checks of the contract suite, and what they share. Inside the suite only: contract.hpp is its
-// door.
+// The checks of the contract suite, the problems on which they run optimizers, and what they share.
+// For use inside the suite only; its interface is contract.hpp.
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "study/contract/contract.hpp"
-#include "study/contract/contract_problems.hpp"
 #include "study/contract/memory_evaluator.hpp"
 
 namespace armwright {
+
+// Returns the problems of the suite that suit the optimizer: the analytic functions, one with
+// logarithmic variables like those of robots (log_bowl), and one with two objectives (zdt1).
+std::vector<std::shared_ptr<const Problem>> make_contract_problems(const OptimizerRow& row);
+
+// The reference point of hypervolumes: at least as large as every objective of zdt1.
+inline constexpr double kLargestObjective = 11;
 
 // One optimizer on one problem.
 struct ContractTrial {
   const OptimizerRow& row;
   const Options& options;
-  const ContractProblem& problem;
+  const Problem& problem;
 
+  // Runs a new optimizer once and returns its evaluator.
   MemoryEvaluator run(const MemoryEvaluatorSettings& settings, std::uint64_t seed = 1) const;
 };
 
 ContractFinding make_broken(std::string detail);
 ContractFinding make_exempt(std::string why);
 
-// The first thing that is wrong on any problem that suits the optimizer; an empty text: nothing is.
+// Calls `find_fault` for every problem that suits the optimizer, and returns the first fault. An
+// empty text means that there is none.
 ContractFinding check_on_all(const OptimizerRow& row, const Options& options,
                              const std::function<std::string(const ContractTrial&)>& find_fault);
 
-// Where two traces part; empty if they are the same.
+// Returns the first difference of two traces as text; empty if they are the same.
 std::string describe_difference(const std::vector<MemoryEvaluator::Entry>& a,
                                 const std::vector<MemoryEvaluator::Entry>& b);
 
-// What it asks for, left alone (contract_requests.cpp).
+// The requests of an undisturbed optimizer (contract_requests.cpp).
 ContractFinding check_budget(const OptimizerRow& row, const Options& options);
 ContractFinding check_zero_budget(const OptimizerRow& row, const Options& options);
 ContractFinding check_points(const OptimizerRow& row, const Options& options);
@@ -41,12 +50,12 @@ ContractFinding check_seed(const OptimizerRow& row, const Options& options);
 ContractFinding check_memory_between_runs(const OptimizerRow& row, const Options& options);
 ContractFinding check_beginning(const OptimizerRow& row, const Options& options);
 ContractFinding check_batches(const OptimizerRow& row, const Options& options);
-// How it takes what happens to it (contract_disturbances.cpp).
+// The reaction to failures, exceptions and stops (contract_disturbances.cpp).
 ContractFinding check_failures(const OptimizerRow& row, const Options& options);
 ContractFinding check_exceptions(const OptimizerRow& row, const Options& options);
 ContractFinding check_stop(const OptimizerRow& row, const Options& options);
 ContractFinding check_resume(const OptimizerRow& row, const Options& options);
-// What is there afterwards (contract_outcome.cpp).
+// The state after a run, and its result (contract_outcome.cpp).
 ContractFinding check_leaks(const OptimizerRow& row, const Options& options);
 ContractFinding check_learning(const OptimizerRow& row, const Options& options);
 ContractFinding check_constraints(const OptimizerRow& row, const Options& options);

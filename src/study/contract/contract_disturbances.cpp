@@ -1,4 +1,4 @@
-// How an optimizer takes what happens to it: failures, exceptions, the end of its time.
+// Checks the reaction of an optimizer to failing evaluations, exceptions and stops.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -43,8 +43,7 @@ ContractFinding check_failures(const OptimizerRow& row, const Options& options) 
 ContractFinding check_stop(const OptimizerRow& row, const Options& options) {
   return check_on_all(row, options, [&](const ContractTrial& trial) -> std::string {
     for (const std::int64_t stop_after : {1, 35, 50}) {
-      MemoryEvaluator evaluator(*trial.problem.problem,
-                                {.budget = INT64_MAX, .stop_after = stop_after});
+      MemoryEvaluator evaluator(trial.problem, {.budget = INT64_MAX, .stop_after = stop_after});
       const auto optimizer = row.make(options);
       optimizer->minimize(evaluator, 1);
       const auto now = std::chrono::steady_clock::now();
@@ -67,26 +66,25 @@ ContractFinding check_exceptions(const OptimizerRow& row, const Options& options
     const auto optimizer = row.make(options);
     for (const std::int64_t throw_at : {1, 2, 40}) {
       if (std::ssize(trial.run({.budget = 200}).trace()) < throw_at) {
-        continue;  // it ends by itself before
+        continue;  // the optimizer ends by itself before that evaluation
       }
-      MemoryEvaluator broken(*trial.problem.problem, {.budget = 200, .throw_at = throw_at});
+      MemoryEvaluator broken(trial.problem, {.budget = 200, .throw_at = throw_at});
       try {
         optimizer->minimize(broken, 1);
         return fmt::format("an exception of evaluation {} is swallowed", throw_at);
       } catch (const BrokenEvaluator&) {
       }
     }
-    MemoryEvaluator sound(*trial.problem.problem, {.budget = 200});
+    MemoryEvaluator sound(trial.problem, {.budget = 200});
     optimizer->minimize(sound, 1);
     return describe_difference(sound.trace(), trial.run({.budget = 200}).trace());
   });
 }
 
 ContractFinding check_resume(const OptimizerRow& row, const Options& options) {
-  const ContractProblem problem = make_contract_problems(row).at(0);
   RunPlan plan;
-  plan.problem.name = problem.name;
-  plan.problem.problem = problem.problem;
+  plan.problem.problem = make_contract_problems(row).at(0);
+  plan.problem.name = plan.problem.problem->description().name;
   plan.problem.sets.validation_cases = 1;
   plan.problem.sets.test_cases = 1;
   plan.problem.resolved_json = "{}";

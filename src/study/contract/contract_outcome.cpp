@@ -1,4 +1,4 @@
-// What is there after an optimizer's runs: nothing left behind, and something found.
+// Checks the state after an optimizer's runs (nothing is left behind) and their results.
 #include <fmt/format.h>
 #include <malloc.h>
 #include <sys/wait.h>
@@ -22,7 +22,7 @@ std::size_t count_descriptors() {
 
 double calc_success(const ContractTrial& trial, std::int64_t budget, std::uint64_t seed) {
   const MemoryEvaluator evaluator = trial.run({.budget = budget}, seed);
-  if (trial.problem.problem->description().objectives.size() == 1) {
+  if (trial.problem.description().objectives.size() == 1) {
     return -evaluator.best().value_or(std::numeric_limits<double>::infinity());
   }
   std::vector<std::vector<double>> objectives;
@@ -47,16 +47,16 @@ double calc_median_success(const ContractTrial& trial, std::int64_t budget) {
 }  // namespace
 
 ContractFinding check_leaks(const OptimizerRow& row, const Options& options) {
-  const ContractProblem problem = make_contract_problems(row).at(0);
+  const auto problem = make_contract_problems(row).at(0);
   const auto run = [&] {
     for (int i = 0; i < 10; ++i) {
-      ContractTrial{row, options, problem}.run({.budget = 100});
+      ContractTrial{row, options, *problem}.run({.budget = 100});
     }
   };
-  run();  // what is made once and kept is there now
+  run();  // allocates what is made once and kept
   const std::size_t descriptors = count_descriptors();
-  // What is leaked grows with every round; caches that libraries and threads fill come to an end.
-  // A run that forgets one vector of the sphere's ten numbers leaves a hundred bytes.
+  // Leaks grow with every round; the caches of libraries and threads stop growing. A run that leaks
+  // one vector of the sphere's ten numbers leaves a hundred bytes.
   constexpr int kRounds = 6;
   constexpr std::size_t kTolerance_bytes = 1000;
   std::size_t left_bytes = kTolerance_bytes + 1;
@@ -89,19 +89,19 @@ ContractFinding check_learning(const OptimizerRow& row, const Options& options) 
   const Options random_options = Options::parse(random.name, random.options, {});
   const bool many = row.requirements.objectives > 1;
   int contests = 0;
-  for (const ContractProblem& problem : make_contract_problems(row)) {
-    if (!many && problem.name != "sphere" && problem.name != "ellipsoid" &&
-        problem.name != "rosenbrock") {
+  for (const auto& problem : make_contract_problems(row)) {
+    const std::string& name = problem->description().name;
+    if (!many && name != "sphere" && name != "ellipsoid" && name != "rosenbrock") {
       continue;
     }
     ++contests;
-    const double own = calc_median_success({row, options, problem}, kBudget);
-    const double chance = calc_median_success({random, random_options, problem}, kBudget);
+    const double own = calc_median_success({row, options, *problem}, kBudget);
+    const double chance = calc_median_success({random, random_options, *problem}, kBudget);
     if (own <= chance) {
       return make_broken(
           fmt::format("on {}: no better than random search ({} against {}, {} "
                       "evaluations, median of 5 seeds)",
-                      problem.name, many ? own : -own, many ? chance : -chance, kBudget));
+                      name, many ? own : -own, many ? chance : -chance, kBudget));
     }
   }
   return contests > 0 ? ContractFinding{} : make_broken("no function suits it");
@@ -113,17 +113,18 @@ ContractFinding check_constraints(const OptimizerRow& row, const Options& option
     return make_exempt("it declares neither 'constraints' nor an option constraint_weight");
   }
   constexpr std::int64_t kBudget = 2000;
-  constexpr double kWorst = -10;  // the start is feasible, and 38.75; most come within 1 % of -44
-  for (const ContractProblem& problem : make_contract_problems(row)) {
-    if (problem.problem->description().constraints.empty()) {
+  // The start is feasible and has 38.75; most optimizers come within 1 % of the optimum, -44.
+  constexpr double kWorst = -10;
+  for (const auto& problem : make_contract_problems(row)) {
+    if (problem->description().constraints.empty()) {
       continue;
     }
-    const double best = -calc_median_success({row, options, problem}, kBudget);
+    const double best = -calc_median_success({row, options, *problem}, kBudget);
     if (!(best <= kWorst)) {
       return make_broken(fmt::format(
           "on {}: its best feasible value is {} ({} evaluations, median of 5 seeds), and "
           "{} is easily reached",
-          problem.name, best, kBudget, kWorst));
+          problem->description().name, best, kBudget, kWorst));
     }
   }
   return {};

@@ -1,16 +1,14 @@
-#include "study/contract/contract_problems.hpp"
-
 #include <cmath>
 
 #include "optimizers/table/optimizer_table.hpp"
 #include "problems/analytic/analytic.hpp"
-#include "study/contract/memory_evaluator.hpp"
+#include "study/contract/contract_checks.hpp"
 
 namespace armwright {
 namespace {
 
-// Logarithmic variables of either sign, as robots have them: a bent bowl over three decades,
-// minimum 0 at (900, -30, 2). The sum of squares of its residuals.
+// A bent bowl in logarithmic variables of either sign, as robots have them, over three decades. Its
+// value is the sum of squares of its residuals, with the minimum 0 at (900, -30, 2).
 class LogBowl : public Problem {
  public:
   LogBowl() {
@@ -96,20 +94,15 @@ class Zdt1 : public Problem {
 
 }  // namespace
 
-std::vector<ContractProblem> make_contract_problems() {
-  std::vector<ContractProblem> problems;
+std::vector<std::shared_ptr<const Problem>> make_contract_problems(const OptimizerRow& row) {
+  std::vector<std::shared_ptr<const Problem>> problems;
   for (const std::string& name : analytic_names()) {
-    problems.push_back({name, make_analytic(name, find_analytic(name).default_dimension)});
+    problems.push_back(make_analytic(name, find_analytic(name).default_dimension));
   }
-  problems.push_back({"log_bowl", std::make_shared<LogBowl>()});
-  problems.push_back({"zdt1", std::make_shared<Zdt1>()});
-  return problems;
-}
-
-std::vector<ContractProblem> make_contract_problems(const OptimizerRow& row) {
-  std::vector<ContractProblem> problems = make_contract_problems();
-  std::erase_if(problems, [&](const ContractProblem& one) {
-    return !explain_unsuitable(row, one.problem->description()).empty();
+  problems.push_back(std::make_shared<LogBowl>());
+  problems.push_back(std::make_shared<Zdt1>());
+  std::erase_if(problems, [&](const auto& problem) {
+    return !explain_unsuitable(row, problem->description()).empty();
   });
   return problems;
 }

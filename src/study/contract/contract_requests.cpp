@@ -1,4 +1,4 @@
-// What an optimizer asks for, left alone.
+// Checks the requests of an optimizer that nothing disturbs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -90,7 +90,8 @@ ContractFinding check_repeatable(const OptimizerRow& row, const Options& options
   });
 }
 
-// Some draw lots in some places only, so one problem on which the seed matters is enough.
+// Some optimizers draw random numbers in some situations only, so it is enough if the seed matters
+// on one problem.
 ContractFinding check_seed(const OptimizerRow& row, const Options& options) {
   bool matters = false;
   const ContractFinding finding =
@@ -111,8 +112,8 @@ ContractFinding check_seed(const OptimizerRow& row, const Options& options) {
 ContractFinding check_memory_between_runs(const OptimizerRow& row, const Options& options) {
   return check_on_all(row, options, [&](const ContractTrial& trial) {
     const auto optimizer = row.make(options);
-    MemoryEvaluator first(*trial.problem.problem, {.budget = 200});
-    MemoryEvaluator second(*trial.problem.problem, {.budget = 200});
+    MemoryEvaluator first(trial.problem, {.budget = 200});
+    MemoryEvaluator second(trial.problem, {.budget = 200});
     optimizer->minimize(first, 3);
     optimizer->minimize(second, 3);
     return describe_difference(first.trace(), second.trace());

@@ -1,7 +1,8 @@
-// An Evaluator that lives in memory, for trying optimizers out (study/contract.hpp, tests): exact
-// budget with the last batch cut, clipping, a trace of everything asked for, and faults on request
-// (every k-th evaluation fails, an exception, a stop). It keeps the Evaluator contract as strictly
-// as the contract allows: a failed evaluation shows the penalty, and no constraint values.
+// An Evaluator without a journal, for tests of optimizers and for the contract suite
+// (contract.hpp). It keeps the budget exactly, cuts the last batch, clips points to the bounds, and
+// records a trace of all requests. On request, evaluations fail or throw, or the run is stopped. It
+// is as strict as the interface allows: a failed evaluation has the penalty as objectives and no
+// constraint values.
 #pragma once
 
 #include <algorithm>
@@ -17,20 +18,20 @@
 
 namespace armwright {
 
-// What evaluate() throws on request.
+// The exception that evaluate() throws on request.
 struct BrokenEvaluator : std::runtime_error {
   BrokenEvaluator() : std::runtime_error("the evaluator is broken") {}
 };
 
 struct MemoryEvaluatorSettings {
-  std::int64_t budget = 0;  // evaluations; one with derivatives costs calc_jacobian_charge()
-  bool fresh =
-      false;  // every generation on a case of its own, counted from 0; otherwise case 0 always
-  std::int64_t fail_every = 0;          // evaluations number k, 2k, 3k, ... fail; 0: none
-  std::int64_t throw_at = 0;            // evaluation of this number (from 1) throws; 0: none
-  std::int64_t stop_after = INT64_MAX;  // the user stops it after so many evaluations
+  std::int64_t budget = 0;      // evaluations; one with derivatives costs calc_jacobian_charge()
+  bool fresh = false;           // each generation has its own case, from 0; otherwise always case 0
+  std::int64_t fail_every = 0;  // the evaluations k, 2k, 3k, ... (from 1) fail; 0: none
+  std::int64_t throw_at = 0;    // the evaluation with this number (from 1) throws; 0: none
+  std::int64_t stop_after = INT64_MAX;  // stops the run after this many evaluations
 };
 
+// A MemoryEvaluator evaluates points of one problem, which must outlive it.
 class MemoryEvaluator : public Evaluator {
  public:
   using Clock = std::chrono::steady_clock;
@@ -39,7 +40,7 @@ class MemoryEvaluator : public Evaluator {
     std::vector<double> asked;
     std::vector<double> evaluated;
     Score score;
-    std::int64_t generation = 0;  // 0: none was begun
+    std::int64_t generation = 0;  // 0 before the first generation
     bool with_jacobian = false;
 
     bool operator==(const Entry& other) const {
@@ -83,7 +84,7 @@ class MemoryEvaluator : public Evaluator {
   std::int64_t calls_after_stop() const { return calls_after_stop_; }
   std::optional<Clock::time_point> stopped_at() const { return stopped_at_; }
 
-  // The best objective of a feasible point that did not fail.
+  // Returns the best objective of a feasible point that did not fail, or nothing.
   std::optional<double> best() const {
     std::optional<double> best;
     for (const Entry& entry : trace_) {
@@ -159,7 +160,7 @@ class MemoryEvaluator : public Evaluator {
   MemoryEvaluatorSettings settings_;
   std::vector<Entry> trace_;
   std::int64_t charged_ = 0;
-  bool is_spent_ = false;  // what is left is too little for what was asked for
+  bool is_spent_ = false;  // the rest of the budget is too small for the last request
   std::vector<std::size_t> batch_sizes_;
   std::vector<std::vector<double>> recommended_;
   std::int64_t generations_ = 0;

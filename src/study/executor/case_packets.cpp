@@ -21,12 +21,13 @@ CaseExtras get_extras(PacketReader& packet) {
 CaseRole get_role(PacketReader& packet) {
   const auto role = packet.get<CaseRole>();
   if (role > CaseRole::test) {
-    throw PacketError("a message has a role of cases that is none");
+    throw PacketError("a message has an unknown role of cases");
   }
   return role;
 }
 
-// Each of a list's entries takes at least a byte: no count may be trusted with memory beyond that.
+// A larger count is refused before any entry is read. Memory grows only with the entries that a
+// message really has.
 constexpr std::uint64_t kMostEntries = std::uint64_t{1} << 32;
 
 std::uint64_t get_count(PacketReader& packet) {
@@ -105,7 +106,7 @@ std::vector<CaseOutcome> get_outcomes(PacketReader& packet) {
     CaseOutcome& outcome = outcomes.emplace_back();
     outcome.status = packet.get<EvaluationStatus>();
     if (outcome.status > EvaluationStatus::abandoned) {
-      throw PacketError("a message has a status that is none");
+      throw PacketError("a message has an unknown status");
     }
     outcome.reason = packet.get_text();
     outcome.error = packet.get<double>();

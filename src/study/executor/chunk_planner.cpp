@@ -6,11 +6,10 @@
 namespace armwright {
 namespace {
 
-// Of a thread's work. A message costs 0.1 ms on both sides: a hundredth of it.
+// A thread's work in one chunk. Its messages cost 0.1 ms on both sides together, a hundredth of it.
 constexpr double kChunk_s = 0.01;
-// A chunk costs the coordinator 10 us of the thread that communicates. Where there are very many
-// workers, chunks of so many seconds for each of these leave that thread three quarters of its
-// time.
+// A chunk takes 10 us of the coordinator's thread for messages. With very many workers, chunks of
+// at least this many seconds per worker use at most a quarter of that thread's time.
 constexpr double kChunkEach_s = 4e-5;
 constexpr double kLatest = 0.3;  // weight of the latest measurement in the mean
 
@@ -18,12 +17,13 @@ std::size_t round_up(std::size_t pairs, std::size_t granularity) {
   return (pairs + granularity - 1) / granularity * granularity;
 }
 
-// What is fair of what is left, for one thread, rounded to whole loads of lanes.
+// Returns one thread's share of the pairs that are left, rounded up to whole loads of lanes.
 std::size_t calc_share(BatchSize size, std::size_t left, TeamSize team) {
   const std::size_t share = (left + 2 * team.all() - 1) / (2 * team.all());
   return std::max(size.granularity, round_up(share, size.granularity));
 }
 
+// Returns the pairs that take about `chunk_s` seconds, in whole loads of lanes, at least one.
 std::size_t calc_timely(BatchSize size, double chunk_s, double cost_s) {
   const double pairs = chunk_s / std::max(cost_s, 1e-9);
   const auto granularity = static_cast<double>(size.granularity);
@@ -33,7 +33,7 @@ std::size_t calc_timely(BatchSize size, double chunk_s, double cost_s) {
 
 }  // namespace
 
-void PairCost::learn(double seconds, std::size_t pairs) {
+void PairCost::add(double seconds, std::size_t pairs) {
   if (pairs == 0) {
     return;
   }
@@ -41,14 +41,14 @@ void PairCost::learn(double seconds, std::size_t pairs) {
   seconds_ = seconds_ ? (1 - kLatest) * *seconds_ + kLatest * latest : latest;
 }
 
-void WorkerLatency::learn(double seconds) {
+void WorkerLatency::add(double seconds) {
   constexpr double kMostRise = 4;
   seconds_ += kLatest * (std::min(seconds, kMostRise * seconds_) - seconds_);
 }
 
 double WorkerLatency::get_s(double unused_s) const {
-  // A worker that is too slow for batches of b seconds is tried every few seconds, and costs less
-  // than b then.
+  // A worker that is too slow for batches of b seconds is tried again every few seconds. That costs
+  // less than b.
   constexpr double kForgetting_s = 1;
   return seconds_ / (1 + unused_s / kForgetting_s);
 }
@@ -56,7 +56,7 @@ double WorkerLatency::get_s(double unused_s) const {
 std::size_t plan_local_chunk(BatchSize size, std::size_t left, TeamSize team,
                              std::optional<double> cost_s) {
   if (team.all() <= 1) {
-    return std::min(left, size.largest);  // there is nobody to share with
+    return std::min(left, size.largest);  // one thread alone shares with no other
   }
   if (!cost_s) {
     return std::min(left, size.granularity);

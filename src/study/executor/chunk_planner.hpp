@@ -1,9 +1,9 @@
-// How many pairs go out at a time, and to whom: from measured costs alone. Nothing of this changes
-// a result.
+// Plans how many pairs go out at a time, and to which thread or worker, from measured costs alone.
+// None of these functions influences a result. They throw nothing.
 //
-// A chunk that takes c seconds a pair is as long as it must be for its message not to count, and as
-// short as it must be for the batch to end everywhere at the same time: guided self-scheduling
-// (Polychronopoulos and Kuck 1987), a share of what is left, within bounds of time.
+// A chunk must be long enough for the time of its message to be negligible, and short enough for
+// all threads to end a batch at the same time. A chunk is therefore a fixed share of the pairs that
+// are left, within bounds of time: guided self-scheduling (Polychronopoulos and Kuck 1987).
 #pragma once
 
 #include <cstddef>
@@ -13,24 +13,26 @@
 
 namespace armwright {
 
-// Of one kind of pair: a problem, a role, with derivatives or without.
+// The measured time of one pair: a moving mean, for one problem, one role, and with or without
+// derivatives.
 class PairCost {
  public:
-  // A chunk of `pairs` took a thread so long.
-  void learn(double seconds, std::size_t pairs);
+  // Adds the measurement that one thread took `seconds` for `pairs` pairs. Ignores 0 pairs.
+  void add(double seconds, std::size_t pairs);
+  // Returns the seconds per pair, or nothing before the first measurement.
   std::optional<double> get_s() const { return seconds_; }
 
  private:
-  std::optional<double> seconds_;  // a pair, a moving mean
+  std::optional<double> seconds_;
 };
 
-// From the sending of a chunk to a worker that has nothing else to do to its outcomes, beside the
-// work itself. It rises slowly, and fades while it is not measured: a worker that was slow once,
-// and so gets nothing of small batches, could not show otherwise that it is quick again.
+// The latency of a worker: the time from sending a chunk to an idle worker until its outcomes
+// arrive, without the time of the simulations. It rises slowly and decays while it is not measured:
+// a worker that was slow once gets no chunks of small batches, and is tried again after a while.
 class WorkerLatency {
  public:
-  void learn(double seconds);
-  // So long after it was measured.
+  void add(double seconds);
+  // Returns the latency `unused_s` seconds after the last measurement.
   double get_s(double unused_s) const;
 
  private:
@@ -39,29 +41,30 @@ class WorkerLatency {
 
 struct TeamSize {
   std::size_t here = 1;       // threads of the coordinator
-  std::size_t elsewhere = 0;  // threads of the workers that are there
-  std::size_t workers = 0;
+  std::size_t elsewhere = 0;  // threads of the workers that are ready
+  std::size_t workers = 0;    // that are ready
   std::size_t all() const { return here + elsewhere; }
 };
 
-// Pairs for one thread of the coordinator; `left` are those that nobody has taken yet.
+// Returns the number of pairs for one thread of the coordinator. `left` counts the pairs that are
+// not taken yet; `cost_s` is the time of one pair, if it is known.
 std::size_t plan_local_chunk(BatchSize size, std::size_t left, TeamSize team,
                              std::optional<double> cost_s);
 
-// A worker has one chunk in work and the next one at hand, so that it need not wait for messages.
+// Chunks that a worker may have at a time: it works on one and has the next one already, so it does
+// not wait for messages.
 inline constexpr std::size_t kChunksAhead = 2;
 
-// A worker as the coordinator sees it.
 struct WorkerLoad {
   std::size_t threads = 1;
-  std::size_t chunks = 0;  // under way
-  double busy_s = 0;       // until it will have done them, as far as costs are known
-  double latency_s = 0;    // from the sending of a chunk to its outcomes, beside the work itself
+  std::size_t chunks = 0;  // under way to the worker
+  double busy_s = 0;       // expected time until it has finished them
+  double latency_s = 0;    // see WorkerLatency
 };
 
-// Pairs for a worker, 0 if it is not worth while: it would have them done later than the threads
-// here, which by themselves would have done all that is left in `left_here_s`. While nothing is
-// known of the cost a worker gets as little as can be.
+// Returns the number of pairs for a worker. It is 0 if the worker would finish them later than
+// `left_here_s`, the time in which the coordinator's threads alone would finish all that is left.
+// A worker gets the smallest possible chunk as long as the cost is not known.
 std::size_t plan_remote_chunk(BatchSize size, std::size_t left, TeamSize team,
                               std::optional<double> cost_s, double left_here_s,
                               const WorkerLoad& worker);

@@ -6,21 +6,21 @@
 
 namespace armwright {
 
-Coordinator::Coordinator(Links& links, std::vector<const Problem*> problems, std::string identity,
-                         CoordinatorSettings settings, Notify notify)
-    : links_(links),
+Coordinator::Coordinator(MessageTransport& transport, std::vector<const Problem*> problems,
+                         std::string identity, CoordinatorSettings settings, Notify notify)
+    : transport_(transport),
       problems_(std::move(problems)),
       identity_(std::move(identity)),
       settings_(settings),
       notify_(std::move(notify)),
-      workers_(links.size()) {
-  communication_ = std::thread([this] { communicate(); });
+      workers_(transport.size()) {
+  communication_ = std::thread([this] { run_transport(); });
   try {
     while (helpers_.size() + 1 < settings_.threads) {
-      helpers_.emplace_back([this] { help(); });
+      helpers_.emplace_back([this] { run_helper(); });
     }
   } catch (const std::system_error&) {
-    // Fewer threads are slower, and nothing else.
+    // With fewer threads the results are the same, but take longer.
   }
 }
 
@@ -38,7 +38,7 @@ Coordinator::~Coordinator() {
 }
 
 void Coordinator::run(const CaseBatch& cases, StopSignal& stop) {
-  constexpr std::chrono::milliseconds kLookForStop{20};
+  constexpr std::chrono::milliseconds kCheckForStop{20};
   if (cases.size() == 0) {
     return;
   }
@@ -66,12 +66,12 @@ void Coordinator::run(const CaseBatch& cases, StopSignal& stop) {
       break;
     }
     if (busy_until_.size() < settings_.threads) {
-      if (const PiecePointer piece = take_here(batch)) {
-        work_on(lock, piece);
+      if (const PiecePointer piece = take_local_piece(batch)) {
+        simulate_piece(lock, piece);
         continue;
       }
     }
-    changed_.wait_for(lock, kLookForStop);
+    changed_.wait_for(lock, kCheckForStop);
   }
   batch->closed = true;
   batches_.remove(batch);
@@ -88,7 +88,7 @@ void Coordinator::forget(const Problem& problem) {
   }
   const std::lock_guard lock(mutex_);
   for (std::size_t rank = 1; rank < workers_.size(); ++rank) {
-    if (workers_[rank].state == State::ready) {
+    if (workers_[rank].state == WorkerState::ready) {
       PacketWriter packet;
       packet.put(RankMessage::forget);
       packet.put(static_cast<std::uint64_t>(known - problems_.begin()));
@@ -99,8 +99,9 @@ void Coordinator::forget(const Problem& problem) {
 
 bool Coordinator::expects_workers() const {
   const std::lock_guard lock(mutex_);
-  return std::any_of(workers_.begin() + 1, workers_.end(),
-                     [](const Worker& worker) { return worker.state == State::unknown; });
+  return std::any_of(workers_.begin() + 1, workers_.end(), [](const RemoteWorker& worker) {
+    return worker.state == WorkerState::unknown;
+  });
 }
 
 std::size_t Coordinator::count_untaken(const Batch& batch) const {
@@ -114,8 +115,9 @@ std::size_t Coordinator::count_untaken(const Batch& batch) const {
   return pairs;
 }
 
-// How long the threads here take for all that nobody has taken yet, as far as costs are known: once
-// one of them is free, and no less than for one pair.
+// Returns how long the threads of this process would take for all pairs that are not taken yet, as
+// far as costs are known. The time begins when one of them is free, and is at least that of one
+// pair.
 double Coordinator::calc_left_here_s() const {
   double seconds = 0, longest_s = 0;
   for (const auto& batch : batches_) {
@@ -135,8 +137,8 @@ double Coordinator::calc_left_here_s() const {
 
 TeamSize Coordinator::calc_team() const {
   TeamSize team{.here = settings_.threads};
-  for (const Worker& worker : workers_) {
-    if (worker.state == State::ready) {
+  for (const RemoteWorker& worker : workers_) {
+    if (worker.state == WorkerState::ready) {
       team.elsewhere += worker.introduction.threads;
       ++team.workers;
     }
@@ -144,7 +146,7 @@ TeamSize Coordinator::calc_team() const {
   return team;
 }
 
-// What a late worker was to do as it was cut, before anything new.
+// Pieces of late workers come first, unchanged; then a new piece of at most `count` pairs.
 Coordinator::PiecePointer Coordinator::take_piece(const std::shared_ptr<Batch>& batch,
                                                   std::size_t count) {
   while (!batch->again.empty()) {
@@ -163,7 +165,7 @@ Coordinator::PiecePointer Coordinator::take_piece(const std::shared_ptr<Batch>& 
   return piece;
 }
 
-Coordinator::PiecePointer Coordinator::take_here(const std::shared_ptr<Batch>& batch) {
+Coordinator::PiecePointer Coordinator::take_local_piece(const std::shared_ptr<Batch>& batch) {
   if (batch->closed) {
     return nullptr;
   }
@@ -171,7 +173,7 @@ Coordinator::PiecePointer Coordinator::take_here(const std::shared_ptr<Batch>& b
                                             calc_team(), batch->cost->get_s()));
 }
 
-void Coordinator::work_on(Lock& lock, const PiecePointer& piece) {
+void Coordinator::simulate_piece(Lock& lock, const PiecePointer& piece) {
   Batch& batch = *piece->batch;
   ++batch.active;
   const std::chrono::duration<double> expected(batch.cost->get_s().value_or(0) *
@@ -193,18 +195,18 @@ void Coordinator::work_on(Lock& lock, const PiecePointer& piece) {
   if (failure) {
     batch.fail(failure);
   } else {
-    batch.cost->learn(taken.count(), piece->count);
+    batch.cost->add(taken.count(), piece->count);
     deliver(lock, piece, std::move(outcomes));
   }
   busy_until_.erase(until);
   --batch.active;
-  // Whoever waits for this batch's end, or, with another batch, for a thread to be free.
+  // A caller may wait for the end of this batch, or of another batch for a free thread.
   if (batches_.size() > 1 || batch.is_over()) {
     changed_.notify_all();
   }
 }
 
-// Whoever is first: the outcomes are the same.
+// The first outcomes to arrive count; later ones for the same pairs are the same and are dropped.
 void Coordinator::deliver(Lock& lock, const PiecePointer& piece,
                           std::vector<CaseOutcome> outcomes) {
   Batch& batch = *piece->batch;
@@ -216,7 +218,7 @@ void Coordinator::deliver(Lock& lock, const PiecePointer& piece,
   lock.unlock();
   std::exception_ptr failure;
   try {
-    batch.cases->take(piece->first, std::move(outcomes));
+    batch.cases->deliver(piece->first, std::move(outcomes));
   } catch (...) {
     failure = std::current_exception();
   }
@@ -231,17 +233,17 @@ void Coordinator::deliver(Lock& lock, const PiecePointer& piece,
   }
 }
 
-void Coordinator::help() {
+void Coordinator::run_helper() {
   Lock lock(mutex_);
   while (!stopping_) {
     PiecePointer piece;
     for (auto batch = batches_.begin(); batch != batches_.end() && !piece; ++batch) {
       if (busy_until_.size() < settings_.threads && !(*batch)->stop->requested()) {
-        piece = take_here(*batch);
+        piece = take_local_piece(*batch);
       }
     }
     if (piece) {
-      work_on(lock, piece);
+      simulate_piece(lock, piece);
     } else {
       changed_.wait(lock);
     }

@@ -1,4 +1,5 @@
-// What the coordinator has to do with workers: one thread's, which alone uses the links.
+// The coordinator's exchange of messages with workers. All of it runs on one thread, which alone
+// uses the transport.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,7 +16,7 @@ namespace {
 
 using std::chrono::microseconds;
 
-constexpr double kAliveEvery_s = 10;  // workers believe in a coordinator for far longer
+constexpr double kAliveEvery_s = 10;  // workers wait far longer before they give up
 
 double to_seconds(auto duration) {
   return std::chrono::duration<double>(duration).count();
@@ -23,7 +24,7 @@ double to_seconds(auto duration) {
 
 }  // namespace
 
-void Coordinator::communicate() {
+void Coordinator::run_transport() {
   Lock lock(mutex_);
   awake_.restart();
   while (!stopping_) {
@@ -33,22 +34,22 @@ void Coordinator::communicate() {
     auto notices = std::exchange(notices_, {});
     lock.unlock();
     for (auto& [rank, message] : outgoing) {
-      links_.send(rank, std::move(message));
+      transport_.send(rank, std::move(message));
     }
     for (const std::string& notice : notices) {
       notify_(notice);
     }
     lock.lock();
-    take_messages(lock);
+    receive_messages(lock);
     awake_.look();
-    look_for_late();
+    check_late_workers();
     if (!stopping_ && !has_news_) {
       wake_communication_.wait_for(lock, calc_pause());
     }
   }
 }
 
-// As long as it may be without letting anybody wait.
+// Returns the longest pause that keeps no worker waiting for its next chunk.
 microseconds Coordinator::calc_pause() const {
   constexpr microseconds kShortest{50}, kLongest{1000}, kIdle{20'000};
   if (sent_.empty()) {
@@ -57,8 +58,8 @@ microseconds Coordinator::calc_pause() const {
   const Clock::time_point now = Clock::now();
   microseconds pause = kLongest;
   for (std::size_t rank = 1; rank < workers_.size(); ++rank) {
-    const Worker& worker = workers_[rank];
-    if (worker.state == State::ready && worker.chunks > 0) {
+    const RemoteWorker& worker = workers_[rank];
+    if (worker.state == WorkerState::ready && worker.chunks > 0) {
       const auto expected = std::chrono::duration_cast<microseconds>(worker.free_at - now) /
                             (4 * static_cast<int>(worker.chunks));
       pause = std::min(pause, std::max(kShortest, expected));
@@ -67,8 +68,8 @@ microseconds Coordinator::calc_pause() const {
   return pause;
 }
 
-// Round by round a chunk for each worker that is of use, as long as that is worth while. Of many
-// ranks most have enough to do at any time: those cost no more than a look.
+// Sends chunks to the workers that are ready, one each per round, as long as a chunk saves time.
+// With many ranks, most have enough chunks at any time, so the check of those must be cheap.
 void Coordinator::assign() {
   const TeamSize team = calc_team();
   double left_here_s = calc_left_here_s();
@@ -76,8 +77,8 @@ void Coordinator::assign() {
       batches_, [this](const auto& batch) { return batch->problem && count_untaken(*batch) > 0; });
   while (std::exchange(has_sent, false)) {
     for (std::size_t rank = 1; rank < workers_.size(); ++rank) {
-      Worker& worker = workers_[rank];
-      if (worker.state != State::ready || worker.chunks >= kChunksAhead) {
+      RemoteWorker& worker = workers_[rank];
+      if (worker.state != WorkerState::ready || worker.chunks >= kChunksAhead) {
         continue;
       }
       const Clock::time_point now = Clock::now();
@@ -107,7 +108,7 @@ void Coordinator::assign() {
 }
 
 void Coordinator::send_chunk(std::size_t rank, const PiecePointer& piece) {
-  Worker& worker = workers_[rank];
+  RemoteWorker& worker = workers_[rank];
   const Clock::time_point now = Clock::now();
   PacketWriter packet;
   packet.put(RankMessage::chunk);
@@ -130,84 +131,85 @@ void Coordinator::send_chunk(std::size_t rank, const PiecePointer& piece) {
                        work_s + (worker.chunks == 1 ? worker.latency.get_s(0) : 0)));
 }
 
-// Not all that there are: whoever has answered waits for something new to do.
-void Coordinator::take_messages(Lock& lock) {
+// Handles at most kAtOnce messages: workers that have answered wait for their next chunk.
+void Coordinator::receive_messages(Lock& lock) {
   constexpr int kAtOnce = 256;
   for (int taken = 0; taken < kAtOnce; ++taken) {
     lock.unlock();
-    const auto message = links_.receive();
+    const auto message = transport_.receive();
     lock.lock();
     if (!message) {
       return;
     }
     has_news_ = true;
     try {
-      take_message(lock, *message);
+      handle_message(lock, *message);
     } catch (const PacketError& error) {
-      give_up(message->from, error.what());
+      exclude_worker(message->from, error.what());
     }
   }
 }
 
-void Coordinator::take_message(Lock& lock, const Links::Message& message) {
+void Coordinator::handle_message(Lock& lock, const MessageTransport::Message& message) {
   PacketReader packet(message.bytes);
-  Worker& worker = workers_.at(message.from);
-  if (worker.state == State::late) {
-    worker.state = State::ready;
-    worker.patience *= 2;
+  RemoteWorker& worker = workers_.at(message.from);
+  if (worker.state == WorkerState::late) {
+    worker.state = WorkerState::ready;
+    worker.late_factor *= 2;
     notices_.push_back(fmt::format("{} answers again", name_worker(message.from)));
   }
   switch (packet.get<RankMessage>()) {
     case RankMessage::ready:
-      welcome(message.from, get_introduction(packet));
+      admit_worker(message.from, get_introduction(packet));
       return;
     case RankMessage::outcomes:
-      take_outcomes(lock, message.from, packet);
+      handle_outcomes(lock, message.from, packet);
       return;
     case RankMessage::failed:
-      give_up(message.from, packet.get_text());
+      exclude_worker(message.from, packet.get_text());
       return;
     default:
-      throw PacketError("a worker says what it has no right to say");
+      throw PacketError("it sent a message of a kind that workers do not send");
   }
 }
 
-void Coordinator::welcome(std::size_t rank, WorkerIntroduction introduction) {
-  Worker& worker = workers_[rank];
+void Coordinator::admit_worker(std::size_t rank, WorkerIntroduction introduction) {
+  RemoteWorker& worker = workers_[rank];
   worker.introduction = std::move(introduction);
   if (!worker.introduction.failure.empty()) {
-    give_up(rank, worker.introduction.failure);
+    exclude_worker(rank, worker.introduction.failure);
     return;
   }
   const auto differences = describe_differences(identity_, worker.introduction.identity);
   if (!differences.empty()) {
-    give_up(rank, "it would compute something else (recorded: here, now: there):\n  " +
-                      join(differences, "\n  "));
+    exclude_worker(rank,
+                   "it has another program or other problems (recorded: here, now: there):\n  " +
+                       join(differences, "\n  "));
     return;
   }
-  worker.state = State::ready;
+  worker.state = WorkerState::ready;
   worker.free_at = worker.heard_at = Clock::now();
-  // The same code everywhere but in the C library, which chooses its own by the processor.
+  // All ranks run the same code, except in the C library: that chooses code by the processor.
   if (!settings_.cpu.empty() && worker.introduction.cpu != settings_.cpu) {
     notices_.push_back(
         fmt::format("note: {} has another processor ({}; here: {}). The last bits of results may "
-                    "then depend on who computes them; for the same bits every time use machines "
-                    "of one kind",
+                    "then depend on which rank computes them; for the same bits every time use "
+                    "machines of one kind",
                     name_worker(rank), sanitize(worker.introduction.cpu), settings_.cpu));
   }
 }
 
-void Coordinator::take_outcomes(Lock& lock, std::size_t rank, PacketReader& packet) {
+void Coordinator::handle_outcomes(Lock& lock, std::size_t rank, PacketReader& packet) {
   const auto found = sent_.find(packet.get<std::uint64_t>());
   const auto pair_s = packet.get<double>();
   std::vector<CaseOutcome> outcomes = get_outcomes(packet);
   if (found == sent_.end() || found->second.worker != rank ||
       outcomes.size() != found->second.piece->count) {
-    throw PacketError("a worker answers what it was not asked");
+    throw PacketError("it sent outcomes that it was not asked for");
   }
-  const Sent sent = std::move(found->second);
+  const SentPiece sent = std::move(found->second);
   sent_.erase(found);
-  Worker& worker = workers_[rank];
+  RemoteWorker& worker = workers_[rank];
   const Clock::time_point now = Clock::now();
   worker.heard_at = now;
   --worker.chunks;
@@ -217,21 +219,21 @@ void Coordinator::take_outcomes(Lock& lock, std::size_t rank, PacketReader& pack
   const auto pairs = static_cast<double>(sent.piece->count);
   if (sent.was_idle) {
     const double work_s = pair_s * pairs / static_cast<double>(worker.introduction.threads);
-    worker.latency.learn(std::max(0.0, to_seconds(now - sent.at) - work_s));
+    worker.latency.add(std::max(0.0, to_seconds(now - sent.at) - work_s));
   }
   if (!sent.piece->batch->closed) {
-    sent.piece->batch->cost->learn(pair_s * pairs, sent.piece->count);
+    sent.piece->batch->cost->add(pair_s * pairs, sent.piece->count);
   }
   deliver(lock, sent.piece, std::move(outcomes));
 }
 
-void Coordinator::give_up(std::size_t rank, const std::string& reason) {
-  workers_[rank].state = State::useless;
+void Coordinator::exclude_worker(std::size_t rank, const std::string& reason) {
+  workers_[rank].state = WorkerState::excluded;
   reassign(rank);
-  notices_.push_back(fmt::format("warning: {} is of no use: {}", name_worker(rank), reason));
+  notices_.push_back(fmt::format("warning: {} cannot be used: {}", name_worker(rank), reason));
 }
 
-// What it owes goes to the others.
+// Lets others simulate the pieces that the worker has not delivered.
 void Coordinator::reassign(std::size_t rank) {
   for (auto& [chunk, sent] : sent_) {
     Batch& batch = *sent.piece->batch;
@@ -244,27 +246,27 @@ void Coordinator::reassign(std::size_t rank) {
   changed_.notify_all();
 }
 
-void Coordinator::look_for_late() {
-  constexpr double kTolerance = 4;  // times what was expected
-  // There may be thousands of chunks: not at every turn.
-  constexpr double kLookEvery = 0.05;  // times the patience
-  if (awake_.get_s() - last_look_s_ < kLookEvery * settings_.patience_s) {
+void Coordinator::check_late_workers() {
+  constexpr double kTolerance = 4;  // times the expected time
+  // There may be thousands of chunks, so they are not checked at every turn.
+  constexpr double kCheckEvery = 0.05;  // times late_after_s
+  if (awake_.get_s() - last_check_s_ < kCheckEvery * settings_.late_after_s) {
     return;
   }
-  last_look_s_ = awake_.get_s();
+  last_check_s_ = awake_.get_s();
   for (auto& [chunk, sent] : sent_) {
-    Worker& worker = workers_[sent.worker];
+    RemoteWorker& worker = workers_[sent.worker];
     const auto cost = sent.piece->batch->cost->get_s();
-    if (worker.state != State::ready || !cost) {
+    if (worker.state != WorkerState::ready || !cost) {
       continue;
     }
     const double expected_s = sent.ahead_s + *cost * static_cast<double>(sent.piece->count) /
                                                  static_cast<double>(worker.introduction.threads);
     const double passed_s = awake_.get_s() - sent.at_awake_s;
-    if (passed_s > worker.patience * (settings_.patience_s + kTolerance * expected_s)) {
-      worker.state = State::late;
+    if (passed_s > worker.late_factor * (settings_.late_after_s + kTolerance * expected_s)) {
+      worker.state = WorkerState::late;
       notices_.push_back(
-          fmt::format("warning: {} has not answered for {:.1f} s, where {:.3g} s were to be "
+          fmt::format("warning: {} has not answered for {:.1f} s, where {:.3g} s were "
                       "expected; others do its work",
                       name_worker(sent.worker), passed_s, expected_s));
       reassign(sent.worker);
@@ -284,15 +286,15 @@ std::string Coordinator::name_worker(std::size_t rank) const {
                       : fmt::format("rank {} on {}", rank, sanitize(host));
 }
 
-bool end_workers(Links& links, double patience_s) {
+bool end_workers(MessageTransport& transport, double timeout_s) {
   constexpr microseconds kPause{500};
-  for (std::size_t rank = 1; rank < links.size(); ++rank) {
-    links.send(rank, make_rank_message(RankMessage::end));
+  for (std::size_t rank = 1; rank < transport.size(); ++rank) {
+    transport.send(rank, make_rank_message(RankMessage::end));
   }
-  std::size_t missing = links.size() - 1;
+  std::size_t missing = transport.size() - 1;
   const auto start = std::chrono::steady_clock::now();
-  while (missing > 0 && to_seconds(std::chrono::steady_clock::now() - start) < patience_s) {
-    const auto message = links.receive();
+  while (missing > 0 && to_seconds(std::chrono::steady_clock::now() - start) < timeout_s) {
+    const auto message = transport.receive();
     if (!message) {
       std::this_thread::sleep_for(kPause);
     } else if (message->bytes == make_rank_message(RankMessage::bye)) {
@@ -300,8 +302,8 @@ bool end_workers(Links& links, double patience_s) {
     }
   }
   const auto last = missing == 0 ? RankMessage::finalize : RankMessage::leave;
-  for (std::size_t rank = 1; rank < links.size(); ++rank) {
-    links.send(rank, make_rank_message(last));
+  for (std::size_t rank = 1; rank < transport.size(); ++rank) {
+    transport.send(rank, make_rank_message(last));
   }
   return missing == 0;
 }

@@ -1,5 +1,5 @@
-// Messages between the ranks of a job: rank 0 coordinates, all others work for it. Nobody waits in
-// here, so that nobody spins: whoever has nothing to do sleeps between two looks.
+// Messages between the ranks of a job. Rank 0 is the coordinator, all other ranks are workers. No
+// function here blocks, so a rank that has nothing to do can sleep between two calls of receive().
 #pragma once
 
 #include <cstddef>
@@ -8,20 +8,24 @@
 
 namespace armwright {
 
-class Links {
+// A transport connects one rank with all others. Not thread-safe: only one thread at a time may
+// call send() or receive().
+class MessageTransport {
  public:
-  virtual ~Links() = default;
-  virtual std::size_t rank() const = 0;
-  virtual std::size_t size() const = 0;  // ranks
-
-  // Hands the message over and returns; it arrives behind those sent to that rank before, or never
-  // if the rank is no more. Not to be called from two threads at once, nor beside receive().
-  virtual void send(std::size_t to, std::string message) = 0;
   struct Message {
-    std::size_t from;
+    std::size_t from;  // rank
     std::string bytes;
   };
-  virtual std::optional<Message> receive() = 0;  // nothing if none has arrived
+
+  virtual ~MessageTransport() = default;
+  virtual std::size_t rank() const = 0;  // of this process
+  virtual std::size_t size() const = 0;  // number of ranks
+
+  // Starts to send the message and returns at once. Messages to one rank arrive in the order of
+  // their sending. A message to a rank that has died is lost without an error.
+  virtual void send(std::size_t to, std::string message) = 0;
+  // Returns the next message that has arrived, or nothing if there is none.
+  virtual std::optional<Message> receive() = 0;
 };
 
 }  // namespace armwright

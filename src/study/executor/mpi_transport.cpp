@@ -23,7 +23,7 @@
 namespace armwright {
 namespace {
 
-// The number that a variable begins with: Slurm says of tasks on nodes "2(x3),1".
+// Returns the number at the beginning of a variable: Slurm writes tasks per node as "2(x3),1".
 std::optional<std::size_t> read_count(const char* name) {
   const char* text = std::getenv(name);
   if (text == nullptr) {
@@ -41,7 +41,7 @@ std::optional<RankPlace> find_rank_place() {
   auto size = read_count("OMPI_COMM_WORLD_SIZE");
   auto rank = read_count("OMPI_COMM_WORLD_RANK");
   auto local = read_count("OMPI_COMM_WORLD_LOCAL_SIZE");
-  if (!size || !rank) {  // srun says it in its own words, and PMIx must be there to speak through
+  if (!size || !rank) {  // srun uses other variables; the ranks can only talk if there is PMIx
     rank = read_count("PMIX_RANK");
     size = rank ? read_count("SLURM_STEP_NUM_TASKS") : std::nullopt;
     local = read_count("SLURM_STEP_TASKS_PER_NODE");
@@ -58,7 +58,7 @@ std::optional<RankPlace> find_rank_place() {
 unsigned count_rank_cores(const RankPlace& place) {
   const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
   std::size_t share = std::max<std::size_t>(1, cores / place.on_this_machine);
-  cpu_set_t allowed;  // mpirun binds ranks to cores unless told otherwise
+  cpu_set_t allowed;  // mpirun binds ranks to cores by default
   if (::sched_getaffinity(0, sizeof allowed, &allowed) == 0) {
     share = std::min(share, static_cast<std::size_t>(std::max(1, CPU_COUNT(&allowed))));
   }
@@ -80,11 +80,11 @@ void check(int result, const char* doing) {
   }
 }
 
-// Everything is begun and looked at later: what a rank that dies leaves unfinished stays so, and
-// nobody waits for it.
-class MpiLinks final : public Links {
+// Every transfer is started without waiting and tested later. A transfer from or to a rank that
+// dies is never finished, and nothing waits for it.
+class MpiTransport final : public MessageTransport {
  public:
-  MpiLinks() {
+  MpiTransport() {
     int provided = 0;
     check(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided), "begin");
     MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
@@ -95,7 +95,7 @@ class MpiLinks final : public Links {
     size_ = static_cast<std::size_t>(size);
     if (provided < MPI_THREAD_SERIALIZED) {
       throw Error(ErrorKind::usage,
-                  "this MPI does not allow threads; OpenMPI as Debian has it does");
+                  "this MPI does not allow threads; OpenMPI as Debian packages it does");
     }
   }
 
@@ -109,7 +109,7 @@ class MpiLinks final : public Links {
     if (transfer.bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()) ||
         MPI_Isend(transfer.bytes.data(), static_cast<int>(transfer.bytes.size()), MPI_CHAR,
                   static_cast<int>(to), kTag, MPI_COMM_WORLD, &transfer.request) != MPI_SUCCESS) {
-      sending_.pop_back();  // it never arrives, as if the rank were gone
+      sending_.pop_back();  // the message is lost, as if the rank had died
     }
   }
 
@@ -159,8 +159,8 @@ class MpiLinks final : public Links {
 
 }  // namespace
 
-std::unique_ptr<Links> open_mpi_links() {
-  return std::make_unique<MpiLinks>();
+std::unique_ptr<MessageTransport> open_mpi_transport() {
+  return std::make_unique<MpiTransport>();
 }
 
 void close_mpi() {
@@ -174,9 +174,9 @@ void abort_mpi(int exit_code) {
 
 #else
 
-std::unique_ptr<Links> open_mpi_links() {
+std::unique_ptr<MessageTransport> open_mpi_transport() {
   throw Error(ErrorKind::usage,
-              "this armwright was built without MPI and cannot share its work out over ranks; "
+              "this armwright was built without MPI and cannot share its work over ranks; "
               "install the Debian package libopenmpi-dev and build it again, or start it without "
               "mpirun");
 }

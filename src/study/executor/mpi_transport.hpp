@@ -1,5 +1,5 @@
-// The ranks of a job that mpirun (or srun --mpi=pmix) has started, by OpenMPI's C interface. A
-// program that is started otherwise, or alone, never touches MPI.
+// The ranks of a job that mpirun (or srun --mpi=pmix) has started, through OpenMPI's C interface. A
+// program that was started in another way never calls MPI.
 #pragma once
 
 #include <cstddef>
@@ -10,24 +10,26 @@
 
 namespace armwright {
 
-// Where this process stands among those that were started together.
+// The place of this process among the processes that were started together.
 struct RankPlace {
   std::size_t rank = 0;
-  std::size_t size = 1;
-  std::size_t on_this_machine = 1;  // ranks
-  bool survives = false;            // the death of a rank does not end the others
+  std::size_t size = 1;             // number of ranks
+  std::size_t on_this_machine = 1;  // number of ranks on this machine
+  bool survives = false;            // the death of one rank does not end the others
 };
-// From the environment; nothing if the process was started alone.
+// Reads the place from the environment. Returns nothing if the process was started alone.
 std::optional<RankPlace> find_rank_place();
 
-// Cores that this rank may use without getting in the way of others on its machine.
+// Returns how many cores this rank may use without disturbing other ranks on its machine; at
+// least 1.
 unsigned count_rank_cores(const RankPlace& place);
 
-// Begins MPI, which all ranks must do. Error{usage} if this program was built without it.
-std::unique_ptr<Links> open_mpi_links();
-// Ends MPI, which only all ranks together can do: where one is missing it would wait for ever.
+// Starts MPI, which all ranks must do. Throws Error{usage} if this program was built without MPI,
+// and Error{io} if MPI fails.
+std::unique_ptr<MessageTransport> open_mpi_transport();
+// Ends MPI. All ranks must call this: it blocks forever if one is missing.
 void close_mpi();
-// Ends all ranks, those that hang as well, and this process with them.
+// Ends all ranks, also ranks that hang, and this process.
 [[noreturn]] void abort_mpi(int exit_code);
 
 }  // namespace armwright

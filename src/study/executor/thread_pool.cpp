@@ -17,7 +17,7 @@ ThreadPool::ThreadPool(std::size_t threads) {
       workers_.emplace_back([this] { work_loop(); });
     }
   } catch (const std::system_error&) {
-    // No more threads to be had; size() tells.
+    // The system grants no more threads; size() returns how many there are.
   } catch (...) {
     stop_workers();
     throw;
@@ -64,7 +64,7 @@ void ThreadPool::run(std::size_t jobs, const std::function<void(std::size_t)>& j
   }
   take_jobs(job);
   std::unique_lock lock(mutex_);
-  job_ = nullptr;  // a worker that wakes up only now goes back to sleep
+  job_ = nullptr;  // a worker that wakes up after this goes back to sleep
   workers_done_.wait(lock, [this] { return active_workers_ == 0; });
   if (failure_) {
     std::rethrow_exception(std::exchange(failure_, nullptr));

@@ -11,8 +11,8 @@ namespace {
 using std::chrono::microseconds;
 using WorkClock = std::chrono::steady_clock;
 
-// Between two looks for messages while there is nothing to do: short at first, since the next batch
-// comes soon if it comes at all.
+// The pause between two checks for messages while there is nothing to do. It is short at first and
+// grows, because the next batch usually comes soon.
 class IdlePause {
  public:
   void restart() { pause_ = kShortest; }
@@ -29,12 +29,25 @@ class IdlePause {
 
 }  // namespace
 
-Worker::Worker(Links& links, std::vector<const Problem*> problems, WorkerIntroduction introduction,
-               double silence_s)
-    : links_(links), problems_(std::move(problems)), longest_silence_s_(silence_s) {
+// Jobs that the coordinator has sent together, and what has come of them so far.
+struct Worker::Chunk {
+  std::uint64_t number = 0;
+  const Problem* problem = nullptr;
+  ReceivedJobs received;
+  std::size_t jobs_at_once = 1;
+  std::vector<CaseOutcome> outcomes;
+  std::size_t next = 0;     // the first job that no thread has taken yet
+  std::size_t missing = 0;  // jobs whose outcomes are missing
+  double busy_s = 0;        // of all threads together
+  std::string failure;
+};
+
+Worker::Worker(MessageTransport& transport, std::vector<const Problem*> problems,
+               WorkerIntroduction introduction, double silence_s)
+    : transport_(transport), problems_(std::move(problems)), longest_silence_s_(silence_s) {
   try {
     while (introduction.failure.empty() && threads_.size() < introduction.threads) {
-      threads_.emplace_back([this] { work(); });
+      threads_.emplace_back([this] { run_thread(); });
     }
   } catch (const std::system_error& error) {
     if (threads_.empty()) {
@@ -42,7 +55,7 @@ Worker::Worker(Links& links, std::vector<const Problem*> problems, WorkerIntrodu
     }
     introduction.threads = threads_.size();
   }
-  links_.send(0, make_rank_message(introduction));
+  transport_.send(0, make_rank_message(introduction));
 }
 
 Worker::~Worker() {
@@ -62,10 +75,10 @@ Worker::End Worker::serve() {
   IdlePause idle;
   silence_.restart();
   while (silence_.get_s() < longest_silence_s_) {
-    while (const auto message = links_.receive()) {
+    while (const auto message = transport_.receive()) {
       silence_.restart();
       idle.restart();
-      if (take_message(message->bytes, end)) {
+      if (handle_message(message->bytes, end)) {
         return end;
       }
     }
@@ -80,11 +93,11 @@ Worker::End Worker::serve() {
   return End::abandoned;
 }
 
-bool Worker::take_message(const std::string& message, End& end) {
+bool Worker::handle_message(const std::string& message, End& end) {
   PacketReader packet(message);
   switch (packet.get<RankMessage>()) {
     case RankMessage::chunk:
-      take_chunk(packet);
+      add_chunk(packet);
       return false;
     case RankMessage::forget:
       problems_.at(packet.get<std::uint64_t>())->forget_cases();
@@ -95,7 +108,7 @@ bool Worker::take_message(const std::string& message, End& end) {
       const std::lock_guard lock(mutex_);
       stopping_ = true;
       waiting_.clear();
-      links_.send(0, make_rank_message(RankMessage::bye));
+      transport_.send(0, make_rank_message(RankMessage::bye));
       return false;
     }
     case RankMessage::finalize:
@@ -105,11 +118,11 @@ bool Worker::take_message(const std::string& message, End& end) {
       end = End::leave;
       return true;
     default:
-      throw PacketError("a coordinator says what it has no right to say");
+      throw PacketError("the coordinator sent a message of a kind that it does not send");
   }
 }
 
-void Worker::take_chunk(PacketReader& packet) {
+void Worker::add_chunk(PacketReader& packet) {
   auto chunk = std::make_shared<Chunk>();
   chunk->number = packet.get<std::uint64_t>();
   chunk->problem = problems_.at(packet.get<std::uint64_t>());
@@ -154,22 +167,22 @@ void Worker::send_results() {
                  static_cast<double>(std::max<std::size_t>(1, chunk->outcomes.size())));
       put_outcomes(packet, chunk->outcomes);
     }
-    links_.send(0, packet.bytes());
+    transport_.send(0, packet.bytes());
   }
 }
 
-void Worker::work() {
+void Worker::run_thread() {
   std::unique_lock lock(mutex_);
   while (true) {
     has_work_.wait(lock, [this] { return stopping_ || !waiting_.empty(); });
     if (stopping_) {
       return;
     }
-    simulate_some(lock, waiting_.front());
+    simulate_jobs(lock, waiting_.front());
   }
 }
 
-void Worker::simulate_some(std::unique_lock<std::mutex>& lock,
+void Worker::simulate_jobs(std::unique_lock<std::mutex>& lock,
                            const std::shared_ptr<Chunk>& waiting) {
   const std::shared_ptr<Chunk> chunk = waiting;
   const std::size_t first = chunk->next;

@@ -1,5 +1,5 @@
-// A rank that simulates what the coordinator (coordinator.hpp) sends, on threads of its own, until
-// it is told to end. It writes nothing anywhere.
+// A worker is a rank that simulates the chunks that the coordinator (coordinator.hpp) sends to it,
+// on its own threads, until it is told to end. It writes no files.
 #pragma once
 
 #include <condition_variable>
@@ -7,6 +7,7 @@
 #include <deque>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -19,51 +20,47 @@ namespace armwright {
 
 class Worker {
  public:
-  // `problems` in the coordinator's order. An introduction that says why this rank cannot work goes
-  // without any. A coordinator says that it is alive every ten seconds; one that is silent for
-  // longer than `silence_s` is no more.
-  Worker(Links& links, std::vector<const Problem*> problems, WorkerIntroduction introduction,
-         double silence_s = 120);
-  ~Worker();  // waits for simulations that have begun
+  // Starts the threads and introduces the worker to the coordinator. `problems` are in the
+  // coordinator's order; an introduction with a failure needs none. Transport and problems must
+  // outlive the worker. The coordinator sends a message at least every ten seconds; the worker
+  // treats it as dead after `silence_s` without one.
+  Worker(MessageTransport& transport, std::vector<const Problem*> problems,
+         WorkerIntroduction introduction, double silence_s = 120);
+  ~Worker();  // waits for the simulations that have begun
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
-  // How the work has ended: all ranks leave in order; somebody is missing; the coordinator is no
-  // more.
-  enum class End { finalize, leave, abandoned };
+  enum class End {
+    finalize,  // all ranks are there and end MPI in order
+    leave,     // some worker is missing: exit without ending MPI
+    abandoned  // the coordinator is dead
+  };
+  // Works until the coordinator ends the work, and returns how it ended. Throws PacketError for a
+  // message that is not the coordinator's.
   End serve();
 
  private:
-  struct Chunk {
-    std::uint64_t number = 0;
-    const Problem* problem = nullptr;
-    ReceivedJobs received;
-    std::size_t jobs_at_once = 1;
-    std::vector<CaseOutcome> outcomes;
-    std::size_t next = 0;     // the first job that no thread has taken yet
-    std::size_t missing = 0;  // jobs whose outcomes are missing
-    double busy_s = 0;        // of all threads
-    std::string failure;
-  };
+  struct Chunk;
 
-  bool take_message(const std::string& message, End& end);  // whether it was the last
-  void take_chunk(PacketReader& packet);
+  bool handle_message(const std::string& message, End& end);  // true: it was the last one
+  void add_chunk(PacketReader& packet);
   void send_results();
-  void work();  // a thread's life
-  void simulate_some(std::unique_lock<std::mutex>& lock, const std::shared_ptr<Chunk>& chunk);
+  void run_thread();
+  // Simulates the next jobs of a waiting chunk. Needs the lock and releases it for a while.
+  void simulate_jobs(std::unique_lock<std::mutex>& lock, const std::shared_ptr<Chunk>& waiting);
 
-  Links& links_;
+  MessageTransport& transport_;
   const std::vector<const Problem*> problems_;
   const double longest_silence_s_;
   WakingTime silence_;
 
-  std::mutex mutex_;  // of all below
+  std::mutex mutex_;  // guards all members below
   std::condition_variable has_work_;
   std::condition_variable has_results_;
   bool stopping_ = false;
-  std::deque<std::shared_ptr<Chunk>> waiting_;  // of which some jobs have not been begun
+  std::deque<std::shared_ptr<Chunk>> waiting_;  // chunks with jobs that no thread has taken yet
   std::deque<std::shared_ptr<Chunk>> done_;
-  std::size_t under_way_ = 0;
+  std::size_t under_way_ = 0;  // chunks received and not yet answered
   std::vector<std::thread> threads_;
 };
 

@@ -26,13 +26,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Half of what is promised (10 ms), so that a late wake-up does not break the promise.
+// Half of the documented 10 ms, so that a thread that wakes up late is still in time.
 constexpr auto kWriteInterval = std::chrono::milliseconds(5);
 constexpr auto kSyncInterval = std::chrono::seconds(1);
 // Fits a core's L2 cache; larger writes gain nothing.
 constexpr std::size_t kBufferBytes = std::size_t{256} << 10;
 
-// For reading what is there while more is appended.
+// Returns a second descriptor, to read records while new ones are appended.
 FileDescriptor duplicate(const FileDescriptor& fd, const std::filesystem::path& file) {
   FileDescriptor copy(::fcntl(fd.get(), F_DUPFD_CLOEXEC, 0));
   if (!copy.is_open()) {
@@ -43,8 +43,8 @@ FileDescriptor duplicate(const FileDescriptor& fd, const std::filesystem::path& 
 
 }  // namespace
 
-// Two threads, both asleep unless there is something to do: one writes what append() left in the
-// buffer, the other syncs. A sync can take long on a slow disk, and records must reach the
+// A writer has two threads, which sleep unless there is something to do. One writes the buffer that
+// append() fills, the other syncs. A sync can take long on a slow disk, and records must reach the
 // operating system meanwhile.
 class Journal::Writer {
  public:
@@ -54,24 +54,24 @@ class Journal::Writer {
     if (!fd_.is_open()) {
       fail_io(file_, "open it for appending", errno);
     }
-    JournalScan scan = scan_journal(duplicate(fd_, file_), file_);
-    if (scan.content.torn_bytes != 0) {
-      cut_torn_end(fd_.get(), scan.good_bytes, file_);
+    JournalContent found = scan_journal(duplicate(fd_, file_), file_);
+    if (found.torn_bytes != 0) {
+      cut_torn_end(fd_.get(), found.intact_bytes, file_);
       unsynced_ = true;
     }
-    good_bytes_ = scan.good_bytes;
-    ended_ = scan.content.ended;
-    if (good_bytes_ == 0) {
+    intact_bytes_ = found.intact_bytes;
+    ended_ = found.ended;
+    if (intact_bytes_ == 0) {
       begin_file();
     }
     start_threads();
-    content = std::move(scan.content);
+    content = std::move(found);
   }
 
   ~Writer() { stop_threads(); }
 
   void append(const EvaluationRecord& record) {
-    const std::string bytes = encode(record);  // by each thread for itself, before it waits
+    const std::string bytes = encode(record);  // outside the lock, in parallel
     const std::lock_guard lock(mutex_);
     add(bytes);
   }
@@ -122,13 +122,12 @@ class Journal::Writer {
     if (result.error != 0) {
       fail_io(file_, "write it", result.error);
     }
-    good_bytes_ = journal_format::kMagic.size();
+    intact_bytes_ = journal_format::kMagic.size();
     unsynced_ = true;
     sync_folder_of(file_);
   }
 
-  // A system that grants no more threads gets a journal that writes every record at once instead;
-  // see add().
+  // If the system grants no more threads, add() writes every record at once instead.
   void start_threads() {
     try {
       write_thread_ = std::thread([this] { write_loop(); });
@@ -154,7 +153,7 @@ class Journal::Writer {
     }
   }
 
-  // Everything below is called with mutex_ held.
+  // The caller of each function below must hold mutex_.
 
   void add(std::string_view record) {
     throw_if_failed();
@@ -182,7 +181,7 @@ class Journal::Writer {
 
   void write_buffer(Clock::time_point now = Clock::now()) {
     if (!error_.empty()) {
-      buffer_.clear();  // never to be written; left there, it would keep the writing thread busy
+      buffer_.clear();  // never written; the writing thread would try again without end
     }
     if (buffer_.empty()) {
       return;
@@ -190,13 +189,13 @@ class Journal::Writer {
     last_write_ = now;
     const WriteResult result = write_fully(fd_.get(), buffer_);
     if (result.error != 0) {
-      good_bytes_ += journal_format::count_whole_record_bytes(
+      intact_bytes_ += journal_format::count_whole_record_bytes(
           std::string_view(buffer_).substr(0, result.written));
-      // Should this fail as well, the next opening finds a torn end and cuts it off.
-      [[maybe_unused]] const int cut = ::ftruncate(fd_.get(), static_cast<off_t>(good_bytes_));
+      // If this fails as well, the next opening finds a torn end and cuts it off.
+      [[maybe_unused]] const int cut = ::ftruncate(fd_.get(), static_cast<off_t>(intact_bytes_));
       remember_error("write it", result.error);
     } else {
-      good_bytes_ += buffer_.size();
+      intact_bytes_ += buffer_.size();
       if (is_deleted(fd_.get())) {
         error_ = fmt::format("{}: was deleted while the run was writing it", file_.string());
       }
@@ -208,7 +207,7 @@ class Journal::Writer {
     }
   }
 
-  // Sticky: a record that failed may not be followed by others.
+  // Keeps the first error for good, because no record may follow one that was not written.
   void remember_error(std::string_view doing, int error) {
     if (error != 0 && error_.empty()) {
       error_ = fmt::format(
@@ -235,8 +234,7 @@ class Journal::Writer {
         writer_idle_ = false;
         continue;
       }
-      // add() writes by itself when the last write is that long ago, so no record in the buffer
-      // waits longer than this.
+      // add() writes at once if the last write is longer ago, so no record waits longer than this.
       const auto due = last_write_ + kWriteInterval;
       if (Clock::now() >= due) {
         write_buffer();
@@ -268,9 +266,9 @@ class Journal::Writer {
   std::mutex mutex_;  // guards all that follows
   std::condition_variable write_wanted_;
   std::condition_variable sync_wanted_;
-  std::string buffer_;            // whole records
-  std::uint64_t good_bytes_ = 0;  // of the file: the magic and whole records
-  std::string error_;             // the first one, empty if there is none
+  std::string buffer_;              // whole records
+  std::uint64_t intact_bytes_ = 0;  // of the file: the magic and whole records
+  std::string error_;               // the first one, empty if there is none
   bool ended_ = false;
   bool unsynced_ = false;
   bool writer_idle_ = false;
@@ -289,7 +287,7 @@ Journal::~Journal() {
   try {
     close();
   } catch (const std::exception&) {
-    // As documented: who wants to know calls close().
+    // As documented, this error is lost; close() would throw it.
   }
 }
 

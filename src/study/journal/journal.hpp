@@ -1,19 +1,19 @@
-// The journal: an append-only file with one checksummed record a candidate. It is the truth of a
-// run; everything else is derived.
+// The journal of a run: an append-only file with one checksummed record per evaluation. All other
+// results of a run are derived from it.
 //
 // Format (little-endian): the 8 bytes "AWJRNL01", then records of
 //   u32 payload length | u32 CRC-32 of the payload | payload
-// Payloads are self-describing: a record type byte and its fields (journal_format.hpp). Numbers are
-// stored as their bits.
+// A payload is a byte for its type and its fields (journal_format.hpp). Numbers are stored as their
+// bits.
 //
-// Durability: append() hands a record over; it reaches the operating system at the latest 10 ms
-// later or at flush(), and the disk (fdatasync) at least once a second and at close(). Appending is
-// thread-safe; with several threads records lie in the order in which evaluations finished, and
-// their index tells their place.
+// Durability: append() hands a record over. It reaches the operating system after at most 10 ms or
+// at flush(), and the disk (fdatasync) at least once per second and at close(). Appending is
+// thread-safe. With several threads the records are in the order of completion, and the index of a
+// record is its place in the order of the optimizer.
 //
-// Reading: a record cut short or damaged at the very end of the file is what a kill or power cut
-// leaves; it is cut off, its bytes kept in "journal.torn-N", and reported. Damage with intact
-// records after it is an Error{bad_data} that names the offset.
+// Reading: a kill or a power cut leaves a record that is cut short or damaged at the very end of
+// the file. Such an end is cut off and reported, and its bytes are kept in "journal.torn-N". Damage
+// with intact records behind it is an Error{bad_data} that names the offset.
 #pragma once
 
 #include <cstdint>
@@ -22,15 +22,13 @@
 #include <string>
 #include <vector>
 
-#include "study/journal/evaluation_record.hpp"
 #include "study/journal/recorded_evaluations.hpp"
 
 namespace armwright {
 
-// The run has come to its end; written once, last. `reason` is "budget" or
-// "optimizer finished".
+// The last record of a run that has ended.
 struct EndRecord {
-  std::string reason;
+  std::string reason;  // "budget" or "optimizer finished"
   std::uint64_t evaluations = 0;
 };
 
@@ -38,26 +36,29 @@ struct JournalContent {
   RecordedEvaluations training;
   std::vector<EvaluationRecord> judgements;  // validation and test, in the order written
   bool ended = false;
-  EndRecord end;
-  std::uint64_t torn_bytes = 0;  // what was cut off the end, 0 if nothing
+  EndRecord end;                   // valid if `ended`
+  std::uint64_t intact_bytes = 0;  // up to the end of the last intact record
+  std::uint64_t torn_bytes = 0;    // behind that
 };
 
 class Journal {
  public:
-  // Opens for appending, creating the file if there is none; what it holds goes to `content`. A
-  // torn end is removed (see above). The caller holds the run's lock. Error{io} or Error{bad_data}
-  // names the file.
+  // Opens the file for appending, and creates it if there is none. Reads its records to `content`
+  // and cuts off a torn end (see above). The caller must hold the run's lock. Throws Error{io} or
+  // Error{bad_data}, which name the file.
   Journal(const std::filesystem::path& file, JournalContent& content);
-  ~Journal();  // closes; an error that close() would report is lost
+  ~Journal();  // closes; an error that close() would throw is lost
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
 
+  // Throw Error{bad_data} if the record is too large for the journal, Error{io} if an earlier write
+  // has failed, and std::logic_error after close() or after an end record.
   void append(const EvaluationRecord& record);
   void append(const EndRecord& record);
-  // Everything appended so far has reached the operating system. Throws the first write error since
-  // the last call, if any.
+  // Writes everything appended so far to the operating system. Throws Error{io} if any write has
+  // failed.
   void flush();
-  // flush(), fdatasync and close.
+  // Flushes, syncs to the disk and closes the file. Throws Error{io} as flush().
   void close();
 
  private:
@@ -65,8 +66,8 @@ class Journal {
   std::unique_ptr<Writer> writer_;
 };
 
-// Reads without changing anything (for show, export and tests): a torn end is left alone and
-// counted.
+// Reads a journal without changing it: a torn end is counted and not cut off. Throws Error{io} or
+// Error{bad_data}, which name the file.
 JournalContent read_journal(const std::filesystem::path& file);
 
 }  // namespace armwright

@@ -39,7 +39,7 @@ void copy_from(int source, std::uint64_t offset, int target,
   }
 }
 
-// Saves what lies behind `offset` in the first free "<file>.torn-N".
+// Saves the bytes behind `offset` in the first free "<file>.torn-N".
 void save_torn_end(int fd, std::uint64_t offset, const std::filesystem::path& file) {
   for (int n = 1;; ++n) {
     const std::filesystem::path name = fmt::format("{}.torn-{}", file.string(), n);
@@ -56,7 +56,7 @@ void save_torn_end(int fd, std::uint64_t offset, const std::filesystem::path& fi
         fail_io(name, "close it", errno);
       }
     } catch (...) {
-      ::unlink(name.c_str());  // half a copy beside an untouched journal would only confuse
+      ::unlink(name.c_str());  // the journal is still complete, so half a copy is removed
       throw;
     }
     return;

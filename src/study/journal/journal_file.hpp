@@ -1,5 +1,4 @@
-// What a journal (study/journal.hpp) asks of the operating system: whole writes, syncs, and a safe
-// place for what is cut off its end.
+// The file operations of a journal (journal.hpp): whole writes, syncs, and cutting off a torn end.
 #pragma once
 
 #include <cstddef>
@@ -10,22 +9,25 @@
 namespace armwright {
 
 struct WriteResult {
-  std::size_t written = 0;
-  int error = 0;  // an errno; 0: all was written
+  std::size_t written = 0;  // bytes
+  int error = 0;            // an errno; 0 if all bytes were written
 };
+// Writes all bytes, or stops at the first error.
 WriteResult write_fully(int fd, std::string_view bytes);
 
-// 0 or an errno. Some file systems cannot sync; what they can do is then all there is to have.
+// Syncs the data of the file to the disk. Returns 0 or an errno. A file system that cannot sync is
+// not an error.
 int sync_data(int fd);
 
-// Makes the names of new files survive a power cut.
+// Syncs the folder of a new file, so that its name survives a power cut. Ignores errors.
 void sync_folder_of(const std::filesystem::path& file);
 
-// Nobody can open it any more.
+// Returns whether the file has no name any more.
 bool is_deleted(int fd);
 
-// Cuts the file off at `offset` and keeps what was behind in the first free "<file>.torn-N", which
-// is on the disk before. `fd` is open for reading and writing. Error{io} names the file at fault.
+// Cuts the file off at `offset`, after saving the bytes behind it in the first free "<file>.torn-N"
+// and syncing that to the disk. `fd` must be open for reading and writing. Throws Error{io}, which
+// names the file at fault.
 void cut_torn_end(int fd, std::uint64_t offset, const std::filesystem::path& file);
 
 }  // namespace armwright

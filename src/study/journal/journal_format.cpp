@@ -23,8 +23,7 @@ constexpr std::uint8_t kEndType = 2;
 constexpr std::uint8_t kJacobianType = 3;
 constexpr unsigned kStatuses = 1 + static_cast<unsigned>(EvaluationStatus::abandoned);
 
-// The fields are listed once, in visit_fields, and four visitors measure, write, read and check
-// them.
+// visit_fields lists the fields once, and four visitors measure, write, read and check them.
 
 template <class Fields, class Record>
 void visit_evaluation(Fields& fields, Record& record) {
@@ -137,7 +136,7 @@ struct Read {
   }
 };
 
-// As Read, without taking anything.
+// Reads as Read does, but stores no values.
 struct Check {
   Read read;
 
@@ -183,7 +182,7 @@ void encode_as(std::uint8_t type, const Record& record, std::string& buffer) {
   frame.number(calc_crc32({payload, measure.bytes}));
 }
 
-// `on_blank` gets a record of the payload's type, still empty.
+// Calls `on_blank` with an empty record of the payload's type.
 template <class OnBlank>
 auto with_blank_record(std::string_view payload, OnBlank on_blank)
     -> decltype(on_blank(EvaluationRecord())) {

@@ -1,5 +1,5 @@
-// The bytes of a journal (study/journal.hpp), little-endian throughout; doubles are stored as their
-// bits, so that NaN survives.
+// The bytes of a journal (journal.hpp), little-endian throughout. Doubles are stored as their bits,
+// so NaN survives.
 //
 //   file       = "AWJRNL01" record*
 //   record     = u32 payload length | u32 CRC-32 of the payload | payload
@@ -9,7 +9,7 @@
 //                | text set | list numbers (u64) | list x | text reason
 //                | list objectives | list constraint_values | list case_errors | list metrics
 //                | list residuals (empty unless the optimizer uses them)
-//   evaluation with Jacobian = u8 3 | as above | list jacobian (a row a residual, row after row)
+//   evaluation with Jacobian = u8 3 | as above | list jacobian (one row per residual, row by row)
 //   end        = u8 2 | u64 evaluations | text reason
 //   text       = u32 length | bytes          list = u32 count | 8 bytes each
 #pragma once
@@ -26,17 +26,16 @@
 namespace armwright::journal_format {
 
 inline constexpr std::string_view kMagic = "AWJRNL01";
-inline constexpr std::size_t kFrameBytes = 8;  // length and checksum
-inline constexpr std::size_t kProbeBytes =
-    13;  // what could_begin_payload() wants to see; no payload is shorter
-// 8 million numbers, far above any candidate's. A longer record is refused when written and taken
-// for damage when read.
+inline constexpr std::size_t kFrameBytes = 8;   // length and checksum
+inline constexpr std::size_t kProbeBytes = 13;  // of could_begin_payload(); the shortest payload
+// 8 million numbers, far more than any candidate has. A longer record is refused when it is
+// written, and counts as damage when it is read.
 inline constexpr std::size_t kMaxPayloadBytes = std::size_t{64} << 20;
 
 using Record = std::variant<EvaluationRecord, EndRecord>;
 
-// Appends the framed record. Error{bad_data}, with `buffer` unchanged, if it is larger than
-// kMaxPayloadBytes.
+// Appends the record with its frame to `buffer`. Throws Error{bad_data} if the payload is larger
+// than kMaxPayloadBytes; `buffer` is unchanged then.
 void encode(const EvaluationRecord& record, std::string& buffer);
 void encode(const EndRecord& record, std::string& buffer);
 
@@ -44,20 +43,21 @@ struct Frame {
   std::uint32_t payload_bytes = 0;
   std::uint32_t checksum = 0;
 };
-Frame decode_frame(std::string_view bytes);  // the first kFrameBytes
+Frame decode_frame(std::string_view bytes);  // exactly kFrameBytes
 
-// The bytes of the whole records at the beginning of `records`, whose last one may be cut short.
+// Returns the size of the whole records at the beginning of `records`; the last record may be cut
+// short.
 std::size_t count_whole_record_bytes(std::string_view records);
 
-// A cheap test that nearly no place fails to fail unless a record begins there: `probe` is the
-// payload's first kProbeBytes.
+// Returns false for nearly every place at which no payload begins; it is cheap. `probe` is the
+// first kProbeBytes of the payload.
 bool could_begin_payload(std::string_view probe, std::uint32_t payload_bytes);
 
-// The bytes are exactly one payload: each list within it has the length that it states, and nothing
-// is left over. Looks at a few places only, however long they are.
+// Returns whether the bytes are exactly one payload: every list in it has the stated length, and no
+// byte is left over. The cost does not depend on the length of the lists.
 bool is_payload(std::string_view bytes);
 
-// Nothing if the bytes are no payload. Never allocates more than a small multiple of their own
+// Returns nothing if the bytes are no payload. Never allocates more than a small multiple of their
 // size.
 std::optional<Record> decode_payload(std::string_view payload);
 

@@ -9,7 +9,7 @@
 
 #include "base/error.hpp"
 #include "study/journal/journal_format.hpp"
-#include "study/journal/journal_window.hpp"
+#include "study/journal/journal_reader.hpp"
 
 namespace armwright {
 namespace {
@@ -34,7 +34,7 @@ bool same_bits(const EvaluationRecord& a, const EvaluationRecord& b) {
   return bytes_a == bytes_b;
 }
 
-// Sorts by index; a record written twice counts once, two different ones cannot both be true.
+// Sorts by index and drops repeated records. Throws Error{bad_data} if repeated ones differ.
 void sort_places(std::deque<RecordedEvaluations::Place>& places, JournalWindow& window) {
   using Place = RecordedEvaluations::Place;
   if (!std::ranges::is_sorted(places)) {

@@ -33,7 +33,7 @@ std::string get_variable(const char* name) {
   return value == nullptr ? "" : value;
 }
 
-// How the batch systems name a job and its entry in an array of jobs.
+// The environment variables in which a batch system names a job and its index in a job array.
 struct BatchSystem {
   const char* name;
   const char* job;
@@ -42,7 +42,7 @@ struct BatchSystem {
 constexpr BatchSystem kBatchSystems[] = {
     {"slurm", "SLURM_ARRAY_JOB_ID", "SLURM_ARRAY_TASK_ID"},
     {"slurm", "SLURM_JOB_ID", nullptr},
-    {"pbs", "PBS_JOBID", nullptr},  // holds the entry as well
+    {"pbs", "PBS_JOBID", nullptr},  // includes the index
     {"lsf", "LSB_JOBID", "LSB_JOBINDEX"},
     {"sge", "JOB_ID", "SGE_TASK_ID"},
 };
@@ -67,7 +67,7 @@ std::optional<std::string> read_if_there(const std::filesystem::path& file) {
   try {
     return read_file(file, kAttemptLimit_bytes);
   } catch (const Error&) {
-    return std::nullopt;  // gone meanwhile, or no file of ours
+    return std::nullopt;  // removed in the meantime, or not a file that armwright wrote
   }
 }
 
@@ -153,7 +153,7 @@ Attempt::Attempt(const std::filesystem::path& attempts, std::int64_t process_beg
     if (::mkdir(path_.c_str(), 0777) == 0) {
       break;
     }
-    // What a network file system has done and denied costs a number.
+    // A network file system may create the folder and still report EEXIST. Its number is lost then.
     if (errno != EEXIST) {
       fail_io(path_, "create this folder", errno);
     }
@@ -169,11 +169,11 @@ std::string Attempt::find_successor() const {
   if (!tokens.empty() && tokens.back() > token_) {
     return describe_successor(tokens.back());
   }
-  // Tokens that were cleared away are taken again.
+  // A token that was removed can be taken by another process, so the record is compared.
   const auto record = read_if_there(path_ / kAttemptRecord);
   const bool is_ours =
       std::ranges::binary_search(tokens, token_) && (!record || *record == record_);
-  return is_ours ? "" : "superseded: its folder is gone, as when the cell was done by another";
+  return is_ours ? "" : "superseded: its folder is gone; perhaps another attempt ended the cell";
 }
 
 void Attempt::tell_alive(std::uint64_t cases) const {
@@ -205,7 +205,7 @@ AttemptState read_attempt(const std::filesystem::path& attempts, int token) {
     if (::stat((path / kSignOfLife).c_str(), &found) == 0) {
       const auto written = std::chrono::system_clock::from_time_t(found.st_mtime);
       const std::chrono::duration<double> age = std::chrono::system_clock::now() - written;
-      state.silence_s = std::max(0.0, age.count());  // clocks of machines differ
+      state.silence_s = std::max(0.0, age.count());  // the machines' clocks may differ
     }
     state.cases = parse_sign_of_life(*text, path / kSignOfLife);
   }
@@ -224,7 +224,7 @@ std::string find_later_life(const std::filesystem::path& attempts, std::int64_t 
   if (job.empty() || tokens.empty()) {
     return "";
   }
-  // Machines of a cluster agree on the time far better than a job is begun again quickly.
+  // The clocks of a cluster differ much less than the time between two starts of a job.
   const AttemptState last = read_attempt(attempts, tokens.back());
   const bool is_later =
       last.record && last.record->job == job && last.record->process_begun_s > begun_s;

@@ -1,17 +1,18 @@
-// Attempts at a cell of a study by processes anywhere that see its folder. Nothing here relies on a
-// lock between machines: an attempt owns the folder of its token,
+// Attempts at a cell of a study by processes on any machines that see the study's folder. No lock
+// between machines is needed. Each attempt owns one numbered folder; the number is its token:
 //
 //   STUDY/attempts/PROBLEM/OPTIMIZER/rNN/001, 002, ...
 //
-// which it alone has made (mkdir is atomic, on network file systems too), and writes nowhere else
-// until it publishes (publication.hpp). The highest token is the valid one.
+// Only one process can create a token's folder (mkdir is atomic, also on network file systems). An
+// attempt writes only in its own folder until it publishes the finished cell. The attempt with the
+// highest token is the valid one.
 //
-//   attempt.json   who: host, process, job, when begun
-//   alive          sign of life, rewritten every ten seconds with the cases done; removed at an
-//                  orderly end
-//   error.txt      why it broke
-//   run/           the cell as an ordinary run; as a whole it becomes cells/PROBLEM/OPTIMIZER/rNN
-//   aside/         an unfinished cell that lay where run/ had to go
+//   attempt.json   the owner: host, process, job, start time
+//   alive          sign of life with the number of simulated cases; rewritten every ten seconds and
+//                  removed at an orderly end
+//   error.txt      the error that ended the attempt
+//   run/           the cell as an ordinary run; published as cells/PROBLEM/OPTIMIZER/rNN
+//   aside/         an unfinished cell that was moved away from there
 #pragma once
 
 #include <chrono>
@@ -30,62 +31,75 @@ inline constexpr const char* kAttemptsFolder = "attempts";
 std::filesystem::path make_attempts_path(const StudyPlan& plan, const Cell& cell,
                                          const std::filesystem::path& study);
 
-// Of the attempts in such a folder, ascending; none if it is not there.
+// Returns the tokens of the attempts in such a folder, ascending; none if the folder is missing.
 std::vector<int> list_tokens(const std::filesystem::path& attempts);
 std::filesystem::path make_token_path(const std::filesystem::path& attempts, int token);
 
-// Who made an attempt.
+// The owner of an attempt.
 struct AttemptRecord {
   std::string host;
   std::int64_t pid = 0;
   std::string job;                   // "slurm 12_3", "pbs 7.head"; empty outside of a batch system
   std::string started;               // UTC
-  std::int64_t process_begun_s = 0;  // Unix time at which the process began, perhaps at other cells
+  std::int64_t process_begun_s = 0;  // Unix time; the process may have run other cells before
 };
 AttemptRecord describe_this_process(std::int64_t begun_s);
 std::string to_json(const AttemptRecord& record);
-// Error{bad_data}.
+// Throws Error{bad_data} with the name of `file`.
 AttemptRecord parse_attempt(const std::string& text, const std::filesystem::path& file);
 
+// An attempt of this process.
 class Attempt {
  public:
-  // Takes the next free token and says who it is. Error{io}.
+  // Takes the next free token and writes attempt.json. Throws Error{io}.
   Attempt(const std::filesystem::path& attempts, std::int64_t process_begun_s);
 
   int token() const { return token_; }
   std::filesystem::path run() const { return path_ / "run"; }
   std::filesystem::path aside() const { return path_ / "aside"; }
 
-  // "superseded by attempt 3"; empty while nobody came after us.
+  // Returns "superseded by attempt 3", or an empty text while this attempt is the newest.
   std::string find_successor() const;
 
+  // Writes the sign of life.
   void tell_alive(std::uint64_t cases) const;
-  void end_in_order() const;  // no sign of life is expected any more
+  // Removes the sign of life: other processes then expect none.
+  void end_in_order() const;
   void record_error(const std::string& error) const;
 
  private:
   std::filesystem::path attempts_;
   int token_ = 0;
   std::filesystem::path path_;
-  std::string record_;  // attempt.json
+  std::string record_;  // text of attempt.json
 };
 
-// What an attempt's folder shows to others, whatever state it is in.
+// The state of an attempt as other processes see it in its folder.
 struct AttemptState {
   int token = 0;
-  std::optional<AttemptRecord> record;  // nothing if it has none, or none that can be read
-  std::optional<double> silence_s;      // since the last sign of life, while one is expected
-  std::optional<std::uint64_t> cases;   // done at that time
-  std::string error;                    // empty unless it broke
+  std::optional<AttemptRecord> record;  // empty if it is missing or cannot be read
+  std::optional<double> silence_s;      // time since the last sign of life, while one is expected
+  std::optional<std::uint64_t> cases;   // simulated until the last sign of life
+  std::string error;                    // empty unless an error ended the attempt
 };
 AttemptState read_attempt(const std::filesystem::path& attempts, int token);
 
-// Whether the newest attempt is of the same job of a batch system in a later life: then a process
-// that began at `begun_s` is what a lost node has left of an earlier one, between two cells, and
-// must not begin another. Names the attempt: "superseded by attempt 3"; empty if it is not so.
+// Returns "superseded by attempt 3" if the newest attempt belongs to a later start of this
+// process's batch job, otherwise an empty text. A process that began at `begun_s` was then left
+// behind by a lost node and must not begin another cell.
 std::string find_later_life(const std::filesystem::path& attempts, std::int64_t begun_s);
 
-// Signs of life come every ten seconds, and network file systems may show them late.
+// Moves the finished cell in `run` to its place, cells/PROBLEM/OPTIMIZER/rNN. Uses one rename,
+// which fails if a finished cell is there, so exactly one of several finished ones is published.
+// Returns false if another one was there before; cells are deterministic, so it is equally good. An
+// unfinished cell in the place is moved to `aside` first. `run` must be on the study's file system.
+// Throws Error{busy} if a local comparison is writing the cell, Error{bad_data} if another cell's
+// record is there, or Error{io}.
+bool publish_cell(const StudyPlan& plan, const Cell& cell, const std::filesystem::path& study,
+                  const std::filesystem::path& run, const std::filesystem::path& aside);
+
+// Longest time without a sign of life until an attempt counts as silent. Signs of life are written
+// every ten seconds, and network file systems may show them late.
 inline constexpr double kLongestSilence_s = 60;
 
 }  // namespace armwright

@@ -13,18 +13,16 @@
 #include "base/error.hpp"
 #include "study/compare/cell.hpp"
 #include "study/matrix/attempt.hpp"
-#include "study/matrix/earlier_state.hpp"
-#include "study/matrix/publication.hpp"
 
 namespace armwright {
 namespace {
 
-// Passes everything on, and knows how far the run is.
+// Passes everything on to `next` and counts the simulated training cases.
 class CountingObserver final : public RunObserver {
  public:
   explicit CountingObserver(RunObserver& next) : next_(next) {}
   void on_progress(const Progress& progress) override {
-    if (progress.phase == Progress::Phase::training) {
+    if (progress.phase == CaseRole::training) {
       cases_ = progress.done;
     }
     next_.on_progress(progress);
@@ -37,8 +35,9 @@ class CountingObserver final : public RunObserver {
   std::atomic<std::uint64_t> cases_ = 0;
 };
 
-// While it lives: gives signs of life, and stops the run once there is a newer attempt. That makes
-// an orphan end soon; what keeps it from doing harm is that it writes in its own folder only.
+// A thread that writes signs of life and stops the run once there is a newer attempt, for as long
+// as this object lives. A superseded process therefore ends soon. Until then it does no harm,
+// because it writes only in its own folder.
 class Watcher {
  public:
   Watcher(const Attempt& attempt, const CountingObserver& run, StopSignal& stop)
@@ -76,7 +75,7 @@ class Watcher {
           attempt_.tell_alive(run_.cases());
         }
       } catch (const Error&) {
-        // What hides the folder from us shows in the run's own writing, or passes.
+        // A lasting error also shows when the run itself writes; a short one may be ignored.
       }
     }
   }
@@ -88,7 +87,7 @@ class Watcher {
   std::mutex mutex_;
   std::condition_variable wake_;
   bool ended_ = false;
-  std::thread thread_;  // last: begins when all else is there
+  std::thread thread_;  // declared last: it uses all other members
 };
 
 CellAttempt superseded(const Attempt& attempt) {
@@ -107,7 +106,7 @@ CellAttempt attempt_cell(const StudyPlan& plan, const Cell& cell, const CellAtte
   }
   const Attempt attempt(attempts, request.process_begun_s);
   try {
-    // Whoever was at it may have published before there was anything of ours to see.
+    // An earlier attempt may have published the cell before it could see this one.
     if (load_cell(plan, cell, request.study)) {
       attempt.end_in_order();
       return {};
@@ -134,7 +133,7 @@ CellAttempt attempt_cell(const StudyPlan& plan, const Cell& cell, const CellAtte
     attempt.end_in_order();
     return {CellAttempt::End::done, "", !outcome->failure.empty()};
   } catch (const Error& error) {
-    // What others have cleared away under our hands is no fault.
+    // The error is no fault if another process has superseded this attempt and removed its files.
     if (!attempt.find_successor().empty()) {
       return superseded(attempt);
     }
@@ -142,7 +141,7 @@ CellAttempt attempt_cell(const StudyPlan& plan, const Cell& cell, const CellAtte
     try {
       attempt.record_error(error.what());
     } catch (const Error&) {
-      // Where nothing can be written, the first error is the one to tell.
+      // If the error cannot be written either, the first error is still the one to report.
     }
     throw;
   }

@@ -1,6 +1,6 @@
-// One cell of a study, run by one of perhaps several processes that are at it, on machines that
-// know nothing of each other: an attempt (attempt.hpp) that goes on from the furthest earlier one
-// and is published (publication.hpp) if it is still the newest when it is done.
+// Runs one cell of a study by an attempt (attempt.hpp). Several processes may run the same cell on
+// machines that cannot talk to each other. An attempt resumes from the earlier attempt with the
+// most evaluations. It is published if it is still the newest when it ends.
 #pragma once
 
 #include <cstdint>
@@ -16,25 +16,40 @@ namespace armwright {
 
 struct CellAttemptRequest {
   std::filesystem::path study;
-  unsigned jobs = 1;
+  unsigned jobs = 1;                      // threads
   std::vector<std::string> command_line;  // for the manifest
   std::int64_t process_begun_s = 0;       // Unix time
 };
 
 struct CellAttempt {
   enum class End {
-    done,        // the cell is in its place, by us or by another
-    stopped,     // by `stop`; a later attempt goes on
-    superseded,  // a newer attempt is at it
+    done,        // the cell is in its place, published by this attempt or another one
+    stopped,     // `stop` ended it; a later attempt resumes it
+    superseded,  // a newer attempt runs the cell
   };
   End end = End::done;
-  std::string successor;          // of one that was superseded: "superseded by attempt 3"
-  bool optimizer_failed = false;  // of a cell that is done by us
+  std::string successor;          // only if superseded: "superseded by attempt 3"
+  bool optimizer_failed = false;  // only if done by this attempt
 };
 
-// Within a second of a newer attempt's begin `stop` is requested (StopReason::terminated): whoever
-// runs several cells in a row is an orphan then. An Error is recorded in the attempt and thrown.
+// Runs the cell by a new attempt. Requests `stop` (StopReason::terminated) within a second after a
+// newer attempt begins: this process was then left behind and must not run its other cells either.
+// An Error is recorded in the attempt and thrown.
 CellAttempt attempt_cell(const StudyPlan& plan, const Cell& cell, const CellAttemptRequest& request,
                          StopSignal& stop, RunObserver& observer);
+
+// Makes `run` the folder of a run that begins with the longest recorded state of the cell: manifest
+// and journal. The state comes from an attempt, which may still be running, or from the unfinished
+// cell in its place. States that cannot be read are skipped with a message; their evaluations are
+// repeated. Creates nothing if there is no state. Throws Error{io}.
+void copy_furthest_state(const StudyPlan& plan, const Cell& cell,
+                         const std::filesystem::path& study, const std::filesystem::path& run,
+                         RunObserver& observer);
+
+// Puts the longest state of each unfinished cell that attempts have begun in the cell's place. The
+// caller is a local comparison that holds the study's lock. Attempts that are still running are
+// superseded. Throws Error{io}.
+void adopt_attempts(const StudyPlan& plan, const std::filesystem::path& study,
+                    RunObserver& observer);
 
 }  // namespace armwright

@@ -1,10 +1,9 @@
-#include "study/matrix/cell_script.hpp"
-
 #include <fmt/format.h>
 
 #include "base/text.hpp"
 #include "study/compare/study_folder.hpp"
 #include "study/matrix/cell_selection.hpp"
+#include "study/matrix/chunks.hpp"
 
 namespace armwright {
 namespace {
@@ -77,7 +76,7 @@ void replace_word(std::string& text, std::string_view word, const std::string& b
   }
 }
 
-// Within double quotes of bash.
+// Escapes a text for use inside double quotes in bash.
 std::string escape_for_echo(const std::string& text) {
   std::string escaped;
   for (const char c : text) {
@@ -102,7 +101,7 @@ std::string make_cell_script(const StudyPlan& plan, std::span<const Chunk> chunk
   const std::string configs =
       request.configs ? fmt::format("export ARMWRIGHT_CONFIGS={}\n", quote_word(*request.configs))
                       : "";
-  // What stands in a comment or is shown must not end it.
+  // Texts in comments and messages must not end them.
   std::string text = fmt::format(
       fmt::runtime(kScriptHead), fmt::arg("cells", cells), fmt::arg("name", sanitize(plan.name)),
       fmt::arg("hash", calc_plan_hash(plan).substr(0, 16)), fmt::arg("chunks", chunks.size()),
@@ -112,7 +111,7 @@ std::string make_cell_script(const StudyPlan& plan, std::span<const Chunk> chunk
   for (std::size_t number = 0; number < chunks.size(); ++number) {
     text += fmt::format("    {}) run_cells", number + 1);
     for (const Cell& cell : chunks[number].cells) {
-      // Letters, digits and _ - . % / only: nothing that bash would read otherwise.
+      // The name needs no quotes: it has only letters, digits and _ - . % /.
       text += " " + make_cell_name(plan, cell);
     }
     text += " ;;\n";

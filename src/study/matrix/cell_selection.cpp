@@ -5,25 +5,58 @@
 #include <set>
 #include <string_view>
 
+#include "base/config.hpp"
 #include "base/error.hpp"
+#include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "study/compare/rerun.hpp"
+#include "study/compare/study_folder.hpp"
 
 namespace armwright {
 namespace {
+
+std::filesystem::path find_study_folder(const std::filesystem::path& name) {
+  if (is_study_folder(name)) {
+    return name;
+  }
+  if (name.filename() == "study.toml" && std::filesystem::is_regular_file(name)) {
+    return name.has_parent_path() ? name.parent_path() : std::filesystem::path(".");
+  }
+  throw Error(ErrorKind::usage,
+              fmt::format("{}: is neither the folder of a study nor the study.toml in one; "
+                          "'armwright compare' makes such a folder, and with --executor script it "
+                          "runs nothing",
+                          sanitize(name.string())));
+}
 
 std::size_t parse_cell_number(std::string_view text, std::string_view word, std::size_t count) {
   const auto number = parse_integer(text);
   if (!number || *number < 0 || static_cast<std::size_t>(*number) >= count) {
     throw Error(ErrorKind::usage,
-                fmt::format("'{}' is no cell of the study; its cells have the numbers 0 to {}, or "
-                            "names as PROBLEM/OPTIMIZER/rNN",
+                fmt::format("'{}' is not a cell of the study; name a cell by its number, 0 to {}, "
+                            "or as PROBLEM/OPTIMIZER/rNN",
                             sanitize(word), count - 1));
   }
   return static_cast<std::size_t>(*number);
 }
 
 }  // namespace
+
+RecordedStudy load_recorded_study(const std::filesystem::path& name) {
+  RecordedStudy study{find_study_folder(name), {}};
+  const auto file = study.folder / "study.toml";
+  study.plan = load_study_plan(study.folder);
+  const ConfigTable recorded = ConfigTable::load(file);
+  const ConfigTable now = ConfigTable::parse(to_toml(study.plan), file.string());
+  const auto differences = describe_differences(recorded.to_json(), now.to_json());
+  if (!differences.empty()) {
+    throw Error(ErrorKind::usage,
+                fmt::format("{}: gives another plan here than where it was made, so cells could "
+                            "not be compared:\n  {}",
+                            sanitize(file.string()), join(differences, "\n  ")));
+  }
+  return study;
+}
 
 std::vector<Cell> select_cells(const StudyPlan& plan, std::span<const std::string> words) {
   const std::vector<Cell> all = list_cells(plan);

@@ -1,6 +1,7 @@
-// Cells of a study as they are named on a command line.
+// Finds the study and the cells that a command line names.
 #pragma once
 
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,12 +10,25 @@
 
 namespace armwright {
 
-// "3": the number of a cell, from 0, in the order of list_cells(); "3-9": from one to another, both
-// included; "q1-complex/ga/r03": its name, which stays right when the plan grows. In the order
-// given, each once. Error{usage}.
+// A study's folder and the plan that it records.
+struct RecordedStudy {
+  std::filesystem::path folder;
+  StudyPlan plan;
+};
+
+// Loads the study of the folder `name`, or of the file `name` if that is a study.toml. Throws
+// Error{usage} for any other path. Also throws Error{usage} if the recorded plan is resolved to
+// another plan here, because an optimizer, a plugin or armwright has another version.
+RecordedStudy load_recorded_study(const std::filesystem::path& name);
+
+// Returns the cells that the words name, in the order given, each once. A word is one of
+//   "3"                  the number of a cell, from 0, in the order of list_cells()
+//   "3-9"                a range of numbers, both ends included
+//   "q1-complex/ga/r03"  the name of a cell, which stays valid when the plan grows
+// Throws Error{usage} for any other word.
 std::vector<Cell> select_cells(const StudyPlan& plan, std::span<const std::string> words);
 
-// "q1-complex/ga/r03", with labels as folders are named.
+// Returns "q1-complex/ga/r03", with the labels written as in folder names.
 std::string make_cell_name(const StudyPlan& plan, const Cell& cell);
 
 }  // namespace armwright

@@ -1,9 +1,27 @@
 #include "study/matrix/chunks.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <numeric>
 
 namespace armwright {
 namespace {
+
+double measure_case_s(const StudyProblem& problem, CaseRole role, const std::string& set) {
+  constexpr int kCases = 32;
+  std::vector<double> x;
+  for (const DecisionVariable& variable : problem.loaded.problem->description().variables) {
+    x.push_back(variable.start);
+  }
+  CaseBlock block{role, set, std::vector<std::uint64_t>(kCases)};
+  std::iota(block.numbers.begin(), block.numbers.end(), std::uint64_t{0});
+  problem.loaded.problem->evaluate(x, block);  // not timed: generates the cases, which are kept
+  const auto start = std::chrono::steady_clock::now();
+  problem.loaded.problem->evaluate(x, block);
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  return taken.count() / kCases;
+}
 
 std::vector<Chunk> cut_chunks(std::span<const Cell> cells, std::span<const double> durations_s,
                               double least_s) {
@@ -19,7 +37,7 @@ std::vector<Chunk> cut_chunks(std::span<const Cell> cells, std::span<const doubl
   }
   if (!open.cells.empty() && chunks.empty()) {
     chunks.push_back(std::move(open));
-  } else if (!open.cells.empty()) {  // too short for one of its own
+  } else if (!open.cells.empty()) {  // too short for a chunk of its own
     Chunk& last = chunks.back();
     last.cells.insert(last.cells.end(), open.cells.begin(), open.cells.end());
     last.expected_s += open.expected_s;
@@ -29,13 +47,46 @@ std::vector<Chunk> cut_chunks(std::span<const Cell> cells, std::span<const doubl
 
 }  // namespace
 
+std::vector<double> measure_cell_durations_s(const StudyPlan& plan) {
+  constexpr double kOverhead_s = 0.03;  // for files and for starting a process
+  std::vector<double> durations_s;
+  for (const StudyProblem& problem : plan.problems) {
+    StudyPlan one = plan;
+    one.problems = {problem};
+    const StudyCost cost = calc_cost(one);
+    const CaseSets& sets = problem.loaded.sets;
+    const double all_s = static_cast<double>(cost.training) *
+                             measure_case_s(problem, CaseRole::training, sets.training) +
+                         static_cast<double>(cost.validation + cost.test) *
+                             measure_case_s(problem, CaseRole::test, sets.test);
+    durations_s.push_back(kOverhead_s + all_s / static_cast<double>(cost.cells));
+  }
+  return durations_s;
+}
+
+double estimate_cell_memory_mib(const StudyPlan& plan) {
+  constexpr double kProgram_mib = 96;
+  constexpr double kTargets_mib = 128;  // the cache of test cases, which only arms fill
+  constexpr double kEvaluation_mib = 32.0 / (1 << 20);
+  const bool has_arm = std::ranges::any_of(plan.problems, [](const StudyProblem& problem) {
+    return problem.loaded.tracking() != nullptr;
+  });
+  int fewest_cases = plan.problems.front().schedule.cases;
+  for (const StudyProblem& problem : plan.problems) {
+    fewest_cases = std::min(fewest_cases, problem.schedule.cases);
+  }
+  const double evaluations =
+      static_cast<double>(plan.budget) / static_cast<double>(std::max(1, fewest_cases));
+  return kProgram_mib + (has_arm ? kTargets_mib : 0) + kEvaluation_mib * evaluations;
+}
+
 std::vector<Chunk> plan_chunks(std::span<const Cell> cells, std::span<const double> durations_s,
                                double least_s, std::size_t most) {
   double total_s = 0;
   for (const Cell& cell : cells) {
     total_s += durations_s[cell.problem];
   }
-  // Of pieces that are each a `most`-th of the whole, or more, there are never more than that.
+  // If every chunk takes at least the whole time / `most`, there are at most `most` chunks.
   return cut_chunks(cells, durations_s, std::max(least_s, total_s / static_cast<double>(most)));
 }
 

@@ -35,7 +35,7 @@ OutputEnds open_output(const std::string& program) {
   return {FileDescriptor(ends[0]), FileDescriptor(ends[1])};
 }
 
-// False at the end.
+// Appends some of the output to `text`. Returns false at the end of the stream.
 bool read_some(const FileDescriptor& from, std::string& text) {
   std::array<char, 4096> buffer{};
   const ssize_t got = ::read(from.get(), buffer.data(), buffer.size());
@@ -62,7 +62,7 @@ pid_t start_command(std::span<const std::string> words, int out, int err) {
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_adddup2(&actions, out, STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, err, STDERR_FILENO);
-  // What we ignore, it need not.
+  // The program starts with the default action for signals that this process ignores.
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t ignored;
@@ -101,7 +101,7 @@ CommandOutput run_command(std::span<const std::string> words) {
     std::array<pollfd, 2> waits = {pollfd{out_open ? out.read.get() : -1, POLLIN, 0},
                                    pollfd{err_open ? err.read.get() : -1, POLLIN, 0}};
     if (::poll(waits.data(), waits.size(), -1) < 0) {
-      continue;  // a signal
+      continue;  // interrupted by a signal
     }
     out_open = out_open && (waits[0].revents == 0 || read_some(out.read, output.out));
     err_open = err_open && (waits[1].revents == 0 || read_some(err.read, output.err));

@@ -1,5 +1,3 @@
-#include "study/matrix/earlier_state.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +12,8 @@
 #include "study/compare/cell.hpp"
 #include "study/journal/journal.hpp"
 #include "study/matrix/attempt.hpp"
-#include "study/run/record_files.hpp"
+#include "study/matrix/cell_attempt.hpp"
+#include "study/run/run_folder.hpp"
 
 namespace armwright {
 namespace {
@@ -24,7 +23,8 @@ struct EarlierRun {
   std::uintmax_t journal_bytes = 0;
 };
 
-// Records of equal runs are equal, so the longest journal is the furthest.
+// Returns the earlier runs, the longest journal first. Runs of one cell record the same
+// evaluations, so the longest journal has the most of them.
 std::vector<EarlierRun> find_earlier_runs(const StudyPlan& plan, const Cell& cell,
                                           const std::filesystem::path& study) {
   std::vector<std::filesystem::path> folders = {study / make_cell_path(plan, cell)};
@@ -51,7 +51,7 @@ std::vector<EarlierRun> find_earlier_runs(const StudyPlan& plan, const Cell& cel
   return runs;
 }
 
-// False if the source has gone meanwhile: published, or cleared away.
+// Returns false if another process has published or removed the source in the meantime.
 bool copy_bytes_of(const std::filesystem::path& source, const std::filesystem::path& target) {
   std::error_code error;
   std::filesystem::copy_file(source, target, std::filesystem::copy_options::overwrite_existing,
@@ -82,7 +82,7 @@ void copy_furthest_state(const StudyPlan& plan, const Cell& cell,
   for (const EarlierRun& earlier : find_earlier_runs(plan, cell, study)) {
     make_folder(run);
     try {
-      // Whoever still writes it goes on meanwhile; its last record may be torn in ours.
+      // Another process may still write the journal, so the last record of the copy may be torn.
       if (!copy_bytes_of(earlier.folder / "journal", run / "journal")) {
         continue;
       }
@@ -95,8 +95,8 @@ void copy_furthest_state(const StudyPlan& plan, const Cell& cell,
         throw;
       }
       observer.on_message(
-          fmt::format("warning: what {} holds cannot be gone on with and is made again: its "
-                      "journal or manifest is damaged (armwright doctor tells where)",
+          fmt::format("warning: the run in {} cannot be resumed and is made again: its "
+                      "journal or manifest is damaged (armwright doctor shows where)",
                       sanitize(earlier.folder.string())));
     }
   }

@@ -1,5 +1,3 @@
-#include "study/matrix/publication.hpp"
-
 #include <fmt/format.h>
 #include <stdio.h>
 
@@ -11,6 +9,7 @@
 #include "base/text.hpp"
 #include "study/compare/cell.hpp"
 #include "study/journal/journal_file.hpp"
+#include "study/matrix/attempt.hpp"
 #include "study/run/run_lock.hpp"
 
 namespace armwright {
@@ -19,8 +18,8 @@ namespace {
 void move_aside(const std::filesystem::path& target, const std::filesystem::path& aside) {
   if (const std::string writer = find_writer(target); !writer.empty()) {
     throw Error(ErrorKind::busy,
-                fmt::format("{} is being written by {}, which will finish it; what was made here "
-                            "is kept and not needed",
+                fmt::format("{} is being written by {}, which will finish it; the cell of this "
+                            "attempt is kept but not needed",
                             sanitize(target.string()), writer));
   }
   std::filesystem::path free = aside;
@@ -29,12 +28,13 @@ void move_aside(const std::filesystem::path& target, const std::filesystem::path
   }
   const bool had_record = std::filesystem::exists(target / "cell.json");
   if (::rename(target.c_str(), free.c_str()) != 0) {
-    if (errno != ENOENT) {  // whoever does the same at this moment may have it first
+    if (errno != ENOENT) {  // ENOENT: another process has moved it at the same moment
       fail_io(target, "move it aside to " + free.string(), errno);
     }
     return;
   }
-  // And may have put a finished one there, which goes back unless the next has come already.
+  // Another process may have put a finished cell there just before the rename. Move it back, unless
+  // a further one is in its place already.
   if (!had_record && std::filesystem::exists(free / "cell.json") &&
       ::rename(free.c_str(), target.c_str()) != 0 && errno != ENOTEMPTY && errno != EEXIST) {
     fail_io(free, "move it back to " + target.string(), errno);
@@ -43,26 +43,25 @@ void move_aside(const std::filesystem::path& target, const std::filesystem::path
 
 }  // namespace
 
-Publication publish_cell(const StudyPlan& plan, const Cell& cell,
-                         const std::filesystem::path& study, const std::filesystem::path& run,
-                         const std::filesystem::path& aside) {
+bool publish_cell(const StudyPlan& plan, const Cell& cell, const std::filesystem::path& study,
+                  const std::filesystem::path& run, const std::filesystem::path& aside) {
   const auto target = study / make_cell_path(plan, cell);
   make_folder(target.parent_path());
-  // In each round what lies there is moved aside, by us or another; no more come than there are
-  // processes at this cell.
+  // In each round this or another process moves the unfinished cell aside. There are at most as
+  // many rounds as processes that run this cell.
   constexpr int kMostRounds = 1000;
   for (int round = 0; round < kMostRounds; ++round) {
     if (load_cell(plan, cell, study)) {
-      return Publication::superfluous;
+      return false;
     }
     if (::rename(run.c_str(), target.c_str()) == 0) {
       sync_folder_of(target);
-      return Publication::published;
+      return true;
     }
     const int error = errno;
-    // A network file system may have done it and lost the answer.
+    // A network file system may have renamed the folder and then lost the reply.
     if (error == ENOENT && load_cell(plan, cell, study)) {
-      return Publication::published;
+      return true;
     }
     if (error != ENOTEMPTY && error != EEXIST) {
       fail_io(target, "put the finished cell in place", error);
@@ -71,8 +70,9 @@ Publication publish_cell(const StudyPlan& plan, const Cell& cell,
       move_aside(target, aside);
     }
   }
-  throw Error(ErrorKind::busy, fmt::format("{}: others keep putting unfinished cells there",
-                                           sanitize(target.string())));
+  throw Error(ErrorKind::busy,
+              fmt::format("{}: other processes keep putting unfinished cells there",
+                          sanitize(target.string())));
 }
 
 }  // namespace armwright

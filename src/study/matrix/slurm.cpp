@@ -15,8 +15,8 @@
 #include "base/file.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
-#include "study/compare/escape.hpp"
 #include "study/compare/study_folder.hpp"
+#include "study/compare/study_plan.hpp"
 #include "study/matrix/command_output.hpp"
 
 namespace armwright {
@@ -33,13 +33,13 @@ bool is_job_number(std::string_view text) {
          text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-// As sbatch --parsable prints it: NUMBER or NUMBER;CLUSTER, on a line of its own.
+// Reads the output of sbatch --parsable: one line with NUMBER or NUMBER;CLUSTER.
 std::string parse_job(const CommandOutput& output) {
   const std::string line = output.out.substr(0, output.out.find('\n'));
   const std::string job = line.substr(0, line.find(';'));
   if (!is_job_number(job)) {
     throw Error(ErrorKind::usage,
-                fmt::format("sbatch printed '{}' where the number of the job should be; look with "
+                fmt::format("sbatch printed '{}' instead of the number of the job; check with "
                             "squeue whether it was submitted",
                             sanitize(line)));
   }
@@ -64,7 +64,7 @@ std::string read_submitted_job(const std::filesystem::path& file) {
     const json j = json::parse(text);
     const std::string job = j.at("job");
     if (j.at("format") != kSubmissionFormat || !is_job_number(job)) {
-      throw std::runtime_error("format or job is none that this version reads");
+      throw std::runtime_error("this version cannot read its format or job");
     }
     return job;
   } catch (const std::exception& error) {
@@ -91,7 +91,7 @@ std::filesystem::path get_submissions(const std::filesystem::path& study) {
   return std::filesystem::absolute(study).lexically_normal() / "submissions";
 }
 
-// Ours alone, though two may be at it.
+// Creates a folder that no other process uses, even if another one submits at the same time.
 std::filesystem::path claim_submission_folder(const std::filesystem::path& study) {
   make_folder(get_submissions(study));
   while (true) {
@@ -105,7 +105,7 @@ std::filesystem::path claim_submission_folder(const std::filesystem::path& study
   }
 }
 
-// A job that nobody knows of would be submitted again.
+// Records the job, or cancels it if that fails: an unrecorded job would be submitted again.
 void record_submission(const std::filesystem::path& folder, const std::string& job,
                        const std::string& record) {
   try {
@@ -133,7 +133,7 @@ long calc_time_limit_min(std::span<const Chunk> chunks) {
   for (const Chunk& chunk : chunks) {
     longest_s = std::max(longest_s, chunk.expected_s);
   }
-  constexpr double kReserve = 4;  // slower nodes, optimizers that think
+  constexpr double kReserve = 4;  // for slower nodes and optimizers that compute much
   constexpr double kStart_min = 10;
   return std::lround(std::ceil(kReserve * longest_s / 60 + kStart_min));
 }
@@ -141,7 +141,7 @@ long calc_time_limit_min(std::span<const Chunk> chunks) {
 std::vector<std::string> make_sbatch_words(const StudyPlan& plan, std::span<const Chunk> chunks,
                                            const SlurmRequest& request,
                                            const std::filesystem::path& folder) {
-  // In names of files Slurm reads % as the begin of a pattern, and %% as one.
+  // In file names, Slurm reads % as the begin of a pattern and %% as one percent sign.
   std::string log = folder.string();
   for (std::size_t at = log.find('%'); at != std::string::npos; at = log.find('%', at + 2)) {
     log.insert(at, 1, '%');
@@ -173,7 +173,7 @@ std::optional<std::string> find_queued_job(const std::filesystem::path& study) {
   for (const auto& record : records) {
     const std::string job = read_submitted_job(record);
     const CommandOutput queue = run_command(std::vector<std::string>{"squeue", "-h", "-j", job});
-    // Slurm forgets jobs some minutes after their end.
+    // Slurm forgets a job some minutes after its end.
     const bool is_forgotten = queue.err.find("Invalid job id") != std::string::npos;
     if (queue.exit_code != 0 && !is_forgotten) {
       throw Error(ErrorKind::usage,

@@ -1,4 +1,4 @@
-// A study's cells as a job array of Slurm's:
+// Submits a study's cells as a Slurm job array:
 //   STUDY/submissions/001, 002, ...   run.sh, submission.json, task-N.log
 #pragma once
 
@@ -14,32 +14,34 @@ namespace armwright {
 
 struct SlurmRequest {
   std::filesystem::path study;
-  unsigned jobs = 1;                    // threads a task
-  std::vector<std::string> more_words;  // of sbatch, after ours
+  unsigned jobs = 1;                    // threads per task
+  std::vector<std::string> more_words;  // user's options for sbatch, placed after armwright's
 };
 
-// STUDY/submissions/NNN, the next free.
+// Returns the next free STUDY/submissions/NNN. Creates nothing.
 std::filesystem::path choose_submission_folder(const std::filesystem::path& study);
 
-// Generous: a task that is ended goes on in its next life, but loses a queue's time.
+// Returns a generous time limit for every task. A task that reaches it resumes when it is started
+// again, but must wait in the queue first.
 long calc_time_limit_min(std::span<const Chunk> chunks);
 
-// The command line that submits `folder`/run.sh.
+// Returns the command line that submits `folder`/run.sh.
 std::vector<std::string> make_sbatch_words(const StudyPlan& plan, std::span<const Chunk> chunks,
                                            const SlurmRequest& request,
                                            const std::filesystem::path& folder);
 
-// A job of an earlier submission that is still in the queue; nothing if there is none. Error{usage}
-// without squeue, or if it fails; Error{bad_data} for a submission.json that cannot be read.
+// Returns a job of an earlier submission that is still in the queue, or nothing. Throws
+// Error{usage} if squeue is missing or fails, and Error{bad_data} for a submission.json that cannot
+// be read.
 std::optional<std::string> find_queued_job(const std::filesystem::path& study);
 
 struct Submission {
   std::string job;
   std::filesystem::path folder;
 };
-// Writes the script and submits it; one at a time for a study. Error{usage} with Slurm's own words
-// if it refuses, and then nothing stays behind; Error{busy} while an earlier submission is in the
-// queue.
+// Writes the script and submits it. Throws Error{busy} while a job of an earlier submission is in
+// the queue, or another process submits for the study. Throws Error{usage} with Slurm's message if
+// Slurm refuses, and then removes the submission's folder.
 Submission submit_to_slurm(const StudyPlan& plan, std::span<const Chunk> chunks,
                            const SlurmRequest& request, const std::string& script);
 

@@ -15,8 +15,7 @@
 #include "study/compare/study_folder.hpp"
 #include "study/matrix/attempt.hpp"
 #include "study/matrix/cell_selection.hpp"
-#include "study/matrix/publication.hpp"
-#include "study/run/record_files.hpp"
+#include "study/run/run_folder.hpp"
 #include "study/survey/folder_copy.hpp"
 
 namespace armwright {
@@ -24,7 +23,8 @@ namespace {
 
 using nlohmann::json;
 
-// cell.json tells problem, optimizer and configuration, the manifest all of the run.
+// Compares settings: cell.json has problem, optimizer and configuration; the manifest has all other
+// settings of the run.
 std::string find_other_settings(const StudyPlan& plan, const Cell& cell,
                                 const std::filesystem::path& folder) {
   const auto file = folder / "manifest.json";
@@ -61,8 +61,8 @@ class CellImport {
         refusals_.push_back(fmt::format("and {} more", count - kMostShown));
       }
       throw Error(ErrorKind::bad_data,
-                  fmt::format("nothing is merged: the folders hold cells that do not go "
-                              "together:\n  {}\nKeep one of each two, or leave the folder out",
+                  fmt::format("nothing is merged: the folders hold cells that contradict each "
+                              "other:\n  {}\nKeep one of each two, or leave the folder out",
                               join(refusals_, "\n  ")));
     }
   }
@@ -93,8 +93,8 @@ class CellImport {
         text = one;
         found_.push_back({cell, folder});
       } else if (one != text) {
-        refuse(cell, fmt::format("{} and {} have found different things", first.string(),
-                                 folder.string()));
+        refuse(cell,
+               fmt::format("{} and {} have different results", first.string(), folder.string()));
       }
     }
   }
@@ -110,7 +110,7 @@ class CellImport {
   std::vector<std::string> refusals_;
 };
 
-// By way of an attempt of its own, which also ends others that are at the cell.
+// Copies the cell by an attempt of its own, which also supersedes other attempts at the cell.
 void copy_cell(const StudyPlan& plan, const FoundCell& found, const std::filesystem::path& study,
                StopSignal& stop) {
   const Attempt attempt(make_attempts_path(plan, found.cell, study), std::time(nullptr));
@@ -147,13 +147,13 @@ void remove_spent_attempts(const StudyPlan& plan, const std::filesystem::path& s
   if (!std::filesystem::exists(study / kAttemptsFolder)) {
     return;
   }
-  // An orphan may write there still; what it leaves goes next time.
+  // A superseded process may still write there; the next call removes its files.
   std::error_code ignored;
   for (const Cell& cell : list_cells(plan)) {
     const auto attempts = make_attempts_path(plan, cell, study);
     if (std::filesystem::exists(attempts, ignored) && load_cell(plan, cell, study)) {
       std::filesystem::remove_all(attempts, ignored);
-      // These only if they are empty.
+      // remove() removes these folders only if they are empty.
       std::filesystem::remove(attempts.parent_path(), ignored);
       std::filesystem::remove(attempts.parent_path().parent_path(), ignored);
     }

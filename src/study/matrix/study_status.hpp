@@ -1,4 +1,5 @@
-// How far the cells of a study are, whoever runs them: from its folder alone, which is only read.
+// Determines the progress of a study's cells, for any kind of execution. All information comes from
+// the study's folder, which is only read.
 #pragma once
 
 #include <array>
@@ -15,11 +16,11 @@ namespace armwright {
 
 enum class CellState : std::uint8_t {
   done,
-  failed,   // done, but its optimizer has failed
-  broken,   // its last attempt ended with an error
-  running,  // by an attempt whose sign of life is young, or by a local comparison
+  failed,   // done, but its optimizer failed
+  broken,   // an error ended its last attempt
+  running,  // an attempt with a recent sign of life, or a local comparison, runs it
   silent,   // its last attempt has died, or its machine cannot be seen
-  left      // not begun, or stopped in order
+  left      // not begun, or stopped in an orderly way
 };
 inline constexpr std::size_t kCellStates = 6;
 const char* to_string(CellState state);
@@ -27,9 +28,9 @@ const char* to_string(CellState state);
 struct CellStatus {
   Cell cell;
   CellState state = CellState::left;
-  std::optional<AttemptState> attempt;  // the newest, of a cell that is not done
-  std::string writer;                   // a local comparison's process
-  std::string error;                    // of one that is broken, or whose optimizer has failed
+  std::optional<AttemptState> attempt;  // the newest one; only for cells that are not done
+  std::string writer;                   // process of a local comparison that runs the cell
+  std::string error;                    // only for cells that are broken or failed
 };
 
 struct StudyStatus {
@@ -39,7 +40,7 @@ struct StudyStatus {
     std::size_t optimizer = 0;
     Counts counts{};
   };
-  std::string writer;  // who holds the study: a local comparison
+  std::string writer;  // local comparison that holds the study's lock; empty if there is none
   Counts counts{};
   std::vector<Row> rows;            // problem by problem, optimizer by optimizer
   std::vector<CellStatus> notable;  // neither done nor left, in the order of list_cells()
@@ -47,6 +48,7 @@ struct StudyStatus {
   std::size_t count(CellState state) const { return counts[static_cast<std::size_t>(state)]; }
 };
 
+// Reads the status of all cells. Throws Error{io}; a damaged cell.json gives CellState::broken.
 StudyStatus read_study_status(const StudyPlan& plan, const std::filesystem::path& study);
 
 }  // namespace armwright

@@ -24,6 +24,11 @@ bool is_among(const std::vector<Candidate>& candidates, const Candidate& candida
 
 }  // namespace
 
+struct CandidatePool::FrontMember {
+  Candidate candidate;
+  std::vector<double> objectives;
+};
+
 RememberedCandidates::RememberedCandidates(const Selection& selection, bool keeps_all)
     : selection_(selection), keeps_all_(keeps_all) {}
 
@@ -68,8 +73,8 @@ void RememberedCandidates::add(const Candidate& candidate) {
   }
 }
 
-// The last improvements of a long run lie together, close to a limit, and all exceed it where new
-// cases are a little harder: some from further back are judged as well.
+// With constraints, the last improvements of a long run all lie close to a limit. All of them
+// exceed it if the validation cases are a little harder, so earlier candidates are judged as well.
 std::vector<Candidate> RememberedCandidates::spread(std::size_t count) const {
   std::vector<Candidate> candidates = some_;
   if (newest_ && (count_ - 1) % stride_ != 0) {
@@ -88,6 +93,8 @@ CandidatePool::CandidatePool(const RunPlan& plan)
       selection_(plan.selection),
       fresh_(plan.schedule.changes_cases()),
       candidates_(selection_, !problem_.constraints.empty()) {}
+
+CandidatePool::~CandidatePool() = default;
 
 void CandidatePool::recommend(std::vector<double> x, std::uint64_t generation) {
   candidates_.add({std::move(x), 0, generation, true, 0});
@@ -138,8 +145,8 @@ void CandidatePool::extend_front(const EvaluationRecord& record, double objectiv
   front_.push_back({std::move(candidate), objectives});
 }
 
-// Both ends of the front and, where it is longer than what is judged, members in between at even
-// distances of rank along the first objective.
+// Returns the whole front or, if it has too many members to judge, both ends and members at even
+// distances of their rank in the first objective.
 std::vector<Candidate> CandidatePool::thin_front() const {
   std::vector<FrontMember> members = front_;
   std::ranges::stable_sort(members, {}, [](const FrontMember& m) { return m.objectives.front(); });

@@ -1,6 +1,7 @@
-// Remembers, of all that a run evaluates in training, the designs worth judging: with fixed cases
-// every improvement, with fresh ones the best of every generation (objectives on different cases do
-// not compare), with several objectives the front, and what the optimizer recommends.
+// Keeps the designs of a run that are worth judging on the validation set: with fixed training
+// cases every improvement, with changing cases the best of each generation (objectives on different
+// cases cannot be compared), with several objectives the front, and the optimizer's
+// recommendations.
 #pragma once
 
 #include <cstdint>
@@ -13,28 +14,29 @@
 
 namespace armwright {
 
-// A design that may become the winner. Several objectives count as one number here: calc_scalar().
+// A design that may become the winner.
 struct Candidate {
   std::vector<double> x;
-  std::uint64_t evaluation =
-      0;  // of the training evaluation that made it one; unused for a recommendation
+  std::uint64_t evaluation = 0;  // index of its training evaluation; unused if recommended
   std::uint64_t generation = 0;
-  bool recommended = false;  // named by the optimizer; it has no training objective of its own
-  double training_objective = 0;
+  bool recommended = false;       // by the optimizer; it has no training objective then
+  double training_objective = 0;  // calc_scalar(): of several objectives the weighted sum
 };
 
-// Of any number of candidates, in the order in which they come, those that select() may ask for.
+// Keeps those of a sequence of candidates that CandidatePool::select() may need.
 class RememberedCandidates {
  public:
   RememberedCandidates(const Selection& selection, bool keeps_all);
 
   void add(const Candidate& candidate);
-  // The last different ones, each where it came last; oldest first.
+  // Returns the last `selection.last` different candidates, oldest first. A candidate that was
+  // added twice stands at its last place.
   const std::vector<Candidate>& last() const { return last_; }
-  // The best different ones with an objective of their own, the earliest of equals.
+  // Returns the best `selection.best` different candidates that are not recommendations, best
+  // first; of equal ones the earliest.
   const std::vector<Candidate>& best() const { return best_; }
-  // At most `count` of all, the first and the last included, at even distances; where there are
-  // more than 65536, of every second, fourth, ... one. Only of who keeps all.
+  // Returns at most `count` candidates at even distances, including the first and the last. Of more
+  // than 65536 candidates, only every second, fourth, ... one is kept. Needs `keeps_all`.
   std::vector<Candidate> spread(std::size_t count) const;
 
  private:
@@ -50,39 +52,38 @@ class RememberedCandidates {
 
 class CandidatePool {
  public:
-  explicit CandidatePool(const RunPlan& plan);  // which outlives it
+  explicit CandidatePool(const RunPlan& plan);  // the plan must outlive the pool
+  ~CandidatePool();
 
-  void consider(const EvaluationRecord& record);  // a feasible one
+  void consider(const EvaluationRecord& record);  // must be feasible
   void recommend(std::vector<double> x, std::uint64_t generation);
-  void end_generation();  // fresh cases only
-  // With fixed cases the incumbent's; with fresh ones the present generation's best, or the last
-  // one's before there is any; NaN if there is none.
+  void end_generation();  // only with changing training cases
+  // Returns the incumbent's objective with fixed training cases. With changing cases, returns the
+  // best of this generation or, before there is any, of the last one. NaN if there is none.
   double best_objective() const;
-  // Of the present training cases; infinity if there is none.
+  // Returns the incumbent's objective on the present training cases; infinity if there is none.
   double incumbent_objective() const;
-  // The designs to judge on the validation set, oldest first, no two the same: the last and the
-  // best candidates; with constraints, instead of the last, some of the whole run; with several
-  // objectives the front, thinned out.
+  // Returns the different designs to judge on the validation set, oldest first: the last and the
+  // best candidates. With constraints, candidates from the whole run replace the last ones; with
+  // several objectives, members of the front come first.
   std::vector<Candidate> select() const;
 
  private:
+  struct FrontMember;
   void extend_front(const EvaluationRecord& record, double objective);
   std::vector<Candidate> thin_front() const;
 
   const ProblemDescription& problem_;
   const Selection selection_;
-  const bool fresh_;
-  std::optional<Candidate> incumbent_;  // fixed: best so far; fresh: best of this generation
-  // fresh: the best objective of the generation before
+  const bool fresh_;  // the training cases change
+  // The best so far; with changing cases, of this generation.
+  std::optional<Candidate> incumbent_;
+  // With changing cases, the best objective of the generation before.
   double last_best_ = std::numeric_limits<double>::quiet_NaN();
-  // fixed: of all improvements; fresh: of the bests of generations and of recommendations
+  // All improvements and recommendations; with changing cases, the best of each generation.
   RememberedCandidates candidates_;
-  // Several objectives: the feasible evaluations that no other one is at least as good as in all
-  // objectives.
-  struct FrontMember {
-    Candidate candidate;
-    std::vector<double> objectives;
-  };
+  // With several objectives: the feasible evaluations that no other evaluation covers, that is, is
+  // at least as good as in all objectives.
   std::vector<FrontMember> front_;
 };
 

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "sim/tracking/bred_case.hpp"
+#include "sim/tracking/test_case.hpp"
 
 namespace armwright {
 namespace {
@@ -15,7 +15,7 @@ constexpr double kMutation = 0.125;         // of each key of a child
 constexpr double kCap = 2.302585092994046;  // log 10
 constexpr double kLeastError = 1e-300;      // keeps the logarithm finite
 
-// How hard each case is for one design. A case without a number is as hard as can be.
+// Returns the hardness of each case for one design. A case without an error has the largest one.
 std::vector<double> calc_relative_hardness(std::span<const double> errors) {
   std::vector<double> hardness;
   double sum = 0;
@@ -53,22 +53,21 @@ bool CaseBreeder::is_known(std::uint64_t genome, std::span<const std::uint64_t> 
   return std::ranges::find(among, genome) != among.end();
 }
 
-void CaseBreeder::learn(const EvaluationRecord& record, double objective) {
+void CaseBreeder::add(const EvaluationRecord& record, double objective) {
   if (record.evaluation.case_errors.size() == genomes_.size()) {
-    hosts_.push_back({objective, record.evaluation.case_errors});
+    objectives_.push_back(objective);
+    errors_.push_back(record.evaluation.case_errors);
   }
 }
 
 std::vector<double> CaseBreeder::calc_hardness() const {
-  std::vector<const Host*> best;
-  for (const Host& host : hosts_) {
-    best.push_back(&host);
-  }
-  std::ranges::stable_sort(best, {}, [](const Host* host) { return host->objective; });
+  std::vector<std::size_t> best(objectives_.size());
+  std::iota(best.begin(), best.end(), std::size_t{0});
+  std::ranges::stable_sort(best, {}, [&](std::size_t i) { return objectives_[i]; });
   best.resize((best.size() + 1) / 2);
   std::vector<double> hardness(genomes_.size());
-  for (const Host* host : best) {
-    const std::vector<double> its = calc_relative_hardness(host->errors);
+  for (const std::size_t design : best) {
+    const std::vector<double> its = calc_relative_hardness(errors_[design]);
     for (std::size_t j = 0; j < hardness.size(); ++j) {
       hardness[j] += its[j] / static_cast<double>(best.size());
     }
@@ -90,11 +89,12 @@ std::uint64_t CaseBreeder::make_child(std::span<const std::uint64_t> parents) {
 }
 
 void CaseBreeder::breed() {
-  if (hosts_.empty()) {
+  if (objectives_.empty()) {
     return;
   }
   const std::vector<double> hardness = calc_hardness();
-  hosts_.clear();
+  objectives_.clear();
+  errors_.clear();
   std::vector<std::size_t> order(genomes_.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, std::greater{}, [&](std::size_t j) { return hardness[j]; });

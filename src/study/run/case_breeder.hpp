@@ -1,20 +1,23 @@
-// Test cases bred against the designs (schedule `coevolution`): hosts and parasites as in Hillis
-// (1990), "Co-evolving parasites improve simulated evolution as an optimization procedure", Physica
-// D 42. The parasites are K test cases, genomes of sim/bred_case.hpp.
+// Breeds test cases against the designs (schedule `coevolution`), as the hosts and parasites of
+// Hillis (1990), "Co-evolving parasites improve simulated evolution as an optimization procedure",
+// Physica D 42. The hosts are the designs, and the parasites are K test cases, each encoded as a
+// genome (sim/tracking/test_case.hpp).
 //
-// After a generation, a case j is as hard as the better half of the designs find it:
+// After a generation, the hardness of case j is its mean over the better half of the designs:
 //   h_j = mean_i clamp(log e_ij - mean_l log e_il, -c, c),   c = log 10,
-// e_ij the error of design i on case j: relative to the design's other cases, so that no unit
-// matters, and capped, so that one lost target does not outweigh all else. Hopeless designs, for
-// which every case is hard, do not count: only the better half does, of those that had all cases.
-// The harder half of the cases, rounded up, stays; of the rest a quarter (rounded) are fresh, the
-// others children of two different ones that stay: each key from either parent, and with
-// probability 1/8 a new one. No case is in the population twice.
+// where e_ij is the error of design i on case j. The hardness is relative to the design's other
+// cases, so units do not matter, and capped, so one lost target does not decide. Only the better
+// half of the designs that had all cases counts: for hopeless designs every case is hard.
 //
-// Deviations from the source: hosts do not live beside parasites on a grid; every design meets
-// every case, as populations here are small and objectives must compare within a generation.
+// The harder half of the cases, rounded up, stays. Of the other places a quarter (rounded) gets
+// new random cases, and the rest gets children of two different cases that stay. A child takes each
+// key from either parent, or with probability 1/8 a new random one. No case is in the population
+// twice.
 //
-// Pure: state follows from the set's name and the evaluations, so that it can be replayed.
+// Deviations from the source: hosts and parasites do not live on a grid. Every design meets every
+// case, because the populations are small and objectives must be comparable within a generation.
+//
+// The state depends only on the name of the set and on the evaluations, so it can be replayed.
 #pragma once
 
 #include <cstdint>
@@ -29,21 +32,17 @@ namespace armwright {
 
 class CaseBreeder {
  public:
-  // `set` is "coevolved/ID"; at least kFewestBredCases cases.
+  // Draws the first generation. `set` is "coevolved/ID"; `cases` is at least kFewestBredCases.
   CaseBreeder(const std::string& set, int cases);
 
-  // The cases of the present generation, the hardest of the last one first.
+  // Returns the cases of the present generation; the hardest of the last generation come first.
   const std::vector<std::uint64_t>& genomes() const { return genomes_; }
-  // An evaluation of the present generation.
-  void learn(const EvaluationRecord& record, double objective);
-  // Goes on to the next generation; without evaluations everything stays as it is.
+  // Adds an evaluation of the present generation. Ignores one that did not have all cases.
+  void add(const EvaluationRecord& record, double objective);
+  // Breeds the next generation. Without evaluations the cases stay as they are.
   void breed();
 
  private:
-  struct Host {
-    double objective = 0;
-    std::vector<double> errors;
-  };
   std::uint64_t draw_genome();
   std::uint64_t make_child(std::span<const std::uint64_t> parents);
   bool is_known(std::uint64_t genome, std::span<const std::uint64_t> among) const;
@@ -51,7 +50,8 @@ class CaseBreeder {
 
   RandomStream random_;
   std::vector<std::uint64_t> genomes_;
-  std::vector<Host> hosts_;
+  std::vector<double> objectives_;           // one per design
+  std::vector<std::vector<double>> errors_;  // per design, one per case
 };
 
 }  // namespace armwright

@@ -1,5 +1,3 @@
-#include "study/run/database.hpp"
-
 #include <fmt/format.h>
 #include <sqlite3.h>
 
@@ -10,6 +8,8 @@
 
 #include "base/error.hpp"
 #include "base/file.hpp"
+#include "study/run/derived_files.hpp"
+#include "study/run/run_observer.hpp"
 
 namespace armwright {
 namespace {
@@ -39,7 +39,7 @@ class Database {
 
   void check(int code) const {
     if (code != SQLITE_OK && code != SQLITE_DONE && code != SQLITE_ROW) {
-      // Of other failures it is one of something that SQLite tried before.
+      // With other codes, the system's error number is that of an earlier call.
       const bool has_reason = (code & 0xff) == SQLITE_IOERR || (code & 0xff) == SQLITE_FULL;
       const int reason = has_reason ? sqlite3_system_errno(handle_.get()) : 0;
       throw Error(ErrorKind::io,
@@ -59,7 +59,7 @@ class Database {
   std::unique_ptr<sqlite3, Closer> handle_;
 };
 
-// One prepared INSERT, filled column by column.
+// A prepared INSERT statement, which is filled column by column.
 class Insert {
  public:
   Insert(Database& database, const char* sql) : database_(database) {
@@ -98,25 +98,13 @@ class Insert {
   int column_ = 0;
 };
 
-std::string get_role_name(CaseRole role) {
-  switch (role) {
-    case CaseRole::training:
-      return "training";
-    case CaseRole::validation:
-      return "validation";
-    case CaseRole::test:
-      return "test";
-  }
-  return "?";
-}
-
 template <class Records>
 void insert_records(Database& database, const ProblemDescription& problem, const Records& records) {
   Insert evaluation(database, "INSERT INTO evaluation VALUES (?,?,?,?,?,?,?,?,?,?,?,?)");
   Insert case_error(database, "INSERT INTO case_error VALUES (?,?,?,?)");
   for (const EvaluationRecord& record : records) {
     const Evaluation& result = record.evaluation;
-    const std::string role = get_role_name(record.cases.role);
+    const std::string role = to_string(record.cases.role);
     const auto& numbers = record.cases.numbers;
     evaluation << role << record.index << record.generation << std::string(to_string(result.status))
                << result.reason << std::uint64_t{record.clipped} << record.cases.set
@@ -136,7 +124,7 @@ void insert_records(Database& database, const ProblemDescription& problem, const
 void fill_database(const std::filesystem::path& file, const ProblemDescription& problem,
                    const JournalContent& journal) {
   Database database(file);
-  // The whole file is synced at the end: before that nobody looks at it.
+  // The whole file is synced at the end; no other process uses it before that.
   database.execute("PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF; BEGIN");
   database.execute(kSchema);
   {
@@ -168,7 +156,7 @@ void write_database(const std::filesystem::path& file, const ProblemDescription&
     fill_database(temporary, problem, journal);
     put_in_place(temporary, file);
   } catch (...) {
-    std::error_code ignored;  // there is a better error to tell
+    std::error_code ignored;  // the first error is the one to report
     std::filesystem::remove(temporary, ignored);
     throw;
   }

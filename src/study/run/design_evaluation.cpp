@@ -6,26 +6,26 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "study/executor/thread_pool.hpp"
 
 namespace armwright {
 
 namespace {
 
-// Hands the results over batch by batch, in the cases' order. False if it was stopped.
+// Simulates the cases and hands the results to `take`, batch by batch, in the order of the cases.
+// Returns false if it was stopped.
 template <class Take>
 bool simulate_all(const TrackingProblem& problem, const ArmDesign& design, const ChosenCases& cases,
-                  unsigned jobs, StopSignal& stop, RunObserver& observer, BarShare share,
+                  unsigned jobs, StopSignal& stop, RunObserver& observer, Progress progress,
                   const Take& take) {
-  // Between two looks at the progress: enough to occupy all threads.
+  // The cases between two reports of the progress must occupy all threads.
   constexpr std::uint64_t kCasesPerJob = 10;
   constexpr std::uint64_t kBatchesPerJob = 4;
   const std::uint64_t at_once =
       jobs * std::max<std::uint64_t>(kCasesPerJob,
                                      kBatchesPerJob * problem.batch_size(CaseRole::test).largest);
-  Progress progress;
-  progress.phase = Progress::Phase::test;
-  progress.done = share.done_before;
-  progress.total = share.total;
+  progress.phase = CaseRole::test;
+  const std::uint64_t done_before = progress.done;
   observer.on_progress(progress);
   for (std::uint64_t first = 0; first < cases.count;) {
     const std::uint64_t count = std::min(cases.count - first, at_once);
@@ -35,7 +35,7 @@ bool simulate_all(const TrackingProblem& problem, const ArmDesign& design, const
     }
     take(std::move(*results));
     first += count;
-    progress.done = share.done_before + first;
+    progress.done = done_before + first;
     observer.on_progress(progress);
   }
   return true;
@@ -48,14 +48,34 @@ double get_number(const TrackingResult& result) {
 }  // namespace
 
 const TrackingProblem& require_tracking(const LoadedProblem& problem) {
-  if (problem.tracking == nullptr) {
+  if (problem.tracking() == nullptr) {
     throw Error(
         ErrorKind::usage,
         fmt::format("problem '{}' is an analytic function, on which no arm can be evaluated; "
                     "choose a robot problem (armwright list problems)",
                     problem.name));
   }
-  return *problem.tracking;
+  return *problem.tracking();
+}
+
+std::optional<std::vector<MeasuredCase>> evaluate_design(const TrackingProblem& problem,
+                                                         const ArmDesign& design,
+                                                         const TestSet& set, std::uint64_t first,
+                                                         std::uint64_t cases, unsigned jobs,
+                                                         StopSignal& stop) {
+  problem.check_design(design);
+  std::vector<MeasuredCase> results(cases);
+  ThreadPool pool(jobs);
+  const std::size_t chunk = calc_chunk(problem.batch_size(CaseRole::test), cases, pool.size());
+  pool.run((results.size() + chunk - 1) / chunk, [&](std::size_t number) {
+    if (!stop.requested()) {
+      const std::size_t begin = number * chunk;
+      const std::size_t count = std::min(chunk, results.size() - begin);
+      std::ranges::move(problem.measure(design, set, first + begin, count),
+                        results.begin() + static_cast<std::ptrdiff_t>(begin));
+    }
+  });
+  return stop.requested() ? std::nullopt : std::optional(std::move(results));
 }
 
 std::optional<double> get_error(const TrackingResult& result) {
@@ -66,7 +86,7 @@ std::optional<DesignEvaluation> evaluate_with_progress(const TrackingProblem& pr
                                                        const ArmDesign& design,
                                                        const ChosenCases& cases, unsigned jobs,
                                                        StopSignal& stop, RunObserver& observer,
-                                                       BarShare share) {
+                                                       Progress progress) {
   DesignEvaluation evaluation;
   const auto keep = [&](std::vector<MeasuredCase> cases_measured) {
     for (MeasuredCase& one : cases_measured) {
@@ -74,7 +94,7 @@ std::optional<DesignEvaluation> evaluate_with_progress(const TrackingProblem& pr
       evaluation.required.push_back(std::move(one.required));
     }
   };
-  if (!simulate_all(problem, design, cases, jobs, stop, observer, share, keep)) {
+  if (!simulate_all(problem, design, cases, jobs, stop, observer, progress, keep)) {
     return std::nullopt;
   }
   std::vector<double> errors;
@@ -87,7 +107,7 @@ std::optional<DesignEvaluation> evaluate_with_progress(const TrackingProblem& pr
     numbers += error ? 1 : 0;
   }
   evaluation.summary = summarize(errors, kFailureError_m);
-  evaluation.total_torque_n_m = calc_total_torque_n_m(design);
+  evaluation.total_torque_n_m = calc_total_effort(design);
   if (numbers > 0) {
     evaluation.mean_energy_j = energy_j / numbers;
   }
@@ -97,7 +117,7 @@ std::optional<DesignEvaluation> evaluate_with_progress(const TrackingProblem& pr
 std::optional<ErrorSurvey> survey_with_progress(const TrackingProblem& problem,
                                                 const ArmDesign& design, const ChosenCases& cases,
                                                 unsigned jobs, StopSignal& stop,
-                                                RunObserver& observer, BarShare share) {
+                                                RunObserver& observer, Progress progress) {
   ErrorSurvey survey;
   std::vector<double> errors;
   bool failed = false;
@@ -114,7 +134,7 @@ std::optional<ErrorSurvey> survey_with_progress(const TrackingProblem& problem,
       errors.push_back(error);
     }
   };
-  if (!simulate_all(problem, design, cases, jobs, stop, observer, share, take)) {
+  if (!simulate_all(problem, design, cases, jobs, stop, observer, progress, take)) {
     return std::nullopt;
   }
   survey.summary = summarize(errors, kFailureError_m);

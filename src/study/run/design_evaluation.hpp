@@ -1,5 +1,5 @@
-// A given design on a set of test cases, with progress: what evaluate, sweep, verify and reproduce
-// have in common.
+// Evaluates a given design of a tracking problem on a set of test cases. The commands evaluate,
+// sweep, verify and reproduce share these functions.
 #pragma once
 
 #include <cstdint>
@@ -8,59 +8,64 @@
 #include <string>
 #include <vector>
 
+#include "base/stop_signal.hpp"
 #include "problems/config/problem_loader.hpp"
-#include "study/run/run.hpp"
 #include "study/run/run_observer.hpp"
 #include "study/statistics/summary.hpp"
 
 namespace armwright {
 
+// The first `count` cases of a test set.
 struct ChosenCases {
   TestSet set;
   std::uint64_t count = 0;
 };
 
-// The problem's tracking side; Error{usage} for an analytic function, which no arm's design can be
-// evaluated on.
+// Returns the tracking problem of a problem. Throws Error{usage} for an analytic function, which
+// has no arm.
 const TrackingProblem& require_tracking(const LoadedProblem& problem);
 
+// Evaluates a design on the cases first, ..., first + cases - 1 of a set, on `jobs` threads.
+// Returns one result per case, with the values of the problem's requirements, or nothing if
+// stopped. Throws Error{usage} if the design does not fit the problem.
+std::optional<std::vector<MeasuredCase>> evaluate_design(const TrackingProblem& problem,
+                                                         const ArmDesign& design,
+                                                         const TestSet& set, std::uint64_t first,
+                                                         std::uint64_t cases, unsigned jobs,
+                                                         StopSignal& stop);
+
 struct DesignEvaluation {
-  std::vector<TrackingResult> results;  // one a case
-  // Likewise, of each requirement of the problem.
-  std::vector<std::vector<RequiredValue>> required;
+  std::vector<TrackingResult> results;               // one per case
+  std::vector<std::vector<RequiredValue>> required;  // per case, one per requirement
   ErrorSummary summary;
   double total_torque_n_m = 0;
-  std::optional<double> mean_energy_j;  // over the cases that ran to their end
+  std::optional<double> mean_energy_j;  // over the cases with an error
 };
 
-// Where an evaluation stands among those that share one progress bar.
-struct BarShare {
-  std::uint64_t done_before = 0;
-  std::uint64_t total = 0;
-};
-
-// Nothing if it was stopped.
+// As evaluate_design(), and reports the progress to `observer`. `progress` is the state before:
+// done and total count all evaluations that share one progress bar. Returns nothing if stopped.
 std::optional<DesignEvaluation> evaluate_with_progress(const TrackingProblem& problem,
                                                        const ArmDesign& design,
                                                        const ChosenCases& cases, unsigned jobs,
                                                        StopSignal& stop, RunObserver& observer,
-                                                       BarShare share);
+                                                       Progress progress);
 
-// The same without keeping what every case was like, for as many cases as one likes.
+// A summary that does not keep the cases, for any number of them.
 struct ErrorSurvey {
   ErrorSummary summary;
-  std::uint64_t first_failure = 0;  // of summary.failures, if there are any
-  std::string reason;               // why the first case without a number has none
+  std::uint64_t first_failure = 0;  // the first of summary.failures, if there are any
+  std::string reason;               // why the first case without an error has none
 };
+// As evaluate_with_progress().
 std::optional<ErrorSurvey> survey_with_progress(const TrackingProblem& problem,
                                                 const ArmDesign& design, const ChosenCases& cases,
                                                 unsigned jobs, StopSignal& stop,
-                                                RunObserver& observer, BarShare share);
+                                                RunObserver& observer, Progress progress);
 
-// The error of a case, if it has one.
+// Returns the mean error of a case in metres, or nothing if its simulation failed.
 std::optional<double> get_error(const TrackingResult& result);
 
-// A case without a number, and why it has none.
+// A case without an error, and the reason.
 struct CaseFailure {
   std::uint64_t number = 0;
   std::string reason;

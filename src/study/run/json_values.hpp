@@ -1,5 +1,6 @@
-// Values as the result files of this room have them: JSON knows neither NaN nor infinity, so what
-// has no number is null. Only .cpp files include this.
+// Conversions between values and JSON in result files. JSON has neither NaN nor infinity, so a
+// missing number is null. The readers throw nlohmann::json::exception for a value of another type.
+// Only .cpp files include this header.
 #pragma once
 
 #include <cmath>
@@ -20,8 +21,8 @@ inline std::optional<double> optional_from_json(const nlohmann::json& value) {
   return value.is_null() ? std::nullopt : std::optional(value.get<double>());
 }
 
-// A count or an index. nlohmann's own conversion makes one of any number: of -1 the largest there
-// is, of 1e300 whatever the machine has.
+// Reads a count or an index. Unlike nlohmann's own conversion it refuses numbers that are not
+// whole, negative or too large: that turns -1 into the largest number, and 1e300 into any.
 template <class Number = std::uint64_t>
 Number whole_from_json(const nlohmann::json& value) {
   if (!value.is_number_unsigned() ||
@@ -33,7 +34,7 @@ Number whole_from_json(const nlohmann::json& value) {
   return value.get<Number>();
 }
 
-// Of a value to be minimised: null is infinite.
+// For values that are minimised: infinity is written as null.
 inline nlohmann::json value_to_json(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
 }

@@ -12,14 +12,20 @@
 namespace armwright {
 namespace {
 
-// Candidates on their way through a block of cases.
+// A field is the candidates of a race, with the outcomes of the cases that they have had.
 class Field {
  public:
-  Field(CaseRunner& runner, Racer::Candidates candidates, const CaseBlock& block)
-      : runner_(runner), candidates_(candidates), block_(block), outcomes_(candidates.size()) {}
+  Field(const Problem& problem, CaseExecutor& executor, StopSignal& stop,
+        Racer::Candidates candidates, const CaseBlock& block)
+      : problem_(problem),
+        executor_(executor),
+        stop_(stop),
+        candidates_(candidates),
+        block_(block),
+        outcomes_(candidates.size()) {}
 
-  // The next cases up to `end` for each of `who`. False if the run was stopped before all were
-  // simulated.
+  // Simulates the next cases up to `end` for each candidate of `who`. Returns false if the run was
+  // stopped before all were simulated.
   bool advance(std::span<const std::size_t> who, std::size_t end, const Racer::OnCases& on_cases) {
     const auto first = block_.numbers.begin();
     const CaseBlock some{
@@ -31,11 +37,12 @@ class Field {
       points.push_back(candidates_[candidate]);
     }
     std::vector<char> done(who.size());
-    runner_.run_cases(points, some, {}, [&](std::size_t i, std::span<CaseOutcome> outcomes) {
-      std::ranges::move(outcomes, std::back_inserter(outcomes_[who[i]]));
-      done[i] = true;
-      on_cases(some.numbers.size());
-    });
+    executor_.simulate(problem_, points, some, {}, stop_,
+                       [&](std::size_t i, std::span<CaseOutcome> outcomes) {
+                         std::ranges::move(outcomes, std::back_inserter(outcomes_[who[i]]));
+                         done[i] = true;
+                         on_cases(some.numbers.size());
+                       });
     had_ = end;
     return std::ranges::find(done, false) == done.end();
   }
@@ -46,17 +53,19 @@ class Field {
   }
 
  private:
-  CaseRunner& runner_;
+  const Problem& problem_;
+  CaseExecutor& executor_;
+  StopSignal& stop_;
   Racer::Candidates candidates_;
   const CaseBlock& block_;
   std::vector<std::vector<CaseOutcome>> outcomes_;
-  std::size_t had_ = 0;  // cases, by those that are still in
+  std::size_t had_ = 0;  // cases, for each candidate that is still in the race
 };
 
 Evaluation aggregate(const Problem& problem, std::span<const double> x,
                      std::span<const CaseOutcome> outcomes) {
   Evaluation evaluation = problem.aggregate(x, outcomes);
-  evaluation.residuals.clear();  // of a problem that makes them unasked
+  evaluation.residuals.clear();  // some problems always make them
   return evaluation;
 }
 
@@ -87,7 +96,7 @@ std::size_t calc_race_cost(std::span<const Rung> rungs) {
 
 std::size_t count_affordable(const Racing& racing, std::size_t wanted, std::size_t cases,
                              std::size_t budget) {
-  // A larger race never costs less.
+  // Bisection is right because a larger race never costs less.
   std::size_t affordable = 0;
   std::size_t beyond = wanted + 1;
   while (beyond - affordable > 1) {
@@ -108,12 +117,12 @@ std::optional<std::vector<RacedCandidate>> Racer::halve(Candidates candidates,
                                                         const OnCases& on_cases) {
   const std::size_t cases = block.numbers.size();
   const std::vector<Rung> rungs = plan_rungs(racing_, candidates.size(), cases);
-  Field field(runner_, candidates, block);
+  Field field(problem_, executor_, stop_, candidates, block);
   std::vector<RacedCandidate> results(candidates.size());
   std::vector<double> objectives(candidates.size());
   std::vector<std::size_t> alive(candidates.size());
   std::iota(alive.begin(), alive.end(), std::size_t{0});
-  std::vector<std::vector<std::size_t>> dropped;  // rung by rung, at last those that had all cases
+  std::vector<std::vector<std::size_t>> dropped;  // by rung; the last ones had all cases
   for (std::size_t rung = 0; rung < rungs.size(); ++rung) {
     if (!field.advance(alive, rungs[rung].cases, on_cases)) {
       return std::nullopt;
@@ -132,7 +141,7 @@ std::optional<std::vector<RacedCandidate>> Racer::halve(Candidates candidates,
     alive.resize(stay);
     std::ranges::sort(alive);
   }
-  double worst = -std::numeric_limits<double>::infinity();  // of those that got further
+  double worst = -std::numeric_limits<double>::infinity();  // of the candidates that got further
   for (std::size_t rung = rungs.size(); rung-- > 0;) {
     double worst_here = worst;
     for (const std::size_t candidate : dropped[rung]) {
@@ -154,10 +163,10 @@ std::optional<std::vector<RacedCandidate>> Racer::halve(Candidates candidates,
 void Racer::abandon(Candidates candidates, const CaseBlock& block, double threshold,
                     const OnCases& on_cases, const OnDone& on_done) {
   const std::size_t cases = block.numbers.size();
-  // Nothing can be given up before there is an incumbent: no need to stop and ask.
+  // Without an incumbent no candidate can be abandoned, so one chunk has all cases.
   const std::size_t chunk =
       std::isfinite(threshold) ? static_cast<std::size_t>(racing_.chunk_cases) : cases;
-  Field field(runner_, candidates, block);
+  Field field(problem_, executor_, stop_, candidates, block);
   std::vector<std::size_t> alive(candidates.size());
   std::iota(alive.begin(), alive.end(), std::size_t{0});
   while (!alive.empty() && field.had() < cases) {

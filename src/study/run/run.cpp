@@ -8,16 +8,15 @@
 #include "base/file.hpp"
 #include "base/text.hpp"
 #include "process/output_log.hpp"
-#include "study/run/judge.hpp"
-#include "study/run/record_files.hpp"
 #include "study/run/run_evaluator.hpp"
 #include "study/run/run_folder.hpp"
-#include "study/run/store.hpp"
+#include "study/run/winner_selection.hpp"
 
 namespace armwright {
 namespace {
 
-// SQLite opens no file whose whole path is longer, which would be found out when all is done.
+// SQLite cannot open a file whose absolute path is longer. Without this check that would only be
+// noticed at the end of the run.
 void check_path(const std::filesystem::path& folder) {
   constexpr std::size_t kLongestPath_bytes = 480;
   const std::size_t size = std::filesystem::absolute(folder).native().size();
@@ -47,7 +46,7 @@ RunResult make_result(const RunPlan& plan) {
   result.limits = description.limits;
   result.requirements = description.requirements;
   result.test_set = plan.problem.sets.test;
-  result.tracking = plan.problem.tracking != nullptr;
+  result.tracking = plan.problem.tracking() != nullptr;
   result.published = plan.problem.published;
   return result;
 }
@@ -92,7 +91,7 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   optimizer->check_problem(plan.problem.problem->description());
   const RunFolder folder(request.folder, plan, request.command_line);
   if (are_derived_files_there(folder.path(), request.derived)) {
-    if (request.derived == DerivedFiles::all) {  // of a comparison's cell nobody asked
+    if (request.derived == DerivedFiles::all) {  // a comparison's user did not ask for this cell
       observer.on_message(fmt::format("{}: this run is complete; use --new for another one",
                                       folder.path().string()));
     }
@@ -107,11 +106,8 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
     threads.emplace(request.jobs);
     warn_of_fewer_threads(threads->pool().size(), request.jobs, observer);
   }
-  CaseRunner runner(*plan.problem.problem,
-                    request.executor != nullptr ? *request.executor : *threads, stop);
-  const bool ended = recorded.ended;
-  Judge judge(plan, runner, journal, std::move(recorded.judgements), ended, observer);
-  RunEvaluator evaluator(plan, runner, stop, journal, std::move(recorded), observer);
+  CaseExecutor& executor = request.executor != nullptr ? *request.executor : *threads;
+  RunEvaluator evaluator(plan, executor, stop, journal, recorded, observer);
   RunResult result = make_result(plan);
   optimizer->log_to(folder.log());
   try {
@@ -134,49 +130,18 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   result.counts = evaluator.counts();
   result.first_failure = evaluator.first_failure();
   result.least_violation = evaluator.least_violation();
-  auto judged = judge.validate(evaluator.select_candidates());
-  if (!judged) {
+  if (!select_winner(plan, evaluator.select_candidates(), recorded, executor, stop, journal,
+                     observer, result)) {
     journal.close();
     return std::nullopt;
   }
-  result.judged = std::move(*judged);
-  result.winner = Judge::choose_winner(plan.problem.problem->description(), result.judged);
-  if (result.winner) {
-    auto test = judge.test(result.judged[*result.winner].candidate);
-    if (!test) {
-      journal.close();
-      return std::nullopt;
-    }
-    result.test = std::move(*test);
-    result.test_summary = summarize(result.test.case_errors, get_failure_error(result));
-  }
-  // A failed run stays open: started again, it goes on where its optimizer failed.
-  if (!ended && result.failure.empty()) {
+  // A failed run gets no end record, so that it goes on from the failure when it is started again.
+  if (!recorded.ended && result.failure.empty()) {
     journal.append(EndRecord{result.end_reason, result.counts.evaluations});
   }
   journal.close();
   write_derived_files(folder, plan, result, read_journal(folder.journal()), request.derived);
   return result;
-}
-
-std::optional<std::vector<MeasuredCase>> evaluate_design(const TrackingProblem& problem,
-                                                         const ArmDesign& design,
-                                                         const TestSet& set, std::uint64_t first,
-                                                         std::uint64_t cases, unsigned jobs,
-                                                         StopSignal& stop) {
-  problem.check_design(design);
-  std::vector<MeasuredCase> results(cases);
-  ThreadPool pool(jobs);
-  const std::size_t chunk = calc_chunk(problem.batch_size(CaseRole::test), cases, pool.size());
-  pool.run((results.size() + chunk - 1) / chunk, [&](std::size_t number) {
-    if (!stop.requested()) {
-      const std::size_t begin = number * chunk;
-      const std::size_t count = std::min(chunk, results.size() - begin);
-      std::ranges::move(problem.measure(design, set, first + begin, count),
-                        results.begin() + static_cast<std::ptrdiff_t>(begin));
-    }
-  });
-  return stop.requested() ? std::nullopt : std::optional(std::move(results));
 }
 
 RunResult load_result(const std::filesystem::path& folder) {
@@ -190,7 +155,7 @@ RunResult load_result(const std::filesystem::path& folder) {
     throw Error(
         ErrorKind::usage,
         fmt::format("{}: this run has not come to its end; start it again with the same command "
-                    "to go on where it was",
+                    "to resume it",
                     folder.string()));
   }
   return parse_result(read_file(file, kResultLimit_bytes), file);

@@ -1,19 +1,19 @@
-// One run from plan to result: optimize, judge the candidates on the validation set, judge the
-// winner on the test set, derive the tables. Resumable at any moment: start it again with the same
-// plan and folder.
+// Executes one run from its plan to its result: optimizes, evaluates the candidates on the
+// validation set and the winner on the test set, and writes the derived files. A run can be
+// interrupted at any moment; executing it again with the same plan and folder resumes it.
 #pragma once
 
 #include <filesystem>
 #include <optional>
-#include <span>
 #include <string>
+#include <vector>
 
 #include "base/stop_signal.hpp"
 #include "study/executor/case_executor.hpp"
+#include "study/run/derived_files.hpp"
 #include "study/run/run_observer.hpp"
 #include "study/run/run_plan.hpp"
 #include "study/run/run_result.hpp"
-#include "study/run/store.hpp"
 
 namespace armwright {
 
@@ -23,24 +23,19 @@ struct RunRequest {
   unsigned jobs = 1;                      // threads
   std::vector<std::string> command_line;  // for the manifest
   DerivedFiles derived = DerivedFiles::all;
-  CaseExecutor* executor = nullptr;  // instead of `jobs` threads of its own
+  CaseExecutor* executor = nullptr;  // used instead of `jobs` threads of its own, if set
 };
 
-// The result, or nothing if `stop` ended the run early; everything evaluated so far is in the
-// journal then. A run that has ended already is not run again: its recorded result is returned.
+// Returns the result, or nothing if `stop` ended the run early; all finished evaluations are in the
+// journal then. For a run that has ended already, returns its recorded result. Throws Error{usage}
+// for a plan that is not possible or differs from the recorded one, Error{busy} if another process
+// writes the folder, Error{io}, and Error{bad_data} if the journal or the result is damaged or does
+// not replay. A failure of the optimizer is not thrown: it is part of the result.
 std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop,
                                      RunObserver& observer);
 
-// A design on the cases first, ..., first + cases - 1 of a set, fanned out over `jobs` threads,
-// with what the problem requires of each. Nothing if stopped.
-std::optional<std::vector<MeasuredCase>> evaluate_design(const TrackingProblem& problem,
-                                                         const ArmDesign& design,
-                                                         const TestSet& set, std::uint64_t first,
-                                                         std::uint64_t cases, unsigned jobs,
-                                                         StopSignal& stop);
-
-// The result recorded in a folder. Error{usage} if the folder is no run or its run has not ended,
-// saying how to go on.
+// Returns the recorded result of a folder. Throws Error{usage} if the folder is not that of a run
+// or if its run has not ended, Error{bad_data} if the result is damaged, and Error{io}.
 RunResult load_result(const std::filesystem::path& folder);
 
 }  // namespace armwright

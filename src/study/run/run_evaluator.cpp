@@ -14,29 +14,27 @@
 #include "base/bits.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "study/run/racing.hpp"
 
 namespace armwright {
 
-const char* to_string(Progress::Phase phase) {
-  switch (phase) {
-    case Progress::Phase::training:
-      return "training";
-    case Progress::Phase::validation:
-      return "validation";
-    case Progress::Phase::test:
-      break;
-  }
-  return "test";
-}
+// Candidates that the optimizer asks for together, and what is known of them.
+struct RunEvaluator::Batch {
+  std::vector<EvaluationRecord> records;
+  std::vector<char> answered;  // from the journal or by simulation
+  bool with_jacobian = false;
+  std::uint64_t replayed_cases = 0;
+  double threshold = 0;  // of abandonment
+};
 
-RunEvaluator::RunEvaluator(const RunPlan& plan, CaseRunner& runner, StopSignal& stop,
-                           Journal& journal, JournalContent recorded, RunObserver& observer)
+RunEvaluator::RunEvaluator(const RunPlan& plan, CaseExecutor& executor, StopSignal& stop,
+                           Journal& journal, const JournalContent& recorded, RunObserver& observer)
     : plan_(plan),
-      runner_(runner),
+      executor_(executor),
       stop_(stop),
       journal_(journal),
       observer_(observer),
-      recorded_(std::move(recorded.training)),
+      recorded_(recorded.training),
       journal_ended_(recorded.ended),
       candidates_(plan) {
   block_.role = CaseRole::training;
@@ -103,8 +101,7 @@ EvaluationRecord RunEvaluator::make_request(std::span<const double> x) const {
   request.x.resize(x.size());
   bool clipped = false;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    // A coordinate that is no number at all goes to the start value: there is no nearest point
-    // inside.
+    // For NaN there is no nearest point inside the bounds, so the start value replaces it.
     const double inside = std::isnan(x[i])
                               ? variables[i].start
                               : std::clamp(x[i], variables[i].lower, variables[i].upper);
@@ -180,8 +177,8 @@ void RunEvaluator::take_remaining_recorded() {
     }
     ++counts_.replayed;
     replayed_cases_ += record.calc_charge();
-    Score score;  // nobody is asking any more
-    take(std::move(record), score);
+    Score score;  // unused: the optimizer has ended
+    finish_evaluation(std::move(record), score);
   }
   report(0, 0);
 }
@@ -203,8 +200,9 @@ std::vector<Score> RunEvaluator::evaluate(std::span<const std::vector<double>> p
   if (!races(Racing::Kind::abandonment, with_jacobian)) {
     return evaluate_batch(points, with_jacobian);
   }
-  // What candidates cost is known afterwards: at a time as many as the budget allows whatever
-  // happens, at least one, which ends it if it does not.
+  // The cost of a candidate is only known afterwards. The candidates are therefore evaluated in
+  // parts: as many as the budget allows if none is abandoned, but at least one. A last one that
+  // costs more than is left ends the budget.
   std::vector<Score> scores;
   while (!points.empty() && !stopped()) {
     const auto affordable = static_cast<std::size_t>(std::max<std::int64_t>(1, remaining()));
@@ -243,7 +241,7 @@ std::vector<Score> RunEvaluator::evaluate_batch(std::span<const std::vector<doub
     refuse_replay(batch.records[missing.front()].index, "the recorded run had ended before it");
   }
   if (halves && !missing.empty()) {
-    halve(batch);  // all of it: nothing is taken from the journal
+    halve(batch);  // simulates the whole race again and uses no recorded outcome
   } else {
     count_replayed(batch);
     if (halves) {
@@ -253,15 +251,15 @@ std::vector<Score> RunEvaluator::evaluate_batch(std::span<const std::vector<doub
     }
   }
 
-  // A stop can leave holes; the optimizer learns the results before the first, and a resumed run
-  // evaluates only the holes.
+  // A stop can leave gaps. The optimizer gets the results before the first gap, and a resumed run
+  // evaluates only the gaps.
   const auto complete =
       static_cast<std::size_t>(std::ranges::find(batch.answered, false) - batch.answered.begin());
   stopped_ = complete < points.size();
   replayed_cases_ += batch.replayed_cases;
   std::vector<Score> scores(complete);
   for (std::size_t i = 0; i < complete; ++i) {
-    take(std::move(batch.records[i]), scores[i]);
+    finish_evaluation(std::move(batch.records[i]), scores[i]);
   }
   if (remaining() <= 0) {
     budget_spent_ = true;
@@ -270,7 +268,7 @@ std::vector<Score> RunEvaluator::evaluate_batch(std::span<const std::vector<doub
   return scores;
 }
 
-// What is missing, by place in the batch.
+// Returns the places in the batch that the journal does not have.
 std::vector<std::size_t> RunEvaluator::answer_from_journal(Batch& batch) {
   std::vector<std::size_t> missing;
   batch.answered.resize(batch.records.size());
@@ -303,8 +301,8 @@ void RunEvaluator::simulate(Batch& batch, const std::vector<std::size_t>& missin
   for (const std::size_t i : missing) {
     candidates.emplace_back(batch.records[i].x);
   }
-  // No flush of the journal: its promise of 10 ms is enough, since a resumed run makes again what
-  // a kill has cost, and for quick functions a write a batch would take longer than all the rest.
+  // The journal is not flushed: it writes within 10 ms by itself, and a resumed run repeats what a
+  // kill has lost. For quick functions, a write per batch would take longer than all the rest.
   std::mutex mutex;
   std::size_t finished = batch.records.size() - missing.size();
   std::uint64_t cases = batch.replayed_cases;
@@ -312,7 +310,7 @@ void RunEvaluator::simulate(Batch& batch, const std::vector<std::size_t>& missin
     const std::lock_guard lock(mutex);
     cases += more_cases;
     finished += more_finished;
-    if (finished < batch.records.size()) {  // the last one's is the report on all, afterwards
+    if (finished < batch.records.size()) {  // evaluate_batch() reports the end of the batch
       report(cases, batch.replayed_cases);
     }
   };
@@ -323,7 +321,7 @@ void RunEvaluator::simulate(Batch& batch, const std::vector<std::size_t>& missin
     batch.answered[i] = true;
   };
   if (races(Racing::Kind::abandonment, batch.with_jacobian)) {
-    Racer(plan_.racing, *plan_.problem.problem, runner_)
+    Racer(plan_.racing, *plan_.problem.problem, executor_, stop_)
         .abandon(
             candidates, block_, batch.threshold,
             [&](std::size_t more_cases) { progress(more_cases, 0); },
@@ -334,17 +332,17 @@ void RunEvaluator::simulate(Batch& batch, const std::vector<std::size_t>& missin
             });
     return;
   }
-  runner_.run(
-      candidates, block_, wants_residuals(plan_.optimizer) || batch.with_jacobian,
-      [&](std::size_t candidate, Evaluation evaluation) {
-        finish(candidate, std::move(evaluation));
-        progress(batch.records[missing[candidate]].calc_charge(), 1);
-      },
-      batch.with_jacobian);
+  executor_.evaluate(*plan_.problem.problem, candidates, block_,
+                     {.residuals = wants_residuals(plan_.optimizer) || batch.with_jacobian,
+                      .jacobian = batch.with_jacobian},
+                     stop_, [&](std::size_t candidate, Evaluation evaluation) {
+                       finish(candidate, std::move(evaluation));
+                       progress(batch.records[missing[candidate]].calc_charge(), 1);
+                     });
 }
 
-// The whole race, as its outcome is one: where a kill has left only some of its records, they must
-// be what comes out now.
+// Simulates a whole race, because its outcomes depend on each other. If the journal has some of its
+// records, which a kill can cause, they must be the same as the outcomes now.
 void RunEvaluator::halve(Batch& batch) {
   std::vector<std::span<const double>> candidates;
   for (const EvaluationRecord& record : batch.records) {
@@ -353,7 +351,7 @@ void RunEvaluator::halve(Batch& batch) {
   std::mutex mutex;
   std::uint64_t cases = 0;
   const double penalty = plan_.problem.problem->penalty_objectives().front();
-  auto results = Racer(plan_.racing, *plan_.problem.problem, runner_)
+  auto results = Racer(plan_.racing, *plan_.problem.problem, executor_, stop_)
                      .halve(candidates, block_, penalty, [&](std::size_t more_cases) {
                        const std::lock_guard lock(mutex);
                        cases += more_cases;
@@ -383,7 +381,7 @@ void RunEvaluator::halve(Batch& batch) {
   }
 }
 
-// Of a race that is recorded as a whole.
+// Checks a race whose records are all in the journal.
 void RunEvaluator::check_race(const std::vector<EvaluationRecord>& records) const {
   if (records.empty()) {
     return;
@@ -401,12 +399,12 @@ void RunEvaluator::check_race(const std::vector<EvaluationRecord>& records) cons
   }
 }
 
-void RunEvaluator::take(EvaluationRecord record, Score& score) {
+void RunEvaluator::finish_evaluation(EvaluationRecord record, Score& score) {
   Evaluation& evaluation = record.evaluation;
   counts_.add(record);
   if (breeder_ && evaluation.status != EvaluationStatus::abandoned &&
       !evaluation.objectives.empty()) {
-    breeder_->learn(record, calc_scalar(problem(), evaluation.objectives));
+    breeder_->add(record, calc_scalar(problem(), evaluation.objectives));
   }
   if (is_feasible(evaluation)) {
     candidates_.consider(record);

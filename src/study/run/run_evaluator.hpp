@@ -1,33 +1,35 @@
-// The run's Evaluator: counts the budget exactly (a batch is cut where it ends, whole candidates
-// only), clips points to the bounds and counts that, supplies the training cases, holds the races
-// (study/racing.hpp) and breeds cases (study/case_breeder.hpp), answers from the journal what a
-// former process has evaluated already, journals the rest as it finishes, and remembers the points
-// worth judging.
+// The Evaluator of a run. It charges the budget exactly: a batch is cut where the budget ends, to
+// whole candidates. It clips points to the bounds and counts them, chooses the training cases,
+// races candidates (racing.hpp) and breeds cases (case_breeder.hpp). It answers from the journal
+// what a former process has evaluated, appends all other evaluations to the journal as they finish,
+// and keeps the designs worth judging (candidate_pool.hpp).
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "optimizers/interface/evaluator.hpp"
-#include "study/executor/case_runner.hpp"
+#include "study/executor/case_executor.hpp"
 #include "study/journal/journal.hpp"
 #include "study/run/candidate_pool.hpp"
 #include "study/run/case_breeder.hpp"
-#include "study/run/racing.hpp"
-#include "study/run/run_counts.hpp"
 #include "study/run/run_observer.hpp"
 #include "study/run/run_plan.hpp"
+#include "study/run/run_result.hpp"
 
 namespace armwright {
+
 class RunEvaluator final : public Evaluator {
  public:
-  RunEvaluator(const RunPlan& plan, CaseRunner& runner, StopSignal& stop, Journal& journal,
-               JournalContent recorded, RunObserver& observer);
+  // All references must outlive the evaluator, except `recorded`, the journal's content.
+  RunEvaluator(const RunPlan& plan, CaseExecutor& executor, StopSignal& stop, Journal& journal,
+               const JournalContent& recorded, RunObserver& observer);
 
   const ProblemDescription& problem() const override;
+  // Besides what the Evaluator declares, throws Error{bad_data} if the journal holds another
+  // evaluation than the one asked for, and Error{io} if the journal cannot be written.
   std::vector<Score> evaluate(std::span<const std::vector<double>> points) override {
     return evaluate(points, false);
   }
@@ -39,36 +41,29 @@ class RunEvaluator final : public Evaluator {
 
   bool budget_spent() const { return budget_spent_; }
   const RunCounts& counts() const { return counts_; }
-  // Why the first evaluation without objectives has none; empty if there is no such.
+  // Returns the reason of the first evaluation without objectives; empty if there is none.
   const std::string& first_failure() const { return first_failure_; }
-  // The smallest of an evaluation; nothing without constraints, or if none had a number.
+  // Returns the smallest constraint violation of all evaluations, or nothing if there is none.
   std::optional<double> least_violation() const { return least_violation_; }
-  // Once the optimizer has returned by itself: Error{bad_data} if the journal holds more
-  // evaluations than it asked for; not after a stop.
+  // To be called after the optimizer has returned by itself, not after a stop. Throws
+  // Error{bad_data} if the journal holds more evaluations than the optimizer has asked for.
   void check_replay_complete() const;
-  // Once the optimizer has failed: counts and remembers, as if it had asked for them, the
-  // evaluations in the journal that it has not come to, those behind a gap too. What an earlier
-  // attempt at the run achieved is so not lost to a later one that fails sooner. (Recommendations
-  // are not in the journal: those of an earlier attempt only count where this one repeats them.)
-  // Error{bad_data} if they belong to a generation before the present one.
+  // To be called after the optimizer has failed. Counts and keeps the recorded evaluations that the
+  // optimizer has not asked for, also those behind a gap, as if it had. An attempt that fails
+  // earlier than a former one therefore loses none of its evaluations. (Recommendations are not in
+  // the journal, so those of former attempts are lost unless they are made again.) Throws
+  // Error{bad_data} if an evaluation belongs to a generation before the present one.
   void take_remaining_recorded();
   std::vector<Candidate> select_candidates() const { return candidates_.select(); }
 
  private:
-  // Candidates that are asked for together, and what is known of them.
-  struct Batch {
-    std::vector<EvaluationRecord> records;
-    std::vector<char> answered;  // from the journal or by simulation
-    bool with_jacobian = false;
-    std::uint64_t replayed_cases = 0;
-    double threshold = 0;  // of abandonment
-  };
+  struct Batch;
   std::vector<Score> evaluate(std::span<const std::vector<double>> points, bool with_jacobian);
   std::vector<Score> evaluate_batch(std::span<const std::vector<double>> points,
                                     bool with_jacobian);
   bool races(Racing::Kind kind, bool with_jacobian) const;
   std::vector<std::size_t> answer_from_journal(Batch& batch);
-  void count_replayed(Batch& batch);  // what the journal has answered
+  void count_replayed(Batch& batch);
   void simulate(Batch& batch, const std::vector<std::size_t>& missing);
   void halve(Batch& batch);
   std::uint64_t calc_cases_left() const {
@@ -80,11 +75,11 @@ class RunEvaluator final : public Evaluator {
   void check_race(const std::vector<EvaluationRecord>& records) const;
   void start_generation();
   [[noreturn]] void refuse_replay(std::uint64_t evaluation, const std::string& difference) const;
-  void take(EvaluationRecord record, Score& score);
+  void finish_evaluation(EvaluationRecord record, Score& score);
   void report(std::uint64_t more_cases, std::uint64_t more_replayed);
 
   const RunPlan& plan_;
-  CaseRunner& runner_;
+  CaseExecutor& executor_;
   StopSignal& stop_;
   Journal& journal_;
   RunObserver& observer_;
@@ -93,11 +88,11 @@ class RunEvaluator final : public Evaluator {
   bool stopped_ = false;
   bool journal_ended_;
   RunCounts counts_;
-  std::uint64_t replayed_cases_ = 0;  // those of counts_.replayed
+  std::uint64_t replayed_cases_ = 0;  // of the evaluations in counts_.replayed
   std::string first_failure_;
   std::optional<double> least_violation_;
   CaseBlock block_;
-  std::optional<CaseBreeder> breeder_;  // of a schedule that breeds
+  std::optional<CaseBreeder> breeder_;  // set if the schedule breeds cases
   CandidatePool candidates_;
 };
 

@@ -14,15 +14,14 @@
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "sim/simd/simd_level.hpp"
-#include "study/run/record_files.hpp"
 
 namespace armwright {
 namespace {
 
 using nlohmann::json;
 
-// Makes the folder, or accepts one that holds a run or nothing: a run's files must not replace
-// somebody else's of the same names.
+// Creates the folder, or accepts one that is empty or holds a run. Refuses others, because the
+// run's files must not replace the user's own files of the same names.
 std::filesystem::path claim_folder(const std::filesystem::path& path) {
   make_folder(path);
   if (std::filesystem::exists(path / "manifest.json")) {
@@ -30,7 +29,7 @@ std::filesystem::path claim_folder(const std::filesystem::path& path) {
   }
   for (const auto& entry : std::filesystem::directory_iterator(path)) {
     const std::string name = entry.path().filename().string();
-    if (name != "lock" && name != "manifest.json.new") {  // what a kill at the very start leaves
+    if (name != "lock" && name != "manifest.json.new") {  // a kill at the very start leaves these
       throw Error(
           ErrorKind::usage,
           fmt::format("{}: holds '{}' but no manifest.json, so it is not the folder of a run; "
@@ -77,7 +76,7 @@ json read_manifest(const std::filesystem::path& file) {
   }
 }
 
-// What to do where the recorded SIMD level is another one than now; empty where it is not.
+// Returns advice if the recorded SIMD level differs from the present one, else an empty text.
 std::string explain_simd(const json& recorded, const json& now) {
   const json::json_pointer level("/problem/physics/simd");
   if (!recorded.contains(level) || !recorded[level].is_string() || !now.contains(level) ||

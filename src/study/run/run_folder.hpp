@@ -1,33 +1,43 @@
-// A run's folder: manifest.json (what was asked for, and by what it was made), journal (the truth),
-// lock, optimizer.log (what a plugin printed), and what was derived from the journal: result.json,
-// winner.toml, convergence.csv, results.sqlite, winner-trajectory.csv. Nothing is ever overwritten
-// by another run, and two processes never write one folder.
+// The folder of a run. It holds manifest.json (the configuration and the build), journal (every
+// evaluation), lock, optimizer.log (the output of plugins), and the files derived from the journal:
+// result.json, winner.toml, convergence.csv, results.sqlite, winner-trajectory.csv. No run
+// overwrites the folder of another one, and two processes never write the same folder.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "study/run/run_lock.hpp"
 #include "study/run/run_plan.hpp"
 
 namespace armwright {
 
+// The version of manifest.json. Readers must check it.
+inline constexpr int kManifestFormat = 1;
+
+// The largest files that are read; larger ones are refused as damaged.
+inline constexpr std::size_t kManifestLimit_bytes = std::size_t{16} << 20;
+inline constexpr std::size_t kResultLimit_bytes = std::size_t{256} << 20;
+inline constexpr std::size_t kCellLimit_bytes = std::size_t{64} << 20;
+
 class RunFolder {
  public:
-  // Creates the folder or opens it to resume: takes the lock, then writes the manifest or compares
-  // it. Error{busy}; Error{io}; Error{usage} with every difference if the recorded configuration is
-  // not `plan`.
+  // Creates the folder, or opens it to resume its run. Takes the lock, then writes the manifest or
+  // compares it with `plan`. Throws Error{busy} if another process has the lock, Error{io},
+  // Error{bad_data} if the manifest is damaged, and Error{usage} if the folder holds other files
+  // or a run with another configuration; the message lists every difference.
   RunFolder(const std::filesystem::path& path, const RunPlan& plan,
             std::span<const std::string> command_line);
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path journal() const { return path_ / "journal"; }
-  // What an optimizer's own processes print.
   std::filesystem::path log() const { return path_ / "optimizer.log"; }
   std::filesystem::path result() const { return path_ / "result.json"; }
-  // Why a resumed run may not replay: recorded and present version, compiler or CPU differ. Empty
-  // if they do not.
+  // Returns the differences between the recorded build and this one (version, compiler, CPU), which
+  // may keep a resumed run from replaying. Empty if there are none.
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
@@ -36,7 +46,8 @@ class RunFolder {
   std::vector<std::string> warnings_;
 };
 
-// results/NAME, or with `fresh` the first free of NAME, NAME-002, NAME-003, ...
+// Returns parent/NAME or, with `fresh`, the first of NAME, NAME-002, NAME-003, ... that does not
+// exist.
 std::filesystem::path choose_run_folder(const std::filesystem::path& parent,
                                         const std::string& name, bool fresh);
 

@@ -20,7 +20,7 @@
 namespace armwright {
 namespace {
 
-// What the holder has written, or a stand-in if it has not come to that yet.
+// Returns the name that the holder has written, or "another process" if it has not written it yet.
 std::string read_holder(int fd) {
   std::array<char, 512> text{};
   const ssize_t got = ::pread(fd, text.data(), text.size(), 0);
@@ -40,7 +40,7 @@ void write_holder(int fd, const std::filesystem::path& file) {
   }
 }
 
-// 0 or an errno.
+// Returns 0 or an errno.
 int try_lock(int fd, int operation) {
   while (::flock(fd, operation | LOCK_NB) != 0) {
     if (errno != EINTR) {
@@ -70,7 +70,7 @@ RunLock::RunLock(const std::filesystem::path& folder)
   if (!fd_.is_open()) {
     fail_io(file, "open it", errno);
   }
-  // Whoever asks only who writes here (find_writer) holds it for an instant.
+  // find_writer() holds the lock for an instant, so a busy lock is tried again.
   constexpr int kTries = 5;
   constexpr std::chrono::milliseconds kPause{2};
   for (int tries = 1; true; ++tries) {
@@ -92,21 +92,23 @@ RunLock::RunLock(const std::filesystem::path& folder)
   write_holder(fd_.get(), file);
 }
 
-ReadLock::ReadLock(const std::filesystem::path& folder) : fd_(open_for_reading(folder)) {
-  if (!fd_.is_open()) {
+RunLock RunLock::for_reading(const std::filesystem::path& folder) {
+  FileDescriptor fd(open_for_reading(folder));
+  if (!fd.is_open()) {
     if (errno != ENOENT) {
       fail_io(folder / "lock", "open it", errno);
     }
-    return;
+    return RunLock(std::move(fd));
   }
-  const int error = try_lock(fd_.get(), LOCK_SH);
+  const int error = try_lock(fd.get(), LOCK_SH);
   if (error == EWOULDBLOCK) {
     throw Error(ErrorKind::busy, fmt::format("{} is being written by {}; wait for it, or stop it",
-                                             folder.string(), read_holder(fd_.get())));
+                                             folder.string(), read_holder(fd.get())));
   }
   if (error != 0) {
     fail_io(folder / "lock", "lock it", error);
   }
+  return RunLock(std::move(fd));
 }
 
 std::string find_writer(const std::filesystem::path& folder) {

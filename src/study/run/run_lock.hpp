@@ -1,41 +1,38 @@
-// Keeps two processes from writing one run: an flock(2) on FOLDER/lock. It goes with its holder,
-// however that ends; the file stays and tells who holds or last held it. A child that is forked and
-// does not exec shares the lock.
+// Keeps two processes from writing one run, with an flock(2) on the file FOLDER/lock. The system
+// releases the lock when its holder ends in any way. The file stays and names the last holder. A
+// forked child that does not call exec shares the lock.
 #pragma once
 
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include "base/file_descriptor.hpp"
 
 namespace armwright {
 
+// A RunLock holds the lock of one folder as long as it lives.
 class RunLock {
  public:
-  // Error{busy} names the process that has the lock; Error{io} if the folder's file system or
-  // rights do not allow one.
+  // Takes the lock for writing. Throws Error{busy}, which names the process that has the lock, and
+  // Error{io} if the file system or the rights of the folder do not allow a lock.
   explicit RunLock(const std::filesystem::path& folder);
+  // Returns a lock that keeps writers out, and creates no file. Without a lock file there has been
+  // no writer, and the result holds nothing. Throws Error{busy}, which names the process that
+  // writes the folder, and Error{io}.
+  static RunLock for_reading(const std::filesystem::path& folder);
 
  private:
+  explicit RunLock(FileDescriptor fd) : fd_(std::move(fd)) {}
+
   FileDescriptor fd_;
 };
 
-// Keeps writers out of a folder while it is read, and leaves no trace in it. Where there is no lock
-// file nobody has written yet, and nothing is held.
-class ReadLock {
- public:
-  // Error{busy} names the process that writes the folder; Error{io}.
-  explicit ReadLock(const std::filesystem::path& folder);
-
- private:
-  FileDescriptor fd_;
-};
-
-// Who writes the folder at this moment: "process 12 on HOST"; empty if nobody does, or if it cannot
-// be told. Changes nothing.
+// Returns the process that writes the folder now, as "process 12 on HOST"; empty if there is none
+// or if it cannot be determined. Changes nothing.
 std::string find_writer(const std::filesystem::path& folder);
 
-// This machine's, as locks name it.
+// Returns the name of this machine, as locks record it.
 std::string get_host_name();
 
 }  // namespace armwright

@@ -19,10 +19,10 @@ json to_json_value(const OptionValue& value) {
   return std::visit([](const auto& v) { return json(v); }, value);
 }
 
-// Candidates of a generation or batch are held in memory all at once: their variables, and what
-// came of each of their cases.
+// The candidates of a generation or batch are in memory together, each with its variables and the
+// outcomes of its cases. Throws Error{usage} if that is too much.
 void check_size(const RunPlan& plan) {
-  constexpr std::int64_t kMostNumbers = 50'000'000;  // 400 MB, a few times over
+  constexpr std::int64_t kMostNumbers = 50'000'000;  // a few times 400 MB
   const auto each =
       static_cast<std::int64_t>(plan.problem.problem->description().variables.size()) +
       plan.schedule.cases;
@@ -35,7 +35,7 @@ void check_size(const RunPlan& plan) {
       throw Error(
           ErrorKind::usage,
           fmt::format("optimizer '{}': option '{}' is {}; with {} variables and {} training "
-                      "cases a candidate it must be at most {}, or memory would not do",
+                      "cases per candidate it must be at most {} to fit into memory",
                       plan.optimizer.name, name, *size, each - plan.schedule.cases,
                       plan.schedule.cases, kMostNumbers / each));
     }
@@ -89,14 +89,14 @@ void check_plan(const RunPlan& plan) {
   if (plan.schedule.changes_cases() && !row.capabilities.generations) {
     throw Error(ErrorKind::usage,
                 fmt::format("optimizer '{}' has no generations, so new training cases for every "
-                            "generation (schedule {}) mean nothing to it; use --schedule fixed:K, "
+                            "generation (schedule {}) are not possible; use --schedule fixed:K, "
                             "which evaluates every candidate on the same K cases",
                             row.name, to_string(plan.schedule.kind)));
   }
   if (plan.schedule.kind == Schedule::Kind::coevolution && plan.schedule.cases < kFewestBredCases) {
     throw Error(ErrorKind::usage,
-                fmt::format("schedule coevolution breeds {} training cases; it must be at least "
-                            "{}, parents and places for children",
+                fmt::format("schedule coevolution breeds {} training cases; there must be at least "
+                            "{}, for parents and children",
                             plan.schedule.cases, kFewestBredCases));
   }
   const ProblemDescription& problem = plan.problem.problem->description();
@@ -122,10 +122,11 @@ void check_plan(const RunPlan& plan) {
   if (plan.racing.kind == Racing::Kind::abandonment &&
       !plan.problem.problem->calc_lower_bound(std::vector<double>(problem.variables.size()), {},
                                               1)) {
-    throw Error(ErrorKind::usage,
-                fmt::format("racing abandonment needs to know what the objective is at least, and "
-                            "{} cannot tell; use racing halving or none",
-                            plan.problem.name));
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("racing abandonment needs a lower bound of the objective, which {} does "
+                    "not have; use racing halving or none",
+                    plan.problem.name));
   }
   check_size(plan);
   if (plan.budget < 0) {
@@ -149,7 +150,7 @@ std::string to_json(const RunPlan& plan) {
       {"schedule", {{"kind", to_string(plan.schedule.kind)}, {"cases", plan.schedule.cases}}},
       {"selection", {{"last", plan.selection.last}, {"best", plan.selection.best}}},
   };
-  if (plan.racing.kind != Racing::Kind::none) {  // plans from before there was racing say nothing
+  if (plan.racing.kind != Racing::Kind::none) {  // as in plans from versions without racing
     run["racing"] = to_text(plan.racing);
   }
   std::map<std::string, std::string> inputs = plan.problem.input_hashes;
@@ -165,7 +166,7 @@ std::string make_run_name(const RunPlan& plan) {
     const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '_';
     c = plain ? c : '-';
   }
-  // "./libmine.so" and "exec:python3 -u mine.py": neither hidden nor a path.
+  // "./libmine.so" and "exec:python3 -u mine.py" must not give a hidden file or a path.
   optimizer.erase(0, optimizer.find_first_not_of("-."));
   return fmt::format("{}-{}-seed{}", plan.problem.name, optimizer, plan.seed);
 }

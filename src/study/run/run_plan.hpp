@@ -1,5 +1,5 @@
-// All that determines a run's result: problem, optimizer with its options, seed, budget, schedule,
-// and how the winner is chosen.
+// The plan of a run: everything that determines its result, namely problem, optimizer with its
+// options, seed, budget, schedule, racing, and the selection of candidates for the winner.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +13,12 @@
 
 namespace armwright {
 
-// Which of a run's designs are judged on the validation set; the best of them there is the winner
-// and meets the test set.
+// The candidates that are judged on the validation set. The best of them there is the winner, and
+// is evaluated on the test set.
 struct Selection {
-  int last = 40;  // the last N different incumbents (cases that change: bests of generations
-                  // and recommendations)
-  int best = 5;   // and the N with the best training objective
+  int last = 40;  // the last N different incumbents; with training cases that change, the last N
+                  // bests of generations and recommendations
+  int best = 5;   // the N with the best training objective besides
 };
 
 struct RunPlan {
@@ -32,29 +32,29 @@ struct RunPlan {
   Selection selection;
 };
 
-// The problem's own schedule; where that changes its cases and the optimizer has no generations,
-// the first `fixed_cases` cases for every candidate.
+// Returns the problem's own schedule. If that changes its cases and the optimizer has no
+// generations, returns the schedule of the first `fixed_cases` cases for every candidate.
 Schedule choose_schedule(const LoadedProblem& problem, const OptimizerRow& optimizer);
 
-// Whether the optimizer gets residuals; for others they are neither made nor recorded.
+// Returns whether the optimizer gets residuals. For others they are neither made nor recorded.
 bool wants_residuals(const OptimizerRow& optimizer);
 
-// Whether candidates race at all under an optimizer: residuals are of all cases or of no use, and a
-// batch is a field of competitors only where it is a generation or a sample; the points of a
-// difference quotient are none.
+// Returns whether candidates can race under an optimizer. Optimizers that use residuals need all
+// cases. Halving also needs batches that are generations or samples: the points of a difference
+// quotient do not compete.
 bool can_race(const OptimizerRow& optimizer, Racing::Kind kind);
-// Why racing changes nothing; empty if it does, or if there is none.
+// Returns why racing has no effect; empty if it has one or if the racing kind is none.
 std::string explain_no_race(const OptimizerRow& optimizer, const Racing& racing,
                             const Schedule& schedule);
 
-// Checks what no single part can: optimizer against schedule and problem. Throws Error{usage}.
+// Checks that optimizer, schedule, racing, problem and budget fit together. Throws Error{usage}.
 void check_plan(const RunPlan& plan);
 
-// The plan as JSON text with sorted keys; equal texts give bit-identical runs on the same machine
-// and version.
+// Returns the plan as JSON text with sorted keys. Equal texts give bit-identical runs on the same
+// machine with the same version.
 std::string to_json(const RunPlan& plan);
 
-// "q1-complex-ga-seed1"
+// Returns the name of the run: "q1-complex-ga-seed1".
 std::string make_run_name(const RunPlan& plan);
 
 }  // namespace armwright

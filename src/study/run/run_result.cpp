@@ -122,7 +122,7 @@ JudgedCandidate candidate_from_json(const json& j) {
   return judged;
 }
 
-// Whoever reads a result goes through its lists side by side.
+// Readers of a result use its lists side by side, so their lengths must agree.
 void check_sizes(const RunResult& result, const Evaluation& evaluation) {
   const auto check = [](std::string_view what, std::size_t found, std::size_t named) {
     if (found != 0 && found != named) {
@@ -156,6 +156,17 @@ void check_sizes(const RunResult& result) {
 }
 
 }  // namespace
+
+void RunCounts::add(const EvaluationRecord& record) {
+  const EvaluationStatus status = record.evaluation.status;
+  const bool is_abandoned = status == EvaluationStatus::abandoned;
+  ++evaluations;
+  cases += record.calc_charge();
+  clipped += record.clipped ? 1 : 0;
+  abandoned += is_abandoned ? 1 : 0;
+  failed += status == EvaluationStatus::ok || is_abandoned ? 0 : 1;
+  feasible += is_feasible(record.evaluation) ? 1 : 0;
+}
 
 double get_failure_error(const RunResult& result) {
   return result.tracking ? kFailureError_m : std::numeric_limits<double>::infinity();
@@ -220,10 +231,11 @@ std::string to_json(const RunResult& result) {
         {"design", result.published.design},
         {"where", result.published.where}}},
   };
-  if (result.counts.abandoned > 0) {  // results from before there was racing say nothing
+  if (result.counts.abandoned > 0) {  // as in results from versions without racing
     j["counts"]["abandoned"] = result.counts.abandoned;
   }
-  for (const RequiredMetric& requirement : result.requirements) {  // most problems have none
+  for (const RequiredMetric& requirement :
+       result.requirements) {  // the key is left out if there are none
     j["requirements"].push_back(requirement_to_json(result, requirement));
   }
   if (result.winner) {

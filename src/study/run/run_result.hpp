@@ -1,20 +1,34 @@
-// What a run has found, as recorded in result.json. Nothing in it depends on time, threads or
+// The result of a run, as result.json records it. It depends neither on time, threads nor
 // interruptions: a resumed run and an uninterrupted one write the same bytes.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "study/run/candidate_pool.hpp"
-#include "study/run/run_counts.hpp"
 #include "study/run/run_plan.hpp"
 #include "study/statistics/summary.hpp"
 
 namespace armwright {
 
-// A candidate and what the validation set says of it.
+// Counts of a run's training evaluations.
+struct RunCounts {
+  void add(const EvaluationRecord& record);  // does not change `replayed` and `generations`
+
+  std::uint64_t evaluations = 0;
+  std::uint64_t cases = 0;      // charged to the budget
+  std::uint64_t replayed = 0;   // evaluations that the journal has answered
+  std::uint64_t clipped = 0;    // points asked for outside the bounds
+  std::uint64_t failed = 0;     // evaluations whose status is neither ok nor abandoned
+  std::uint64_t abandoned = 0;  // evaluations that lost a race
+  std::uint64_t feasible = 0;   // evaluations with objectives and every constraint met
+  std::uint64_t generations = 0;
+};
+
+// A candidate and its evaluation on the validation set.
 struct JudgedCandidate {
   Candidate candidate;
   Evaluation validation;
@@ -24,41 +38,43 @@ struct RunResult {
   std::string problem;
   std::string optimizer;
   std::uint64_t seed = 1;
-  std::string end_reason;  // "budget", "optimizer finished" or "optimizer failed"
-  std::string failure;     // how the optimizer failed; empty if it did not
-  std::string
-      first_failure;  // why the first evaluation without objectives has none, if there is one
-  RunCounts counts;   // `replayed` is not recorded
+  std::string end_reason;     // "budget", "optimizer finished" or "optimizer failed"
+  std::string failure;        // how the optimizer failed; empty if it did not
+  std::string first_failure;  // the reason of the first evaluation without objectives, if any
+  RunCounts counts;           // `replayed` is not recorded
   std::vector<JudgedCandidate> judged;
   std::optional<std::size_t> winner;  // index into judged; nothing if none has an objective
-  Evaluation test;                    // the winner's
+  Evaluation test;                    // the winner's on the test set
   ErrorSummary test_summary;
   std::vector<std::string> variable_names;
   std::vector<std::string> metric_names;
   std::vector<Quantity> objectives;
   std::vector<double> objective_weights;  // as in ProblemDescription
-  std::vector<Quantity> constraints;      // likewise
-  std::vector<Limit> limits;              // likewise
+  std::vector<Quantity> constraints;      // as in ProblemDescription
+  std::vector<Limit> limits;              // as in ProblemDescription
   std::vector<RequiredMetric> requirements;
-  // Of all training evaluations the smallest, where the problem has constraints; nothing if none
-  // had a number.
+  // The smallest constraint violation of all training evaluations; nothing if the problem has no
+  // constraints or no evaluation had constraint values.
   std::optional<double> least_violation;
   std::string test_set;
-  bool tracking = false;  // the problem is an arm's
+  bool tracking = false;  // the problem is a tracking problem
   PublishedWinner published;
 };
 
-// Above which error a test case has failed: kFailureError_m for an arm, never for a function.
+// Returns the error above which a test case has failed: kFailureError_m for an arm, infinity for a
+// function.
 double get_failure_error(const RunResult& result);
 
-// Every constraint is met, and no case is without a number: what a result may call feasible.
+// Returns whether every constraint is met and every case has an error. Only then may a report call
+// the design feasible.
 bool is_proven_feasible(const Evaluation& evaluation);
 
-// What the winner was chosen by: the objective, or the weighted sum of several.
+// Returns the quantity that decides the winner: the objective or, of several, the weighted sum.
 Quantity get_target(const RunResult& result);
 double calc_target(const RunResult& result, const Evaluation& evaluation);
 
 std::string to_json(const RunResult& result);
+// Reads the text of `file`. Throws Error{bad_data} if it is not a result that armwright wrote.
 RunResult parse_result(const std::string& json, const std::filesystem::path& file);
 
 }  // namespace armwright

@@ -16,7 +16,7 @@ bool dominates(const Point& a, const Point& b) {
   return a != b && std::ranges::equal(a, b, std::less_equal<>{});
 }
 
-// All points are smaller than the reference in the first `objectives`, the only ones that count.
+// Only the first `objectives` objectives count; all points are smaller than the reference in these.
 double calc_volume(std::vector<const Point*> points, std::span<const double> reference,
                    std::size_t objectives) {
   const std::size_t last = objectives - 1;
@@ -70,7 +70,7 @@ std::vector<FrontPoint> collect_points(std::span<const std::vector<Point>> front
   return points;
 }
 
-// The smallest number of `all` that is a share of at least `level`.
+// Returns the smallest number that is at least the share `level` of `all`.
 std::size_t count_needed(std::size_t all, double level) {
   std::size_t needed = 1;
   while (static_cast<double>(needed) / static_cast<double>(all) < level) {
@@ -120,8 +120,8 @@ std::vector<std::vector<double>> calc_attainment_surface(
   const std::vector<FrontPoint> points = collect_points(fronts);
   const std::size_t needed = count_needed(fronts.size(), level);
   std::vector<std::vector<double>> corners;
-  // As the first objective grows, the best second one of each run; the `needed` best runs attain
-  // it.
+  // The best second objective of each run so far, while the first objective grows. The `needed`
+  // best runs attain the surface.
   std::vector<double> best(fronts.size(), kInfinity);
   double lowest = kInfinity;
   for (std::size_t i = 0; i < points.size(); ++i) {

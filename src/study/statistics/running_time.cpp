@@ -34,7 +34,7 @@ void check_running_times(std::span<const double> running_times) {
   }
 }
 
-// At least one trial must have reached the target.
+// Draws trials until one has reached the target; at least one must have.
 double draw_running_time(std::span<const Trial> trials, RandomStream& random) {
   double cost = 0;
   while (true) {
@@ -62,12 +62,43 @@ double calc_expected_of(std::span<const Trial> trials, std::span<const std::size
   return calc_expected_running_time(drawn);
 }
 
-// Nothing if that is infinite / infinite or 0 / 0.
+// Returns nothing for infinite / infinite and 0 / 0.
 std::optional<double> divide(double a, double b) {
   if ((std::isinf(a) && std::isinf(b)) || (a == 0 && b == 0)) {
     return std::nullopt;
   }
   return a / b;
+}
+
+std::size_t check_costs(std::span<const std::vector<double>> costs) {
+  const std::size_t solvers = check_table(costs, "profile");
+  for (const std::vector<double>& row : costs) {
+    for (const double cost : row) {
+      check_range(cost, 0, kInfinity, "profile: a cost");
+    }
+  }
+  return solvers;
+}
+
+// Returns the distribution of costs, where each problem has its own unit of cost.
+std::vector<std::vector<double>> calc_shares(std::span<const std::vector<double>> costs,
+                                             std::span<const double> units,
+                                             std::span<const double> abscissae) {
+  std::vector<std::vector<double>> shares;
+  for (std::size_t solver = 0; solver < costs.front().size(); ++solver) {
+    std::vector<double> scaled;
+    for (std::size_t problem = 0; problem < costs.size(); ++problem) {
+      const double cost = costs[problem][solver];
+      const double unit = units[problem];
+      if (unit == 0 || cost == kInfinity) {
+        scaled.push_back(cost == unit && cost < kInfinity ? 1 : kInfinity);
+      } else {
+        scaled.push_back(cost / unit);
+      }
+    }
+    shares.push_back(calc_runtime_ecdf(scaled, abscissae));
+  }
+  return shares;
 }
 
 }  // namespace
@@ -166,7 +197,7 @@ std::vector<double> calc_runtime_ecdf(std::span<const double> running_times,
   check_running_times(running_times);
   std::vector<double> shares;
   for (const double cost : costs) {
-    // What was never reached is not reached at any cost.
+    // A target that was never reached is not reached at any cost, not even at an infinite one.
     const auto reached = std::ranges::count_if(
         running_times, [&](double time) { return time <= cost && time < kInfinity; });
     shares.push_back(static_cast<double>(reached) / static_cast<double>(running_times.size()));
@@ -184,6 +215,42 @@ double calc_anytime_area(std::span<const double> running_times, double lowest, d
     sum += std::log(highest / std::clamp(time, lowest, highest));
   }
   return sum / std::log(highest / lowest) / static_cast<double>(running_times.size());
+}
+
+double calc_convergence_target(double start_value, double best_value, double tau) {
+  check_values({&start_value, 1}, "convergence: the start's value");
+  check_values({&best_value, 1}, "convergence: the best value");
+  check_range(tau, 0, 1, "convergence: tau");
+  const double best = std::min(start_value, best_value);
+  if (start_value == kInfinity) {
+    return std::numeric_limits<double>::max();
+  }
+  return best + tau * (start_value - best);
+}
+
+std::vector<std::vector<double>> calc_performance_profiles(
+    std::span<const std::vector<double>> costs, std::span<const double> alphas) {
+  check_costs(costs);
+  std::vector<double> smallest;
+  for (const std::vector<double>& row : costs) {
+    smallest.push_back(*std::ranges::min_element(row));
+  }
+  return calc_shares(costs, smallest, alphas);
+}
+
+std::vector<std::vector<double>> calc_data_profiles(std::span<const std::vector<double>> costs,
+                                                    std::span<const int> dimensions,
+                                                    std::span<const double> kappas) {
+  check_costs(costs);
+  if (dimensions.size() != costs.size()) {
+    throw std::invalid_argument("data profile: every problem needs its dimension");
+  }
+  std::vector<double> units;
+  for (const int dimension : dimensions) {
+    check_range(dimension, 1, std::numeric_limits<int>::max(), "data profile: a dimension");
+    units.push_back(static_cast<double>(dimension) + 1);
+  }
+  return calc_shares(costs, units, kappas);
 }
 
 }  // namespace armwright

@@ -19,13 +19,14 @@ namespace {
 
 constexpr std::size_t kLimit_bytes = std::size_t{1} << 30;
 
-// Of RFC 4180: a quoted field may hold commas, ends of lines and doubled quotes.
+// Reads rows as RFC 4180 defines them: a quoted field may hold commas, line ends and doubled
+// quotes.
 class CsvRows {
  public:
   explicit CsvRows(std::string_view text) : rest_(text) {}
 
   bool at_end() const { return rest_.empty(); }
-  // The number of fields of the next row; 0 if it does not end.
+  // Returns the number of fields of the next row; 0 if the row is not complete.
   std::size_t next() {
     std::size_t fields = 1;
     bool quoted = false;
@@ -54,7 +55,7 @@ struct Closer {
   void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
 };
 
-// The rows of a query, as texts; `fault` says why there are none.
+// Returns the rows of a query as texts. Sets `fault` if the query fails.
 std::vector<std::vector<std::string>> query(sqlite3* database, const char* sql,
                                             std::string& fault) {
   sqlite3_stmt* raw = nullptr;
@@ -117,11 +118,11 @@ std::string find_csv_fault(const std::filesystem::path& file, std::optional<std:
 std::string find_json_fault(const std::filesystem::path& file) {
   const std::string text = read_file(file, kLimit_bytes);
   try {
-    // Without a tree of it, which may take much memory.
+    // Checks the syntax without building a tree, which may need much memory.
     if (nlohmann::json::accept(text)) {
       return "";
     }
-    [[maybe_unused]] const auto parsed = nlohmann::json::parse(text);  // says where
+    [[maybe_unused]] const auto parsed = nlohmann::json::parse(text);  // throws with the position
   } catch (const nlohmann::json::exception& error) {
     return fmt::format("it is not JSON ({})", sanitize(error.what()));
   }
@@ -149,13 +150,13 @@ std::string find_toml_fault(const std::filesystem::path& file) {
 }
 
 std::string find_design_fault(const std::filesystem::path& file) {
-  // Absolute, or its name might be taken for that of a shipped one.
+  // An absolute path cannot be mistaken for the name of a shipped design.
   return catch_fault([&] { load_design(std::filesystem::absolute(file).string()); });
 }
 
-std::string find_database_fault(const std::filesystem::path& file, const DatabaseRows& rows) {
+std::string find_database_fault(const std::filesystem::path& file, const RunResult& result) {
   sqlite3* handle = nullptr;
-  // Without an attempt to mend anything: no recovery, no file beside it.
+  // Opened read-only, so SQLite repairs nothing and creates no file beside it.
   const int code = sqlite3_open_v2(file.c_str(), &handle, SQLITE_OPEN_READONLY, nullptr);
   const std::unique_ptr<sqlite3, Closer> database(handle);
   if (code != SQLITE_OK) {
@@ -178,8 +179,9 @@ std::string find_database_fault(const std::filesystem::path& file, const Databas
   const struct {
     const char* role;
     std::uint64_t wanted;
-  } expected[] = {
-      {"training", rows.training}, {"validation", rows.validation}, {"test", rows.test}};
+  } expected[] = {{"training", result.counts.evaluations},
+                  {"validation", result.judged.size()},
+                  {"test", result.winner ? std::uint64_t{1} : 0}};
   for (const auto& [role, wanted] : expected) {
     const std::uint64_t found = count_rows(counts, role);
     if (found != wanted) {

@@ -23,7 +23,7 @@ void sync_folder(const std::filesystem::path& folder) {
   if (!descriptor.is_open()) {
     fail_io(folder, "open it", errno);
   }
-  ::fsync(descriptor.get());  // some file systems cannot
+  ::fsync(descriptor.get());  // ignored: some file systems cannot sync a folder
 }
 
 [[noreturn]] void refuse_target(const std::filesystem::path& target) {
@@ -131,7 +131,7 @@ void FolderCopy::put_in_place() {
   if (::renameat2(AT_FDCWD, folder_.path().c_str(), AT_FDCWD, folder_.target().c_str(),
                   RENAME_NOREPLACE) != 0) {
     const bool is_there = errno == EEXIST;
-    // File systems that cannot refuse to replace: at most an empty folder would be.
+    // EINVAL: the file system cannot refuse to replace. rename() replaces an empty folder at most.
     if (is_there || errno != EINVAL ||
         ::rename(folder_.path().c_str(), folder_.target().c_str()) != 0) {
       if (is_there) {

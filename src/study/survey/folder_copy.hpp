@@ -1,5 +1,5 @@
-// A folder that is made as a copy of another: whole or not there (base/partial_folder.hpp), and
-// synced to the disk before it gets its name. The original is only read.
+// Copies a folder completely or not at all (base/partial_folder.hpp). The copy is synced to the
+// disk before it gets its name. The original is only read.
 #pragma once
 
 #include <cstdint>
@@ -12,24 +12,30 @@
 
 namespace armwright {
 
-struct CopyStopped {};  // thrown where `stop` ends a copy
+// Thrown when `stop` ends a copy.
+struct CopyStopped {};
 
+// A folder under construction. The destructor removes it unless put_in_place() was called.
 class FolderCopy {
  public:
-  // Error{usage} if there is anything at `target`; Error{io}.
+  // Throws Error{usage} if `target` exists, or Error{io}. Keeps a reference to `stop`.
   FolderCopy(const std::filesystem::path& target, StopSignal& stop);
 
   const std::filesystem::path& target() const { return folder_.target(); }
-  // All below are given names as seen from the new folder. Error{io}; CopyStopped.
+  // In the functions below `name` is relative to the new folder. They throw Error{io} or
+  // CopyStopped.
   void make_folder(const std::filesystem::path& name);
-  // A file, or a symbolic link as such. False for anything else, which is left out.
+  // Copies a file, or a symbolic link without following it. Returns false for anything else, which
+  // is not copied.
   bool add(const std::filesystem::path& source, const std::filesystem::path& name);
-  // A new file, of which `write` gets the descriptor, open for writing.
+  // Creates a file. `write` gets its descriptor, open for writing.
   void add_file(const std::filesystem::path& name, const std::function<void(int fd)>& write);
-  // What was filled before is in place now. Error{usage} if something is there meanwhile.
+  // Renames the new folder to `target`. Throws Error{usage} if another process created `target` in
+  // the meantime.
   void put_in_place();
 
-  // Appends a part of an open file. Error{io} names the one at fault.
+  // Appends `bytes` bytes of the open file `source`, from `offset` on, to the open file `target`.
+  // Throws Error{io} with the name of the file that failed.
   void copy_bytes(int source, std::uint64_t offset, std::uint64_t bytes, int target,
                   const std::filesystem::path& source_name);
 

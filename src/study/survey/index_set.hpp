@@ -1,5 +1,5 @@
-// Which numbers are there, of those that come nearly in order: memory goes with the gaps, not with
-// the numbers.
+// A set of indices that are inserted nearly in order. Its memory is proportional to the number of
+// gaps, not to the number of indices.
 #pragma once
 
 #include <cstdint>
@@ -16,23 +16,24 @@ struct IndexRange {
 
 class IndexSet {
  public:
-  // False if it was there already.
+  // Returns false if the index was in the set already.
   bool insert(std::uint64_t index);
   bool has(std::uint64_t index) const;
   std::uint64_t size() const { return size_; }
-  // One more than the largest; 0 of none.
+  // Returns the largest index plus 1; 0 for an empty set.
   std::uint64_t end() const { return ranges_.empty() ? 0 : ranges_.rbegin()->second + 1; }
-  // What is not there below `end`, in ascending order.
+  // Returns the ranges of missing indices below `end`, ascending.
   std::vector<IndexRange> list_missing(std::uint64_t end) const;
 
  private:
-  std::map<std::uint64_t, std::uint64_t>
-      ranges_;  // first -> last, neither touching nor overlapping
+  // first -> last of each range; ranges neither touch nor overlap
+  std::map<std::uint64_t, std::uint64_t> ranges_;
   std::uint64_t size_ = 0;
 };
 
+// Returns the number of indices in all ranges.
 std::uint64_t count(const std::vector<IndexRange>& ranges);
-// "3, 7 to 9 and 2 more places"; at most `most` of them are named.
+// Returns "3, 7 to 9 and 2 more places", with at most `most` ranges named.
 std::string describe(const std::vector<IndexRange>& ranges, std::size_t most = 5);
 
 }  // namespace armwright

@@ -14,7 +14,7 @@
 #include "base/file_descriptor.hpp"
 #include "study/journal/journal_file.hpp"
 #include "study/journal/journal_format.hpp"
-#include "study/journal/journal_window.hpp"
+#include "study/journal/journal_reader.hpp"
 
 namespace armwright {
 namespace {
@@ -27,8 +27,8 @@ struct Place {
   std::uint64_t end = 0;
 };
 
-// Goes over a journal: `on_record` gets each intact record and its place, `on_gap` what lies
-// between them, with what is wrong there, `on_end` what lies behind the last.
+// Visits a journal from begin to end. `on_record` gets each intact record and its place. `on_gap`
+// gets each stretch between records with its fault. `on_end` gets the stretch behind the last one.
 template <class OnRecord, class OnGap, class OnEnd>
 void visit_records(JournalWindow& window, OnRecord on_record, OnGap on_gap, OnEnd on_end) {
   const auto begin_bytes = std::min<std::uint64_t>(window.size(), kMagic.size());
@@ -79,7 +79,7 @@ class JournalSurveyor {
   JournalSurvey run() {
     survey_.bytes = window_.size();
     visit_records(
-        window_, [&](const Record& record, Place place) { take(record, place); },
+        window_, [&](const Record& record, Place place) { add_record(record, place); },
         [&](Place place, std::string fault) {
           survey_.damage.push_back({.offset = place.offset,
                                     .bytes = place.end - place.offset,
@@ -96,7 +96,7 @@ class JournalSurveyor {
   }
 
  private:
-  void take(const Record& record, Place place) {
+  void add_record(const Record& record, Place place) {
     ++survey_.records;
     if (!survey_.damage.empty()) {
       ++survey_.damage.back().records_behind;
@@ -126,8 +126,8 @@ class JournalSurveyor {
     return std::string(window_.view(place.offset, place.end - place.offset));
   }
 
-  // The first record of an evaluation that is there again is looked for once more: nothing else of
-  // what was read is kept.
+  // Reads the journal again to find the first record of every repeated evaluation. The first pass
+  // keeps only places of repeated records, to save memory.
   void compare_repeated() {
     if (repeated_.empty()) {
       return;
@@ -161,7 +161,7 @@ class JournalSurveyor {
   JournalWindow window_;
   const std::function<void(const EvaluationRecord&)>& look_;
   JournalSurvey survey_;
-  std::map<std::uint64_t, std::vector<Place>> repeated_;  // evaluations, but for their first record
+  std::map<std::uint64_t, std::vector<Place>> repeated_;  // by evaluation, without its first record
 };
 
 }  // namespace

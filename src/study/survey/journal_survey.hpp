@@ -1,5 +1,5 @@
-// What is intact in a journal and what is not, record by record. Unlike read_journal() it goes on
-// behind damage; it changes nothing.
+// Surveys a journal record by record: which parts are intact and which are damaged. Unlike
+// read_journal(), it continues behind damage. It does not change the file.
 #pragma once
 
 #include <cstdint>
@@ -10,60 +10,61 @@
 #include <vector>
 
 #include "study/journal/journal.hpp"
-#include "study/run/run_counts.hpp"
+#include "study/run/run_result.hpp"
 #include "study/survey/index_set.hpp"
 
 namespace armwright {
 
-// Bytes that are no record, with an intact one behind them.
+// A stretch of bytes that hold no intact record, followed by an intact one.
 struct DamagedStretch {
   std::uint64_t offset = 0;
   std::uint64_t bytes = 0;
-  std::uint64_t records_before = 0;  // intact ones; the first damaged record has this number
+  // Number of intact records before it, which is also the number (from 0) of the first damaged one.
+  std::uint64_t records_before = 0;
   std::uint64_t records_behind = 0;  // intact ones, up to the next damaged stretch
-  std::string fault;                 // of the first damaged record
+  std::string fault;                 // fault of the first damaged record
 };
 
 struct JournalSurvey {
   std::uint64_t bytes = 0;
-  std::uint64_t records = 0;  // intact, of every kind
+  std::uint64_t records = 0;  // number of intact ones, of every kind
   std::vector<DamagedStretch> damage;
   std::uint64_t torn_offset = 0;
-  std::uint64_t torn_bytes = 0;  // at the end, with no intact record behind
+  std::uint64_t torn_bytes = 0;  // bytes at the end that no intact record follows
   std::string torn_fault;
-  IndexSet evaluations;  // of the training set
-  RunCounts counts;      // of the training records, each evaluation once
+  IndexSet evaluations;  // indices of the training evaluations
+  RunCounts counts;      // counts of the training evaluations, each counted once
   std::uint64_t judgements = 0;
-  std::uint64_t repeated = 0;  // evaluations that are there again, alike
-  // Evaluations that are there with different content: none of the records can be believed.
+  std::uint64_t repeated = 0;  // evaluations recorded again with the same content
+  // Evaluations that are recorded with different contents. None of their records is used.
   std::vector<std::uint64_t> contradictory;
   std::optional<EndRecord> end;
   std::uint64_t records_behind_end = 0;
 
-  // Evaluations that once were there. Of a run that has ended those that its end record counts,
-  // otherwise gaps, if there is damage that explains them.
+  // Returns the evaluations that were recorded once and are missing now. If the run has ended, its
+  // end record tells how many there were. Otherwise these are the gaps, if the journal is damaged.
   std::vector<IndexRange> list_lost() const;
-  // Gaps that an interruption leaves: evaluations that were under way.
+  // Returns the gaps that an interruption left: evaluations that were being simulated.
   std::vector<IndexRange> list_gaps() const;
-  // Whether the journal must be written anew to be of use.
+  // Returns whether a run can use the journal only after a repair.
   bool is_damaged() const;
 };
 
-// `look` is shown each intact training or judgement record once, in the order of the file.
-// Error{io} if the file cannot be read or is no regular one.
+// Surveys the journal. Calls `look` once for each intact training or judgement record, in the order
+// of the file. Throws Error{io} if the file cannot be read or is not a regular file.
 JournalSurvey survey_journal(const std::filesystem::path& file,
                              const std::function<void(const EvaluationRecord&)>& look = {});
 
-// What repair_journal() kept and left out.
+// The numbers of records and bytes that repair_journal() kept and dropped.
 struct JournalRepair {
   std::uint64_t records_kept = 0;
-  std::uint64_t records_dropped = 0;  // intact ones, which say what cannot be true any more
+  std::uint64_t records_dropped = 0;  // intact ones that are no longer valid
   std::uint64_t bytes_dropped = 0;
 };
 
-// Writes to `target` (a new file, open for writing) a journal of the intact records of `file` that
-// can be gone on with: without contradictory ones and without its end, as what is lost must be
-// evaluated again. Error{io}.
+// Writes a journal with which the run can be resumed to `target` (a new file, open for writing). It
+// has the intact records of `file` without contradictory ones. The end record is left out, because
+// lost evaluations must be simulated again. Throws Error{io}.
 JournalRepair repair_journal(const std::filesystem::path& file, const JournalSurvey& survey,
                              int target);
 

@@ -1,16 +1,15 @@
-#include "study/survey/result_survey.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/bits.hpp"
+#include "study/survey/derived_survey.hpp"
 
 namespace armwright {
 namespace {
 
-// JSON knows one NaN.
+// Two NaN count as equal: JSON stores every NaN in the same way.
 bool same_errors(const std::vector<double>& a, const std::vector<double>& b) {
   return std::ranges::equal(a, b, [](double one, double other) {
     return one == other || (std::isnan(one) && std::isnan(other));
@@ -35,7 +34,7 @@ ResultSurvey::ResultSurvey(RunResult result) : result_(std::move(result)) {
   validated_.resize(result_.judged.size());
 }
 
-void ResultSurvey::look(const EvaluationRecord& record) {
+void ResultSurvey::add(const EvaluationRecord& record) {
   if (record.cases.role == CaseRole::training) {
     if (is_feasible(record.evaluation)) {
       const std::pair here(calc_scalar(result_.objective_weights, record.evaluation.objectives),
@@ -71,7 +70,7 @@ void ResultSurvey::look(const EvaluationRecord& record) {
   }
 }
 
-// A row a generation, or without generations one an improvement.
+// The file has one row per generation, or without generations one row per improvement.
 std::optional<std::uint64_t> ResultSurvey::calc_last_row() const {
   if (!last_ || (has_generations_ && last_generation_ == 0)) {
     return std::nullopt;
@@ -80,7 +79,7 @@ std::optional<std::uint64_t> ResultSurvey::calc_last_row() const {
 }
 
 std::string ResultSurvey::find_difference(const JournalSurvey& journal) const {
-  // A run that failed and is being tried again has more by now.
+  // If a failed run is tried again, its journal may have more evaluations than its result.
   if (result_.failure.empty()) {
     const struct {
       const char* what;
@@ -107,11 +106,11 @@ std::string ResultSurvey::find_difference(const JournalSurvey& journal) const {
                          result_.judged[i].candidate.evaluation);
     }
     if (!validated_[i]) {
-      return fmt::format("what it says of {} on the validation set is not in the journal", who);
+      return fmt::format("its values of {} on the validation set are not in the journal", who);
     }
   }
   if (result_.winner && !tested_) {
-    return "what it says of the winner on the test set is not in the journal";
+    return "its values of the winner on the test set are not in the journal";
   }
   return "";
 }

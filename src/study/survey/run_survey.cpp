@@ -12,22 +12,21 @@
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "study/compare/cell.hpp"
-#include "study/run/record_files.hpp"
+#include "study/run/run_folder.hpp"
 #include "study/run/run_lock.hpp"
 #include "study/survey/derived_survey.hpp"
-#include "study/survey/result_survey.hpp"
 
 namespace armwright {
 namespace {
 
 using nlohmann::json;
 
-// What a check says of a file, and what keeps it from saying anything.
+// Returns the fault that `check` finds in a file, or the error that prevents the check.
 std::string find_fault(const std::filesystem::path& file,
                        const std::function<std::string()>& check) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) {
-    return error ? fmt::format("it cannot be looked at: {}", error.message())
+    return error ? fmt::format("it cannot be read: {}", error.message())
                  : "it is not a regular file";
   }
   try {
@@ -46,17 +45,17 @@ class RunSurveyor {
   }
 
   RunSurvey run() {
-    look_at_manifest();
+    check_manifest();
     load_result();
-    look_at_journal();
-    look_at_leftovers();
-    // While a run is being written, what is derived from it may be of an earlier state.
+    check_journal();
+    check_leftovers();
+    // While a process writes the run, its derived files may belong to an earlier state.
     if (survey_.writer.empty()) {
       compare_result();
       if (result_) {
-        look_at_tables();
+        check_tables();
       }
-      look_at_cell();
+      check_cell();
     }
     return std::move(survey_);
   }
@@ -71,7 +70,7 @@ class RunSurveyor {
     survey_.damaged_files.push_back(file);
   }
 
-  void look_at_manifest() {
+  void check_manifest() {
     const auto file = folder_ / "manifest.json";
     std::string fault = "it is missing";
     if (is_there(file)) {
@@ -124,7 +123,7 @@ class RunSurveyor {
     survey_.made_by = sanitize(quote_command(words));
   }
 
-  void look_at_journal() {
+  void check_journal() {
     const auto file = folder_ / "journal";
     if (!is_there(file)) {
       if (result_) {
@@ -137,7 +136,7 @@ class RunSurveyor {
     const std::string fault = find_fault(file, [&] {
       survey_.journal = survey_journal(file, [&](const EvaluationRecord& record) {
         if (result_) {
-          result_->look(record);
+          result_->add(record);
         }
       });
       return "";
@@ -171,7 +170,7 @@ class RunSurveyor {
     for (const std::uint64_t index : journal.contradictory) {
       damage(
           fmt::format("evaluation {} is recorded more than once with different content; none "
-                      "of it can be believed",
+                      "of its records is used",
                       index));
     }
     if (journal.records_behind_end > 0) {
@@ -186,26 +185,27 @@ class RunSurveyor {
     }
     if (const auto gaps = journal.list_gaps(); !gaps.empty() && survey_.writer.empty()) {
       add(Finding::Kind::note, "journal",
-          fmt::format("evaluations {} are not in it, as an interruption or a repair leaves it; "
+          fmt::format("evaluations {} are not in it, because of an interruption or a repair; "
                       "they are made again",
                       describe(gaps)));
     }
     if (journal.repeated > 0) {
       add(Finding::Kind::note, "journal",
-          fmt::format("{} evaluations are there more than once, alike", journal.repeated));
+          fmt::format("{} evaluations are recorded more than once with equal content",
+                      journal.repeated));
     }
     if (journal.torn_bytes > 0) {
       add(Finding::Kind::note, "journal",
           survey_.writer.empty()
-              ? fmt::format("byte {}, {} bytes at its end are no whole record: what a kill or a "
-                            "power cut leaves; going on with the run cuts them off",
+              ? fmt::format("byte {}, {} bytes at its end are an incomplete record, as a kill or a "
+                            "power cut leaves it; resuming the run removes them",
                             journal.torn_offset, journal.torn_bytes)
               : fmt::format("byte {}, {} bytes at its end are being written", journal.torn_offset,
                             journal.torn_bytes));
     }
   }
 
-  // Where they differ, the journal is right if it is whole.
+  // If they differ and the journal is complete, the journal is right.
   void compare_result() {
     if (!result_) {
       if (survey_.journal && survey_.journal->end) {
@@ -235,7 +235,7 @@ class RunSurveyor {
     }
   }
 
-  void look_at_tables() {
+  void check_tables() {
     const RunResult& result = result_->result();
     const auto check = [&](const std::string& name, const auto& find) {
       const auto file = folder_ / name;
@@ -250,19 +250,16 @@ class RunSurveyor {
     const auto find_row_fault = [](const auto& file) { return find_csv_fault(file); };
     check("front.csv", find_row_fault);
     check("winner-trajectory.csv", find_row_fault);
-    // A run that failed and is being tried again has more evaluations by now.
+    // If a failed run is tried again, its journal may have more evaluations than its result.
     const bool is_known =
         survey_.journal && !survey_.journal->is_damaged() && result.failure.empty();
     const auto last = is_known ? result_->calc_last_row() : std::nullopt;
     check("convergence.csv", [&](const auto& file) { return find_csv_fault(file, last); });
-    const DatabaseRows rows{.training = result.counts.evaluations,
-                            .validation = result.judged.size(),
-                            .test = result.winner ? std::uint64_t{1} : 0};
     check("results.sqlite",
-          [&](const std::filesystem::path& file) { return find_database_fault(file, rows); });
+          [&](const std::filesystem::path& file) { return find_database_fault(file, result); });
   }
 
-  void look_at_cell() {
+  void check_cell() {
     const auto file = folder_ / "cell.json";
     if (!is_there(file)) {
       return;
@@ -282,7 +279,7 @@ class RunSurveyor {
     }
   }
 
-  void look_at_leftovers() {
+  void check_leftovers() {
     std::set<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
       names.insert(entry.path().filename().string());
@@ -291,7 +288,7 @@ class RunSurveyor {
       if (name.ends_with(".new")) {
         if (survey_.writer.empty()) {
           add(Finding::Kind::note, name,
-              "a file that was being written when a process was killed; it may be removed");
+              "a file of a process that was killed while it wrote; it may be removed");
         }
       } else if (name.starts_with("journal.torn-")) {
         add(Finding::Kind::note, name, "what was cut off the journal's end; it may be removed");

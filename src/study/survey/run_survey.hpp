@@ -1,48 +1,69 @@
-// The integrity of one run's folder: manifest, journal, and whether what was derived from the
-// journal says what it says.
+// Surveys the integrity of one run's folder: its manifest, its journal, and whether the derived
+// files agree with the journal.
 #pragma once
 
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
-#include "study/survey/finding.hpp"
 #include "study/survey/journal_survey.hpp"
 
 namespace armwright {
 
+// One thing that a survey found in a folder. Its text is for people, not for programs.
+struct Finding {
+  enum class Kind {
+    note,    // not a fault
+    damage,  // a repair makes a copy without it
+    loss     // damage that no repair can remove
+  };
+  Kind kind = Kind::note;
+  std::filesystem::path file;  // relative to the surveyed folder
+  std::string what;
+};
+
+// Returns whether anything has this name, including a symbolic link whose target is missing.
+inline bool is_there(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::exists(std::filesystem::symlink_status(path, ignored));
+}
+
 struct RunSurvey {
   enum class State {
-    begun,     // it has not come to its end: the same command goes on
-    finished,  // its result is there
-    failed     // its optimizer failed: the same command tries again
+    begun,     // the run has not ended; the same command resumes it
+    finished,  // the run has a result
+    failed     // its optimizer failed; the same command tries again
   };
-  std::filesystem::path name;  // as seen from the folder that was asked about; "." for itself
+  std::filesystem::path name;  // relative to the surveyed folder; "." if that is the run itself
   State state = State::begun;
-  std::string writer;                     // who writes it now; empty if nobody
-  std::vector<std::string> command_line;  // that began it, as recorded; may be empty
-  std::string made_by;  // as result.json has it: "q1-complex --optimizer ga --seed 1"; or empty
-  std::vector<Finding> findings;         // files as seen from the run's folder
-  bool is_manifest_lost = false;         // no repair brings it back
-  std::optional<JournalSurvey> journal;  // nothing if there is none that can be read
+  std::string writer;                     // process that writes it now; empty if there is none
+  std::vector<std::string> command_line;  // that began the run, as recorded; may be empty
+  std::string made_by;  // from result.json: "q1-complex --optimizer ga --seed 1"; may be empty
+  std::vector<Finding> findings;         // with files relative to the run's folder
+  bool is_manifest_lost = false;         // no repair can restore it
+  std::optional<JournalSurvey> journal;  // empty if there is no journal that can be read
   bool is_journal_unreadable = false;
-  std::vector<std::string> damaged_files;  // derived ones: they can be made again
+  std::vector<std::string> damaged_files;  // only derived files, which can be derived again
 
-  // Evaluations that were recorded once and must be made again, as far as can be told.
+  // Number of evaluations that were recorded once and must be simulated again, as far as known.
   std::uint64_t lost = 0;
 
   bool is_damaged() const;
 };
-const char* to_string(RunSurvey::State state);  // "unfinished", "finished", "failed"
+// Returns "unfinished", "finished" or "failed".
+const char* to_string(RunSurvey::State state);
 
-// Files that a run derives from its journal, and a comparison from its cell.
+// Returns the names of the files that a run derives from its journal, and a comparison from its
+// cell.
 const std::vector<std::string>& derived_file_names();
 
-// `name`: what the survey is to say. Error{io} only if the folder itself cannot be read.
+// Surveys a run's folder; `name` becomes RunSurvey::name. Throws Error{io} only if the folder
+// itself cannot be read.
 RunSurvey survey_run(const std::filesystem::path& folder, const std::filesystem::path& name = ".");
 
-// Whether a folder holds a run, damaged or not.
+// Returns whether a folder holds a run, damaged or not.
 bool is_run_folder(const std::filesystem::path& folder);
 
 }  // namespace armwright

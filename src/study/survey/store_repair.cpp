@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kAside = ".damaged";
 
-// NAME.damaged, or where that is taken NAME.damaged-2, ...
+// Returns NAME.damaged, or NAME.damaged-2, ... if that exists already.
 fs::path choose_aside(const fs::path& folder, const fs::path& name) {
   const auto is_taken = [&](const fs::path& one) {
     std::error_code ignored;
@@ -30,7 +30,7 @@ fs::path choose_aside(const fs::path& folder, const fs::path& name) {
   return aside;
 }
 
-// What a process leaves that was killed while it wrote, and what locks: nothing to go on with.
+// Returns whether it is a lock or a partial file of a killed process. Copies do not need these.
 bool is_left_behind(const fs::path& name) {
   const std::string text = name.filename().string();
   return text == "lock" || text.ends_with(".new");
@@ -56,8 +56,9 @@ class Repair {
   void copy_folder(const fs::path& name, const fs::path& to) {
     const auto found = damaged_runs_.find(name.lexically_normal());
     const RunSurvey* run = found != damaged_runs_.end() ? found->second : nullptr;
-    // A run's files are read while nobody writes them, be it a cell's process that outlives a kill.
-    const ReadLock lock(survey_.folder / name);
+    // The lock keeps processes from writing the run while it is read. A worker process can outlive
+    // its killed comparison.
+    const RunLock lock = RunLock::for_reading(survey_.folder / name);
     if (run != nullptr && run->is_manifest_lost) {
       copy_as_it_is(name, choose_aside(survey_.folder, name));
       report_.runs.push_back(
@@ -153,7 +154,7 @@ class Repair {
   StoreRepair report_;
 };
 
-// A copy inside its original would be copied along.
+// Throws if the copy would lie inside its original, which would then copy the copy.
 void check_target(const fs::path& folder, const fs::path& target) {
   const auto inside = fs::weakly_canonical(fs::absolute(target))
                           .lexically_relative(fs::weakly_canonical(fs::absolute(folder)));
@@ -173,10 +174,10 @@ void check_target(const fs::path& folder, const fs::path& target) {
 
 std::optional<StoreRepair> repair_store(const fs::path& folder, const fs::path& target,
                                         StopSignal& stop) {
-  // From before it is looked at until the copy is made.
-  std::optional<ReadLock> lock;
+  // Held from before the survey until the copy is complete.
+  std::optional<RunLock> lock;
   if (fs::is_directory(folder)) {
-    lock.emplace(folder);
+    lock.emplace(RunLock::for_reading(folder));
     check_target(folder, target);
   }
   const StoreSurvey survey = survey_store(folder);

@@ -8,7 +8,6 @@
 #include "base/config.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "study/compare/escape.hpp"
 #include "study/compare/study_plan.hpp"
 #include "study/run/run_lock.hpp"
 #include "study/survey/derived_survey.hpp"
@@ -26,7 +25,7 @@ bool is_folder(const std::filesystem::path& path) {
   return std::filesystem::is_directory(path, ignored);
 }
 
-// Folders in it, sorted, without links and without what a repair has set aside.
+// Returns the folders in it, sorted, without links and without folders that a repair set aside.
 std::vector<std::filesystem::path> list_folders(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> folders;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -106,10 +105,10 @@ class StoreSurveyor {
         survey_.is_record_lost = survey_.runs.front().is_manifest_lost;
         break;
       case StoreSurvey::Kind::study:
-        look_at_study();
+        check_study();
         break;
       case StoreSurvey::Kind::reproduction:
-        look_at_record(kReproductionRecord, find_json_fault);
+        check_record(kReproductionRecord, find_json_fault);
         break;
     }
     return std::move(survey_);
@@ -128,7 +127,7 @@ class StoreSurveyor {
     }
   }
 
-  void look_at_record(const char* name, auto find) {
+  void check_record(const char* name, auto find) {
     const std::string fault = find_fault(survey_.folder / name, find);
     if (!fault.empty()) {
       survey_.is_record_lost = true;
@@ -136,8 +135,8 @@ class StoreSurveyor {
     }
   }
 
-  void look_at_study() {
-    look_at_record(kStudyRecord, [&](const std::filesystem::path& file) {
+  void check_study() {
+    check_record(kStudyRecord, [&](const std::filesystem::path& file) {
       const std::string fault = find_toml_fault(file);
       if (fault.empty()) {
         check_plan_hash(file);
@@ -152,7 +151,7 @@ class StoreSurveyor {
       survey_.finished_cells += is_cell && has_cell ? 1 : 0;
     }
     if (survey_.writer.empty()) {
-      look_at_derived();
+      check_derived();
     }
   }
 
@@ -162,8 +161,8 @@ class StoreSurveyor {
            plan.at("replicates").get<std::size_t>();
   }
 
-  // Everything of the study's that is made of its plan and cells.
-  void look_at_derived() {
+  // Checks the files that are derived from the study's plan and cells.
+  void check_derived() {
     const auto check = [&](const std::filesystem::path& name, auto find) {
       const std::string fault = find_fault(survey_.folder / name, find);
       if (!fault.empty()) {

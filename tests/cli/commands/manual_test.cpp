@@ -1,4 +1,4 @@
-// The commands as data, and what is made of them: manual pages, completion, the reference.
+// The commands as data, and the manual pages, completion and reference made from them.
 #include <gmock/gmock.h>
 
 #include <CLI/CLI.hpp>
@@ -6,12 +6,11 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "cli/manual/bash_completion.hpp"
+#include "cli/app.hpp"
 #include "cli/manual/command_definition.hpp"
+#include "cli/manual/completion.hpp"
 #include "cli/manual/manual_formats.hpp"
 #include "cli/manual/manual_page.hpp"
-#include "cli/manual/notes.hpp"
-#include "cli/manual/value_source.hpp"
 #include "cli/terminal/session.hpp"
 
 namespace armwright {
@@ -76,7 +75,7 @@ TEST_F(Manual, RefusesUnknownCommands) {
             "'armwright list' has no commands of its own: 'problems' is one too many");
 }
 
-// What is new must say where its values come from, if only that nobody can guess them.
+// Every flag and argument has a row that says where its values come from.
 TEST_F(Manual, KnowsWhereEveryValueComesFrom) {
   for (const CommandDefinition* command : list_all_commands(program_)) {
     for (const auto* group : {&command->arguments, &command->flags}) {
@@ -92,14 +91,14 @@ TEST_F(Manual, KnowsWhereEveryValueComesFrom) {
   }
 }
 
-// Choices that are words in a table are those that --help names.
+// The help of a flag names each choice that completion offers.
 TEST_F(Manual, OffersOnlyChoicesThatTheHelpNames) {
   for (const CommandDefinition* command : list_all_commands(program_)) {
     for (const ArgumentDefinition& flag : command->flags) {
       const auto source = find_value_source(*command, flag).value_or(ValueSource{});
       if (flag.value.empty() || flag.get_key() == "--simd" || flag.get_key() == "--perturbations" ||
           flag.value == "DESIGN") {
-        continue;  // those name a command that lists them, or a folder
+        continue;  // their help names a command or a page that lists the choices
       }
       for (const std::string& choice : source.choices) {
         EXPECT_THAT(flag.description, HasSubstr(choice)) << command->get_title();
@@ -108,20 +107,26 @@ TEST_F(Manual, OffersOnlyChoicesThatTheHelpNames) {
   }
 }
 
-TEST(Notes, ReadsListsTitlesAndParagraphs) {
-  const CommandNotes notes = read_notes(
-      "Examples:\n  armwright do      # it\n\nTwo lines\nof text.\n\ndone   it is\nleft   it is "
-      "not\n"
-      "\nExit codes:\n  0    done\n  130  interrupted\n\nEnvironment: A stands\nfor b.");
-  ASSERT_EQ(notes.text.size(), 3U);
-  EXPECT_EQ(std::get<Paragraph>(notes.text[0]).text, "Two lines of text.");
-  EXPECT_EQ(std::get<ManualItem>(notes.text[2]).text, "it is not");
-  ASSERT_EQ(notes.sections.size(), 3U);
-  EXPECT_THAT(std::get<Verbatim>(notes.sections[0].blocks[0]).lines,
+TEST_F(Manual, ReadsListsTitlesAndParagraphsBelowTheFlags) {
+  CommandDefinition command;
+  command.words = {"armwright", "do"};
+  command.summary = "Do it";
+  command.notes =
+      "Examples:\n  armwright do      # it\n\nTwo lines\nof text.\n\ndone   it is\n"
+      "left   it is not\n\nExit codes:\n  0    done\n  130  interrupted\n\n"
+      "Environment: A stands\nfor b.";
+  const ManualPage page = make_manual_page(command, program_);
+  const auto find_blocks = [&page](const std::string& title) {
+    return std::ranges::find(page.sections, title, &ManualSection::title)->blocks;
+  };
+  const auto description = find_blocks("Description");
+  ASSERT_EQ(description.size(), 4U);  // the summary is the first
+  EXPECT_EQ(std::get<Paragraph>(description[1]).text, "Two lines of text.");
+  EXPECT_EQ(std::get<ManualItem>(description[3]).text, "it is not");
+  EXPECT_THAT(std::get<Verbatim>(find_blocks("Examples").at(0)).lines,
               ElementsAre("armwright do      # it"));
-  EXPECT_EQ(notes.sections[1].title, "Exit status");
-  EXPECT_EQ(notes.sections[1].blocks.size(), 2U);
-  EXPECT_EQ(std::get<Paragraph>(notes.sections[2].blocks[0]).text, "A stands for b.");
+  EXPECT_EQ(find_blocks("Exit status").size(), 2U);
+  EXPECT_EQ(std::get<Paragraph>(find_blocks("Environment").at(0)).text, "A stands for b.");
 }
 
 TEST_F(Manual, SetsRoffThatCanBeCopied) {
@@ -129,7 +134,7 @@ TEST_F(Manual, SetsRoffThatCanBeCopied) {
       to_roff(make_manual_page(find("check-plugin"), program_), "1.2.3", "2026-01-02");
   EXPECT_THAT(page,
               HasSubstr(".TH ARMWRIGHT\\-CHECK\\-PLUGIN 1 2026\\-01\\-02 \"armwright 1.2.3\""));
-  EXPECT_THAT(page, HasSubstr("\narmwright\\-check\\-plugin \\- Try whether"));
+  EXPECT_THAT(page, HasSubstr("\narmwright\\-check\\-plugin \\- Check whether"));
   EXPECT_THAT(page, HasSubstr("\\fB\\-\\-opt\\fR \\fIKEY=VALUE\\fR\n"));
   EXPECT_THAT(page, HasSubstr("check\\-plugin \\(aqexec:python3 mine.py\\(aq\n"));
   EXPECT_THAT(page, HasSubstr(".BR armwright (1)\n"));
@@ -139,9 +144,8 @@ TEST_F(Manual, SetsTextAsManDoes) {
   const std::string page = to_text(make_manual_page(find("export"), program_), Style(false), 80);
   EXPECT_THAT(page,
               HasSubstr("SYNOPSIS\n       armwright export [OPTIONS] --format FORMAT FOLDER\n"));
-  EXPECT_THAT(page,
-              HasSubstr("       --format FORMAT\n              Required. How to write them:"));
-  // The formats are a list of their own.
+  EXPECT_THAT(page, HasSubstr("       --format FORMAT\n              Required. The format:"));
+  // The formats are a list within the item.
   EXPECT_THAT(page, HasSubstr("\n              coco   COCO's bbob-new2"));
   EXPECT_THAT(page, HasSubstr("\n              ros2-control\n                     one arm:"));
   EXPECT_THAT(page, Not(HasSubstr("\n\n\n")));
@@ -157,7 +161,7 @@ TEST_F(Manual, NamesEveryCommandInTheReference) {
     EXPECT_THAT(reference, AllOf(HasSubstr("\n## " + page.title + "\n"),
                                  HasSubstr("| [" + page.title + "](#" + page.name + ") |")));
   }
-  EXPECT_THAT(reference, HasSubstr("- `-o`, `--optimizer NAME`: Who optimizes"));
+  EXPECT_THAT(reference, HasSubstr("- `-o`, `--optimizer NAME`: The optimizer"));
 }
 
 TEST_F(Manual, CompletionKnowsFlagsAndWhereValuesComeFrom) {

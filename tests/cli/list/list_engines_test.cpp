@@ -22,9 +22,8 @@ TEST(ListEngines, SaysWhatCanBeChosenHere) {
   ASSERT_EQ(items.size(), 2U);
   EXPECT_EQ(items[0].name, "ode");
   EXPECT_THAT(items[0].summary, Not(HasSubstr("SIMD")));
-  EXPECT_EQ(items[1].summary,
-            "made up by a test; SIMD here: " + join(supported_simd_names(), ", ") +
-                "; unless told otherwise " + kBest);
+  EXPECT_EQ(items[1].summary, "made up by a test; SIMD here: " +
+                                  join(supported_simd_names(), ", ") + "; default " + kBest);
 }
 
 TEST(ListEngines, ExplainsOne) {
@@ -33,7 +32,7 @@ TEST(ListEngines, ExplainsOne) {
               AllOf(HasSubstr("ode: "), HasSubstr("it computes in double")));
   EXPECT_THAT(kind.explain("lanes", Style(false)),
               AllOf(HasSubstr("lanes: made up by a test"), HasSubstr("--simd LEVEL"),
-                    HasSubstr("unless told otherwise " + kBest), HasSubstr("double, float")));
+                    HasSubstr("default " + kBest), HasSubstr("double, float")));
   EXPECT_THAT(usage_error_of([&] { kind.explain("lane", Style(false)); }),
               HasSubstr("unknown engine 'lane'; did you mean 'lanes'?"));
 }

@@ -35,7 +35,7 @@ TEST(OptimizerPage, HoldsWhatTheRowSays) {
   EXPECT_THAT(page, AllOf(HasSubstr("\n# `lib:demo`\n\nDemo: a\\|b \\*stars\\*.\n"),
                           HasSubstr("\n- Doe 1999, A paper.\n- Roe 2001, Another.\n"),
                           HasSubstr("\n    armwright optimize q1-complex --optimizer lib:demo\n"),
-                          HasSubstr("\n| stochastic | yes | draws by chance"),
+                          HasSubstr("\n| stochastic | yes | uses random numbers"),
                           HasSubstr("\n| bounds | yes |"), HasSubstr("\n| paced | no |")));
   EXPECT_THAT(page, AllOf(HasSubstr("\n| `size` | `3` | integer, 0 to 9 | of f\\|g |\n"),
                           HasSubstr("\n| `rate` | `0.5` | number, 1e-09 to 1e+12 | r |\n"),
@@ -46,25 +46,26 @@ TEST(OptimizerPage, HoldsWhatTheRowSays) {
 
 TEST(OptimizerPage, SaysWhatTheOptimizerNeeds) {
   OptimizerRow row = make_row();
-  EXPECT_THAT(format_optimizer_page(row),
-              AllOf(HasSubstr("- **Build:** every one has it."), HasSubstr("- **Problem:** any."),
-                    HasSubstr("- **Runs:** in armwright's own process.")));
+  EXPECT_THAT(
+      format_optimizer_page(row),
+      AllOf(HasSubstr("- **Build:** part of every build."), HasSubstr("- **Problem:** any."),
+            HasSubstr("- **Runs:** in armwright's own process.")));
   row.backend = "Libfoo (CMake option FOO)";
   row.requirements = {.objectives = 2, .variables = 3, .residuals = true};
   row.isolated = "with a=b";
   EXPECT_THAT(
       format_optimizer_page(row),
-      AllOf(HasSubstr(
-                "- **Build:** one with Libfoo (CMake option FOO), as every build is by default."),
-            HasSubstr("one with at least 2 objectives and at least 3 decision variables and "
-                      "residuals (all robot problems have them)."),
-            HasSubstr("with a=b in a process of its own"), HasSubstr("optimize q2-pareto ")));
+      AllOf(
+          HasSubstr("- **Build:** needs Libfoo (CMake option FOO), which a build has by default."),
+          HasSubstr("one with at least 2 objectives and at least 3 decision variables and "
+                    "residuals (all robot problems have them)."),
+          HasSubstr("with a=b in a process of its own"), HasSubstr("optimize q2-pareto ")));
 }
 
 TEST(OptimizerPage, SaysWhatBecomesOfConstraints) {
   OptimizerRow row = make_row();
   EXPECT_THAT(format_optimizer_page(row),
-              HasSubstr("| constraints | no | knows no constraints and ignores them |"));
+              HasSubstr("| constraints | no | does not know the constraints and ignores them |"));
   row.options.push_back({.name = "constraint_weight", .description = "c", .fallback = 1.0});
   EXPECT_THAT(format_optimizer_page(row), HasSubstr("times constraint_weight, is added"));
   row.capabilities.constraints = true;
@@ -109,7 +110,7 @@ TEST(OptimizerIndex, LinksEveryRowInTheOrderOfTheTable) {
   EXPECT_EQ(get_page_name("nlopt:direct_l"), "nlopt-direct_l.md");
 }
 
-// Every line of a table has as many cells as its head: nothing in the rows breaks out of a cell.
+// Every line of a table has as many cells as its head, so no text of a row ends its cell.
 TEST(OptimizerPages, TablesAreWhole) {
   std::vector<std::string> pages = {format_optimizer_index(optimizer_table())};
   for (const OptimizerRow& row : optimizer_table()) {

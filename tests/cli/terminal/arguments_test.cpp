@@ -35,7 +35,7 @@ TEST(OverrideOptions, EngineFlagsAreShortForSettings) {
   EXPECT_THAT(options.get(), ElementsAre("task.load_kg=3", "physics.simd=auto"));
 }
 
-// Whatever the problem says about judging: there the engine that is asked for simulates.
+// Without training, --engine replaces the judging engine of the problem.
 TEST(OverrideOptions, WithoutTrainingTheEngineIsTheOneThatJudges) {
   OverrideOptions options = make_options(false);
   options.engines.engine = "ode";

@@ -1,4 +1,4 @@
-// What `verify` tries, how it judges and what it concludes, on numbers made by hand.
+// The settings that `verify` tries, its verdicts and its conclusions, on hand-made numbers.
 #include "cli/views/verification.hpp"
 
 #include <gmock/gmock.h>
@@ -63,8 +63,8 @@ TEST(VerifySettings, PresetsAreCombinedOrTriedUnderItsOwnAlone) {
   EXPECT_EQ(std::ranges::count(settings, VerifySetting{"a", 10, 1, "friction"}), 1);
 }
 
-// A problem with perturbed plants of its own: its masses change on these, and the nominal plant is
-// a setting like others.
+// In a problem with perturbed plants of its own, the masses of these plants change, and the nominal
+// plant is a setting like others.
 TEST(VerifySettings, TellItsOwnPlantsFromTheNominalOne) {
   const VerifySetting own{"a", 1, 1, ""};
   const auto settings = list_verify_settings(own, {{"a"}, {1}, kUsualPlants, {}});
@@ -99,7 +99,8 @@ TEST(VerifyVerdict, HasARatioWhereThereAreTwoMedians) {
   EXPECT_FALSE(judge_setting({}, make_summary({0.002}), make_summary({kNone})).ratio);
 }
 
-// A design whose median is its own, but for what `errors_m` says of a setting.
+// Returns the conclusion on a design with a median error of 2 mm in its own setting and of
+// errors_m(setting) in each setting.
 template <class Errors>
 std::string conclude_on(const std::vector<std::string>& engines, const Errors& errors_m) {
   std::vector<VerifyRow> rows;
@@ -117,7 +118,7 @@ TEST(VerifyConclusion, SaysThatEverythingHolds) {
                           HasSubstr("Engines: It holds in b."),
                           HasSubstr("It holds with 2 substeps, 5 substeps and 10 substeps."),
                           HasSubstr("Masses: It holds with -10 % and +10 %."),
-                          HasSubstr("it holds in 17 of 17."), Not(HasSubstr("relies"))));
+                          HasSubstr("it holds in 17 of 17."), Not(HasSubstr("depends on"))));
 }
 
 TEST(VerifyConclusion, NamesWhatDoesNotHold) {
@@ -130,7 +131,7 @@ TEST(VerifyConclusion, NamesWhatDoesNotHold) {
               AllOf(StartsWith("mine holds in 1 of the 11 settings beside its own. Time steps:"),
                     HasSubstr("It gets worse with 2 substeps (median 1.50 times as large). "
                               "It fails with 5 substeps and 10 substeps."),
-                    HasSubstr("relies on the simulation's own time step"),
+                    HasSubstr("depends on the time step of the simulation"),
                     HasSubstr("It holds with -10 %. It gets worse with +10 % (median 1.50"),
                     HasSubstr("it holds in 0 of 6.")));
 }
@@ -151,8 +152,7 @@ TEST(VerifyConclusion, NamesPerturbedPlants) {
 TEST(VerifyConclusion, SaysWhenThereIsNothingToHold) {
   EXPECT_EQ(conclude("mine", std::vector<VerifyRow>{judge_setting({}, make_summary({kNone}),
                                                                   make_summary({kNone}))}),
-            "mine has no median error even under its own setting: there is nothing that could "
-            "hold.");
+            "mine has no median error even in its own setting, so the other settings say nothing.");
 }
 
 }  // namespace

@@ -2,10 +2,10 @@
 // a library to open: nothing that a fuzzer has made up is ever run.
 #include "base/error.hpp"
 #include "optimizers/builtin/random_search.hpp"
-#include "optimizers/ceres/ceres.hpp"
-#include "optimizers/cma/cmaes.hpp"
-#include "optimizers/nlopt/nlopt.hpp"
-#include "optimizers/pagmo/pagmo.hpp"
+#include "optimizers/ceres/ceres_backend.hpp"
+#include "optimizers/cma/cma_search.hpp"
+#include "optimizers/nlopt/nlopt_algorithms.hpp"
+#include "optimizers/pagmo/pagmo_backend.hpp"
 #include "optimizers/plugins/plugin_library.hpp"
 #include "optimizers/plugins/plugin_process.hpp"
 

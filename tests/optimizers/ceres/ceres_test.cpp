@@ -1,5 +1,3 @@
-#include "optimizers/ceres/ceres.hpp"
-
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/expect_error.hpp"
+#include "optimizers/ceres/ceres_backend.hpp"
 #include "optimizers/table/optimizer_table.hpp"
 #include "optimizers/test_problems.hpp"
 #include "problems/analytic/analytic.hpp"

@@ -48,8 +48,8 @@ TEST(JetSimulation, HasTheValuesAndDerivativesOfTheEngine) {
     const JointDrive& joint = design.joints[i];
     drives.push_back(
         {{Jet(joint.gains[0], static_cast<int>(i)), Jet(joint.gains[1]), Jet(joint.gains[2])},
-         Jet(joint.limits.min_n_m),
-         Jet(joint.limits.max_n_m)});
+         Jet(joint.limits.min),
+         Jet(joint.limits.max)});
     zero.joints[i] = {{0, 0, 0}, {0, 0}};
   }
   std::vector<ArmDesign> directions(4, zero);

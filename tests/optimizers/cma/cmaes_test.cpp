@@ -1,6 +1,4 @@
 // Whole runs of CMA-ES. What it is made of: cma_parts_test.cpp.
-#include "optimizers/cma/cmaes.hpp"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 
 #include "base/expect_error.hpp"
 #include "optimizers/cma/cma_distribution.hpp"
+#include "optimizers/cma/cma_search.hpp"
 #include "optimizers/table/optimizer_table.hpp"
 #include "optimizers/test_problems.hpp"
 #include "problems/analytic/analytic.hpp"

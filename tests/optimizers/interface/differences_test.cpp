@@ -36,7 +36,7 @@ Look look(const std::vector<double>& at, bool central, std::int64_t fail_every =
   const auto problem = make_cubic();
   MemoryEvaluator evaluator(*problem, {.budget = 100, .fail_every = fail_every});
   DifferencedFunction function(evaluator, take_value, {.central = central, .step = 0.05});
-  const DifferencedFunction::Place place = function.look_at(at, true);
+  const DifferencedFunction::Place place = function.evaluate_place(at, true);
   for (const MemoryEvaluator::Entry& entry : evaluator.trace()) {
     EXPECT_FALSE(entry.score.clipped);
   }
@@ -84,8 +84,8 @@ TEST(Differences, NoPlaceIsAskedForTwice) {
   MemoryEvaluator evaluator(*problem, {.budget = 100});
   DifferencedFunction function(evaluator, take_value, {.central = false, .step = 0.05});
   for (const bool with_derivatives : {false, false, true, true, false}) {
-    function.look_at({1, 5}, with_derivatives);
-    function.look_at({1, 6}, false);
+    function.evaluate_place({1, 5}, with_derivatives);
+    function.evaluate_place({1, 6}, false);
   }
   EXPECT_THAT(evaluator.batch_sizes(), ElementsAre(1, 1, 2));
 }
@@ -94,7 +94,7 @@ TEST(Differences, TheEndOfTheBudgetComesOut) {
   const auto problem = make_cubic();
   MemoryEvaluator evaluator(*problem, {.budget = 2});
   DifferencedFunction function(evaluator, take_value, {.central = false, .step = 0.05});
-  EXPECT_THROW(function.look_at({1, 5}, true), EvaluatorStopped);
+  EXPECT_THROW(function.evaluate_place({1, 5}, true), EvaluatorStopped);
   EXPECT_EQ(evaluator.trace().size(), 2u);
 }
 
@@ -125,10 +125,10 @@ TEST(ExactDerivatives, AreTheChainRuleAndTheirEvaluationIsChargedFor) {
     return std::vector<double>(score.residuals.size(), 2.0);
   });
   const std::vector<double> at = {std::log(4), std::log(3), 0.25};
-  EXPECT_THAT(function.look_at(at, false).derivatives, IsEmpty());
+  EXPECT_THAT(function.evaluate_place(at, false).derivatives, IsEmpty());
   EXPECT_EQ(evaluator.charged(), 1);
   // By ln u, ln |v| and w; roundings of exp and log.
-  const auto& place = function.look_at(at, true);
+  const auto& place = function.evaluate_place(at, true);
   EXPECT_THAT(place.values, ElementsAre(DoubleNear(-24, 1e-13), DoubleNear(19.5, 1e-13)));
   EXPECT_THAT(place.derivatives,
               ElementsAre(ElementsAre(DoubleNear(-24, 1e-13), DoubleNear(0, 1e-13)),
@@ -136,8 +136,8 @@ TEST(ExactDerivatives, AreTheChainRuleAndTheirEvaluationIsChargedFor) {
                           ElementsAre(DoubleNear(0, 1e-13), DoubleNear(6, 1e-13))));
   EXPECT_EQ(evaluator.charged(), 1 + 2);  // 1 + 3/4, rounded up
   EXPECT_EQ(evaluator.trace().size(), 2U);
-  function.look_at(at, true);
-  function.look_at(at, false);
+  function.evaluate_place(at, true);
+  function.evaluate_place(at, false);
   EXPECT_EQ(evaluator.charged(), 3);
 }
 
@@ -146,7 +146,7 @@ TEST(ExactDerivatives, AFailedPlaceHasNone) {
   MemoryEvaluator evaluator(*problem, {.budget = 100, .fail_every = 1});
   DifferencedFunction function(evaluator, double_residuals,
                                [](const Score& score) { return score.residuals; });
-  const auto& place = function.look_at({1, 1, 0}, true);
+  const auto& place = function.evaluate_place({1, 1, 0}, true);
   EXPECT_THAT(place.values, IsEmpty());
   EXPECT_THAT(place.derivatives, IsEmpty());
 }

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "base/expect_error.hpp"
-#include "optimizers/interface/seed.hpp"
+#include "optimizers/interface/scalar_function.hpp"
 #include "optimizers/table/optimizer_table.hpp"
 
 namespace armwright {

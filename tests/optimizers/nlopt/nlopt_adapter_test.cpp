@@ -17,10 +17,10 @@ namespace {
 
 const std::vector<double> kNoPoint(4, std::numeric_limits<double>::quiet_NaN());
 
-class NloptQuestionsTest : public testing::Test {
+class NloptAdapterTest : public testing::Test {
  protected:
   // On the problem `constrained`, of four variables.
-  NloptQuestions& begin(const MemoryEvaluatorSettings& settings, bool takes_constraints) {
+  NloptAdapter& begin(const MemoryEvaluatorSettings& settings, bool takes_constraints) {
     settings_.takes_constraints = takes_constraints;
     settings_.constraint_weight = 1000;
     evaluator_.emplace(*problem_, settings);
@@ -37,12 +37,12 @@ class NloptQuestionsTest : public testing::Test {
   std::unique_ptr<Problem> problem_ = make_analytic("constrained");
   NloptSettings settings_;
   std::optional<MemoryEvaluator> evaluator_;
-  std::optional<NloptQuestions> questions_;
+  std::optional<NloptAdapter> questions_;
   int stops_ = 0;
 };
 
-TEST_F(NloptQuestionsTest, AFailedStartIsAFinitePenaltyAndViolatedConstraints) {
-  NloptQuestions& questions = begin({.budget = 10, .fail_every = 1}, true);
+TEST_F(NloptAdapterTest, AFailedStartIsAFinitePenaltyAndViolatedConstraints) {
+  NloptAdapter& questions = begin({.budget = 10, .fail_every = 1}, true);
   const std::vector<double> start = questions.space().start();
   EXPECT_EQ(questions.ask_objective(start), penalty());
   for (std::size_t i = 0; i < constraint_count(); ++i) {
@@ -53,13 +53,13 @@ TEST_F(NloptQuestionsTest, AFailedStartIsAFinitePenaltyAndViolatedConstraints) {
   EXPECT_TRUE(evaluator().trace()[0].score.constraint_values.empty());
 }
 
-TEST_F(NloptQuestionsTest, WithoutConstraintsAFailureIsThePenaltyAlone) {
-  NloptQuestions& questions = begin({.budget = 10, .fail_every = 1}, false);
+TEST_F(NloptAdapterTest, WithoutConstraintsAFailureIsThePenaltyAlone) {
+  NloptAdapter& questions = begin({.budget = 10, .fail_every = 1}, false);
   EXPECT_EQ(questions.ask_objective(questions.space().start()), penalty());
 }
 
-TEST_F(NloptQuestionsTest, APointThatIsNoneIsTheWorstSeenAndNoEvaluation) {
-  NloptQuestions& questions = begin({.budget = 10}, true);
+TEST_F(NloptAdapterTest, APointThatIsNoneIsTheWorstSeenAndNoEvaluation) {
+  NloptAdapter& questions = begin({.budget = 10}, true);
   const double start = questions.ask_objective(questions.space().start());
   const double corner = questions.ask_objective(questions.space().upper());
   EXPECT_EQ(questions.ask_objective(kNoPoint), std::max(start, corner));
@@ -69,8 +69,8 @@ TEST_F(NloptQuestionsTest, APointThatIsNoneIsTheWorstSeenAndNoEvaluation) {
   EXPECT_EQ(stops(), 0);
 }
 
-TEST_F(NloptQuestionsTest, ASearchThatIsLostInPointsThatAreNoneIsGivenUp) {
-  NloptQuestions& questions = begin({.budget = 10}, false);
+TEST_F(NloptAdapterTest, ASearchThatIsLostInPointsThatAreNoneIsGivenUp) {
+  NloptAdapter& questions = begin({.budget = 10}, false);
   questions.ask_objective(questions.space().start());
   for (int i = 0; i < 999; ++i) {
     questions.ask_objective(kNoPoint);
@@ -81,8 +81,8 @@ TEST_F(NloptQuestionsTest, ASearchThatIsLostInPointsThatAreNoneIsGivenUp) {
   EXPECT_FALSE(questions.has_ended());  // another search may begin
 }
 
-TEST_F(NloptQuestionsTest, ObjectiveAndConstraintsOfAPointAreOneEvaluation) {
-  NloptQuestions& questions = begin({.budget = 10}, true);
+TEST_F(NloptAdapterTest, ObjectiveAndConstraintsOfAPointAreOneEvaluation) {
+  NloptAdapter& questions = begin({.budget = 10}, true);
   const std::vector<double> start = questions.space().start();
   questions.ask_constraint(start, 0);
   questions.ask_constraint(start, 1);
@@ -92,8 +92,8 @@ TEST_F(NloptQuestionsTest, ObjectiveAndConstraintsOfAPointAreOneEvaluation) {
   EXPECT_EQ(evaluator().trace().size(), 2u);
 }
 
-TEST_F(NloptQuestionsTest, AfterTheEndTheSolverIsStoppedAndAnsweredInFiniteNumbers) {
-  NloptQuestions& questions = begin({.budget = 1}, true);
+TEST_F(NloptAdapterTest, AfterTheEndTheSolverIsStoppedAndAnsweredInFiniteNumbers) {
+  NloptAdapter& questions = begin({.budget = 1}, true);
   questions.ask_objective(questions.space().start());
   const std::vector<double> corner = questions.space().lower();
   for (int i = 0; i < 10; ++i) {
@@ -105,8 +105,8 @@ TEST_F(NloptQuestionsTest, AfterTheEndTheSolverIsStoppedAndAnsweredInFiniteNumbe
   EXPECT_EQ(evaluator().calls_after_stop(), 1);
 }
 
-TEST_F(NloptQuestionsTest, AnExceptionWaitsUntilItIsAskedFor) {
-  NloptQuestions& questions = begin({.budget = 10, .throw_at = 1}, false);
+TEST_F(NloptAdapterTest, AnExceptionWaitsUntilItIsAskedFor) {
+  NloptAdapter& questions = begin({.budget = 10, .throw_at = 1}, false);
   EXPECT_TRUE(std::isfinite(questions.ask_objective(questions.space().start())));
   EXPECT_TRUE(questions.has_ended());
   EXPECT_THROW(questions.rethrow(), BrokenEvaluator);

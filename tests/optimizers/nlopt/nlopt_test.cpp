@@ -1,7 +1,5 @@
 #ifdef ARMWRIGHT_WITH_NLOPT
 
-#include "optimizers/nlopt/nlopt.hpp"
-
 #include <gmock/gmock.h>
 #include <nlopt.h>
 
@@ -11,6 +9,7 @@
 #include <span>
 
 #include "base/expect_error.hpp"
+#include "optimizers/nlopt/nlopt_algorithms.hpp"
 #include "optimizers/nlopt_points.hpp"
 #include "optimizers/run_optimizer.hpp"
 #include "optimizers/table/optimizer_table.hpp"

@@ -1,7 +1,5 @@
 // The rows of pagmo: what they promise is what they do. That they do what pagmo alone would do
 // stands in pagmo_exactness_test.cpp.
-#include "optimizers/pagmo/pagmo.hpp"
-
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include <typeinfo>
 
 #include "base/expect_error.hpp"
+#include "optimizers/pagmo/pagmo_backend.hpp"
 #include "optimizers/run_optimizer.hpp"
 #include "optimizers/table/optimizer_table.hpp"
 #include "optimizers/test_problems.hpp"

@@ -77,7 +77,7 @@ TEST(Analytic, OneDimensionIsEnough) {
 class AnalyticTable : public testing::TestWithParam<std::string> {};
 
 TEST_P(AnalyticTable, DescribesItselfConsistently) {
-  const AnalyticRow& row = find_analytic(GetParam());
+  const AnalyticFunction& row = find_analytic(GetParam());
   EXPECT_FALSE(row.summary.empty());
   EXPECT_FALSE(row.source.empty());
   for (const int dimension :
@@ -118,8 +118,8 @@ TEST_P(AnalyticTable, NothingFeasibleBeatsTheKnownOptimum) {
   RandomStream random("test/analytic/" + GetParam());
   int feasible = 0;
   for (int sample = 0; sample < 20000; ++sample) {
-    // Half of them all over the box, half near the optimum, at distances from the box's size down
-    // to 1e-6 of it.
+    // Half of the points lie anywhere in the box. The others lie near the optimum, at distances
+    // from the size of the box down to 1e-6 of it.
     const double radius = sample % 2 == 0 ? 1 : std::pow(10, random.uniform(-6, 0));
     std::vector<double> x;
     for (std::size_t i = 0; i < description.variables.size(); ++i) {
@@ -166,7 +166,7 @@ TEST_P(AnalyticTable, TheObjectiveIsTheSumOfTheSquaredResiduals) {
     for (const DecisionVariable& variable : description.variables) {
       x.push_back(random.uniform(variable.lower, variable.upper));
     }
-    // Three cases, so that the mean is taken, too.
+    // Three cases, so that the mean is tested too.
     for (const CaseBlock& block : {kOneCase, CaseBlock{CaseRole::test, "test/1", {3, 1, 4}}}) {
       const Evaluation evaluation = problem->evaluate(x, block);
       if (!description.has_residuals) {
@@ -177,8 +177,8 @@ TEST_P(AnalyticTable, TheObjectiveIsTheSumOfTheSquaredResiduals) {
       for (const double residual : evaluation.residuals) {
         sum += residual * residual;
       }
-      // Some tens of positive terms, each off by a few roundings; rastrigin's cosine cancels
-      // against 1, at worst a rounding of 10 each.
+      // The value has a few tens of positive terms with a few rounding errors each. Rastrigin's
+      // cosine cancels against 1, with an error of at most one rounding of 10 per term.
       const double objective = evaluation.objectives.at(0);
       EXPECT_NEAR(sum, objective, 1e-14 * objective + 1e-13);
     }
@@ -189,10 +189,10 @@ INSTANTIATE_TEST_SUITE_P(All, AnalyticTable, testing::ValuesIn(analytic_names())
                          [](const auto& parameters) { return parameters.param; });
 
 TEST(Analytic, ConstrainedOptimumMeetsKarushKuhnTucker) {
-  // Objective and constraints are convex quadratics, so stationarity of the Lagrangian with
-  // multipliers >= 0 proves the global minimum. Multipliers (1, 0, 2): Hock and Schittkowski 1981.
-  // Central differences are exact for quadratics but for rounding: eps |f| / step = 2e-16 * 44 /
-  // 1e-3 < 1e-11.
+  // Objective and constraints are convex quadratics, so a stationary Lagrangian with multipliers
+  // >= 0 proves the global minimum. Multipliers (1, 0, 2): Hock and Schittkowski 1981. For
+  // quadratics, central differences have rounding errors only: eps |f| / step = 2e-16 * 44 / 1e-3
+  // < 1e-11.
   const auto problem = make_analytic("constrained");
   const std::vector<double> optimum = problem->description().known_optimum;
   const std::vector<double> multipliers = {1, 0, 2};

@@ -101,7 +101,7 @@ TEST(NamedFile, IsFoundBesideTheProblemThatNamesIt) {
                "[sweep]\nparameter = 'task.load_kg'\nvalues = [1, 2]\ndesign = './mine.toml'\n"
                "[published]\ndesign = 'mine.toml'\n");
   const LoadedProblem loaded = folder.load("p.toml");
-  EXPECT_EQ(loaded.tracking->config().start.joints.at(3).gains.at(0), 103);
+  EXPECT_EQ(loaded.tracking()->config().start.joints.at(3).gains.at(0), 103);
   EXPECT_THAT(loaded.input_hashes,
               testing::UnorderedElementsAre(testing::Key("arm.urdf"), testing::Key("mine.toml")));
   // Whoever reads the design later finds it from anywhere.
@@ -184,7 +184,7 @@ TEST(BadDesign, ZeroIsNoStartForAVariable) {
                "extends = \"base\"\n[variables]\nstart = 'd.toml'\n"
                "[[variables.joint]]\nname = 'joint_2'\noptimize = ['p', 'd']\n");
   const LoadedProblem loaded = folder.load("p.toml");
-  EXPECT_EQ(loaded.tracking->config().start.joints.at(1).gains.at(1), 0);
+  EXPECT_EQ(loaded.tracking()->config().start.joints.at(1).gains.at(1), 0);
 }
 
 TEST(BadDesign, EveryMistakeInItsFileHasItsPlace) {

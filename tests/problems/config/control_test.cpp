@@ -6,9 +6,9 @@
 
 #include "base/expect_error.hpp"
 #include "base/temporary_folder.hpp"
-#include "problems/config/recorded_problem.hpp"
+#include "problems/config/problem_loader.hpp"
 #include "problems/problem_folder.hpp"
-#include "sim/tracking/design_conversion.hpp"
+#include "sim/tracking/design.hpp"
 
 namespace armwright {
 namespace {
@@ -32,8 +32,8 @@ const DecisionVariable& get_variable(const LoadedProblem& loaded, const std::str
 
 TEST(Control, WithoutATableThereIsThePidOfTheStart) {
   const LoadedProblem loaded = load_with_gains({});
-  EXPECT_EQ(loaded.tracking->config().start.controller, "pid");
-  EXPECT_EQ(loaded.tracking->config().task.feed_forward, FeedForward::none);
+  EXPECT_EQ(loaded.tracking()->config().start.controller, "pid");
+  EXPECT_EQ(loaded.tracking()->config().task.feed_forward, FeedForward::none);
   EXPECT_THAT(loaded.resolved_json, testing::Not(HasSubstr("\"controller\"")));
 }
 
@@ -43,20 +43,20 @@ TEST_P(EveryControl, TakesTheStartOver) {
   const LoadedProblem plain = load_with_gains({});
   const LoadedProblem loaded = load_with_gains({"control.controller=" + GetParam()});
   const ControllerRow& row = find_controller(GetParam());
-  const TrackingConfig& config = loaded.tracking->config();
+  const TrackingConfig& config = loaded.tracking()->config();
   EXPECT_EQ(config.start.controller, row.name);
   EXPECT_EQ(config.task.feed_forward, row.feed_forward);
   const std::size_t joints = config.robot.joint_count();
   const auto& variables = loaded.problem->description().variables;
   ASSERT_EQ(variables.size(), joints * (row.gains.size() + 2));
   for (std::size_t joint = 0; joint < joints; ++joint) {
-    const JointDrive& before = plain.tracking->config().start.joints[joint];
-    EXPECT_EQ(config.start.joints[joint].limits.min_n_m, before.limits.min_n_m);
-    EXPECT_EQ(config.start.joints[joint].limits.max_n_m, before.limits.max_n_m);
+    const JointDrive& before = plain.tracking()->config().start.joints[joint];
+    EXPECT_EQ(config.start.joints[joint].limits.min, before.limits.min);
+    EXPECT_EQ(config.start.joints[joint].limits.max, before.limits.max);
     for (std::size_t k = 0; k < row.gains.size(); ++k) {
       const DecisionVariable& variable = variables[joint * (row.gains.size() + 2) + k];
-      const GainSpec& gain = row.gains[k];
-      EXPECT_TRUE(variable.name.ends_with("." + gain.name)) << variable.name;
+      const controllers::Gain& gain = row.gains[k];
+      EXPECT_TRUE(variable.name.ends_with(std::string(".") + gain.name)) << variable.name;
       EXPECT_EQ(variable.unit, gain.unit);
       EXPECT_EQ(variable.start, config.start.joints[joint].gains[k]);
       EXPECT_EQ(variable.scale, gain.range > 0 ? Scale::linear : Scale::logarithmic);
@@ -89,7 +89,7 @@ TEST_P(EveryControl, DesignsSurviveTheirFile) {
   file.name = "made";
   file.title = "a start";
   file.source = "converted";
-  file.design = load_with_gains({"control.controller=" + GetParam()}).tracking->config().start;
+  file.design = load_with_gains({"control.controller=" + GetParam()}).tracking()->config().start;
   file.design.joints[1].gains.back() *= 1.0 / 3;
   for (std::size_t k = 0; k < find_controller(GetParam()).gains.size(); ++k) {
     if (find_controller(GetParam()).gains[k].any_sign) {
@@ -109,10 +109,11 @@ TEST_P(EveryControl, DesignsSurviveTheirFile) {
   // As a start it is used as it is, by its own controller or without naming it.
   const LoadedProblem again =
       load_with_gains({"control.controller=" + GetParam(), "variables.start=" + path});
-  EXPECT_EQ(again.tracking->config().start.joints[2].gains, file.design.joints[2].gains);
+  EXPECT_EQ(again.tracking()->config().start.joints[2].gains, file.design.joints[2].gains);
   const LoadedProblem unnamed = load_with_gains({"variables.start=" + path});
-  EXPECT_EQ(unnamed.tracking->config().start.controller, GetParam());
-  EXPECT_EQ(unnamed.tracking->config().task.feed_forward, find_controller(GetParam()).feed_forward);
+  EXPECT_EQ(unnamed.tracking()->config().start.controller, GetParam());
+  EXPECT_EQ(unnamed.tracking()->config().task.feed_forward,
+            find_controller(GetParam()).feed_forward);
   if (GetParam() != "pid") {
     EXPECT_THAT(usage_error_of([&] {
                   load_with_gains(
@@ -120,7 +121,7 @@ TEST_P(EveryControl, DesignsSurviveTheirFile) {
                        "variables.start=" + path});
                 }),
                 HasSubstr("the start design is for controller '" + GetParam() +
-                          "', and only one for 'pid' can be turned into one for"));
+                          "'; only a design for 'pid' can be converted to"));
   }
 }
 
@@ -158,7 +159,7 @@ TEST(Control, GainsStandForAllOfAController) {
 TEST(Control, TheFilterStartsAtATenthOfThePeriod) {
   const LoadedProblem loaded =
       load_with_gains({"control.controller=pid_filtered", "control.period_s=0.004"});
-  EXPECT_EQ(loaded.tracking->config().task.control_period_s, 0.004);
+  EXPECT_EQ(loaded.tracking()->config().task.control_period_s, 0.004);
   EXPECT_DOUBLE_EQ(get_variable(loaded, "joint_1.filter").start, 0.0004);
 }
 
@@ -167,31 +168,32 @@ TEST(Control, RefusesAStartThatMakesNoController) {
   folder.write("d.toml",
                "name = 'd'\n" + make_joint() + make_joint() + make_joint() +
                    make_joint("p_n_m_per_rad = 300", "i_n_m_per_rad_s = 0", "d_n_m_s_per_rad = 0"));
-  EXPECT_EQ(folder.refusal_of_base_with(
-                "[control]\ncontroller = 'cascade'\n[variables]\nstart = 'd.toml'"),
-            "p.toml:3: control.controller is 'cascade'; 'cascade' cannot be made of the start's "
-            "joint 4, whose PID has p = 300, i = 0, d = 0 and an effort limit of 200 N m: kp_per_s "
-            "would be inf; name another start");
+  EXPECT_EQ(
+      folder.refusal_of_base_with(
+          "[control]\ncontroller = 'cascade'\n[variables]\nstart = 'd.toml'"),
+      "p.toml:3: control.controller is 'cascade'; joint 4 of the start cannot be converted to "
+      "'cascade': its PID has p = 300, i = 0, d = 0 and an effort limit of 200 N m, so "
+      "kp_per_s would be inf; name another start");
 }
 
 TEST(Control, ADesignNeedsTheTablesOfItsController) {
   const LoadedProblem plain = load_with_gains({});
   const ArmDesign design =
-      convert_design(plain.tracking->config().start, "pid_computed_torque", 0.01);
-  EXPECT_EQ(usage_error_of([&] { plain.tracking->check_design(design); }),
-            "the design is for controller 'pid_computed_torque', whose efforts in advance problem "
-            "q2-e6 does not make; set control.controller to 'pid_computed_torque'");
-  load_with_gains({"control.controller=pid_computed_torque"}).tracking->check_design(design);
+      convert_design(plain.tracking()->config().start, "pid_computed_torque", 0.01);
+  EXPECT_EQ(usage_error_of([&] { plain.tracking()->check_design(design); }),
+            "the design is for controller 'pid_computed_torque', whose feed-forward efforts "
+            "problem q2-e6 does not compute; set control.controller to 'pid_computed_torque'");
+  load_with_gains({"control.controller=pid_computed_torque"}).tracking()->check_design(design);
   // Another controller without tables can be judged, but is no vector of this problem.
-  const ArmDesign pi2d = convert_design(plain.tracking->config().start, "pi2d", 0.01);
-  plain.tracking->check_design(pi2d);
-  EXPECT_THAT(usage_error_of([&] { plain.tracking->make_vector(pi2d); }),
+  const ArmDesign pi2d = convert_design(plain.tracking()->config().start, "pi2d", 0.01);
+  plain.tracking()->check_design(pi2d);
+  EXPECT_THAT(usage_error_of([&] { plain.tracking()->make_vector(pi2d); }),
               HasSubstr("the design is for controller 'pi2d', the variables of problem q2-e6 are "
                         "those of 'pid'"));
 }
 
 TEST(Control, AConvertedStartKeepsItsArmAndItsSpeed) {
-  ArmDesign start = load_with_gains({}).tracking->config().start;
+  ArmDesign start = load_with_gains({}).tracking()->config().start;
   start.joints[1].length_scale = 1.1;
   start.joints[2].section_scale = 0.9;
   start.speed_m_per_s = 1.25;
@@ -199,7 +201,7 @@ TEST(Control, AConvertedStartKeepsItsArmAndItsSpeed) {
   EXPECT_EQ(converted.joints[1].length_scale, 1.1);
   EXPECT_EQ(converted.joints[2].section_scale, 0.9);
   EXPECT_EQ(converted.speed_m_per_s, 1.25);
-  EXPECT_EQ(converted.joints[3].limits.max_n_m, start.joints[3].limits.max_n_m);
+  EXPECT_EQ(converted.joints[3].limits.max, start.joints[3].limits.max);
 }
 
 // What runs recorded before the control period had a table of its own.
@@ -212,7 +214,7 @@ TEST(Control, RecordsOfOldRunsCanBeRead) {
   const std::string task = "\"task\":{";
   old.insert(old.find(task) + task.size(), "\"control_period_s\":0.005,");
   const LoadedProblem again = load_recorded_problem(old, "q2-e6", ".");
-  EXPECT_EQ(again.tracking->config().task.control_period_s, 0.005);
+  EXPECT_EQ(again.tracking()->config().task.control_period_s, 0.005);
   EXPECT_EQ(again.resolved_json, now.resolved_json);
 }
 

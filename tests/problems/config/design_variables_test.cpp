@@ -185,8 +185,8 @@ TEST(DesignedArm, IsTrackedByWhatItsFileSays) {
   ASSERT_FALSE(recorded.trajectory.empty());
   const auto setup = problem->get_setup(make_other_arm("table-a5"));
   const TrajectorySample& sample = recorded.trajectory[500];
-  EXPECT_LT((calc_tip_position(setup->robot(), sample.q_rad) - sample.tip_m).norm(), 1e-12);
-  EXPECT_LT((calc_tip_position(setup->robot(), sample.target_rad) - sample.target_m).norm(), 0.1)
+  EXPECT_LT((calc_tip_position(setup->robot(), sample.q) - sample.tip_m).norm(), 1e-12);
+  EXPECT_LT((calc_tip_position(setup->robot(), sample.target_q) - sample.target_m).norm(), 0.1)
       << "0.12 m to the side is the error in the inverse kinematics of Q1";
 }
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "problems/config/path_file.hpp"
 #include "problems/config/path_survey.hpp"
+#include "problems/config/problem_readers.hpp"
 #include "problems/problem_folder.hpp"
 
 namespace armwright {
@@ -13,7 +13,7 @@ namespace {
 
 TestCase load_path(const std::string& toml, const ProblemFolder& folder = {}) {
   folder.write("p.toml", "extends = \"base\"\n" + toml);
-  return *folder.load("p.toml").tracking->config().path;
+  return *folder.load("p.toml").tracking()->config().path;
 }
 
 TEST(Path, PointsAreMovedBetween) {
@@ -27,16 +27,16 @@ position_m = [1.4, 0.3, 0.9]
 kind = "points"
 )");
   const LoadedProblem problem = folder.load("p.toml");
-  const TestCase path = *problem.tracking->config().path;
+  const TestCase path = *problem.tracking()->config().path;
   EXPECT_FALSE(path.continuous);
   EXPECT_EQ(path.points_m, (std::vector<Eigen::Vector3d>{{1.4, 0, 0.9}, {1.4, 0.3, 0.9}}));
-  EXPECT_TRUE(problem.tracking->config().task.count_first_point) << "every move was asked for";
+  EXPECT_TRUE(problem.tracking()->config().task.count_first_point) << "every move was asked for";
   EXPECT_EQ(problem.sets.test_cases, 1) << "all would be the same";
   EXPECT_EQ(to_text(problem.schedule), "fixed:1");
   // Whatever the set and the number.
   for (const char* set : {"train/1", "validation/1", "test/2"}) {
-    EXPECT_EQ(problem.tracking->get_set(set).make_case(77).points_m, path.points_m);
-    EXPECT_FALSE(problem.tracking->get_set(set).size());
+    EXPECT_EQ(problem.tracking()->get_set(set).make_case(77).points_m, path.points_m);
+    EXPECT_FALSE(problem.tracking()->get_set(set).size());
   }
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "problems/config/path_survey.hpp"
-#include "problems/config/recorded_problem.hpp"
+#include "problems/config/problem_loader.hpp"
 #include "problems/problem_folder.hpp"
 #include "sim/generated_arm.hpp"
 #include "sim/tracking/path_check.hpp"
@@ -27,11 +27,11 @@ TEST(RobotProposal, TheJointsCanDoWhatIsProposed) {
   for (const int number : {0, 2, 4}) {
     folder.write("arm.urdf", make_arm_urdf(number));
     const LoadedProblem problem = load_robot(folder.path("arm.urdf"));
-    const TrackingConfig& config = problem.tracking->config();
-    const TrackingSetup& setup = problem.tracking->setup();
+    const TrackingConfig& config = problem.tracking()->config();
+    const TrackingSetup& setup = problem.tracking()->setup();
     for (std::uint64_t i = 0; i < 5; ++i) {
       const TargetTable table =
-          setup.make_targets(problem.tracking->get_set("test/unseen").make_case(i));
+          setup.make_targets(problem.tracking()->get_set("test/unseen").make_case(i));
       ASSERT_EQ(table.unreachable, "") << "arm " << number;
       for (const PathFault& fault : find_path_faults(setup, table)) {
         ADD_FAILURE() << describe(fault, config.robot);
@@ -40,8 +40,8 @@ TEST(RobotProposal, TheJointsCanDoWhatIsProposed) {
     EXPECT_GT(config.workspace.radius_m, 0.02);
     for (std::size_t i = 0; i < config.robot.joint_count(); ++i) {
       const EffortLimits& limits = config.start.joints[i].limits;
-      EXPECT_GT(limits.max_n_m, 0);
-      EXPECT_LE(limits.max_n_m, config.robot.joints[i].effort_limit);
+      EXPECT_GT(limits.max, 0);
+      EXPECT_LE(limits.max, config.robot.joints[i].effort_limit);
     }
   }
 }
@@ -54,17 +54,17 @@ TEST(RobotProposal, WhatIsRecordedMakesTheSameProblem) {
   EXPECT_EQ(first.name, "arm");
   const LoadedProblem again = load_recorded_problem(first.resolved_json, first.name, "");
   EXPECT_EQ(again.resolved_json, first.resolved_json);
-  const TrackingConfig& a = first.tracking->config();
-  const TrackingConfig& b = again.tracking->config();
+  const TrackingConfig& a = first.tracking()->config();
+  const TrackingConfig& b = again.tracking()->config();
   EXPECT_EQ(a.workspace.centre_m, b.workspace.centre_m);
   EXPECT_EQ(a.workspace.radius_m, b.workspace.radius_m);
   EXPECT_EQ(a.task.speed_m_per_s, b.task.speed_m_per_s);
   EXPECT_EQ(a.task.home, b.task.home);
   EXPECT_EQ(a.task.tool.turn, b.task.tool.turn);
-  EXPECT_EQ(first.tracking->make_vector(a.start), again.tracking->make_vector(b.start));
-  const TestCase its = first.tracking->get_set("test/2").make_case(0);
-  EXPECT_EQ(first.tracking->setup().make_targets(its).angles_rad,
-            again.tracking->setup().make_targets(its).angles_rad);
+  EXPECT_EQ(first.tracking()->make_vector(a.start), again.tracking()->make_vector(b.start));
+  const TestCase its = first.tracking()->get_set("test/2").make_case(0);
+  EXPECT_EQ(first.tracking()->setup().make_targets(its).joint_positions,
+            again.tracking()->setup().make_targets(its).joint_positions);
 }
 
 TEST(RobotProposal, WhatTheFileSaysHolds) {
@@ -73,7 +73,7 @@ TEST(RobotProposal, WhatTheFileSaysHolds) {
       {set_key("workspace.centre_m", "[1.4, 0, 0.9]"), set_key("workspace.radius_m", "0.3"),
        set_key("workspace.shortest_move_m", "0.05"), set_key("task.tool_rpy_rad", "[0, 1.57, 0]"),
        set_key("task.home", "[0, 0.2, 0.2, 0, 1.2, 0]"), set_key("task.speed_m_per_s", "0.4")});
-  const TrackingConfig& config = problem.tracking->config();
+  const TrackingConfig& config = problem.tracking()->config();
   EXPECT_EQ(config.workspace.radius_m, 0.3);
   EXPECT_EQ(config.task.speed_m_per_s, 0.4);
   EXPECT_EQ(config.task.tool.orientation, ToolOrientation::pose);
@@ -82,10 +82,10 @@ TEST(RobotProposal, WhatTheFileSaysHolds) {
 
 TEST(RobotProposal, PlanarArmsMoveInTheirPlane) {
   const LoadedProblem problem = load_robot("planar2");
-  const WorkspaceSphere& disc = problem.tracking->config().workspace;
+  const WorkspaceSphere& disc = problem.tracking()->config().workspace;
   ASSERT_TRUE(disc.normal);
   EXPECT_NEAR(std::abs(disc.normal->y()), 1, 1e-9);
-  for (const Eigen::Vector3d& point : problem.tracking->get_set("test/2").make_case(3).points_m) {
+  for (const Eigen::Vector3d& point : problem.tracking()->get_set("test/2").make_case(3).points_m) {
     EXPECT_NEAR((point - disc.centre_m).dot(*disc.normal), 0, 1e-12);
     EXPECT_LE((point - disc.centre_m).norm(), disc.radius_m * (1 + 1e-12));
   }
@@ -96,7 +96,7 @@ TEST(RobotProposal, PathsOfTheUsersOwn) {
   const LoadedProblem problem =
       load_robot("irb4600_six", {"path.kind=line", set_key("path.from_m", "[1.4, -0.3, 1]"),
                                  set_key("path.to_m", "[1.4, 0.3, 1]")});
-  const TrackingConfig& config = problem.tracking->config();
+  const TrackingConfig& config = problem.tracking()->config();
   EXPECT_EQ(config.task.tool.orientation, ToolOrientation::free);
   EXPECT_NEAR(config.task.distance_limit_m, 0.6, 1e-12);
   EXPECT_GT(config.task.speed_m_per_s, 0.05);
@@ -112,8 +112,8 @@ TEST(RobotProposal, FilesExtendShippedProblems) {
   const LoadedProblem problem = folder.load("mine.toml");
   EXPECT_EQ(problem.name, "mine");
   EXPECT_EQ(load_recorded_problem(problem.resolved_json, problem.name, "").name, "mine");
-  EXPECT_EQ(problem.tracking->config().task.load_kg, 0.5);
-  EXPECT_EQ(problem.tracking->config().task.physics.substeps, 10);
+  EXPECT_EQ(problem.tracking()->config().task.load_kg, 0.5);
+  EXPECT_EQ(problem.tracking()->config().task.physics.substeps, 10);
   EXPECT_THAT(folder.refusal_of("extends = \"robt\"\n"),
               testing::HasSubstr("unknown file to extend 'robt'; did you mean 'robot'?"));
   EXPECT_THAT(folder.refusal_of("extends = \"robot\"\nname = \"a/b\"\n"),

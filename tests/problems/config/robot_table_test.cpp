@@ -29,7 +29,7 @@ TEST(RobotTable, NamesTheTipOfAnArmWithBranches) {
   folder.write("arm.urdf", make_arm_with_jaw());
   folder.write("p.toml", "extends = \"base\"\n[robot]\nurdf = 'arm.urdf'\ntip = 'tip'\n");
   const LoadedProblem loaded = folder.load("p.toml");
-  const RobotModel& robot = loaded.tracking->config().robot;
+  const RobotModel& robot = loaded.tracking()->config().robot;
   EXPECT_EQ(robot.joint_count(), 4u);
   EXPECT_NEAR(robot.links[3].inertial.mass_kg, 13.8 + 2, 1e-14);
   EXPECT_THAT(loaded.resolved_json, HasSubstr("\"tip\":\"tip\""));
@@ -76,7 +76,7 @@ TEST(RobotTable, HashesTheMeshesThatMassesComeFrom) {
                "density_kg_per_m3 = 2700\n");
   const LoadedProblem loaded = folder.load("p.toml");
   // A corner of a box: a sixth of it. The mesh has numbers of 32 bits.
-  EXPECT_NEAR(loaded.tracking->config().robot.links[3].inertial.mass_kg,
+  EXPECT_NEAR(loaded.tracking()->config().robot.links[3].inertial.mass_kg,
               13.8 + 2700 * 0.3 * 0.2 * 0.1 / 6, 1e-6);
   EXPECT_THAT(loaded.input_hashes,
               UnorderedElementsAre(Key("arm.urdf"), Key("table-a1.toml"), Key("wedge.obj")));

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "base/hash.hpp"
@@ -10,6 +11,7 @@
 #include "problems/config/config_files.hpp"
 #include "problems/config/design_file.hpp"
 #include "problems/config/problem_loader.hpp"
+#include "problems/load_tracking.hpp"
 
 namespace armwright {
 namespace {
@@ -106,9 +108,8 @@ TEST_P(ShippedExperiment, HasTheSettingsOfTheThesis) {
   const LoadedProblem loaded = load_problem(expected.name);
   EXPECT_EQ(loaded.name, expected.name);
   EXPECT_THAT(loaded.title, testing::Not(IsEmpty()));
-  ASSERT_NE(loaded.tracking, nullptr);
-  EXPECT_EQ(loaded.problem, loaded.tracking);
-  const TrackingConfig& config = loaded.tracking->config();
+  ASSERT_NE(loaded.tracking(), nullptr);
+  const TrackingConfig& config = loaded.tracking()->config();
 
   const TrackingTask& task = config.task;
   EXPECT_EQ(task.signal, expected.signal);
@@ -160,13 +161,13 @@ TEST_P(ShippedExperiment, HasTheSettingsOfTheThesis) {
 TEST_P(ShippedExperiment, StartsAtTheBaseControllersWithEverythingVariable) {
   const LoadedProblem loaded = load_problem(GetParam().name);
   EXPECT_THAT(loaded.problem->description().variables, SizeIs(20));
-  EXPECT_EQ(loaded.tracking->config().bounds_factor, 100);
-  EXPECT_EQ(loaded.tracking->make_vector(loaded.tracking->config().start),
-            loaded.tracking->make_vector(load_design("table-a1").design));
+  EXPECT_EQ(loaded.tracking()->config().bounds_factor, 100);
+  EXPECT_EQ(loaded.tracking()->make_vector(loaded.tracking()->config().start),
+            loaded.tracking()->make_vector(load_design("table-a1").design));
 }
 
 TEST_P(ShippedExperiment, MovesTheArmOfTheThesis) {
-  const auto problem = load_problem(GetParam().name).tracking;
+  const auto problem = load_tracking(GetParam().name);
   const RobotModel& robot = problem->setup().robot();
   std::vector<double> masses_kg;
   for (const Link& link : robot.links) {
@@ -232,7 +233,7 @@ TEST(ShippedProblems, DesignsThatHoldAreJudgedOnTheNominalArm) {
     overrides.emplace_back(set);
     const LoadedProblem robust = load_problem(name);
     const LoadedProblem plain = load_problem(base, overrides);
-    const std::vector<double> x = robust.tracking->make_vector(robust.tracking->config().start);
+    const std::vector<double> x = robust.tracking()->make_vector(robust.tracking()->config().start);
     const CaseBlock unseen{CaseRole::test, "test/2", {7}};
     EXPECT_EQ(robust.problem->evaluate(x, unseen).case_errors,
               plain.problem->evaluate(x, unseen).case_errors)
@@ -252,7 +253,7 @@ TEST(ShippedProblems, EnergyAndMotorsComeOnTopOfE6) {
   for (const std::string name : {"q2-energy", "co-design"}) {
     const LoadedProblem loaded =
         load_problem(name, std::vector<std::string>{"physics.engine=articulated"});
-    const TrackingProblem& problem = *loaded.tracking;
+    const TrackingProblem& problem = *loaded.tracking();
     const Evaluation evaluation =
         problem.evaluate(problem.make_vector(problem.config().start), block);
     EXPECT_EQ(evaluation.status, EvaluationStatus::ok) << evaluation.reason;
@@ -273,11 +274,11 @@ TEST(ShippedProblems, TheParetoProblemIsE6WithoutWeights) {
   ASSERT_THAT(description.objectives, SizeIs(2));
   EXPECT_FALSE(front.schedule.changes_cases());
   const LoadedProblem e6 = load_problem("q2-e6");
-  const TrackingTask& task = front.tracking->config().task;
+  const TrackingTask& task = front.tracking()->config().task;
   EXPECT_EQ(task.ik_bug, false);
-  EXPECT_EQ(task.distance_limit_m, e6.tracking->config().task.distance_limit_m);
+  EXPECT_EQ(task.distance_limit_m, e6.tracking()->config().task.distance_limit_m);
   EXPECT_EQ(front.sets.training, e6.sets.training);
-  const std::vector<double> start = e6.tracking->make_vector(e6.tracking->config().start);
+  const std::vector<double> start = e6.tracking()->make_vector(e6.tracking()->config().start);
   const CaseBlock block{CaseRole::training, front.sets.training, {0, 1}};
   const Evaluation both = front.problem->evaluate(start, block);
   EXPECT_DOUBLE_EQ(calc_scalar(description, both.objectives),
@@ -288,7 +289,7 @@ TEST(ShippedProblems, TheParetoProblemIsE6WithoutWeights) {
 TEST(ShippedProblems, TheLimitedOnesAreE6TakenApart) {
   const LoadedProblem e6 = load_problem("q2-e6");
   const CaseBlock block{CaseRole::training, e6.sets.training, {0, 1, 2, 3, 4}};
-  const std::vector<double> published = e6.tracking->make_vector(load_design("table-a10").design);
+  const std::vector<double> published = e6.tracking()->make_vector(load_design("table-a10").design);
   const Evaluation whole = e6.problem->evaluate(published, block);
   for (const std::string name : {"q2-torque", "q2-error"}) {
     SCOPED_TRACE(name);
@@ -306,7 +307,7 @@ TEST(ShippedProblems, TheLimitedOnesAreE6TakenApart) {
     EXPECT_THAT(own.objectives, ElementsAre(whole.metrics[is_torque ? 1 : 0]));
     EXPECT_TRUE(is_feasible(own));
     EXPECT_FALSE(is_feasible(loaded.problem->evaluate(
-        loaded.tracking->make_vector(loaded.tracking->config().start), block)));
+        loaded.tracking()->make_vector(loaded.tracking()->config().start), block)));
   }
 }
 
@@ -322,11 +323,21 @@ TEST(ShippedProblems, OnlyQ4Sweeps) {
   }
 }
 
+TEST(ShippedProblems, ReplicatesReachTheTrackingProblem) {
+  const LoadedProblem loaded = load_problem("q1-complex");
+  const LoadedProblem replicate = make_replicate(
+      loaded, "train/other", loaded.tracking()->make_vector(loaded.tracking()->config().start));
+  EXPECT_NE(replicate.problem, loaded.problem);
+  EXPECT_EQ(replicate.tracking(), loaded.tracking());
+  EXPECT_EQ(replicate.problem->description().failure_error, kFailureError_m);
+}
+
 TEST(ShippedProblems, AnalyticFunctionsHaveOneCase) {
   for (const std::string& name : analytic_names()) {
     SCOPED_TRACE(name);
     const LoadedProblem loaded = load_problem(name);
-    EXPECT_EQ(loaded.tracking, nullptr);
+    EXPECT_EQ(loaded.tracking(), nullptr);
+    EXPECT_EQ(loaded.problem->description().failure_error, std::numeric_limits<double>::infinity());
     EXPECT_EQ(loaded.problem->description().name, name);
     EXPECT_THAT(loaded.problem->description().variables, SizeIs(name == "constrained" ? 4 : 10));
     EXPECT_FALSE(loaded.schedule.changes_cases());

@@ -33,9 +33,9 @@ TEST(ShippedDesigns, HaveTheTotalTorqueOfTheThesis) {
   const std::map<std::string, double> published = {
       {"table-a1", 85200}, {"table-a5", 963686}, {"table-a10", 28927}, {"table-a11", 21603}};
   for (const auto& [name, torque] : published) {
-    EXPECT_NEAR(calc_total_torque_n_m(load_design(name).design), torque, 0.5) << name;
+    EXPECT_NEAR(calc_total_effort(load_design(name).design), torque, 0.5) << name;
   }
-  EXPECT_EQ(calc_total_torque_n_m(load_design("table-a1").design), 85200);
+  EXPECT_EQ(calc_total_effort(load_design("table-a1").design), 85200);
 }
 
 std::vector<std::string> list_designs(bool of_the_thesis) {
@@ -57,11 +57,11 @@ TEST(ShippedDesigns, AreThoseOfTheAppendixForThisArm) {
     EXPECT_EQ(file.source, "thesis, Table A." + name.substr(7));
     EXPECT_EQ(file.design.controller, "pid");
     EXPECT_THAT(file.joint_names, ElementsAre("joint_1", "joint_2", "joint_3", "joint_4"));
-    load_problem("q1-complex").tracking->check_design(file.design);
+    load_problem("q1-complex").tracking()->check_design(file.design);
     for (const JointDrive& joint : file.design.joints) {
       EXPECT_THAT(joint.gains, SizeIs(3));
-      EXPECT_LT(joint.limits.min_n_m, 0);
-      EXPECT_GT(joint.limits.max_n_m, 0);
+      EXPECT_LT(joint.limits.min, 0);
+      EXPECT_GT(joint.limits.max, 0);
     }
   }
 }
@@ -90,15 +90,14 @@ TEST(ShippedDesigns, PublishedResultsNameProblemsThatLoad) {
       SCOPED_TRACE(published.label);
       labels.push_back(published.label);
       const LoadedProblem loaded = load_problem(published.problem, published.overrides);
-      ASSERT_NE(loaded.tracking, nullptr);
+      ASSERT_NE(loaded.tracking(), nullptr);
       EXPECT_THAT(published.where, testing::Not(IsEmpty()));
       if (published.overrides.empty()) {  // the design is the problem's winner
         EXPECT_EQ(loaded.published.design, name);
         EXPECT_EQ(loaded.published.error_m, published.error_m);
       }
       if (published.total_torque_n_m) {
-        EXPECT_NEAR(calc_total_torque_n_m(load_design(name).design), *published.total_torque_n_m,
-                    0.5);
+        EXPECT_NEAR(calc_total_effort(load_design(name).design), *published.total_torque_n_m, 0.5);
       }
     }
   }
@@ -109,7 +108,7 @@ TEST(ShippedDesigns, PublishedResultsNameProblemsThatLoad) {
 TEST(ShippedDesigns, OverridesOfPublishedResultsTakeEffect) {
   const auto load = [](const std::string& design, std::size_t which) {
     const PublishedResult published = load_design(design).published.at(which);
-    return load_problem(published.problem, published.overrides).tracking->config().task;
+    return load_problem(published.problem, published.overrides).tracking()->config().task;
   };
   EXPECT_TRUE(load("table-a5", 0).ik_bug);
   EXPECT_FALSE(load("table-a5", 1).ik_bug);
@@ -125,8 +124,8 @@ void expect_same_bits(const ArmDesign& a, const ArmDesign& b) {
       for (const double gain : joint.gains) {
         bits.push_back(std::bit_cast<std::uint64_t>(gain));
       }
-      bits.push_back(std::bit_cast<std::uint64_t>(joint.limits.min_n_m));
-      bits.push_back(std::bit_cast<std::uint64_t>(joint.limits.max_n_m));
+      bits.push_back(std::bit_cast<std::uint64_t>(joint.limits.min));
+      bits.push_back(std::bit_cast<std::uint64_t>(joint.limits.max));
     }
     return bits;
   };

@@ -1,5 +1,6 @@
-// The engines beside each other on the published designs and the whole test set of the thesis's
-// size: joint coordinates against MuJoCo, which also has them, and against ODE, which has not.
+// Compares the engines on the published designs and on a test set of the thesis's size. The
+// articulated engine is compared with MuJoCo, which also computes in joint coordinates, and with
+// ODE, which does not.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +19,7 @@ constexpr std::uint64_t kComparedCases = 500;
 struct Published {
   const char* problem;
   const char* design;
-  std::size_t knife_edges;  // cases in which rounding is magnified
+  std::size_t knife_edges;  // the number of cases that magnify rounding errors
 };
 
 class EnginesAgree : public testing::TestWithParam<Published> {
@@ -26,7 +27,7 @@ class EnginesAgree : public testing::TestWithParam<Published> {
   static std::vector<double> simulate(const std::string& engine) {
     const std::vector<std::string> overrides = {"physics.engine=" + engine};
     const LoadedProblem loaded = load_problem(GetParam().problem, overrides);
-    const TrackingProblem& problem = *loaded.tracking;
+    const TrackingProblem& problem = *loaded.tracking();
     const ArmDesign design = load_design(GetParam().design).design;
     std::vector<double> errors_m;
     for (const TrackingResult& result :
@@ -51,7 +52,7 @@ TEST_P(EnginesAgree, ArticulatedWithOdeToAPercent) {
   const auto ode = simulate("ode");
   ASSERT_EQ(articulated.size(), kComparedCases);
   EXPECT_NEAR(calc_mean(articulated) / calc_mean(ode), 1, 0.01);
-  EXPECT_NE(articulated, ode);  // or it would be the same engine
+  EXPECT_NE(articulated, ode);  // otherwise both would be the same engine
 }
 
 TEST_P(EnginesAgree, ArticulatedWithMujocoToAMillionth) {
@@ -73,8 +74,8 @@ TEST_P(EnginesAgree, ArticulatedWithMujocoToAMillionth) {
   }
   EXPECT_LT(worst_of_others, 1e-7);
   EXPECT_GT(worst_of_others, 0);
-  // A.10 sits on a knife edge: in one case of the 500 it throws the tip 2 mm off and magnifies the
-  // last bits on the way back, at one SIMD level against another as between engines.
+  // One of the 500 cases of A.10 is on a knife edge: the tip is thrown 2 mm off, and the way back
+  // magnifies the last bits. Two SIMD levels differ there as much as two engines do.
   EXPECT_LE(apart.size(), GetParam().knife_edges);
   for (const std::size_t i : apart) {
     EXPECT_NEAR(articulated[i] / mujoco[i], 1, 0.01) << "case " << i;

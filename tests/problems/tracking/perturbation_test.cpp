@@ -1,4 +1,4 @@
-// Perturbed plants: what is drawn, and what the tracking problem makes of it.
+// Perturbed plants: how they are drawn, and how the tracking problem simulates them.
 #include "problems/tracking/perturbation.hpp"
 
 #include <gmock/gmock.h>
@@ -8,7 +8,8 @@
 #include <set>
 
 #include "problems/config/config_files.hpp"
-#include "problems/config/perturbation_reader.hpp"
+#include "problems/config/problem_readers.hpp"
+#include "problems/load_tracking.hpp"
 #include "problems/problem_folder.hpp"
 
 namespace armwright {
@@ -44,7 +45,7 @@ TEST(DrawnPlant, IsAFunctionOfTheNamesAndTheNumber) {
   EXPECT_EQ(again.load_kg, plant.load_kg);
   EXPECT_EQ(again.limit_factors, plant.limit_factors);
   EXPECT_EQ(again.gain_factors, plant.gain_factors);
-  EXPECT_EQ(again.variation->coulomb_friction_n_m, plant.variation->coulomb_friction_n_m);
+  EXPECT_EQ(again.variation->coulomb_friction, plant.variation->coulomb_friction);
   EXPECT_EQ(again.variation->ripple_phase_rad, plant.variation->ripple_phase_rad);
   EXPECT_NE(draw(p, "train/1", 8).mass_factors, plant.mass_factors);
   EXPECT_NE(draw(p, "test/2", 7).mass_factors, plant.mass_factors);
@@ -63,7 +64,7 @@ TEST(DrawnPlant, KindsDoNotShiftEachOther) {
   EXPECT_THAT(draw(gains, "train/1", 3).limit_factors, ElementsAre(1, 1, 1, 1));
 }
 
-// Moments of what 4000 plants hold, within five standard errors.
+// The moments of the numbers of 4000 plants are right within five standard errors.
 TEST(DrawnPlant, NumbersHaveTheirDistributions) {
   constexpr int kPlants = 4000;
   double masses = 0;
@@ -87,11 +88,11 @@ TEST(DrawnPlant, NumbersHaveTheirDistributions) {
     EXPECT_LE(*plant.load_kg, 40);
     loads += *plant.load_kg / kPlants;
     const PlantVariation& variation = *plant.variation;
-    EXPECT_EQ(variation.quantisation_rad, 1e-4);
+    EXPECT_EQ(variation.quantum, 1e-4);
     EXPECT_GE(variation.delay_substeps, 0);
     EXPECT_LE(variation.delay_substeps, 10);
     delays += static_cast<double>(variation.delay_substeps) / kPlants;
-    friction += variation.coulomb_friction_n_m[3] / kPlants;
+    friction += variation.coulomb_friction[3] / kPlants;
     ripple += variation.torque_ripple[1] / kPlants;
     for (std::size_t joint = 0; joint < 4; ++joint) {
       EXPECT_LE(plant.limit_factors[joint], 1);
@@ -136,8 +137,8 @@ TEST(DrawnPlant, ChangesGainsAndLimitsOfEveryJoint) {
     const JointDrive& joint = design.joints[i];
     const std::vector<double>& factors = plant.gain_factors[i];
     EXPECT_THAT(joint.gains, ElementsAre(2 * factors[0], 3 * factors[1], 5 * factors[2]));
-    EXPECT_EQ(joint.limits.min_n_m, -7 * plant.limit_factors[i]);
-    EXPECT_EQ(joint.limits.max_n_m, 11 * plant.limit_factors[i]);
+    EXPECT_EQ(joint.limits.min, -7 * plant.limit_factors[i]);
+    EXPECT_EQ(joint.limits.max, 11 * plant.limit_factors[i]);
   }
 }
 
@@ -145,7 +146,7 @@ class PerturbedProblem : public testing::Test {
  protected:
   static std::shared_ptr<const TrackingProblem> load(std::vector<std::string> overrides) {
     overrides.insert(overrides.begin(), {"physics.engine=articulated", "workspace.points=4"});
-    return load_problem("q1-complex", overrides).tracking;
+    return load_tracking("q1-complex", overrides);
   }
   static double track(const TrackingProblem& problem, std::uint64_t number) {
     return problem.track(problem.config().start, problem.get_set("test/2"), number).mean_error_m;
@@ -160,7 +161,7 @@ class PerturbedProblem : public testing::Test {
   }
 };
 
-// A plant's masses, load, limits and gains are what the same numbers in robot, task and design do.
+// A plant's masses, load, limits and gains act like the same numbers in robot, task and design.
 TEST_F(PerturbedProblem, SimulatesThePlantThatWasDrawn) {
   const auto problem = load({"perturbation.mass_relative=0.2", "perturbation.load_kg=[1,30]",
                              "perturbation.effort_limit_sigma=1", "perturbation.gain_sigma=0.2"});
@@ -196,7 +197,7 @@ TEST_F(PerturbedProblem, AppliesWhereItSays) {
   }
 }
 
-// Every kind alone changes the error; in lanes and in a single arm alike.
+// Every kind of perturbation alone changes the error, in lanes and in a single arm.
 TEST_F(PerturbedProblem, EveryKindCountsInEveryEngine) {
   const std::vector<std::vector<std::string>> kinds = {
       {"perturbation.mass_relative=0.3"},
@@ -236,10 +237,10 @@ TEST_F(PerturbedProblem, CountsTheDesignsOwnTorque) {
   const auto problem = load({"perturbation.effort_limit_sigma=1"});
   const std::vector<double> x = problem->make_vector(problem->config().start);
   const Evaluation evaluation = problem->evaluate(x, {CaseRole::training, "train/1", {0, 1}});
-  EXPECT_EQ(evaluation.metrics.at(1), calc_total_torque_n_m(problem->config().start));
+  EXPECT_EQ(evaluation.metrics.at(1), calc_total_effort(problem->config().start));
 }
 
-// Exact derivatives of a perturbed plant against central differences.
+// Compares the exact derivatives of a perturbed plant with central differences.
 TEST_F(PerturbedProblem, DerivativesAreThoseOfThePlant) {
   const auto problem = load({"perturbation.mass_relative=0.2", "perturbation.gain_sigma=0.3"});
   ASSERT_TRUE(problem->description().has_jacobian);
@@ -269,7 +270,7 @@ TEST(PerturbationTable, PresetIsReadAndKeysBesideItGoFirst) {
   folder.write("p.toml",
                "extends = \"base\"\n[perturbation]\npreset = \"mine.toml\"\ngain_sigma = 0.5\n");
   const LoadedProblem loaded = folder.load("p.toml");
-  const Perturbation& p = loaded.tracking->config().perturbation;
+  const Perturbation& p = loaded.tracking()->config().perturbation;
   EXPECT_EQ(p.mass_relative, 0.3);
   EXPECT_EQ(p.gain_sigma, 0.5);
   EXPECT_TRUE(loaded.input_hashes.contains("mine.toml"));
@@ -280,7 +281,7 @@ TEST(PerturbationTable, PresetIsReadAndKeysBesideItGoFirst) {
 
 TEST(PerturbationTable, IsNothingByDefault) {
   const LoadedProblem loaded = load_problem("q1-complex");
-  EXPECT_FALSE(loaded.tracking->config().perturbation.changes_anything());
+  EXPECT_FALSE(loaded.tracking()->config().perturbation.changes_anything());
   EXPECT_THAT(loaded.resolved_json, Not(HasSubstr("perturbation")));
 }
 
@@ -288,11 +289,11 @@ TEST(PerturbationTable, ShippedPresetsAreRead) {
   for (const std::string& name : list_configs("perturbations")) {
     const std::vector<std::string> overrides = {"perturbation.preset=" + name};
     EXPECT_TRUE(
-        load_problem("q1-complex", overrides).tracking->config().perturbation.changes_anything());
+        load_problem("q1-complex", overrides).tracking()->config().perturbation.changes_anything());
   }
 }
 
-// All keys, read back as they were.
+// Every key of a preset survives being written as overrides and read back.
 TEST(PerturbationTable, OverridesSayEverything) {
   for (const std::string& name : list_configs("perturbations")) {
     SCOPED_TRACE(name);
@@ -300,7 +301,8 @@ TEST(PerturbationTable, OverridesSayEverything) {
     std::vector<std::string> overrides = {"perturbation.preset=all", "perturbation.gain_sigma=1"};
     const auto keys = make_overrides(p);
     overrides.insert(overrides.end(), keys.begin(), keys.end());
-    const Perturbation read = load_problem("q1-complex", overrides).tracking->config().perturbation;
+    const Perturbation read =
+        load_problem("q1-complex", overrides).tracking()->config().perturbation;
     EXPECT_EQ(make_overrides(read), keys);
     EXPECT_EQ(read.changes_arm(), p.changes_arm());
     EXPECT_EQ(read.changes_loop(), p.changes_loop());

@@ -1,5 +1,5 @@
-// What is required of an arm: how files say it, what is measured of simulations, and what becomes
-// of it in evaluations.
+// Requirements: reading them from files, measuring them on simulations, and their part in
+// evaluations.
 #include "problems/tracking/requirement.hpp"
 
 #include <gmock/gmock.h>
@@ -29,7 +29,7 @@ std::shared_ptr<const TrackingProblem> load_requiring(const std::string& require
   return load_tracking("q1-complex", overrides);
 }
 
-// The last lines of base.toml's own, as a requirement of its own.
+// Returns why a problem file with these lines of a requirement is refused.
 std::string refuse_requirement(const std::string& lines) {
   return ProblemFolder().refusal_of_base_with("[[requirement]]\n" + lines);
 }
@@ -72,7 +72,7 @@ TEST(RequirementReader, SaysWhatIsWrong) {
 TEST(RequirementReader, RefusesTimesThatAnUnsettledTipWouldKeep) {
   EXPECT_THAT(refuse_requirement("quantity = 'settling_time'\nlimit_s = 0.5"),
               AllOf(StartsWith("p.toml:4: requirement[0].limit_s is 0.5"), HasSubstr("0.49 s")));
-  // The shortest move takes 0.9 m / (1.5 m/s) and the rest.
+  // The shortest move takes 0.9 m / (1.5 m/s), followed by the rest.
   EXPECT_THAT(refuse_requirement("quantity = 'rise_time'\nlimit_s = 1.1"), HasSubstr("1.1 s"));
   EXPECT_THAT(refuse_requirement("quantity = 'rise_time'\nlimit_s = 1.0\n[task]\n"
                                  "distance_limit_m = 0.3"),
@@ -110,7 +110,7 @@ TEST(Requirements, AreMetricsAndWhereTheyAreConstraintsLimits) {
   EXPECT_EQ(description.violation_scale, problem->config().objective.error_scale_m);
   EXPECT_FALSE(description.has_residuals);
   EXPECT_FALSE(description.has_jacobian);
-  // Those that are only reported change nothing of what optimizers see.
+  // Requirements that are only reported do not change the problem that optimizers see.
   const auto reporting = load_requiring("{quantity='overshoot', limit_relative=0.05}");
   EXPECT_TRUE(reporting->description().has_residuals);
   EXPECT_TRUE(reporting->description().constraints.empty());
@@ -133,7 +133,7 @@ const char* const kAll =
     "{quantity='energy', limit_j=1000}, {quantity='joint_speed', limit_rad_per_s=3},"
     "{quantity='joint_speed', limit_rad_per_s=3, joint='joint_2'}";
 
-// From the trajectory that is recorded for people, on another way.
+// Computes the values from the recorded trajectory, in another way than the program does.
 TEST(Requirements, AreWhatTheRecordedTrajectoryShows) {
   for (const std::string engine : {"articulated", "ode"}) {
     const auto problem = load_requiring(kAll, {"physics.engine=" + engine, "workspace.points=5"});
@@ -170,32 +170,32 @@ TEST(Requirements, AreWhatTheRecordedTrajectoryShows) {
     }
     double speed = 0;
     double speed_2 = 0;
-    std::vector<double> before = targets.start_rad;
+    std::vector<double> before = targets.start_positions;
     for (const TrajectorySample& sample : recorded.trajectory) {
       for (std::size_t i = 0; i < before.size(); ++i) {
-        const double one = std::abs(wrap_angle(sample.q_rad[i] - before[i])) / 0.01;
+        const double one = std::abs(wrap_angle(sample.q[i] - before[i])) / 0.01;
         speed = std::max(speed, one);
         speed_2 = i == 1 ? std::max(speed_2, one) : speed_2;
       }
-      before = sample.q_rad;
+      before = sample.q;
     }
     const auto& required = measured.required;
     const auto value = [&](std::size_t i) { return required[i].value.value(); };
     EXPECT_GT(overshoot, 0) << "a case that shows something";
     EXPECT_NEAR(value(0), overshoot, 1e-12);
-    // Between two samples times are interpolated.
+    // The program interpolates times between two samples.
     EXPECT_NEAR(value(1), settling_s, 0.0101);
     EXPECT_NEAR(value(2), rise_s, 0.0101);
     EXPECT_EQ(value(3), *std::ranges::max_element(recorded.point_error_m.begin() + 1,
                                                   recorded.point_error_m.end()));
-    EXPECT_EQ(value(4), std::ranges::max(recorded.peak_effort_n_m));
-    EXPECT_EQ(value(5), std::ranges::max(recorded.rms_effort_n_m));
+    EXPECT_EQ(value(4), std::ranges::max(recorded.peak_effort));
+    EXPECT_EQ(value(5), std::ranges::max(recorded.rms_effort));
     EXPECT_EQ(value(6), recorded.energy_j);
     EXPECT_NEAR(value(7), speed, 1e-9);
     EXPECT_NEAR(value(8), speed_2, 1e-9);
     EXPECT_EQ(required[8].joint, 1u);
-    EXPECT_EQ(required[4].joint, std::ranges::max_element(recorded.peak_effort_n_m) -
-                                     recorded.peak_effort_n_m.begin());
+    EXPECT_EQ(required[4].joint,
+              std::ranges::max_element(recorded.peak_effort) - recorded.peak_effort.begin());
     EXPECT_EQ(recorded.point_error_m.at(required[3].point.value() - 1), value(3));
   }
 }
@@ -214,7 +214,7 @@ TEST(Requirements, OfAnEvaluationAreThoseOfItsWorstCase) {
   ASSERT_GE(evaluation.metrics.size(), 9u);
   EXPECT_TRUE(same_bits(std::vector<double>(evaluation.metrics.end() - 9, evaluation.metrics.end()),
                         worst));
-  // All else is as without them.
+  // All other numbers are the same as without requirements.
   const auto plain = load_tracking("q1-complex", kQuick);
   const Evaluation before = plain->evaluate(get_start(*plain), block);
   EXPECT_TRUE(same_bits(evaluation.objectives, before.objectives));
@@ -232,14 +232,14 @@ TEST(Requirements, ALostTrainingCaseIsWorseThanAnyThatWorksAndLessBadTheFurtherI
   const auto calc_g = [&](double torque_factor, CaseRole role) {
     ArmDesign design = problem->config().start;
     for (JointDrive& joint : design.joints) {
-      joint.limits.min_n_m *= torque_factor;
-      joint.limits.max_n_m *= torque_factor;
+      joint.limits.min *= torque_factor;
+      joint.limits.max *= torque_factor;
     }
     return problem->evaluate(problem->make_vector(design), {role, "train/1", {0}});
   };
   const Evaluation works = calc_g(1, CaseRole::training);
   ASSERT_LT(works.case_errors.front(), 0.1);
-  // Thousands of micrometres: it counts as a thousand.
+  // The value is thousands of micrometres; it counts as a thousand times the limit.
   EXPECT_NEAR(works.constraint_values.at(0), kWorstRatio - 1, 1e-9);
   EXPECT_LT(works.constraint_values.at(1), 20);
   EXPECT_GT(calc_g(1, CaseRole::test).constraint_values.at(0), kWorstRatio);
@@ -276,8 +276,8 @@ TEST(Requirements, OfMovesAreRefusedWhereACaseHasNone) {
   const std::string message = error_of(ErrorKind::bad_data, [&] {
     tracking->evaluate(get_start(*problem), {CaseRole::test, set.name(), {0}});
   });
-  EXPECT_THAT(message, HasSubstr("case 0 has no move of which overshoot can be measured"));
-  // Shown, it is not measured.
+  EXPECT_THAT(message, HasSubstr("case 0 has no move long enough to measure the overshoot"));
+  // When a design is only shown, the requirement has no value and nothing is refused.
   EXPECT_FALSE(tracking->measure(problem->config().start, set, 0, 1)[0].required[0].value);
 }
 
@@ -300,7 +300,7 @@ TEST(RequirementGrades, AreTheLightsOfTheRatio) {
   EXPECT_THAT(get_lights(), ElementsAre("green", "green", "yellow", "red binds"));
   evaluation.metrics[2] = 4;
   EXPECT_THAT(get_lights(), ElementsAre("green", "green", "yellow", "yellow binds"));
-  // A case without a number could be the worst; what is missed is missed anyway.
+  // A case without an error could be the worst one. A missed requirement stays missed.
   evaluation.failed_cases = 1;
   evaluation.metrics[0] = 11;
   EXPECT_THAT(get_lights(), ElementsAre("grey", "red binds", "grey", "grey"));

@@ -1,4 +1,4 @@
-// The arithmetic of objectives by hand; tracking_problem_test.cpp has whole evaluations.
+// The arithmetic of objectives, checked by hand; tracking_problem_test.cpp tests whole evaluations.
 #include "problems/tracking/tracking_objective.hpp"
 
 #include <gmock/gmock.h>
@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/expect_error.hpp"
+#include "problems/load_tracking.hpp"
 #include "problems/problem_folder.hpp"
 
 namespace armwright {
@@ -44,12 +45,12 @@ TEST(ErrorStatistic, CvarWeighsTheCaseOnTheBorderByItsPart) {
   EXPECT_EQ(calc_cvar(0.25), 2);                  // one of four
   EXPECT_EQ(calc_cvar(0.5), 1.25);                // (2 + 0.5) / 2
   EXPECT_EQ(calc_cvar(0.375), (2 + 0.25) / 1.5);  // half of the second
-  EXPECT_EQ(calc_cvar(0.01), 2);                  // a part of the worst alone
+  EXPECT_EQ(calc_cvar(0.01), 2);                  // a part of the worst error alone
   EXPECT_EQ(calc_cvar(1), 0.71875);
 }
 
-// Rockafellar and Uryasev's definition, the least over a of a + mean(max(0, e - a)) / s, is a
-// minimum at one of the errors, as the function is convex and piecewise linear.
+// Rockafellar and Uryasev define the value as the least over a of a + mean(max(0, e - a)) / s. The
+// function is convex and piecewise linear, so the minimum lies at one of the errors.
 TEST(ErrorStatistic, CvarIsTheMinimumThatDefinesIt) {
   for (int percent = 1; percent <= 100; ++percent) {
     const double share = percent / 100.0;
@@ -70,14 +71,14 @@ TEST(ErrorStatistic, CvarFallsContinuouslyFromTheWorstToTheMean) {
   for (int i = 1; i <= 10000; ++i) {
     const double cvar = calc_cvar(i / 10000.0);
     EXPECT_LE(cvar, before + 1e-14);
-    // Its slope is nowhere steeper than (worst - best) / share, and the share is 1/4 at least where
-    // it falls: 1.875 / 0.25 / 10000.
+    // Its slope is at most (worst - best) / share, and the share is at least 1/4 where the value
+    // falls: 1.875 / 0.25 / 10000.
     EXPECT_GE(cvar, before - 7.5e-4);
     before = cvar;
   }
 }
 
-// What makes a bound of what consists of bounds.
+// Because no statistic falls if an error rises, lower bounds of errors give a lower bound.
 TEST(ErrorStatistic, NeverFallsWhereACaseRises) {
   for (const Statistic statistic :
        {Statistic::mean, Statistic::worst, Statistic::cvar, Statistic::mean_with_failures}) {
@@ -122,8 +123,9 @@ CaseOutcome make_case(double error_m, double energy_j, double duration_s) {
   CaseOutcome outcome;
   outcome.error = error_m;
   outcome.residuals = {error_m, error_m};
-  outcome.metrics = {energy_j, 0, duration_s};
-  outcome.metrics.resize(3 + 2 * 4);
+  outcome.metrics.resize(case_metrics::first_requirement(4));
+  outcome.metrics[case_metrics::kEnergy] = energy_j;
+  outcome.metrics[case_metrics::kDuration] = duration_s;
   return outcome;
 }
 
@@ -131,7 +133,7 @@ TEST(TrackingStatistics, EvaluationsCarryThemAndTheMeanAsMetric) {
   const std::vector<CaseOutcome> outcomes = {make_case(0.02, 1, 40), make_case(0.2, 1, 40),
                                              make_case(0.08, 1, 40)};
   const auto evaluate = [&](const std::vector<std::string>& overrides) {
-    const auto problem = load_problem("q1-complex", overrides).tracking;
+    const auto problem = load_tracking("q1-complex", overrides);
     EXPECT_FALSE(problem->description().has_residuals);
     const Evaluation evaluation =
         problem->aggregate(problem->make_vector(problem->config().start), outcomes);
@@ -147,13 +149,10 @@ TEST(TrackingStatistics, EvaluationsCarryThemAndTheMeanAsMetric) {
       0.1 + 6 / 3.0);
 }
 
-// Of a case that diverged on its last points the error may be small; of one without number there
-// is none.
+// A case that diverged on its last points can have a small error; another case has no error.
 TEST(TrackingStatistics, EveryLossOfTheTargetIsAFailure) {
-  const auto problem =
-      load_problem("q1-complex", std::vector<std::string>{"objective.statistic=mean_with_failures",
-                                                          "objective.failure_penalty_m=8"})
-          .tracking;
+  const auto problem = load_tracking(
+      "q1-complex", {"objective.statistic=mean_with_failures", "objective.failure_penalty_m=8"});
   CaseOutcome diverged = make_case(0.0625, 1, 40);
   diverged.status = EvaluationStatus::diverged;
   CaseOutcome none;
@@ -168,9 +167,7 @@ TEST(TrackingStatistics, EveryLossOfTheTargetIsAFailure) {
 
 TEST(TrackingStatistics, LimitsAreOfTheSameError) {
   const auto problem =
-      load_problem("q2-torque", std::vector<std::string>{"objective.statistic=worst",
-                                                         "objective.error_limit_m=0.1"})
-          .tracking;
+      load_tracking("q2-torque", {"objective.statistic=worst", "objective.error_limit_m=0.1"});
   EXPECT_EQ(problem->description().limits.at(0).quantity.name, "worst error");
   const std::vector<CaseOutcome> outcomes = {make_case(0.02, 1, 40), make_case(0.2, 1, 40)};
   EXPECT_THAT(
@@ -180,12 +177,9 @@ TEST(TrackingStatistics, LimitsAreOfTheSameError) {
 
 TEST(TrackingStatistics, TheSquaresOfAllResidualsAddUp) {
   const auto problem =
-      load_problem(
-          "q2-e6",
-          std::vector<std::string>{"objective.energy_weight=2", "objective.energy_scale_j=1000",
-                                   "objective.duration_weight=0.5", "objective.duration_scale_s=10",
-                                   "physics.engine=articulated"})
-          .tracking;
+      load_tracking("q2-e6", {"objective.energy_weight=2", "objective.energy_scale_j=1000",
+                              "objective.duration_weight=0.5", "objective.duration_scale_s=10",
+                              "physics.engine=articulated"});
   EXPECT_FALSE(problem->description().has_jacobian);
   EXPECT_THAT(problem->description().jacobian_advice, testing::HasSubstr("energy_weight"));
   const std::vector<CaseOutcome> outcomes = {make_case(0.25, 300, 40), make_case(0.5, 500, 40)};

@@ -1,6 +1,6 @@
-// The tracking simulation against an independent implementation of the same task: its own inverse
-// kinematics, controllers and timeline around ODE 0.16.2. What is compared went through the public
-// path only: problem, overrides, design, file of test cases.
+// Compares the tracking simulation with an independent implementation of the same task, which has
+// its own inverse kinematics, controllers and timeline around ODE 0.16.2. Our side uses the public
+// interface only: problem, overrides, design and a file of test cases.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -11,6 +11,7 @@
 #include "problems/config/design_file.hpp"
 #include "problems/config/problem_loader.hpp"
 #include "problems/load_tracking.hpp"
+#include "sim/tracking/reference_signal.hpp"
 
 namespace armwright {
 namespace {
@@ -18,10 +19,10 @@ namespace {
 struct OracleDesign {
   std::string label;    // in the oracle's file
   std::string name;     // of the shipped design
-  std::string problem;  // that it was made for
-  // Both sides compute in double precision from numbers of twelve digits, but a closed loop
-  // amplifies what differs in the last bits: measured are 1e-9 at most. Step (A.9) excites the arm
-  // at the edge of its stability, where another compiler or library may show more.
+  std::string problem;  // the problem that the design was made for
+  // Both sides compute in double precision from numbers of twelve digits. The closed loop amplifies
+  // differences of the last bits; the largest measured one is 1e-9. The step signal (A.9) excites
+  // the arm at the edge of its stability, where other compilers or libraries may differ more.
   double tolerance = 1e-6;
 };
 
@@ -55,14 +56,14 @@ TEST_P(TrackingOracle, ShippedProblemGivesTheSameErrorAtEveryPoint) {
   const auto expected = find_results(GetParam().label);
   ASSERT_EQ(expected.size(), 3U);
   for (const nlohmann::json& result : expected) {
-    const TrackingTask& task = loaded.tracking->config().task;
+    const TrackingTask& task = loaded.tracking()->config().task;
     ASSERT_EQ(signal_names()[static_cast<std::size_t>(task.signal)], result.at("signal"));
     ASSERT_EQ(task.distance_limit_m, result.at("distance_limit_m").get<double>());
     ASSERT_EQ(task.ik_bug, result.at("ik_bug").get<bool>());
     ASSERT_EQ(task.load_kg, result.at("load_kg").get<double>());
 
     const TrackingResult measured =
-        loaded.tracking->track(design, cases, result.at("case").get<std::uint64_t>());
+        loaded.tracking()->track(design, cases, result.at("case").get<std::uint64_t>());
     ASSERT_EQ(measured.status, SimulationStatus::ok) << measured.reason;
     EXPECT_EQ(measured.steps, result.at("steps").get<int>());
     const auto points = result.at("point_error_m").get<std::vector<double>>();
@@ -78,15 +79,15 @@ TEST_P(TrackingOracle, ShippedProblemGivesTheSameErrorAtEveryPoint) {
 
 TEST_P(TrackingOracle, OverridesMakeTheSameTaskOfAnotherProblem) {
   const auto expected = find_results(GetParam().label).at(0);
-  // Nothing but the robot and the workspace is right from the start.
+  // Only the robot and the workspace of the other problem fit; the overrides set all the rest.
   const std::string other = GetParam().problem == "q1-step" ? "q3-load" : "q1-step";
   const std::vector<std::string> overrides = {
       fmt::format("task.signal={}", expected.at("signal").get<std::string>()),
       fmt::format("task.distance_limit_m={}", expected.at("distance_limit_m").get<double>()),
       fmt::format("task.ik_bug={}", expected.at("ik_bug").get<bool>()),
       fmt::format("task.load_kg={}", expected.at("load_kg").get<double>())};
-  const auto made = load_problem(other, overrides).tracking;
-  const auto shipped = load_problem(GetParam().problem).tracking;
+  const auto made = load_tracking(other, overrides);
+  const auto shipped = load_tracking(GetParam().problem);
   const ArmDesign design = load_design(GetParam().name).design;
   const TestSet cases = TestSet::load(kOracle);
   EXPECT_EQ(made->track(design, cases, 0).point_error_m,

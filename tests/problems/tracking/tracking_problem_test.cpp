@@ -1,6 +1,6 @@
-// The tracking problem as an optimizer sees it, without a simulation: decision variables, designs,
-// and what an evaluation is made of. Case outcomes are written by hand here;
-// tracking_simulation_test.cpp has the simulated ones.
+// The tracking problem as an optimizer sees it, without simulation: decision variables, designs and
+// the aggregation of evaluations. The case outcomes are written by hand;
+// tracking_simulation_test.cpp tests simulated ones.
 #include "problems/tracking/tracking_problem.hpp"
 
 #include <gmock/gmock.h>
@@ -32,7 +32,7 @@ std::vector<std::string> get_names(const TrackingProblem& problem) {
   return names;
 }
 
-// A design anywhere in the box, uniform in the logarithms.
+// Returns a random design in the box, uniform in the logarithms.
 std::vector<double> draw_vector(const TrackingProblem& problem, RandomStream& random) {
   std::vector<double> x;
   for (const DecisionVariable& variable : problem.description().variables) {
@@ -124,14 +124,14 @@ TEST(TrackingVariables, VectorAndDesignAreTheSameThing) {
     for (std::size_t joint = 0; joint < 4; ++joint) {
       EXPECT_THAT(design.joints[joint].gains,
                   ElementsAre(x[5 * joint], x[5 * joint + 1], x[5 * joint + 2]));
-      EXPECT_EQ(design.joints[joint].limits.min_n_m, x[5 * joint + 3]);
-      EXPECT_EQ(design.joints[joint].limits.max_n_m, x[5 * joint + 4]);
+      EXPECT_EQ(design.joints[joint].limits.min, x[5 * joint + 3]);
+      EXPECT_EQ(design.joints[joint].limits.max, x[5 * joint + 4]);
     }
   }
 }
 
 TEST(TrackingVariables, WhatIsNoVariableKeepsItsStartValue) {
-  // The order is that of the design, whatever the order in the file.
+  // The variables have the order of the design, whatever their order in the file.
   const auto problem =
       load_tracking("q1-complex", {R"(variables.optimize=["effort_max", "d"])",
                                    R"(variables.joint=[{name="joint_4", optimize=[]}, )"
@@ -141,19 +141,19 @@ TEST(TrackingVariables, WhatIsNoVariableKeepsItsStartValue) {
                           "joint_2.effort_min", "joint_3.d", "joint_3.effort_max"));
   const ArmDesign design = problem->make_design(std::vector<double>{1, 2, 3, 4, -5, 6, 7});
   EXPECT_THAT(design.joints[0].gains, ElementsAre(45000, 150000, 1));
-  EXPECT_EQ(design.joints[0].limits.min_n_m, -20000);
-  EXPECT_EQ(design.joints[0].limits.max_n_m, 2);
+  EXPECT_EQ(design.joints[0].limits.min, -20000);
+  EXPECT_EQ(design.joints[0].limits.max, 2);
   EXPECT_THAT(design.joints[1].gains, ElementsAre(3, 4, 30000));
-  EXPECT_EQ(design.joints[1].limits.min_n_m, -5);
-  EXPECT_EQ(design.joints[1].limits.max_n_m, 45000);
+  EXPECT_EQ(design.joints[1].limits.min, -5);
+  EXPECT_EQ(design.joints[1].limits.max, 45000);
   EXPECT_THAT(design.joints[2].gains, ElementsAre(30000, 100000, 6));
-  EXPECT_EQ(design.joints[2].limits.min_n_m, -20000);
-  EXPECT_EQ(design.joints[2].limits.max_n_m, 7);
+  EXPECT_EQ(design.joints[2].limits.min, -20000);
+  EXPECT_EQ(design.joints[2].limits.max, 7);
   EXPECT_THAT(design.joints[3].gains, ElementsAre(300, 2000, 5));
-  EXPECT_EQ(design.joints[3].limits.min_n_m, -200);
-  EXPECT_EQ(design.joints[3].limits.max_n_m, 200);
+  EXPECT_EQ(design.joints[3].limits.min, -200);
+  EXPECT_EQ(design.joints[3].limits.max, 200);
 
-  // Of another design only the variables are taken: Table A.10.
+  // Only the variables of another design (Table A.10) are used.
   EXPECT_THAT(problem->make_vector(load_design("table-a10").design),
               ElementsAre(10876.1, 7323.93, 2810730, 7338360, -14943.4, 4394.7, 4836.06));
 }
@@ -197,14 +197,19 @@ TEST(TrackingVariables, VariableWithoutUsableBoundsIsRefused) {
               testing::StartsWith("joint_2.p starts at 1e-307 and would span "));
 }
 
-// An outcome with the four joints' peak and rms efforts 10, 1, 20, 2, 30, 3, 40, 4 times `scale`.
+// Returns the outcome of a case of 40 s. The peak efforts of the four joints are 10, 20, 30 and 40
+// times `scale`, the RMS efforts 1, 2, 3 and 4 times `scale`.
 CaseOutcome make_outcome(double error, double energy, double saturation, double scale) {
   CaseOutcome outcome;
   outcome.error = error;
-  outcome.metrics = {energy, saturation, 40};  // a case of 40 s
-  for (int joint = 1; joint <= 4; ++joint) {
-    outcome.metrics.push_back(10 * joint * scale);
-    outcome.metrics.push_back(joint * scale);
+  outcome.metrics.resize(case_metrics::first_requirement(4));
+  outcome.metrics[case_metrics::kEnergy] = energy;
+  outcome.metrics[case_metrics::kSaturatedShare] = saturation;
+  outcome.metrics[case_metrics::kDuration] = 40;
+  for (std::size_t joint = 0; joint < 4; ++joint) {
+    const double size = static_cast<double>(joint + 1) * scale;
+    outcome.metrics[case_metrics::peak_effort(joint)] = 10 * size;
+    outcome.metrics[case_metrics::rms_effort(joint)] = size;
   }
   return outcome;
 }
@@ -235,7 +240,7 @@ TEST(TrackingAggregate, TorqueCountsAsTheFormulaSays) {
   const std::vector<CaseOutcome> outcomes = {make_outcome(0.01, 1, 0, 1),
                                              make_outcome(0.03, 1, 0, 1)};
   std::vector<double> x = get_start(*problem);
-  // A few roundings of numbers near 4: 1e-14 is ample.
+  // A few roundings of numbers near 4 stay below 1e-14.
   EXPECT_NEAR(problem->aggregate(x, outcomes).objectives.at(0),
               0.02 / 0.0058 + 5 * 85200.0 / 963686, 1e-14);
   x[3] = -90000;  // joint 1: now the lower limit is the larger one; 20000 before
@@ -248,7 +253,7 @@ TEST(TrackingAggregate, TorqueCountsAsTheFormulaSays) {
       load_tracking("q2-e3", {"objective.torque_weight=0.5", "objective.error_scale_m=0.1",
                               "objective.torque_scale_n_m=1000"});
   EXPECT_NEAR(scaled->aggregate(get_start(*scaled), outcomes).objectives.at(0), 0.2 + 42.6, 1e-13);
-  // Where torque does not count it is still a metric.
+  // The torque is a metric even if it does not count in the objective.
   EXPECT_EQ(load_tracking("q1-complex")->aggregate(x, outcomes).metrics.at(1), 155200);
 }
 
@@ -278,7 +283,8 @@ TEST(TrackingAggregate, ALimitCountsCasesAsTheObjectiveDoes) {
   const CaseOutcome good = make_outcome(0.25, 1, 0, 1);
   EXPECT_THAT(problem->aggregate(x, std::vector{good, diverged}).constraint_values,
               ElementsAre(0.25));
-  // A case without number says nothing; it is counted, and no result calls that feasible.
+  // A case without an error does not change the constraints. It is counted, and no result with
+  // such a case is called feasible.
   const CaseOutcome none = make_failure(EvaluationStatus::unreachable, "out of reach");
   const Evaluation half = problem->aggregate(x, std::vector{good, none});
   EXPECT_THAT(half.constraint_values, ElementsAre(-0.5));
@@ -344,7 +350,7 @@ TEST(TrackingAggregate, MetricsAreMeansExceptPeaksAndCounts) {
   const double above = std::nextafter(kFailureError_m, 1);
   const std::vector<CaseOutcome> outcomes = {
       make_outcome(kFailureError_m, 100, 0.25, 1),  // exactly the limit: no failure
-      make_outcome(above, 200, 0.5, 3),             // a failure by a hair
+      make_outcome(above, 200, 0.5, 3),             // just above the limit: a failure
       make_failure(EvaluationStatus::diverged, "gone"), make_outcome(0.4, 600, 0, 2)};
   const Evaluation evaluation = problem->aggregate(get_start(*problem), outcomes);
   ASSERT_THAT(evaluation.metrics, SizeIs(problem->description().metrics.size()));
@@ -364,7 +370,8 @@ TEST(TrackingAggregate, CasesWithoutNumberAreLeftOutAndCounted) {
       make_outcome(0.25, 1, 0, 1), make_failure(EvaluationStatus::unreachable, "too far"),
       make_outcome(0.75, 1, 0, 1), make_failure(EvaluationStatus::diverged, "joint 1 spins")};
   const Evaluation evaluation = problem->aggregate(get_start(*problem), outcomes);
-  EXPECT_EQ(evaluation.status, EvaluationStatus::unreachable);  // of the first that is not ok
+  EXPECT_EQ(evaluation.status,
+            EvaluationStatus::unreachable);  // the status of the first case that is not ok
   EXPECT_EQ(evaluation.reason, "too far");
   EXPECT_EQ(evaluation.failed_cases, 2);
   EXPECT_NEAR(evaluation.objectives.at(0), 0.5 / 0.0058 + 85200.0 / 963686, 1e-12);
@@ -389,8 +396,8 @@ TEST(TrackingAggregate, NoNumberAtAllLeavesObjectivesAndMetricsEmpty) {
   EXPECT_THAT(evaluation.case_errors, SizeIs(2));
 }
 
-// A diverged case has its number in training; that of an abandoned one is a bound, and so is all
-// that is made of it.
+// In training, a diverged case has an error. The error of an abandoned case is a lower bound, and
+// so are all numbers that are computed from it.
 TEST(TrackingAggregate, AnAbandonedCaseMakesABoundOfTheWhole) {
   const auto problem = load_tracking("q2-e3");
   CaseOutcome diverged = make_outcome(1, 1, 0, 1);
@@ -415,7 +422,7 @@ TEST(TrackingAggregate, AnAbandonedCaseMakesABoundOfTheWhole) {
 
 TEST(TrackingAggregate, DivergenceWithANumberKeepsItsStatus) {
   const auto problem = load_tracking("q1-complex");
-  CaseOutcome cut_off = make_outcome(1, 1, 0, 1);  // training: the cut-off error stands for it
+  CaseOutcome cut_off = make_outcome(1, 1, 0, 1);  // training: its error is the cut-off error
   cut_off.status = EvaluationStatus::diverged;
   cut_off.reason = "diverged at 0.10 s";
   const Evaluation evaluation =
@@ -434,8 +441,8 @@ TEST(TrackingPenalty, IsWorseThanAnythingThatTrainingCanGive) {
       const std::vector<double> penalty = problem->penalty_objectives();
       ASSERT_THAT(penalty, SizeIs(1));
       EXPECT_TRUE(std::isfinite(penalty[0]));
-      // The worst that there is: every point at the cut-off, all motors as strong as the box
-      // allows.
+      // The worst possible numbers: every point at the cut-off error, all motors as strong as the
+      // box allows.
       const std::vector<CaseOutcome> worst = {
           make_outcome(problem->config().cutoff_error_m, 1, 1, 1)};
       std::vector<double> strongest;
@@ -458,7 +465,7 @@ TEST(TrackingPenalty, HasItsFormula) {
               ElementsAre(5));
   EXPECT_NEAR(load_tracking("q2-e2")->penalty_objectives().at(0),
               10 / 0.0058 + 100 * 8520000.0 / 963686, 1e-9);
-  // Limits that are no variables do not grow.
+  // Effort limits that are not variables keep their start values.
   EXPECT_NEAR(load_tracking("q2-e2", {R"(variables.optimize=["p"])"})->penalty_objectives().at(0),
               10 / 0.0058 + 100 * 85200.0 / 963686, 1e-9);
 }

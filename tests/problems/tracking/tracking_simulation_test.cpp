@@ -1,5 +1,5 @@
-// The tracking problem with the physics behind it: what a case's outcome is, in training and
-// elsewhere, and that it depends on its design and its case alone.
+// The tracking problem with real simulations: the outcomes of cases in training, validation and
+// test. Each outcome depends on its design and its case only.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -24,10 +24,10 @@ using testing::StartsWith;
 
 std::shared_ptr<const TrackingProblem> load_q1(std::vector<std::string> overrides = {},
                                                const std::string& name = "q1-complex") {
-  return load_problem(name, overrides).tracking;
+  return load_tracking(name, overrides);
 }
 
-// The corner of the box where everything is as small (-1) or as large (+1) as it can be.
+// Returns the corner of the box in which all magnitudes are smallest (-1) or largest (+1).
 std::vector<double> get_corner(const TrackingProblem& problem, int side) {
   std::vector<double> x;
   for (const DecisionVariable& variable : problem.description().variables) {
@@ -58,7 +58,7 @@ TEST(TrackingSimulation, EvaluationIsWhatTrackingTheDesignGives) {
   const TrackingResult four = problem->track(problem->config().start, set, 4);
   const TrackingResult zero = problem->track(problem->config().start, set, 0);
   EXPECT_THAT(evaluation.case_errors, ElementsAre(four.mean_error_m, zero.mean_error_m));
-  // The mean of points 2 to 25; sums of 24 numbers in the same order, so the same bits.
+  // The mean of points 2 to 25. Both sides add 24 numbers in the same order, so the bits are equal.
   double sum = 0;
   for (std::size_t point = 1; point < 25; ++point) {
     sum += four.point_error_m.at(point);
@@ -78,9 +78,9 @@ TEST(TrackingSimulation, EvaluationIsWhatTrackingTheDesignGives) {
   for (std::size_t joint = 0; joint < 4; ++joint) {
     saturation += (four.saturated_share[joint] + zero.saturated_share[joint]) / 8;
     EXPECT_EQ(evaluation.metrics[5 + 2 * joint],
-              std::max(four.peak_effort_n_m[joint], zero.peak_effort_n_m[joint]));
+              std::max(four.peak_effort[joint], zero.peak_effort[joint]));
     EXPECT_EQ(evaluation.metrics[6 + 2 * joint],
-              (four.rms_effort_n_m[joint] + zero.rms_effort_n_m[joint]) / 2);
+              (four.rms_effort[joint] + zero.rms_effort[joint]) / 2);
   }
   EXPECT_NEAR(evaluation.metrics[4], saturation, 1e-15);
 }
@@ -97,7 +97,7 @@ TEST(TrackingSimulation, TrainingCutsOffAndNothingElseDoes) {
   }
   const Evaluation cut =
       problem->evaluate(weak, make_block(CaseRole::training, "train/1", numbers));
-  EXPECT_EQ(cut.status, EvaluationStatus::ok);  // an ordinary, bad result
+  EXPECT_EQ(cut.status, EvaluationStatus::ok);  // a valid, bad result
   EXPECT_EQ(cut.reason, "");
   EXPECT_EQ(cut.failed_cases, 0);
   EXPECT_THAT(cut.case_errors, Each(testing::Le(1)));
@@ -115,7 +115,7 @@ TEST(TrackingSimulation, CutOffLeavesGoodDesignsAlone) {
 }
 
 TEST(TrackingSimulation, DivergenceIsAStatusAndNeverANumberOutsideTraining) {
-  // Efforts a hundred thousand times the start's throw the arm out of the world.
+  // Efforts of 100 000 times those of the start make the simulation diverge.
   const auto problem = load_q1({"variables.bounds_factor=1e5"});
   const auto strong = get_corner(*problem, 1);
   const Evaluation test = problem->evaluate(strong, make_block(CaseRole::test, "train/1", {0, 1}));
@@ -139,7 +139,7 @@ TEST(TrackingSimulation, DivergenceIsAStatusAndNeverANumberOutsideTraining) {
 }
 
 TEST(TrackingSimulation, UnreachableCasesAreLeftOutInEveryRole) {
-  // Some, not all, of the cases in a larger sphere leave the arm's reach.
+  // In a larger sphere, some of the cases leave the arm's reach.
   const auto problem = load_q1({"workspace.radius_m=1.1"});
   const TestSet set = problem->get_set("train/1");
   std::vector<std::uint64_t> reachable, unreachable;
@@ -172,7 +172,7 @@ TEST(TrackingSimulation, UnreachableCasesAreLeftOutInEveryRole) {
   }
 }
 
-// Three designs (a usual, a failing and a diverging one) on mixed sets and roles.
+// Three designs (one that works, one that fails and one that diverges) on mixed sets and roles.
 struct Mixture {
   std::shared_ptr<const TrackingProblem> problem =
       load_q1({"variables.bounds_factor=1e4", "workspace.points=4"});
@@ -204,10 +204,10 @@ TEST(TrackingSimulation, OutcomesDoNotDependOnOrderOrBatch) {
   EXPECT_EQ(together.back().status, EvaluationStatus::diverged);
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     SCOPED_TRACE(i);
-    // Alone, in a problem that has simulated nothing before.
+    // Alone, in a new problem that has simulated nothing before.
     expect_same(Mixture().problem->simulate({&jobs[i], 1}).at(0), together[i]);
   }
-  // 7 and 18 have no common divisor: a permutation, in which designs and sets alternate.
+  // 7 and 18 have no common divisor, so this is a permutation. Designs and sets alternate in it.
   std::vector<CaseJob> shuffled;
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     shuffled.push_back(jobs[7 * i % jobs.size()]);
@@ -223,12 +223,12 @@ TEST(TrackingSimulation, OutcomesDoNotDependOnThreads) {
   const Mixture mixture;
   const std::vector<CaseJob> jobs = mixture.make_jobs();
   const auto expected = mixture.problem->simulate(jobs);
-  const Mixture fresh;  // its target tables are made by the threads
+  const Mixture fresh;  // the threads make its target tables
   std::vector<std::vector<CaseOutcome>> outcomes(8);
   std::vector<std::jthread> threads;
   for (std::size_t thread = 0; thread < outcomes.size(); ++thread) {
     threads.emplace_back([&, thread] {
-      std::vector<CaseJob> rotated = jobs;  // every thread begins elsewhere
+      std::vector<CaseJob> rotated = jobs;  // every thread begins at another job
       std::rotate(rotated.begin(), rotated.begin() + static_cast<std::ptrdiff_t>(2 * thread),
                   rotated.end());
       outcomes[thread] = fresh.problem->simulate(rotated);
@@ -278,7 +278,7 @@ TEST(TrackingFileSets, AnyOtherNameGeneratesCasesInTheProblemsWorkspace) {
 }
 
 TEST(TrackingFileSets, CaseOfOneMoveNeedsItsFirstPointCounted) {
-  // Without it the error would be the mean over no points at all.
+  // Without a third point the error would be the mean over zero points.
   const TestSet set = TestSet::make_from_cases({TestCase{{{1.4, 0, 0.9}, {1.4, 0.3, 0.9}}}});
   const std::string message = fmt::format(
       "test set {}: case 0 has 2 points, but the first after the start does not count "
@@ -299,7 +299,7 @@ TEST(TrackingFileSets, CaseOfOneMoveNeedsItsFirstPointCounted) {
   EXPECT_GT(result.mean_error_m, 0);
 }
 
-// What a caller who only cares for designs better than a bound gets of a case that is none.
+// The outcome of a case whose error exceeds the bound of its job.
 TEST(TrackingSimulation, AnAbandonedCaseSaysWhatItsErrorIsAtLeast) {
   const auto problem = load_q1({"workspace.points=6"});
   const auto x = get_corner(*problem, -1);

@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "problems/config/design_file.hpp"
-#include "problems/config/problem_loader.hpp"
+#include "problems/load_tracking.hpp"
 #include "report/evidence/distance_response.hpp"
 #include "report/page/unpack.hpp"
 #include "study/run_support.hpp"
@@ -20,7 +20,7 @@ using nlohmann::json;
 class Motions : public testing::Test {
  protected:
   std::shared_ptr<const TrackingProblem> problem_ =
-      load_problem("q1-complex", std::vector<std::string>{"physics.engine=articulated"}).tracking;
+      load_tracking("q1-complex", {"physics.engine=articulated"});
   ArmDesign design_ = load_design("table-a5").design;
   StopSignal stop_;
   SilentObserver observer_;

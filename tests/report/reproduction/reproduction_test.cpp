@@ -25,7 +25,7 @@ class Interrupter final : public RunObserver {
  public:
   Interrupter(StopSignal& stop, int at) : stop_(stop), at_(at) {}
   void on_progress(const Progress& progress) override {
-    heard_training_ = heard_training_ || progress.phase == Progress::Phase::training;
+    heard_training_ = heard_training_ || progress.phase == CaseRole::training;
     if (++calls_ == at_) {
       stop_.request(StopReason::interrupted);
     }
@@ -218,7 +218,7 @@ TEST(Reproduction, PublishedTorquesAreThoseOfThePublishedDesigns) {
   for (const PlannedPart& part : plan_reproduction(request).parts) {
     if (!part.part.design.empty() && part.part.published_torque_n_m) {
       // The thesis prints six digits of the limits and rounds their sum to 1 N m.
-      EXPECT_NEAR(calc_total_torque_n_m(part.design), *part.part.published_torque_n_m, 1)
+      EXPECT_NEAR(calc_total_effort(part.design), *part.part.published_torque_n_m, 1)
           << part.part.label;
       ++compared;
     }

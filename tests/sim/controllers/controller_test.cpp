@@ -63,8 +63,7 @@ TEST(PidController, AnEffortExactlyAtTheLimitIsNotClamped) {
   }
 }
 
-// Unlike a controller that goes on summing, this one comes out of a long saturation with the sum it
-// went in with.
+// Anti-windup: after a long saturation the controller has the same integral as before it.
 TEST(PidController, DoesNotWindUp) {
   PidController pid(4, 4, 0, {-3, 3});
   for (int i = 0; i < 100; ++i) {
@@ -90,7 +89,7 @@ TEST(PidController, TurnsTheShortWayRound) {
   EXPECT_NEAR(pid.step(0.5, 0.2 + 6 * kPi, 0.01), 10 * 0.3, kPidTolerance);
 }
 
-// Metres know no turns. Every number is exact in binary.
+// Positions in metres are not wrapped. Every number is exact in binary.
 TEST(PidController, GoesTheWholeWayOfAPrismaticJoint) {
   PidController pid(8, 4, 2, {-1000, 1000}, JointKind::prismatic);
   EXPECT_EQ(pid.step(4, -4, 0.5), 80);     // e 8, S 4: 64 + 16 + 0
@@ -99,8 +98,8 @@ TEST(PidController, GoesTheWholeWayOfAPrismaticJoint) {
   EXPECT_TRUE(pid.saturated());
 }
 
-// The target moves from 3.13 to -3.13 past pi, the arm follows: no kick of 2 pi / h in the
-// derivative.
+// The target moves from 3.13 past pi to -3.13, and the arm follows: the derivative must not jump by
+// 2 pi / h.
 TEST(PidController, TheDerivativeDoesNotSeeTheWrap) {
   PidController pid(0, 0, 1, {-1000, 1000});
   pid.step(3.13, 3.10, 0.01);
@@ -155,15 +154,15 @@ TEST(ControllerTable, HasThePidWithItsGains) {
   const ControllerRow& row = find_controller("pid");
   EXPECT_FALSE(row.summary.empty());
   ASSERT_EQ(row.gains.size(), 3u);
-  EXPECT_EQ(row.gains[0].name, "p");
-  EXPECT_EQ(row.gains[0].key, "p_n_m_per_rad");
-  EXPECT_EQ(row.gains[0].unit, "N m/rad");
-  EXPECT_EQ(row.gains[1].name, "i");
-  EXPECT_EQ(row.gains[1].key, "i_n_m_per_rad_s");
-  EXPECT_EQ(row.gains[1].unit, "N m/(rad s)");
-  EXPECT_EQ(row.gains[2].name, "d");
-  EXPECT_EQ(row.gains[2].key, "d_n_m_s_per_rad");
-  EXPECT_EQ(row.gains[2].unit, "N m s/rad");
+  EXPECT_STREQ(row.gains[0].name, "p");
+  EXPECT_STREQ(row.gains[0].key, "p_n_m_per_rad");
+  EXPECT_STREQ(row.gains[0].unit, "N m/rad");
+  EXPECT_STREQ(row.gains[1].name, "i");
+  EXPECT_STREQ(row.gains[1].key, "i_n_m_per_rad_s");
+  EXPECT_STREQ(row.gains[1].unit, "N m/(rad s)");
+  EXPECT_STREQ(row.gains[2].name, "d");
+  EXPECT_STREQ(row.gains[2].key, "d_n_m_s_per_rad");
+  EXPECT_STREQ(row.gains[2].unit, "N m s/rad");
 }
 
 TEST(ControllerTable, MakesTheControllerItNames) {

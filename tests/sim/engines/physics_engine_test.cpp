@@ -13,7 +13,7 @@
 namespace armwright {
 namespace {
 
-// An engine with lanes, as far as choosing one goes.
+// A row of an engine with lanes, for tests that only choose an engine.
 EngineRow make_row_with_simd() {
   return {"lanes", "of a test", true, nullptr};
 }
@@ -46,7 +46,7 @@ TEST(SimdLevel, TheBestIsTheLastOfThoseThatAreSupported) {
 TEST(SimdLevel, TheEnvironmentMayAskForLess) {
   ::setenv("ARMWRIGHT_SIMD", "scalar", 1);
   EXPECT_EQ(find_best_simd(), SimdLevel::scalar);
-  ::setenv("ARMWRIGHT_SIMD", "avx512", 1);  // not for more than there is
+  ::setenv("ARMWRIGHT_SIMD", "avx512", 1);  // above what this CPU may support
   EXPECT_TRUE(is_supported(find_best_simd()));
   ::setenv("ARMWRIGHT_SIMD", "avx", 1);
   EXPECT_THAT(usage_error_of([] { find_best_simd(); }),

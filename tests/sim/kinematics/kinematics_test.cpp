@@ -148,7 +148,7 @@ TEST(ElbowUp, ForwardUndoesInverseEverywhereInTheSphere) {
   }
 }
 
-// Behind the robot and at any heading, where the angles are less tame.
+// Targets behind the robot and at any heading, where angles change sign or wrap.
 TEST(ElbowUp, ReachesTargetsAllAround) {
   const RobotModel arm = load_irb4600();
   const ElbowUpKinematics kinematics(arm);

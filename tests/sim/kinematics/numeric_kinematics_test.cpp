@@ -80,7 +80,7 @@ TEST_P(GeneratedArms, TheJacobianIsTheDerivativeOfThePose) {
   }
 }
 
-// From nothing to a pose that some posture has, within the ranges.
+// Finds, without a start posture, a pose that some posture within the ranges has.
 TEST_P(GeneratedArms, FindsPosesOfPosturesOffSingularities) {
   const NumericKinematics kinematics(robot_, tool_, {}, true);
   RandomStream random("test", 3);
@@ -105,8 +105,8 @@ TEST_P(GeneratedArms, FindsPosesOfPosturesOffSingularities) {
 
 INSTANTIATE_TEST_SUITE_P(Numeric, GeneratedArms, testing::Range(0, kGeneratedArms));
 
-// A redundant arm: joints that the task leaves free go to the middle of their ranges, as far as
-// the task allows: no motion of theirs that keeps the pose brings them closer.
+// In a redundant arm, joints that the task leaves free move to the middle of their ranges as far as
+// the task allows. No motion that keeps the pose brings them closer.
 TEST(NumericKinematics, WhatTheTaskLeavesFreeGoesToTheMiddle) {
   const RobotModel robot = make_arm(4);  // seven joints
   ASSERT_EQ(robot.joint_count(), 7U);
@@ -132,8 +132,8 @@ TEST(NumericKinematics, WhatTheTaskLeavesFreeGoesToTheMiddle) {
   EXPECT_TRUE(at_an_end || std::abs(pull) < 1e-5) << pull;
 }
 
-// A target straight through the end of a range: held there, the others carry on, and where they
-// cannot the target is out of reach; without limits it is reached.
+// The path to the target passes the end of a joint's range. The joint is held there and the others
+// continue. If they cannot reach the target, it is out of reach; without limits it is reached.
 TEST(NumericKinematics, JointsKeepToTheirRanges) {
   RobotModel robot = make_arm(0);  // three joints: one way to reach a point
   const NumericKinematics free(robot, {}, {}, false);
@@ -171,14 +171,15 @@ TEST(NumericKinematics, RefusesWhatTheJointsCannotDo) {
           }),
       testing::HasSubstr(
           "move its tool in 3 independent directions at most, but task.orientation = "
-          "\"pose\" is about the position and orientation of the tool, 6 in all"));
+          "\"pose\" tracks the position and orientation of the tool, 6 in all"));
   EXPECT_THAT(usage_error_of([&] {
                 NumericKinematics(three, {}, {0.0, 0.0}, true);
               }),
               testing::HasSubstr("task.home has 2 positions for the 3 joints"));
 }
 
-// Straight down with the tool: any turn about it will do, and the opposite direction is left.
+// The tool points straight down. Any turn about its axis is allowed, and the search leaves the
+// opposite direction.
 TEST(NumericKinematics, PointsTheToolFromTheOppositeDirection) {
   const RobotModel robot = make_arm(3);
   ToolTask tool = make_tool(ToolOrientation::pointing);

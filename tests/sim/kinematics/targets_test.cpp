@@ -10,7 +10,8 @@
 #include "base/random.hpp"
 #include "sim/simd/simd_level.hpp"
 #include "sim/support.hpp"
-#include "sim/tracking/tracking.hpp"
+#include "sim/tracking/reference_signal.hpp"
+#include "sim/tracking/tracking_setup.hpp"
 
 namespace armwright {
 namespace {
@@ -65,8 +66,8 @@ std::vector<SimdLevel> supported_levels() {
   return levels;
 }
 
-// Moves all around the arm, through its inside and out of its reach, of all shapes, with and
-// without the thesis's error, and of every number of steps left over in a register.
+// Moves of all shapes all around the arm, through its inside and out of its reach, with and without
+// the thesis's error. They leave every possible number of steps for the last register.
 TEST(Targets, AreTheSameBitsAtEverySimdLevelAndOneByOne) {
   RandomStream random("test/targets/levels");
   const RobotModel robot = load_irb4600();
@@ -104,9 +105,9 @@ TEST(Targets, AreTheSameBitsAtEverySimdLevelAndOneByOne) {
   EXPECT_GT(left_reach, 200) << "hardly a test of where a move leaves the reach";
 }
 
-// The formulas with libm's functions in extended precision. Tolerance: a relative error of some
-// 4e-16 in what the angles are of, magnified where the arm is nearly stretched or folded; S, the
-// cotangents' denominator, says how much.
+// Compares with the formulas, evaluated with libm's functions in extended precision. Tolerance: a
+// relative error of about 4e-16 in the arguments of the angles, which grows with 1 / S if the arm
+// is nearly stretched or folded.
 TEST(Targets, AnglesAreThoseOfTheTextbook) {
   using Real = long double;
   const ElbowUpArm arm = ElbowUpKinematics(load_irb4600()).arm();
@@ -162,7 +163,7 @@ TEST(Targets, ArriveExactlyAndStay) {
   }
 }
 
-// A table holds step by step what its two parts yield: where the target is and the posture there.
+// A table holds per step the results of its two parts: the target's position and the posture there.
 TEST(TargetTable, IsTheKinematicsOfTheTargetsPositions) {
   TestCase test_case;
   test_case.points_m = {{1.4, 0.1, 0.7}, {1.3, 0.2, 1.5}, {1.1, -0.6, 0.9}, {1.1, -0.6, 0.95}};
@@ -176,12 +177,12 @@ TEST(TargetTable, IsTheKinematicsOfTheTargetsPositions) {
       const ElbowUpKinematics kinematics(load_irb4600(), task.ik_bug);
       const TargetTable table = setup.make_targets(test_case);
       ASSERT_EQ(table.unreachable, "");
-      ASSERT_EQ(table.angles_rad.size(), static_cast<std::size_t>(4 * table.steps));
+      ASSERT_EQ(table.joint_positions.size(), static_cast<std::size_t>(4 * table.steps));
       for (const Segment& segment : table.segments) {
         for (int step = 0; step < segment.steps; ++step) {
           std::array<double, 4> q{};
           ASSERT_TRUE(kinematics.solve(setup.calc_target_position(segment, step), q));
-          ASSERT_THAT(table.angles(segment.first_step + step), testing::ElementsAreArray(q))
+          ASSERT_THAT(table.positions(segment.first_step + step), testing::ElementsAreArray(q))
               << step << " of " << segment.steps;
         }
       }
@@ -207,8 +208,9 @@ TEST(TargetTable, EndsAtTheFirstTargetOutOfReach) {
   EXPECT_EQ(table.unreachable,
             "on the way to point 2: " +
                 kinematics.describe_unreachable(setup.calc_target_position(segment, step)));
-  EXPECT_EQ(table.angles_rad.size(), static_cast<std::size_t>(4 * (segment.first_step + step)));
-  EXPECT_THAT(table.angles(segment.first_step + step - 1).front(), 0.0);
+  EXPECT_EQ(table.joint_positions.size(),
+            static_cast<std::size_t>(4 * (segment.first_step + step)));
+  EXPECT_THAT(table.positions(segment.first_step + step - 1).front(), 0.0);
 }
 
 }  // namespace

@@ -32,8 +32,7 @@ void expect_body(const Inertial& body, double mass_kg, const Eigen::Vector3d& co
   EXPECT_EQ(body.inertia_kg_m2, inertia);
 }
 
-// To the last bit: the file's decimals are the table's, and nothing is lumped or rotated on the
-// way.
+// Equal to the last bit: the file has the table's decimals, and no link is joined or rotated.
 TEST(Irb4600, HasTheMassesAndInertiaOfTheTable) {
   const RobotModel arm = load_irb4600();
   ASSERT_EQ(arm.links.size(), 4u);
@@ -57,7 +56,7 @@ TEST(Irb4600, HasTheRangesAndSpeedsOfTheDataSheet) {
   ASSERT_EQ(arm.joint_count(), 4u);
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(arm.joints[i].name, "joint_" + std::to_string(i + 1));
-    // One rounding of the decimal in the file, one of the product here.
+    // Tolerance: one rounding of the decimal in the file and one of the product here.
     EXPECT_DOUBLE_EQ(arm.joints[i].lower, lower_deg[i] * kPi / 180);
     EXPECT_DOUBLE_EQ(arm.joints[i].upper, upper_deg[i] * kPi / 180);
     EXPECT_DOUBLE_EQ(arm.joints[i].speed_limit, speed_deg_per_s[i] * kPi / 180);
@@ -136,7 +135,7 @@ TEST(LoadUrdf, ReadsPrismaticJoints) {
   }
 }
 
-// A rail that ends in 0 is as good as any: URDF's defaults of lower and upper are 0.
+// A rail whose range ends at 0 is valid; lower and upper default to 0 in URDF.
 TEST(LoadUrdf, TakesUrdfsDefaultsForTheEndsOfARail) {
   const RobotModel robot = parse_urdf(
       R"(<robot name="r"><link name="base"/><joint name="rail" type="prismatic">
@@ -209,9 +208,8 @@ TEST(LoadUrdf, TurnsTheTensorIntoTheLinksAxes) {
   EXPECT_EQ(robot.links[0].inertial.com_m, Eigen::Vector3d(0, 0, -1));
 }
 
-// The inertia about a fixed point, straight from the definition: two point masses a distance apart
-// along each principal axis reproduce a body, so summing point masses needs none of the theorems
-// under test.
+// Returns the inertia about a fixed point from the definition. Two point masses along each
+// principal axis reproduce a body, so this sum needs none of the theorems under test.
 struct PointMasses {
   double mass = 0;
   Eigen::Vector3d first = Eigen::Vector3d::Zero();
@@ -290,7 +288,8 @@ TEST(Inertial, NothingAddedChangesNothing) {
   expect_body(combine(Inertial{}, body), body.mass_kg, body.com_m, body.inertia_kg_m2);
 }
 
-// A gripper in two parts on turned fixed joints: the whole way from the file to the lumped link.
+// Tests the whole way from the file to the joined link: a gripper in two parts on rotated fixed
+// joints.
 TEST(LoadUrdf, LumpsAChainOfFixedLinks) {
   const RobotModel robot = parse_urdf(make_pendulum(R"(
     <joint name="f1" type="fixed"><parent link="rod"/><child link="plate"/>

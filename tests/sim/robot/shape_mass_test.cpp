@@ -21,8 +21,8 @@ using ::testing::StartsWith;
 constexpr double kDensity_kg_per_m3 = 2700;
 const Eigen::Vector3d kAsItIs(1, 1, 1);
 
-// Twelve triangles that show their fronts outside. The corners' coordinates are sums of powers of
-// two, which numbers of 32 bits hold exactly.
+// Twelve triangles that face outwards. The corners' coordinates are sums of powers of two, which
+// floats represent exactly.
 TriangleMesh make_box_mesh(const Eigen::Vector3f& low, const Eigen::Vector3f& high) {
   TriangleMesh mesh;
   for (int corner = 0; corner < 8; ++corner) {
@@ -157,7 +157,7 @@ TEST(MeshMass, OfATetrahedronIsByHand) {
   expect_near(calc_mesh_inertial(mesh, kAsItIs, 6), expected, kRounding);
 }
 
-// Vertices on a sphere; half the step, a quarter of the error.
+// Vertices on a sphere: halving the step divides the error by four.
 TEST(MeshMass, OfABallConverges) {
   const auto make_ball = [](int count) {
     TriangleMesh mesh;
@@ -216,7 +216,7 @@ TEST(MeshMass, AHoleInsideCountsAsOne) {
   expect_near(combine(hollow, hole), whole, kRounding);
 }
 
-// In millimetres; and mirrored, which turns the triangles' fronts inside.
+// A mesh in millimetres, and a mirrored one, whose triangles face inwards without a correction.
 TEST(MeshMass, FollowsTheScale) {
   const TriangleMesh mesh = make_box_mesh({0, 0, 0}, {256, 512, 1024});
   VisualShape same = make_shape(ShapeKind::box, {0.256, 0.512, 1.024});
@@ -240,7 +240,7 @@ TEST(MeshMass, RefusesWhatHasNoVolume) {
   };
   const TriangleMesh cube = make_box_mesh({0, 0, 0}, {1, 1, 1});
   EXPECT_EQ(message_of(turn_inside_out(cube), kAsItIs),
-            "its volume is -1 m3, as if its triangles showed their backs outside");
+            "its volume is -1 m3, as if its triangles faced inwards");
   EXPECT_THAT(message_of(cube, {1, 1, 0}),
               ::testing::AllOf(StartsWith("its volume is "), HasSubstr("of a sheet")));
 }
@@ -268,7 +268,7 @@ TEST(MeshMass, FindsGaps) {
 }
 
 // From the file to the arm: a link with three shapes in general places, a finger on a fixed joint,
-// and a base whose mesh nobody looks for.
+// and a base whose mesh is not needed.
 constexpr const char* kArm = R"(<robot name="arm"><link name="base">
   <visual><geometry><mesh filename="nowhere.stl"/></geometry></visual></link>
   <joint name="turn" type="continuous"><parent link="base"/><child link="bar"/></joint>
@@ -333,8 +333,8 @@ TEST(LinkMass, NamesAMeshThatIsNotThere) {
   EXPECT_EQ(refusal_of(make_arm("<visual><geometry><mesh "
                                 "filename=\"package://p/nothing.stl\"/></geometry></visual>")),
             "arm.urdf: link 'bar': there is no mesh 'package://p/nothing.stl' in the URDF's folder "
-            "and those above, which gives the link its mass; put it there, or give the link an "
-            "<inertial> element");
+            "and the folders above it, but the link's mass comes from this mesh; put it there, or "
+            "give the link an <inertial> element");
 }
 
 #ifdef ARMWRIGHT_WITH_ASSIMP

@@ -20,7 +20,8 @@ RobotModel load_shipped(const std::string& name, const std::string& tip = "") {
                    {.tip = tip});
 }
 
-// Relative to the number's own size, and to 1 where it is small: the files give 9 decimals.
+// The tolerance is relative to the number, or to 1 if the number is small; the files have 9
+// decimals.
 void expect_same_body(const Inertial& found, const Inertial& expected) {
   constexpr double kRelative = 1e-6;
   EXPECT_NEAR(found.mass_kg, expected.mass_kg, kRelative * expected.mass_kg);

@@ -1,5 +1,5 @@
-// Which joints of a URDF move, and what becomes of the others: on a file like those that xacro
-// makes for a real cell, with a lift, cables, jaws and all that other programs want to know.
+// Tests which joints of a URDF move and how the others are treated. The file resembles those that
+// xacro makes for a real cell, with a lift, cables, jaws and data for other programs.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -76,9 +76,8 @@ TEST(UrdfChain, TakesLimitsOfZeroForNone) {
   EXPECT_EQ(cell.joints[1].effort_limit, 30);
 }
 
-// A joint that is held is as good as one that was written as fixed there: 0.4 rad about y is what
-// <origin> calls pitch. Tolerance: urdfdom makes quaternions of angles, a few roundings of numbers
-// below 1.
+// A held joint equals a fixed joint at the same position; a turn of 0.4 rad about y is the pitch of
+// <origin>. Tolerance: angles pass through quaternions, a few roundings of numbers below 1.
 TEST(UrdfChain, HoldsJointsWhereAFixedOneWouldBe) {
   std::string xml = cell_xml();
   xml = replace_first(xml, "name=\"cable_joint\" type=\"revolute\"",
@@ -147,7 +146,8 @@ TEST(UrdfChain, TheLiftMovesWhereTheChainBeginsAboveIt) {
   EXPECT_EQ(cell.links[0].inertial.mass_kg, 0.5) << "the beacon rides on it";
 }
 
-// The tip need not be a leaf: what hangs beyond it is part of its link, moving joints and all.
+// The tip need not be a leaf. All links beyond it become part of its link, also those on movable
+// joints.
 TEST(UrdfChain, WhatHangsBeyondTheTipIsPartOfIt) {
   const RobotModel cell = load_cell("mount", "upper_arm");
   ASSERT_EQ(cell.joint_count(), 2u);
@@ -215,14 +215,15 @@ INSTANTIATE_TEST_SUITE_P(
         OptionTrap{"base_below_tip",
                    {.base = "hand", .tip = "upper_arm"},
                    "base",
-                   "the base 'hand' is not above the tip 'upper_arm', to which the way from the "
-                   "root is 'world' -> 'mount' -> 'base_link' -> 'upper_arm'; name one of these"},
-        OptionTrap{
-            "base_beside_tip",
-            {.base = "cable", .tip = "hand"},
-            "base",
-            "the base 'cable' is not above the tip 'hand', to which the way from the root is "
-            "'world' -> 'mount' -> 'base_link' -> 'upper_arm' -> 'hand'; name one of these"},
+                   "the base 'hand' is not above the tip 'upper_arm', and the path from the "
+                   "root to the tip is 'world' -> 'mount' -> 'base_link' -> 'upper_arm'; name one "
+                   "of these"},
+        OptionTrap{"base_beside_tip",
+                   {.base = "cable", .tip = "hand"},
+                   "base",
+                   "the base 'cable' is not above the tip 'hand', and the path from the root to "
+                   "the tip is "
+                   "'world' -> 'mount' -> 'base_link' -> 'upper_arm' -> 'hand'; name one of these"},
         OptionTrap{"no_tip",
                    {},
                    "tip",
@@ -260,7 +261,7 @@ TEST(UrdfChain, NamesTheLeavesToChooseFrom) {
   }
 }
 
-// One place of the file is spoilt, and the chain runs from base_link to the tip that is named.
+// Each case changes one place of the file; the chain runs from base_link to the given tip.
 struct CellTrap {
   std::string name;
   std::string from, to;
@@ -293,7 +294,8 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         CellTrap{"xacro_element", "<link name=\"world\"/>", "<xacro:world name=\"world\"/>",
                  "tool0",
-                 "cell.urdf:9: the file: <xacro:world> is of xacro; xacro is not read: run xacro "
+                 "cell.urdf:9: the file: <xacro:world> is an element of xacro; xacro is not read: "
+                 "run xacro "
                  "my.urdf.xacro > my.urdf (ROS), or python3 -m xacro my.urdf.xacro > my.urdf, and "
                  "give armwright the result"},
         CellTrap{"xacro_name", "<link name=\"mount\"/>", "<link name=\"${prefix}mount\"/>", "tool0",
@@ -338,7 +340,7 @@ INSTANTIATE_TEST_SUITE_P(
             "cell.urdf:90: link 'hand': unknown shape 'capsule'. Valid: box, cylinder, sphere, "
             "mesh (write a capsule as three <visual>, a cylinder and a sphere at each end, or "
             "leave it "
-            "out: visuals count for looks, and for mass at a density)"},
+            "out: visuals only give looks, and mass if robot.density_kg_per_m3 is set)"},
         CellTrap{"no_mass_but_inertia", "<mass value=\"0\"/><inertia ixx=\"0\"",
                  "<mass value=\"0\"/><inertia ixx=\"1\"", "tool0",
                  "cell.urdf:126: link 'tool0': <mass>: value is 0; it must be > 0 (a frame without "

@@ -19,7 +19,7 @@ std::string read_arm(const std::string& name) {
   return read_file(std::string(ARMWRIGHT_TEST_DATA) + "/urdf/" + name, 1 << 20);
 }
 
-// A robot of that joint, whose child is the only moving link.
+// Returns a robot with that joint; the joint's child is the only moving link.
 std::string make_urdf(const std::string& joint) {
   return "<robot name=\"r\"><link name=\"base\"/>" + joint +
          "<link name=\"l\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\" "
@@ -27,7 +27,7 @@ std::string make_urdf(const std::string& joint) {
 }
 constexpr const char* kEnds = "<parent link=\"base\"/><child link=\"l\"/>";
 
-// What came after the comment at the beginning, whose end is the first.
+// Returns the text after the comment at the beginning.
 std::string cut_comment(const std::string& text) {
   const std::string end = "-->\n";
   return text.substr(text.find(end) + end.size());
@@ -81,13 +81,13 @@ TEST(SetEffortLimits, FindsJointsBehindEntitiesQuotesAndLookalikes) {
       "<limit lower='-1' note='a > effort=\"3\"' effort = '4'\n upper='1' velocity='5' />"
       "<safety_controller k_velocity='1'/></joint>"
       "<gazebo><joint name='a&b;'/></gazebo>");
-  // '&b;' is no entity that means anything: not a text to begin with.
+  // '&b;' is not a defined entity, so the text is invalid.
   const std::vector<JointEffort> efforts = {{"a&b", 6}};
   EXPECT_THROW(set_effort_limits(xml, "r", efforts, ""), Error);
   std::string valid = xml;
   valid.replace(valid.find("<gazebo>"), std::string("<gazebo><joint name='a&b;'/></gazebo>").size(),
                 "");
-  // Within a comment anything may stand.
+  // A comment may contain any text.
   const std::string changed = cut_comment(set_effort_limits(valid, "r", efforts, ""));
   std::string expected = valid;
   expected.replace(expected.find("effort = '4'"), 12, "effort = '6'");

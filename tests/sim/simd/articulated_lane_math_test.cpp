@@ -26,7 +26,7 @@ struct Lanes : testing::Test {
   static constexpr Number kFarthest =
       kDouble ? Number{1e6} : Number{1e4};  // of the range that is promised
 
-  // Every lane another number, in its place.
+  // Every lane has another number, so a result in the wrong lane is found.
   static V load(const std::vector<Number>& numbers) {
     alignas(64) Number lanes[V::kLanes];
     for (int i = 0; i < V::kLanes; ++i) {
@@ -163,7 +163,7 @@ TYPED_TEST(Lanes, BeyondTheRangeTheyStayFinite) {
   }
 }
 
-// Clamping relies on it: the second where they do not compare.
+// Clamping relies on this: min and max return the second argument if one is NaN.
 TYPED_TEST(Lanes, SmallerAndLargerOfWhatDoesNotCompareIsTheSecond) {
   using T = typename TypeParam::Scalar;
   const T nan = std::numeric_limits<T>::quiet_NaN();

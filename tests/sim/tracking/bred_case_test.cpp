@@ -1,5 +1,5 @@
-// Cases of a set "coevolved/ID": a pure function of set and genome, cut into quarters by its keys.
-#include "sim/tracking/bred_case.hpp"
+// Cases of a set "coevolved/ID": they depend only on set and genome, one key per quarter of the
+// case.
 
 #include <gtest/gtest.h>
 
@@ -42,14 +42,14 @@ TEST(BredCase, AKeyDecidesOnItsQuarter) {
   for (int place = 0; place < kGenomeKeys; ++place) {
     const std::uint64_t key = get_key(kGenome, place) ^ 1;
     const TestCase other = make_test_case("coevolved/1", set_key(kGenome, place, key), sphere);
-    for (int k = 1; k <= 6 * place; ++k) {  // before it nothing changes
+    for (int k = 1; k <= 6 * place; ++k) {  // points before the quarter stay
       const auto at = static_cast<std::size_t>(k);
       EXPECT_EQ(other.points_m[at], made.points_m[at]) << place << " " << k;
     }
     const auto first = static_cast<std::size_t>(6 * place + 1);
     EXPECT_NE(other.points_m[first], made.points_m[first]) << place;
   }
-  // Behind it the directions stay, but where they would lead outside.
+  // After the quarter the directions stay, except those that would lead outside.
   const TestCase other = make_test_case("coevolved/1", set_key(kGenome, 0, 5), sphere);
   int same = 0;
   for (std::size_t at = 13; at <= 24; ++at) {

@@ -1,5 +1,5 @@
-// Stretched links against bodies whose inertia has a closed form, motors against a pendulum's
-// period, and the arm's kinematics after both.
+// Checks stretched links against bodies whose inertia has a closed form, motors against a
+// pendulum's period, and the arm's kinematics after both.
 #include "sim/tracking/designed_arm.hpp"
 
 #include <gmock/gmock.h>
@@ -24,7 +24,7 @@ Inertial make_box(const Vector3d& size_m, double mass_kg, const Vector3d& com_m)
       Vector3d(mass_kg / 12 * Vector3d(s.y() + s.z(), s.x() + s.z(), s.x() + s.y())).asDiagonal()};
 }
 
-// An arm of one link, the tip at its end.
+// Returns an arm of one link, with the tip at its end.
 RobotModel make_one_link(const Inertial& body, const Vector3d& tip_m) {
   RobotModel model;
   model.name = "one link";
@@ -51,7 +51,7 @@ TEST(StretchedLink, OfAHomogeneousBoxIsTheLongerAndWiderBox) {
   EXPECT_LT((stretched.tip_pose.translation() - Vector3d(0.9 * length, 0, 0)).norm(), 1e-15);
 }
 
-// The same box lying askew in its link's frame, its long side towards the tip.
+// The same box, turned in its link's frame so that its long side points to the tip.
 TEST(StretchedLink, WorksAlongAnyDirection) {
   const Matrix3d turn =
       Eigen::AngleAxisd(0.8, Vector3d(0.3, -0.5, 0.9).normalized()).toRotationMatrix();
@@ -67,7 +67,8 @@ TEST(StretchedLink, WorksAlongAnyDirection) {
   EXPECT_LT((body.inertia_kg_m2 - expected.inertia_kg_m2).norm(), 1e-12);
 }
 
-// A thin rod about its end: m L^2 / 3, so (L scale)^3 at the same section.
+// The inertia of a thin rod about its end is m L^2 / 3, so it grows with the cube of the length
+// scale at the same section.
 TEST(StretchedLink, OfARodTurnsWithTheCubeOfItsLength) {
   const double mass_kg = 3, rod_m = 0.8;
   const Inertial rod = make_box({rod_m, 1e-9, 1e-9}, mass_kg, {rod_m / 2, 0, 0});
@@ -145,8 +146,8 @@ TEST(StretchedArm, InverseKinematicsLeadItsTipToTheTarget) {
   EXPECT_FALSE(kinematics.solve({3.5, 0, 0.5}, q));
 }
 
-// The bar of a pendulum with a balanced wheel at its end, which stands still while it swings: a
-// point mass, as is the motor of its axle.
+// Returns a pendulum: a bar with a balanced wheel at its end. The wheel does not turn while the bar
+// swings, so it acts as a point mass, and so does the motor of its axle.
 RobotModel make_wheel_pendulum() {
   RobotModel model = make_one_link(make_box({0.05, 0.05, 0.9}, 4, {0, 0, -0.4}), Vector3d::Zero());
   model.joints.emplace_back();
@@ -167,7 +168,7 @@ double measure_period_s(const RobotModel& model, double h_s) {
   for (int k = 1; passes_s.size() < 3; ++k) {
     const double before = q[0];
     arm.step(none, h_s);
-    arm.read_angles(q);
+    arm.read_positions(q);
     if (before * q[0] < 0) {
       passes_s.push_back(h_s * (k - q[0] / (q[0] - before)));
     }
@@ -185,7 +186,7 @@ double measure_period_s(const RobotModel& model, double h_s) {
 TEST(Motor, LengthensThePeriodOfThePendulumThatCarriesIt) {
   ArmDesign design;
   design.joints.resize(2);
-  design.joints[0].limits = {-5000, 5000};  // on the base: weighs upon nothing
+  design.joints[0].limits = {-5000, 5000};  // this motor stands on the base and loads no link
   design.joints[1].limits = {-60, 40};
   const double k_n_m_per_kg = 20;
   const RobotModel nominal = make_wheel_pendulum();

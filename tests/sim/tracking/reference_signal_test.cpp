@@ -38,7 +38,7 @@ struct Motion {
   double speed_m_per_s;
 };
 
-// Of the step there is nothing to see but that it is there at once: it has its own test below.
+// All shapes but the step, which has its own test below because it arrives at once.
 class EveryMovingSignal : public testing::TestWithParam<Motion> {
  protected:
   ReferenceSignal signal_{GetParam().shape, GetParam().distance_m, GetParam().speed_m_per_s,
@@ -70,8 +70,7 @@ TEST_P(EveryMovingSignal, NeverGoesBackNorBeyond) {
   }
 }
 
-// No shape is ever faster than 2.5 v, so that a jump between its pieces would show as
-// a steeper slope.
+// No shape is ever faster than 2.5 v, so a jump between its pieces would show as a steeper slope.
 TEST_P(EveryMovingSignal, HasNoJumps) {
   constexpr int kSamples = 10007;
   const double dt_s = signal_.duration_s() / kSamples;
@@ -113,9 +112,9 @@ std::vector<Motion> make_motions() {
   std::vector<Motion> motions;
   for (const SignalShape shape :
        {SignalShape::ramp, SignalShape::trapezoid, SignalShape::triangular, SignalShape::complex}) {
-    motions.push_back({shape, 1.376, 1.5});    // trapezoid proper
+    motions.push_back({shape, 1.376, 1.5});    // the trapezoid has a plateau
     motions.push_back({shape, 0.0541, 0.61});  // slow
-    motions.push_back({shape, 0.226, 1.73});   // trapezoid falls back
+    motions.push_back({shape, 0.226, 1.73});   // the trapezoid becomes triangular
   }
   return motions;
 }
@@ -128,7 +127,7 @@ INSTANTIATE_TEST_SUITE_P(Motions, EveryMovingSignal, testing::ValuesIn(make_moti
 
 TEST(ReferenceSignal, StepIsThereAtOnce) {
   const ReferenceSignal signal(SignalShape::step, 0.7, 1.4, kAcceleration);
-  EXPECT_EQ(signal.duration_s(), 0.5);  // the error is measured from here on all the same
+  EXPECT_EQ(signal.duration_s(), 0.5);  // the error is measured from here on, too
   EXPECT_EQ(signal.calc_distance(0.0), 0.7);
   EXPECT_EQ(signal.calc_distance(0.2), 0.7);
   EXPECT_EQ(signal.calc_distance(0.5), 0.7);
@@ -145,7 +144,7 @@ TEST(ReferenceSignal, RampsArriveExactlyWhateverTheRounding) {
     ASSERT_LE(signal.calc_distance(std::nextafter(signal.duration_s(), 0.0)), distance_m);
     rounded += 1.3 * signal.duration_s() != distance_m;
   }
-  EXPECT_GT(rounded, 0);  // else this test sees nothing
+  EXPECT_GT(rounded, 0);  // else this test would check nothing
 }
 
 TEST(ReferenceSignal, RampIsSpeedTimesTime) {
@@ -198,7 +197,7 @@ TEST(ReferenceSignal, TrapezoidByHand) {
 
 TEST(ReferenceSignal, TriangularByHand) {
   const ReferenceSignal signal(SignalShape::triangular, 0.6, 1.5,
-                               1e-9);                            // the acceleration is its own
+                               1e-9);                            // acceleration not used
   EXPECT_NEAR(signal.calc_distance(0.1), 0.075, rounding(0.6));  // 4 ds / t_m^2 = 15 m/s^2
   EXPECT_NEAR(signal.calc_distance(0.2), 0.3, rounding(0.6));
   EXPECT_NEAR(signal.calc_distance(0.3), 0.525, rounding(0.6));
@@ -276,7 +275,7 @@ TEST(ReferenceSignal, RefusesImpossibleMotions) {
                           " m; it must be finite and > 0"));
     EXPECT_THAT(refusal(SignalShape::complex, 0.5, bad, 15), HasSubstr("the speed is "));
     EXPECT_THAT(refusal(SignalShape::trapezoid, 0.5, 1.5, bad), HasSubstr("the acceleration is "));
-    EXPECT_EQ(refusal(SignalShape::complex, 0.5, 1.5, bad), "(no error)");  // has no such parameter
+    EXPECT_EQ(refusal(SignalShape::complex, 0.5, 1.5, bad), "(no error)");  // not used
   }
   EXPECT_THAT(refusal(SignalShape::ramp, 1e200, 1e-200, 15),
               HasSubstr("the duration (distance / speed) is inf s; it must be finite and > 0"));

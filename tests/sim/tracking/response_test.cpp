@@ -18,7 +18,7 @@ const Vector3d kFrom_m(1.2, -0.4, 0.7);
 const Vector3d kWay_m(0.3, 0.6, -0.6);  // 0.9 m long
 constexpr double kLength_m = 0.9;
 
-// One move that takes `moving` periods, then `resting` ones.
+// Returns a table with one move of `moving` periods, then `resting` periods of rest.
 TargetTable make_table(int moving, int resting, const Vector3d& way_m = kWay_m) {
   Segment segment;
   segment.from_m = kFrom_m;
@@ -33,8 +33,8 @@ TargetTable make_table(int moving, int resting, const Vector3d& way_m = kWay_m) 
   return table;
 }
 
-// The tip where a function of time says: how far along the move, as a share of it, and what is
-// beside it, at right angles.
+// Returns the tip's positions from two functions of time: the share of the move that is covered,
+// and the distance beside the move, at right angles.
 TipMove make_motion(const TargetTable& table, const std::function<double(double)>& along,
                     double beside_m = 0) {
   const Vector3d beside = beside_m * kWay_m.cross(Vector3d::UnitZ()).normalized();
@@ -45,7 +45,7 @@ TipMove make_motion(const TargetTable& table, const std::function<double(double)
   return find_tip_move(table, 0, tips_m, kSamplePeriod_s).value();
 }
 
-// A step through 1 / (s^2 / w^2 + 2 z s / w + 1), underdamped.
+// The step response of 1 / (s^2 / w^2 + 2 z s / w + 1), underdamped.
 std::function<double(double)> make_second_order(double damping, double w_rad_per_s) {
   const double root = std::sqrt(1 - damping * damping);
   return [=](double t_s) {
@@ -85,7 +85,7 @@ TEST(Response, OfAFirstOrderStepHasTheTextbooksTimes) {
 }
 
 TEST(Response, SettlesOnlyWhenItStaysInside) {
-  // Inside from 0.2 s, outside again from 0.5 to 0.6 s, at the end for good.
+  // Inside the band from 0.2 s, outside again from 0.5 to 0.6 s, then inside until the end.
   const TipMove move = make_motion(make_table(10, 90), [](double t_s) {
     return t_s < 0.195 ? 0.5 : t_s > 0.495 && t_s < 0.605 ? 1.1 : 1.0;
   });
@@ -102,7 +102,7 @@ TEST(Response, WhatIsBesideTheMoveHindersSettlingAlone) {
   const TipMove move = make_motion(table, arrive, 0.02);
   EXPECT_EQ(calc_overshoot(move), 0);
   EXPECT_NEAR(calc_rise_time_s(move), 0.08, 1e-12);
-  EXPECT_NEAR(calc_settling_time_s(move, 0.019), 0.4, 1e-12);  // the whole rest: never
+  EXPECT_NEAR(calc_settling_time_s(move, 0.019), 0.4, 1e-12);  // the whole rest: it never settles
   EXPECT_EQ(calc_settling_time_s(move, 0.021), 0);
 }
 
@@ -123,7 +123,7 @@ TEST(Response, ATipThatIsThereAtOnceHasNoTimes) {
 
 TEST(Response, OnlyMovesHaveOne) {
   EXPECT_TRUE(is_move(make_table(2, 3).segments[0]));
-  EXPECT_FALSE(is_move(make_table(1, 3).segments[0]));  // over within the first period
+  EXPECT_FALSE(is_move(make_table(1, 3).segments[0]));  // ends within the first period
   EXPECT_FALSE(is_move(make_table(0, 1).segments[0]));  // a sample of a path
   EXPECT_FALSE(is_move(make_table(10, 40, Vector3d::Zero()).segments[0]));
   EXPECT_FALSE(is_move(make_table(10, 40, Vector3d(0, 0.0009, 0)).segments[0]));
@@ -151,14 +151,14 @@ TEST(JointSpeeds, AreTheLargestOfAnyStepTheShortWayRound) {
   robot.joints.resize(2);
   robot.joints[1].kind = JointKind::prismatic;
   TargetTable table = make_table(1, 2);
-  table.start_rad = {3.1, 0};
+  table.start_positions = {3.1, 0};
   TrackingResult result;
-  // A turn over the half circle by 0.083 rad; a slide by 7 m is no turn.
-  result.angles_rad = {-3.1, 7, -3.09, 7.01, -3.08, 7.0};
+  // The first joint turns by 0.083 rad past pi. The second one slides by 7 m, which is not wrapped.
+  result.joint_positions = {-3.1, 7, -3.09, 7.01, -3.08, 7.0};
   EXPECT_THAT(calc_joint_speeds(robot, table, result, kSamplePeriod_s),
               ElementsAre(testing::DoubleNear((2 * std::numbers::pi - 6.2) / kSamplePeriod_s, 1e-9),
                           testing::DoubleNear(700, 1e-9)));
-  result.angles_rad = {};
+  result.joint_positions = {};
   EXPECT_THAT(calc_joint_speeds(robot, table, result, kSamplePeriod_s), ElementsAre(0, 0));
 }
 

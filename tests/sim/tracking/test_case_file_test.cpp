@@ -1,4 +1,3 @@
-#include "sim/tracking/test_case_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -40,7 +39,7 @@ class TestCaseFile : public testing::Test {
     return TestSet::load(path());
   }
 
-  // What follows the file's name in the refusal.
+  // Returns the refusal's text after the file's name.
   std::string refusal(const std::string& content) const {
     try {
       load(content);
@@ -53,7 +52,7 @@ class TestCaseFile : public testing::Test {
   }
 
  private:
-  // One folder a test: they run at the same time.
+  // One folder per test, because tests run at the same time.
   fs::path folder_ = fs::path(testing::TempDir()) /
                      (std::string("armwright-cases-") +
                       testing::UnitTest::GetInstance()->current_test_info()->name());
@@ -294,7 +293,7 @@ TEST_F(TestCaseFile, MalformedJsonIsRefusedByCaseAndPoint) {
   }
 }
 
-// The words after the line are the library's.
+// The words after the line number come from the JSON library.
 TEST_F(TestCaseFile, BrokenJsonIsRefusedByLine) {
   const std::string two_lines = "{\"cases\": [\n[[1,2,3],[1,2,4]],\n";
   const std::vector<Malformed> all = {
@@ -315,7 +314,7 @@ TEST_F(TestCaseFile, BrokenJsonIsRefusedByLine) {
   }
 }
 
-// Whatever happens to a file, it is loaded or refused with a message; nothing else comes out of it.
+// Any damaged file is either loaded or refused with a message.
 TEST_F(TestCaseFile, DamagedFilesAreLoadedOrRefused) {
   const std::vector<TestCase> cases = {{{{1.4, 0, 0.9}, {1.25, -0.5, 1}}},
                                        {{{1, 2, 3}, {1, 2, 3.5}, {-1e-3, 2, 3}}}};

@@ -37,7 +37,7 @@ const std::vector<WorkspaceSphere>& spheres() {
       {},
       {{-0.31, 0.77, 2.05}, 0.37, 0.0123, 12},
       {{0.6, -0.4, 0.2}, 0.25, 0.33, 3},
-      {{1.1, 0.3, 0.8}, 0.5, 0.9, 60},  // long moves all along: few directions stay inside
+      {{1.1, 0.3, 0.8}, 0.5, 0.9, 60},  // only long moves: few directions stay inside
   };
   return all;
 }
@@ -50,7 +50,7 @@ double calc_chi_square(const std::vector<int>& counts, double expected) {
   return sum;
 }
 
-// Thesis, table 5.2: printed in metres with three decimals.
+// Thesis, table 5.2, which gives metres with three decimals.
 constexpr std::array<double, 25> kTable52_m = {
     0.800, 1.600, 1.376, 1.184, 1.018, 0.876, 0.753, 0.648, 0.557, 0.479, 0.412, 0.355, 0.305,
     0.262, 0.226, 0.194, 0.167, 0.144, 0.123, 0.106, 0.091, 0.079, 0.068, 0.058, 0.050};
@@ -67,9 +67,9 @@ TEST(TestCases, MoveByTheDistancesOfTheThesis) {
   }
 }
 
-// Computed with 60 decimal digits, the power rounded to double once and then multiplied by 2r. The
-// nearest of the 25 powers is 0.03 ulp off a rounding boundary, so that any long double of 64 bits
-// or more finds them all.
+// The expected numbers were computed with 60 decimal digits; the power was rounded to double once
+// and then multiplied by 2r. Of the 25 powers, the one nearest to a rounding boundary is 0.03 ulp
+// away from it, so any long double with at least 64 bits of mantissa gives the same numbers.
 TEST(TestCases, MovesAreTheSameBitsEverywhere) {
   const WorkspaceSphere sphere;
   EXPECT_EQ(sphere.calc_move_m(1), 0.8);
@@ -122,9 +122,9 @@ TEST(TestCases, DependOnNameAndNumberOnly) {
   EXPECT_NO_THROW(set.make_case(std::numeric_limits<std::uint64_t>::max()));
 }
 
-// A changed generator is another set of test cases under the old name: results would no longer be
-// comparable. The numbers come from a second implementation (Philox, the directions, the hash)
-// written in Python.
+// If the generator changed, an old name would stand for other test cases, and results would no
+// longer be comparable. The expected numbers come from a second implementation (Philox, the
+// directions, the hash) in Python.
 TEST(TestCases, AreTheOnesOfAllEarlierResults) {
   const auto points_m = make_test_case("train/1", 0, {}).points_m;
   EXPECT_EQ(points_m[1],
@@ -146,7 +146,7 @@ TEST(TestCases, AreTheOnesOfAllEarlierResults) {
 // Directions of 20 000 moves against uniformity: chi-square with its 99.9 % quantile for the
 // octants (7 degrees of freedom, 24.32) and for 20 equal slices along each axis (Archimedes: equal
 // area; 19, 43.82); the components' means (variance 1/3) and mean products (variance of x^2 4/45,
-// of xy 1/15) within 4 standard errors. The seeds are fixed: it holds or it fails.
+// of xy 1/15) within 4 standard errors. The seeds are fixed, so the test cannot fail by chance.
 void expect_uniform(const std::vector<Eigen::Vector3d>& directions) {
   const auto n = static_cast<double>(directions.size());
   std::vector<int> octants(8);
@@ -223,7 +223,8 @@ TEST(TestCases, AnImpossibleSphereIsRefused) {
               HasSubstr("workspace sphere: the shortest move is 1.6 m; "));
 }
 
-// The largest moves allowed: the directions that stay inside are a thousandth, and are found.
+// With the largest moves allowed, only a thousandth of the directions stays inside, and the
+// generator finds one.
 TEST(TestCases, TheLongestMovesAllowedCanBeMade) {
   const WorkspaceSphere sphere{{0, 0, 0}, 1.0, 2 * std::pow(0.999, 98) * (1 - 1e-12), 100};
   EXPECT_EQ(make_test_case("train/1", 0, sphere).points_m.size(), 101u);

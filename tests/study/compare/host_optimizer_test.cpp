@@ -1,5 +1,5 @@
-// Optimizers that live in a program that uses the library: it compares them with others, and what
-// is recorded of them is read without it.
+// Optimizers that a program outside of armwright implements. The program compares them with others;
+// their records can be read without the program.
 #include "optimizers/plugins/host_optimizer.hpp"
 
 #include <gmock/gmock.h>
@@ -19,7 +19,7 @@ constexpr const char* kDescription =
 
 // Described as above, and random search inside.
 OptimizerRow make_mine() {
-  OptimizerRow row = read_foreign_row("python:mine", kDescription);
+  OptimizerRow row = read_host_row("python:mine", kDescription);
   row.input_hashes = {{"class Mine", "0123"}};
   row.make = [](const Options&) {
     const OptimizerRow random = make_random_search_rows().front();
@@ -39,7 +39,7 @@ class ForeignOptimizerTest : public StudyTest {};
 
 TEST_F(ForeignOptimizerTest, StandsInAStudyThatIsReadWithoutIt) {
   const StudyPlan plan = make_study_plan(make_its_request());
-  // It is a local search itself: no other one joins as a baseline.
+  // It is a local search itself, so no other local search is added as a baseline.
   ASSERT_EQ(plan.optimizers.size(), 3U);
   EXPECT_TRUE(run_all(plan, "mine", 2).broken.empty());
 
@@ -79,13 +79,13 @@ TEST_F(ForeignOptimizerTest, IsKnownAgainWhenItHasChanged) {
 }
 
 TEST_F(ForeignOptimizerTest, DescriptionsThatAreNone) {
-  EXPECT_THAT(error_of(ErrorKind::bad_data, [&] { read_foreign_row("python:mine", "{}"); }),
+  EXPECT_THAT(error_of(ErrorKind::bad_data, [&] { read_host_row("python:mine", "{}"); }),
               testing::HasSubstr("its description"));
-  EXPECT_THAT(error_of(ErrorKind::bad_data, [&] { read_foreign_row("python:mine", "{"); }),
+  EXPECT_THAT(error_of(ErrorKind::bad_data, [&] { read_host_row("python:mine", "{"); }),
               testing::HasSubstr("is no JSON"));
-  EXPECT_THAT(error_of(ErrorKind::bad_data,
-                       [&] { read_foreign_row("python:mine", std::string(1000, '[')); }),
-              testing::HasSubstr("nest deeper"));
+  EXPECT_THAT(
+      error_of(ErrorKind::bad_data, [&] { read_host_row("python:mine", std::string(1000, '[')); }),
+      testing::HasSubstr("nest deeper"));
   EXPECT_THAT(error_of(ErrorKind::bad_data,
                        [&] {
                          load_plan(temporary_,

@@ -1,5 +1,5 @@
-// Who drives armwright from a program of their own makes many runs in one process: nothing may stay
-// behind, neither memory nor open files nor threads.
+// A program that uses the library makes many runs in one process. A run must leave no memory, open
+// files or threads behind.
 #include <gtest/gtest.h>
 #include <malloc.h>
 
@@ -31,8 +31,8 @@ Held measure() {
           count_entries("/proc/self/task")};
 }
 
-// All of its cells again and again. Sanitizers have an allocator of their own, and find leaks at
-// the end by themselves.
+// Runs all cells again and again. Sanitizers use their own allocator and find leaks at the end of
+// the process themselves.
 TEST_F(StudyTest, AThousandRunsOfTheSmokeStudyInOneProcessLeaveNothingBehind) {
   StudyRequest request;
   request.file = "smoke";
@@ -48,13 +48,13 @@ TEST_F(StudyTest, AThousandRunsOfTheSmokeStudyInOneProcessLeaveNothingBehind) {
     std::filesystem::create_directories(folder);
     ASSERT_TRUE(run_cell(plan, cell, study, stop, observer_)) << i;
     std::filesystem::remove_all(folder);
-    if (i + 1 == 2 * cells.size()) {  // by then every library has what it keeps for good
+    if (i + 1 == 2 * cells.size()) {  // by now every library has the memory that it never frees
       before = measure();
     }
   }
   const Held after = measure();
-  // The smallest piece that malloc gives takes 32 bytes: of a leak there would be 28 KiB. What
-  // threads have put by for themselves differs by a few.
+  // The smallest block of malloc takes 32 bytes, so a leak would add up to 28 KiB. The caches of
+  // threads differ by a few blocks.
   EXPECT_LT(after.memory_bytes, before.memory_bytes + (std::size_t{14} << 10));
   EXPECT_EQ(after.files, before.files);
   EXPECT_EQ(after.threads, before.threads);

@@ -1,8 +1,8 @@
-// Methods: the same optimizer spending the same budget in another way.
+// Methods: the same optimizer spends the same budget in another way.
 #include <gmock/gmock.h>
 
 #include "base/expect_error.hpp"
-#include "sim/tracking/design_conversion.hpp"
+#include "sim/tracking/design.hpp"
 #include "study/analysis/verdict.hpp"
 #include "study/compare/study_support.hpp"
 
@@ -45,13 +45,13 @@ schedule = "fresh:1"
   EXPECT_NE(fixed.seed, fresh.seed);
 }
 
-// The arm that a cell begins with.
+// Returns the arm with which a cell begins.
 ArmDesign make_start(const RunPlan& run) {
   std::vector<double> x;
   for (const DecisionVariable& variable : run.problem.problem->description().variables) {
     x.push_back(variable.start);
   }
-  return run.problem.tracking->make_design(x);
+  return run.problem.tracking()->make_design(x);
 }
 
 TEST(StudyMethods, WithOtherControllersBeginFromTheSamePid) {
@@ -63,7 +63,7 @@ budget = 100
 baselines = false
 set = ["physics.engine=articulated", "workspace.points=4"]
 )";
-  // The problem's own first.
+  // The problem's own version is the first.
   const std::vector<std::string> names = {
       "pid", "pid_filtered", "pi2d", "pid_gravity", "pid_computed_torque", "cascade", "neural"};
   for (const std::string& name : names) {
@@ -75,19 +75,19 @@ set = ["physics.engine=articulated", "workspace.points=4"]
     SCOPED_TRACE(names[cell.optimizer] + " " + std::to_string(cell.replicate));
     const ArmDesign pid = make_start(make_run_plan(plan, {0, 0, cell.replicate}));
     const RunPlan run = make_run_plan(plan, cell);
-    const TrackingProblem& own = *run.problem.tracking;
+    const TrackingProblem& own = *run.problem.tracking();
     const ArmDesign start = make_start(run);
     const ArmDesign converted =
         convert_design(pid, names[cell.optimizer], own.config().task.control_period_s);
     EXPECT_EQ(own.make_vector(start), own.make_vector(converted));
-    // So that none begins with an arm that falls down.
+    // A small spread, so that no cell begins with an arm that falls down.
     for (const TrackingResult& result : own.track(start, own.get_set("test/1"), 0, 5, {})) {
       EXPECT_LT(result.mean_error_m, kFailureError_m);
     }
   }
 }
 
-// What is not the controller's, lengths of links and the speed, is the same start as well.
+// Link lengths and speed, which do not belong to the controller, are the same at the start as well.
 TEST(StudyMethods, WithOtherControllersBeginWithTheSameArm) {
   const TemporaryFolder folder;
   std::string toml = kHead;

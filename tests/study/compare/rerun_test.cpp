@@ -61,7 +61,7 @@ TEST(FindCell, ReadsLabelsAndNamesOfFolders) {
   expect("a/my%20%27own%27%20%2850%25%29/r01", {1, 2, 1});
   expect("a/b/b/c/r01", {0, 1, 1});
   expect("a/b%2Fc/r01", {1, 1, 1});
-  expect("a%2Fb/c/r01", {0, 0, 1});  // a folder's name before a label's text
+  expect("a%2Fb/c/r01", {0, 0, 1});  // folder names take precedence over labels
   expect("a%252Fb/c/r01", {2, 0, 1});
   for (const Cell& cell : list_cells(plan)) {
     expect(make_cell_path(plan, cell).lexically_relative("cells").string(), cell);
@@ -74,7 +74,7 @@ TEST(FindCell, RefusesWhatIsNoneAndSaysWhatIsNear) {
   const auto expect = [&](const std::string& name, const std::string& message) {
     EXPECT_THAT(usage_error_of([&] { find_cell(plan, name); }), HasSubstr(message));
   };
-  expect("a/b/c/r01", "'a/b/c/r01' can be read as two cells; name it as its folder: a%2Fb/c");
+  expect("a/b/c/r01", "'a/b/c/r01' fits two cells; name the cell as its folder is named: a%2Fb/c");
   expect("ab/c/r01", "unknown problem 'ab'; did you mean 'a/b'?");
   expect("a/my own (50%)/r01", "did you mean 'my 'own' (50%)'?");
   expect("a/c/r13", "the study has no replicate r13; it has r01 to r12");
@@ -86,7 +86,7 @@ TEST(FindCell, RefusesWhatIsNoneAndSaysWhatIsNear) {
 
 class Rerun : public StudyTest {
  protected:
-  // The same cell of two studies of one plan, which must be the same.
+  // The same cell in two studies of one plan; the runs must be identical.
   void make_two(const std::string& optimizer, const std::string& problem = "sphere") {
     StudyRequest request;
     request.problems = {problem};
@@ -143,7 +143,7 @@ TEST_F(Rerun, AChangedEvaluationIsFound) {
   std::filesystem::remove(recorded() / "journal");
   JournalContent nothing;
   Journal journal(recorded() / "journal", nothing);
-  for (std::size_t i = content.training.size(); i-- > 0;) {  // in another order: no matter
+  for (std::size_t i = content.training.size(); i-- > 0;) {  // the order of records does not matter
     EvaluationRecord record = content.training[i];
     if (i == 17) {
       record.evaluation.objectives[0] = std::nextafter(record.evaluation.objectives[0], 0);
@@ -216,7 +216,7 @@ TEST_F(Rerun, GoesIntoAFolderOfItsOwn) {
   const auto first = choose_rerun_folder(study, plan_, kCell);
   EXPECT_EQ(first, study / "reruns" / "sphere" / "random" / "r02");
   std::filesystem::create_directories(first);
-  EXPECT_EQ(choose_rerun_folder(study, plan_, kCell), first);  // has not ended: goes on
+  EXPECT_EQ(choose_rerun_folder(study, plan_, kCell), first);  // it has not ended, so it is resumed
   std::ofstream(first / "cell.json") << "{}";
   EXPECT_EQ(choose_rerun_folder(study, plan_, kCell),
             study / "reruns" / "sphere" / "random" / "r02-002");

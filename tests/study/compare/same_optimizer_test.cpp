@@ -1,8 +1,8 @@
-// A/A: an optimizer against itself under another name. Whatever difference is found is a false
-// alarm, and of those there may be as many as the level says.
+// An A/A test: an optimizer is compared with itself under another name. Every difference found is a
+// false alarm. The share of false alarms must not exceed the significance level.
 #include <gtest/gtest.h>
 
-#include "study/analysis/study_values.hpp"
+#include "study/analysis/study_result.hpp"
 #include "study/compare/study_plan.hpp"
 #include "study/contract/memory_evaluator.hpp"
 
@@ -45,7 +45,7 @@ TEST(SameOptimizer, IsFoundDifferentAsOftenAsTheLevelSays) {
         values[optimizer].push_back(run(plan, {0, optimizer, replicate}));
       }
     }
-    EXPECT_NE(values[0], values[1]) << study;  // streams of their own
+    EXPECT_NE(values[0], values[1]) << study;  // each has its own random stream
     alarms += compare_pairs(values).front().is_significant() ? 1 : 0;
   }
   const double share = static_cast<double>(alarms) / kStudies;

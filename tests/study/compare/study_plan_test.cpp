@@ -7,7 +7,6 @@
 
 #include "base/expect_error.hpp"
 #include "study/compare/case_sets.hpp"
-#include "study/compare/escape.hpp"
 #include "study/compare/study_support.hpp"
 
 namespace armwright {
@@ -30,7 +29,7 @@ TEST(StudyPlan, BaselinesTakePartUnlessAskedNotTo) {
   StudyRequest request = make_small_request();
   EXPECT_THAT(get_labels(make_study_plan(request)),
               ElementsAre("ga", "cmaes", "random", "nlopt:neldermead"));
-  request.optimizers = {"random", "nlopt:cobyla"};  // there already, or another local search
+  request.optimizers = {"random", "nlopt:cobyla"};  // one baseline itself, and another local search
   EXPECT_THAT(get_labels(make_study_plan(request)), ElementsAre("random", "nlopt:cobyla"));
   request.baselines = false;
   request.optimizers = {"ga"};
@@ -146,9 +145,9 @@ TEST(StudyPlan, AReplicateGivesEveryOptimizerTheSameStartAndCases) {
     starts.insert(variables.front().start);
     sets.insert(run.problem.sets.training);
   }
-  EXPECT_EQ(seeds.size(), list_cells(plan).size());  // every cell has a stream of its own
-  EXPECT_EQ(starts.size(), 6u);                      // every replicate a start
-  EXPECT_EQ(sets.size(), 6u);                        // and a training set
+  EXPECT_EQ(seeds.size(), list_cells(plan).size());  // one random stream per cell
+  EXPECT_EQ(starts.size(), 6u);                      // one start per replicate
+  EXPECT_EQ(sets.size(), 6u);                        // one training set per replicate
 }
 
 TEST(StudyPlan, SetsHaveNoCaseInCommonAndAreNamedByHash) {
@@ -161,7 +160,7 @@ TEST(StudyPlan, SetsHaveNoCaseInCommonAndAreNamedByHash) {
     EXPECT_EQ(set.sha256.size(), 64u);
     hashes.insert(set.sha256);
   }
-  EXPECT_EQ(hashes.size(), 2u + 6u);  // test, validation, a training set a replicate
+  EXPECT_EQ(hashes.size(), 2u + 6u);  // test, validation, one training set per replicate
 }
 
 TEST(StudyPlan, TheResolvedPlanReadsBackAsItself) {
@@ -179,7 +178,7 @@ options = ["population=8"]
   EXPECT_EQ(to_toml(make_study_plan(request)), to_toml(plan));
 }
 
-// Made on another machine, where "auto" came to the lowest level.
+// The plan was made on another machine, where "auto" chose the lowest level.
 TEST(StudyPlan, IsReadBackOnTheSimdLevelThatItWasMadeWith) {
   StudyRequest request;
   request.problems = {"q1-complex"};
@@ -189,7 +188,7 @@ TEST(StudyPlan, IsReadBackOnTheSimdLevelThatItWasMadeWith) {
   request.budget = 40;
   const StudyPlan made = make_study_plan(request);
   std::string toml = to_toml(made);
-  toml.erase(0, toml.find('\n') + 1);  // the hash of what follows
+  toml.erase(0, toml.find('\n') + 1);  // the line with the hash of the following text
   const std::string setting = ", \"physics.simd=scalar\"";
   ASSERT_NE(toml.find(setting), std::string::npos);
   toml.erase(toml.find(setting), setting.size());

@@ -1,33 +1,41 @@
-#include "study/compare/study_settings.hpp"
-
 #include <gmock/gmock.h>
 
-#include <set>
-
-#include "problems/config/config_files.hpp"
-#include "study/compare/study_plan.hpp"
+#include "base/expect_error.hpp"
+#include "base/file.hpp"
+#include "base/temporary_folder.hpp"
+#include "problems/changed_text.hpp"
+#include "study/compare/study_reader.hpp"
 
 namespace armwright {
 namespace {
 
-using testing::IsEmpty;
-using testing::Not;
+// Every table is there, so that any key can be put into any table.
+constexpr const char* kStudy = R"(title = ""
+[selection]
+[[problem]]
+name = "sphere"
+[[optimizer]]
+name = "random"
+[[target]]
+label = "t"
+value = 1
+)";
 
-TEST(StudySettings, AreThoseThatTheReaderAsksFor) {
-  std::set<std::string> known;
-  for (const Setting& setting : list_study_settings()) {
-    EXPECT_THAT(setting.meaning, Not(IsEmpty())) << setting.path;
-    EXPECT_THAT(setting.allowed, Not(IsEmpty())) << setting.path;
-    known.insert(setting.path);
+TEST(StudySettings, AStudysReaderReadsEveryOne) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "study.toml";
+  for (const ListedSetting& one : list_settings(study_settings())) {
+    EXPECT_THAT(one.setting->meaning, testing::Not(testing::IsEmpty())) << one.path;
+    write_file_atomically(file,
+                          change_text(kStudy, make_header(one.path), one.setting->key, kDate));
+    EXPECT_THAT(
+        usage_error_of([&] {
+          StudyPlan plan;
+          read_study_file(file, plan);
+        }),
+        testing::AllOf(testing::HasSubstr(": " + make_first_path(one.path) + " is " + kDate),
+                       testing::EndsWith("it must be " + one.setting->describe_allowed())));
   }
-  for (const std::string& name : list_configs("studies")) {
-    for (const AskedKey& key : ask_study_keys(ConfigTable::load(resolve_config("studies", name)))) {
-      const bool is_table = key.allowed.empty() || key.allowed.starts_with("a table") ||
-                            key.allowed.starts_with("an array of tables");
-      EXPECT_TRUE(is_table || known.contains(key.path)) << name << ": " << key.path;
-    }
-  }
-  EXPECT_FALSE(known.contains("optimizer[].budget"));  // asked for only to be refused
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What tests of comparisons share: small studies on functions, run in a folder that goes away.
+// Helpers for tests of comparisons: small studies on functions, in a temporary folder.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ inline StudyRequest make_small_request() {
   return request;
 }
 
-// Of a plan that says this, as the file mine.toml.
+// Loads the plan with this text, which is stored as mine.toml.
 inline StudyPlan load_plan(const TemporaryFolder& folder, const std::string& toml) {
   const auto file = folder / "mine.toml";
   std::ofstream(file) << toml;
@@ -37,7 +37,7 @@ inline StudyPlan load_plan(const TemporaryFolder& folder, const std::string& tom
   return make_study_plan(request);
 }
 
-// All files below a folder, by their relative path.
+// Returns the content of all files below a folder, by relative path.
 inline std::map<std::string, std::string> read_tree(const std::filesystem::path& folder) {
   std::map<std::string, std::string> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
@@ -57,7 +57,7 @@ class StudyTest : public testing::Test {
     StopSignal stop;
     return run_cells(plan, path, jobs, stop, observer_);
   }
-  // Runs and analyses; the result's tables are written.
+  // Runs and analyzes the plan, and writes the tables.
   StudyResult study(const StudyPlan& plan, const std::string& name, unsigned jobs = 2) {
     EXPECT_TRUE(run_all(plan, name, jobs).broken.empty());
     StudyResult result = analyze_study(plan, temporary_ / name);

@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "base/expect_error.hpp"
-#include "study/analysis/study_values.hpp"
+#include "study/analysis/study_result.hpp"
 #include "study/analysis/verdict.hpp"
 #include "study/compare/study_support.hpp"
 #include "study/run/run_observer.hpp"
@@ -87,7 +87,7 @@ TEST_F(StudyTest, WhatWouldMakeCellsIncomparableIsRefusedWithTheDifference) {
   expect(changed, "replicates: recorded 6, now 5");
   changed = request;
   changed.optimizers = {"ga"};
-  expect(changed, "optimizer cmaes is recorded, and the plan leaves it out");
+  expect(changed, "optimizer cmaes is recorded, but the plan lacks it");
   changed = request;
   changed.settings = {"function.dimension=4"};
   expect(changed, "problem sphere: function.dimension: recorded 3, now 4");
@@ -171,7 +171,7 @@ TEST_F(StudyTest, ABaselineStaysWhenAnotherOfItsKindComes) {
   StudyPlan plan = make_study_plan(request);
   adopt_recorded(temporary_ / "study", plan);
   EXPECT_NO_THROW(study(plan, "study"));
-  EXPECT_EQ(plan.optimizers.size(), 5u);  // nlopt:neldermead too
+  EXPECT_EQ(plan.optimizers.size(), 5u);  // with the baseline nlopt:neldermead
 }
 
 TEST_F(StudyTest, ACellOfAnotherOptimizerIsRefused) {
@@ -208,7 +208,7 @@ TEST_F(StudyTest, WithoutAllCellsThereIsNoVerdict) {
   EXPECT_THAT(verdict, Contains(HasSubstr("1 of 48 cells have not ended")));
 }
 
-// A lower median, but lost pairs: no win.
+// An optimizer with the lower median that loses the pairs does not win.
 TEST(PairResult, TheDirectionIsThatOfThePairs) {
   std::vector<double> a, b;
   for (int i = 0; i < 15; ++i) {
@@ -217,13 +217,13 @@ TEST(PairResult, TheDirectionIsThatOfThePairs) {
   }
   const std::vector<std::vector<double>> values = {a, b};
   const PairResult pair = compare_pairs(values).front();
-  EXPECT_EQ(pair.a, 0u);  // by the median
+  EXPECT_EQ(pair.a, 0u);  // has the lower median
   EXPECT_TRUE(pair.is_significant());
   EXPECT_FALSE(pair.is_beaten_by(0));
   EXPECT_TRUE(pair.is_beaten_by(1));
 }
 
-// What a run has for good counts, not what it had once by luck.
+// The trace counts the quality that a run keeps, not a value that it had once by luck.
 TEST(Trace, IsTheWorstFromThereOn) {
   CellOutcome cell;
   cell.curve = {{10, 5, {}}, {20, 1, {}}, {30, 4, {}}, {40, 3, {}}};

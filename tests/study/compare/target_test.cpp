@@ -1,4 +1,4 @@
-// Fixed targets and failed test cases, on cells made up so that everything can be computed by hand.
+// Fixed targets and failing test cases, with cells whose numbers allow computation by hand.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/expect_error.hpp"
-#include "study/analysis/study_values.hpp"
+#include "study/analysis/study_result.hpp"
 #include "study/analysis/verdict.hpp"
 #include "study/compare/choices.hpp"
 #include "study/compare/study_support.hpp"
@@ -67,14 +67,14 @@ failures = 1
     EXPECT_EQ(trial.reached, reached);
   };
   expect(find({{10, 1.0, 1}, {20, 0.5, 0}, {30, 0.4, 0}}), 10, true);
-  // What comes after it was there does not count, or a longer run would take longer to get there.
+  // Later choices do not count; otherwise a longer run would need longer to reach the target.
   expect(find({{10, 1.1, 0}, {20, 0.9, 0}, {30, 1.1, 0}}), 20, true);
-  // Many failures, whatever the objective.
+  // The target asks for few failures; the objective does not matter.
   expect(find({{10, 0.9, 2}, {20, 0.9, 3}, {30, 0.9, 1}}), 30, true);
   expect(find({{10, 0.9, 2}, {20, 0.9, 3}, {30, 0.9, 2}}), 100, false);
   expect(find({{10, kInf, 10}, {20, kInf, 10}, {30, 0.9, std::nullopt}}), 100, false);
   expect(find({}), 100, false);
-  // A run that ended after 25 cases spent no more than those, whatever the last checkpoint says.
+  // A run that ended after 25 cases has spent only these, even if the last checkpoint is later.
   const auto find_ended = [&](std::vector<CurvePoint> choices) {
     CellOutcome cell = make_cell("ga", 1, std::move(choices));
     cell.cases = 25;
@@ -95,7 +95,7 @@ value = 1.0
   std::vector<CellOutcome> cells;
   const std::vector<CurvePoint> never = {{10, 3, 0}, {30, 2, 0}};
   // ga: two of four, at 10 and 30, the others spend 100 each: (10 + 30 + 200) / 2 = 120.
-  cells.push_back(make_cell("ga", 1, {{10, 0.9, 0}, {30, 1.1, 0}}));  // and lost again
+  cells.push_back(make_cell("ga", 1, {{10, 0.9, 0}, {30, 1.1, 0}}));  // misses it at 30
   cells.push_back(make_cell("ga", 2, {{10, 2, 0}, {30, 0.8, 0}}));
   cells.push_back(make_cell("ga", 3, never));
   cells.push_back(make_cell("ga", 4, never));
@@ -108,7 +108,7 @@ value = 1.0
   EXPECT_EQ(ga.reached, 2);
   EXPECT_EQ(ga.kept, 1);
   EXPECT_EQ(ga.expected, 120);
-  // All four resampled fail with a chance of 1/16, more than the 2.5 % that is left out.
+  // All four resampled runs fail with probability 1/16, which is more than the 2.5 % left out.
   EXPECT_EQ(ga.interval.upper, kInf);
   EXPECT_EQ(*ga.ratio->ratio, 1);
   const TargetTime& cmaes = result.optimizers[1].target_times[0];
@@ -118,7 +118,7 @@ value = 1.0
   EXPECT_EQ(cmaes.interval.lower, 10);
   EXPECT_EQ(cmaes.interval.upper, 10);
   EXPECT_DOUBLE_EQ(*cmaes.ratio->ratio, 10.0 / 120);
-  EXPECT_EQ(cmaes.ratio->interval.lower, 0);  // where ga fails four times
+  EXPECT_EQ(cmaes.ratio->interval.lower, 0);  // from resamples in which ga fails four times
 }
 
 TEST(FailureShares, AreComparedAsValuesAre) {
@@ -139,7 +139,7 @@ TEST(FailureShares, AreComparedAsValuesAre) {
   ASSERT_EQ(result.failure_pairs.size(), 1u);
   EXPECT_EQ(result.failure_pairs[0].test.p_value, 2.0 / 128);  // all seven in one direction
   EXPECT_TRUE(result.failure_pairs[0].is_beaten_by(1));
-  EXPECT_FALSE(result.pairs[0].is_significant());  // their values are the same
+  EXPECT_FALSE(result.pairs[0].is_significant());  // their values are equal
 }
 
 TEST(FailureShares, TakeThePlaceOfValuesWhereThePlanSaysSo) {
@@ -223,8 +223,8 @@ value = -1.0
               HasSubstr("sphere,near,1,,ga,"));
   for (const CellOutcome& cell : result.cells) {
     EXPECT_EQ(cell.choices.size(), cell.curve.size());
-    // A function is the same on every set: the best so far, and at the end no worse than the
-    // winner.
+    // A function has the same value on every set. So the choices never get worse, and the last one
+    // has the value of the winner.
     for (std::size_t i = 1; i < cell.choices.size(); ++i) {
       EXPECT_LE(cell.choices[i].value, cell.choices[i - 1].value);
     }

@@ -1,5 +1,5 @@
-// The engine in SIMD lanes behind the evaluator: what a population is evaluated to does not depend
-// on how it is split into batches, on the threads, or on who else is in the batch.
+// Tests the engine in SIMD lanes through an executor: the evaluations of a population do not depend
+// on batches, threads, or the other candidates in a batch.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,12 +9,12 @@
 #include "base/bits.hpp"
 #include "base/random.hpp"
 #include "problems/config/problem_loader.hpp"
-#include "study/executor/case_runner.hpp"
+#include "study/executor/case_executor.hpp"
 
 namespace armwright {
 namespace {
 
-// Designs as a search meets them: near the start and far from it, so that some are cut off.
+// Returns designs near the start and far from it, as in a search, so that some are cut off.
 std::vector<std::vector<double>> make_population(const ProblemDescription& problem, int size) {
   RandomStream random("test/articulated-batches", 1);
   std::vector<std::vector<double>> population;
@@ -33,7 +33,6 @@ std::vector<Evaluation> evaluate(const Problem& problem,
                                  std::size_t at_once, std::size_t threads, std::size_t cases) {
   StopSignal stop;
   ThreadExecutor executor(threads);
-  CaseRunner runner(problem, executor, stop);
   CaseBlock block{CaseRole::training, "train/1", std::vector<std::uint64_t>(cases)};
   std::iota(block.numbers.begin(), block.numbers.end(), 0);
   std::vector<Evaluation> evaluations(population.size());
@@ -43,9 +42,10 @@ std::vector<Evaluation> evaluate(const Problem& problem,
     for (std::size_t i = 0; i < count; ++i) {
       candidates.emplace_back(population[first + i]);
     }
-    runner.run(candidates, block, true, [&](std::size_t candidate, Evaluation evaluation) {
-      evaluations[first + candidate] = std::move(evaluation);
-    });
+    executor.evaluate(problem, candidates, block, {.residuals = true}, stop,
+                      [&](std::size_t candidate, Evaluation evaluation) {
+                        evaluations[first + candidate] = std::move(evaluation);
+                      });
   }
   return evaluations;
 }

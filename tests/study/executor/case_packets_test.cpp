@@ -1,4 +1,4 @@
-// What goes over the wire arrives with all its bits, and nothing that is none is believed.
+// Tests that pairs and outcomes arrive with all their bits, and that damaged packets are refused.
 #include "study/executor/case_packets.hpp"
 
 #include <gtest/gtest.h>

@@ -7,7 +7,7 @@ namespace {
 
 constexpr BatchSize kOne{};
 constexpr BatchSize kLanes{.granularity = 8, .largest = 64};
-constexpr double kLong = 1e9;  // the threads here would take for ever
+constexpr double kLong = 1e9;  // the threads here would take forever
 
 TEST(ChunkPlanner, LeavesAllToTheOnlyThread) {
   EXPECT_EQ(plan_local_chunk(kLanes, 1000, {.here = 1}, 1e-3), 64u);
@@ -47,13 +47,13 @@ TEST(ChunkPlanner, LanesAreFilled) {
 TEST(ChunkPlanner, AWorkerGetsNothingThatItWouldHaveDoneTooLate) {
   const TeamSize team{.here = 1, .elsewhere = 1};
   const WorkerLoad load{.latency_s = 1e-3};
-  // Two pairs of 5 ms: one here, one there, is sooner; but not beside another one of its own.
+  // Two pairs of 5 ms: one here and one there is faster, unless the worker has another one already.
   EXPECT_EQ(plan_remote_chunk(kOne, 2, team, 5e-3, 10e-3, load), 1u);
   EXPECT_EQ(plan_remote_chunk(kOne, 1, team, 5e-3, 5e-3, load), 0u);
   EXPECT_EQ(plan_remote_chunk(kOne, 2, team, 5e-3, 10e-3,
                               {.chunks = 1, .busy_s = 5e-3, .latency_s = 1e-3}),
             0u);
-  // A batch that takes half a message.
+  // A batch that takes half as long as a message.
   EXPECT_EQ(plan_remote_chunk(kOne, 10, team, 50e-6, 0.5e-3, load), 0u);
 }
 
@@ -74,12 +74,12 @@ TEST(ChunkPlanner, GoesCarefullyWhereCostsAreUnknown) {
 TEST(PairCost, FollowsWhatIsMeasured) {
   PairCost cost;
   EXPECT_FALSE(cost.get_s());
-  cost.learn(1, 0);
+  cost.add(1, 0);
   EXPECT_FALSE(cost.get_s());
-  cost.learn(1, 100);
+  cost.add(1, 100);
   EXPECT_DOUBLE_EQ(*cost.get_s(), 0.01);
   for (int i = 0; i < 30; ++i) {
-    cost.learn(2, 100);
+    cost.add(2, 100);
   }
   EXPECT_NEAR(*cost.get_s(), 0.02, 1e-5);
 }
@@ -87,13 +87,13 @@ TEST(PairCost, FollowsWhatIsMeasured) {
 TEST(WorkerLatency, ASlowAnswerIsSoonForgotten) {
   WorkerLatency latency;
   for (int i = 0; i < 20; ++i) {
-    latency.learn(2e-4);
+    latency.add(2e-4);
   }
   EXPECT_NEAR(latency.get_s(0), 2e-4, 1e-5);
-  latency.learn(5);  // a machine that was suspended
+  latency.add(5);  // the machine was suspended
   EXPECT_LT(latency.get_s(0), 5e-4);
   for (int i = 0; i < 100; ++i) {
-    latency.learn(0.05);  // it has moved to another continent
+    latency.add(0.05);  // the latency stays high
   }
   EXPECT_NEAR(latency.get_s(0), 0.05, 1e-3);
   EXPECT_LT(latency.get_s(100), 1e-3);

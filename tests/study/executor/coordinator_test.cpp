@@ -1,4 +1,5 @@
-// Ranks that are threads: the same outcomes whatever happens to whom.
+// Tests the coordinator with ranks that are threads: the outcomes are the same whatever happens to
+// the workers.
 #include "study/executor/coordinator.hpp"
 
 #include <gmock/gmock.h>
@@ -9,7 +10,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "study/executor/case_runner.hpp"
+#include "study/executor/case_executor.hpp"
 #include "study/executor/memory_transport.hpp"
 #include "study/executor/worker.hpp"
 #include "wait_until.hpp"
@@ -26,7 +27,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-// The error is sin(x + number). Takes as long as it is told.
+// The error is sin(x + number). A simulation takes the given time.
 class SlowSine final : public Problem {
  public:
   explicit SlowSine(microseconds cost, BatchSize size = {}) : cost_(cost), size_(size) {}
@@ -81,34 +82,34 @@ class SlowSine final : public Problem {
 
 constexpr const char* kIdentity = R"({"problems": ["sine"]})";
 
-// Every rank has a problem of its own, as in processes.
+// Every rank has its own problem object, as processes do.
 class Ranks {
  public:
   explicit Ranks(std::size_t count, microseconds cost = milliseconds(1), std::size_t threads = 1,
                  BatchSize size = {})
-      : wires(count), links_(wires, 0), threads_(threads) {
+      : network(count), transport_(network, 0), threads_(threads) {
     for (std::size_t rank = 0; rank < count; ++rank) {
       problems.push_back(std::make_unique<SlowSine>(cost, size));
     }
   }
   ~Ranks() {
     coordinator_.reset();
-    end_workers(links_, 0.5);
+    end_workers(transport_, 0.5);
     for (std::thread& worker : workers_) {
       worker.join();
     }
   }
 
-  // All that is not told otherwise introduce themselves like this.
+  // The introduction of workers that a test does not change.
   WorkerIntroduction introduction() const {
     return {
         .host = "host", .cpu = "cpu", .threads = threads_, .identity = kIdentity, .failure = ""};
   }
   void start_worker(std::size_t rank, const WorkerIntroduction& introduction) {
     workers_.emplace_back([this, rank, introduction] {
-      MemoryLinks links(wires, rank);
-      constexpr double kSilence_s = 3;  // of a coordinator that a dead rank does not hear any more
-      Worker worker(links, {problems[rank].get()}, introduction, kSilence_s);
+      MemoryTransport transport(network, rank);
+      constexpr double kSilence_s = 3;  // after which a cut-off worker ends by itself
+      Worker worker(transport, {problems[rank].get()}, introduction, kSilence_s);
       worker.serve();
     });
   }
@@ -120,8 +121,8 @@ class Ranks {
   Coordinator& coordinator() {
     if (!coordinator_) {
       coordinator_ = std::make_unique<Coordinator>(
-          links_, std::vector<const Problem*>{problems[0].get()}, kIdentity,
-          CoordinatorSettings{.threads = threads_, .cpu = "cpu", .patience_s = patience_s},
+          transport_, std::vector<const Problem*>{problems[0].get()}, kIdentity,
+          CoordinatorSettings{.threads = threads_, .cpu = "cpu", .late_after_s = late_after_s},
           [this](const std::string& message) {
             const std::lock_guard lock(mutex_);
             notices_.push_back(message);
@@ -142,13 +143,13 @@ class Ranks {
     return all;
   }
 
-  MemoryWires wires;
+  MemoryNetwork network;
   std::vector<std::unique_ptr<SlowSine>> problems;
-  // Far longer than a busy machine keeps a thread from running.
-  double patience_s = 10;
+  // Far longer than a busy machine delays a thread.
+  double late_after_s = 10;
 
  private:
-  MemoryLinks links_;
+  MemoryTransport transport_;
   std::size_t threads_;
   std::mutex mutex_;
   std::vector<std::string> notices_;
@@ -164,7 +165,7 @@ CaseBlock make_block(std::size_t cases) {
   return block;
 }
 
-// One evaluation a candidate, as evaluated by `executor`; those that a stop leaves out are empty.
+// Returns one evaluation per candidate; those that a stop leaves out are empty.
 std::vector<Evaluation> evaluate(CaseExecutor& executor, const Problem& problem,
                                  std::size_t candidates, std::size_t cases, StopSignal& stop) {
   std::vector<std::vector<double>> points;
@@ -174,11 +175,11 @@ std::vector<Evaluation> evaluate(CaseExecutor& executor, const Problem& problem,
   const std::vector<std::span<const double>> spans(points.begin(), points.end());
   std::vector<Evaluation> evaluations(candidates);
   std::vector<std::atomic<int>> told(candidates);
-  CaseRunner(problem, executor, stop)
-      .run(spans, make_block(cases), true, [&](std::size_t candidate, Evaluation evaluation) {
-        EXPECT_EQ(++told[candidate], 1);
-        evaluations[candidate] = std::move(evaluation);
-      });
+  executor.evaluate(problem, spans, make_block(cases), {.residuals = true}, stop,
+                    [&](std::size_t candidate, Evaluation evaluation) {
+                      EXPECT_EQ(++told[candidate], 1);
+                      evaluations[candidate] = std::move(evaluation);
+                    });
   return evaluations;
 }
 
@@ -233,7 +234,7 @@ TEST(Coordinator, GivesWorkersWhatTakesLong) {
   }));
 }
 
-// A batch that is over before a message has gone and come is the coordinator's own.
+// A batch that ends before a message could go and return stays with the coordinator.
 TEST(Coordinator, KeepsWhatIsDoneSoonerHere) {
   Ranks team(2, microseconds(0));
   team.start();
@@ -248,14 +249,14 @@ TEST(Coordinator, KeepsWhatIsDoneSoonerHere) {
 TEST(Coordinator, DoesTheWorkOfRanksThatDie) {
   const auto expected = evaluate_alone(100, 1);
   Ranks team(3, milliseconds(2));
-  team.patience_s = 0.3;
+  team.late_after_s = 0.3;
   team.start();
   evaluate(team.coordinator(), *team.problems[0], 30, 1);
   const std::size_t before = team.problems[2]->simulated();
   std::atomic<bool> is_dead = false;
   std::thread killer([&] {
     EXPECT_TRUE(wait_until([&] { return team.problems[2]->simulated() > before; }));
-    team.wires.kill(2);
+    team.network.kill(2);
     is_dead = true;
   });
   while (!is_dead) {
@@ -270,14 +271,14 @@ TEST(Coordinator, DoesTheWorkOfRanksThatDie) {
                                              HasSubstr("others do its work"))));
 }
 
-// Both answers are there then, and one counts.
+// Both answers arrive then, and one of them counts.
 TEST(Coordinator, TakesBackARankThatWasLate) {
   const auto expected = evaluate_alone(60, 1);
   Ranks team(2, milliseconds(2));
-  team.patience_s = 0.3;
+  team.late_after_s = 0.3;
   team.start();
   evaluate(team.coordinator(), *team.problems[0], 30, 1);
-  team.wires.hold(1);
+  team.network.hold(1);
   EXPECT_TRUE(wait_until([&] {
     expect_same_evaluations(evaluate(team.coordinator(), *team.problems[0], 60, 1), expected);
     return !team.notices().empty();
@@ -286,7 +287,7 @@ TEST(Coordinator, TakesBackARankThatWasLate) {
   const std::size_t before = team.problems[1]->simulated();
   expect_same_evaluations(evaluate(team.coordinator(), *team.problems[0], 60, 1), expected);
   EXPECT_EQ(team.problems[1]->simulated(), before);
-  team.wires.let_go(1);
+  team.network.let_go(1);
   EXPECT_TRUE(wait_until([&] { return team.notices().size() == 2; }));
   EXPECT_THAT(team.notices(), Contains(HasSubstr("answers again")));
   EXPECT_TRUE(wait_until([&] {
@@ -308,7 +309,7 @@ TEST(Coordinator, DoesWithoutRanksThatWouldComputeSomethingElse) {
                           evaluate_alone(40, 2));
   EXPECT_TRUE(wait_until([&] { return team.notices().size() == 2; }));
   EXPECT_THAT(team.notices(),
-              Contains(AllOf(HasSubstr("rank 1 on host is of no use"), HasSubstr("cosine"))));
+              Contains(AllOf(HasSubstr("rank 1 on host cannot be used"), HasSubstr("cosine"))));
   EXPECT_THAT(team.notices(), Contains(AllOf(HasSubstr("rank 2"), HasSubstr("q1.toml"))));
   EXPECT_EQ(team.problems[1]->simulated() + team.problems[2]->simulated(), 0u);
 }
@@ -324,7 +325,8 @@ TEST(Coordinator, SaysWhenARankHasAnotherProcessor) {
               ElementsAre(HasSubstr("another processor (an older one; here: cpu)")));
 }
 
-// The pair is tried here; if it fails here as well, it is a fault as without ranks.
+// The coordinator simulates the pair itself. If that fails as well, the error is the same as
+// without ranks.
 TEST(Coordinator, DoesTheWorkOfARankThatCannot) {
   Ranks team(2, milliseconds(1));
   team.problems[1]->throw_for = 2.5;
@@ -345,19 +347,19 @@ TEST(Coordinator, ThrowsWhatTheProblemThrowsHere) {
                           evaluate_alone(40, 1));
 }
 
-TEST(Coordinator, ThrowsWhatIsThrownByWhoeverTakesTheOutcomes) {
+TEST(Coordinator, RethrowsWhatTheReceiverOfOutcomesThrows) {
   Ranks team(3, milliseconds(1));
   team.start();
   const std::vector<double> x = {1};
   const std::span<const double> candidate = x;
   StopSignal stop;
   for (int repeat = 0; repeat < 3; ++repeat) {
-    EXPECT_THROW(CaseRunner(*team.problems[0], team.coordinator(), stop)
-                     .run_cases({&candidate, 1}, make_block(100), {},
-                                [](std::size_t, std::span<CaseOutcome>) {
-                                  throw std::runtime_error("the disk is full");
-                                }),
-                 std::runtime_error);
+    EXPECT_THROW(
+        team.coordinator().simulate(*team.problems[0], {&candidate, 1}, make_block(100), {}, stop,
+                                    [](std::size_t, std::span<CaseOutcome>) {
+                                      throw std::runtime_error("the disk is full");
+                                    }),
+        std::runtime_error);
   }
 }
 
@@ -379,7 +381,7 @@ TEST(Coordinator, StopsBetweenChunks) {
   EXPECT_LT(done, 1000);
 }
 
-// As a comparison does with several cells under way.
+// A comparison does this with several cells at a time.
 TEST(Coordinator, ServesSeveralBatchesAtOnce) {
   const auto expected = evaluate_alone(30, 2);
   Ranks team(3, microseconds(300), 2);
@@ -417,16 +419,16 @@ TEST(Coordinator, TellsWorkersWhatTheyMayForget) {
 }
 
 TEST(Worker, LeavesWhenItsCoordinatorIsNoMore) {
-  MemoryWires wires(2);
-  MemoryLinks links(wires, 1);
+  MemoryNetwork network(2);
+  MemoryTransport transport(network, 1);
   const SlowSine problem(microseconds(0));
-  Worker worker(links, {&problem}, {.host = "", .cpu = "", .identity = "", .failure = ""}, 0.2);
+  Worker worker(transport, {&problem}, {.host = "", .cpu = "", .identity = "", .failure = ""}, 0.2);
   EXPECT_EQ(worker.serve(), Worker::End::abandoned);
 }
 
 TEST(Coordinator, RanksLeaveInOrderOrAtLeastLeave) {
   for (const bool one_is_dead : {false, true}) {
-    MemoryWires wires(3);
+    MemoryNetwork network(3);
     const SlowSine problem(microseconds(0));
     std::vector<Worker::End> ends(3, Worker::End::abandoned);
     std::vector<std::thread> workers;
@@ -435,14 +437,14 @@ TEST(Coordinator, RanksLeaveInOrderOrAtLeastLeave) {
         continue;
       }
       workers.emplace_back([&, rank] {
-        MemoryLinks links(wires, rank);
-        Worker worker(links, {&problem},
+        MemoryTransport transport(network, rank);
+        Worker worker(transport, {&problem},
                       {.host = "", .cpu = "", .identity = kIdentity, .failure = ""});
         ends[rank] = worker.serve();
       });
     }
-    MemoryLinks links(wires, 0);
-    EXPECT_EQ(end_workers(links, one_is_dead ? 0.2 : 30), !one_is_dead);
+    MemoryTransport transport(network, 0);
+    EXPECT_EQ(end_workers(transport, one_is_dead ? 0.2 : 30), !one_is_dead);
     for (std::thread& worker : workers) {
       worker.join();
     }

@@ -1,4 +1,4 @@
-// Links between ranks that are threads of one process, and what can befall them.
+// A transport between ranks that are threads of one process, with faults on request.
 #pragma once
 
 #include <deque>
@@ -14,10 +14,10 @@
 
 namespace armwright {
 
-// The wires of a job: messages lie here until they are received.
-class MemoryWires {
+// The network of a job. It keeps messages until they are received.
+class MemoryNetwork {
  public:
-  explicit MemoryWires(std::size_t ranks) : arrived_(ranks) {}
+  explicit MemoryNetwork(std::size_t ranks) : arrived_(ranks) {}
 
   std::size_t size() const { return arrived_.size(); }
   void send(std::size_t from, std::size_t to, std::string message) {
@@ -26,22 +26,22 @@ class MemoryWires {
       (held_.contains(from) ? kept_ : arrived_[to]).push_back({from, std::move(message)});
     }
   }
-  std::optional<Links::Message> receive(std::size_t rank) {
+  std::optional<MessageTransport::Message> receive(std::size_t rank) {
     const std::lock_guard lock(mutex_);
     if (dead_.contains(rank) || arrived_[rank].empty()) {
       return std::nullopt;
     }
-    Links::Message message = std::move(arrived_[rank].front());
+    MessageTransport::Message message = std::move(arrived_[rank].front());
     arrived_[rank].pop_front();
     return message;
   }
 
-  // Nothing goes to it or comes from it any more.
+  // Loses all messages to and from the rank from now on.
   void kill(std::size_t rank) {
     const std::lock_guard lock(mutex_);
     dead_.insert(rank);
   }
-  // What it sends is kept back until it is let go again.
+  // Holds back the messages that the rank sends, until let_go().
   void hold(std::size_t rank) {
     const std::lock_guard lock(mutex_);
     held_.insert(rank);
@@ -49,31 +49,31 @@ class MemoryWires {
   void let_go(std::size_t rank) {
     const std::lock_guard lock(mutex_);
     held_.erase(rank);
-    for (Links::Message& message : std::exchange(kept_, {})) {
+    for (MessageTransport::Message& message : std::exchange(kept_, {})) {
       arrived_[0].push_back(std::move(message));
     }
   }
 
  private:
   std::mutex mutex_;
-  std::vector<std::deque<Links::Message>> arrived_;  // by receiver
-  std::deque<Links::Message> kept_;                  // of workers: for the coordinator
+  std::vector<std::deque<MessageTransport::Message>> arrived_;  // by receiver
+  std::deque<MessageTransport::Message> kept_;                  // held back, for the coordinator
   std::set<std::size_t> dead_;
   std::set<std::size_t> held_;
 };
 
-class MemoryLinks final : public Links {
+class MemoryTransport final : public MessageTransport {
  public:
-  MemoryLinks(MemoryWires& wires, std::size_t rank) : wires_(wires), rank_(rank) {}
+  MemoryTransport(MemoryNetwork& network, std::size_t rank) : network_(network), rank_(rank) {}
   std::size_t rank() const override { return rank_; }
-  std::size_t size() const override { return wires_.size(); }
+  std::size_t size() const override { return network_.size(); }
   void send(std::size_t to, std::string message) override {
-    wires_.send(rank_, to, std::move(message));
+    network_.send(rank_, to, std::move(message));
   }
-  std::optional<Message> receive() override { return wires_.receive(rank_); }
+  std::optional<Message> receive() override { return network_.receive(rank_); }
 
  private:
-  MemoryWires& wires_;
+  MemoryNetwork& network_;
   std::size_t rank_;
 };
 

@@ -1,4 +1,4 @@
-// What batch systems and mpirun say of a process in its environment.
+// Tests the place of a rank in the environments that batch systems and mpirun set.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -10,7 +10,7 @@
 namespace armwright {
 namespace {
 
-// These and no others of their kind, while it lives.
+// Sets exactly these variables of their kind as long as it lives.
 class RankVariables {
  public:
   explicit RankVariables(const std::map<std::string, std::string>& variables) {
@@ -43,7 +43,7 @@ TEST(RankPlace, IsNoneForAProcessOfItsOwn) {
         {{"OMPI_COMM_WORLD_SIZE", "1"}, {"OMPI_COMM_WORLD_RANK", "0"}},
         {{"OMPI_COMM_WORLD_SIZE", "four"}, {"OMPI_COMM_WORLD_RANK", "0"}},
         {{"OMPI_COMM_WORLD_SIZE", "2"}, {"OMPI_COMM_WORLD_RANK", "2"}},
-        {{"SLURM_STEP_NUM_TASKS", "4"}},  // srun of a program that is not to speak with others
+        {{"SLURM_STEP_NUM_TASKS", "4"}},  // srun without PMIx: the processes cannot talk
         {{"PMIX_RANK", "1"}}}) {
     const RankVariables set(variables);
     EXPECT_FALSE(find_rank_place());

@@ -32,8 +32,8 @@ TEST(ThreadPool, RunsEveryJobOnce) {
   }
 }
 
-// Results written by the workers are seen by the caller, over many short batches: the place where a
-// lost wake-up would hang.
+// The caller sees the results of the workers over many short batches. A lost wake-up would hang
+// here.
 TEST(ThreadPool, SurvivesManyShortBatches) {
   ThreadPool pool(4);
   std::vector<std::size_t> squares(5);
@@ -84,7 +84,7 @@ TEST(ThreadPool, WaitsForTheSlowestJob) {
       std::this_thread::yield();
     }
     if (std::this_thread::get_id() != caller) {
-      // Long enough for the caller to come back too early, if it does not wait.
+      // Long enough to notice a caller that returns too early.
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
       slow_job_ended = true;
     }
@@ -92,7 +92,7 @@ TEST(ThreadPool, WaitsForTheSlowestJob) {
   EXPECT_TRUE(slow_job_ended);
 }
 
-// Of two jobs that both run, the lower one counts, whichever fails first.
+// If two jobs fail, the exception of the lower one is thrown, whichever fails first.
 TEST(ThreadPool, TheOrderOfFailuresInTimeDoesNotMatter) {
   ThreadPool pool(2);
   for (const std::size_t later : {0, 1}) {
@@ -136,15 +136,14 @@ TEST(ThreadPool, RethrowsTheExceptionOfTheLowestJob) {
         EXPECT_TRUE(begun[i]) << i;
       }
     }
-    // The pool is as good as new.
+    // The pool still works.
     std::atomic<int> calls = 0;
     pool.run(50, [&](std::size_t) { ++calls; });
     EXPECT_EQ(calls, 50);
   }
 }
 
-// Every thread that takes a job throws, so that no thread takes a second one: of a million jobs, at
-// most `threads` begin.
+// Every job throws, so no thread takes a second one: of a million jobs at most `threads` begin.
 TEST(ThreadPool, LeavesOutWhatFollowsAFailure) {
   for (const std::size_t threads : {1, 2, 4}) {
     ThreadPool pool(threads);
@@ -168,8 +167,8 @@ TEST(ThreadPool, RefusesNoThreads) {
   }
 }
 
-// In a child without rights to more threads (root is exempt from the limit, so it becomes somebody
-// else first).
+// Runs in a child process that may start no more threads. Root is exempt from that limit, so the
+// child changes its user first.
 TEST(ThreadPool, WorksWithFewerThreadsThanAskedFor) {
   const pid_t child = ::fork();
   ASSERT_GE(child, 0);
@@ -180,9 +179,9 @@ TEST(ThreadPool, WorksWithFewerThreadsThanAskedFor) {
     }
     try {
       std::thread([] {}).join();
-      ::_exit(3);  // the limit does not hold here
+      ::_exit(3);  // the system does not apply the limit
     } catch (const std::system_error&) {
-      // as it should
+      // expected
     }
     ThreadPool pool(8);
     int calls = 0;

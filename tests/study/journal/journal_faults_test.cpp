@@ -1,4 +1,4 @@
-// What the journal keeps when the process is killed, the disk refuses or the system grants no
+// Tests what the journal keeps when the process is killed, the disk fails or the system grants no
 // threads.
 #include <signal.h>
 #include <sys/resource.h>
@@ -18,12 +18,12 @@
 
 namespace {
 std::atomic<int> sync_count = 0;
-std::atomic<int> sync_error = 0;      // what the next syncs fail with
-std::atomic<bool> sync_held = false;  // syncs take until this is false again
+std::atomic<int> sync_error = 0;      // the error of the next syncs
+std::atomic<bool> sync_held = false;  // syncs block until this is false
 }  // namespace
 
-// Takes the place of the C library's in this program: whether data was synced cannot be seen
-// otherwise, nor made to fail.
+// Replaces the C library's function in this program. There is no other way to observe a sync or to
+// let it fail.
 extern "C" int fdatasync(int fd) {
   ++sync_count;
   while (sync_held) {
@@ -44,8 +44,8 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-// While it lives, no file of this process may grow beyond `bytes`: writes end short, then fail with
-// EFBIG. A full disk does the same with ENOSPC.
+// Keeps files of this process from growing beyond `bytes` as long as it lives: writes are cut
+// short, then fail with EFBIG. A full disk does the same with ENOSPC.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) {
@@ -76,13 +76,13 @@ TEST(JournalFaults, RecordsReachTheSystemWithoutFlush) {
   const auto file = folder / "journal";
   JournalContent content;
   Journal journal(file, content);
-  // append() itself writes only when the last write is 5 ms ago, so that most of these wait for the
-  // background.
+  // append() itself writes only if the last write is 5 ms ago, so most of these records wait for
+  // the background thread.
   for (std::uint64_t i = 0; i < 50; ++i) {
     journal.append(make_record(i));
   }
   EXPECT_TRUE(wait_until([&] { return read_journal(file).training.size() == 50; }));
-  // And again, once the background has gone to sleep.
+  // Repeats it after the background thread has gone to sleep.
   for (std::uint64_t i = 50; i < 100; ++i) {
     journal.append(make_record(i));
   }
@@ -126,7 +126,7 @@ TEST(JournalFaults, ADiskThatCannotSyncIsTold) {
     if (closing) {
       told([&] { journal.close(); });
     } else {
-      // Appending all the time, so that records lie in the buffer when the error comes.
+      // Appends all the time, so that the buffer holds records when the error comes.
       wait_until([&] { return told([&] { journal.append(make_record(1)); }); });
     }
     sync_error = 0;
@@ -135,7 +135,7 @@ TEST(JournalFaults, ADiskThatCannotSyncIsTold) {
   }
 }
 
-// Both need a sync of the background that hangs, as it may on a busy disk.
+// Both tests need a sync of the background thread that hangs, as on a busy disk.
 TEST(JournalFaults, RecordsReachTheSystemDuringASlowSyncAndItsErrorIsTold) {
   const TemporaryFolder folder;
   const auto file = folder / "journal";
@@ -151,8 +151,8 @@ TEST(JournalFaults, RecordsReachTheSystemDuringASlowSyncAndItsErrorIsTold) {
   }
   EXPECT_TRUE(wait_until([&] { return read_journal(file).training.size() == 50; }));
 
-  // Records that lie in the buffer when the error comes must not keep the writing thread, and with
-  // it the lock, busy.
+  // Records in the buffer at the time of the error must not keep the writing thread, and with it
+  // the lock, busy.
   for (std::uint64_t i = 50; i < 60; ++i) {
     journal.append(make_record(i));
   }
@@ -168,14 +168,14 @@ TEST(JournalFaults, RecordsReachTheSystemDuringASlowSyncAndItsErrorIsTold) {
   }));
   sync_error = 0;
   EXPECT_THAT(message, HasSubstr("cannot sync it to the disk: Input/output error"));
-  // By then the writing thread has come by; were it caught in a loop, this would never return.
+  // The writing thread has run by now. If it were caught in a loop, this would never return.
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
   EXPECT_EQ(catch_error([&] { journal.flush(); }).what(), message);
 }
 
 TEST(JournalFaults, AFileSystemWithoutSyncIsAccepted) {
   const TemporaryFolder folder;
-  sync_error = EINVAL;  // what such file systems say
+  sync_error = EINVAL;  // the error of such file systems
   write_journal(folder / "journal", 2);
   sync_error = 0;
   expect_first_records(read_journal(folder / "journal"), 2);
@@ -230,7 +230,7 @@ TEST(JournalFaults, WhatWasFlushedSurvivesSigkill) {
   }
 }
 
-// The disk fills up at every byte of a journal of three records, flushed one by one or all
+// The disk fills up at each byte of a journal of three records, which are flushed one by one or
 // together.
 TEST(JournalFaults, AFullDiskLosesNothingThatWasWrittenWhole) {
   const TemporaryFolder folder;
@@ -260,7 +260,7 @@ TEST(JournalFaults, AFullDiskLosesNothingThatWasWrittenWhole) {
       expect_write_error(error, file);
       EXPECT_EQ(flushed, flush_each ? whole : 0);
       EXPECT_EQ(std::filesystem::file_size(file), ends[whole]);
-      // There is room again, but the record that was lost must not be followed by others.
+      // There is room again, but no record may follow the lost one.
       for (const std::function<void()>& action : std::vector<std::function<void()>>{
                [&] { journal.append(make_record(3)); }, [&] { journal.append(EndRecord{}); },
                [&] { journal.flush(); }, [&] { journal.close(); }}) {
@@ -351,8 +351,8 @@ TEST(JournalFaults, ADeletedFileIsNotWrittenInSilence) {
   EXPECT_EQ(error.what(), file.string() + ": was deleted while the run was writing it");
 }
 
-// In a child without rights to more threads (root is exempt from the limit, so it becomes somebody
-// else first).
+// Runs in a child process that may start no more threads. Root is exempt from that limit, so the
+// child changes its user first.
 TEST(JournalFaults, WithoutThreadsEveryRecordIsWrittenAtOnce) {
   const TemporaryFolder folder;
   std::filesystem::permissions(folder.path(), std::filesystem::perms::all);
@@ -366,9 +366,9 @@ TEST(JournalFaults, WithoutThreadsEveryRecordIsWrittenAtOnce) {
     }
     try {
       std::thread([] {}).join();
-      ::_exit(3);  // the limit does not hold here
+      ::_exit(3);  // the system does not apply the limit
     } catch (const std::system_error&) {
-      // as it should
+      // expected
     }
     JournalContent content;
     Journal journal(file, content);

@@ -1,4 +1,4 @@
-// What is written is what is read, and how the ends of the file are judged.
+// Tests that a journal reads back as written, and how torn ends and damage are told apart.
 #include "study/journal/journal.hpp"
 
 #include <sys/stat.h>
@@ -27,7 +27,7 @@ TEST(Journal, KeepsEveryFieldBitByBit) {
   record.cases.set = std::string("train/\0\xff\n", 9);
   record.evaluation.failed_cases = -2147483647;
   record.x = {0.0, -0.0, infinity, -infinity, 5e-324, 0.1};
-  // A quiet NaN with a payload and a sign: "some NaN" is not enough.
+  // A quiet NaN with a payload and a sign: all bits must be kept.
   record.evaluation.case_errors = {std::bit_cast<double>(0xfff8000000c0ffee), std::nan("")};
   EvaluationRecord empty;
   empty.index = 1;
@@ -79,7 +79,7 @@ TEST(Journal, KeepsEveryStatus) {
   }
 }
 
-// The bytes on disk are a promise to later versions; they are spelt out here.
+// Later versions must be able to read the bytes on disk, so the test spells them out.
 TEST(Journal, FileHasTheDocumentedBytes) {
   const TemporaryFolder folder;
   {
@@ -118,7 +118,7 @@ TEST(Journal, FileHasTheDocumentedBytes) {
   EXPECT_EQ(read_bytes(folder / "journal"), "AWJRNL01" + framed(evaluation) + framed(end));
 }
 
-// As docs/reliability.md has it.
+// The program of docs/reliability.md.
 TEST(Journal, GrowsByTheBytesThatAreStated) {
   const TemporaryFolder folder;
   const auto ends = write_journal(folder / "journal", 3);
@@ -166,8 +166,8 @@ TEST(Journal, TakesRecordsFromManyThreads) {
   expect_first_records(read_journal(folder / "journal"), 2000);
 }
 
-// More than one read buffer (1 MiB) and many write buffers (256 KiB), with records that straddle
-// them.
+// A journal of several read buffers (1 MiB) and many write buffers (256 KiB), with records across
+// their ends.
 TEST(Journal, HoldsMoreThanItsBuffers) {
   const TemporaryFolder folder;
   EvaluationRecord large = make_record(1);
@@ -294,7 +294,7 @@ TEST(Journal, EveryFlippedByteIsNoticed) {
   EXPECT_FALSE(std::filesystem::exists(folder / "journal.torn-1"));
 }
 
-// Lengths that claim up to 32 GiB (4 Gi numbers) are not believed, and therefore not allocated.
+// Lengths that claim up to 32 GiB (4 Gi numbers) are refused before memory is allocated.
 TEST(Journal, HugeLengthsAreDamage) {
   const TemporaryFolder folder;
   const auto ends = write_journal(folder / "journal", 2);
@@ -302,7 +302,7 @@ TEST(Journal, HugeLengthsAreDamage) {
   for (const std::size_t field : {ends[0], ends[0] + 8 + 24, ends[0] + 8 + 24 + 4 + 7}) {
     std::string damaged = bytes;
     damaged.replace(field, 4, "\xff\xff\xff\xff");
-    // With a right checksum only the length itself can be what is refused.
+    // The checksum is right, so only the length can be refused.
     const std::uint32_t checksum =
         calc_crc32(std::string_view(damaged).substr(ends[0] + 8, ends[1] - ends[0] - 8));
     damaged.replace(ends[0] + 4, 4, reinterpret_cast<const char*>(&checksum), 4);
@@ -314,8 +314,8 @@ TEST(Journal, HugeLengthsAreDamage) {
   }
 }
 
-// Every 64 bytes something that could be a record: its last list is as long as the rest of the
-// file, its checksum wrong. Read to its end from each of these places, this would take minutes.
+// Every 64 bytes there is something that could be a record: its last list is as long as the rest of
+// the file, and its checksum is wrong. Reading to the end from each of them would take minutes.
 TEST(Journal, ThatIsMadeToBeReadForEverIsRefused) {
   const TemporaryFolder folder;
   const auto file = folder / "journal";
@@ -325,7 +325,7 @@ TEST(Journal, ThatIsMadeToBeReadForEverIsRefused) {
   const auto append = [&](std::uint32_t number) {
     bytes.append(reinterpret_cast<const char*>(&number), 4);
   };
-  constexpr std::size_t kEndHead = 8 + 13;  // a frame, and what stands before an end's reason
+  constexpr std::size_t kEndHead = 8 + 13;  // a frame, and the fields before an end's reason
   while (bytes.size() + 64 < kSize) {
     const auto rest = static_cast<std::uint32_t>(kSize - bytes.size() - kEndHead);
     append(rest + 13);
@@ -351,7 +351,7 @@ TEST(Journal, ThatIsMadeToBeReadForEverIsRefused) {
   EXPECT_EQ(read_bytes(file), bytes);
 }
 
-// A record with a right checksum and bytes left over is not one that this version can have written.
+// This version never writes a record with a right checksum and bytes left over.
 TEST(Journal, APayloadIsUsedUp) {
   const TemporaryFolder folder;
   const auto file = folder / "journal";

@@ -1,5 +1,5 @@
-// Attempts at a cell: their tokens, what they take over from each other, and which of them gets its
-// result in place.
+// Attempts at a cell: their tokens, the state that one takes over from another, and which attempt
+// publishes its result.
 #include "study/matrix/attempt.hpp"
 
 #include <stdlib.h>
@@ -12,9 +12,8 @@
 #include <set>
 #include <thread>
 
-#include "study/matrix/earlier_state.hpp"
+#include "study/matrix/cell_attempt.hpp"
 #include "study/matrix/matrix_support.hpp"
-#include "study/matrix/publication.hpp"
 #include "study/run/run_observer.hpp"
 
 namespace armwright {
@@ -89,7 +88,7 @@ TEST_F(AttemptTest, GoesOnWithWhatTheFurthestHasEvaluated) {
   const CellAttempt first =
       attempt_cell(plan_, cell_, {.study = study_, .command_line = {}}, stop, stopping);
   EXPECT_EQ(first.end, CellAttempt::End::stopped);
-  // One that has evaluated nothing, and one that holds no journal at all.
+  // One attempt without evaluations, and one without a journal.
   std::filesystem::create_directories(attempts_ / "002/run");
   std::ofstream(attempts_ / "002/run/manifest.json") << "{}";
   std::ofstream(attempts_ / "002/run/journal") << "AWJRNL01";
@@ -116,7 +115,7 @@ TEST_F(AttemptTest, PassesOverAJournalThatIsDamaged) {
   SilentObserver observer;
   EXPECT_EQ(attempt_cell(plan_, cell_, {.study = study_, .command_line = {}}, stop, observer).end,
             CellAttempt::End::done);
-  EXPECT_THAT(observer.messages, Contains(HasSubstr("001/run holds cannot be gone on with")));
+  EXPECT_THAT(observer.messages, Contains(HasSubstr("001/run cannot be resumed")));
 }
 
 TEST_F(AttemptTest, TakesOverFromALocalComparisonAndTheOtherWayRound) {
@@ -148,7 +147,7 @@ TEST_F(AttemptTest, TakesOverFromALocalComparisonAndTheOtherWayRound) {
 
 TEST_F(AttemptTest, IsStoppedByANewerOneAndPublishesNothing) {
   StopSignal stop;
-  // The newer one comes in the midst, and the run would never end by itself.
+  // The newer attempt begins during the run, which would not end by itself.
   class Successor final : public RunObserver {
    public:
     Successor(std::filesystem::path attempts, StopSignal& ends)
@@ -202,16 +201,16 @@ TEST_F(AttemptTest, TheFirstOfManyThatFinishAtOnceIsPublished) {
     for (const auto& folder : folders) {
       threads.emplace_back([&] {
         start.arrive_and_wait();
-        const auto end = publish_cell(plan_, cell_, study_, folder / "run", folder / "aside");
-        published += end == Publication::published ? 1 : 0;
+        const bool is_ours = publish_cell(plan_, cell_, study_, folder / "run", folder / "aside");
+        published += is_ours ? 1 : 0;
       });
     }
     for (std::thread& thread : threads) {
       thread.join();
     }
     if (before == std::string("unfinished")) {
-      // Who moves it aside may catch the next one's finished one, which is then replaced by its
-      // like.
+      // A thread that moves the unfinished cell aside may move a finished one of another thread. An
+      // identical one then takes its place.
       EXPECT_GE(published, 1);
     } else {
       EXPECT_EQ(published, before == std::string("nothing") ? 1 : 0);

@@ -1,13 +1,11 @@
-// Which cells go together, how they are named, and what is submitted.
+// Chunks of cells, names of cells, and the script and commands that are submitted.
 #include "study/matrix/chunks.hpp"
 
 #include <numeric>
 
-#include "study/matrix/cell_duration.hpp"
-#include "study/matrix/cell_script.hpp"
+#include "study/matrix/cell_selection.hpp"
 #include "study/matrix/command_output.hpp"
 #include "study/matrix/matrix_support.hpp"
-#include "study/matrix/recorded_study.hpp"
 #include "study/matrix/slurm.hpp"
 
 namespace armwright {
@@ -86,7 +84,7 @@ TEST_F(CellNames, AreNumbersRangesAndNames) {
   for (const std::string word : {"8", "-1", "5-8", "1-", "-", "99999999999999999999"}) {
     EXPECT_THAT(
         usage_error_of([&] { select({word}); }),
-        HasSubstr("'" + word + "' is no cell of the study; its cells have the numbers 0 to 7"));
+        HasSubstr("'" + word + "' is not a cell of the study; name a cell by its number, 0 to 7,"));
   }
   EXPECT_THAT(usage_error_of([&] { select({"5-3"}); }), HasSubstr("ends before it begins"));
   EXPECT_THAT(usage_error_of([&] { select({"sphere/gaa/r01"}); }), HasSubstr("did you mean 'ga'"));

@@ -1,5 +1,5 @@
-// What tests of cells that are run anywhere share: a small study in a folder, of which no cell has
-// been run.
+// Helpers for tests of cells that run on any machine: a small study in a folder, without any cell
+// that has run.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -38,7 +38,7 @@ class MatrixTest : public StudyTest {
     StopSignal stop;
     return attempt(one, stop);
   }
-  // A finished cell in any folder.
+  // Runs a cell to its end in the given folder.
   void run_in(const Cell& one, const std::filesystem::path& folder) {
     StopSignal stop;
     run_cell(plan_, one, CellRequest{.folder = folder}, stop, observer_);

@@ -1,4 +1,4 @@
-// What others see of cells that are run somewhere, and cells of several folders brought together.
+// The status of cells that run on any machine, and the merging of cells from several folders.
 #include <chrono>
 #include <thread>
 

@@ -1,4 +1,4 @@
-// Which of a run's improvements are judged.
+// Tests which of a run's improvements are judged.
 #include "study/run/candidate_pool.hpp"
 
 #include <gmock/gmock.h>
@@ -13,8 +13,8 @@ namespace {
 
 using testing::ElementsAre;
 
-// Of a run of ten improvements, one an evaluation: which are judged if four may be, and two more
-// for their objective.
+// Returns which evaluations of a run are judged, if each of its ten evaluations is an improvement,
+// and four last and two best candidates are selected.
 std::vector<std::uint64_t> select_of_ten(const std::string& problem) {
   RunPlan plan;
   plan.problem = load_problem(problem);
@@ -42,7 +42,7 @@ TEST(CandidatePoolTest, WithConstraintsThoseOfTheWholeRun) {
   EXPECT_THAT(select_of_ten("constrained"), ElementsAre(0, 3, 6, 8, 9));
 }
 
-// The pool holds few of a long run's candidates. That none is missed is seen against all of them.
+// The pool keeps few of a long run's candidates. They must be the same as if it kept all.
 TEST(RememberedCandidatesTest, AreThoseThatAllTogetherWouldHaveGiven) {
   RandomStream random("test/remembered-candidates", 1);
   for (int round = 0; round < 200; ++round) {

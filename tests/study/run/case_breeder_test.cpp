@@ -1,4 +1,4 @@
-// Breeding of test cases by hand, and that it makes them harder.
+// Tests the breeding of test cases on examples computed by hand, and that cases become harder.
 #include "study/run/case_breeder.hpp"
 
 #include <gmock/gmock.h>
@@ -10,7 +10,7 @@
 
 #include "base/expect_error.hpp"
 #include "problems/config/problem_loader.hpp"
-#include "sim/tracking/bred_case.hpp"
+#include "sim/tracking/test_case.hpp"
 #include "study/run_support.hpp"
 
 namespace armwright {
@@ -23,7 +23,7 @@ void show(CaseBreeder& breeder, double objective, std::vector<double> errors) {
   record.cases.numbers = breeder.genomes();
   record.evaluation.objectives = {objective};
   record.evaluation.case_errors = std::move(errors);
-  breeder.learn(record, objective);
+  breeder.add(record, objective);
 }
 
 std::vector<std::uint64_t> pick(const std::vector<std::uint64_t>& genomes,
@@ -77,7 +77,8 @@ TEST(CaseBreeder, HopelessDesignsDoNotDecide) {
   EXPECT_EQ(take_first(breeder, 2), pick(before, {3, 2}));
 }
 
-// One design loses the target on case 0; two find case 1 hard. Uncapped, log 1e6 would outweigh.
+// One design loses the target on case 0; case 1 is hard for two designs. Without the cap, log 1e6
+// would decide.
 TEST(CaseBreeder, OneLostTargetDoesNotOutweighAllElse) {
   CaseBreeder breeder("coevolved/1", 4);
   const auto before = breeder.genomes();
@@ -114,8 +115,8 @@ TEST(CaseBreeder, ChildrenHaveTheirParentsKeys) {
   std::iota(errors.rbegin(), errors.rend(), 1.0);
   show(breeder, 1, errors);
   breeder.breed();
-  // 40 stay, 30 are children, 10 are fresh. Of a child's 4 keys an eighth are new: of 30 children
-  // 120 keys, 105 from parents expected, standard deviation 3.6. Fresh ones share keys by chance
+  // 40 cases stay, 30 are children, 10 are new. The 30 children have 120 keys, of which an eighth
+  // is new: 105 are expected from parents, standard deviation 3.6. New cases share keys by chance
   // only: 40 keys in 2^15 values against 40 parents.
   const auto& genomes = breeder.genomes();
   const auto count_inherited = [&](std::size_t first, std::size_t end) {
@@ -141,12 +142,12 @@ double calc_mean_log(std::span<const double> errors) {
   return sum / static_cast<double>(errors.size());
 }
 
-// The start design of the thesis's second problem on cases bred against it for 25 generations: the
-// mean of the log error of the 20 bred cases against that of 400 random ones.
+// Breeds cases against the start design of the thesis's second problem for 25 generations. Compares
+// the mean log error of the 20 bred cases with that of 400 random ones.
 TEST(CaseBreeder, CasesBecomeHarderForTheRobot) {
   const LoadedProblem loaded =
       load_problem("q2-e6", std::vector<std::string>{"physics.engine=articulated"});
-  const std::vector<double> x = loaded.tracking->make_vector(loaded.tracking->config().start);
+  const std::vector<double> x = loaded.tracking()->make_vector(loaded.tracking()->config().start);
   const auto evaluate = [&](const std::string& set, std::vector<std::uint64_t> numbers) {
     return loaded.problem->evaluate(x, {CaseRole::training, set, std::move(numbers)}).case_errors;
   };
@@ -164,12 +165,12 @@ TEST(CaseBreeder, CasesBecomeHarderForTheRobot) {
     square += std::pow(std::log(error) - mean, 2) / 400;
   }
   const double bred = calc_mean_log(evaluate("coevolved/1", breeder.genomes()));
-  // A population of 20 random cases would be off by sqrt(square / 20).
+  // The standard deviation of the mean of 20 random cases is sqrt(square / 20).
   EXPECT_GT(bred, mean + 4 * std::sqrt(square / 20));
 }
 
-// A run's generations train on what was bred, under the set's other name, and validation and test
-// sets are the usual ones.
+// The generations of a run train on bred cases, under another set name. Validation and test sets
+// are the usual ones.
 TEST_F(RunTest, CoevolvedGenerationsTrainOnWhatWasBred) {
   RunPlan plan = make_small_plan("ga", 8 * 6 * 4);
   plan.schedule = {.kind = Schedule::Kind::coevolution, .cases = 6};
@@ -185,7 +186,7 @@ TEST_F(RunTest, CoevolvedGenerationsTrainOnWhatWasBred) {
     }
     EXPECT_EQ(record.cases.set, "coevolved/1");
     EXPECT_EQ(record.cases.numbers, breeder.genomes());
-    breeder.learn(record, record.evaluation.objectives.front());
+    breeder.add(record, record.evaluation.objectives.front());
   }
   for (const EvaluationRecord& record : read("a").judgements) {
     EXPECT_THAT(record.cases.set, testing::AnyOf("validation/1", "test/2"));
@@ -196,7 +197,7 @@ TEST_F(RunTest, CoevolutionNeedsGenerationsAndRoomForChildren) {
   RunPlan plan = make_small_plan("random");
   plan.schedule = {.kind = Schedule::Kind::coevolution, .cases = 6};
   EXPECT_THAT(usage_error_of([&] { run(plan, "a"); }),
-              HasSubstr("generation (schedule coevolution) mean nothing to it"));
+              HasSubstr("generation (schedule coevolution) are not possible"));
   plan = make_small_plan("ga");
   plan.schedule = {.kind = Schedule::Kind::coevolution, .cases = 3};
   EXPECT_THAT(usage_error_of([&] { run(plan, "a"); }),

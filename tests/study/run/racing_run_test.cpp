@@ -1,5 +1,5 @@
-// Whole runs with races: exact budgets, the same result whatever interrupts them and on any number
-// of threads, and what races are worth.
+// Tests whole runs with races: exact budgets, the same result after interruptions and on any number
+// of threads, and the benefit of races.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -59,7 +59,7 @@ TEST_P(RacingOptimizers, NeverSpendMoreThanTheBudget) {
         EXPECT_EQ(journal.training[judged.candidate.evaluation].cases.numbers.size(), 6u);
       }
     }
-    if (result->end_reason == "budget") {  // nothing was left that would have paid for a candidate
+    if (result->end_reason == "budget") {  // the rest of the budget was too small for a candidate
       EXPECT_GT(result->counts.cases + kCases, 401u);
     }
   }
@@ -98,7 +98,7 @@ TEST_F(RunTest, RacesDoNotDependOnThreadsOrInterruptions) {
     for (bool done = false; !done; ++starts) {
       ASSERT_LT(starts, 100);
       StopSignal stop;
-      // More than a race costs, or it would begin anew for ever.
+      // More than a race costs; otherwise each life would start the same race again.
       StoppingObserver observer(stop, optimizer == "random" ? 250 : 60);
       done = execute_run({plan, temporary_ / (one + "-pieces"), 2, {}}, stop, observer).has_value();
     }
@@ -108,7 +108,7 @@ TEST_F(RunTest, RacesDoNotDependOnThreadsOrInterruptions) {
   }
 }
 
-// What a kill in the middle of writing a race down leaves.
+// A kill while a race is written leaves such journals.
 TEST_F(RunTest, ARaceThatIsRecordedInPartIsHeldAgain) {
   for (const auto& [optimizer, schedule, racing] : list_settings()) {
     SCOPED_TRACE(optimizer + " " + schedule + " " + racing);
@@ -216,7 +216,7 @@ TEST(RacingPlan, WhatCannotBeRankedIsRefused) {
   EXPECT_THAT(
       check("constrained", "halving"),
       AllOf(HasSubstr("racing halving ranks candidates by one number"), HasSubstr("constraints")));
-  EXPECT_THAT(check("sphere", "abandonment"), HasSubstr("cannot tell; use racing halving"));
+  EXPECT_THAT(check("sphere", "abandonment"), HasSubstr("not have; use racing halving"));
 }
 
 TEST(RacingPlan, OfWhichNothingComesIsRefusedOrSaid) {
@@ -246,7 +246,7 @@ TEST(RacingPlan, OfWhichNothingComesIsRefusedOrSaid) {
   }
 }
 
-// The true objective, up to its constant: the squared distance of the winner from (1, ..., 1).
+// Returns the true objective without its constant: the winner's squared distance from (1, ..., 1).
 double calc_distance(const RunResult& result) {
   double square = 0;
   for (const double xi : result.judged[*result.winner].candidate.x) {

@@ -1,5 +1,5 @@
-// Races by hand: what they cost, who drops out and what is said of them. Whole runs with races:
-// racing_run_test.cpp.
+// Tests races on examples computed by hand: their cost, which candidates drop out, and the reasons
+// given. Whole runs with races: racing_run_test.cpp.
 #include "study/run/racing.hpp"
 
 #include <gmock/gmock.h>
@@ -75,7 +75,7 @@ TEST(Halving, TheBudgetBuysTheLargestRaceThatItPaysFor) {
   EXPECT_EQ(count_affordable(racing, 10, 4, 4), 1u);
 }
 
-// Errors by candidate and case; the candidate's number is its decision vector.
+// The errors of each candidate on each case; the decision vector is the candidate's number.
 class RaceTest : public testing::Test {
  protected:
   const std::vector<std::vector<double>> errors_ = {{1, 9, 9, 9},  // lucky in the first case
@@ -87,7 +87,6 @@ class RaceTest : public testing::Test {
   const CaseBlock block_{CaseRole::training, "train/1", {0, 1, 2, 3}};
   StopSignal stop_;
   ThreadExecutor executor_{2};
-  CaseRunner runner_{problem_, executor_, stop_};
   std::vector<std::vector<double>> points_ = {{0}, {1}, {2}, {3}, {4}, {5}};
   std::vector<std::span<const double>> candidates_{points_.begin(), points_.end()};
 };
@@ -96,9 +95,8 @@ TEST_F(RaceTest, HalvingByHand) {
   const Racing racing = make_racing("halving:1:2");
   std::atomic<std::size_t> simulated = 0;
   const auto results =
-      Racer(racing, problem_, runner_).halve(candidates_, block_, 1e6, [&](std::size_t cases) {
-        simulated += cases;
-      });
+      Racer(racing, problem_, executor_, stop_)
+          .halve(candidates_, block_, 1e6, [&](std::size_t cases) { simulated += cases; });
   ASSERT_TRUE(results);
   // 6 on one case: 0, 1, 2 go on (1, 2, 3 < 4). On two: means 5, 2, 2: 1 and 2 go on. On four: 2
   // and 1.5.
@@ -112,7 +110,8 @@ TEST_F(RaceTest, HalvingByHand) {
     EXPECT_EQ(result.evaluation.status == EvaluationStatus::ok, result.cases == 4);
   }
   EXPECT_THAT(cases, ElementsAre(2, 4, 4, 1, 1, 1));
-  // 0 has 5 of its own; 3 has 4 and counts as the worst of those that got further, 5.
+  // Candidate 0 has its own 5. Candidate 3 has 4 and counts as 5, the worst of those that got
+  // further.
   EXPECT_THAT(objectives, ElementsAre(5, 2, 1.5, 5, 5, 6));
   EXPECT_THAT((*results)[3].evaluation.reason, HasSubstr("dropped out after 1 of 4 cases"));
 }
@@ -121,8 +120,9 @@ TEST_F(RaceTest, AbandonmentByHand) {
   const Racing racing = make_racing("abandonment:1:2");
   std::atomic<std::size_t> simulated = 0;
   std::vector<RacedCandidate> results(6);
-  // Sums of two cases 10, 4, 4, 8, 5, 6: given up are those above 4 times the threshold, 6.
-  Racer(racing, problem_, runner_)
+  // The sums of two cases are 10, 4, 4, 8, 5, 6. Those above 4 times the threshold, 6, are
+  // abandoned.
+  Racer(racing, problem_, executor_, stop_)
       .abandon(
           candidates_, block_, 1.5, [&](std::size_t cases) { simulated += cases; },
           [&](std::size_t candidate, RacedCandidate result) {
@@ -143,7 +143,7 @@ TEST_F(RaceTest, AbandonmentByHand) {
 TEST_F(RaceTest, AStopLeavesNoHalfRace) {
   stop_.request(StopReason::interrupted);
   const Racing racing = make_racing("halving:1:2");
-  Racer racer(racing, problem_, runner_);
+  Racer racer(racing, problem_, executor_, stop_);
   EXPECT_FALSE(racer.halve(candidates_, block_, 1e6, [](std::size_t) {}));
   racer.abandon(
       candidates_, block_, 1, [](std::size_t) {},
@@ -153,7 +153,7 @@ TEST_F(RaceTest, AStopLeavesNoHalfRace) {
 TEST(Abandonment, TheMarginWidensWhateverTheSignIs) {
   const Racing racing = make_racing("abandonment:1.5");
   EXPECT_DOUBLE_EQ(calc_threshold(racing, 2), 3);
-  EXPECT_DOUBLE_EQ(calc_threshold(racing, -2), -1);  // of a logarithm, say
+  EXPECT_DOUBLE_EQ(calc_threshold(racing, -2), -1);  // objectives can be negative: a logarithm
   EXPECT_EQ(calc_threshold(racing, std::numeric_limits<double>::infinity()),
             std::numeric_limits<double>::infinity());
 }

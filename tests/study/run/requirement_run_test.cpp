@@ -1,5 +1,5 @@
-// Runs on problems with requirements: constraints that an optimizer honours, the same bytes for any
-// number of threads and after an interruption, and what a result says of its winner.
+// Tests runs on problems with requirements: optimizers keep the constraints, the bytes are the same
+// for any number of threads and after an interruption, and the result describes its winner.
 #include <gmock/gmock.h>
 
 #include "optimizers/table/optimizer_table.hpp"
@@ -13,7 +13,7 @@ using testing::Each;
 using testing::Field;
 using testing::SizeIs;
 
-// Two joints' gains for the tip of a small case; without the requirements the best designs chatter.
+// The gains of two joints on a small case. Without the requirements the best designs chatter.
 std::string make_requirements(const std::string& use) {
   const std::string end = ", use='" + use + "'}";
   return "requirement=[{quantity='overshoot', limit_relative=0.03" + end +
@@ -90,7 +90,7 @@ TEST_F(RequirementRun, TheResultHoldsThemAndReadsBack) {
     EXPECT_FALSE(read_back.requirements[i].is_constraint);
   }
   EXPECT_EQ(to_json(read_back), read_result("a"));
-  // Problems without requirements write the same as ever.
+  // Results of problems without requirements have no such keys.
   run(make_small_plan("ga", 16), "plain");
   EXPECT_EQ(read_result("plain").find("requirement"), std::string::npos);
 }

@@ -1,4 +1,4 @@
-// Runs whose optimizer or evaluations fail, and runs of several objectives.
+// Tests runs whose optimizer or evaluations fail, and runs with several objectives.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -15,8 +15,8 @@ namespace {
 
 using testing::HasSubstr;
 
-// Goes outwards and back again, in generations of four. Fails after so many evaluations, unless the
-// number is negative.
+// Moves outwards and back again, in generations of four. Fails after the given number of
+// evaluations, unless the number is negative.
 class FailingOptimizer : public Optimizer {
  public:
   FailingOptimizer(int evaluations, std::string message)
@@ -84,8 +84,8 @@ TEST_F(RunTest, AFailedRunIsTriedAgainFromWhereItFailed) {
   EXPECT_EQ(read_result("a"), read_result("whole"));
 }
 
-// Whatever an earlier attempt achieved is kept and judged, even if the next one fails sooner: at
-// once, within a generation, at the end of one, or where the earlier one failed.
+// The evaluations of an earlier attempt are kept and judged, even if the next attempt fails
+// earlier: at once, within a generation, at its end, or at the same place.
 TEST_F(RunTest, AnAttemptThatFailsSoonerTakesNothingAway) {
   for (const bool fresh : {false, true}) {
     for (const int sooner : {0, 2, 4, 5, 8, 10}) {
@@ -108,9 +108,9 @@ TEST_F(RunTest, AnAttemptThatFailsSoonerTakesNothingAway) {
       RunResult recorded = load_result(temporary_ / folder);
       recorded.failure = first->failure;
       EXPECT_EQ(to_json(recorded), to_json(*first));
-      EXPECT_EQ(observer_.last.phase, Progress::Phase::test);
+      EXPECT_EQ(observer_.last.phase, CaseRole::test);
       EXPECT_EQ(read(folder).training.size(), 10u);
-      // The attempt that failed sooner leaves nothing behind, either.
+      // The attempt that failed earlier adds nothing.
       run(make_plan(-1, ""), folder);
       const std::string whole = fmt::format("whole-{}", folder);
       run(make_plan(-1, ""), whole);
@@ -174,7 +174,7 @@ TEST_F(RunTest, SeveralObjectivesLeaveAFront) {
   plan.budget = 40;
   const auto result = run(plan, "a");
   ASSERT_TRUE(result && result->winner);
-  // No judged design is better than another one in training in both, but for the best sums.
+  // No judged design dominates another one in training, except the ones with the best sums.
   std::vector<std::vector<double>> front;
   for (const EvaluationRecord& one : read("a").training) {
     const bool covered = std::ranges::any_of(read("a").training, [&](const auto& other) {

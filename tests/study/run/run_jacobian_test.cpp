@@ -1,4 +1,4 @@
-// Runs with exact derivatives: charged, journalled and replayed like any other evaluation.
+// Tests runs with exact derivatives, which are charged, journalled and replayed like others.
 #include <gmock/gmock.h>
 
 #include "base/expect_error.hpp"
@@ -11,7 +11,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// Asks for a point with derivatives and three without, in turn: 1 + 20/4 + 3 times two cases.
+// Asks in turn for one point with derivatives and three without: (1 + 20/4 + 3) times two cases.
 class Alternating : public Optimizer {
  public:
   void minimize(Evaluator& evaluator, std::uint64_t /*seed*/) override {
@@ -24,7 +24,7 @@ class Alternating : public Optimizer {
         EXPECT_FALSE(score.residuals.empty());
         EXPECT_EQ(score.jacobian.size(), score.residuals.size() * x.size());
         for (std::size_t i = 0; i < x.size(); ++i) {
-          // Downhill of the sum of squares, a little.
+          // A small step along the negative gradient of the sum of squares.
           double slope = 0;
           for (std::size_t k = 0; k < score.residuals.size(); ++k) {
             slope += score.residuals[k] * score.jacobian[k * x.size() + i];
@@ -54,7 +54,7 @@ RunPlan make_plan(const std::string& engine, std::int64_t budget) {
 }
 
 TEST_F(RunTest, DerivativesAreChargedExactlyAndInWholeCandidates) {
-  // Two cases a candidate: with derivatives 12, three without 6.
+  // Two cases per candidate: 12 with derivatives, 6 for three points without.
   for (const auto& [budget, cases, evaluations] : {std::tuple{11, 0, 0},
                                                    {12, 12, 1},
                                                    {13, 12, 1},
@@ -68,8 +68,7 @@ TEST_F(RunTest, DerivativesAreChargedExactlyAndInWholeCandidates) {
     EXPECT_EQ(result->counts.cases, cases) << budget;
     EXPECT_EQ(result->counts.evaluations, evaluations) << budget;
     EXPECT_EQ(result->end_reason, "budget");
-    EXPECT_EQ(observer_.last.phase == Progress::Phase::training ? observer_.last.done : cases,
-              cases);
+    EXPECT_EQ(observer_.last.phase == CaseRole::training ? observer_.last.done : cases, cases);
   }
 }
 
@@ -80,7 +79,7 @@ TEST_F(RunTest, DerivativesAreReplayedBitForBit) {
   for (bool done = false; !done; ++starts) {
     ASSERT_LT(starts, 100);
     StopSignal stop;
-    StoppingObserver observer(stop, 1);  // as soon as something new was evaluated
+    StoppingObserver observer(stop, 1);  // after the first new evaluation
     done = execute_run({plan, temporary_ / "pieces", 2, {}}, stop, observer).has_value();
   }
   EXPECT_GT(starts, 3) << "the run was never interrupted";
@@ -104,7 +103,7 @@ TEST_F(RunTest, DerivativesAreReplayedBitForBit) {
 TEST_F(RunTest, AReplayThatAsksForOtherDerivativesIsRefused) {
   RunPlan plan = make_plan("articulated", 54);
   StopSignal stop;
-  StoppingObserver observer(stop, 1);  // as soon as something new was evaluated
+  StoppingObserver observer(stop, 1);  // after the first new evaluation
   EXPECT_FALSE(execute_run({plan, temporary_ / "a", 2, {}}, stop, observer));
   class Plain : public Optimizer {
    public:
@@ -140,7 +139,7 @@ TEST_F(RunTest, ExactDerivativesOfAnEngineWithoutThemAreRefusedBeforeThereIsAFol
   EXPECT_FALSE(std::filesystem::exists(temporary_ / "a"));
 }
 
-// With the torque among the objectives, and its derivative.
+// The torque and its derivative are part of the objective.
 TEST(TrackingJacobian, AgreesWithDifferencesOfTheResiduals) {
   for (const char* objective : {"error", "error_and_torque"}) {
     const LoadedProblem loaded = load_problem(

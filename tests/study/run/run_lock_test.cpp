@@ -34,7 +34,7 @@ TEST(RunLock, RefusesASecondHolderAndNamesTheFirst) {
   EXPECT_EQ(error.kind(), ErrorKind::busy);
   EXPECT_EQ(error.what(), folder.path().string() + " is in use by " + this_process() +
                               "; wait for it, stop it, or use --out/--new for another folder");
-  // The refused one has not spoilt what the file says.
+  // The refused attempt has not changed the file.
   EXPECT_EQ(read_bytes(folder / "lock"), this_process() + "\n");
 }
 
@@ -75,7 +75,7 @@ TEST(RunLock, RefusesAnotherProcessUntilThatIsKilled) {
   EXPECT_EQ(read_bytes(folder / "lock"), this_process() + "\n");
 }
 
-// A program that is started meanwhile, an external optimizer for one, must not keep the lock alive.
+// A program that is started meanwhile, for instance an external optimizer, must not keep the lock.
 TEST(RunLock, IsNotInheritedByPrograms) {
   const TemporaryFolder folder;
   std::optional<RunLock> lock(folder.path());
@@ -93,7 +93,7 @@ TEST(RunLock, IsNotInheritedByPrograms) {
     ::_exit(127);
   }
   char sign = 0;
-  ASSERT_EQ(::read(output[0], &sign, 1), 1);  // it runs, past exec
+  ASSERT_EQ(::read(output[0], &sign, 1), 1);  // the program runs, so exec has happened
   lock.reset();
   EXPECT_NO_THROW(lock.emplace(folder.path()));
   ASSERT_EQ(::write(input[1], "\n", 1), 1);
@@ -111,7 +111,7 @@ TEST(RunLock, ShowsNoControlCharactersOfTheFile) {
   write_bytes(folder / "lock", "\x1b[31mred\nsecond line");
   const Error error = catch_error([&] { const RunLock second(folder.path()); });
   EXPECT_THAT(error.what(), HasSubstr(" is in use by ?[31mred; wait"));
-  write_bytes(folder / "lock", "");  // the holder has not come to writing yet
+  write_bytes(folder / "lock", "");  // the holder has not written its name yet
   const Error early = catch_error([&] { const RunLock second(folder.path()); });
   EXPECT_THAT(early.what(), HasSubstr(" is in use by another process; wait"));
 }

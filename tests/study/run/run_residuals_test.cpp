@@ -1,4 +1,4 @@
-// Residuals are made and recorded for optimizers that use them, and for nobody else.
+// Tests that residuals are made and recorded only for optimizers that use them.
 #include <gmock/gmock.h>
 
 #include <functional>
@@ -14,7 +14,7 @@ using testing::Each;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-// Asks for a few points and notes the residuals that come back.
+// Asks for a few points and stores the residuals that it gets.
 class AskingOptimizer : public Optimizer {
  public:
   explicit AskingOptimizer(std::vector<std::vector<double>>* residuals) : residuals_(residuals) {}
@@ -35,7 +35,7 @@ class AskingOptimizer : public Optimizer {
   std::vector<std::vector<double>>* residuals_;
 };
 
-// On two cases of three points, of which two count.
+// Two cases of three points, of which two count.
 RunPlan make_asking_plan(const std::function<void(OptimizerRow&)>& change,
                          std::vector<std::vector<double>>& residuals) {
   RunPlan plan = make_small_plan("random", 6);
@@ -54,7 +54,7 @@ RunPlan make_asking_plan(const std::function<void(OptimizerRow&)>& change,
 
 class RunResiduals : public RunTest {
  protected:
-  // What the optimizer was told and what was recorded, of which nothing is of judgements.
+  // The optimizer's residuals are those recorded; validation and test have none.
   std::vector<std::vector<double>> run_asking(const std::function<void(OptimizerRow&)>& change) {
     std::vector<std::vector<double>> told;
     const std::string folder = std::to_string(runs_++);
@@ -93,7 +93,7 @@ TEST_F(RunResiduals, MultistartPassesThemOn) {
     row.capabilities.residuals = true;
     row = make_multistart_row(row);
   });
-  EXPECT_THAT(told, SizeIs(3));  // one start's worth: the budget is 6 cases, 2 a point
+  EXPECT_THAT(told, SizeIs(3));  // the budget is 6 cases, and a point costs 2
   EXPECT_THAT(told, Each(SizeIs(4)));
 }
 

@@ -1,5 +1,5 @@
-// Runs that are interrupted, repeated or meddled with: they go on to the same result, or say why
-// not.
+// Tests runs that are interrupted, repeated or changed by somebody: they resume to the same result,
+// or say why they cannot.
 #include <gmock/gmock.h>
 
 #include <fstream>
@@ -143,7 +143,7 @@ TEST_F(RunTest, AnotherConfigurationIsRefusedWithTheDifference) {
             HasSubstr("problem.task.speed_m_per_s: recorded 1.5, now 2"), HasSubstr("--new")));
 }
 
-// Results differ between SIMD levels in the last bits, so a run keeps to the one it began with.
+// Results differ in the last bits between SIMD levels, so a run keeps the level it began with.
 TEST_F(RunTest, AnotherSimdLevelIsRefusedWithWhatToDo) {
   const auto make_plan = [](const std::string& simd) {
     RunPlan plan = make_small_plan();
@@ -162,7 +162,7 @@ TEST_F(RunTest, AnotherSimdLevelIsRefusedWithWhatToDo) {
   EXPECT_THAT(usage_error_of([&] { run(make_plan("scalar"), "a"); }),
               AllOf(HasSubstr("problem.physics.simd: recorded \"" + best + "\", now \"scalar\""),
                     HasSubstr("to go on, pass --simd " + best)));
-  // As if it came from another machine.
+  // As if the folder came from another machine.
   const auto manifest = temporary_ / "a" / "manifest.json";
   std::string text = read_file(manifest, 1 << 24);
   const std::string recorded = "\"simd\": \"" + best + "\"";
@@ -189,8 +189,8 @@ TEST_F(RunTest, ResultsOfBatchesDoNotDependOnTheNumberOfThreads) {
 TEST_F(RunTest, AReplayThatDiffersNamesTheEvaluation) {
   run(make_small_plan(), "a");
   std::filesystem::remove(temporary_ / "a" / "result.json");
-  // A journal of another seed under this run's manifest: what another version of an optimizer would
-  // look like.
+  // The journal of another seed under this run's manifest, as if another version of the optimizer
+  // had written it.
   RunPlan other = make_small_plan();
   other.seed = 7;
   run(other, "b");

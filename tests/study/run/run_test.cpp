@@ -1,4 +1,4 @@
-// Whole runs in one process: exact budgets, schedules, results that do not depend on threads.
+// Tests whole runs in one process: exact budgets, schedules, results that do not depend on threads.
 // Interrupted and repeated runs: run_resume_test.cpp; failures and fronts: run_failure_test.cpp.
 #include "study/run/run.hpp"
 
@@ -11,8 +11,9 @@
 #include "base/text.hpp"
 #include "optimizers/table/optimizer_table.hpp"
 #include "problems/lanes_engine.hpp"
-#include "study/run/judge.hpp"
+#include "study/run/design_evaluation.hpp"
 #include "study/run/run_folder.hpp"
+#include "study/run/winner_selection.hpp"
 #include "study/run_support.hpp"
 
 namespace armwright {
@@ -85,11 +86,10 @@ TEST_F(RunTest, TheWinnerIsTheBestOnTheValidationSetAndItsTestIsComplete) {
 }
 
 TEST(EvaluateDesign, InBatchesItIsWhatCaseByCaseGives) {
-  const auto problem =
-      load_problem("q1-complex",
-                   std::vector<std::string>{"workspace.points=3", "physics.judging_engine=lanes"},
-                   engines_with_lanes())
-          .tracking;
+  const LoadedProblem loaded = load_problem(
+      "q1-complex", std::vector<std::string>{"workspace.points=3", "physics.judging_engine=lanes"},
+      engines_with_lanes());
+  const TrackingProblem* problem = loaded.tracking();
   const ArmDesign& design = problem->config().start;
   const TestSet set = problem->get_set("test/2");
   for (const unsigned jobs : {1U, 3U}) {
@@ -204,11 +204,11 @@ TEST(ChooseWinner, FewerFailedCasesThenFeasibilityThenTheObjective) {
   judged[1].validation = make_judgement(5.0);
   judged[2].validation = make_judgement(4.0, 0, 0.1);
   judged[3].validation = make_judgement(4.5);
-  EXPECT_EQ(Judge::choose_winner(ProblemDescription{}, judged), std::optional<std::size_t>(3));
+  EXPECT_EQ(choose_winner(ProblemDescription{}, judged), std::optional<std::size_t>(3));
   judged.resize(1);
-  EXPECT_EQ(Judge::choose_winner(ProblemDescription{}, judged), std::optional<std::size_t>(0));
+  EXPECT_EQ(choose_winner(ProblemDescription{}, judged), std::optional<std::size_t>(0));
   judged[0].validation = Evaluation{};  // no case yielded a number
-  EXPECT_EQ(Judge::choose_winner(ProblemDescription{}, judged), std::nullopt);
+  EXPECT_EQ(choose_winner(ProblemDescription{}, judged), std::nullopt);
 }
 
 }  // namespace

@@ -1,11 +1,10 @@
-#include "study/statistics/cliques.hpp"
-
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <stdexcept>
 
 #include "base/random.hpp"
+#include "study/statistics/ranking.hpp"
 
 namespace armwright {
 namespace {
@@ -22,7 +21,7 @@ TEST(Cliques, AreTheLargestSetsWithoutATellableOne) {
   EXPECT_EQ(find_cliques(0, Pairs{}, 9), Sets{});
 }
 
-// All subsets, tried one by one.
+// Tries all subsets one by one.
 TEST(Cliques, AreThoseOfBruteForce) {
   constexpr std::size_t kCount = 9;
   RandomStream random("test/cliques");
@@ -63,7 +62,7 @@ TEST(Cliques, AreThoseOfBruteForce) {
 }
 
 TEST(Cliques, OfTooManyThereIsNothing) {
-  Pairs apart;  // pairs of which any one may be in a set: 2^12 sets
+  Pairs apart;  // one of each pair may be in a set: 2^12 sets
   for (std::size_t i = 0; i < 12; ++i) {
     apart.emplace_back(2 * i, 2 * i + 1);
   }

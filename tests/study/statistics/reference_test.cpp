@@ -1,4 +1,4 @@
-// Every statistic against the values that scipy, R and brute force give (make_reference.py).
+// Compares every statistic with the values of scipy, R and brute force (make_reference.py).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,17 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "study/statistics/bootstrap.hpp"
-#include "study/statistics/effect_size.hpp"
-#include "study/statistics/friedman.hpp"
-#include "study/statistics/holm.hpp"
 #include "study/statistics/pareto.hpp"
-#include "study/statistics/profiles.hpp"
 #include "study/statistics/ranking.hpp"
-#include "study/statistics/ranks.hpp"
 #include "study/statistics/running_time.hpp"
-#include "study/statistics/spread.hpp"
-#include "study/statistics/wilcoxon.hpp"
+#include "study/statistics/significance.hpp"
+#include "study/statistics/summary.hpp"
 
 namespace armwright {
 namespace {
@@ -150,8 +144,8 @@ const std::map<std::string, std::function<Numbers(const Table&)>>& functions() {
   return table;
 }
 
-// Relative: what double precision leaves of sums over some hundred numbers and of the tails of
-// distributions. An infinity, and a 0, must be one.
+// The relative tolerance: the error in double precision of sums over some hundred numbers and of
+// the tails of distributions. Infinities and zeros must be exact.
 void expect_close(const Numbers& found, const Numbers& reference) {
   ASSERT_EQ(found.size(), reference.size());
   for (std::size_t i = 0; i < found.size(); ++i) {

@@ -6,7 +6,6 @@
 #include <numeric>
 #include <vector>
 
-#include "study/statistics/profiles.hpp"
 #include "study/statistics/support.hpp"
 
 namespace armwright {
@@ -23,7 +22,7 @@ TEST(CostToTarget, IsTheFirstCostThatReachesIt) {
   EXPECT_EQ(calc_cost_to_target(trace, 9), 8);
   EXPECT_EQ(calc_cost_to_target(trace, -1), 20);
   EXPECT_EQ(calc_cost_to_target(trace, -2), kInf);
-  EXPECT_EQ(calc_cost_to_target(trace, kInf), 3);  // no value reaches nothing
+  EXPECT_EQ(calc_cost_to_target(trace, kInf), 3);  // a trace point without value reaches no target
   EXPECT_EQ(calc_cost_to_target(trace, -kInf), kInf);
   EXPECT_EQ(calc_cost_to_target({}, 5), kInf);
 }
@@ -94,8 +93,8 @@ TEST(ExpectedRunningTime, RefusesWhatIsNoTrial) {
       refuses("at least one"));
 }
 
-// Two trials, hence four resamples, alike likely: both the success (10), one of each (10 + 30),
-// twice, and both the failure (infinite).
+// Two trials have four equally likely resamples: twice the success (10), one of each (10 + 30) in
+// two orders, and twice the failure (infinite).
 TEST(ResampledRunningTime, IsThatOfTheTrialsDrawnAnew) {
   const std::vector<Trial> trials = {{10, true}, {30, false}};
   EXPECT_EQ(calc_expected_running_time(trials), 40);
@@ -115,13 +114,13 @@ TEST(RunningTimeRatio, DrawsPairsTogether) {
   const std::vector<Trial> trials = {{10, true}, {30, true}};
   const std::vector<Trial> reference = {{100, true}, {300, true}};
   const RunningTimeRatio same = calc_running_time_ratio(trials, reference, 0.95, 2000, "s");
-  EXPECT_DOUBLE_EQ(*same.ratio, 0.1);  // in every resample, as each pair has it
+  EXPECT_DOUBLE_EQ(*same.ratio, 0.1);  // in every resample, because each pair has it
   EXPECT_DOUBLE_EQ(same.interval.lower, 0.1);
   EXPECT_DOUBLE_EQ(same.interval.upper, 0.1);
 }
 
-// The reference's second trial fails. Resamples: the first pair twice: 10 / 100; one of each:
-// 20 / 400, twice; the second twice: 30 / infinite.
+// The second trial of the reference fails. Resamples: twice the first pair, 10 / 100; one of each
+// in two orders, 20 / 400; twice the second pair, 30 / infinite.
 TEST(RunningTimeRatio, OfAReferenceThatFailsSometimes) {
   const std::vector<Trial> trials = {{10, true}, {30, true}};
   const std::vector<Trial> reference = {{100, true}, {300, false}};
@@ -166,7 +165,7 @@ TEST(AnytimeArea, IsTheMeanOfTheEcdfOverLogarithmicCosts) {
   }
   const std::vector<double> shares = calc_runtime_ecdf(times, costs);
   const double mean = std::accumulate(shares.begin(), shares.end(), 0.0) / kCosts;
-  // Each of the steps is misplaced by half a spacing at most.
+  // Each step is off by at most half a spacing.
   EXPECT_NEAR(calc_anytime_area(times, 1, 1000), mean, 0.5 / kCosts);
   EXPECT_THAT([&] { calc_anytime_area(times, 0, 10); }, refuses("0 < lowest"));
   EXPECT_THAT([&] { calc_anytime_area(times, 10, 10); }, refuses("lowest < highest"));
@@ -194,7 +193,8 @@ TEST(Profiles, OfAFailedStartAnyNumberConverges) {
 
 TEST(Profiles, PerformanceIsRelativeToTheBestOnEachProblem) {
   const std::vector<std::vector<double>> costs = {{10, 20}, {30, 15}, {7, 7}, {kInf, kInf}};
-  // One is best on three of four, the ties included; the problem that nobody solved counts.
+  // One solver is best on three of four problems, including ties. The problem without a solution
+  // counts.
   EXPECT_THAT(
       calc_performance_profiles(costs, std::vector{0.9, 1.0, 1.9, 2.0, kInf}),
       ElementsAre(ElementsAre(0, 0.5, 0.5, 0.75, 0.75), ElementsAre(0, 0.5, 0.5, 0.75, 0.75)));

@@ -1,13 +1,11 @@
+#include "study/statistics/significance.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "study/statistics/effect_size.hpp"
-#include "study/statistics/friedman.hpp"
-#include "study/statistics/holm.hpp"
 #include "study/statistics/support.hpp"
-#include "study/statistics/wilcoxon.hpp"
 
 namespace armwright {
 namespace {
@@ -33,14 +31,14 @@ TEST(SignedRank, AllOnOneSideHasTheSmallestP) {
     EXPECT_EQ(test.zeros, 0);
     EXPECT_EQ(test.positive_rank_sum, 0);
     EXPECT_EQ(test.negative_rank_sum, n * (n + 1) / 2);
-    EXPECT_EQ(test.p_value, std::ldexp(1.0, 1 - n));  // two choices of signs of 2^n
+    EXPECT_EQ(test.p_value, std::ldexp(1.0, 1 - n));  // two of the 2^n choices of signs
     EXPECT_TRUE(test.exact);
   }
 }
 
 TEST(SignedRank, CountsTheSetsOfRanksWithASumAsSmall) {
-  // 10 pairs, of which those of the ranks 1, 2 and 5 are positive. As many sets of different ranks
-  // have the sums 0, ..., 8: 1, 1, 1, 2, 2, 3, 4, 5 and 6, together 25.
+  // Of 10 pairs, those with the ranks 1, 2 and 5 are positive. The numbers of sets of different
+  // ranks with the sums 0, ..., 8 are 1, 1, 1, 2, 2, 3, 4, 5 and 6, together 25.
   std::vector<double> a = make_steps(10);
   for (const int rank : {3, 4, 6, 7, 8, 9, 10}) {
     a[rank - 1] = -rank;
@@ -52,7 +50,7 @@ TEST(SignedRank, CountsTheSetsOfRanksWithASumAsSmall) {
 }
 
 TEST(SignedRank, TiesShareRanksAndTheDistributionKnows) {
-  // Ranks 3/2, 3/2 and 3; one of the small ones is positive: 0, 3/2 and 3/2 are as small, of 8.
+  // Ranks 3/2, 3/2 and 3; one of the small ones is positive. 3 of 8 sums are as small: 0, 3/2, 3/2.
   const SignedRankTest test =
       calc_signed_rank_test(std::vector{1.0, 0.0, 0.0}, std::vector{0.0, 1.0, 2.0});
   EXPECT_EQ(test.positive_rank_sum, 1.5);
@@ -119,7 +117,7 @@ TEST(Friedman, IsItsEquationsOnASmallTable) {
 }
 
 TEST(Friedman, OfCompleteAgreementHasAnInfiniteF) {
-  // With ties, too, if they are the same everywhere; 5 blocks: chi^2 = 5 (3 - 1).
+  // This also holds with ties, if they are the same in all blocks; 5 blocks: chi^2 = 5 (3 - 1).
   for (const std::vector<double>& block : {std::vector{0.1, 0.2, 0.7}, {0.3, 0.3, 0.4}}) {
     const FriedmanTest test = calc_friedman_test(std::vector(5, block));
     EXPECT_DOUBLE_EQ(test.chi_squared, 10);

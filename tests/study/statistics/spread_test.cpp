@@ -1,5 +1,3 @@
-#include "study/statistics/spread.hpp"
-
 #include <gtest/gtest.h>
 
 #include <numeric>
@@ -7,8 +5,8 @@
 #include <vector>
 
 #include "base/random.hpp"
-#include "study/statistics/bootstrap.hpp"
-#include "study/statistics/ranks.hpp"
+#include "study/statistics/ranking.hpp"
+#include "study/statistics/summary.hpp"
 #include "study/statistics/support.hpp"
 
 namespace armwright {
@@ -52,7 +50,8 @@ TEST(Spread, InterpolatesBetweenOrderStatistics) {
 
 TEST(Spread, NextToAnInfinityIsInfiniteAndNeverNan) {
   const std::vector values = {kInf, 1.0, 2.0, kInf, 3.0};
-  EXPECT_EQ(calc_quantile(values, 0.5), 3);  // falls on it: what comes after does not matter
+  EXPECT_EQ(calc_quantile(values, 0.5),
+            3);  // h is a whole number, so the next value does not matter
   EXPECT_EQ(calc_quantile(values, 0.501), kInf);
   EXPECT_EQ(calc_quantile(values, 0.9), kInf);  // between two of them
   EXPECT_EQ(calc_quantile(values, 1), kInf);

@@ -87,13 +87,13 @@ TEST(Summary, CaseWithoutNumberCountsAsTheLargestOfAll) {
 }
 
 TEST(Summary, MedianNeedsBothItsNeighbours) {
-  // 1 2 | - -: between 2 and a case without a number there is no number.
+  // 1 2 | - -: the median lies between 2 and a case without a number, so there is none.
   const ErrorSummary half = summarize(std::vector{1.0, kNone, 2.0, kNone}, kFailureError_m);
   EXPECT_EQ(half.mean, 1.5);
   EXPECT_FALSE(half.median);
   // 1 2 3 -: the median lies between 2 and 3.
   EXPECT_EQ(summarize(std::vector{3.0, 1.0, kNone, 2.0}, kFailureError_m).median, 2.5);
-  // 1 - -: more than half are without.
+  // 1 - -: more than half of the cases have no number.
   EXPECT_FALSE(summarize(std::vector{kNone, 1.0, kNone}, kFailureError_m).median);
 }
 

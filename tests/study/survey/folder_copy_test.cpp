@@ -1,4 +1,4 @@
-// A copy is whole or not there: on a full disk, after a kill at any moment, when stopped.
+// A copy is complete or absent: on a full disk, after a kill at any moment, and when stopped.
 #include "study/survey/folder_copy.hpp"
 
 #include <signal.h>

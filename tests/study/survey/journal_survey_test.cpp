@@ -34,10 +34,10 @@ class JournalSurveyTest : public testing::Test {
     bytes[offset] = static_cast<char>(bytes[offset] ^ 0x20);
     write_bytes(file_, bytes);
   }
-  // The first byte of a record's payload but one.
+  // The second byte of a record's payload.
   std::size_t inside(std::size_t record) const { return ends_[record] + 20; }
 
-  // What is repaired, read as any journal.
+  // Reads the repaired journal like any journal.
   JournalContent repair(JournalRepair& done) {
     const auto target = folder_ / "repaired";
     const FileDescriptor fd(::open(target.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644));
@@ -81,7 +81,7 @@ TEST_F(JournalSurveyTest, EveryDamagedStretchIsNamed) {
   EXPECT_EQ(survey.damage[0].fault, "its checksum is wrong");
   EXPECT_EQ(survey.damage[1].offset, ends_[8]);
   EXPECT_EQ(survey.damage[1].records_before, 6u);
-  EXPECT_EQ(survey.damage[1].records_behind, 4u);  // the end's too
+  EXPECT_EQ(survey.damage[1].records_behind, 4u);  // including the end record
   EXPECT_EQ(describe(survey.list_lost()), "2 to 3, 8");
   EXPECT_TRUE(survey.is_damaged());
 }
@@ -121,7 +121,7 @@ TEST_F(JournalSurveyTest, OneFlippedByteCostsOneRecordWhereverItIs) {
     const bool in_magic = offset < ends_[0];
     const bool in_end = offset >= ends_[kRecords];
     ASSERT_EQ(survey.evaluations.size(), kRecords - (in_magic || in_end ? 0 : 1)) << offset;
-    // The last record, damaged, is what a kill could leave.
+    // A damaged last record could also be left by a kill.
     EXPECT_EQ(survey.is_damaged(), !in_end) << offset;
     JournalRepair done;
     const JournalContent repaired = repair(done);
@@ -142,7 +142,7 @@ TEST_F(JournalSurveyTest, ZeroedBlocksAreLeftOut) {
   const JournalContent repaired = repair(done);
   EXPECT_EQ(repaired.training.size(), kRecords - 4);
   EXPECT_EQ(done.bytes_dropped, ends_[8] - ends_[4]);
-  EXPECT_EQ(done.records_dropped, 1u);  // the end
+  EXPECT_EQ(done.records_dropped, 1u);  // the end record
 }
 
 TEST_F(JournalSurveyTest, WhatContradictsItselfIsNotBelieved) {
@@ -150,7 +150,7 @@ TEST_F(JournalSurveyTest, WhatContradictsItselfIsNotBelieved) {
   EvaluationRecord other = make_record(5);
   other.evaluation.objectives = {-1};
   journal_format::encode(other, bytes);
-  journal_format::encode(make_record(3), bytes);  // alike
+  journal_format::encode(make_record(3), bytes);  // with equal content
   write_bytes(file_, bytes);
   const JournalSurvey survey = survey_journal(file_);
   EXPECT_EQ(survey.contradictory, std::vector<std::uint64_t>{5});

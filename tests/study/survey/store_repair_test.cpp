@@ -1,5 +1,5 @@
-// What a repaired copy promises: the command that made the original goes on with it, and ends with
-// the very bytes of a run that was never damaged.
+// The command that made a store resumes its repaired copy, and ends with the same bytes as a run
+// that was never damaged.
 #include "study/survey/store_repair.hpp"
 
 #include <gmock/gmock.h>
@@ -27,7 +27,7 @@ void change(const std::filesystem::path& file, const std::function<void(std::str
   std::ofstream(file, std::ios::binary) << bytes;
 }
 
-// At several places, in the middle.
+// Damages the middle of the file at several places.
 void damage_journal(const std::filesystem::path& run) {
   change(run / "journal", [](std::string& bytes) {
     for (const std::size_t percent : {5, 31, 32, 60, 88}) {
@@ -86,7 +86,7 @@ TEST_P(StoreRepairOf, ARunGoesOnToTheSameResult) {
   EXPECT_EQ(read("copy").training.size(), done.evaluations_kept);
 
   ASSERT_TRUE(run(plan, "copy"));
-  EXPECT_EQ(observer_.last.phase, Progress::Phase::test);
+  EXPECT_EQ(observer_.last.phase, CaseRole::test);
   expect_same_evaluations(read("whole"), read("copy"));
   EXPECT_EQ(read_derived(temporary_ / "whole"), read_derived(temporary_ / "copy"));
   EXPECT_FALSE(survey_store(temporary_ / "copy").is_damaged());
@@ -183,7 +183,7 @@ TEST_F(StoreRepairTest, ALostManifestIsNotRepairedAndTheAdviceWorks) {
     EXPECT_THAT(error.what(), HasSubstr("optimize q1-complex --optimizer ga --seed 1"));
   }
   EXPECT_FALSE(std::filesystem::exists(temporary_ / "copy"));
-  // As it is advised: begun anew, stopped, and the journal put there.
+  // Follows the advice: begin the run again, stop it, and copy the journal there.
   StopSignal stop;
   StoppingObserver stopping(stop, 8);
   ASSERT_FALSE(execute_run({plan, temporary_ / "new", 1, {}}, stop, stopping));
@@ -238,7 +238,7 @@ TEST_F(StoreRepairTest, AskingWhoWritesKeepsNobodyFromWriting) {
   }
   done = true;
   asking.join();
-  // Whoever asks may lose the processor in the instant that it holds the lock.
+  // The process that tests the lock may be interrupted while it holds the lock.
   EXPECT_LE(refused, 30);
 }
 

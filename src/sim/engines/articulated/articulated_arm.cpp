@@ -8,7 +8,7 @@
 #include "sim/dynamics/chain_dynamics.hpp"
 #include "sim/dynamics/chain_model.hpp"
 #include "sim/kinematics/kinematics.hpp"
-#include "sim/tracking/tracking_result.hpp"
+#include "sim/tracking/engine_support.hpp"
 
 namespace armwright {
 namespace {
@@ -16,7 +16,7 @@ namespace {
 using namespace articulated;
 using Eigen::Vector3d;
 
-constexpr double kFarthest = 1e6;  // as in the engine's kernels
+constexpr double kFarthest = 1e6;  // as in the engine's kernels (lane_kernel.hpp)
 
 struct ArmLevel;  // tags the code that this file instantiates
 using ArmNumber = lanes::Single<double, ArmLevel>;
@@ -43,7 +43,7 @@ struct ArticulatedArm::Chain {
   std::size_t joints() const { return model.joint_count(); }
   bool turns(std::size_t i) const { return model.joints[i].kind == JointKind::revolute; }
 
-  // In the posture that q is, its memory being the scratch.
+  // Returns the dynamics in the posture q. Their memory is the scratch.
   Dynamics make_dynamics() {
     ArmNumber* memory = scratch.data();
     Dynamics dynamics(ArmShape(chain.joints(), chain.flags().data(), chain.tilted_gravity()),
@@ -124,7 +124,7 @@ void ArticulatedArm::step(std::span<const double> effort, double dt_s) {
   c.check();
 }
 
-void ArticulatedArm::read_angles(std::span<double> q) const {
+void ArticulatedArm::read_positions(std::span<double> q) const {
   for (std::size_t i = 0; i < chain_->joints(); ++i) {
     q[i] = chain_->turns(i) ? wrap_angle(chain_->q[i].v) : chain_->q[i].v;
   }

@@ -2,17 +2,16 @@
 
 #include <algorithm>
 
-#include "sim/engines/articulated/derivatives.hpp"
 #include "sim/engines/articulated/lane_block.hpp"
-#include "sim/tracking/tracking_result.hpp"
+#include "sim/tracking/engine_support.hpp"
 
 namespace armwright {
 namespace {
 
 using namespace articulated;
 
-// Groups of lanes that go through the timeline together; enough to fill the lanes of simulations
-// that ended early, few enough to stay in the cache.
+// Count of packs of lanes that go through the timeline together. It is large enough to refill the
+// lanes of simulations that ended early, and small enough for the cache.
 constexpr std::size_t kGroups = 16;
 
 bool have_same_timeline(const TargetTable& a, const TargetTable& b) {
@@ -35,7 +34,7 @@ bool have_same_shape(const ChainModel& a, const ChainModel& b) {
   return &a == &b || (a.flags() == b.flags() && a.tilted_gravity() == b.tilted_gravity());
 }
 
-// Error{usage} as from every engine where the design's numbers make no controller.
+// Throws Error{usage}, as every engine does, if the design's numbers make no controller.
 void check_design(const ArmDesign& design, const RobotModel& robot) {
   const ControllerRow& row = find_controller(design.controller);
   for (std::size_t i = 0; i < design.joints.size(); ++i) {
@@ -51,9 +50,9 @@ class ArticulatedEngine final : public PhysicsEngine {
   std::vector<TrackingResult> simulate(const TrackingSetup& setup,
                                        std::span<const TrackingJob> jobs) const override {
     std::vector<TrackingResult> results(jobs.size());
-    // Jobs of one timeline, of arms of one shape, under one controller, and of perturbed plants or
-    // not, each: these decide which code is run, which must not depend on the company that a job is
-    // in.
+    // Groups of jobs with the same timeline, shape of the arm and controller, and with perturbed
+    // plants or nominal ones. These decide which code runs, and that must not depend on the other
+    // jobs of a batch.
     std::vector<std::vector<std::size_t>> alike;
     const auto get_chain = [&](std::size_t job) -> const ChainModel& {
       return jobs[job].choose_setup(setup).chain();

@@ -1,5 +1,6 @@
-// The controllers but the PID for AVX2 and FMA. src/CMakeLists.txt compiles this file for it;
-// nothing else may be included here that other files share functions with.
+// The controllers except the PID, for AVX2 and FMA. src/CMakeLists.txt sets the compiler flags for
+// it. This file must not include a header whose functions are also compiled for other instruction
+// sets.
 #include "sim/engines/articulated/lane_control.hpp"
 
 #if defined(__x86_64__)
@@ -7,8 +8,6 @@
 namespace armwright::articulated {
 
 struct Avx2Level;
-void find_control_avx2(int law, ControlFunction<double>& control);
-void find_control_avx2(int law, ControlFunction<float>& control);
 
 void find_control_avx2(int law, ControlFunction<double>& control) {
   control =

@@ -1,4 +1,4 @@
-// The controllers but the PID for SSE2, which every x86-64 has.
+// The controllers except the PID, for SSE2, which every x86-64 CPU has.
 #include "sim/engines/articulated/lane_control.hpp"
 
 #if defined(__x86_64__)
@@ -6,8 +6,6 @@
 namespace armwright::articulated {
 
 struct Sse2Level;
-void find_control_sse2(int law, ControlFunction<double>& control);
-void find_control_sse2(int law, ControlFunction<float>& control);
 
 void find_control_sse2(int law, ControlFunction<double>& control) {
   control = find_control<lanes::Pack<double, 2, Sse2Level>>(law, controllers::AllLaws{});

@@ -1,10 +1,9 @@
-#include "sim/engines/articulated/derivatives.hpp"
-
+// The exact derivatives of a simulation's point errors with respect to gains and effort limits.
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "sim/engines/articulated/dual.hpp"
+#include "sim/engines/articulated/articulated_engine.hpp"
 #include "sim/engines/articulated/number_simulation.hpp"
 
 namespace armwright::articulated {
@@ -15,7 +14,7 @@ using Slopes = lanes::Pair<lanes::Pack<double, 2, DerivativeLevel>>;
 using Number = lanes::Dual<Slopes>;
 constexpr std::size_t kAtOnce = Slopes::kLanes;
 
-// The design, with its derivatives along at most kAtOnce directions.
+// Returns the drives of a design with their derivatives along at most kAtOnce directions.
 std::vector<NumberDrive<Number>> make_drives(const ArmDesign& design,
                                              std::span<const ArmDesign> directions) {
   std::vector<NumberDrive<Number>> drives;
@@ -32,8 +31,8 @@ std::vector<NumberDrive<Number>> make_drives(const ArmDesign& design,
       gains.push_back(make([gain](const JointDrive& drive) { return drive.gains[gain]; }));
     }
     drives.push_back({std::move(gains),
-                      make([](const JointDrive& drive) { return drive.limits.min_n_m; }),
-                      make([](const JointDrive& drive) { return drive.limits.max_n_m; })});
+                      make([](const JointDrive& drive) { return drive.limits.min; }),
+                      make([](const JointDrive& drive) { return drive.limits.max; })});
   }
   return drives;
 }

@@ -1,5 +1,7 @@
 #include "sim/engines/articulated/kernels.hpp"
 
+#include "sim/simd/simd_level.hpp"
+
 namespace armwright::articulated {
 
 template <class T>
@@ -17,7 +19,7 @@ Kernel<T> get_kernel(SimdLevel level) {
       break;
   }
 #else
-  (void)level;  // no other is supported
+  (void)level;  // only `scalar` is supported
 #endif
   return {run_segment_scalar, 1, find_control_scalar};
 }

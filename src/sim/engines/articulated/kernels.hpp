@@ -1,24 +1,135 @@
-// The compiled kernels, one set for every instruction set.
+// The kernels: functions that simulate one segment of the timeline for one pack of lanes, compiled
+// once per instruction set. This header has the memory layout, the call and the table of kernels.
+//
+// All numbers lie in packs: a pack has one number per lane, side by side. A field has one pack per
+// joint, a single number one pack.
+//
+// This header is compiled for every instruction set (lane_pack.hpp), so it must not use templates
+// of the standard library.
 #pragma once
 
+#include <cstdint>
+
 #include "sim/dynamics/chain_layout.hpp"
-#include "sim/simd/simd_level.hpp"
+
+namespace armwright {
+enum class SimdLevel : std::uint8_t;
+}
 
 namespace armwright::articulated {
+
+// The state of one joint, which a simulation carries from step to step.
+enum StateField : int {
+  kQ,
+  kRate,
+  kIntegrating,  // 1, or 0 after a clamped step
+  kEffortMin,
+  kEffortMax,
+  kEffort,  // written by every controller but the PID
+  kPeakEffort,
+  kSquaredEffort,  // summed over the steps
+  kClampedSteps,
+  kStateFields
+};
+// The state of the simulation, which follows the joints' states.
+enum StateSingle : int {
+  kEnergy,
+  kWorstSquared,  // largest squared distance in the segment's measuring window
+  kPointX,        // the segment's end, in the kernel's frame
+  kPointY,
+  kPointZ,
+  kCutoffSquared,
+  kToolTargetX,  // x, y and z of each tool point at the segment's end, in the same frame
+  kStateSingles = kToolTargetX + 3 * kMostToolPoints
+};
+
+// The perturbations of a plant (sim/tracking/plant_variation.hpp): of each joint, then of the arm.
+enum PlantField : int { kViscous, kCoulomb, kRipple, kRipplePhase, kPlantFields };
+enum PlantSingle : int {
+  kRateScale,     // 1 / v_s
+  kRippleCycles,  // per turn
+  kQuantum,
+  kPlantSingles
+};
+
+constexpr int calc_state_packs(int joints) {
+  return joints * kStateFields + kStateSingles;
+}
+// The control packs follow the state packs: first the controller's states, then its gains, each of
+// them a field.
+constexpr int calc_control_packs(int joints, int states, int gains) {
+  return joints * (states + gains);
+}
+constexpr int calc_plant_packs(int joints) {
+  return joints * kPlantFields + kPlantSingles;
+}
+constexpr int calc_scratch_packs(int joints) {
+  return 4 * joints + calc_dynamics_packs(joints);
+}
+// A recorded step: the joint positions, the efforts, and the tip's position.
+inline constexpr int kRecordSingles = 3;
+constexpr int calc_record_packs(int joints) {
+  return joints * 2 + kRecordSingles;
+}
+
+inline constexpr int kMaxLanes = 16;
+
+enum class LaneEvent : std::uint8_t { none, cut_off, diverged };
+
+// One segment of the timeline for one pack of lanes. The caller owns all memory. It must be aligned
+// to 64 bytes.
+template <class T>
+struct SegmentCall {
+  int joints = 0;
+  const std::uint8_t* flags = nullptr;  // JointFlag bits, one byte per joint
+  bool tilted_gravity = false;          // gravity is not parallel to the first axis
+  bool prismatic = false;               // at least one joint is
+  const T* model = nullptr;             // calc_model_packs() packs
+  T* state = nullptr;                   // calc_state_packs() packs and the control packs
+  int control_packs = 0;
+  // Computes the efforts of one step for all joints. Null: the PID, which the kernels have inlined.
+  void (*control)(SegmentCall& call, int step) = nullptr;
+  T* scratch = nullptr;  // calc_scratch_packs() packs, for chains of any length
+  int steps = 0;
+  int window_start = 0;
+  int tool_points = 0;  // count of tool points that are measured; 0: the tip is measured
+  int substeps = 1;
+  T period_s = 0;
+  bool first_step_of_case = false;
+  bool shared_targets = false;  // all lanes have the same table: that of lane 0
+  // One pointer per lane, to the setpoints of the segment's first step; one row per step.
+  const double* const* targets = nullptr;
+  const double* const* feed_forward = nullptr;  // likewise; null if the controller needs none
+  // The following five are for perturbed plants. `plant` is null for nominal ones.
+  const T* plant = nullptr;    // calc_plant_packs() packs
+  T* past = nullptr;           // a ring of `past_length` x joints packs: positions after substeps
+  int past_length = 1;         // larger than any lane's delay
+  int newest = 0;              // the place of the present positions in the ring
+  const int* delay = nullptr;  // one per lane: age of the measured positions, in substeps
+  T* records = nullptr;        // calc_record_packs() per step, or null
+  std::uint32_t alive = 0;     // one bit per lane; in and out
+  // Output for lanes that ended in this call: how, in which step, and their state at that time.
+  LaneEvent event[kMaxLanes] = {};
+  int event_step[kMaxLanes] = {};
+  T* final_state = nullptr;  // laid out like the state
+};
+
+template <class T>
+using ControlFunction = void (*)(SegmentCall<T>& call, int step);
 
 template <class T>
 struct Kernel {
   void (*run_segment)(SegmentCall<T>& call) = nullptr;
   int lanes = 1;
-  // What SegmentCall::control must be for the law in that place of the table.
-  void (*find_control)(int law, void (*&control)(SegmentCall<T>& call, int step)) = nullptr;
+  // Sets SegmentCall::control for the law at that place of the table.
+  void (*find_control)(int law, ControlFunction<T>& control) = nullptr;
 };
 
-// The level must be supported by this CPU.
+// Returns the kernel of a level, which this CPU must support.
 template <class T>
 Kernel<T> get_kernel(SimdLevel level);
 
-// Each defined in a file that is compiled for its instruction set; see there.
+// Each of these is defined in the file that is compiled for its instruction set.
 void run_segment_scalar(SegmentCall<double>& call);
 void run_segment_scalar(SegmentCall<float>& call);
 void run_segment_sse2(SegmentCall<double>& call);
@@ -27,13 +138,13 @@ void run_segment_avx2(SegmentCall<double>& call);
 void run_segment_avx2(SegmentCall<float>& call);
 void run_segment_avx512(SegmentCall<double>& call);
 void run_segment_avx512(SegmentCall<float>& call);
-void find_control_scalar(int law, void (*&control)(SegmentCall<double>& call, int step));
-void find_control_scalar(int law, void (*&control)(SegmentCall<float>& call, int step));
-void find_control_sse2(int law, void (*&control)(SegmentCall<double>& call, int step));
-void find_control_sse2(int law, void (*&control)(SegmentCall<float>& call, int step));
-void find_control_avx2(int law, void (*&control)(SegmentCall<double>& call, int step));
-void find_control_avx2(int law, void (*&control)(SegmentCall<float>& call, int step));
-void find_control_avx512(int law, void (*&control)(SegmentCall<double>& call, int step));
-void find_control_avx512(int law, void (*&control)(SegmentCall<float>& call, int step));
+void find_control_scalar(int law, ControlFunction<double>& control);
+void find_control_scalar(int law, ControlFunction<float>& control);
+void find_control_sse2(int law, ControlFunction<double>& control);
+void find_control_sse2(int law, ControlFunction<float>& control);
+void find_control_avx2(int law, ControlFunction<double>& control);
+void find_control_avx2(int law, ControlFunction<float>& control);
+void find_control_avx512(int law, ControlFunction<double>& control);
+void find_control_avx512(int law, ControlFunction<float>& control);
 
 }  // namespace armwright::articulated

@@ -1,5 +1,5 @@
-// The kernels for AVX2 and FMA. src/CMakeLists.txt compiles this file for them; nothing else may be
-// included here that other files share functions with.
+// The kernels for AVX2 and FMA. src/CMakeLists.txt sets the compiler flags for it. This file must
+// not include a header whose functions are also compiled for other instruction sets.
 #include "sim/engines/articulated/lane_kernel.hpp"
 
 #if defined(__x86_64__)
@@ -7,8 +7,6 @@
 namespace armwright::articulated {
 
 struct Avx2Level;
-void run_segment_avx2(SegmentCall<double>& call);
-void run_segment_avx2(SegmentCall<float>& call);
 
 void run_segment_avx2(SegmentCall<double>& call) {
   run_segment<lanes::Pair<lanes::Pack<double, 4, Avx2Level>>>(call);

@@ -1,5 +1,5 @@
-// The kernels for AVX-512 (F, VL, DQ, BW). src/CMakeLists.txt compiles this file for it; nothing
-// else may be included here that other files share functions with.
+// The kernels for AVX-512 (F, VL, DQ, BW). src/CMakeLists.txt sets the compiler flags for it. This
+// file must not include a header whose functions are also compiled for other instruction sets.
 #include "sim/engines/articulated/lane_kernel.hpp"
 
 #if defined(__x86_64__)
@@ -7,8 +7,6 @@
 namespace armwright::articulated {
 
 struct Avx512Level;
-void run_segment_avx512(SegmentCall<double>& call);
-void run_segment_avx512(SegmentCall<float>& call);
 
 void run_segment_avx512(SegmentCall<double>& call) {
   run_segment<lanes::Pack<double, 8, Avx512Level>>(call);

@@ -1,11 +1,9 @@
-// The kernels for one lane, any machine.
+// The kernels for one lane on any machine.
 #include "sim/engines/articulated/lane_kernel.hpp"
 
 namespace armwright::articulated {
 
 struct ScalarLevel;
-void run_segment_scalar(SegmentCall<double>& call);
-void run_segment_scalar(SegmentCall<float>& call);
 
 void run_segment_scalar(SegmentCall<double>& call) {
   run_segment<lanes::Single<double, ScalarLevel>>(call);

@@ -1,4 +1,4 @@
-// The kernels for SSE2, which every x86-64 has.
+// The kernels for SSE2, which every x86-64 CPU has.
 #include "sim/engines/articulated/lane_kernel.hpp"
 
 #if defined(__x86_64__)
@@ -6,8 +6,6 @@
 namespace armwright::articulated {
 
 struct Sse2Level;
-void run_segment_sse2(SegmentCall<double>& call);
-void run_segment_sse2(SegmentCall<float>& call);
 
 void run_segment_sse2(SegmentCall<double>& call) {
   run_segment<lanes::Pack<double, 2, Sse2Level>>(call);

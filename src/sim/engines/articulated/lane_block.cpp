@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "sim/kinematics/kinematics.hpp"
-#include "sim/tracking/tracking_result.hpp"
+#include "sim/tracking/engine_support.hpp"
 
 namespace armwright::articulated {
 namespace {
@@ -58,7 +58,7 @@ LaneBlock<T>::LaneBlock(const TrackingSetup& setup, const Kernel<T>& kernel,
   reserve_plants(chosen, groups);
   slots_.assign(groups * lanes(), kFree);
   for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
-    // Lanes that are left over hold the first job's arm, at rest and without controllers.
+    // Lanes without a job get the first job's arm, at rest and without controllers.
     const std::size_t job = chosen[slot < chosen.size() ? slot : 0];
     if (own_models_ || slot < lanes()) {
       const std::vector<double>& numbers = setup_of(job).chain().numbers();
@@ -98,10 +98,10 @@ void LaneBlock<T>::place(std::size_t slot, std::size_t job) {
       numbers[(field * joints_ + i) * lanes()] = static_cast<T>(value);
     };
     const JointDrive& drive = one.design->joints[i];
-    set(kQ, one.targets->start_rad[i]);
+    set(kQ, one.targets->start_positions[i]);
     set(kIntegrating, 1);
-    set(kEffortMin, drive.limits.min_n_m);
-    set(kEffortMax, drive.limits.max_n_m);
+    set(kEffortMin, drive.limits.min);
+    set(kEffortMax, drive.limits.max);
     const std::size_t first_gain =
         static_cast<std::size_t>(calc_state_packs(static_cast<int>(joints_))) +
         static_cast<std::size_t>(controller_.states) * joints_ + i;
@@ -145,18 +145,18 @@ void LaneBlock<T>::place_plant(std::size_t slot, std::size_t job) {
     numbers[pack * lanes()] = static_cast<T>(value);
   };
   for (std::size_t i = 0; i < joints_; ++i) {
-    set(kViscous * joints_ + i, variation.viscous_friction_n_m_s_per_rad[i]);
-    set(kCoulomb * joints_ + i, variation.coulomb_friction_n_m[i]);
+    set(kViscous * joints_ + i, variation.viscous_friction[i]);
+    set(kCoulomb * joints_ + i, variation.coulomb_friction[i]);
     set(kRipple * joints_ + i, variation.torque_ripple[i]);
     set(kRipplePhase * joints_ + i, variation.ripple_phase_rad[i]);
   }
-  set(kPlantFields * joints_ + kRateScale, 1 / variation.friction_transition_rad_per_s);
+  set(kPlantFields * joints_ + kRateScale, 1 / variation.friction_transition_rate);
   set(kPlantFields * joints_ + kRippleCycles, variation.ripple_cycles_per_turn);
-  set(kPlantFields * joints_ + kQuantum, variation.quantisation_rad);
+  set(kPlantFields * joints_ + kQuantum, variation.quantum);
   delays_[slot] = variation.delay_substeps;
   T* const past = pasts_.data() + slot / lanes() * past_size_ + slot % lanes();
   for (std::size_t pack = 0; pack < past_size_ / lanes(); ++pack) {
-    past[pack * lanes()] = static_cast<T>(jobs_[job].targets->start_rad[pack % joints_]);
+    past[pack * lanes()] = static_cast<T>(jobs_[job].targets->start_positions[pack % joints_]);
   }
 }
 
@@ -205,7 +205,7 @@ void LaneBlock<T>::run() {
 template <class T>
 void LaneBlock<T>::run_segment(std::size_t group, std::size_t segment) {
   const std::size_t first = group * lanes();
-  std::size_t any = kFree;  // a job to fill lanes that are free
+  std::size_t any = kFree;  // a job whose targets fill the free lanes
   SegmentCall<T> call;
   for (std::size_t lane = 0; lane < lanes(); ++lane) {
     const std::size_t job = slots_[first + lane];
@@ -237,7 +237,7 @@ void LaneBlock<T>::run_segment(std::size_t group, std::size_t segment) {
   call.shared_targets = true;
   for (std::size_t lane = 0; lane < lanes(); ++lane) {
     const std::size_t job = slots_[first + lane] == kFree ? any : slots_[first + lane];
-    targets[lane] = jobs_[job].targets->angles(timeline.first_step).data();
+    targets[lane] = jobs_[job].targets->positions(timeline.first_step).data();
     call.shared_targets &= targets[lane] == targets[0];
     if (controller_.feed_forward != FeedForward::none) {
       feed_forward[lane] = jobs_[job].targets->feed_forward(timeline.first_step).data();
@@ -278,7 +278,7 @@ void LaneBlock<T>::run_segment(std::size_t group, std::size_t segment) {
     }
     TrackingResult& result = results_[job];
     const LaneEvent event = call.event[lane];
-    // A step that diverges is not counted; one that is cut off is.
+    // A step that diverges does not count, but one that is cut off does.
     const int steps = event == LaneEvent::none       ? timeline.steps
                       : event == LaneEvent::diverged ? call.event_step[lane]
                                                      : call.event_step[lane] + 1;
@@ -321,7 +321,7 @@ void LaneBlock<T>::read_records(std::size_t slot, const Segment& segment, int st
   const RecordingOptions& recording = jobs_[job].recording;
   const TrackingSetup& setup = setup_of(job);
   if (!recording.any()) {
-    return;  // only a neighbour's are asked for
+    return;  // only another lane needs the records
   }
   TrackingResult& result = results_[job];
   for (int step = 0; step < steps; ++step) {
@@ -334,11 +334,11 @@ void LaneBlock<T>::read_records(std::size_t slot, const Segment& segment, int st
     if (recording.motion) {
       result.tips_m.push_back(tip);
       for (std::size_t i = 0; i < joints_; ++i) {
-        result.angles_rad.push_back(get(i));
+        result.joint_positions.push_back(get(i));
       }
     }
     if (!recording.error_series && !recording.trajectory) {
-      continue;  // the target's position would cost more than the rest
+      continue;  // the target's position costs more to compute than all the rest
     }
     const Eigen::Vector3d target = setup.calc_target_position(segment, step);
     if (recording.error_series) {
@@ -347,12 +347,12 @@ void LaneBlock<T>::read_records(std::size_t slot, const Segment& segment, int st
     if (recording.trajectory) {
       TrajectorySample sample;
       sample.time_s = (result.steps + step + 1) * setup.task().control_period_s;
-      const auto targets = jobs_[job].targets->angles(segment.first_step + step);
-      sample.target_rad.assign(targets.begin(), targets.end());
+      const auto targets = jobs_[job].targets->positions(segment.first_step + step);
+      sample.target_q.assign(targets.begin(), targets.end());
       for (std::size_t i = 0; i < joints_; ++i) {
         const bool turns = setup.robot().joints[i].kind == JointKind::revolute;
-        sample.q_rad.push_back(turns ? wrap_angle(get(i)) : get(i));
-        sample.effort_n_m.push_back(get(joints_ + i));
+        sample.q.push_back(turns ? wrap_angle(get(i)) : get(i));
+        sample.effort.push_back(get(joints_ + i));
       }
       sample.tip_m = tip;
       sample.target_m = target;
@@ -361,7 +361,7 @@ void LaneBlock<T>::read_records(std::size_t slot, const Segment& segment, int st
   }
 }
 
-// Once a whole pack's worth of lanes is free, those at the end move into the gaps.
+// Moves simulations from the end into the gaps as soon as a whole pack of lanes can become free.
 template <class T>
 void LaneBlock<T>::close_up() {
   const auto busy = static_cast<std::size_t>(
@@ -399,9 +399,10 @@ void LaneBlock<T>::read_measures(const T* numbers, TrackingResult& result) const
     return static_cast<double>(numbers[(field * joints_ + joint) * lanes()]);
   };
   for (std::size_t i = 0; i < joints_; ++i) {
-    result.peak_effort_n_m.push_back(get(kPeakEffort, i));
-    result.rms_effort_n_m.push_back(get(kSquaredEffort, i));  // complete_result() makes these
-    result.saturated_share.push_back(get(kClampedSteps, i));  // and these of the sums
+    result.peak_effort.push_back(get(kPeakEffort, i));
+    // These two are sums until complete_result().
+    result.rms_effort.push_back(get(kSquaredEffort, i));
+    result.saturated_share.push_back(get(kClampedSteps, i));
   }
   result.energy_j = static_cast<double>(numbers[(kStateFields * joints_ + kEnergy) * lanes()]);
 }
@@ -411,7 +412,7 @@ std::string LaneBlock<T>::describe_divergence(std::size_t job, const T* numbers)
   const auto get = [&](StateField field, std::size_t joint) {
     return static_cast<double>(numbers[(field * joints_ + joint) * lanes()]);
   };
-  // The joint that is farthest out; one without a number is farther than any.
+  // Find the joint with the largest position and rate; NaN counts as the largest.
   std::size_t worst = 0;
   double farthest = -1;
   for (std::size_t i = 0; i < joints_; ++i) {

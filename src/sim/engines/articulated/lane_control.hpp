@@ -1,16 +1,13 @@
-// The controllers of a pack of lanes: the laws of controllers/laws.hpp on lane types, clamped, with
-// what the timeline keeps of them.
+// The controllers of a pack of lanes: the laws of controllers/laws.hpp on lane types. Their efforts
+// are clamped, and the state records which steps were clamped.
 #pragma once
 
 #include "sim/controllers/laws.hpp"
-#include "sim/dynamics/chain_layout.hpp"
+#include "sim/engines/articulated/kernels.hpp"
 
 namespace armwright::articulated {
 
-template <class T>
-using ControlFunction = void (*)(SegmentCall<T>& call, int step);
-
-// One number a lane of tables with a row a step.
+// Loads one number per lane, each from the table of its lane. A table has one row per step.
 template <class V>
 ARMWRIGHT_INLINE V load_lanes(const double* const* tables, bool shared, int index) {
   using T = typename V::Scalar;
@@ -24,7 +21,7 @@ ARMWRIGHT_INLINE V load_lanes(const double* const* tables, bool shared, int inde
   return *reinterpret_cast<const V*>(lanes);
 }
 
-// The effort of one joint in one step.
+// Computes the effort of one joint in one step.
 template <class V, class Law>
 ARMWRIGHT_INLINE V control_joint(const SegmentCall<typename V::Scalar>& call, V* state, int joints,
                                  int joint, bool turns, int step, V period_s, V frequency_hz) {
@@ -51,7 +48,7 @@ ARMWRIGHT_INLINE V control_joint(const SegmentCall<typename V::Scalar>& call, V*
   const V wanted = Law::calc(in, controllers::Fields<V>{control + Law::kStates * joints, joints},
                              controllers::Fields<V>{control, joints});
   integrating = select(wanted < low, V(0), select(wanted > high, V(0), V(1)));
-  // NaN stays NaN: min and max yield their second argument where they cannot compare.
+  // NaN stays NaN: min and max return their second argument if they cannot compare.
   return min(high, max(low, wanted));
 }
 
@@ -67,7 +64,7 @@ void control_joints(SegmentCall<typename V::Scalar>& call, int step) {
   }
 }
 
-// Of the law in that place of the table; null for the PID, the first.
+// Returns the function for the law at that place of the table; null for the PID, the first one.
 template <class V, class Pid, class... Others>
 ControlFunction<typename V::Scalar> find_control(int law, controllers::LawList<Pid, Others...>) {
   constexpr ControlFunction<typename V::Scalar> kFunctions[] = {nullptr,

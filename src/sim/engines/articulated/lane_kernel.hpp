@@ -1,6 +1,7 @@
-// One segment of the tracking timeline for a pack of lanes, in the step order of TrackingLoop
-// (tracking_loop.hpp): efforts from the angles at the start of the period, the plant stepped with
-// them held (semi-implicit Euler: qd += h qdd(q, qd); q += h qd), measures at its end.
+// One segment of the tracking timeline for a pack of lanes, with the order of steps of TrackingLoop
+// (tracking_loop.hpp). In each control period, the controllers compute efforts from the positions
+// at its start, the plant takes its steps with the efforts held (semi-implicit Euler: qd += h
+// qdd(q, qd); q += h qd), and the measures are taken at its end.
 #pragma once
 
 #include <type_traits>
@@ -11,14 +12,14 @@
 
 namespace armwright::articulated {
 
-// A lane has diverged once angles (rad), ways (m) and rates, summed over the joints, exceed this:
-// no arm ever comes near it. It lies within the range of the sine.
+// A lane has diverged if the sum of positions (rad or m) and rates over the joints reaches this. No
+// working arm comes near it. It lies within the range of the sine.
 template <class T>
 inline constexpr T kFarthest = T{1e6};
 template <>
 inline constexpr float kFarthest<float> = 1e4F;
 
-// kPerturbed: plants have what LanePlant adds.
+// Simulates the segment. kPerturbed: the plants have the perturbations of LanePlant.
 template <class V, class Chain, bool kPerturbed = false>
 class SegmentKernel {
  public:
@@ -60,7 +61,7 @@ class SegmentKernel {
       const bool measuring = recording || step >= call_.window_start;
       for (int substep = 1; substep <= call_.substeps; ++substep) {
         dynamics_.calc_equations(q, rate);
-        dynamics_.solve(plant_.calc_torque(&effort_[0], q, rate), &acceleration_[0]);
+        dynamics_.solve(plant_.calc_effort(&effort_[0], q, rate), &acceleration_[0]);
         chain_.for_up([&](auto i) __attribute__((always_inline)) {
           rate[i] += substep_s * acceleration_[i];
           const V way = substep_s * rate[i];
@@ -87,7 +88,7 @@ class SegmentKernel {
   }
 
   ARMWRIGHT_INLINE void control(int step) {
-    if (!call_.shared_targets) {  // more streams than the machine follows by itself
+    if (!call_.shared_targets) {  // more streams than the CPU prefetches by itself
       const int ahead = step + kStepsAhead < call_.steps ? step + kStepsAhead : call_.steps - 1;
       for (int lane = 0; lane < V::kLanes; ++lane) {
         __builtin_prefetch(call_.targets[lane] + ahead * joints());
@@ -106,7 +107,7 @@ class SegmentKernel {
     });
   }
 
-  // False once no lane is left.
+  // Takes out lanes that have diverged. Returns false if no lane is left.
   ARMWRIGHT_INLINE bool check(int step) {
     V sum = V(0);
     chain_.for_up([&](auto i) __attribute__((always_inline)) {
@@ -131,6 +132,7 @@ class SegmentKernel {
     single(kEnergy) += energy;
   }
 
+  // Measures the error and takes out lanes beyond their cut-off. Returns false if no lane is left.
   ARMWRIGHT_INLINE bool measure(int step, const Vec3<V>& tip) {
     const V squared = call_.tool_points == 0 ? calc_squared_distance(tip, state_singles() + kPointX)
                                              : calc_tool_error();
@@ -150,7 +152,7 @@ class SegmentKernel {
     return x * x + y * y + z * z;
   }
 
-  // The mean over the tool points.
+  // Returns the mean squared distance over the tool points.
   ARMWRIGHT_INLINE V calc_tool_error() const {
     V sum = V(0);
     for (int point = 0; point < call_.tool_points; ++point) {
@@ -172,15 +174,16 @@ class SegmentKernel {
     out[2 * joints() + 2] = tip.z;
   }
 
-  // After lanes were taken out: the posture that goes with the angles as they are now. For lanes
-  // that go on it is the same, to the last bit, as a test of two hundred jobs in any company holds.
+  // Recomputes the posture after lanes were taken out. For the remaining lanes it is the same to
+  // the last bit; a test with two hundred jobs in different batches checks this.
   ARMWRIGHT_INLINE bool refresh() {
     dynamics_.set_posture(field(kQ), true);
     return true;
   }
 
-  // Takes lanes out: their state is kept as it is now and set to rest, without controllers. Events
-  // of lanes that are not alive are ignored. Static: the kernel itself must not lie in memory.
+  // Takes lanes out: stores their present state in final_state, and sets them to rest without
+  // controllers. Returns whether a lane is left. The caller ignores events of lanes that are not
+  // alive. The function is static so that the kernel object need not lie in memory.
   __attribute__((noinline)) static bool retire(SegmentCall<T>& call, std::uint32_t which,
                                                LaneEvent event, int step) {
     constexpr int kLanes = V::kLanes;
@@ -212,8 +215,8 @@ class SegmentKernel {
   PackList<V, Chain::kJoints> effort_, acceleration_, way_;
 };
 
-// The address sanitizer makes straight-line code so long that the compiler takes half an hour for
-// it. Under it chains of known lengths take the path for any: the same code, with loops.
+// With the address sanitizer, straight-line code becomes so long that the compiler needs half an
+// hour for it. Then chains of known lengths use the code for any length: the same code, with loops.
 #ifdef __SANITIZE_ADDRESS__
 inline constexpr bool kHasKnownLengths = false;
 #else
@@ -223,7 +226,7 @@ using AnyChain = ChainShape<0, kAnyShape, true>;
 using Palletiser =
     std::conditional_t<kHasKnownLengths, ChainShape<4, kPalletiser, false>, AnyChain>;
 
-// Kernels of their own for the shape above and for up to eight turning joints.
+// Runs the kernel for the shape above, or for chains of one to eight revolute joints.
 template <class V>
 void run_known_length(SegmentCall<typename V::Scalar>& call) {
   if (call.joints == 4 && !call.tilted_gravity && has_shape(call.flags, 4, kPalletiser)) {
@@ -249,7 +252,7 @@ void run_known_length(SegmentCall<typename V::Scalar>& call) {
   }
 }
 
-// Perturbed plants have fewer: every kernel takes long to compile.
+// Runs perturbed plants. They have fewer kernels because each takes long to compile.
 template <class V>
 void run_perturbed(SegmentCall<typename V::Scalar>& call) {
   if (call.joints == 4 && !call.prismatic && !call.tilted_gravity &&

@@ -1,8 +1,10 @@
-// What sim/plant_variation.hpp does to a pack of lanes, each with its own numbers. While the
-// controllers run, the measured angles stand in the state in the place of the true ones.
+// The perturbations of sim/tracking/plant_variation.hpp for a pack of lanes; each lane has its own
+// numbers. While the controllers run, the state holds the measured positions in place of the true
+// ones.
 #pragma once
 
 #include "sim/dynamics/chain_shape.hpp"
+#include "sim/engines/articulated/kernels.hpp"
 #include "sim/simd/lane_math.hpp"
 
 namespace armwright::articulated {
@@ -17,7 +19,7 @@ class LanePlant<V, Chain, true> {
 
   ARMWRIGHT_INLINE LanePlant(SegmentCall<T>& call, const Chain& chain, V*& scratch)
       : call_(call), chain_(chain), newest_(call.newest) {
-    torque_.place(scratch, call.joints);
+    acting_effort_.place(scratch, call.joints);
   }
 
   ARMWRIGHT_INLINE void show_measured(V* q) const {
@@ -37,27 +39,27 @@ class LanePlant<V, Chain, true> {
   ARMWRIGHT_INLINE void show_true(V* q) const {
     chain_.for_up([&](auto i) __attribute__((always_inline)) { q[i] = past(newest_)[i]; });
   }
-  // After a substep.
+  // Stores the positions that a substep ended with.
   ARMWRIGHT_INLINE void remember(const V* q) {
     newest_ = newest_ + 1 == call_.past_length ? 0 : newest_ + 1;
     chain_.for_up([&](auto i) __attribute__((always_inline)) { past(newest_)[i] = q[i]; });
   }
 
-  // What acts on the joints in place of the efforts.
-  ARMWRIGHT_INLINE const V* calc_torque(const V* effort, const V* q, const V* rate) {
+  // Returns the efforts that act on the joints, given those of the controllers.
+  ARMWRIGHT_INLINE const V* calc_effort(const V* effort, const V* q, const V* rate) {
     chain_.for_up([&](auto i) __attribute__((always_inline)) {
-      V torque = effort[i];
+      V acting = effort[i];
       if (!chain_.slides(i)) {
         V sine;
         V cosine;
         lanes::calc_sine_cosine(lanes::wrap(q[i]) * single(kRippleCycles) + field(kRipplePhase, i),
                                 sine, cosine);
-        torque = torque + torque * (field(kRipple, i) * sine);
+        acting = acting + acting * (field(kRipple, i) * sine);
       }
       const V sliding = max(V(-1), min(V(1), rate[i] * single(kRateScale)));
-      torque_[i] = torque - (field(kViscous, i) * rate[i] + field(kCoulomb, i) * sliding);
+      acting_effort_[i] = acting - (field(kViscous, i) * rate[i] + field(kCoulomb, i) * sliding);
     });
-    return &torque_[0];
+    return &acting_effort_[0];
   }
 
  private:
@@ -75,10 +77,10 @@ class LanePlant<V, Chain, true> {
   SegmentCall<T>& call_;
   const Chain& chain_;
   int newest_;
-  PackList<V, Chain::kJoints> torque_;
+  PackList<V, Chain::kJoints> acting_effort_;
 };
 
-// The nominal plant.
+// The nominal plant: every function does nothing.
 template <class V, class Chain>
 class LanePlant<V, Chain, false> {
  public:
@@ -87,7 +89,7 @@ class LanePlant<V, Chain, false> {
   ARMWRIGHT_INLINE void show_measured(V* /*q*/) const {}
   ARMWRIGHT_INLINE void show_true(V* /*q*/) const {}
   ARMWRIGHT_INLINE void remember(const V* /*q*/) {}
-  ARMWRIGHT_INLINE const V* calc_torque(const V* effort, const V* /*q*/, const V* /*rate*/) {
+  ARMWRIGHT_INLINE const V* calc_effort(const V* effort, const V* /*q*/, const V* /*rate*/) {
     return effort;
   }
 };

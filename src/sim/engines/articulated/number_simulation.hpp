@@ -1,26 +1,179 @@
-// One tracking simulation on numbers that carry derivatives (number_lane.hpp): by the code that
-// simulates everything else, so the derivatives are those of what the engine computes, step by
-// step, and not of the continuous motion.
+// One tracking simulation on numbers that carry derivatives. It runs the code that simulates
+// everything else, so the derivatives are those of the engine's results, step by step. They are not
+// the derivatives of the continuous motion.
+//
+// The file has, in this order, a lane of such numbers (NumberLane), one type of such numbers
+// (Dual), and the simulation. Another type, such as ceres::Jet, works as well if it has a Carrier.
 #pragma once
 
 #include <vector>
 
 #include "sim/dynamics/chain_model.hpp"
-#include "sim/engines/articulated/number_lane.hpp"
-#include "sim/tracking/tracking.hpp"
+#include "sim/simd/lane_math.hpp"
+#include "sim/tracking/simulation.hpp"
+
+namespace armwright::lanes {
+
+// The operations that NumberLane needs of a number type beside + - * / and construction from a
+// double. To be specialised for each type:
+//   static double get_value(const Number&);
+//   static Number calc(double value, double slope, const Number& x);
+// calc() returns f(x): its value, and as derivatives `slope` times those of x.
+template <class Number>
+struct Carrier;
+
+// A lane type (lane_pack.hpp) with one lane. Where the dynamics have a kink, the derivatives are
+// those of the branch that the value takes:
+//   min, max, select   those of the number that is chosen; of two equal numbers, the second
+//   abs                those of the side; at zero, of positive numbers
+//   wrap               those of the argument: the turns that are left out are constant
+//   comparisons        compare the values alone; a count of them has no derivative
+// The values are the same as on a lane of double.
+template <class Number>
+struct NumberLane {
+  using Scalar = NumberLane;
+  static constexpr int kLanes = 1;
+  Number v;
+
+  NumberLane() = default;
+  ARMWRIGHT_INLINE NumberLane(double constant) : v(constant) {}
+  ARMWRIGHT_INLINE explicit NumberLane(const Number& number) : v(number) {}
+  ARMWRIGHT_INLINE double value() const { return Carrier<Number>::get_value(v); }
+};
+
+#define ARMWRIGHT_NUMBER \
+  template <class N>     \
+  ARMWRIGHT_INLINE
+ARMWRIGHT_NUMBER NumberLane<N> operator+(const NumberLane<N>& a, const NumberLane<N>& b) {
+  return NumberLane<N>(a.v + b.v);
+}
+ARMWRIGHT_NUMBER NumberLane<N> operator-(const NumberLane<N>& a, const NumberLane<N>& b) {
+  return NumberLane<N>(a.v - b.v);
+}
+ARMWRIGHT_NUMBER NumberLane<N> operator*(const NumberLane<N>& a, const NumberLane<N>& b) {
+  return NumberLane<N>(a.v * b.v);
+}
+ARMWRIGHT_NUMBER NumberLane<N> operator/(const NumberLane<N>& a, const NumberLane<N>& b) {
+  return NumberLane<N>(a.v / b.v);
+}
+ARMWRIGHT_NUMBER NumberLane<N> operator-(const NumberLane<N>& a) {
+  return NumberLane<N>(-a.v);
+}
+ARMWRIGHT_NUMBER NumberLane<N>& operator+=(NumberLane<N>& a, const NumberLane<N>& b) {
+  return a = a + b;
+}
+ARMWRIGHT_NUMBER NumberLane<N>& operator-=(NumberLane<N>& a, const NumberLane<N>& b) {
+  return a = a - b;
+}
+ARMWRIGHT_NUMBER bool operator<(const NumberLane<N>& a, const NumberLane<N>& b) {
+  return a.value() < b.value();
+}
+ARMWRIGHT_NUMBER bool operator>(const NumberLane<N>& a, const NumberLane<N>& b) {
+  return a.value() > b.value();
+}
+ARMWRIGHT_NUMBER NumberLane<N> select(bool mask, const NumberLane<N>& yes,
+                                      const NumberLane<N>& no) {
+  return mask ? yes : no;
+}
+ARMWRIGHT_NUMBER NumberLane<N> abs(const NumberLane<N>& a) {
+  return a.value() < 0 ? -a : a;
+}
+ARMWRIGHT_NUMBER NumberLane<N> min(const NumberLane<N>& a, const NumberLane<N>& b) {
+  return a < b ? a : b;
+}
+ARMWRIGHT_NUMBER NumberLane<N> max(const NumberLane<N>& a, const NumberLane<N>& b) {
+  return a > b ? a : b;
+}
+ARMWRIGHT_NUMBER std::uint32_t find_less(const NumberLane<N>& a, const NumberLane<N>& b) {
+  return a < b ? 1 : 0;
+}
+
+// The general functions of lane_math.hpp round, and rounding would lose the derivatives.
+struct NoRounding {};
+template <class N>
+inline constexpr NoRounding kRounder<NumberLane<N>>{};
+
+struct NumberLevel;
+ARMWRIGHT_NUMBER NumberLane<N> wrap(const NumberLane<N>& x) {
+  const auto wrapped = wrap(Single<double, NumberLevel>(x.value()));
+  return NumberLane<N>(Carrier<N>::calc(wrapped.v, 1, x.v));
+}
+ARMWRIGHT_NUMBER void calc_sine_cosine(const NumberLane<N>& x, NumberLane<N>& sine,
+                                       NumberLane<N>& cosine) {
+  Single<double, NumberLevel> s;
+  Single<double, NumberLevel> c;
+  calc_sine_cosine(Single<double, NumberLevel>(x.value()), s, c);
+  sine = NumberLane<N>(Carrier<N>::calc(s.v, c.v, x.v));
+  cosine = NumberLane<N>(Carrier<N>::calc(c.v, -s.v, x.v));
+}
+#undef ARMWRIGHT_NUMBER
+
+// A number with its derivatives along some directions. Every operation computes them all (forward
+// accumulation; Wengert 1964, A simple automatic derivative evaluation program). It is like
+// ceres::Jet, but needs no library, and the derivatives lie in a pack of SIMD lanes.
+//
+// P: a pack of doubles, one lane per direction.
+template <class P>
+struct Dual {
+  double value;
+  P slopes;
+
+  Dual() = default;
+  ARMWRIGHT_INLINE Dual(double constant) : value(constant), slopes(0.0) {}
+  ARMWRIGHT_INLINE Dual(double v, P s) : value(v), slopes(s) {}
+};
+
+#define ARMWRIGHT_DUAL \
+  template <class P>   \
+  ARMWRIGHT_INLINE Dual<P>
+ARMWRIGHT_DUAL operator+(const Dual<P>& a, const Dual<P>& b) {
+  return {a.value + b.value, a.slopes + b.slopes};
+}
+ARMWRIGHT_DUAL operator-(const Dual<P>& a, const Dual<P>& b) {
+  return {a.value - b.value, a.slopes - b.slopes};
+}
+ARMWRIGHT_DUAL operator*(const Dual<P>& a, const Dual<P>& b) {
+  return {a.value * b.value, P(a.value) * b.slopes + a.slopes * P(b.value)};
+}
+ARMWRIGHT_DUAL operator/(const Dual<P>& a, const Dual<P>& b) {
+  const double inverse = 1 / b.value;
+  const double quotient = a.value / b.value;
+  return {quotient, (a.slopes - P(quotient) * b.slopes) * P(inverse)};
+}
+ARMWRIGHT_DUAL operator-(const Dual<P>& a) {
+  return {-a.value, -a.slopes};
+}
+#undef ARMWRIGHT_DUAL
+
+template <class P>
+struct Carrier<Dual<P>> {
+  ARMWRIGHT_INLINE static double get_value(const Dual<P>& number) { return number.value; }
+  ARMWRIGHT_INLINE static Dual<P> calc(double value, double slope, const Dual<P>& number) {
+    return {value, P(slope) * number.slopes};
+  }
+};
+
+}  // namespace armwright::lanes
+
+// The dynamics find the functions above only if those are declared first. Therefore this include is
+// not at the top; if the dynamics are included earlier, nothing compiles.
+#include "sim/engines/articulated/lane_kernel.hpp"
 
 namespace armwright::articulated {
 
-// What a design says of a joint.
+template <class N>
+inline constexpr double kFarthest<lanes::NumberLane<N>> = kFarthest<double>;
+
+// A JointDrive on such numbers.
 template <class Number>
 struct NumberDrive {
-  std::vector<Number> gains;  // in the order of the controller's GainSpecs
+  std::vector<Number> gains;  // in the order of the controller's ControllerRow::gains
   Number effort_min, effort_max;
 };
 
-// The squares of the errors of the job's points, in m^2, as far as they are reached without a
-// cut-off or divergence; gains and limits are those of `drives`, one a joint, in place of the
-// job's design.
+// Returns the squared errors (m^2) of the job's points. They end at the first point that is cut off
+// or diverges. Gains and limits are those of `drives`, one per joint, not those of the job's
+// design.
 template <class Number>
 std::vector<Number> calc_squared_errors(const TrackingSetup& setup, const TrackingJob& job,
                                         const std::vector<NumberDrive<Number>>& drives) {
@@ -40,7 +193,7 @@ std::vector<Number> calc_squared_errors(const TrackingSetup& setup, const Tracki
       state[static_cast<std::size_t>(field * n + i)] = value;
     };
     const NumberDrive<Number>& drive = drives[static_cast<std::size_t>(i)];
-    set(kQ, V(job.targets->start_rad[static_cast<std::size_t>(i)]));
+    set(kQ, V(job.targets->start_positions[static_cast<std::size_t>(i)]));
     set(kIntegrating, V(1));
     set(kEffortMin, V(drive.effort_min));
     set(kEffortMax, V(drive.effort_max));
@@ -66,7 +219,7 @@ std::vector<Number> calc_squared_errors(const TrackingSetup& setup, const Tracki
     for (std::size_t k = 0; k < tool_points.size(); ++k) {
       set_point(kToolTargetX + 3 * static_cast<int>(k), tool_points[k]);
     }
-    const double* const targets = job.targets->angles(segment.first_step).data();
+    const double* const targets = job.targets->positions(segment.first_step).data();
     const double* const feed_forward = controller.feed_forward == FeedForward::none
                                            ? nullptr
                                            : job.targets->feed_forward(segment.first_step).data();
@@ -91,7 +244,7 @@ std::vector<Number> calc_squared_errors(const TrackingSetup& setup, const Tracki
     call.feed_forward = &feed_forward;
     call.alive = 1;
     call.final_state = final_state.data();
-    // Fewer kernels than for simulations: every one takes long to compile.
+    // There are fewer kernels than for simulations because each takes long to compile.
     if (n == 4 && !call.prismatic && !call.tilted_gravity &&
         has_shape(call.flags, 4, kPalletiser)) {
       SegmentKernel<V, Palletiser>::run(call);

@@ -17,7 +17,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "sim/kinematics/kinematics.hpp"
-#include "sim/tracking/tracking_result.hpp"
+#include "sim/tracking/engine_support.hpp"
 
 namespace armwright {
 namespace {
@@ -27,27 +27,26 @@ constexpr double kFastest_rad_per_s = 1e6;
 
 static_assert(sizeof(mjtNum) == sizeof(double), "armwright needs MuJoCo in double precision");
 
-struct ModelDeleter {
-  void operator()(mjModel* model) const { mj_deleteModel(model); }
+void delete_files(mjVFS* files) {
+  mj_deleteVFS(files);
+  delete files;
+}
+// Frees an object of MuJoCo with the given function.
+template <auto kFree>
+struct MujocoDeleter {
+  void operator()(auto* object) const { kFree(object); }
 };
-struct DataDeleter {
-  void operator()(mjData* data) const { mj_deleteData(data); }
-};
-struct FilesDeleter {
-  void operator()(mjVFS* files) const {
-    mj_deleteVFS(files);
-    delete files;
-  }
-};
-using ModelHandle = std::unique_ptr<mjModel, ModelDeleter>;
-using DataHandle = std::unique_ptr<mjData, DataDeleter>;
+using ModelHandle = std::unique_ptr<mjModel, MujocoDeleter<mj_deleteModel>>;
+using DataHandle = std::unique_ptr<mjData, MujocoDeleter<mj_deleteData>>;
+using FilesHandle = std::unique_ptr<mjVFS, MujocoDeleter<delete_files>>;
 
 [[noreturn]] void throw_mujoco_message(const char* message) {
   throw DivergenceError(fmt::format("MuJoCo stopped: {}", message));
 }
-void ignore_warning(const char* /*message*/) {}  // each step looks at the counter that matters
+void ignore_warning(const char* /*message*/) {}  // each step checks the counter that matters
 
-// Without handlers MuJoCo writes a log file into the current folder, and an error ends the process.
+// Sets the handlers. Without them MuJoCo writes a log file into the current folder, and an error
+// ends the process.
 void prepare_mujoco() {
   [[maybe_unused]] static const bool prepared = [] {
     mju_user_error = throw_mujoco_message;
@@ -71,7 +70,7 @@ std::string format_rotation(const Eigen::Matrix3d& rotation) {
   return format_numbers({q.w(), q.x(), q.y(), q.z()});
 }
 
-// Moments and axes of inertia; the axes are right-handed.
+// Principal moments and axes of inertia; the axes are right-handed.
 struct PrincipalInertia {
   Eigen::Vector3d moments_kg_m2;
   Eigen::Matrix3d axes;
@@ -85,9 +84,9 @@ PrincipalInertia calc_principal_inertia(const Eigen::Matrix3d& inertia_kg_m2) {
   return {solver.eigenvalues(), axes};
 }
 
-// The chain in MuJoCo's own format, names left out: bodies and joints are found by their number.
-// The masses are placeholders: MuJoCo's compiler refuses moments of inertia that violate the
-// triangle inequality by a rounding error, which our own reading of a URDF has checked already.
+// Returns the chain in MuJoCo's own format, without names: bodies and joints are found by their
+// number. The masses are placeholders. MuJoCo's compiler rejects moments of inertia that violate
+// the triangle inequality by a rounding error; the URDF reader has checked that inequality already.
 std::string make_mjcf(const RobotModel& robot, const PhysicsSettings& physics) {
   std::string text = fmt::format(
       R"(<mujoco><compiler angle="radian" inertiafromgeom="false"/><size njmax="0" nconmax="0"/>)"
@@ -114,8 +113,7 @@ std::string make_mjcf(const RobotModel& robot, const PhysicsSettings& physics) {
 
 ModelHandle compile(const std::string& mjcf, const std::string& robot_name) {
   constexpr const char* kFile = "arm.xml";
-  const std::unique_ptr<mjVFS, FilesDeleter> files(
-      new mjVFS);  // 2 MB: not zeroed, not on the stack
+  const FilesHandle files(new mjVFS);  // 2 MB: not zeroed, not on the stack
   mj_defaultVFS(files.get());
   if (mj_makeEmptyFileVFS(files.get(), kFile, static_cast<int>(mjcf.size())) != 0) {
     throw std::bad_alloc();
@@ -124,7 +122,7 @@ ModelHandle compile(const std::string& mjcf, const std::string& robot_name) {
   char message[1000] = "";
   ModelHandle model;
   {
-    static std::mutex mutex;  // the library keeps the last text that it read, for all threads
+    static std::mutex mutex;  // all threads share the text that the library read last
     const std::lock_guard lock(mutex);
     model.reset(mj_loadXML(kFile, files.get(), message, sizeof message));
     mj_freeLastXML();
@@ -156,7 +154,7 @@ MujocoModel::MujocoModel(const RobotModel& robot, const PhysicsSettings& physics
     const auto moments_kg_m2 = calc_principal_inertia(inertial.inertia_kg_m2).moments_kg_m2;
     std::copy(moments_kg_m2.begin(), moments_kg_m2.end(), model->body_inertia + 3 * body);
   }
-  // What MuJoCo derives from the masses: those of subtrees, inertias at position 0.
+  // Computes the numbers that MuJoCo derives from masses: subtrees' masses, inertias at position 0.
   const DataHandle data(mj_makeData(model));
   mj_setConst(model, data.get());
 }
@@ -166,17 +164,17 @@ MujocoModel::~MujocoModel() = default;
 struct MujocoArm::World {
   const RobotModel* robot;
   double gravity_m_per_s2;
-  ModelHandle model;  // an arm's own: it holds the size of the step
+  ModelHandle model;  // each arm has its own one because it holds the step's length
   DataHandle data;
 
-  // All that can be read belongs to the present state. mj_step1 and mj_step2 would do the same, but
-  // put an arm whose state they find bad back to its start.
+  // Computes everything that can be read from the present state. mj_step1 and mj_step2 would do the
+  // same, but they reset an arm to its start if they find its state bad.
   void update() {
     mj_fwdPosition(model.get(), data.get());
     mj_fwdVelocity(model.get(), data.get());
   }
 
-  // A point of the last link's frame in the world.
+  // Returns a point of the last link's frame in the world.
   Eigen::Vector3d calc_place(const Eigen::Vector3d& in_last_link) const {
     const std::size_t body = robot->joint_count();
     using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
@@ -225,7 +223,7 @@ void MujocoArm::step(std::span<const double> effort, double dt_s) {
 void MujocoArm::check() const {
   const World& w = *world_;
   const mjWarningStat& singular = w.data->warning[mjWARN_INERTIA];
-  if (singular.number > 0) {  // it has gone on with another inertia
+  if (singular.number > 0) {  // MuJoCo went on with another inertia
     const auto joint = static_cast<std::size_t>(singular.lastinfo);
     throw DivergenceError(fmt::format("joint {} ({}): what it moves has hardly any inertia",
                                       joint + 1, w.robot->joints[joint].name));
@@ -244,7 +242,7 @@ void MujocoArm::check() const {
   }
 }
 
-void MujocoArm::read_angles(std::span<double> q) const {
+void MujocoArm::read_positions(std::span<double> q) const {
   for (std::size_t i = 0; i < world_->robot->joint_count(); ++i) {
     const double position = world_->data->qpos[i];
     q[i] = world_->robot->joints[i].kind == JointKind::prismatic ? position : wrap_angle(position);

@@ -9,7 +9,7 @@
 #include <mutex>
 #include <vector>
 
-#include "sim/tracking/tracking_result.hpp"
+#include "sim/tracking/engine_support.hpp"
 
 namespace armwright {
 namespace {
@@ -17,16 +17,16 @@ namespace {
 constexpr double kFarthest_m = 1e3;
 constexpr double kFastest_rad_per_s = 1e6;
 
-// ODE reports trouble through process-wide handlers and then aborts the process; ours throw
-// instead, and the world that was being stepped is discarded by its owner.
+// ODE reports errors through process-wide handlers and then aborts the process. These handlers
+// throw instead, and the owner discards the world that was being stepped.
 [[noreturn]] void throw_ode_message(int number, const char* format, va_list arguments) {
   char text[512];
   std::vsnprintf(text, sizeof text, format, arguments);
   throw DivergenceError(fmt::format("ODE stopped (message {}): {}", number, text));
 }
 
-// Owns the library's global state; made before the first world and destroyed at the end of the
-// process.
+// Owns the library's global state. The only object is made before the first world and destroyed at
+// the end of the process.
 class OdeLibrary {
  public:
   OdeLibrary() {
@@ -39,7 +39,7 @@ class OdeLibrary {
   OdeLibrary& operator=(const OdeLibrary&) = delete;
 };
 
-// ODE keeps data per thread; this frees it when the thread ends.
+// Owns the data that ODE keeps per thread, until the thread ends.
 class OdeThread {
  public:
   OdeThread() { dAllocateODEDataForThread(dAllocateMaskAll); }
@@ -53,17 +53,19 @@ void prepare_ode_on_this_thread() {
   thread_local const OdeThread thread;
 }
 
-// Worlds share one default threading implementation without locks, so that stepping two of them in
-// two threads corrupts its job list. Each world gets its own, single-threaded one; it must outlive
-// the world.
-struct ThreadingDeleter {
-  void operator()(dxThreadingImplementation* threading) const {
-    dThreadingFreeImplementation(threading);
-  }
+// Frees an object of ODE with the function that ODE has for it.
+template <auto kFree>
+struct OdeDeleter {
+  void operator()(auto* object) const { kFree(object); }
 };
-// A step that ODE gave up leaves its jobs in the list of its threading implementation. Freeing that
-// is one more failed assertion, thrown in a destructor; using it again would run the old jobs. So
-// it is kept, some hundred bytes, until the process ends.
+// All worlds share one default threading implementation without locks, and stepping two worlds in
+// two threads would corrupt its job list. Therefore each world gets a single-threaded one of its
+// own, which must outlive the world.
+using OdeThreading =
+    std::unique_ptr<dxThreadingImplementation, OdeDeleter<dThreadingFreeImplementation>>;
+// A step that ODE abandons leaves its jobs in the list of its threading implementation. Freeing the
+// implementation would fail an assertion, which throws in a destructor; using it again would run
+// the old jobs. So this function keeps it (some hundred bytes) until the process ends.
 void abandon(dxThreadingImplementation* threading) {
   static std::mutex mutex;
   static auto* const abandoned = new std::vector<dxThreadingImplementation*>;
@@ -75,7 +77,7 @@ Eigen::Vector3d to_eigen(const dReal* v) {
   return {v[0], v[1], v[2]};
 }
 
-// The child first, so that positions, rates and efforts have the sign of the child's motion.
+// The child comes first, so that positions, rates and efforts have the sign of the child's motion.
 dJointID make_joint(dWorldID world, JointKind kind, dBodyID child, dBodyID parent,
                     const Eigen::Vector3d& anchor, const Eigen::Vector3d& axis) {
   if (kind == JointKind::prismatic) {
@@ -91,24 +93,18 @@ dJointID make_joint(dWorldID world, JointKind kind, dBodyID child, dBodyID paren
   return hinge;
 }
 
-struct WorldDeleter {
-  void operator()(dxWorld* world) const {
-    dWorldDestroy(world);
-  }  // its bodies and joints go with it
-};
-
 }  // namespace
 
 struct OdeArm::World {
   const RobotModel* model;
   double gravity;
-  std::unique_ptr<dxThreadingImplementation, ThreadingDeleter> threading;
-  std::unique_ptr<dxWorld, WorldDeleter> world;
+  OdeThreading threading;
+  std::unique_ptr<dxWorld, OdeDeleter<dWorldDestroy>> world;  // destroys its bodies and joints too
   std::vector<dBodyID> bodies;
   std::vector<dJointID> joints;
   std::vector<double> start;  // joint positions
 
-  // A point of the last link's frame in the world.
+  // Returns a point of the last link's frame in the world.
   Eigen::Vector3d calc_place(const Eigen::Vector3d& in_last_link) const {
     const Eigen::Vector3d in_body = in_last_link - model->links.back().inertial.com_m;
     const dReal* p = dBodyGetPosition(bodies.back());
@@ -122,10 +118,10 @@ struct OdeArm::World {
   }
   bool is_prismatic(std::size_t i) const { return model->joints[i].kind == JointKind::prismatic; }
 
-  // How fast the slider's child moves along the axis, seen from the turning parent:
+  // Returns the speed of the slider's child along the axis, seen from the turning parent:
   //   a . (v_c - v_p - w_p x (p_c - p_p)).
-  // dJointGetSliderPositionRate() leaves out the last term (ODE 0.16), which is not zero where the
-  // bodies' centres lie beside each other.
+  // dJointGetSliderPositionRate() leaves out the last term (ODE 0.16). That term is not zero if the
+  // bodies' centres do not lie on one line along the axis.
   double calc_slide_rate(std::size_t i) const {
     dVector3 axis;
     dJointGetSliderAxis(joints[i], axis);
@@ -226,7 +222,7 @@ void OdeArm::step(std::span<const double> effort, double dt_s) {
   w.check();
 }
 
-void OdeArm::read_angles(std::span<double> q) const {
+void OdeArm::read_positions(std::span<double> q) const {
   const World& w = *world_;
   for (std::size_t i = 0; i < w.joints.size(); ++i) {
     // ODE counts from the posture in which the joint was attached.

@@ -1,5 +1,5 @@
-// A result of the engine `articulated` depends on its own job: not on those beside it, their order
-// and number, what is recorded, how others end, or what arms they have.
+// A result of the engine `articulated` depends on its own job only. It does not depend on the other
+// jobs: their order, number and arms, what they record, and how they end.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,8 +14,8 @@ namespace {
 
 using namespace articulated_test;
 
-// Two hundred jobs of every kind: sound designs, such as explode or are too weak, with and without
-// cut-off and bound, recorded or not, timelines of other lengths and an unreachable target.
+// Two hundred jobs of every kind: designs that work, that explode or that are too weak; with and
+// without cut-off, bound and recording; timelines of different lengths; and an unreachable target.
 class TwoHundredJobs : public testing::Test {
  protected:
   TwoHundredJobs() {
@@ -38,7 +38,7 @@ class TwoHundredJobs : public testing::Test {
     }
   }
 
-  // Results of jobs_[order[k]] in batches of `size`.
+  // Returns the results of jobs_[order[k]], simulated in batches of `size`.
   std::vector<TrackingResult> simulate(const PhysicsEngine& engine,
                                        const std::vector<std::size_t>& order,
                                        std::size_t size) const {
@@ -118,8 +118,8 @@ TEST_F(TwoHundredJobs, AreNotChangedByRecording) {
   }
 }
 
-// Arms of other masses and lengths side by side, and one whose elbow turns the other way round, so
-// that its axes are opposite where the others' are parallel.
+// Arms of different masses and lengths in one batch. The elbow of one arm turns in the opposite
+// direction, so its axes are opposite where those of the others are parallel.
 class OwnArms : public testing::Test {
  protected:
   explicit OwnArms(bool with_opposite_axis = false) {
@@ -144,7 +144,7 @@ class OwnArms : public testing::Test {
       jobs_.push_back(make_job(kTableA10, targets_[i]));
       jobs_.back().setup = &setups_[i];
     }
-    jobs_.push_back(make_job(kTableA10, targets_[0]));  // on the arm of the call
+    jobs_.push_back(make_job(kTableA10, targets_[0]));  // has the arm of the call
   }
 
   void expect_as_alone() const {
@@ -180,7 +180,7 @@ TEST_F(ArmsOfOtherShapes, SideBySideDoAsAlone) {
   expect_as_alone();
 }
 
-// One per cent of the mean; of so few points a case's error scatters by some per cent.
+// One per cent of the mean. With so few points, the error of a case varies by some per cent.
 TEST_F(ArmsOfOtherShapes, AgreeWithOde) {
   const auto results = make_articulated()->simulate(common_, jobs_);
   const auto reference = make_engine("ode")->simulate(common_, jobs_);

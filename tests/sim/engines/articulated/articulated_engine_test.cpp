@@ -1,5 +1,5 @@
-// The engine `articulated` as a whole: that it agrees with one arm in the tracking loop and with
-// the engine `ode`, and how simulations end early.
+// Tests of the whole engine `articulated`: it agrees with one arm in the tracking loop and with the
+// engine `ode`, and simulations end early as they should.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ using testing::Each;
 using testing::MatchesRegex;
 
 TrackingResult simulate_in_loop(const TrackingSetup& setup, const TrackingJob& job) {
-  ArticulatedArm arm(setup.robot(), job.targets->start_rad, setup.task().physics);
+  ArticulatedArm arm(setup.robot(), job.targets->start_positions, setup.task().physics);
   return TrackingLoop(setup, job).run(arm);
 }
 
@@ -32,14 +32,14 @@ void expect_near(const std::vector<double>& a, const std::vector<double>& b, dou
   }
 }
 
-// Everything that is measured; counts exactly.
+// Compares all measures; counts must be equal.
 void expect_close(const TrackingResult& a, const TrackingResult& b, double relative) {
   EXPECT_EQ(a.status, b.status) << a.reason << " / " << b.reason;
   EXPECT_EQ(a.steps, b.steps);
   expect_near(a.point_error_m, b.point_error_m, relative);
   EXPECT_NEAR(a.mean_error_m, b.mean_error_m, relative * b.mean_error_m);
-  expect_near(a.peak_effort_n_m, b.peak_effort_n_m, relative);
-  expect_near(a.rms_effort_n_m, b.rms_effort_n_m, relative);
+  expect_near(a.peak_effort, b.peak_effort, relative);
+  expect_near(a.rms_effort, b.rms_effort, relative);
   EXPECT_EQ(a.saturated_share, b.saturated_share);
   EXPECT_NEAR(a.energy_j, b.energy_j, relative * b.energy_j);
 }
@@ -52,7 +52,7 @@ struct Published {
 const std::vector<Published> kPublished{{"A.10 on its task", make_e6_task(), kTableA10},
                                         {"A.5 on its task", {}, kTableA5}};
 
-// `cases` test cases of a design on its task.
+// `cases` test cases of one design on its task.
 struct CaseRun {
   CaseRun(const Published& one, std::uint64_t cases, int points = 25)
       : setup(load_irb4600(), one.task) {
@@ -71,8 +71,8 @@ struct CaseRun {
   std::vector<TrackingJob> jobs;
 };
 
-// Rounding of 1e-16 m or rad, which these designs do not magnify much, on errors of 1e-5 m and
-// more.
+// Rounding errors are 1e-16 m or rad, and these designs do not magnify them much. The position
+// errors are 1e-5 m and more.
 TEST(ArticulatedEngine, LevelsAgreeWithEachOtherAndWithOneArmInTheLoop) {
   for (const Published& one : kPublished) {
     const CaseRun run(one, 20);
@@ -92,8 +92,8 @@ TEST(ArticulatedEngine, LevelsAgreeWithEachOtherAndWithOneArmInTheLoop) {
   }
 }
 
-// The engines differ by how they hold joints together: ODE's links move along tangents. One per
-// cent of the mean is the project's own requirement; single cases scatter more.
+// The engines differ in how they hold joints together: ODE's links move along tangents. The project
+// requires agreement of the mean to one per cent; single cases differ more.
 TEST(ArticulatedEngine, AgreesWithOde) {
   for (const Published& one : kPublished) {
     SCOPED_TRACE(one.name);
@@ -133,13 +133,13 @@ TEST(ArticulatedEngine, RecordsWhatTheLoopRecords) {
     for (std::size_t k = 0; k < found.trajectory.size(); ++k) {
       const TrajectorySample &a = found.trajectory[k], &b = expected.trajectory[k];
       EXPECT_NEAR(a.time_s, b.time_s, 1e-12);
-      EXPECT_EQ(a.target_rad, b.target_rad);
+      EXPECT_EQ(a.target_q, b.target_q);
       EXPECT_EQ(a.target_m, b.target_m);
       EXPECT_LT((a.tip_m - b.tip_m).norm(), 1e-10);
       EXPECT_NEAR(found.error_series_m[k], expected.error_series_m[k], 1e-10);
       for (std::size_t i = 0; i < 4; ++i) {
-        EXPECT_NEAR(a.q_rad[i], b.q_rad[i], 1e-10);
-        EXPECT_NEAR(a.effort_n_m[i], b.effort_n_m[i], 1e-3);  // gains of up to 3e6 N m/rad
+        EXPECT_NEAR(a.q[i], b.q[i], 1e-10);
+        EXPECT_NEAR(a.effort[i], b.effort[i], 1e-3);  // gains of up to 3e6 N m/rad
       }
     }
   }
@@ -151,19 +151,19 @@ void expect_finite(const TrackingResult& result) {
                        [](double number) { return std::isfinite(number); });
   };
   EXPECT_TRUE(check(result.point_error_m));
-  EXPECT_TRUE(check(result.peak_effort_n_m));
-  EXPECT_TRUE(check(result.rms_effort_n_m));
+  EXPECT_TRUE(check(result.peak_effort));
+  EXPECT_TRUE(check(result.rms_effort));
   EXPECT_TRUE(check(result.saturated_share));
   EXPECT_TRUE(check(result.error_series_m));
   EXPECT_TRUE(std::isfinite(result.mean_error_m));
   EXPECT_TRUE(std::isfinite(result.energy_j));
   for (const TrajectorySample& sample : result.trajectory) {
-    EXPECT_TRUE(check(sample.q_rad) && check(sample.effort_n_m) && sample.tip_m.allFinite());
+    EXPECT_TRUE(check(sample.q) && check(sample.effort) && sample.tip_m.allFinite());
   }
 }
 
-// As one arm alone does, and with finite numbers only. The second design has nothing but the
-// largest number for its first joint, so that already the first step overflows.
+// Divergence ends as with one arm alone, and all numbers are finite. The second design gives its
+// first joint the largest double as efforts, so that the first step overflows.
 TEST(ArticulatedEngine, ADivergenceIsAStatusWithAReasonAndFiniteNumbers) {
   constexpr double kLargest = std::numeric_limits<double>::max();
   ArmDesign overflowing = kTableA5;
@@ -196,7 +196,7 @@ TEST(ArticulatedEngine, ADivergenceIsAStatusWithAReasonAndFiniteNumbers) {
   EXPECT_THAT(found.reason, testing::HasSubstr("joint 4 (joint_4)"));
 }
 
-// At points early and late, and in a case that is never cut off.
+// Cut-offs at early and late points, and in a case that is never cut off.
 TEST(ArticulatedEngine, CutsOffWhereTheLoopDoes) {
   const CaseRun run({"", make_e6_task(), kTableA1}, 8, 6);
   std::vector<TrackingJob> jobs;
@@ -230,8 +230,8 @@ TEST(ArticulatedEngine, CutsOffWhereTheLoopDoes) {
   EXPECT_GE(std::count(seen.begin(), seen.end(), true), 3);
 }
 
-// A bound that is exceeded from point k on: the errors of the points that count, up to k, divided
-// by the number of all that count.
+// Returns the bound that is exceeded from point k on: the sum of the errors of the points that
+// count, up to k, divided by the number of all points that count.
 TEST(ArticulatedEngine, AbandonsAfterThePointThatMakesItCertain) {
   for (const bool count_first : {false, true}) {
     TrackingTask task = make_e6_task();

@@ -1,5 +1,5 @@
-// The compiled kernels of every instruction set, called as the engine calls them, against a plain
-// loop over one arm and its controllers.
+// Compares the compiled kernels of every instruction set, called as the engine calls them, with a
+// plain loop over one arm and its controllers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,12 +30,12 @@ std::vector<SimdLevel> find_levels() {
   return levels;
 }
 
-// What one lane simulates.
+// The input of one lane.
 struct LaneCase {
   RobotModel model;
   VectorXd start;
   std::vector<JointDrive> drives;
-  std::vector<double> targets;  // a row a step
+  std::vector<double> targets;  // one row per step
   Vector3d point_m;
 };
 
@@ -43,7 +43,7 @@ struct Timeline {
   int steps = 100, window_start = 60, substeps = 1;
 };
 
-// What a lane says at the end.
+// The output of one lane.
 struct Outcome {
   VectorXd q, qd, peak, squares, clamped;
   double energy_j, worst_squared;
@@ -61,7 +61,7 @@ std::vector<double> draw_targets(const VectorXd& start, int steps, RandomStream&
   return targets;
 }
 
-// Other masses and drives in each lane, on an arm of one kind.
+// Lanes with different masses and drives, all on one kind of arm.
 LaneCase draw_lane(const RobotModel& kind, int lane, const Timeline& time) {
   RandomStream random("test/sim/kernels/lane", static_cast<std::uint64_t>(lane));
   LaneCase one;
@@ -101,7 +101,7 @@ Outcome simulate_one_arm(const LaneCase& one, const Timeline& time) {
             VectorXd::Zero(size),
             0,
             0};
-  VectorXd q = physics_test::read_angles(arm, n), effort(size);
+  VectorXd q = physics_test::read_positions(arm, n), effort(size);
   for (int step = 0; step < time.steps; ++step) {
     for (std::size_t i = 0; i < n; ++i) {
       const auto joint = static_cast<Eigen::Index>(i);
@@ -112,7 +112,7 @@ Outcome simulate_one_arm(const LaneCase& one, const Timeline& time) {
     for (int substep = 0; substep < time.substeps; ++substep) {
       physics_test::step(arm, effort, kPeriod_s / time.substeps);
     }
-    const VectorXd after = physics_test::read_angles(arm, n);
+    const VectorXd after = physics_test::read_positions(arm, n);
     const VectorXd way = calc_motion(one.model, q, after);
     o.energy_j += effort.cwiseProduct(way).cwiseMax(0).sum();
     q = after;
@@ -128,8 +128,8 @@ Outcome simulate_one_arm(const LaneCase& one, const Timeline& time) {
   return o;
 }
 
-// One call of a kernel, every lane with its own arm, drives and targets. `allowed`: JointFlags that
-// the kernel may make use of.
+// Calls a kernel once; every lane has its own arm, drives and targets. `allowed` has the JointFlags
+// that the kernel may use.
 template <class T>
 std::vector<Outcome> simulate_lanes(SimdLevel level, const std::vector<LaneCase>& cases,
                                     const Timeline& time, int allowed = 0xff) {
@@ -172,8 +172,8 @@ std::vector<Outcome> simulate_lanes(SimdLevel level, const std::vector<LaneCase>
       for (std::size_t gain = 0; gain < 3; ++gain) {
         set(first_gain + gain * n, drive.gains[gain]);
       }
-      set(kEffortMin * n + i, drive.limits.min_n_m);
-      set(kEffortMax * n + i, drive.limits.max_n_m);
+      set(kEffortMin * n + i, drive.limits.min);
+      set(kEffortMax * n + i, drive.limits.max);
     }
     const Vector3d point = chain.base_pose().inverse() * one.point_m;
     for (int axis = 0; axis < 3; ++axis) {
@@ -230,7 +230,8 @@ void expect_same(const RobotModel& model, const Outcome& found, const Outcome& e
   EXPECT_NEAR(found.worst_squared, expected.worst_squared, tolerance * expected.worst_squared);
 }
 
-// Arms that move freely magnify rounding: a second of some 1e-16 a step, e^(10 t) at the most.
+// Arms that move freely magnify rounding errors: about 1e-16 per step, times e^(10 t) at most, for
+// a second.
 constexpr double kTolerance = 1e-9;
 
 template <class T>
@@ -242,7 +243,7 @@ std::vector<LaneCase> draw_lanes(SimdLevel level, const RobotModel& kind, const 
   return cases;
 }
 
-// Every lane as the arm alone.
+// Every lane must agree with a single arm.
 void expect_lanes_as_alone(const RobotModel& kind, const Timeline& time) {
   for (const SimdLevel level : find_levels()) {
     const auto cases = draw_lanes<double>(level, kind, time);
@@ -305,7 +306,7 @@ TEST(Kernels, ForChainsWithSlidersDoAsTheArmAlone) {
   EXPECT_GT(sliders, 10);
 }
 
-// The thesis's arm carrying itself: drives of its size.
+// The thesis's arm, with drives that can carry it.
 std::vector<LaneCase> make_palletiser_cases(int lanes, const Timeline& time) {
   std::vector<LaneCase> cases;
   for (int lane = 0; lane < lanes; ++lane) {
@@ -316,7 +317,8 @@ std::vector<LaneCase> make_palletiser_cases(int lanes, const Timeline& time) {
   return cases;
 }
 
-// The kernel of the shape, and those that must decide: without the shape's flags, one by one.
+// Compares the kernel for this shape with the general ones, which run if one of the shape's flags
+// is removed.
 TEST(Kernels, OfThePalletiserDoAsThoseOfAnyShape) {
   const Timeline time;
   for (const SimdLevel level : find_levels()) {
@@ -338,7 +340,7 @@ TEST(Kernels, OfThePalletiserDoAsThoseOfAnyShape) {
   }
 }
 
-// Digits of float, 6e-8, over 30 steps of the same motion.
+// The precision of float, 6e-8, over 30 steps of the same motion.
 TEST(Kernels, InSinglePrecisionFollowTheArmAlone) {
   Timeline time;
   time.steps = 30;

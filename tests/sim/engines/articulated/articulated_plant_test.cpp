@@ -1,5 +1,5 @@
-// Perturbed plants in the lanes of the engine `articulated`: against a single arm of the same
-// dynamics, and each lane by itself.
+// Compares perturbed plants in the lanes of the engine `articulated` with a single arm of the same
+// dynamics, and each lane with the same job alone.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,13 +19,13 @@ PlantVariation draw_variation(RandomStream& random) {
   PlantVariation variation;
   const double sizes[] = {60, 120, 40, 0.5};
   for (const double size : sizes) {
-    variation.viscous_friction_n_m_s_per_rad.push_back(random.uniform(0, size));
-    variation.coulomb_friction_n_m.push_back(random.uniform(0, size));
+    variation.viscous_friction.push_back(random.uniform(0, size));
+    variation.coulomb_friction.push_back(random.uniform(0, size));
     variation.torque_ripple.push_back(random.uniform(0, 0.1));
     variation.ripple_phase_rad.push_back(random.uniform(0, 6));
   }
-  variation.friction_transition_rad_per_s = random.uniform(0.1, 0.2);
-  variation.quantisation_rad = random.bernoulli(0.5) ? random.uniform(1e-5, 1e-3) : 0;
+  variation.friction_transition_rate = random.uniform(0.1, 0.2);
+  variation.quantum = random.bernoulli(0.5) ? random.uniform(1e-5, 1e-3) : 0;
   variation.delay_substeps = static_cast<int>(random.below(3));
   variation.ripple_cycles_per_turn = 1 + static_cast<int>(random.below(20));
   return variation;
@@ -58,8 +58,8 @@ class PlantLanes : public testing::Test {
   std::vector<TrackingJob> jobs_;
 };
 
-// The last bits decide which of two encoder steps an angle in the middle belongs to: under
-// quantisation of up to a milliradian they agree to far less than without.
+// The last bits of an angle half-way between two encoder steps decide which step it gets. With a
+// quantum of up to a milliradian, results therefore agree far less closely than without.
 TEST_F(PlantLanes, AgreeWithASingleArm) {
   for (const EngineOptions& options : make_double_options()) {
     SCOPED_TRACE(describe(options));
@@ -69,9 +69,9 @@ TEST_F(PlantLanes, AgreeWithASingleArm) {
       if (jobs_[i].design != &kTableA1) {
         continue;
       }
-      ArticulatedArm arm(setup_.robot(), targets_[i].start_rad, setup_.task().physics);
+      ArticulatedArm arm(setup_.robot(), targets_[i].start_positions, setup_.task().physics);
       const TrackingResult expected = TrackingLoop(setup_, jobs_[i]).run(arm);
-      const bool rounds = jobs_[i].variation != nullptr && variations_[i].quantisation_rad > 0;
+      const bool rounds = jobs_[i].variation != nullptr && variations_[i].quantum > 0;
       ASSERT_EQ(results[i].point_error_m.size(), expected.point_error_m.size()) << i;
       EXPECT_NEAR(results[i].mean_error_m, expected.mean_error_m,
                   (rounds ? 0.01 : 1e-6) * expected.mean_error_m)
@@ -101,14 +101,13 @@ TEST_F(PlantLanes, HaveTheSameResultsAloneAndInAnyCompany) {
   }
 }
 
-// Nothing of everything is the nominal plant, up to what the compiler makes of more terms.
+// A variation whose sizes are all zero is the nominal plant, up to rounding in other code.
 TEST_F(PlantLanes, WithoutAnySizeAreNominal) {
   PlantVariation none = variations_[0];
-  for (auto* sizes :
-       {&none.viscous_friction_n_m_s_per_rad, &none.coulomb_friction_n_m, &none.torque_ripple}) {
+  for (auto* sizes : {&none.viscous_friction, &none.coulomb_friction, &none.torque_ripple}) {
     std::ranges::fill(*sizes, 0.0);
   }
-  none.quantisation_rad = 0;
+  none.quantum = 0;
   none.delay_substeps = 0;
   for (const EngineOptions& options : make_double_options()) {
     const auto engine = make_articulated(options);

@@ -1,4 +1,5 @@
-// Every control law: by hand, by what all of them promise, and in SIMD lanes.
+// Tests every control law: against numbers computed by hand, for the properties that all laws
+// share, and in SIMD lanes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,7 +13,7 @@
 #include "base/expect_error.hpp"
 #include "base/random.hpp"
 #include "sim/controllers/controller.hpp"
-#include "sim/controllers/tanh.hpp"
+#include "sim/controllers/neural.hpp"
 #include "sim/engines/articulated/kernels.hpp"
 #include "sim/engines/articulated/lane_block.hpp"
 #include "sim/support.hpp"
@@ -71,7 +72,7 @@ TEST(ControlLaws, PidFilteredIsThePidWithoutFilterAndWeights) {
   }
 }
 
-// The setpoint goes on from 3.13 past pi: by 0.04, not by 2 pi less.
+// The setpoint moves from 3.13 past pi: by 0.04, not by 0.04 - 2 pi.
 TEST(ControlLaws, TheWeighedSetpointDoesNotSeeTheWrap) {
   expect_steps("pid_filtered", {100, 0, 0, 0, 0.5, 1}, {-1000, 1000},
                {{3.13, 3.13, 0}, {3.17 - 2 * kPi, 3.13, 100 * (0.04 - 0.5 * 0.04)}});
@@ -95,7 +96,7 @@ TEST(ControlLaws, CascadeByHand) {
                 {0.3, 0.3, -7}});  // e_v = 0 + 0 - 2, sum 0.15: -10 + 3
 }
 
-// From where it stands on its target: sum(e_v) h = kp sum(e) h + e.
+// If it starts at rest on its target: sum(e_v) h = kp sum(e) h + e.
 TEST(ControlLaws, CascadeIsAPidInDisguise) {
   const double kp = 12, kv = 5, ki = 20;
   const auto cascade = find_controller("cascade").make(std::vector<double>{kp, kv, ki, 1},
@@ -142,7 +143,7 @@ TEST(ControlLaws, TanhIsWithinItsBounds) {
   EXPECT_LT(worst, 1e-15);
   EXPECT_GT(worst, 0);
   EXPECT_LT(worst_float, 1e-6);
-  // Small ones keep their digits.
+  // Small arguments keep their digits.
   for (double x = 1; x > 1e-300; x *= 0.37) {
     EXPECT_NEAR(controllers::calc_tanh(Double(x)).v / std::tanh(x), 1, 1e-14);
   }
@@ -152,7 +153,7 @@ TEST(ControlLaws, TanhIsWithinItsBounds) {
 class EveryController : public testing::TestWithParam<std::string> {
  protected:
   const ControllerRow& row() const { return find_controller(GetParam()); }
-  // Of the thesis's second joint before anything is tuned.
+  // The thesis's second joint before tuning.
   std::vector<double> make_gains() const {
     std::vector<double> gains(row().gains.size());
     row().convert({270000, 700000, 30000, 45000, 0.01}, gains.data());
@@ -168,10 +169,11 @@ TEST_P(EveryController, SaysWhatItIs) {
   EXPECT_FALSE(row().summary.empty());
   EXPECT_THAT(row().formula, testing::HasSubstr("u = "));
   std::set<std::string> names;
-  for (const GainSpec& gain : row().gains) {
+  for (const controllers::Gain& gain : row().gains) {
     EXPECT_TRUE(names.insert(gain.name).second) << gain.name;
-    EXPECT_TRUE(names.insert(gain.key).second || gain.key == gain.name) << gain.key;
-    EXPECT_FALSE(gain.unit.empty());
+    EXPECT_TRUE(names.insert(gain.key).second || std::string_view(gain.key) == gain.name)
+        << gain.key;
+    EXPECT_STRNE(gain.unit, "");
     EXPECT_GE(gain.range, 0);
     EXPECT_TRUE(gain.range > 0 || !gain.any_sign) << "a factor keeps the sign";
   }
@@ -180,15 +182,15 @@ TEST_P(EveryController, SaysWhatItIs) {
 TEST_P(EveryController, StartsWithUsableGains) {
   const auto gains = make_gains();
   for (std::size_t k = 0; k < gains.size(); ++k) {
-    const GainSpec& spec = row().gains[k];
+    const controllers::Gain& spec = row().gains[k];
     EXPECT_TRUE(std::isfinite(gains[k])) << spec.name;
     EXPECT_TRUE(spec.any_sign || gains[k] >= 0) << spec.name;
     EXPECT_TRUE(spec.range > 0 || gains[k] > 0) << spec.name;
   }
 }
 
-// Small errors that come and go slowly are answered much as by the PID it was made of: to a
-// quarter.
+// For small and slow errors, a controller converted from a PID gives almost the same effort as that
+// PID, to a quarter.
 TEST_P(EveryController, StartsNearThePid) {
   const auto controller = make();
   PidController pid(270000, 700000, 30000, kLimits);
@@ -219,7 +221,7 @@ TEST_P(EveryController, ClampsAndSaysSo) {
   EXPECT_FALSE(controller->saturated());
 }
 
-// However long it was clamped, it comes out as it went in; filters have settled after 30 steps.
+// A long saturation does not change the later efforts; filters have settled after 30 steps.
 TEST_P(EveryController, DoesNotWindUp) {
   const auto brief = make();
   const auto lasting = make();
@@ -235,7 +237,7 @@ TEST_P(EveryController, DoesNotWindUp) {
   }
 }
 
-// But where it is not clamped it integrates.
+// If it is not clamped, it integrates.
 TEST_P(EveryController, GrowsAgainstALastingError) {
   const auto controller = make();
   double before = controller->step(0.01, 0, 0.01);
@@ -284,9 +286,9 @@ TEST_P(EveryController, RefusesWhatCannotWork) {
       "controller '" + row().name + "': " + row().gains.back().key + " is nan; it must be finite");
 }
 
-// The same law for one number and for lanes. On one lane without fused operations it is the same
-// arithmetic, and the same bits; the PID, which the kernels have inlined, articulated_kernel_test
-// compares.
+// Compares each law on one number with the same law in lanes. One lane without fused operations has
+// the same arithmetic and therefore the same bits. articulated_kernel_test compares the PID, which
+// the kernels have inlined.
 template <class T>
 double compare_lanes(const ControllerRow& row, const std::vector<double>& gains, SimdLevel level,
                      EffortLimits limits) {
@@ -321,8 +323,8 @@ double compare_lanes(const ControllerRow& row, const std::vector<double>& gains,
     }
     for (int joint = 0; joint < kJoints; ++joint) {
       number(kIntegrating * kJoints + joint, lane) = 1;
-      number(kEffortMin * kJoints + joint, lane) = static_cast<T>(limits.min_n_m);
-      number(kEffortMax * kJoints + joint, lane) = static_cast<T>(limits.max_n_m);
+      number(kEffortMin * kJoints + joint, lane) = static_cast<T>(limits.min);
+      number(kEffortMax * kJoints + joint, lane) = static_cast<T>(limits.max);
       for (int k = 0; k < gain_count; ++k) {
         number(calc_state_packs(kJoints) + (row.states + k) * kJoints + joint, lane) =
             static_cast<T>(own[static_cast<std::size_t>(k)]);

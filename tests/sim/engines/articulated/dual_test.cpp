@@ -1,8 +1,8 @@
-#include "sim/engines/articulated/dual.hpp"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
+
+#include "sim/engines/articulated/number_simulation.hpp"
 
 namespace armwright {
 namespace {
@@ -12,7 +12,7 @@ using Slopes = lanes::Pack<double, 2, TestLevel>;
 using Number = lanes::Dual<Slopes>;
 using Lane = lanes::NumberLane<Number>;
 
-// With derivatives 1, 0 or 0, 1: along two independent directions.
+// Numbers with derivatives (1, 0) or (0, 1): along two independent directions.
 Lane make_x(double value) {
   return Lane(Number(value, Slopes(Slopes::Vector{1, 0})));
 }

@@ -1,0 +1,200 @@
+// The readers of a problem's tables. Internal to this module, except for perturbations and paths,
+// which commands and tests read by themselves.
+//
+// Each .cpp file declares the settings of its tables beside the reader. The constants k...Settings
+// list them per table; problem_settings() (problem_loader.hpp) holds all of these.
+//
+// Every reader throws Error{usage} that names file, line and key, unless its comment says more.
+// Readers settle (ConfigTable::settle) each value that the file leaves open and that decides a
+// result, so that the recorded configuration has it.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/config.hpp"
+#include "problems/config/problem_loader.hpp"
+#include "problems/interface/schedule.hpp"
+#include "problems/tracking/tracking_config.hpp"
+#include "sim/engines/engine_table.hpp"
+
+namespace armwright {
+
+// problem_loader.cpp
+
+// Makes the problem that `table` describes. `path` is its file, or a file that need not exist: it
+// names the problem, and files that the table names are looked for beside it. Throws Error as
+// load_problem() does.
+LoadedProblem read_problem(const ConfigTable& table, const std::filesystem::path& path,
+                           std::span<const EngineRow> engines);
+
+// Returns the path of the file of `kind` (config_files.hpp) that a setting names. It is looked for
+// beside the configuration first.
+std::filesystem::path resolve_named(const ConfigTable& table, const Setting<std::string>& setting,
+                                    std::string_view kind);
+
+// Records the file's hash as an input of the problem. Throws Error{io} if it cannot be read,
+// Error{bad_data} if it is larger than 8 MiB.
+void add_input(LoadedProblem& loaded, const std::filesystem::path& file);
+
+// schedule_reader.cpp: [schedule] and [racing]
+
+extern const SettingTable kScheduleSettings;
+extern const SettingTable kRacingSettings;
+void read_schedule_table(const ConfigTable& table, LoadedProblem& loaded);
+Racing read_racing_table(const ConfigTable& table);
+// Settles one training case, always the same, and sets it in `loaded`.
+void settle_one_case(const ConfigTable& table, LoadedProblem& loaded);
+
+// tracking_loader.cpp: [robot], [training] and [motors]
+
+extern const SettingTable kRobotSettings;
+extern const SettingTable kTrainingSettings;
+extern const SettingTable kMotorSettings;
+extern const Setting<std::string> kRobotUrdf;
+// Calls the function. Puts the robot's file before the message of an Error{bad_data}.
+void name_robot_file(const std::filesystem::path& urdf, const std::function<void()>& call);
+// Sets the problem and the hashes of its inputs. Throws Error{bad_data} for a file that a table
+// names and that is wrong.
+void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
+                   LoadedProblem& loaded);
+
+// engine_reader.cpp: [physics]
+
+extern const SettingTable kPhysicsSettings;
+// Chooses the engines among those of `table`, and settles the SIMD level if one of them has SIMD:
+// the last digits of every result depend on it.
+EnginePair read_engines(const ConfigTable& physics, std::span<const EngineRow> table);
+PhysicsSettings read_physics(const ConfigTable& physics);
+
+// task_reader.cpp: [task], [control] and [workspace]
+
+extern const SettingTable kTaskSettings;
+extern const SettingTable kControlSettings;
+extern const SettingTable kWorkspaceSettings;
+extern const Setting<std::string> kTaskOrientation, kControlController;
+extern const Setting<bool> kTaskCountFirstPoint;
+extern const Setting<double> kTaskSpeed, kTaskDistanceLimit, kWorkspaceRadius,
+    kWorkspaceShortestMove;
+extern const Setting<std::vector<double>> kTaskHome, kTaskToolRpy, kWorkspaceCentre,
+    kWorkspaceNormal;
+
+// The most control periods of a test case: the joint position setpoints of four joints then take
+// 320 MB. A published case has 3925.
+inline constexpr double kMostPeriods = 1e7;
+
+TrackingTask read_task(const ConfigTable& table, const ConfigTable& control);
+WorkspaceSphere read_workspace(const ConfigTable& table);
+// Refuses values that are each allowed, but together make a test case longer than kMostPeriods.
+void check_length(const ConfigTable& table, const ConfigTable& control,
+                  const TrackingConfig& config);
+// Returns three numbers. `what` completes the message "it must be three numbers: ".
+Eigen::Vector3d read_vector(const ConfigTable& table, const Setting<std::vector<double>>& setting,
+                            std::string_view what);
+// Returns three numbers as a unit vector. Refuses the zero vector.
+Eigen::Vector3d read_direction(const ConfigTable& table,
+                               const Setting<std::vector<double>>& setting);
+// The limits of each number of a direction.
+inline constexpr Range kDirectionRange{.lower = -1e6, .upper = 1e6};
+// The limits of each angle of roll, pitch and yaw, rad.
+inline constexpr Range kAngleRange{.lower = -7, .upper = 7};
+
+// robot_proposal.cpp: what robot.propose = true adds
+
+// Proposes what the file leaves out of orientation, home, workspace and speed
+// (sim/proposal/workspace_proposal.hpp, sim/proposal/drive_proposal.hpp), completes config.task and
+// config.workspace with it, and settles it. Values in the file are kept. Throws Error{usage} if the
+// file gives only a part of values that belong together.
+void apply_proposal(const ConfigTable& table, TrackingConfig& config);
+// Returns the proposed controllers and effort limits, for variables.start = "proposed".
+ArmDesign propose_start(const TrackingConfig& config);
+
+// path_reader.cpp: [path], a path of the user's own in place of cases generated in the workspace
+//
+// It is the one case that designs are trained, validated and tested on. If plants are perturbed,
+// the sets have as many cases as they say, all on this path, each with a plant of its own.
+//
+//   kind = "points"  [[path.point]] tables with position_m and rpy_rad; either all points have
+//                    rpy_rad or none. The tool moves from each point to the next by the task's
+//                    reference signal, and rests there.
+//   kind = "line"    from_m, to_m, repeats: there and back again, in the same way
+//   kind = "circle"  centre_m, normal, radius_m, start (a direction; default: the direction in the
+//                    circle's plane that is nearest to x, or to y if the normal is close to x),
+//                    repeats: without a stop. The reference signal at task.speed_m_per_s gives the
+//                    way along the circle; the error counts all along.
+//   kind = "file"    file = "path.csv": the columns of parse_path()
+// Orientations turn along the shortest way (slerp).
+
+extern const SettingTable kPathSettings;
+
+struct ReadPath {
+  TestCase the_case;
+  std::optional<std::filesystem::path> file;  // the file that the path was read from, if any
+};
+
+// Returns nothing if the table has no kind. Throws Error{bad_data} with file and line of the path.
+std::optional<ReadPath> read_path(const ConfigTable& table, const TrackingTask& task);
+
+// path_file.cpp
+
+inline constexpr double kFarthestPlace_m = 100;  // as in files of test cases
+inline constexpr std::size_t kMostPathPoints = 1'000'000;
+
+// Reads a path in CSV. Columns: x_m, y_m, z_m; optionally roll_rad, pitch_rad and yaw_rad, or qw,
+// qx, qy and qz; optionally time_s. With times the result is a continuous path with one point per
+// control period of the task, straight between the rows, and the error counts all along. Without
+// times the rows are the points that the tool moves between. `name` is the file's name in messages.
+// Throws Error{bad_data} with file and line.
+TestCase parse_path(std::string_view text, const std::string& name, const TrackingTask& task);
+
+// Lets the target stay at the end of a continuous path for the task's rest_s.
+void add_rest(const TrackingTask& task, TestCase& path);
+
+// objective_reader.cpp: [objective]
+
+extern const SettingTable kObjectiveSettings;
+TrackingObjective read_objective(const ConfigTable& table);
+// Refuses, in `table`, limits that no design within the bounds can meet, or that every design
+// meets.
+void check_limits(const ConfigTable& table, const TrackingConfig& config);
+
+// variables_reader.cpp: [variables]
+
+extern const SettingTable kVariableSettings;
+extern const Setting<std::string> kVariablesStart;
+// Reads the start, the decision vector and its bounds into `config`, and the controller that
+// [control] names. Throws Error{bad_data} if no start can be proposed for the robot in `urdf`.
+void read_variables(const ConfigTable& variables, const ConfigTable& control,
+                    const std::filesystem::path& urdf, TrackingConfig& config,
+                    LoadedProblem& loaded);
+
+// perturbation_reader.cpp: [perturbation] (perturbation.hpp)
+//
+// preset = NAME names a file with the same keys: a shipped one in configs/perturbations, or a path.
+// Keys beside it replace the keys of the preset. An empty list stands for none; of load_kg it
+// stands for the task's own load.
+
+extern const SettingTable kPerturbationSettings;
+
+// Reads a preset by itself: the name of a shipped file, or a path.
+Perturbation load_perturbation(const std::string& preset, std::size_t joints);
+// Returns all keys as KEY=VALUE texts, which replace every key of a problem's table.
+std::vector<std::string> make_overrides(const Perturbation& perturbation);
+// Settles the values of a preset, and no preset. Records the preset's file as an input of `loaded`.
+Perturbation read_perturbation(const ConfigTable& table, std::size_t joints, LoadedProblem& loaded);
+
+// requirement_reader.cpp: [[requirement]] (requirement.hpp)
+
+extern const SettingTable kRequirementSettings;
+// Reads the requirements for the robot, task, workspace, start and objective of `config`.
+std::vector<Requirement> read_requirements(std::span<const ConfigTable> tables,
+                                           const TrackingConfig& config);
+
+}  // namespace armwright

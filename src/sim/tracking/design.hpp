@@ -1,0 +1,38 @@
+// A design: what an optimization chooses. It has one controller with effort limits per joint.
+// Optionally it also changes the links and the speed (designed_arm.hpp).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/controllers/controller.hpp"
+
+namespace armwright {
+
+struct JointDrive {
+  std::vector<double> gains;  // in the order of the controller's ControllerRow::gains
+  EffortLimits limits;
+  double length_scale = 1;  // of the link that the joint moves
+  double section_scale = 1;
+};
+
+struct ArmDesign {
+  std::string controller = "pid";
+  std::vector<JointDrive> joints;
+  std::optional<double> speed_m_per_s;  // empty: the task's speed
+};
+
+// Returns the larger of a joint's two effort limits, max(-min, max), in N m or N.
+double calc_largest_effort(const JointDrive& joint);
+// Returns the sum of the largest efforts over the joints: the thesis's total torque magnitude. The
+// unit is N m if all joints are revolute.
+double calc_total_effort(const ArmDesign& design);
+
+// Returns the design itself if it is for the given controller. From a PID design it makes one for
+// that controller: ControllerRow::convert computes the gains, and the rest stays. Throws
+// Error{usage} for a design of any other controller, and if a gain is not finite.
+ArmDesign convert_design(const ArmDesign& design, std::string_view controller, double period_s);
+
+}  // namespace armwright

@@ -1,0 +1,57 @@
+// The tracking task: how the target moves, how fast the controllers sample, and the physics. It
+// holds everything that is the same for every design and every test case.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/controllers/law_types.hpp"
+#include "sim/kinematics/targets.hpp"
+#include "sim/kinematics/tool_task.hpp"
+
+namespace armwright {
+
+struct PhysicsSettings {
+  double gravity_m_per_s2 = 9.80665;
+  // Plant steps per control period; the effort is held. The published gains need exactly 1.
+  int substeps = 1;
+  // ODE only: share of a joint's position error that one step corrects (thesis: damping 1/25 s).
+  double erp = 0.25;
+  double cfm = 0;  // ODE only: constraint softness
+};
+
+// The inverse kinematics: the closed form of a palletiser (kinematics.hpp) or damped least squares
+// (numeric_kinematics.hpp). `automatic` takes the closed form if it suits the robot and the task
+// leaves the tool's orientation free.
+enum class KinematicsChoice { automatic, palletiser, numeric };
+const std::vector<std::string>& kinematics_names();  // in the order of the enum
+
+// How a target's path has to respect the joints' ranges, the joints' speed limits and singularities
+// (path_check.hpp).
+//   ignore   the path may violate any of them, as in the thesis
+//   warn     inverse kinematics keeps the joints in their ranges
+//   enforce  likewise; a case whose path violates any of them is not simulated
+enum class LimitPolicy { ignore, warn, enforce };
+const std::vector<std::string>& limit_policy_names();  // in the order of the enum
+
+struct TrackingTask {
+  SignalShape signal = SignalShape::complex;
+  double speed_m_per_s = 1.5;  // v, nominal average speed
+  // Moves shorter than this are slowed down by the factor distance / limit. 0: no move is.
+  double distance_limit_m = 0.9;
+  double trapezoid_acceleration_m_per_s2 = 15;
+  double rest_s = 0.5;
+  double control_period_s = 0.01;  // h
+  bool count_first_point = false;
+  bool ik_bug = false;
+  double load_kg = 0;
+  KinematicsChoice kinematics = KinematicsChoice::automatic;
+  LimitPolicy limits = LimitPolicy::ignore;
+  ToolTask tool;
+  // Joint positions (rad or m) from which numeric kinematics search. Empty: middles of the ranges.
+  std::vector<double> home;
+  FeedForward feed_forward = FeedForward::none;  // the efforts that target tables hold
+  PhysicsSettings physics;
+};
+
+}  // namespace armwright

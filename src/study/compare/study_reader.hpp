@@ -1,0 +1,51 @@
+// Reads a study's file, without loading the problems and optimizers that it names. Internal to this
+// module; study_plan.hpp declares study_settings() and read_study_title().
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/config.hpp"
+#include "study/compare/study_plan.hpp"
+
+namespace armwright {
+
+struct NamedOptimizer {
+  std::string name;
+  std::string label = {};
+  std::vector<std::string> options = {};
+  bool baseline = false;  // true only in resolved plans
+  std::optional<Schedule> schedule = {};
+  std::vector<std::string> settings = {};
+  // A resolved plan has these two for an optimizer of the program that made it.
+  std::string description = {};
+  std::vector<std::string> inputs = {};  // "NAME HASH"
+};
+
+struct NamedProblem {
+  std::string name;
+  std::string label = {};
+  std::vector<std::string> settings = {};
+  std::optional<Schedule> schedule = {};
+  std::string configuration_sha256 = {};  // as a resolved plan records it; empty: not known
+};
+
+// The names that file and flags give.
+struct RawPlan {
+  std::vector<NamedProblem> problems;
+  std::vector<NamedOptimizer> optimizers;
+  std::vector<std::string> settings;  // of every problem; a problem's own settings replace them
+  std::vector<std::string> last_settings;  // of every problem; they replace all others
+  std::optional<Schedule> schedule;
+};
+
+// Reads the file into the returned plan and, for all that needs no loading, into `plan`. Throws
+// Error{usage} that names file, line and key, Error{io} for a file that cannot be read.
+RawPlan read_study_file(const std::filesystem::path& file, StudyPlan& plan);
+
+// Returns the baselines of a resolved plan. Throws as read_study_file().
+std::vector<NamedOptimizer> read_baselines(const std::filesystem::path& file);
+
+}  // namespace armwright

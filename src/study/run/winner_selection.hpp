@@ -1,0 +1,31 @@
+// Selects the winner of a run, in the same way for every optimizer. All candidates are evaluated on
+// the validation set, and the best of them on the test set. These evaluations are not charged to
+// the budget, and no case is cut off.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "study/executor/case_executor.hpp"
+#include "study/journal/journal.hpp"
+#include "study/run/run_observer.hpp"
+#include "study/run/run_result.hpp"
+
+namespace armwright {
+
+// Returns the index of the winner: the candidate with the fewest failed validation cases, then with
+// the smallest constraint violation, then with the best objective (of several, the weighted sum).
+// The first of equal ones wins. Returns nothing if no candidate has an objective.
+std::optional<std::size_t> choose_winner(const ProblemDescription& problem,
+                                         const std::vector<JudgedCandidate>& judged);
+
+// Evaluates the candidates and sets `judged`, `winner`, `test` and `test_summary` of the result.
+// Takes evaluations from `recorded` where the journal has them, and appends the others to
+// `journal`. Returns false if it was stopped; the result is incomplete then. Throws Error{bad_data}
+// if the recorded run has ended but lacks an evaluation, and Error{io} if the journal cannot be
+// written.
+bool select_winner(const RunPlan& plan, std::vector<Candidate> candidates,
+                   const JournalContent& recorded, CaseExecutor& executor, StopSignal& stop,
+                   Journal& journal, RunObserver& observer, RunResult& result);
+
+}  // namespace armwright

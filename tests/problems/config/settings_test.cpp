@@ -1,0 +1,235 @@
+// The declarations of settings: every one of them is what a reader reads.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <stdexcept>
+
+#include "problems/changed_text.hpp"
+#include "problems/config/problem_readers.hpp"
+#include "problems/problem_folder.hpp"
+
+namespace armwright {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+const AnySetting& find(const SettingTable& file, const std::string& path) {
+  for (const ListedSetting& one : list_settings(file)) {
+    if (one.path == path) {
+      return *one.setting;
+    }
+  }
+  throw std::logic_error("there is no setting " + path);
+}
+
+// A problem in which every table has a header, so that any key can be put into any table.
+constexpr const char* kEveryTable = R"(kind = "tracking"
+[robot]
+urdf = "irb4600_40_255"
+[task]
+[control]
+[workspace]
+[physics]
+[training]
+[schedule]
+[racing]
+[sets]
+[run]
+[objective]
+[variables]
+start = "table-a1"
+[[variables.joint]]
+name = "joint_1"
+optimize = ["p"]
+[motors]
+[[requirement]]
+quantity = "settling_time"
+limit_s = 0.1
+[perturbation]
+[published]
+[sweep]
+parameter = "task.speed_m_per_s"
+values = [1]
+design = "table-a1"
+)";
+constexpr const char* kPoints = R"([path]
+kind = "points"
+[[path.point]]
+position_m = [1.4, 0, 0.9]
+[[path.point]]
+position_m = [1.4, 0.2, 0.9]
+)";
+constexpr const char* kFunction = "kind = \"analytic\"\n[function]\nname = \"sphere\"\n";
+
+struct Specimen {
+  std::string text;
+  std::vector<std::string> overrides;
+};
+
+// Returns a problem whose reader reads the setting.
+Specimen make_specimen(const std::string& path) {
+  static const std::map<std::string, std::vector<std::string>> overrides = {
+      {"path.from_m", {"path.kind=line"}},
+      {"path.to_m", {"path.kind=line", "path.from_m=[1.4,0,0.9]"}},
+      {"path.repeats", {"path.kind=line", "path.from_m=[1.4,0,0.9]", "path.to_m=[1,0,0.9]"}},
+      {"path.centre_m", {"path.kind=circle"}},
+      {"path.normal", {"path.kind=circle", "path.centre_m=[1.4,0,0.9]"}},
+      {"path.radius_m", {"path.kind=circle", "path.centre_m=[1.4,0,0.9]", "path.normal=[1,0,0]"}},
+      {"path.start",
+       {"path.kind=circle", "path.centre_m=[1.4,0,0.9]", "path.normal=[1,0,0]",
+        "path.radius_m=0.1"}},
+      {"path.file", {"path.kind=file"}},
+      {"racing.first_cases", {"racing.kind=halving"}},
+      {"racing.eta", {"racing.kind=halving"}},
+      {"racing.margin", {"racing.kind=abandonment"}},
+      {"racing.chunk_cases", {"racing.kind=abandonment"}},
+      {"objective.cvar_share", {"objective.statistic=cvar"}},
+      {"objective.failure_penalty_m", {"objective.statistic=mean_with_failures"}},
+      {"objective.energy_scale_j", {"objective.energy_weight=1"}},
+      {"objective.duration_scale_s", {"objective.duration_weight=1"}},
+      {"objective.error_limit_m", {"objective.kind=torque_with_error_limit"}},
+      {"objective.total_torque_limit_n_m", {"objective.kind=error_with_torque_limit"}},
+  };
+  Specimen specimen{kEveryTable, {}};
+  if (path.starts_with("path.")) {
+    specimen.text += kPoints;
+  } else if (path.starts_with("function.")) {
+    specimen.text = kFunction;
+  }
+  if (const auto found = overrides.find(path); found != overrides.end()) {
+    specimen.overrides = found->second;
+  }
+  return specimen;
+}
+
+// Returns a [[requirement]] with a date as this limit, of a joint that slides if the limit is one
+// of such joints.
+std::string make_requirement(const std::string& limit) {
+  for (const RequirementRow& row : requirement_table()) {
+    if (row.limit_key == limit || row.slider_limit_key == limit) {
+      return "[[requirement]]\nquantity = \"" + row.key + "\"\n" + limit + " = " + kDate + "\n" +
+             (row.limit_key == limit ? "" : "joint = \"rail\"\n");
+    }
+  }
+  throw std::logic_error("no quantity has the limit " + limit);
+}
+
+TEST(Settings, AProblemsReaderReadsEveryOne) {
+  const ProblemFolder folder;
+  for (const ListedSetting& one : list_settings(problem_settings())) {
+    const auto& [path, setting] = one;
+    const auto& [text, overrides] = make_specimen(path);
+    if (path.starts_with("requirement[].limit_")) {
+      continue;  // the next test
+    }
+    const std::string message =
+        folder.refusal_of(change_text(text, make_header(path), setting->key, kDate), overrides);
+    EXPECT_THAT(message, HasSubstr(": " + make_first_path(path) + " is " + kDate +
+                                   ", a date or time; it must be "));
+    // The names of joints and the engines of this build are choices that the reader finds out.
+    if (setting->key != "name" && setting->key != "joint") {
+      EXPECT_THAT(message, testing::EndsWith("it must be " + setting->describe_allowed()));
+    }
+  }
+}
+
+TEST(Settings, AProblemsReaderReadsTheLimitsOfAllQuantities) {
+  const ProblemFolder folder;
+  folder.write("d.toml", make_joint() + make_joint());
+  const std::string problem = "kind = \"tracking\"\n[robot]\nurdf = \"" ARMWRIGHT_TEST_DATA
+                              "/urdf/rail_and_pole.urdf\"\n[variables]\nstart = \"d.toml\"\n";
+  for (const ListedSetting& one : list_settings(problem_settings())) {
+    if (one.path.starts_with("requirement[].limit_")) {
+      EXPECT_THAT(folder.refusal_of(problem + make_requirement(one.setting->key)),
+                  HasSubstr(": " + make_first_path(one.path) + " is " + kDate +
+                            ", a date or time; it must be " + one.setting->describe_allowed()));
+    }
+  }
+}
+
+const ControllerRow& find_controller_with(const std::string& gain) {
+  for (const ControllerRow& controller : controller_table()) {
+    if (std::ranges::find(controller.gains, gain, &controllers::Gain::key) !=
+        controller.gains.end()) {
+      return controller;
+    }
+  }
+  return find_controller("pid");
+}
+
+TEST(Settings, ADesignsReaderReadsEveryOne) {
+  const ProblemFolder folder;
+  for (const ListedSetting& one : list_settings(design_settings())) {
+    const ControllerRow& controller = find_controller_with(one.setting->key);
+    DesignFile design;
+    design.design.controller = controller.name;
+    design.joint_names = {"joint"};
+    JointDrive drive;
+    drive.gains.assign(controller.gains.size(), 1);
+    design.design.joints = {drive};
+    const std::string text = to_toml(design) + "[[published]]\nlabel = \"\"\nproblem = \"\"\n";
+    EXPECT_THAT(
+        folder.refusal_of_design(change_text(text, make_header(one.path), one.setting->key, kDate)),
+        testing::AllOf(HasSubstr(": " + make_first_path(one.path) + " is " + kDate),
+                       testing::EndsWith("it must be " + one.setting->describe_allowed())));
+  }
+}
+
+TEST(Settings, EveryOneHasAMeaning) {
+  std::set<std::string> paths;
+  for (const SettingTable* file : {&problem_settings(), &design_settings()}) {
+    for (const ListedSetting& one : list_settings(*file)) {
+      EXPECT_THAT(one.setting->meaning, Not(IsEmpty())) << one.path;
+      EXPECT_TRUE(paths.insert(file == &design_settings() ? "design:" + one.path : one.path).second)
+          << one.path << " is there twice";
+    }
+  }
+}
+
+TEST(Settings, SayWhatTheReadersCheck) {
+  const AnySetting& speed = find(problem_settings(), "task.speed_m_per_s");
+  EXPECT_EQ(speed.unit, "m/s");
+  EXPECT_EQ(speed.describe_allowed(), "a finite number >= 0.01 and <= 100");
+  EXPECT_EQ(speed.default_text, "1.5");
+  EXPECT_EQ(find(problem_settings(), "schedule.kind").describe_allowed(),
+            "one of these strings: fixed, fresh, coevolution");
+  // Required, and read only if the kind of the objective needs it.
+  EXPECT_EQ(find(problem_settings(), "objective.error_limit_m").default_text, "");
+  EXPECT_EQ(find(problem_settings(), "requirement[].limit_rad_per_s").unit, "rad/s");
+}
+
+TEST(Settings, DefaultsAreThoseOfAProblemThatLeavesThemOut) {
+  const ProblemFolder folder;
+  const LoadedProblem base = folder.load("base.toml");
+  for (const ListedSetting& one : list_settings(problem_settings())) {
+    // Settings of a kind that the problem does not have cannot be set to the default.
+    const bool is_of_kind =
+        one.path.starts_with("path.") || one.path.starts_with("function.") ||
+        one.path.starts_with("racing.") || one.path.find("[]") != std::string::npos ||
+        one.path == "objective.cvar_share" || one.path == "objective.failure_penalty_m";
+    // 0 is no density: it stands for a missing one.
+    if (is_of_kind || one.setting->default_text.empty() || one.path == "robot.density_kg_per_m3") {
+      continue;
+    }
+    const std::vector<std::string> overrides = {one.path + "=" + one.setting->default_text};
+    EXPECT_NO_THROW(folder.load("base.toml", overrides)) << overrides[0];
+  }
+}
+
+TEST(Settings, GainsAreThoseOfAllControllers) {
+  const AnySetting& p = find(design_settings(), "joint[].p_n_m_per_rad");
+  EXPECT_EQ(p.unit, "N m/rad");
+  EXPECT_THAT(p.meaning, testing::StartsWith("gain of the controllers pid, "));
+  for (const ControllerRow& controller : controller_table()) {
+    for (const controllers::Gain& gain : controller.gains) {
+      EXPECT_EQ(find(design_settings(), std::string("joint[].") + gain.key).unit, gain.unit);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace armwright
