@@ -15,5 +15,15 @@ foreach(level scalar sse2 avx2 avx512)
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
     list(APPEND flags ${instructions_${level}})
   endif()
+  # Other flags, as -O2 and assertions in the preset ci, change which operations the compiler fuses, and so the last bits. Every Release
+  # build compiles the kernels with these flags, so CI tests the machine code that is shipped.
+  foreach(flag -O3 -DNDEBUG -U_GLIBCXX_ASSERTIONS)
+    list(APPEND flags $<$<CONFIG:Release>:${flag}>)
+  endforeach()
+  # With sanitizers a compiler takes more than a minute per file. All levels are the same source, so only one of them has sanitizers,
+  # and scripts/sanitize runs the tests with it.
+  if(CMAKE_CXX_FLAGS MATCHES "-fsanitize=" AND NOT level STREQUAL "sse2")
+    list(APPEND flags -fno-sanitize=all)
+  endif()
   set(ARMWRIGHT_KERNEL_FLAGS_${level} ${flags})
 endforeach()
