@@ -223,7 +223,7 @@ RunTrace read_trace(const RunEntry& run) {
   return trace;
 }
 
-CollectedRuns collected_runs(const std::vector<RunEntry>& runs) {
+CollectedRuns collect_runs(const std::vector<RunEntry>& runs) {
   CollectedRuns collected;
   for (const RunEntry& run : runs) {
     const RunTrace trace = read_trace(run);
