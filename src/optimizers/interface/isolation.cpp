@@ -222,7 +222,7 @@ void minimize_isolated(const std::string& name, const std::function<void(Evaluat
   }
 }
 
-std::vector<OptionSpec> make_watch_options() {
+std::vector<OptionSpec> make_isolation_options() {
   const ProcessLimits limits;
   return {{.name = "silence_s",
            .description = "longest time in seconds between two questions",

@@ -11,7 +11,7 @@
 #include "report/deliverables/finished_arm.hpp"
 #include "report/deliverables/ros2_control.hpp"
 #include "report/formats/export_folder.hpp"
-#include "sim/robot/urdf_limits.hpp"
+#include "sim/robot/urdf_effort_writer.hpp"
 #include "sim/tracking/designed_arm.hpp"
 
 namespace armwright {

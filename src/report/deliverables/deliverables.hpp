@@ -12,8 +12,8 @@ struct FinishedArm;
 void write_ros2_control(const FinishedArm& arm, const std::filesystem::path& folder);
 
 // The robot's own file under its own name, with the larger of each joint's effort limits
-// (sim/urdf_limits.hpp). Error{usage} if the winner stretches links, which a file of links and
-// meshes as they are cannot say; Error{bad_data} if the file is not what the run used.
+// (sim/robot/urdf_effort_writer.hpp). Error{usage} if the winner stretches links, which a file of
+// links and meshes as they are cannot say; Error{bad_data} if the file is not what the run used.
 void write_urdf(const FinishedArm& arm, const std::filesystem::path& folder);
 
 // datasheet.html (datasheet.hpp).

@@ -44,7 +44,7 @@ class CaseBatch {
   const CaseBlock& block() const { return block_; }
   CaseExtras extras() const { return extras_; }
   // Returns how many pairs one call of Problem::simulate() should get.
-  BatchSize batch_size() const { return batch_size_; }
+  BatchSize chunk_size() const { return chunk_size_; }
   std::size_t size() const { return candidates_.size() * block_.numbers.size(); }  // pairs
   Pair operator[](std::size_t number) const;
 
@@ -60,7 +60,7 @@ class CaseBatch {
   std::span<const std::span<const double>> candidates_;
   const CaseBlock& block_;
   CaseExtras extras_;
-  BatchSize batch_size_;
+  BatchSize chunk_size_;
   Receive receive_;
 };
 
