@@ -75,8 +75,9 @@ class CaseBatch {
   Receive receive_;
 };
 
-// An executor simulates batches on threads of this process, or also on other processes. It runs one
-// batch at a time: its functions must not be called by two threads at once, nor from a callback.
+// An executor simulates batches on threads of this process, or also in other processes. Its
+// functions must not be called from a callback. Only a Coordinator may be used by several threads
+// at once.
 class CaseExecutor {
  public:
   virtual ~CaseExecutor() = default;
