@@ -43,8 +43,7 @@ class LineProcess {
   LineProcess& operator=(const LineProcess&) = delete;
 
   // Limits the resident memory of the program to its present value plus `mib` MiB. (A ChildProcess
-  // limits private writable memory instead. A program in another language may reserve much more
-  // private memory than it uses.)
+  // limits private writable memory instead.)
   void limit_memory(double mib);
 
   // Both throw LineProcessFailure. `silence_s` is the longest time to wait for the child.

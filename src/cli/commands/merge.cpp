@@ -58,8 +58,8 @@ void tell_missing(const RecordedStudy& study, const std::string& program) {
   }
   const std::string more =
       count > names.size() ? fmt::format(" and {} more", count - names.size()) : "";
-  write_message(fmt::format("{} of {} cells have not ended: {}{}. To run them on this machine:\n{}", count,
-                            list_cells(study.plan).size(), join(names, ", "), more,
+  write_message(fmt::format("{} of {} cells have not ended: {}{}. To run them on this machine:\n{}",
+                            count, list_cells(study.plan).size(), join(names, ", "), more,
                             sanitize(quote_command(std::vector<std::string>{
                                 program, "compare", (study.folder / "study.toml").string(), "--out",
                                 study.folder.string()}))));

@@ -231,8 +231,9 @@ std::vector<OptionSpec> make_isolation_options() {
            .upper = 1e6,
            .changes_result = false},
           {.name = "memory_mib",
-           .description = "memory in MiB that its process may take beyond what it began with: of a library "
-                          "private writable memory, of a program resident memory",
+           .description =
+               "memory in MiB that its process may take beyond what it began with: of a library "
+               "private writable memory, of a program resident memory",
            .fallback = limits.memory_mib,
            .lower = 1,
            .upper = 1e9,

@@ -68,7 +68,8 @@ const Setting<double> kWinnerError{"error_m", kAboveZero, kNoDefault,
 const Setting<double> kWinnerTorque{"total_torque_n_m", kAboveZero, kNoDefault,
                                     "total torque of that winner"};
 const Setting<std::string> kWinnerDesign{"design", kNoDefault, "design file of that winner"};
-const Setting<std::string> kWinnerWhere{"where", "", "table or page of the source with these numbers"};
+const Setting<std::string> kWinnerWhere{"where", "",
+                                        "table or page of the source with these numbers"};
 const SettingTable kWinnerSettings{
     .key = "published", .settings = {&kWinnerError, &kWinnerTorque, &kWinnerDesign, &kWinnerWhere}};
 
