@@ -3,9 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <map>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>
 
@@ -15,7 +12,10 @@
 
 namespace armwright {
 
+using config::append_json;
+using config::copy_value;
 using config::Kind;
+using config::make_settled;
 using config::Value;
 
 // One table of the document, or an empty table in place of a missing one.
@@ -168,121 +168,6 @@ void collect_unknown(const Value& value, const std::string& path, std::vector<Un
     }
     unknown.push_back({child.get(), path, key, &value});
   }
-}
-
-std::string quote_json(const std::string& text) {
-  return nlohmann::json(text).dump();
-}
-
-// Appends the value, with the settled values in place of its own. `settled` may be null.
-void append_json(const Value& value, const Value* settled, std::string& out) {
-  if (settled != nullptr && (settled->kind != Kind::table || value.kind != Kind::table)) {
-    append_json(*settled, nullptr, out);
-    return;
-  }
-  switch (value.kind) {
-    case Kind::string:
-    case Kind::date:
-      out += quote_json(value.string);
-      return;
-    case Kind::integer:
-      out += fmt::format("{}", value.integer);
-      return;
-    case Kind::number: {
-      const std::string digits = format_exact(value.number);
-      // 2.0 must not turn into the integer 2
-      out += digits + (digits.find_first_of(".e") == std::string::npos ? ".0" : "");
-      return;
-    }
-    case Kind::boolean:
-      out += value.boolean ? "true" : "false";
-      return;
-    case Kind::array:
-      out += '[';
-      for (const Value& item : value.items) {
-        if (&item != value.items.data()) {
-          out += ',';
-        }
-        append_json(item, nullptr, out);
-      }
-      out += ']';
-      return;
-    case Kind::table: {
-      std::map<std::string_view, std::pair<const Value*, const Value*>> both;
-      for (const auto& [key, child] : value.keys) {
-        both[key].first = child.get();
-      }
-      if (settled != nullptr) {
-        for (const auto& [key, child] : settled->keys) {
-          both[key].second = child.get();
-        }
-      }
-      out += '{';
-      for (const auto& [key, children] : both) {
-        if (out.back() != '{') {
-          out += ',';
-        }
-        out += quote_json(std::string(key)) + ':';
-        const auto [own, chosen] = children;
-        append_json(own != nullptr ? *own : *chosen, own != nullptr ? chosen : nullptr, out);
-      }
-      out += '}';
-      return;
-    }
-  }
-}
-
-// The overloads return a value to settle.
-Value make_settled(const std::string& text) {
-  Value value;
-  value.kind = Kind::string;
-  value.string = text;
-  return value;
-}
-
-Value make_settled(std::int64_t integer) {
-  Value value;
-  value.kind = Kind::integer;
-  value.integer = integer;
-  return value;
-}
-
-Value make_settled(int integer) {
-  return make_settled(std::int64_t{integer});
-}
-
-Value make_settled(double number) {
-  constexpr double kLongestWhole = 1e16;  // from here on a file would show an exponent
-  if (number == std::trunc(number) && std::abs(number) < kLongestWhole) {
-    return make_settled(static_cast<std::int64_t>(number));
-  }
-  Value value;
-  value.kind = Kind::number;
-  value.number = number;
-  return value;
-}
-
-Value make_settled(const std::vector<double>& numbers) {
-  Value value;
-  value.kind = Kind::array;
-  for (const double number : numbers) {
-    value.items.push_back(make_settled(number));
-  }
-  return value;
-}
-
-// Returns a copy of a value that is no table.
-Value copy_value(const Value& value) {
-  Value copy;
-  copy.kind = value.kind;
-  copy.string = value.string;
-  copy.integer = value.integer;
-  copy.number = value.number;
-  copy.boolean = value.boolean;
-  for (const Value& item : value.items) {
-    copy.items.push_back(copy_value(item));
-  }
-  return copy;
 }
 
 void settle_value(const Node& node, const std::string& key, Value value) {

@@ -89,4 +89,18 @@ bool is_bare_key(std::string_view key);
 // Throws Error{usage} "PLACE: MESSAGE".
 [[noreturn]] void fail(const Place& place, std::string_view message);
 
+// Appends a value as canonical JSON (sorted keys, shortest exact numbers) to `out`. Values of
+// `settled`, which may be null, replace its own.
+void append_json(const Value& value, const Value* settled, std::string& out);
+
+// Return a value to settle. A whole number becomes an integer, as a file would show it.
+Value make_settled(const std::string& text);
+Value make_settled(std::int64_t integer);
+Value make_settled(int integer);
+Value make_settled(double number);
+Value make_settled(const std::vector<double>& numbers);
+
+// Returns a copy of a value that is no table.
+Value copy_value(const Value& value);
+
 }  // namespace armwright::config
