@@ -282,7 +282,7 @@ TEST_F(Export, OverwritesNothingAndLeavesNothingHalfDone) {
   ASSERT_EQ(run({"export", "study", "--format", "json"}).exit_code, 0);
   EXPECT_TRUE(std::filesystem::exists(path("study/export-json/runs.json")));
   expect_refused({"export", "study", "--format", "json"}, 2,
-                 AllOf(HasSubstr("study/export-json: is there already"), HasSubstr("--out")));
+                 AllOf(HasSubstr("study/export-json: exists already"), HasSubstr("--out")));
   expect_refused({"export", "study", "--format", "jsn", "--out", "x"}, 2,
                  HasSubstr("unknown --format 'jsn'; did you mean 'json'? Valid: csv, ioh"));
   expect_refused({"export", "nowhere", "--format", "json", "--out", "x"}, 2,

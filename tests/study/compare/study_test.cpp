@@ -87,7 +87,7 @@ TEST_F(StudyTest, WhatWouldMakeCellsIncomparableIsRefusedWithTheDifference) {
   expect(changed, "replicates: recorded 6, now 5");
   changed = request;
   changed.optimizers = {"ga"};
-  expect(changed, "optimizer cmaes is recorded, but the plan lacks it");
+  expect(changed, "optimizer cmaes is in the recorded plan, but not in this one");
   changed = request;
   changed.settings = {"function.dimension=4"};
   expect(changed, "problem sphere: function.dimension: recorded 3, now 4");
