@@ -17,10 +17,11 @@ void check_points(const Numbers& points, std::span<const DecisionVariable> varia
     for (py::ssize_t i = 0; i < points.ndim(); ++i) {
       shape.push_back(std::to_string(points.shape(i)));
     }
-    throw Error(ErrorKind::usage,
-                fmt::format("{} has the shape ({}); it must be (n, {}), a row a point and a column "
-                            "a decision variable, or ({},)",
-                            name, join(shape, ", "), variables.size(), variables.size()));
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("{} has the shape ({}); it must be (n, {}), one row per point and one column "
+                    "per decision variable, or ({},)",
+                    name, join(shape, ", "), variables.size(), variables.size()));
   }
   for (py::ssize_t row = 0; row < points.shape(0); ++row) {
     const auto x = get_row(points, row);

@@ -1,10 +1,10 @@
-#include "description.hpp"
-
 #include <algorithm>
 #include <iterator>
+#include <nlohmann/json.hpp>
 
 #include "base/text.hpp"
 #include "optimizers/interface/capability_table.hpp"
+#include "parts.hpp"
 
 namespace armwright::python {
 namespace {

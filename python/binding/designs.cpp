@@ -34,7 +34,7 @@ DesignFile make_design_file(const LoadedProblem& problem, const std::string& nam
   return file;
 }
 
-// A row of the variables' values.
+// Makes the design of one row of the variables' values.
 ArmDesign make_design(const LoadedProblem& problem, const Numbers& point) {
   const TrackingProblem& tracking = require_tracking(problem);
   check_points(point, tracking.description().variables, "x", false);
@@ -48,8 +48,9 @@ TestSet read_cases(const std::vector<Numbers>& cases) {
     if (points.ndim() != 2 || points.shape(1) != 3) {
       throw Error(
           ErrorKind::usage,
-          fmt::format("cases[{}] must have the shape (points, 3): x, y, z in metres, a row a point",
-                      number));
+          fmt::format(
+              "cases[{}] must have the shape (points, 3): x, y, z in metres, one row per point",
+              number));
     }
     TestCase one;
     for (py::ssize_t k = 0; k < points.shape(0); ++k) {
@@ -93,7 +94,7 @@ json judge(const TrackingProblem& problem, const DesignEvaluation& evaluation) {
   return list;
 }
 
-// The same keys as in what `armwright evaluate --json` prints.
+// Returns the summary with the keys that `armwright evaluate --json` prints.
 json summarize(const DesignEvaluation& evaluation, const std::string& design,
                const std::string& problem, const std::string& set) {
   const ErrorSummary& summary = evaluation.summary;
@@ -111,27 +112,23 @@ json summarize(const DesignEvaluation& evaluation, const std::string& design,
           {"mean_energy_j", optional_to_json(evaluation.mean_energy_j)}};
 }
 
-struct DesignQuestion {
-  py::object design;  // a name or a path, "start", or a row of numbers
-  py::object set;     // the name of a set, or a list of arrays (points, 3)
-  std::uint64_t count = 0;
-  unsigned jobs = 1;
-};
-
-// Summary and requirements as JSON, and of every case status, reason, error, energy and the points'
-// errors.
-py::tuple evaluate_design(const ProblemHandle& handle, const DesignQuestion& question,
+// Evaluates a design on the first `count` cases of a set. `design` is a name or a path, "start", or
+// a row of numbers. `set` is the name of a set, or a list of arrays (points, 3). Returns summary
+// and requirements as JSON, and for every case status, reason, error, energy and the errors of its
+// points.
+py::tuple evaluate_design(const ProblemHandle& handle, const py::object& design_argument,
+                          const py::object& set, std::uint64_t count, unsigned jobs,
                           const py::object& listener) {
   LoadedProblem problem = handle.loaded;
   DesignFile file;
-  if (!py::isinstance<py::str>(question.design)) {
-    file = make_design_file(problem, "x", make_design(problem, question.design.cast<Numbers>()));
-  } else if (question.design.cast<std::string>() == kStartDesign) {
+  if (!py::isinstance<py::str>(design_argument)) {
+    file = make_design_file(problem, "x", make_design(problem, design_argument.cast<Numbers>()));
+  } else if (design_argument.cast<std::string>() == kStartDesign) {
     file = make_design_file(problem, kStartDesign, require_tracking(problem).config().start);
   } else {
-    file = load_design(question.design.cast<std::string>());
+    file = load_design(design_argument.cast<std::string>());
     if (find_controller(file.design.controller).feed_forward != FeedForward::none) {
-      // Its efforts in advance are made along with the problem's targets.
+      // The problem computes this controller's precomputed efforts together with its targets.
       std::vector<std::string> settings = handle.settings;
       settings.insert(settings.begin(), "control.controller=" + file.design.controller);
       problem = load_problem(handle.name, settings);
@@ -139,18 +136,18 @@ py::tuple evaluate_design(const ProblemHandle& handle, const DesignQuestion& que
   }
   const TrackingProblem& tracking = require_tracking(problem);
   tracking.check_design(file.design);
-  const bool is_named = py::isinstance<py::str>(question.set);
-  const ChosenCases cases{is_named ? tracking.get_set(question.set.cast<std::string>())
-                                   : read_cases(question.set.cast<std::vector<Numbers>>()),
-                          question.count};
+  const bool is_named = py::isinstance<py::str>(set);
+  const ChosenCases cases{is_named ? tracking.get_set(set.cast<std::string>())
+                                   : read_cases(set.cast<std::vector<Numbers>>()),
+                          count};
   std::optional<DesignEvaluation> evaluation;
   Host host(listener);
   host.run([&] {
-    evaluation = evaluate_with_progress(tracking, file.design, cases, question.jobs, host.stop(),
-                                        host, {.total = cases.count});
+    evaluation = evaluate_with_progress(tracking, file.design, cases, jobs, host.stop(), host,
+                                        {.total = cases.count});
   });
   if (!evaluation) {
-    throw Error(ErrorKind::usage, "the evaluation was stopped");  // by whom has been thrown already
+    throw Error(ErrorKind::usage, "the evaluation was stopped");  // the host has thrown the reason
   }
   const json all = {{"summary", summarize(*evaluation, file.name, problem.name, cases.set.name())},
                     {"requirements", judge(tracking, *evaluation)}};
@@ -176,7 +173,7 @@ void add_designs(py::module_& module) {
   module.def("evaluate_design",
              [](const ProblemHandle& handle, const py::object& design, const py::object& set,
                 std::uint64_t count, unsigned jobs, const py::object& listener) {
-               return evaluate_design(handle, {design, set, count, jobs}, listener);
+               return evaluate_design(handle, design, set, count, jobs, listener);
              });
   module.def("design_toml", [](const ProblemHandle& handle, const Numbers& point,
                                const std::string& name) {

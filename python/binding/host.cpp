@@ -8,7 +8,7 @@
 namespace armwright::python {
 namespace {
 
-constexpr std::chrono::milliseconds kLookInterval{50};  // quick enough for a person
+constexpr std::chrono::milliseconds kLookInterval{50};  // users do not notice this delay
 
 py::tuple to_tuple(const Progress& progress) {
   const bool has_best = std::isfinite(progress.best_objective);

@@ -1,7 +1,7 @@
-// What a call from Python brings along for work that takes a while in C++: Ctrl-C reaches the work,
-// and progress and messages reach Python, both only ever on the thread that called. No signal
-// handler is installed: Python's own has noted the interruption, and the work asks for it wherever
-// it asks whether to stop.
+// Connects a call from Python with long work in C++: Ctrl-C stops the work, and progress and
+// messages reach Python. Both happen only on the thread that called. This code installs no signal
+// handler: Python's own handler records the interruption, and the work checks for it whenever it
+// checks the stop signal.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -21,41 +21,43 @@ namespace armwright::python {
 
 namespace py = pybind11;
 
-// The exception itself, with its traceback.
+// Returns the exception itself, with its traceback.
 py::object to_exception(const py::error_already_set& error);
 
-// Made, and ended, with the GIL held.
+// An observer and a stop signal for one call from Python. The caller creates and destroys it with
+// the GIL held.
 class Host final : public RunObserver {
  public:
-  // `listener`: None, or called as listener(message, None) and listener(None, progress), a tuple of
-  // phase, done, total, replayed, generation, best (None before there is one).
+  // `listener` is None or a function. It is called as listener(message, None) or listener(None,
+  // progress), where progress is the tuple (phase, done, total, replayed, generation, best). `best`
+  // is None before the first objective.
   explicit Host(py::object listener);
 
   StopSignal& stop() { return stop_; }
-  void limit_time(std::optional<double> limit_s);  // from now on
+  void limit_time(std::optional<double> limit_s);  // counted from this call
 
-  // Any thread. What they tell waits for the next look().
+  // Any thread may call these. The listener hears of them at the next look().
   void on_progress(const Progress& progress) override;
   void on_message(const std::string& message) override;
 
-  // Does `work` without the GIL, then tells the listener the last of it. Throws what the work
-  // throws, and otherwise what has come up in Python meanwhile: KeyboardInterrupt, an exception of
-  // the listener's or of an optimizer's that is none of its failures.
+  // Runs `work` without the GIL, then tells the listener the last messages. Throws what the work
+  // throws; otherwise what Python raised meanwhile: KeyboardInterrupt, an exception of the
+  // listener, or an exception of an optimizer that does not count as the optimizer's failure.
   void run(const std::function<void()>& work);
-  // The same on a thread of its own, for work that does not ask whether to stop on the thread that
+  // Does the same on a new thread, for work that does not check the stop signal on the thread that
   // called it.
   void run_aside(const std::function<void()>& work);
 
-  // With the GIL: keeps an exception that ends the work, once, and asks it to stop. raise_held()
-  // throws it again, if there is one.
+  // Needs the GIL. Keeps the first exception and requests a stop of the work. raise_held() throws
+  // that exception again, if there is one.
   void hold(const py::error_already_set& error);
   void raise_held() const;
 
  private:
   using Clock = std::chrono::steady_clock;
-  void look_out();  // look(), on the right thread, and not too often
-  void look();      // without the GIL: at signals, and tells the listener
-  void tell();      // with the GIL
+  void look_out();  // calls look() if this is the caller's thread, but not too often
+  void look();      // without the GIL: checks for signals and calls the listener
+  void tell();      // with the GIL: calls the listener
   void finish();
 
   py::object listener_;
@@ -63,7 +65,7 @@ class Host final : public RunObserver {
   const std::thread::id caller_ = std::this_thread::get_id();
   Clock::time_point last_look_ = Clock::now();
   py::object held_ = py::none();  // an exception
-  std::mutex mutex_;              // of what waits
+  std::mutex mutex_;              // guards the members below
   std::deque<std::string> messages_;
   std::optional<Progress> progress_;
 };

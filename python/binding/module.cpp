@@ -1,6 +1,6 @@
-// The module armwright._armwright: what the package in python/armwright needs of the library, in
-// plain numbers, arrays and JSON. Users see the package, whose docstrings say what things mean;
-// this is its inside.
+// The module armwright._armwright: the functions of the library that the package in
+// python/armwright needs, with plain numbers, arrays and JSON. Users see only the package, and its
+// docstrings explain everything.
 #include <pybind11/pybind11.h>
 
 #include "base/build_info.hpp"

@@ -1,17 +1,17 @@
-// Optimizers: those of the table, and classes of Python's as rows like theirs.
+// Optimizers: those of the table, and Python classes as rows of the same kind.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <functional>
 #include <limits>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <tuple>
 #include <utility>
 
 #include "arrays.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "description.hpp"
 #include "host.hpp"
 #include "optimizers/plugins/host_optimizer.hpp"
 #include "optimizers/table/optimizer_table.hpp"
@@ -21,7 +21,7 @@
 namespace armwright::python {
 namespace {
 
-// The evaluator as a class sees it, for as long as minimize() lasts.
+// The evaluator as a Python class sees it. It is valid until minimize() returns.
 class EvaluatorBridge {
  public:
   EvaluatorBridge(Evaluator& evaluator, Host& host) : evaluator_(&evaluator), host_(host) {}
@@ -38,8 +38,8 @@ class EvaluatorBridge {
     check_points(point, get().problem().variables, "x", false);
     guard([&] { evaluator_->recommend(get_row(point, 0)); });
   }
-  // (objectives, constraints, status, clipped, residuals, Jacobians), a row a point that was
-  // evaluated.
+  // Returns (objectives, constraints, status, clipped, residuals, Jacobians) with one row per
+  // evaluated point.
   py::tuple evaluate(const Numbers& points, bool with_jacobian) {
     check_points(points, get().problem().variables, "X", false);
     if (with_jacobian && !get().problem().has_jacobian) {
@@ -63,7 +63,7 @@ class EvaluatorBridge {
   }
 
   void close() { evaluator_ = nullptr; }
-  // What the evaluator has thrown: a failure of the run's, and none of the optimizer's.
+  // Throws again what the evaluator has thrown. That is a failure of the run, not of the optimizer.
   void rethrow_failure() const {
     if (failure_) {
       std::rethrow_exception(failure_);
@@ -73,14 +73,15 @@ class EvaluatorBridge {
  private:
   Evaluator& get() const {
     if (evaluator_ == nullptr) {
-      throw Error(ErrorKind::usage,
-                  "the run of this evaluator is over; it is of use within minimize() only");
+      throw Error(
+          ErrorKind::usage,
+          "the run of this evaluator is over; an evaluator can be used only within minimize()");
     }
     return *evaluator_;
   }
 
-  // Without the GIL. An exception is kept, to be thrown by whoever called minimize(); the class
-  // gets to see that there was one.
+  // Makes a call without the GIL. Keeps its exception for rethrow_failure(); the Python class gets
+  // another exception instead.
   void guard(const std::function<void()>& call) {
     get();
     try {
@@ -107,7 +108,7 @@ class EvaluatorBridge {
     for (std::size_t i = 0; i < n; ++i) {
       const Score& score = scores[i];
       value = std::ranges::copy(score.objectives, value).out;
-      // Of a failed evaluation there are none: violated beyond measure.
+      // A failed evaluation has no constraint values. They count as infinitely violated.
       violation = score.constraint_values.empty()
                       ? std::fill_n(violation, constraints, kNothing)
                       : std::ranges::copy(score.constraint_values, violation).out;
@@ -137,8 +138,8 @@ class EvaluatorBridge {
   std::exception_ptr failure_;
 };
 
-// Rows are copied and dropped on threads without the GIL: what they share of Python is dropped with
-// it.
+// Returns a shared object that takes the GIL before it is destroyed, because rows are copied and
+// destroyed on threads without the GIL.
 std::shared_ptr<py::object> share(py::object object) {
   return {new py::object(std::move(object)), [](py::object* last) {
             const py::gil_scoped_acquire gil;
@@ -146,6 +147,7 @@ std::shared_ptr<py::object> share(py::object object) {
           }};
 }
 
+// An optimizer that is a Python class.
 class PythonOptimizer : public Optimizer {
  public:
   PythonOptimizer(std::string name, std::shared_ptr<py::object> run, Options options, Host& host)
@@ -206,7 +208,7 @@ OptimizerRow make_row(const py::tuple& optimizer, Host& host) {
 
 namespace {
 
-// Name, promise, outcome and detail of every check.
+// The name, promise, outcome and detail of every check.
 using Findings = std::vector<std::tuple<std::string, std::string, std::string, std::string>>;
 
 Findings check_optimizer(const py::object& optimizer, const std::vector<std::string>& options) {
@@ -247,7 +249,7 @@ void add_optimizers(py::module_& module) {
     return list.dump();
   });
   module.def("check_optimizer", &check_optimizer);
-  // Error{bad_data} for a description of a class that does not hold together.
+  // Throws Error{bad_data} if the description of a class contradicts itself.
   module.def("check_description", [](const std::string& name, const std::string& description) {
     return describe(read_host_row(name, description)).dump();
   });

@@ -1,9 +1,8 @@
-#include "places.hpp"
-
 #include <fmt/format.h>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "parts.hpp"
 #include "study/run/run_folder.hpp"
 
 namespace armwright::python {

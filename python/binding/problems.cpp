@@ -5,10 +5,10 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "arrays.hpp"
 #include "base/error.hpp"
-#include "description.hpp"
 #include "host.hpp"
 #include "parts.hpp"
 #include "problems/config/path_survey.hpp"
@@ -31,8 +31,8 @@ CaseRole read_role(const std::string& role) {
                                 : CaseRole::test;
 }
 
-// What comes of points, row by row. The rows are written by whoever has evaluated them, without the
-// GIL.
+// The results of points, one row per point. Several threads may write different rows at the same
+// time, without the GIL.
 class Table {
  public:
   Table(const ProblemDescription& problem, std::size_t points, std::size_t cases)
@@ -49,8 +49,8 @@ class Table {
         widths_{problem.objectives.size(), problem.constraints.size(), problem.metrics.size(),
                 cases} {}
 
-  // What an evaluation has no number for is infinite: objectives take the penalty that optimizers
-  // see.
+  // Writes a row. A missing number becomes infinite. Missing objectives become the penalty that
+  // optimizers see.
   void put(std::size_t row, const Evaluation& evaluation, std::span<const double> penalty) {
     const bool failed = evaluation.objectives.empty();
     copy(failed ? penalty : std::span<const double>(evaluation.objectives), objectives_begin_, row,
@@ -93,14 +93,14 @@ struct EvaluateRequest {
   unsigned jobs = 1;
 };
 
-// As many points at a time as outcomes fit into some 100 MB.
+// Returns how many points to evaluate at a time, so that their results need about 100 MB.
 std::size_t count_at_once(std::size_t cases) {
   constexpr std::size_t kMostPairs = 1 << 18;
   return std::max<std::size_t>(1, kMostPairs / std::max<std::size_t>(cases, 1));
 }
 
-// (objectives, constraints, metrics, case errors, status), reasons by row, residuals and Jacobians,
-// each a list of rows.
+// Returns ((objectives, constraints, metrics, case errors, status), reasons by row, residuals,
+// Jacobians). Residuals and Jacobians are lists of rows.
 py::tuple evaluate(const ProblemHandle& handle, const Numbers& points,
                    const EvaluateRequest& request, const py::object& listener) {
   const Problem& problem = *handle.loaded.problem;
@@ -120,7 +120,7 @@ py::tuple evaluate(const ProblemHandle& handle, const Numbers& points,
   host.run([&] {
     ThreadExecutor executor(std::min<std::size_t>(
         request.jobs, std::max<std::size_t>(1, count * block.numbers.size())));
-    std::mutex mutex;  // of reasons and progress
+    std::mutex mutex;  // guards reasons and progress
     Progress progress;
     progress.phase = block.role;
     progress.total = std::uint64_t{count} * block.numbers.size();
@@ -151,7 +151,7 @@ py::tuple evaluate(const ProblemHandle& handle, const Numbers& points,
                         request.jacobian ? py::object(make_ragged(jacobians)) : none);
 }
 
-// (cases, points, 3), in metres.
+// Returns an array (cases, points, 3) in metres. Throws Error{usage} for a function.
 py::array_t<double> list_cases(const ProblemHandle& handle, const std::string& set_name,
                                std::uint64_t first, std::uint64_t count) {
   if (handle.loaded.tracking() == nullptr) {

@@ -1,4 +1,4 @@
-// Runs: made or gone on with as `armwright optimize` does, and read back.
+// Runs: makes or continues them as `armwright optimize` does, and reads them.
 #include <fmt/format.h>
 
 #include <limits>
@@ -8,7 +8,6 @@
 #include "base/text.hpp"
 #include "host.hpp"
 #include "parts.hpp"
-#include "places.hpp"
 #include "study/journal/journal.hpp"
 #include "study/run/run.hpp"
 #include "study/run/run_folder.hpp"
@@ -16,7 +15,7 @@
 namespace armwright::python {
 namespace {
 
-// What is asked for; nothing where the problem's own holds.
+// The user's settings of a run. An empty one stands for the problem's own.
 struct RunQuestion {
   std::vector<std::string> options;  // KEY=VALUE
   std::uint64_t seed = 1;
@@ -47,7 +46,8 @@ RunPlan make_plan(const LoadedProblem& problem, OptimizerRow row, const RunQuest
   return plan;
 }
 
-// The run's folder, and its result as JSON; None if the time was up before its end.
+// Returns the run's folder and its result as JSON. The result is None if the time limit ended the
+// call first.
 py::tuple optimize(const ProblemHandle& problem, const py::object& optimizer,
                    const RunQuestion& question, const Place& place,
                    const std::vector<std::string>& command, const py::object& listener) {
@@ -70,8 +70,9 @@ py::array_t<Number> copy_array(const std::vector<Number>& values) {
   return py::array_t<Number>(static_cast<py::ssize_t>(values.size()), values.data());
 }
 
-// Every recorded training evaluation: the points; status, generation, whether it was clipped,
-// charge; and ragged objectives, constraint values, errors and numbers of the cases.
+// Returns every recorded training evaluation, one list per quantity: the ragged points, objectives,
+// constraint values, case errors and case numbers; then index, generation, charge, status and
+// whether the point was clipped.
 py::tuple read_history(const std::filesystem::path& folder) {
   std::vector<std::vector<double>> points, objectives, constraints, case_errors, case_numbers;
   std::vector<std::uint64_t> indices, generations, charges;

@@ -1,4 +1,4 @@
-// Comparisons: made or gone on with as `armwright compare` does, and read back.
+// Studies: makes or continues them as `armwright compare` does, and reads them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +7,6 @@
 #include "base/error.hpp"
 #include "host.hpp"
 #include "parts.hpp"
-#include "places.hpp"
 #include "study/analysis/final_check.hpp"
 #include "study/analysis/study_tables.hpp"
 #include "study/compare/study_folder.hpp"
@@ -25,7 +24,7 @@ bool is_of_python(const StudyPlan& plan, const Cell& cell) {
   return !plan.optimizers[cell.optimizer].row.description.empty();
 }
 
-// Shows a cell's progress as one of the whole study's.
+// Reports a cell's progress as progress of the whole study.
 class CellObserver final : public RunObserver {
  public:
   CellObserver(RunObserver& study, Progress done) : study_(study), done_(done) {}
@@ -44,8 +43,8 @@ class CellObserver final : public RunObserver {
   Progress done_;
 };
 
-// Those whose optimizer is a class: in this process, one after the other, since no Python may run
-// in processes that were forked.
+// Runs the cells whose optimizer is a Python class, one after the other in this process, because
+// forked processes must not run Python.
 void run_python_cells(const StudyPlan& plan, const std::filesystem::path& folder, unsigned jobs,
                       StopSignal& stop, RunObserver& observer) {
   const auto cells = list_cells(plan);
@@ -75,7 +74,7 @@ json list_outcomes(const StudyResult& result) {
   return cells;
 }
 
-// What is in result.json, every cell, and what of the plan these do not say.
+// Returns the content of result.json, every cell, and the parts of the plan that these do not have.
 std::string describe(const StudyPlan& plan, const StudyResult& result) {
   json problems = json::array(), optimizers = json::array(), missing = json::array();
   for (std::size_t p = 0; p < plan.problems.size(); ++p) {
@@ -106,7 +105,8 @@ std::string describe(const StudyPlan& plan, const StudyResult& result) {
       .dump();
 }
 
-// The study's folder, and what it has found; None if the time was up before its end.
+// Returns the study's folder and its results. The results are None if the time limit ended the call
+// first.
 py::tuple compare(StudyRequest request, const py::list& optimizers, const Place& place,
                   const py::object& listener) {
   Host host(listener);

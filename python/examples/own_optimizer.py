@@ -1,8 +1,8 @@
-"""An optimizer in fifteen lines, compared with CMA-ES, random search and a local search on the same footing.
+"""Compares an optimizer of fifteen lines with CMA-ES, random search and a local search under the same conditions.
 
     /usr/bin/python3 own_optimizer.py [REPLICATES [BUDGET]]
 
-The comparison lies in results/own_optimizer: start this again and it goes on; `armwright show`, `report` and `export` read it.
+The study is stored in results/own_optimizer. Start this program again to continue it. `armwright show`, `report` and `export` read it.
 """
 import sys
 
@@ -11,7 +11,7 @@ import numpy as np
 
 
 class Hillclimber(armwright.Optimizer):
-    """Eight steps at a time from the best point so far, longer after a success and shorter after a failure."""
+    """Tries eight steps at a time from the incumbent. Steps become longer after a success and shorter after a failure."""
 
     capabilities = ("bounds", "batch", "stochastic")
 

@@ -1,9 +1,9 @@
-"""SciPy's differential evolution on the thesis's first question, a whole generation evaluated at a time on all cores.
+"""Solves the thesis's first problem with SciPy's differential evolution and evaluates each generation on all cores.
 
     /usr/bin/python3 scipy_optimize.py [GENERATIONS]
 
-SciPy knows nothing of budgets, journals and test sets: the arm's error on five training cases is a function like any other to it. What it
-finds is judged afterwards on the test set, where no optimizer has been. Needs python3-scipy.
+SciPy has no budgets, journals or test sets. It minimises the arm's error on five training cases like any other function. Afterwards the
+program evaluates the best design on the test set, which no optimizer uses. It needs python3-scipy.
 """
 import sys
 
@@ -14,7 +14,7 @@ generations = int(sys.argv[1]) if len(sys.argv) > 1 else 30
 problem = armwright.load_problem("q1-complex", set={"physics.engine": "articulated"})
 
 
-def calc_errors(columns):  # one column a point, in shares of the bounds' box on each variable's own scale
+def calc_errors(columns):  # one column per point, from 0 to 1 between the bounds on each variable's scale
     return problem.evaluate(problem.from_unit(columns.T), cases=5).values
 
 

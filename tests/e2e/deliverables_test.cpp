@@ -216,7 +216,7 @@ TEST_F(Deliverables, SayWhatToGiveInstead) {
     expect_refused({"export", "nowhere", "--format", format}, 2,
                    HasSubstr("is not the folder of a run"));
     expect_refused({"export", "run", "--format", format, "--out", "full"}, 2,
-                   AllOf(HasSubstr("full: is there already"), HasSubstr("--out")));
+                   AllOf(HasSubstr("full: exists already"), HasSubstr("--out")));
   }
   const Outcome cell = run({"export", "study/cells/p/ga/r01", "--format", "urdf", "--out", "cell"});
   EXPECT_EQ(cell.exit_code, 0) << cell.err;
@@ -227,8 +227,8 @@ TEST_F(Deliverables, AreNotMadeOfAnotherRobotThanTheRuns) {
   std::ofstream(path("arm.urdf")) << replace(xml, "mass value=\"112.9\"", "mass value=\"113\"");
   for (const std::string format : {"ros2-control", "urdf", "datasheet"}) {
     expect_refused({"export", "run", "--format", format, "--out", "other"}, 4,
-                   AllOf(HasSubstr("not what the run used any more: arm.urdf"),
-                         HasSubstr("Bring these files back"), Not(HasSubstr("page"))));
+                   AllOf(HasSubstr("have changed since the run: arm.urdf"),
+                         HasSubstr("Restore the files"), Not(HasSubstr("page"))));
   }
   EXPECT_FALSE(std::filesystem::exists(path("other")));
   std::ofstream(path("arm.urdf")) << xml;

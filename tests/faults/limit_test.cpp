@@ -72,7 +72,7 @@ TEST_F(Limits, WhatIsTooMuchTogetherIsRefusedFromAnEstimate) {
                                    "--budget", "200000", "--out", "run"});
     EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("option 'population' is 100000; with 1000 variables and 1 "
-                                       "training cases a candidate it must be at most 49950"));
+                                       "training cases per candidate it must be at most 49950"));
     EXPECT_FALSE(fs::exists(folder_ / "run"));
   }
 }

@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "fuzz/harness.hpp"
-#include "report/exchange/import_reader.hpp"
-#include "report/formats/tables.hpp"
+#include "report/exchange/import.hpp"
+#include "report/formats/formats.hpp"
 
 namespace armwright::fuzz {
 
@@ -17,10 +17,10 @@ void fuzz_export_csv(std::string_view input) {
   write_scratch(folder / kEvaluationsFolder / "problem.csv", input);
   is_read([&] {
     for (const ImportedRun& run : read_export(folder)) {
-      require(run.point.replicate >= 1, "replicates are counted from 1");
-      require(!run.feasible || run.point.x.size() == run.point.variables.size(),
+      require(run.replicate >= 1, "replicates are counted from 1");
+      require(!run.feasible || run.x.size() == run.variables.size(),
               "a point of another dimension");
-      require(std::isfinite(run.point.objective), "an objective is not finite");
+      require(std::isfinite(run.objective), "an objective is not finite");
     }
   });
 }

@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "fuzz/harness.hpp"
-#include "report/exchange/import_reader.hpp"
-#include "report/formats/tables.hpp"
+#include "report/exchange/import.hpp"
+#include "report/formats/formats.hpp"
 
 namespace armwright::fuzz {
 namespace {
@@ -13,9 +13,9 @@ void read(const std::string& folder_name, const char* file, std::string_view inp
   write_scratch(folder / file, input);
   is_read([&] {
     for (const ImportedRun& run : read_export(folder)) {
-      require(!run.feasible || run.point.x.size() == run.point.variables.size(),
+      require(!run.feasible || run.x.size() == run.variables.size(),
               "a point of another dimension");
-      require(!run.feasible || std::isfinite(run.point.objective), "an objective is not finite");
+      require(!run.feasible || std::isfinite(run.objective), "an objective is not finite");
     }
   });
 }

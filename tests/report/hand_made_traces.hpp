@@ -1,4 +1,4 @@
-// Traces made by hand, for tests of what the formats make of them.
+// Makes traces by hand for the tests of the export formats.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 
 namespace armwright {
 
-// A run of one variable, x = 0.5, whose evaluations have these objectives, one case each; nothing:
-// the evaluation failed. `change` has the last word on them.
+// Returns a run with one variable, x = 0.5, and one case per evaluation. Each evaluation has one of
+// the objectives; an empty one stands for a failed evaluation. `change` may then change them.
 inline RunTrace make_trace(
     std::initializer_list<std::optional<double>> objectives,
     const std::function<void(std::vector<TracedEvaluation>&)>& change = [](auto&) {}) {

@@ -46,14 +46,14 @@ int run_export(const ExportOptions& options) {
     write_message(fmt::format("{} have not finished and are left out",
                               format_count(summary.unfinished, "cell")));
   }
-  if (summary.survey.empty > 0) {
+  if (summary.collected.empty > 0) {
     write_message(fmt::format("{} without evaluations are left out",
-                              format_count(summary.survey.empty, "run")));
+                              format_count(summary.collected.empty, "run")));
   }
-  write_stdout(
-      fmt::format("{} with {} on {} as {} in {}\n", format_count(summary.survey.runs, "run"),
-                  format_count(summary.survey.evaluations, "evaluation"),
-                  format_count(summary.survey.problems.size(), "problem"), options.format, folder));
+  write_stdout(fmt::format(
+      "{} with {} on {} as {} in {}\n", format_count(summary.collected.runs, "run"),
+      format_count(summary.collected.evaluations, "evaluation"),
+      format_count(summary.collected.problems.size(), "problem"), options.format, folder));
   return exit_code::kDone;
 }
 

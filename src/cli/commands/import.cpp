@@ -40,16 +40,16 @@ struct ImportOptions {
 };
 
 // Throws Error{bad_data} if the variables of the problem and of the export differ.
-void check_variables(const LoadedProblem& problem, const ImportedPoint& point) {
+void check_variables(const LoadedProblem& problem, const ImportedRun& run) {
   std::vector<std::string> names;
   for (const DecisionVariable& variable : problem.problem->description().variables) {
     names.push_back(variable.name);
   }
-  if (names != point.variables) {
+  if (names != run.variables) {
     throw Error(ErrorKind::bad_data,
                 fmt::format("the export's variables on '{}' are {}; those of problem {} are {}; "
                             "name the problem of the export with --config and --set",
-                            sanitize(point.problem), sanitize(join(point.variables, ", ")),
+                            sanitize(run.problem), sanitize(join(run.variables, ", ")),
                             problem.name, join(names, ", ")));
   }
 }
@@ -66,22 +66,22 @@ int run_import(const ImportOptions& options) {
     choice.replicate = static_cast<std::uint64_t>(
         parse_count("--replicate", options.replicate, 1, std::numeric_limits<std::int64_t>::max()));
   }
-  const ImportedPoint point = import_best(options.folder, choice);
-  const LoadedProblem problem = load_problem(
-      options.config.empty() ? point.problem : options.config, options.overrides.get());
+  const ImportedRun run = import_best(options.folder, choice);
+  const LoadedProblem problem =
+      load_problem(options.config.empty() ? run.problem : options.config, options.overrides.get());
   const TrackingProblem& tracking = require_tracking(problem);
-  check_variables(problem, point);
+  check_variables(problem, run);
   DesignFile file;
-  file.name = fmt::format("{}-{}-{}", point.problem, point.label, point.replicate);
-  file.title = fmt::format("Evaluation {} of {} on {}, replicate {}", point.evaluation, point.label,
-                           point.problem, point.replicate);
-  file.source = fmt::format("armwright import; training objective {}", point.objective);
-  file.design = tracking.make_design(point.x);
+  file.name = fmt::format("{}-{}-{}", run.problem, run.label, run.replicate);
+  file.title = fmt::format("Evaluation {} of {} on {}, replicate {}", run.evaluation, run.label,
+                           run.problem, run.replicate);
+  file.source = fmt::format("armwright import; training objective {}", run.objective);
+  file.design = tracking.make_design(run.x);
   for (const Joint& joint : tracking.config().robot.joints) {
     file.joint_names.push_back(joint.name);
   }
   write_output(options.out, to_toml(file));
-  write_message(fmt::format("{}: training objective {}", file.title, point.objective));
+  write_message(fmt::format("{}: training objective {}", file.title, run.objective));
   return exit_code::kDone;
 }
 

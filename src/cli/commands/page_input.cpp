@@ -6,6 +6,7 @@
 #include "cli/terminal/progress_bar.hpp"
 #include "cli/terminal/session.hpp"
 #include "report/page/page_data.hpp"
+#include "report/page/page_file.hpp"
 
 namespace armwright {
 

@@ -14,7 +14,7 @@
 #include "cli/terminal/session.hpp"
 #include "cli/terminal/table.hpp"
 #include "cli/terminal/terminal.hpp"
-#include "report/page/page_assets.hpp"
+#include "report/page/page_file.hpp"
 #include "report/page/plotter.hpp"
 
 namespace armwright {

@@ -11,7 +11,6 @@
 #include "cli/commands/page_input.hpp"
 #include "cli/terminal/session.hpp"
 #include "cli/terminal/terminal.hpp"
-#include "report/page/page_assets.hpp"
 #include "report/page/page_data.hpp"
 #include "report/page/page_file.hpp"
 

@@ -17,7 +17,7 @@
 #include "optimizers/table/optimizer_table.hpp"
 #include "problems/config/config_files.hpp"
 #include "problems/config/problem_loader.hpp"
-#include "report/page/page_assets.hpp"
+#include "report/page/page_file.hpp"
 #include "sim/engines/engine_table.hpp"
 #include "sim/robot/mesh_file.hpp"
 

@@ -175,7 +175,7 @@ std::string format_tables(const std::vector<ListedSetting>& settings) {
 
 std::string format_page(const std::string& name) {
   if (!name.empty()) {
-    throw Error(ErrorKind::usage, "the page of settings has all of them; leave out the name");
+    throw Error(ErrorKind::usage, "the page of settings contains all settings; leave out the name");
   }
   std::string text = fmt::format(
       "{}# Settings\n\n"

@@ -1,3 +1,4 @@
+// The completion script for bash.
 
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// The rows of the Ceres solvers: their options and what they need.
 
 #include "base/error.hpp"
 #include "optimizers/ceres/ceres_backend.hpp"

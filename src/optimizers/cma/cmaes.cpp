@@ -1,3 +1,5 @@
+// The row of cmaes: its options. cma_search.cpp runs the search; CmaDistribution::update() in
+// cma_distribution.cpp adapts mean, step size and covariance.
 
 #include <utility>
 

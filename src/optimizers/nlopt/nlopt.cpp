@@ -1,3 +1,4 @@
+// The rows of the NLopt algorithms: their options, and the optimizer that runs an algorithm.
 
 #include <fmt/format.h>
 
@@ -88,8 +89,8 @@ std::vector<OptionSpec> make_options(const NloptAlgorithm& algorithm) {
     options.push_back(
         {.name = "local",
          .description =
-             "the local optimizer that is started; bobyqa, newuoa_bound and praxis want 2 "
-             "variables at least; praxis draws by chance",
+             "local optimizer of each search; bobyqa, newuoa_bound and praxis need at least "
+             "2 variables; praxis uses random numbers",
          .fallback = std::string("bobyqa"),
          .choices = {"bobyqa", "cobyla", "neldermead", "newuoa_bound", "praxis", "sbplx"}});
   }
@@ -102,17 +103,17 @@ std::vector<OptionSpec> make_options(const NloptAlgorithm& algorithm) {
     options.push_back(
         {.name = "local",
          .description = passes_constraints_on
-                            ? "the local optimizer inside, which takes the inequalities"
-                            : "the local optimizer inside; bobyqa, newuoa_bound and praxis want "
-                              "2 variables at least; praxis draws by chance",
+                            ? "inner local optimizer, which handles the inequality constraints"
+                            : "inner local optimizer; bobyqa, newuoa_bound and praxis need at "
+                              "least 2 variables; praxis uses random numbers",
          .fallback = choices.front(),
          .choices = choices});
   }
   if (takes_steps) {
     options.push_back({.name = "initial_step",
                        .description =
-                           "first step in every coordinate, as a share of the box; 0: what NLopt "
-                           "derives from start and bounds",
+                           "first step in every coordinate, as a share of the box; 0: NLopt derives "
+                           "it from start and bounds",
                        .fallback = 0.05,
                        .lower = 0,
                        .upper = 0.49});  // BOBYQA wants two steps within the box
@@ -136,16 +137,16 @@ std::vector<OptionSpec> make_options(const NloptAlgorithm& algorithm) {
     options.push_back(
         {.name = "population",
          .description = algorithm.kind == NloptKind::drawing
-                            ? "individuals; 0: as many as NLopt finds right"
-                            : "points drawn at a time; 0: as many as NLopt finds right",
+                            ? "number of individuals; 0: NLopt chooses it"
+                            : "number of points drawn at a time; 0: NLopt chooses it",
          .fallback = std::int64_t{0},
          .lower = 0,
          .upper = 100000});
   }
   if (descends) {
     options.push_back({.name = "restarts",
-                       .description = "times to begin again at the best point seen, each with half "
-                                      "the step, as long as the last one improved it",
+                       .description = "largest number of restarts at the best point seen, each with half "
+                                      "the step; a restart without an improvement is the last",
                        .fallback = algorithm.restarts,
                        .lower = 0,
                        .upper = 1000});
@@ -156,7 +157,8 @@ std::vector<OptionSpec> make_options(const NloptAlgorithm& algorithm) {
   return options;
 }
 
-// Returns which options make the algorithm run in a child process.
+// Returns when the algorithm runs in a child process: "always"; "" for never; or the choices of
+// the option `local` for which it does, as in "with local=cobyla or local=newuoa_bound".
 std::string explain_isolation(const NloptAlgorithm& algorithm,
                               std::span<const OptionSpec> options) {
   const auto local = std::ranges::find(options, "local", &OptionSpec::name);

@@ -1,3 +1,4 @@
+// The rows of the pagmo algorithms: their options and what they need.
 
 #include <utility>
 

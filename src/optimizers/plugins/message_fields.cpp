@@ -1,3 +1,4 @@
+// Reads the fields of a plugin's messages and refuses wrong ones.
 
 #include <fmt/format.h>
 

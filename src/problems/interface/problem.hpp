@@ -4,6 +4,18 @@
 // vector, case) pairs in any order, so threads, ranks and SIMD lanes can share the pairs freely.
 // Problem::aggregate() makes one evaluation from the case outcomes of one decision vector. Both
 // functions are const, thread-safe and pure: each result depends on its own input only.
+//
+// Errors of cases (CaseOutcome::error, Evaluation::case_errors, ProblemDescription::failure_error,
+// CaseJob::abandon_above) all have the same unit: m for an arm, none for an analytic function.
+//
+// Three properties of a case sound alike:
+// - A case without an error yielded no number (CaseOutcome::has_error is false).
+//   Evaluation::failed_cases counts these cases only.
+// - A failure is a case without an error, or a case with an error above
+//   ProblemDescription::failure_error. Reports and studies count failures (summarize() in
+//   study/statistics/summary.hpp).
+// - EvaluationStatus::failed is one of several statuses. A case with another status, for example
+//   diverged, can also be a case without an error.
 #pragma once
 
 #include <cstdint>
@@ -61,17 +73,17 @@ struct ProblemDescription {
   std::vector<DecisionVariable> variables;
   std::vector<Quantity> objectives;  // at least one
   std::vector<Quantity> constraints;
-  // One limit per constraint, with g = quantity / value - 1. Empty if a constraint is known by its
-  // g only.
+  // One limit per constraint, in the order of `constraints`: g = quantity / value - 1. Empty if the
+  // problem computes g in another way.
   std::vector<Limit> limits;
-  // The cost of a violation of 1, in the unit of calc_scalar(). Optimizers that add violations to
-  // the objective multiply the violations by it.
+  // Converts violations into the unit of calc_scalar(). An optimizer that adds the violation of the
+  // constraints to the objective first multiplies it by this number.
   double violation_scale = 1;
   std::vector<Quantity> metrics;  // the further numbers of an evaluation, beside the objectives
   std::vector<RequiredMetric> requirements;
   std::string cost_unit;  // the name of one case: "simulated test case"
-  // A case with a larger error counts as failed. Infinity if the error of a case is no failure,
-  // however large it is.
+  // A case with a larger error is a failure. Infinity if no error is so large that the case is a
+  // failure.
   double failure_error = std::numeric_limits<double>::infinity();
   std::vector<double> known_optimum;  // a minimiser of an analytic function; empty if unknown
   // The weights of calc_scalar(), one per objective. If empty, calc_scalar() returns the first
@@ -104,7 +116,7 @@ enum class EvaluationStatus : std::uint8_t {
   diverged,     // at least one simulation diverged
   unreachable,  // at least one case has a target that the arm cannot reach
   timed_out,
-  failed,     // any other failure; the reason describes it
+  failed,     // at least one simulation ended in another way; the reason describes it
   abandoned,  // at least one case was ended early because its job allowed that, or was never
               // started because the candidate had lost a race; the numbers are lower bounds or
               // cover some of the cases only
@@ -127,11 +139,12 @@ struct CaseJob {
 struct CaseOutcome {
   EvaluationStatus status = EvaluationStatus::ok;
   std::string reason;  // empty if the status is ok
-  // The error of the case, finite if `has_error`. For an abandoned case, a lower bound of the error
-  // that lies above the bound of the job.
+  // The error of the case; finite. 0 without meaning if `has_error` is false. If the status is
+  // `abandoned`, the true error is at least this number, and this number is larger than
+  // CaseJob::abandon_above.
   double error = 0;
-  // False if the simulation failed and no number replaces its error. In training, a problem may
-  // give a failed simulation an error.
+  // False if the simulation yielded no number for the error. In training, a problem may give such a
+  // case a large error instead; has_error is then true.
   bool has_error = true;
   std::vector<double> metrics;  // the layout is private to the problem; `aggregate` reads it
   // The residuals of the case, if the job asked for them; empty if the case was abandoned.
@@ -152,7 +165,9 @@ struct Evaluation {
   // One error per case, in the order of the block. NaN for a case without an error; user interfaces
   // never show it as a number.
   std::vector<double> case_errors;
-  std::vector<double> metrics;    // as described; finite; empty if the objectives are empty
+  // One number per entry of ProblemDescription::metrics, in its order and units; finite. Empty if
+  // the objectives are empty.
+  std::vector<double> metrics;
   std::vector<double> residuals;  // if the outcomes have them
   std::vector<double> jacobian;   // of the residuals, laid out as in CaseOutcome
   int failed_cases = 0;           // the number of cases without an error
@@ -174,9 +189,11 @@ double calc_violation(std::span<const double> constraint_values);
 class Problem {
  public:
   virtual ~Problem() = default;
+  // Returns the description. The reference is valid as long as this object lives.
   virtual const ProblemDescription& description() const = 0;
 
-  // Returns the tracking problem that this problem is or wraps; null for all other problems.
+  // Returns the tracking problem that this problem is or wraps; null for all other problems. The
+  // pointer is valid as long as this object lives.
   virtual const TrackingProblem* tracking() const { return nullptr; }
 
   // Returns how many jobs one call of simulate() should get if there are many cases of that role.
@@ -190,10 +207,10 @@ class Problem {
   virtual Evaluation aggregate(std::span<const double> x,
                                std::span<const CaseOutcome> outcomes) const = 0;
 
-  // Returns a lower bound of calc_scalar() of the objectives on a block of `cases` cases, from the
-  // outcomes of the first cases; `outcomes` may be empty. Returns nothing if the objectives are not
-  // known to grow with the errors of further cases. The values of the outcomes do not decide
-  // whether there is a bound.
+  // Returns a lower bound of calc_scalar() of the objectives of `x` on a block of `cases` cases.
+  // `outcomes` are those of the block's first cases; there may be none. Returns nothing if the
+  // problem knows no bound, because a further case could make the objectives smaller. Whether there
+  // is a bound depends on the problem only, not on the outcomes.
   virtual std::optional<double> calc_lower_bound(std::span<const double> /*x*/,
                                                  std::span<const CaseOutcome> /*outcomes*/,
                                                  std::size_t /*cases*/) const {

@@ -1,5 +1,3 @@
-#include "report/deliverables/datasheet.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,16 +7,15 @@
 #include "base/build_info.hpp"
 #include "base/text.hpp"
 #include "problems/tracking/requirement_grade.hpp"
-#include "report/deliverables/datasheet_figures.hpp"
-#include "report/deliverables/datasheet_style.hpp"
-#include "report/deliverables/finished_arm.hpp"
-#include "report/deliverables/html_table.hpp"
-#include "report/formats/html_text.hpp"
+#include "report/deliverables/datasheet_parts.hpp"
+#include "report/formats/export_text.hpp"
 #include "sim/tracking/designed_arm.hpp"
 #include "sim/tracking/reference_signal.hpp"
 
 namespace armwright {
 namespace {
+
+using SheetFacts = std::vector<std::pair<std::string, std::string>>;  // label and text
 
 constexpr const char* kUnknown = "\u2013";
 
@@ -33,7 +30,7 @@ std::string make_robot_facts(const FinishedArm& arm) {
   const RobotModel robot = arm.run.tracking()->make_robot(arm.design);
   const auto sliding = std::ranges::count(robot.joints, JointKind::prismatic, &Joint::kind);
   const auto turning = static_cast<std::ptrdiff_t>(robot.joint_count()) - sliding;
-  const std::vector<HtmlFact> facts = {
+  const SheetFacts facts = {
       {"Name", sanitize(robot.name)},
       {"Chain",
        fmt::format("{} \u2192 {}", sanitize(robot.base.name), sanitize(robot.links.back().name))},
@@ -64,7 +61,7 @@ std::string describe_workspace(const TrackingConfig& config) {
 std::string make_task_facts(const FinishedArm& arm) {
   const TrackingConfig& config = arm.config();
   const TrackingTask task = arm.run.tracking()->make_task(arm.design);
-  const std::vector<HtmlFact> facts = {
+  const SheetFacts facts = {
       {"Problem", sanitize(arm.result().problem)},
       {"Target",
        fmt::format("{} moves at {:.4g} m/s", signal_names()[static_cast<std::size_t>(task.signal)],
@@ -84,7 +81,7 @@ std::string make_task_facts(const FinishedArm& arm) {
 
 std::string make_run_facts_of(const FinishedArm& arm) {
   const RunResult& result = arm.result();
-  const std::vector<HtmlFact> facts = {
+  const SheetFacts facts = {
       {"Run of", sanitize(arm.run.started)},
       {"Optimizer", sanitize(result.optimizer)},
       {"Seed", fmt::format("{}", result.seed)},
@@ -95,7 +92,7 @@ std::string make_run_facts_of(const FinishedArm& arm) {
   return make_fact_list(facts);
 }
 
-// "N m/rad", or of an arm that has joints of both kinds "N m/rad; slides: N/m".
+// Returns "N m/rad", or "N m/rad; slides: N/m" for an arm with joints of both kinds.
 std::string list_units(const RobotModel& robot, std::string_view unit) {
   std::vector<std::string> units;
   for (const JointKind kind : {JointKind::revolute, JointKind::prismatic}) {
@@ -159,7 +156,7 @@ std::string make_results(const FinishedArm& arm) {
 
 // ---- Requirements ------------------------------------------------------------------------------
 
-// Empty where nothing is required.
+// Returns an empty text if the problem has no requirements.
 std::string make_requirements(const FinishedArm& arm) {
   const auto judged =
       judge_requirements(arm.run.tracking()->description().requirements, arm.result().test);
@@ -186,7 +183,7 @@ std::string make_requirements(const FinishedArm& arm) {
 
 // ---- Joints ------------------------------------------------------------------------------------
 
-// "p [N m/rad]"
+// Returns "p [N m/rad]".
 std::string label_with_unit(const RobotModel& robot, std::string_view name, std::string_view unit) {
   return fmt::format("{} [{}]", name, list_units(robot, unit));
 }

@@ -1,5 +1,3 @@
-#include "report/deliverables/datasheet_figures.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,13 +6,14 @@
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
-#include "report/deliverables/line_figure.hpp"
+#include "report/deliverables/datasheet_parts.hpp"
 #include "report/formats/csv_reader.hpp"
 
 namespace armwright {
 namespace {
 
-// A case is a step of its share; cases without a number are missing at the top.
+// Returns the share of the cases below each error: one step per case. Cases without a number have
+// no step, so the line ends below 100 %.
 LineFigure make_spread(const FinishedArm& arm) {
   LineFigure figure{"of the test cases have an error below", "error in mm", "%", {}};
   std::vector<double> errors_m;
@@ -27,7 +26,7 @@ LineFigure make_spread(const FinishedArm& arm) {
     figure.points.push_back({error_mm, 100 * static_cast<double>(i) / all});
     figure.points.push_back({error_mm, 100 * static_cast<double>(i + 1) / all});
   }
-  // A few arms that lose their target would press all others against the axis.
+  // On a linear axis, a few cases with a lost target would press all others against the left edge.
   constexpr double kWide = 20;
   figure.logarithmic_x =
       !errors_m.empty() && errors_m.front() > 0 && errors_m.back() > kWide * errors_m.front();
@@ -46,7 +45,8 @@ std::size_t find_column(const std::vector<std::string>& heads, std::string_view 
   return static_cast<std::size_t>(found - heads.begin());
 }
 
-// As many points as the eye can tell apart: of each stretch of time its largest error.
+// Returns at most kPoints points, which the eye can still tell apart: the largest error of each
+// stretch of time.
 std::vector<FigurePoint> keep_peaks(const std::vector<FigurePoint>& points) {
   constexpr std::size_t kPoints = 400;
   const std::size_t stretch = (points.size() + kPoints - 1) / kPoints;

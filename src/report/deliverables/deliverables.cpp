@@ -2,24 +2,46 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/build_info.hpp"
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/hash.hpp"
 #include "base/text.hpp"
-#include "report/deliverables/datasheet.hpp"
-#include "report/deliverables/finished_arm.hpp"
 #include "report/deliverables/ros2_control.hpp"
-#include "report/formats/export_folder.hpp"
+#include "report/formats/export_files.hpp"
+#include "report/formats/run_traces.hpp"
 #include "sim/robot/urdf_limits.hpp"
 #include "sim/tracking/designed_arm.hpp"
+#include "study/run/run.hpp"
 
 namespace armwright {
 namespace {
 
 namespace fs = std::filesystem;
 
-// Where the design comes from, and what the arm had that was simulated and no file of it says.
+[[noreturn]] void refuse_run(const fs::path& folder, const std::string& what) {
+  throw Error(ErrorKind::usage, fmt::format("{}: {}", sanitize(folder.string()), what));
+}
+
+void refuse_study(const fs::path& folder, std::string_view format) {
+  if (fs::exists(folder / "manifest.json") || !fs::exists(folder / "cells")) {
+    return;
+  }
+  const FoundRuns found = find_runs(folder);
+  const auto run = std::ranges::find_if(
+      found.runs, [](const RunEntry& one) { return load_result(one.folder).tracking; });
+  refuse_run(
+      folder,
+      run == found.runs.end()
+          ? fmt::format("this is a study of functions; {} needs a run of an arm", format)
+          : fmt::format("this is a study; {} needs one run: name the folder of a run, such as {}",
+                        format, sanitize(run->folder.string())));
+}
+
+// Returns lines that say where the design comes from and how the simulated arm differs from the one
+// in the robot's file.
 std::vector<std::string> describe_origin(const FinishedArm& arm) {
   const TrackingConfig& config = arm.config();
   const ErrorSummary& test = arm.result().test_summary;
@@ -57,10 +79,11 @@ std::string read_urdf_of(const FinishedArm& arm, const fs::path& file) {
   const auto& inputs = arm.run.configuration.at("inputs");
   const std::string name = file.filename().string();
   if (!inputs.contains(name) || inputs[name] != calc_sha256_hex(xml)) {
-    throw Error(ErrorKind::bad_data,
-                fmt::format("{}: is not the file that the run used; bring it back as it was, or "
-                            "optimize again",
-                            sanitize(file.string())));
+    throw Error(
+        ErrorKind::bad_data,
+        fmt::format(
+            "{}: is not the file that the run used; restore it as it was, or optimize again",
+            sanitize(file.string())));
   }
   return xml;
 }
@@ -85,13 +108,45 @@ void check_links(const FinishedArm& arm) {
 
 }  // namespace
 
+std::string FinishedArm::describe() const {
+  return fmt::format("the winner of {} (seed {}) on {}", sanitize(result().optimizer),
+                     result().seed, sanitize(result().problem));
+}
+
+FinishedArm load_finished_arm(const fs::path& folder, std::string_view format) {
+  refuse_study(folder, format);
+  const RunResult result = load_result(folder);
+  if (!result.tracking) {
+    refuse_run(folder,
+               fmt::format("is a run on {}, which is a function, not an arm; {} needs a run of an "
+                           "arm. The formats csv, ioh, coco and json work for every run",
+                           sanitize(result.problem), format));
+  }
+  if (!result.winner) {
+    refuse_run(folder, fmt::format("this run found no design that could be simulated to its end, "
+                                   "so there is nothing to make {} of; optimize again with a "
+                                   "larger budget or another start",
+                                   format));
+  }
+  FinishedArm arm;
+  arm.run = read_recorded_run(folder);
+  if (arm.run.tracking() == nullptr) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("{}: the arm of this run cannot be rebuilt. {} Restore the files as "
+                            "they were, or optimize again",
+                            sanitize(folder.string()), arm.run.problem_fault));
+  }
+  arm.design = arm.run.tracking()->make_design(arm.run.find_best());
+  return arm;
+}
+
 void write_ros2_control(const FinishedArm& arm, const fs::path& folder) {
   const TrackingConfig& config = arm.config();
-  const Ros2ControlInput input{config.robot, arm.design, config.task.control_period_s,
-                               describe_origin(arm)};
+  const std::vector<std::string> origin = describe_origin(arm);
   for (const Ros2Distribution& distribution : ros2_distributions()) {
     write_output_file(folder / fmt::format("controllers-{}.yaml", distribution.name),
-                      make_ros2_control(input, distribution));
+                      make_ros2_control(distribution, config.robot, arm.design,
+                                        config.task.control_period_s, origin));
   }
 }
 

@@ -1,22 +1,51 @@
-// What an arm's maker takes home from one run: the winner as controllers of ROS 2, as the robot's
-// description with the new effort limits, and on a sheet of paper.
+// Makes files for the arm's maker from one finished run: the winner as controllers of ROS 2, as the
+// robot's description with new effort limits, and as a data sheet.
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "report/evidence/recorded_run.hpp"
 
 namespace armwright {
 
-struct FinishedArm;
+// A finished run of an arm, and its winner.
+struct FinishedArm {
+  RecordedRun run;   // with its result, a winner and the arm's problem
+  ArmDesign design;  // the winner
 
-// controllers-DISTRIBUTION.yaml, one each (ros2_control.hpp, whose errors it throws).
+  const TrackingConfig& config() const { return run.tracking()->config(); }
+  const RunResult& result() const { return *run.result; }
+  const JudgedCandidate& winner() const { return result().judged[*result().winner]; }
+  // Returns "the winner of ga (seed 1) on q1-complex" without control characters.
+  std::string describe() const;
+};
+
+// Throws Error{usage} for a study, for a run of an analytic function, and for a run that has not
+// ended or has no winner; the message says which folder `format` (of --format) needs. Throws
+// Error{bad_data} if files have changed, so that the robot of the run is not known.
+FinishedArm load_finished_arm(const std::filesystem::path& folder, std::string_view format);
+
+// Each of the writers throws Error{io} if a file cannot be written.
+
+// Writes controllers-DISTRIBUTION.yaml for each distribution. Throws what make_ros2_control()
+// throws.
 void write_ros2_control(const FinishedArm& arm, const std::filesystem::path& folder);
 
-// The robot's own file under its own name, with the larger of each joint's effort limits
-// (sim/urdf_limits.hpp). Error{usage} if the winner stretches links, which a file of links and
-// meshes as they are cannot say; Error{bad_data} if the file is not what the run used.
+// Writes the robot's own file under its own name. The effort limit of each joint becomes the larger
+// of the design's two limits (sim/robot/urdf_limits.hpp). Throws Error{usage} if the winner changes
+// the size of links, because the export keeps links and meshes; Error{bad_data} if the file is not
+// the one that the run used.
 void write_urdf(const FinishedArm& arm, const std::filesystem::path& folder);
 
-// datasheet.html (datasheet.hpp).
+// Writes datasheet.html.
 void write_datasheet(const FinishedArm& arm, const std::filesystem::path& folder);
+
+// Returns the data sheet as one HTML file for one page of A4. It has no scripts and loads nothing.
+// The same run gives the same bytes on every day.
+std::string make_datasheet(const FinishedArm& arm);
+
+inline constexpr double kMillimetresPerMetre = 1000;  // the files show errors in mm
 
 }  // namespace armwright

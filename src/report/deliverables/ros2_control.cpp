@@ -8,13 +8,13 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "report/deliverables/finished_arm.hpp"
-#include "report/deliverables/yaml_text.hpp"
+#include "report/formats/export_text.hpp"
 
 namespace armwright {
 namespace {
 
-// A comment of that many columns at most; what follows the first line of an item is indented.
+// Returns the text as a comment with lines of at most kColumns characters. In an item ("- ..."),
+// the lines after the first are indented.
 std::string comment_on(std::string_view text) {
   constexpr std::size_t kColumns = 100;
   std::string lines;
@@ -30,7 +30,7 @@ std::string comment_on(std::string_view text) {
   return lines + line + "\n";
 }
 
-// How often the controllers run, a whole number for controller_manager.
+// Returns the update rate of the controllers. controller_manager wants a whole number.
 long calc_update_rate_hz(double period_s) {
   constexpr double kRounding = 1e-9;  // of 1 / h, relative
   const double rate_hz = 1 / period_s;
@@ -46,22 +46,22 @@ long calc_update_rate_hz(double period_s) {
   return static_cast<long>(whole_hz);
 }
 
-void check_pid(const Ros2ControlInput& input) {
-  if (input.design.controller != "pid") {
+void check_pid(const RobotModel& robot, const ArmDesign& design) {
+  if (design.controller != "pid") {
     throw Error(
         ErrorKind::usage,
         fmt::format("the winner's controller is '{}', and ROS 2's joint_trajectory_controller has "
                     "nothing but a PID for efforts: optimize with --set control.controller=pid, "
                     "or take the gains from --format datasheet for a controller of your own",
-                    input.design.controller));
+                    design.controller));
   }
-  for (std::size_t i = 0; i < input.robot.joint_count(); ++i) {
-    const EffortLimits& limits = input.design.joints[i].limits;
+  for (std::size_t i = 0; i < robot.joint_count(); ++i) {
+    const EffortLimits& limits = design.joints[i].limits;
     if (!(limits.min < limits.max)) {
       throw Error(ErrorKind::usage,
                   fmt::format("{}: the effort limits are {} to {}, which allow no effort; ROS 2 "
                               "wants a lower limit below the upper one",
-                              sanitize(input.robot.joints[i].name), limits.min, limits.max));
+                              sanitize(robot.joints[i].name), limits.min, limits.max));
     }
   }
 }
@@ -156,12 +156,14 @@ std::span<const Ros2Distribution> ros2_distributions() {
   return distributions;
 }
 
-std::string make_ros2_control(const Ros2ControlInput& input, const Ros2Distribution& distribution) {
+std::string make_ros2_control(const Ros2Distribution& distribution, const RobotModel& robot,
+                              const ArmDesign& design, double control_period_s,
+                              std::span<const std::string> origin) {
   constexpr const char* kController = "joint_trajectory_controller";
-  check_pid(input);
-  const long rate_hz = calc_update_rate_hz(input.control_period_s);
+  check_pid(robot, design);
+  const long rate_hz = calc_update_rate_hz(control_period_s);
   std::string text;
-  for (const std::string& line : input.origin) {
+  for (const std::string& line : origin) {
     text += comment_on(line);
   }
   text += "#\n" + explain(distribution);
@@ -171,17 +173,17 @@ std::string make_ros2_control(const Ros2ControlInput& input, const Ros2Distribut
       "    update_rate: {}  # Hz: the control period of {} s\n"
       "    {}:\n"
       "      type: \"joint_trajectory_controller/JointTrajectoryController\"\n\n",
-      rate_hz, format_exact(input.control_period_s), kController);
+      rate_hz, format_exact(control_period_s), kController);
   text += fmt::format("{}:\n  ros__parameters:\n    joints:\n", kController);
-  for (const Joint& joint : input.robot.joints) {
+  for (const Joint& joint : robot.joints) {
     text += fmt::format("      - {}\n", quote_yaml(joint.name));
   }
   text +=
       "    command_interfaces:\n      - \"effort\"\n"
       "    state_interfaces:\n      - \"position\"\n      - \"velocity\"\n"
       "    gains:\n";
-  for (std::size_t i = 0; i < input.robot.joint_count(); ++i) {
-    text += make_joint_gains(input.robot.joints[i], input.design.joints[i], distribution);
+  for (std::size_t i = 0; i < robot.joint_count(); ++i) {
+    text += make_joint_gains(robot.joints[i], design.joints[i], distribution);
   }
   return text;
 }

@@ -1,16 +1,17 @@
-// A PID design as parameters of ROS 2: controller_manager and joint_trajectory_controller, which
-// commands efforts through one control_toolbox::Pid a joint.
+// Writes a PID design as parameters of ROS 2, for controller_manager and
+// joint_trajectory_controller, which commands efforts through one control_toolbox::Pid per joint.
 //
-// Ours (sim/controllers/pid.hpp), h the control period:
-//   u = clamp(p e + i S + d (e - e_prev) / h),  S = sum of e h, which pauses for the period after a
-//   clamped one.
-// Theirs, v the velocities of trajectory and joint:
-//   u = p e + I + d (v_desired - v),  I = sum of i e dt,
-// clamped and kept from winding up by what differs from distribution to distribution:
-//   Humble (2.x)             i_clamp: I as far as it counts, symmetric; u is not clamped
-//   Jazzy (4.27.0 and later) u_clamp_max/min: u; antiwindup_strategy "conditional_integration": no
-//                            integration while u is clamped and e pushes it further; i_clamp
-//   Kilted (5.7.0 and later) the same, and i_clamp_max/min instead of i_clamp
+// Our law (sim/controllers/pid.hpp), where h is the control period:
+//   u = clamp(p e + i S + d (e - e_prev) / h),  S = sum of e h; S stays as it is for one period
+//   after a clamped one.
+// The law of ROS 2, where v is a velocity, of the trajectory and of the joint:
+//   u = p e + I + d (v_desired - v),  I = sum of i e dt.
+// The distributions differ in how they clamp u and limit I:
+//   Humble (2.x)             i_clamp limits I to both sides alike; u is not clamped
+//   Jazzy (4.27.0 and later) u_clamp_max/min limit u; antiwindup_strategy "conditional_integration"
+//                            stops the integration while u is clamped and e would push it further;
+//                            i_clamp as in Humble
+//   Kilted (5.7.0 and later) as Jazzy, with i_clamp_max/min instead of i_clamp
 //
 // Sources: joint_trajectory_controller_parameters.yaml, CHANGELOG.rst and documentation of
 // ros2_controllers (control.ros.org; pull requests 949, 1759, 1845), control_toolbox's pid.cpp.
@@ -24,25 +25,21 @@
 
 namespace armwright {
 
-// What a distribution's controller knows of what a design has.
+// The parameters that a distribution's controller has.
 struct Ros2Distribution {
   std::string name;           // "humble", part of a file's name
   std::string releases;       // of ros2_controllers, for which the file is right
-  bool clamps_output;         // u_clamp_max, u_clamp_min, antiwindup_strategy
-  bool symmetric_integral;    // i_clamp, not i_clamp_max and i_clamp_min
-  bool has_angle_wraparound;  // not known from the URDF: angle_wraparound
+  bool clamps_output;         // has u_clamp_max, u_clamp_min and antiwindup_strategy
+  bool symmetric_integral;    // has i_clamp instead of i_clamp_max and i_clamp_min
+  bool has_angle_wraparound;  // needs angle_wraparound, because it does not read it from the URDF
 };
 std::span<const Ros2Distribution> ros2_distributions();
 
-struct Ros2ControlInput {
-  const RobotModel& robot;
-  const ArmDesign& design;
-  double control_period_s = 0;
-  std::vector<std::string> origin;  // lines that say where the design comes from, printable
-};
-
-// Error{usage} for another controller than "pid", a period that is no whole number of updates a
-// second, and a joint that may exert no effort at all.
-std::string make_ros2_control(const Ros2ControlInput& input, const Ros2Distribution& distribution);
+// Returns the file for one distribution. `origin` are lines of text that say where the design comes
+// from. Throws Error{usage} if the controller is not "pid", the period is not 1 s divided by a
+// whole number, or a joint's effort limits allow no effort.
+std::string make_ros2_control(const Ros2Distribution& distribution, const RobotModel& robot,
+                              const ArmDesign& design, double control_period_s,
+                              std::span<const std::string> origin);
 
 }  // namespace armwright

@@ -10,17 +10,17 @@
 namespace armwright {
 namespace {
 
-// A design's file as `armwright evaluate` finds it: a shipped name stays a name.
-std::string find_design_word(const RecordedRun& run, const std::string& name) {
-  const auto path = resolve_config("designs", name, run.beside);
+// Returns the design's file for `armwright evaluate`, or the name of a shipped design.
+std::string find_design_argument(const RecordedRun& run, const std::string& name) {
+  const auto path = resolve_config("designs", name, run.input_folder);
   return path.stem() == name ? name : path.string();
 }
 
-// What is published of a design holds for the problem as it is shipped: another engine is another
-// way to compute it, any other setting another problem.
+// Returns whether published numbers apply to the run's problem. They hold for the problem as it is
+// shipped. Another engine computes the same problem; every other setting makes another problem.
 bool is_as_published(const RecordedRun& run) {
-  for (std::size_t i = 3; i < run.problem_words.size(); i += 2) {
-    const std::string& setting = run.problem_words[i];
+  for (std::size_t i = 3; i < run.problem_arguments.size(); i += 2) {
+    const std::string& setting = run.problem_arguments[i];
     const bool chooses_engine = std::ranges::any_of(
         std::initializer_list<const char*>{"engine", "judging_engine", "precision", "simd"},
         [&](const char* key) { return setting.starts_with(fmt::format("physics.{}=", key)); });
@@ -45,13 +45,13 @@ void add_published(const RecordedRun& run, const DesignFile& file, ShownDesign& 
   }
 }
 
-// Nothing but a note if its file is missing or made for another arm.
+// If the file is missing or made for another arm, returns nothing and adds a note.
 std::optional<ShownDesign> load_shown(const RecordedRun& run, const std::string& name,
                                       const std::string& id, std::vector<std::string>& notes) {
   try {
     ShownDesign design;
-    design.word = find_design_word(run, name);
-    const DesignFile file = load_design(design.word);
+    design.argument = find_design_argument(run, name);
+    const DesignFile file = load_design(design.argument);
     run.tracking()->check_design(file.design);
     design.named = {id, file.source.empty() ? file.name : file.source, file.design};
     add_published(run, file, design);
@@ -73,14 +73,14 @@ std::vector<ShownDesign> list_designs(const RecordedRun& run, std::vector<std::s
     ShownDesign& winner = designs.emplace_back();
     winner.named = {"winner", run.result ? "winner" : "best so far", tracking.make_design(best)};
     const auto file = run.folder / "winner.toml";
-    winner.word = run.result && std::filesystem::exists(file) ? file.string() : "";
+    winner.argument = run.result && std::filesystem::exists(file) ? file.string() : "";
   }
   const auto& variables = run.configuration.at("problem").at("variables");
   const auto start = variables.at("start").get<std::string>();
   if (start == kProposedStart) {
     ShownDesign& base = designs.emplace_back();
     base.named = {"base", "proposed controllers", tracking.config().start};
-    base.word = kStartDesign;
+    base.argument = kStartDesign;
   } else if (auto base = load_shown(run, start, "base", notes)) {
     base->named.name = "base controllers";
     designs.push_back(std::move(*base));

@@ -11,17 +11,13 @@
 #include "report/evidence/distance_response.hpp"
 #include "report/evidence/page_json.hpp"
 #include "report/evidence/signals.hpp"
-#include "report/evidence/sweep_data.hpp"
 
 namespace armwright {
 namespace {
 
 using nlohmann::json;
 
-// Cases enough to tell the speeds apart, and few enough to wait for.
-constexpr int kMostSweepCases = 100;
-
-json make_failures(const RecordedRun& run, const std::string& word,
+json make_failures(const RecordedRun& run, const std::string& argument,
                    const std::vector<double>& errors, const std::vector<TrackingResult>& results,
                    double failure_error) {
   json failures = json::array();
@@ -35,10 +31,11 @@ json make_failures(const RecordedRun& run, const std::string& word,
     }
     const std::vector<std::string> words = {"--test-set", run.problem ? run.problem->sets.test : "",
                                             "--cases", fmt::format("{}", i + 1)};
-    failures.push_back({{"case", i},
-                        {"error", finite_or_null(errors[i])},
-                        {"reason", reason},
-                        {"command", word.empty() ? "" : run.make_evaluate_command(word, words)}});
+    failures.push_back(
+        {{"case", i},
+         {"error", finite_or_null(errors[i])},
+         {"reason", reason},
+         {"command", argument.empty() ? "" : run.make_evaluate_command(argument, words)}});
   }
   return failures;
 }
@@ -47,7 +44,7 @@ json make_parameters(const RecordedRun& run, const std::vector<ShownDesign>& des
   const TrackingConfig& config = run.tracking()->config();
   const ProblemDescription& description = run.problem->problem->description();
   const ControllerRow& controller = find_controller(config.start.controller);
-  // Where a variable counts as being at its bound.
+  // A variable this close to its bound, relative to the bound, counts as being at the bound.
   constexpr double kShare = 1e-6;
   json list = json::array();
   const auto add = [&](const DesignParameter& parameter, const std::string& name,
@@ -125,10 +122,10 @@ json make_response(const RecordedRun& run, const std::vector<ShownDesign>& desig
       continue;
     }
     const std::string command =
-        design.word.empty()
+        design.argument.empty()
             ? ""
-            : run.make_evaluate_command(design.word, {"--test-set", sets.test, "--cases",
-                                                      fmt::format("{}", sets.test_cases)});
+            : run.make_evaluate_command(design.argument, {"--test-set", sets.test, "--cases",
+                                                          fmt::format("{}", sets.test_cases)});
     series.push_back(make_response_series(*run.tracking(), design.named.name, design.results,
                                           design.published_mean_m, command));
   }
@@ -143,84 +140,6 @@ json make_response(const RecordedRun& run, const std::vector<ShownDesign>& desig
       std::move(series));
 }
 
-// A design with a speed of its own moves at that, whatever the task's is: it cannot be swept.
-std::vector<const ShownDesign*> choose_swept(const std::vector<ShownDesign>& designs) {
-  std::vector<const ShownDesign*> swept;
-  for (const ShownDesign& design : designs) {
-    if (design.named.id != "base" && !design.named.design.speed_m_per_s) {
-      swept.push_back(&design);
-    }
-  }
-  return swept;
-}
-
-SweepRequest make_sweep_request(const RecordedRun& run,
-                                const std::vector<const ShownDesign*>& swept) {
-  constexpr double kFirst_m_per_s = 0.5;
-  constexpr double kStep_m_per_s = 0.25;
-  constexpr int kSpeeds = 11;
-  constexpr double kThesis_m_per_s = 1.5;
-  // Of tasks at quite another speed than the thesis's the same multiples.
-  const double speed_m_per_s = run.tracking()->config().task.speed_m_per_s;
-  const double scale = speed_m_per_s < kFirst_m_per_s || speed_m_per_s > 2 * kThesis_m_per_s
-                           ? speed_m_per_s / kThesis_m_per_s
-                           : 1;
-  SweepRequest request;
-  std::vector<std::string> values;
-  for (int i = 0; i < kSpeeds; ++i) {
-    request.speeds_m_per_s.push_back(scale * (kFirst_m_per_s + kStep_m_per_s * i));
-    values.push_back(format_exact(request.speeds_m_per_s.back()));
-  }
-  const CaseSets& sets = run.problem->sets;
-  request.set = sets.test;
-  request.cases = static_cast<std::uint64_t>(std::min(sets.test_cases, kMostSweepCases));
-  if (!run.problem_words.empty() && !swept.empty() && !swept.front()->word.empty()) {
-    std::vector<std::string> words = {"armwright", "sweep"};
-    words.insert(words.end(), run.problem_words.begin() + 1, run.problem_words.end());
-    words.insert(words.end(), {"--design", swept.front()->word, "--parameter", "task.speed_m_per_s",
-                               "--values", join(values, ","), "--test-set", sets.test, "--cases",
-                               fmt::format("{}", request.cases)});
-    request.command = quote_command(words);
-  }
-  return request;
-}
-
-bool has_own_times(const RecordedRun& run) {
-  const auto& path = run.tracking()->config().path;
-  return path && path->continuous;
-}
-
-json make_sweep(const RecordedRun& run, const std::vector<ShownDesign>& designs,
-                PageSimulator& simulator, std::vector<std::string>& notes) {
-  if (has_own_times(run)) {
-    notes.push_back(
-        "The path is gone through at times of its own: there is no sweep over the "
-        "speed.");
-    return nullptr;
-  }
-  const auto swept = choose_swept(designs);
-  std::vector<std::string> own_speed;
-  for (const ShownDesign& design : designs) {
-    if (design.named.design.speed_m_per_s && design.named.id != "base") {
-      own_speed.push_back(sanitize(design.named.name));
-    }
-  }
-  if (!own_speed.empty()) {
-    notes.push_back(
-        fmt::format("Designs with a speed of their own move at that, whatever the task's is: the "
-                    "sweep over the speed leaves out {}.",
-                    join(own_speed, ", ")));
-  }
-  if (swept.empty()) {
-    return nullptr;
-  }
-  std::vector<NamedDesign> named;
-  for (const ShownDesign* design : swept) {
-    named.push_back(design->named);
-  }
-  return make_speed_sweep(simulator, *run.tracking(), make_sweep_request(run, swept), named);
-}
-
 }  // namespace
 
 json make_test_errors(const RecordedRun& run, const std::vector<ShownDesign>& designs) {
@@ -230,21 +149,21 @@ json make_test_errors(const RecordedRun& run, const std::vector<ShownDesign>& de
   const RunResult& result = *run.result;
   const double failure_error = get_failure_error(result);
   json list = json::array();
-  const auto add = [&](const std::string& name, const std::string& word,
+  const auto add = [&](const std::string& name, const std::string& argument,
                        const std::vector<double>& errors,
                        const std::vector<TrackingResult>& results) {
     list.push_back({{"name", name},
                     {"errors", finite_or_null(errors)},
-                    {"failures", make_failures(run, word, errors, results, failure_error)}});
+                    {"failures", make_failures(run, argument, errors, results, failure_error)}});
   };
   const std::vector<TrackingResult> none;
-  // Of the winner what was recorded, which is what the run's result stands for.
+  // The winner's errors are the recorded ones, because the run's result was made of them.
   const bool has_designs = !designs.empty();
-  add("winner", has_designs ? designs.front().word : "", result.test.case_errors,
+  add("winner", has_designs ? designs.front().argument : "", result.test.case_errors,
       has_designs ? designs.front().results : none);
   for (std::size_t i = 1; i < designs.size(); ++i) {
     if (!designs[i].results.empty()) {
-      add(designs[i].named.name, designs[i].word, get_case_errors(designs[i].results),
+      add(designs[i].named.name, designs[i].argument, get_case_errors(designs[i].results),
           designs[i].results);
     }
   }
@@ -257,15 +176,6 @@ json make_test_errors(const RecordedRun& run, const std::vector<ShownDesign>& de
       {"designs", std::move(list)}};
 }
 
-std::uint64_t count_sweep_cases(const RecordedRun& run, const std::vector<ShownDesign>& designs) {
-  const auto swept = choose_swept(designs);
-  if (has_own_times(run)) {
-    return 0;
-  }
-  const SweepRequest request = make_sweep_request(run, swept);
-  return request.speeds_m_per_s.size() * request.cases * swept.size();
-}
-
 json make_arm_evidence(const RecordedRun& run, const std::vector<ShownDesign>& designs,
                        PageSimulator* simulator, std::vector<std::string>& notes) {
   json list = json::array();
@@ -274,9 +184,9 @@ json make_arm_evidence(const RecordedRun& run, const std::vector<ShownDesign>& d
   }
   json sweep = nullptr;
   if (simulator != nullptr) {
-    sweep = make_sweep(run, designs, *simulator, notes);
+    sweep = make_speed_sweep(run, designs, *simulator, notes);
   }
-  // Of the winner's own speed, if it has one.
+  // The signals have the winner's own speed, if it has one.
   const TrackingProblem& tracking = *run.tracking();
   const TrackingTask task =
       designs.empty() ? tracking.config().task : tracking.make_task(designs.front().named.design);

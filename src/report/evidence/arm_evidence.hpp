@@ -1,5 +1,5 @@
-// What a run's page shows of an arm: its designs side by side, simulated on the test set, at other
-// speeds, and moving. Only .cpp files include this.
+// Collects what a run's page shows of an arm: its designs compared, simulated on the test set, at
+// other speeds, and in motion. Only .cpp files include this.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -9,44 +9,49 @@
 
 #include "problems/config/design_file.hpp"
 #include "report/evidence/motions.hpp"
-#include "report/evidence/page_options.hpp"
 #include "report/evidence/recorded_run.hpp"
 
 namespace armwright {
 
+// A design on the page of a run.
 struct ShownDesign {
   NamedDesign named;
-  std::string word;  // what `armwright evaluate` calls it: a name or a file; empty: nothing does
+  std::string argument;  // its name or file for `armwright evaluate`; empty: it has neither
   std::optional<double> published_mean_m;
   std::optional<double> published_torque_n_m;
-  std::string where;                    // that is published
-  std::vector<TrackingResult> results;  // on the test set, one a case; empty: not simulated
+  std::string where;                    // the source of the published numbers
+  std::vector<TrackingResult> results;  // on the test set, one per case; empty: not simulated
 };
 
-// The winner (of a run under way the best so far), the design it started from and the published
-// one, as far as there are such and they suit the robot; `notes` get what does not.
+// Returns the winner (for an unfinished run the incumbent), the start and the published design, as
+// far as they exist and fit the robot. `notes` gets a sentence for each one that does not fit.
 std::vector<ShownDesign> list_designs(const RecordedRun& run, std::vector<std::string>& notes);
 
-// Every design on the whole test set.
+// Simulates every design on the whole test set. Throws PageStopped.
 void simulate_designs(const RecordedRun& run, PageSimulator& simulator,
                       std::vector<ShownDesign>& designs);
 
-// TestErrors, or null if the run has no result. Without simulated designs those that the run
-// recorded of its winner.
+// Returns TestErrors of web/src/data.ts, or null if the run has no result. If no designs were
+// simulated, it has only the errors that the run recorded of its winner.
 nlohmann::json make_test_errors(const RecordedRun& run, const std::vector<ShownDesign>& designs);
 
-// ArmEvidence; `simulator` null: no sweep. `notes` get what that leaves out.
+// Returns ArmEvidence of web/src/data.ts. Without a simulator (null) it has no sweep. `notes` gets
+// a sentence for each design that the sweep leaves out. Throws PageStopped.
 nlohmann::json make_arm_evidence(const RecordedRun& run, const std::vector<ShownDesign>& designs,
                                  PageSimulator* simulator, std::vector<std::string>& notes);
 
-// How many cases the sweep of make_arm_evidence() simulates.
+// Returns Sweep of web/src/data.ts: the designs at other mean speeds of the target, as in the
+// thesis's Fig. 6.16. Returns null if there is nothing to sweep. Throws PageStopped.
+nlohmann::json make_speed_sweep(const RecordedRun& run, const std::vector<ShownDesign>& designs,
+                                PageSimulator& simulator, std::vector<std::string>& notes);
+// Returns the number of cases that make_speed_sweep() simulates.
 std::uint64_t count_sweep_cases(const RecordedRun& run, const std::vector<ShownDesign>& designs);
 
-// Which cases to replay, none twice: a training case, of the test set the first, the median, the
-// 95th percentile and the worst of the winner, its first failures, and those that were asked for.
-// Error{usage} if one of those is none.
+// Chooses the cases to replay, each at most once: a training case; from the test set the first, and
+// by the winner's error the median, the 95th percentile and the worst; the winner's first failures;
+// and `case_ids`, which the user asked for. Throws Error{usage} if one of those is not a case.
 std::vector<ReplayRequest> choose_replays(const RecordedRun& run,
                                           const std::vector<ShownDesign>& designs,
-                                          const std::vector<std::string>& asked_for);
+                                          const std::vector<std::string>& case_ids);
 
 }  // namespace armwright

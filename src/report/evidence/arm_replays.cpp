@@ -7,12 +7,12 @@
 
 #include "report/evidence/arm_evidence.hpp"
 #include "report/evidence/distance_response.hpp"
-#include "report/evidence/replay_list.hpp"
 
 namespace armwright {
 namespace {
 
-// With training cases that change that of the second generation, the first being of random designs.
+// Adds a training case. If the schedule changes the cases, it is one of the second generation,
+// because the designs of the first generation are random.
 void add_training_case(const RecordedRun& run, ReplayList& replays) {
   const auto& training = run.journal.training;
   if (training.empty()) {
@@ -23,16 +23,16 @@ void add_training_case(const RecordedRun& run, ReplayList& replays) {
   });
   const bool has_second = run.schedule.changes_cases() && second != training.end();
   const CaseBlock& cases = (has_second ? *second : training.front()).cases;
-  std::string why =
+  std::string reason =
       has_second ? "what the second generation was trained on" : "the first of training";
   const Perturbation& plants = run.tracking()->config().perturbation;
-  // A replay moves designs as they are judged.
+  // A replay shows the plants of judging, not those of training.
   if (plants.applies_to(CaseRole::training) != plants.applies_to(CaseRole::test)) {
-    why += plants.applies_to(CaseRole::training)
-               ? ", there on a perturbed plant, here on the nominal one"
-               : ", there on the nominal plant, here on a perturbed one";
+    reason += plants.applies_to(CaseRole::training)
+                  ? ", there on a perturbed plant, here on the nominal one"
+                  : ", there on the nominal plant, here on a perturbed one";
   }
-  replays.add(cases.set, cases.numbers.front(), why);
+  replays.add(cases.set, cases.numbers.front(), reason);
 }
 
 void add_by_rank(const RecordedRun& run, const std::vector<double>& errors, ReplayList& replays) {
@@ -61,7 +61,7 @@ void add_by_rank(const RecordedRun& run, const std::vector<double>& errors, Repl
 
 std::vector<ReplayRequest> choose_replays(const RecordedRun& run,
                                           const std::vector<ShownDesign>& designs,
-                                          const std::vector<std::string>& asked_for) {
+                                          const std::vector<std::string>& case_ids) {
   ReplayList replays(*run.tracking());
   add_training_case(run, replays);
   replays.add(run.problem->sets.test, 0, "the first of the test set");
@@ -69,7 +69,7 @@ std::vector<ReplayRequest> choose_replays(const RecordedRun& run,
   if (has_winner && !run.result->test.case_errors.empty()) {
     add_by_rank(run, run.result->test.case_errors, replays);
   }
-  for (const std::string& text : asked_for) {
+  for (const std::string& text : case_ids) {
     replays.add(text, kAskedFor);
   }
   return replays.take();

@@ -1,26 +1,94 @@
 #include "report/evidence/distance_response.hpp"
 
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
 #include "problems/tracking/tracking_config.hpp"
 #include "report/evidence/page_json.hpp"
 
 namespace armwright {
+namespace {
 
 using nlohmann::json;
+
+constexpr double kNoError = std::numeric_limits<double>::quiet_NaN();
+
+struct MeanAndError {
+  double mean = kNoError;
+  double standard_error = kNoError;
+};
+
+// Counts only the values that are not NaN.
+MeanAndError calc_mean(std::span<const double> values) {
+  double count = 0;
+  double sum = 0;
+  for (const double value : values) {
+    if (!std::isnan(value)) {
+      sum += value;
+      ++count;
+    }
+  }
+  if (count == 0) {
+    return {};
+  }
+  const double mean = sum / count;
+  double squares = 0;
+  for (const double value : values) {
+    if (!std::isnan(value)) {
+      squares += (value - mean) * (value - mean);
+    }
+  }
+  return {mean, count > 1 ? std::sqrt(squares / (count - 1) / count) : kNoError};
+}
+
+}  // namespace
+
+std::vector<double> get_case_errors(std::span<const TrackingResult> results) {
+  std::vector<double> errors;
+  for (const TrackingResult& result : results) {
+    errors.push_back(result.status == SimulationStatus::ok ? result.mean_error_m : kNoError);
+  }
+  return errors;
+}
+
+ErrorSummary summarize_cases(std::span<const TrackingResult> results) {
+  return summarize(get_case_errors(results), kFailureError_m);
+}
+
+double calc_standard_error(std::span<const double> errors) {
+  return calc_mean(errors).standard_error;
+}
+
+PointStatistics calc_point_statistics(std::span<const TrackingResult> results, std::size_t points) {
+  PointStatistics statistics;
+  for (std::size_t k = 0; k < points; ++k) {
+    std::vector<double> errors;
+    for (const TrackingResult& result : results) {
+      errors.push_back(result.status == SimulationStatus::ok ? result.point_error_m[k] : kNoError);
+    }
+    const MeanAndError point = calc_mean(errors);
+    statistics.mean_m.push_back(point.mean);
+    statistics.standard_error_m.push_back(point.standard_error);
+  }
+  return statistics;
+}
 
 json make_response_series(const TrackingProblem& problem, const std::string& name,
                           std::span<const TrackingResult> results,
                           const std::optional<double>& published_mean_m,
                           const std::string& command) {
   const std::size_t points = list_moves_m(problem.config()).size();
-  return make_response_series({name, command}, get_case_errors(results),
-                              calc_point_statistics(results, points), published_mean_m);
+  return make_response_series(name, get_case_errors(results),
+                              calc_point_statistics(results, points), published_mean_m, command);
 }
 
-json make_response_series(const SeriesText& text, std::span<const double> case_errors,
+json make_response_series(const std::string& name, std::span<const double> case_errors,
                           const PointStatistics& points,
-                          const std::optional<double>& published_mean_m) {
+                          const std::optional<double>& published_mean_m,
+                          const std::string& command) {
   const ErrorSummary summary = summarize(case_errors, kFailureError_m);
-  return {{"name", text.name},
+  return {{"name", name},
           {"cases", summary.cases - summary.without_number},
           {"failures", summary.failures},
           {"mean_m", finite_or_null(points.mean_m)},
@@ -28,7 +96,7 @@ json make_response_series(const SeriesText& text, std::span<const double> case_e
           {"overall_mean_m", finite_or_null(summary.mean)},
           {"overall_median_m", finite_or_null(summary.median)},
           {"published_mean_m", finite_or_null(published_mean_m)},
-          {"command", text.command}};
+          {"command", command}};
 }
 
 json make_distance_response(const TrackingProblem& problem, const ResponseText& text, json series) {

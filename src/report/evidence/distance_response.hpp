@@ -1,16 +1,35 @@
-// The average error of each trajectory point over the cases of a set, against how long the move to
-// it was: the thesis's distance response. Only .cpp files include this.
+// Statistics of the test cases of a set, and the thesis's distance response: the mean error of each
+// point of the trajectory against the length of the move to it.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <cstddef>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
-#include "report/evidence/point_statistics.hpp"
+#include "problems/tracking/tracking_problem.hpp"
+#include "study/statistics/summary.hpp"
 
 namespace armwright {
 
+// Returns the error (m) of each case. It is NaN for a case without a number; so are the errors that
+// the other functions take.
+std::vector<double> get_case_errors(std::span<const TrackingResult> results);
+ErrorSummary summarize_cases(std::span<const TrackingResult> results);
+// Returns the standard error s / sqrt(n) of the mean of the n errors with a number; NaN for n < 2.
+double calc_standard_error(std::span<const double> errors);
+
+// The mean error of each point over the cases of a set. Only cases with a number count: the earlier
+// points of a diverged case are left out too.
+struct PointStatistics {
+  std::vector<double> mean_m;            // per point; NaN if no case has a number
+  std::vector<double> standard_error_m;  // of the mean: s / sqrt(n), NaN for n < 2
+};
+PointStatistics calc_point_statistics(std::span<const TrackingResult> results, std::size_t points);
+
+// The texts of a figure.
 struct ResponseText {
   std::string id;  // "distance-response" or "fig-6.4"
   std::string title;
@@ -18,22 +37,19 @@ struct ResponseText {
   std::string remark;  // whole sentences, or ""
 };
 
-struct SeriesText {
-  std::string name;
-  std::string command;  // that makes it anew
-};
-
-// ResponseSeries: of a design's results on a generated set of the problem; or of the cases' errors
-// (NaN for a case without number) and what has been made of the points' before.
+// Return ResponseSeries of web/src/data.ts. `command` repeats the computation. The first function
+// takes the results of a design on a generated set of the problem, the second one their statistics.
 nlohmann::json make_response_series(const TrackingProblem& problem, const std::string& name,
                                     std::span<const TrackingResult> results,
                                     const std::optional<double>& published_mean_m,
                                     const std::string& command);
-nlohmann::json make_response_series(const SeriesText& text, std::span<const double> case_errors,
+nlohmann::json make_response_series(const std::string& name, std::span<const double> case_errors,
                                     const PointStatistics& points,
-                                    const std::optional<double>& published_mean_m);
+                                    const std::optional<double>& published_mean_m,
+                                    const std::string& command);
 
-// DistanceResponse; `series` is a list of ResponseSeries of problems with the problem's points.
+// Returns DistanceResponse of web/src/data.ts. `series` is a list of ResponseSeries whose problems
+// have the same points as `problem`.
 nlohmann::json make_distance_response(const TrackingProblem& problem, const ResponseText& text,
                                       nlohmann::json series);
 

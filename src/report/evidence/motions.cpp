@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "base/error.hpp"
 #include "base/text.hpp"
-#include "report/evidence/packed.hpp"
 #include "report/evidence/page_json.hpp"
 #include "sim/tracking/designed_arm.hpp"
 #include "sim/tracking/reference_signal.hpp"
@@ -26,8 +27,8 @@ void append(std::vector<float>& all, std::span<const double> values) {
   }
 }
 
-// Simulations that diverge stop at the first state that is out of bounds; that of the last step
-// recorded may be no number already.
+// A diverged simulation stops at the first state that is out of bounds. The state of its last step
+// may already have no number.
 bool is_drawable(const TrajectorySample& sample) {
   const auto fits = [](double value) { return std::isfinite(static_cast<float>(value)); };
   return std::ranges::all_of(sample.q, fits) && std::ranges::all_of(sample.effort, fits) &&
@@ -99,7 +100,7 @@ json make_case(const TrackingSetup& setup, const ReplayRequest& request) {
       append(target, {place.data(), 3});
     }
   }
-  append(target_q, targets.joint_positions);  // none where a target is out of reach
+  append(target_q, targets.joint_positions);  // empty if a target is out of reach
   return {{"id", make_case_id(request.set.name(), request.number)},
           {"label", request.label},
           {"set", request.set.name()},
@@ -117,6 +118,39 @@ json make_case(const TrackingSetup& setup, const ReplayRequest& request) {
 
 std::string make_case_id(const std::string& set, std::uint64_t number) {
   return fmt::format("{}:{}", set, number);
+}
+
+void ReplayList::add(const std::string& set, std::uint64_t number, const std::string& reason) {
+  const auto is_it = [&](const ReplayRequest& request) {
+    return request.number == number && request.set.name() == set;
+  };
+  if (std::ranges::none_of(requests_, is_it)) {
+    requests_.push_back({problem_.get_set(set), number,
+                         fmt::format("{}, case {}: {}", sanitize(set), number, reason)});
+  }
+}
+
+void ReplayList::add(const std::string& case_id, const std::string& reason) {
+  const auto colon = case_id.rfind(':');
+  const std::string set = case_id.substr(0, std::min(colon, case_id.size()));
+  constexpr long long kMost = 1'000'000'000;
+  const long long number =
+      colon == std::string::npos ? -1 : parse_integer(case_id.substr(colon + 1)).value_or(-1);
+  if (set.find('/') == std::string::npos || set.front() == '/' || set.back() == '/' || number < 0 ||
+      number > kMost) {
+    throw Error(ErrorKind::usage,
+                fmt::format("case '{}' is not valid: it must be SET:NUMBER with the name of a set "
+                            "of test cases and a number from 0, such as test/2:17",
+                            sanitize(case_id)));
+  }
+  add(set, static_cast<std::uint64_t>(number), reason);
+}
+
+std::size_t find_worst_case(std::span<const double> errors) {
+  const auto worst = std::ranges::max_element(errors, {}, [](double error) {
+    return std::isnan(error) ? std::numeric_limits<double>::infinity() : error;
+  });
+  return static_cast<std::size_t>(worst - errors.begin());
 }
 
 json make_design_info(const NamedDesign& design) {

@@ -1,5 +1,5 @@
-// Designs' motions on test cases, for the replay and for errors over time. Only .cpp files include
-// this.
+// Simulates the motions of designs on test cases, for the replay and for errors over time, and
+// chooses the cases of a replay. Only .cpp files include this.
 #pragma once
 
 #include <cstdint>
@@ -13,33 +13,63 @@
 
 namespace armwright {
 
+// A design that a page shows.
 struct NamedDesign {
   std::string id;    // "winner"
   std::string name;  // as shown
   ArmDesign design;
-  // That it is simulated in, as by a method that makes other efforts in advance; null: the one of
-  // the designs beside it. All of them share robot, task and cases.
+  // The design's own problem, if its method precomputes other efforts; null: the problem that the
+  // other designs have. All problems share robot, task and cases. Not owned.
   const TrackingProblem* problem = nullptr;
 };
 
+nlohmann::json make_design_info(const NamedDesign& design);
+nlohmann::json make_task_info(const TrackingTask& task);
+
+// ---- Cases -------------------------------------------------------------------------------------
+
+// A test case to replay.
 struct ReplayRequest {
   TestSet set;
   std::uint64_t number = 0;
   std::string label;  // "test/2, case 17: the worst of 500"
 };
 
-// "test/2:17"
+// Returns "test/2:17".
 std::string make_case_id(const std::string& set, std::uint64_t number);
 
-nlohmann::json make_design_info(const NamedDesign& design);
-nlohmann::json make_task_info(const TrackingTask& task);
+// A list of replays without duplicates. A case that is added twice keeps its first reason. The
+// problem must outlive the list.
+class ReplayList {
+ public:
+  explicit ReplayList(const TrackingProblem& problem) : problem_(problem) {}
 
-// Designs that one replay can show together, in their order: of the same arm, with the same targets
-// in the same steps. Most problems have one such group; a design can stretch links or have a speed
-// of its own, a method a control period.
+  void add(const std::string& set, std::uint64_t number, const std::string& reason);
+  // `case_id` reads "test/2:17". Throws Error{usage} for anything else.
+  void add(const std::string& case_id, const std::string& reason);
+  std::vector<ReplayRequest> take() { return std::move(requests_); }
+
+ private:
+  const TrackingProblem& problem_;
+  std::vector<ReplayRequest> requests_;
+};
+
+// The reason of cases that the user asked for.
+inline constexpr const char* kAskedFor = "asked for";
+
+// Returns the index of the largest error. A NaN counts as larger than every number. The list must
+// not be empty.
+std::size_t find_worst_case(std::span<const double> errors);
+
+// ---- Replays -----------------------------------------------------------------------------------
+
+// Divides designs into groups that one replay can show together, in their order. The designs of a
+// group have the same arm, the same targets and the same control period. Most problems have one
+// group; a design may change links or the speed, and a method may have its own control period.
 std::vector<std::vector<NamedDesign>> divide_by_motion(const TrackingProblem& problem,
                                                        std::span<const NamedDesign> designs);
-// Without load, and without motors, which are not drawn.
+// Returns the arm with the design's links, without the load and without the motors' masses, which
+// are not drawn.
 RobotModel make_shown_arm(const TrackingProblem& problem, const NamedDesign& design);
 
 struct ReplayText {
@@ -47,14 +77,15 @@ struct ReplayText {
   std::string title;
 };
 
-// Of the group with that index: which designs it has, if it is not the only one.
+// Returns the text for the group with this index. If there are several groups, the title names the
+// group's designs.
 ReplayText make_group_text(ReplayText text, std::span<const std::vector<NamedDesign>> groups,
                            std::size_t group);
 
-// ReplaySet: every design on every case, by the problem's judging engine; the motion of a
-// simulation that diverged goes as far as it went. `designs` are one group of divide_by_motion(),
-// `robot` is the index of their robot with its load. The bulk is single precision: a hundredth of a
-// micrometre.
+// Returns ReplaySet of web/src/data.ts: every design on every case, simulated by the judging
+// engine. The motion of a diverged simulation ends where it diverged. `designs` are one group of
+// divide_by_motion(); `robot` is the index of their robot with its load. Most numbers have single
+// precision, which is exact to a hundredth of a micrometre. Throws PageStopped.
 nlohmann::json make_replay_set(PageSimulator& simulator, const TrackingProblem& problem,
                                const ReplayText& text, std::size_t robot,
                                std::span<const NamedDesign> designs,

@@ -1,8 +1,9 @@
-// Values as the pages' JSON has them (web/src/data.ts): SI units, null for a number that does not
-// exist. Only .cpp files include this.
+// Values in the form of the pages' JSON (web/src/data.ts): SI units, and null for a number without
+// a value. Only .cpp files include this.
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -22,12 +23,17 @@ inline nlohmann::json finite_or_null(const std::optional<double>& value) {
 }
 nlohmann::json finite_or_null(std::span<const double> values);
 
+// Return an array of numbers as Packed of web/src/data.ts: little-endian in base64 (RFC 4648,
+// section 4, with padding).
+nlohmann::json pack_f32(std::span<const float> values);          // {"f32": ...}
+nlohmann::json pack_u32(std::span<const std::uint32_t> values);  // {"u32": ...}
+
 nlohmann::json make_quantity(const Quantity& quantity);
 nlohmann::json make_fact(std::string_view label, std::string_view value);
-// The program that makes the page.
+// Returns version and commit of the program that makes the page.
 nlohmann::json make_program();
 
-// The whole page as text. Text that is no UTF-8 is made so.
+// Returns the whole page as text. Bytes that are not UTF-8 are replaced.
 std::string dump_page(const nlohmann::json& page);
 
 }  // namespace armwright

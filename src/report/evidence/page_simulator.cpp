@@ -17,7 +17,8 @@ void PageSimulator::report(std::uint64_t more_cases) {
 
 void PageSimulator::run(std::size_t jobs, std::size_t cases_per_job, std::uint64_t cases,
                         const std::function<void(std::size_t)>& job) {
-  // Enough between two looks for no thread to wait long for the others.
+  // Between two checks of the stop signal, every thread has several jobs, so that no thread waits
+  // long for the others.
   constexpr std::size_t kRoundsAtOnce = 4;
   const std::size_t at_once = kRoundsAtOnce * executor_.pool().size();
   for (std::size_t first = 0; first < jobs; first += at_once) {

@@ -1,5 +1,4 @@
-// Simulates what a page shows: fans work out over threads, honours a stop between chunks and tells
-// an observer how far it is, as a test phase counted in simulated cases.
+// Simulates the cases that a page shows.
 #pragma once
 
 #include <cstdint>
@@ -14,29 +13,33 @@
 
 namespace armwright {
 
-// Thrown by PageSimulator when a stop was asked for; whoever makes the page catches it.
+// Thrown by PageSimulator after a request to stop. The function that makes the page catches it.
 struct PageStopped {};
 
+// A simulator that divides the work among threads, checks the stop signal between chunks, and
+// reports its progress to an observer as a test phase, counted in simulated cases. One thread may
+// call it.
 class PageSimulator {
  public:
   PageSimulator(unsigned jobs, StopSignal& stop, RunObserver& observer)
       : executor_(jobs), stop_(stop), observer_(observer) {}
 
-  // More cases will come: announced at the beginning, as far as known, they make an honest bar.
+  // Adds to the total that the observer sees. Callers announce all cases that they know of at the
+  // beginning, so that the progress bar is right.
   void expect(std::uint64_t cases) { expected_ += cases; }
 
-  // A design on the cases first, ..., first + count - 1 of a set, as it is judged: one result a
-  // case, the same for any number of threads.
+  // Simulates a design with the judging engine on the cases first, ..., first + count - 1 of a set.
+  // Returns one result per case; they do not depend on the number of threads. Throws PageStopped.
   std::vector<TrackingResult> evaluate(const TrackingProblem& problem, const ArmDesign& design,
                                        const TestSet& set, std::uint64_t first,
                                        std::uint64_t count);
-  // A candidate of any problem on all cases of a block.
+  // Evaluates a decision vector of any problem on all cases of a block. Throws PageStopped.
   Evaluation evaluate(const Problem& problem, std::span<const double> x, const CaseBlock& block);
-  // job(0) to job(jobs - 1), in any order, each a simulated case.
+  // Calls job(0) to job(jobs - 1) in any order, on several threads. Each call simulates one case.
+  // Throws PageStopped.
   void run(std::size_t jobs, const std::function<void(std::size_t)>& job);
 
  private:
-  // One after the other, a few for each thread between two looks at the stop.
   void run(std::size_t jobs, std::size_t cases_per_job, std::uint64_t cases,
            const std::function<void(std::size_t)>& job);
   void report(std::uint64_t more_cases);

@@ -1,7 +1,7 @@
-#include "report/evidence/plain_shapes.hpp"
-
 #include <algorithm>
 #include <cmath>
+
+#include "report/evidence/robot_scene.hpp"
 
 namespace armwright {
 namespace {
@@ -30,7 +30,7 @@ VisualShape make_cylinder(const Eigen::Vector3d& from, const Eigen::Vector3d& to
   return shape;
 }
 
-// Where the body ends, in its own frame: the next joint, or the tip.
+// Returns the end of the body in the body's frame: the next joint, or the tip.
 Eigen::Vector3d find_end(const RobotModel& model, std::size_t body) {
   return body < model.joints.size() ? model.joints[body].origin.translation()
                                     : model.tip_pose.translation();
@@ -66,7 +66,7 @@ std::vector<std::vector<VisualShape>> make_plain_shapes(const RobotModel& model)
       const Eigen::Vector3d half = 1.3 * radius * joint.axis;
       shapes.push_back(make_cylinder(-half, half, 1.25 * radius, kDrum));
     } else if (std::isfinite(joint.upper) && joint.upper > 0) {
-      // It reaches back to where the body would be at position 0.
+      // The rod reaches back to the place of the body at joint position 0.
       const double reach = std::min(joint.upper, scale);
       shapes.push_back(make_cylinder(-reach * joint.axis, origin, 0.7 * radius, kDrum));
     }

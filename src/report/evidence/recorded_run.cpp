@@ -21,13 +21,14 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-// A word of the command line that names a problem: its file, where that is still there.
+// An argument of the command line that names a problem, and the problem's file.
 struct NamedProblem {
-  std::string word;
+  std::string argument;
   fs::path file;
 };
 
-// `optimize PROBLEM`, or for a cell of a comparison the shipped problem of that name.
+// Returns PROBLEM of `optimize PROBLEM`. For a cell of a study it is the shipped problem with the
+// name of the run's problem. Returns nothing if no such file exists any more.
 std::optional<NamedProblem> find_named_problem(const RecordedRun& run) {
   std::vector<std::string> words = run.command_line;
   const auto command = std::ranges::find(words, "optimize");
@@ -44,14 +45,14 @@ std::optional<NamedProblem> find_named_problem(const RecordedRun& run) {
         return NamedProblem{word, file};
       }
     } catch (const Error&) {
-      // Another word, as the value of an option.
+      // The argument is something else, such as the value of an option.
     }
   }
   return std::nullopt;
 }
 
-// What decides how a design is judged, a line each: not the title, nor how it was found, which
-// races, schedules and the cut-off of training belong to.
+// Returns the settings that decide how a design is judged. The title and the settings of training
+// (racing, schedules, abandonment) are not among them.
 std::map<std::string, json> list_settings(const json& resolved) {
   std::map<std::string, json> settings;
   for (const char* table : {"robot", "task", "control", "physics", "motors", "perturbation",
@@ -65,7 +66,7 @@ std::map<std::string, json> list_settings(const json& resolved) {
   return settings;
 }
 
-// As TOML, but a word without its quotes.
+// Returns the value as TOML, but a single word without quotes.
 std::string write_value(const json& value) {
   if (!value.is_string()) {
     return value.dump();
@@ -89,26 +90,26 @@ std::vector<std::string> list_overrides(const json& from, const json& to) {
   return overrides;
 }
 
-// Only if it leads to exactly this problem.
-std::vector<std::string> find_problem_words(const NamedProblem& named, const json& recorded) {
+// Returns the arguments that lead to exactly this problem, or none.
+std::vector<std::string> find_problem_arguments(const NamedProblem& named, const json& recorded) {
   try {
     const json plain = json::parse(load_problem(named.file.string()).resolved_json);
     const auto all = list_overrides(plain, recorded);
-    // The SIMD level is found anew on another machine, if it need not be said here.
+    // First without the SIMD level: then the arguments suit other machines too.
     std::vector<std::string> fewer = all;
     std::erase_if(fewer, [](const auto& text) { return text.starts_with("physics.simd="); });
     for (const auto& overrides : {fewer, all}) {
       const json changed = json::parse(load_problem(named.file.string(), overrides).resolved_json);
       if (list_settings(changed) == list_settings(recorded)) {
-        std::vector<std::string> words = {"--problem", named.word};
+        std::vector<std::string> arguments = {"--problem", named.argument};
         for (const std::string& text : overrides) {
-          words.insert(words.end(), {"--set", text});
+          arguments.insert(arguments.end(), {"--set", text});
         }
-        return words;
+        return arguments;
       }
     }
   } catch (const Error&) {
-    // Its file has changed, so that it cannot be used any more.
+    // The problem's file has changed and cannot be used any more.
   }
   return {};
 }
@@ -160,7 +161,7 @@ void read_name(RecordedRun& run) {
   }
 }
 
-// Which files that the problem refers to are not those that the run used.
+// Returns the names of the problem's files that differ from those that the run used.
 std::vector<std::string> list_changed_inputs(const RecordedRun& run, const LoadedProblem& problem) {
   std::vector<std::string> changed;
   const json& recorded = run.configuration.at("inputs");
@@ -172,7 +173,7 @@ std::vector<std::string> list_changed_inputs(const RecordedRun& run, const Loade
   return changed;
 }
 
-// A level that this machine lacks is replaced: the last bits may differ, nothing else does.
+// Replaces a SIMD level that this machine does not have. Only the last bits of results may differ.
 json choose_simd(json problem, std::vector<std::string>& notes) {
   const json::json_pointer level("/physics/simd");
   if (!problem.contains(level) || !problem[level].is_string()) {
@@ -193,27 +194,28 @@ json choose_simd(json problem, std::vector<std::string>& notes) {
 
 void rebuild_problem(RecordedRun& run) {
   const auto named = find_named_problem(run);
-  run.beside = named ? named->file.parent_path() : run.folder;
+  run.input_folder = named ? named->file.parent_path() : run.folder;
   const json& recorded = run.configuration.at("problem");
   const json usable = choose_simd(recorded, run.notes);
   constexpr const char* kConsequence =
-      "What would have to be simulated for this page is left out, rather than showing another "
-      "problem's numbers.";
+      "Parts that need a simulation are left out, so that the page does not show the numbers of "
+      "another problem.";
   try {
-    LoadedProblem problem = load_recorded_problem(usable.dump(), run.problem_name, run.beside);
+    LoadedProblem problem =
+        load_recorded_problem(usable.dump(), run.problem_name, run.input_folder);
     const auto changed = list_changed_inputs(run, problem);
     if (!changed.empty()) {
-      run.problem_fault = fmt::format(
-          "Files of the problem are not what the run used any more: {}.", join(changed, ", "));
+      run.problem_fault = fmt::format("These files of the problem have changed since the run: {}.",
+                                      join(changed, ", "));
       run.notes.push_back(run.problem_fault + " " + kConsequence);
       return;
     }
     if (named) {
-      run.problem_words = find_problem_words(*named, json::parse(problem.resolved_json));
+      run.problem_arguments = find_problem_arguments(*named, json::parse(problem.resolved_json));
     }
     run.problem = std::move(problem);
   } catch (const Error& error) {
-    run.problem_fault = fmt::format("The problem cannot be made again as the run recorded it ({}).",
+    run.problem_fault = fmt::format("The problem cannot be rebuilt as the run recorded it ({}).",
                                     sanitize(error.what()));
     run.notes.push_back(run.problem_fault + " " + kConsequence);
   }
@@ -266,17 +268,17 @@ std::vector<double> RecordedRun::find_best() const {
 
 fs::path RecordedRun::find_urdf() const {
   const auto urdf = configuration.at("problem").at("robot").at("urdf").get<std::string>();
-  return resolve_config("robots", urdf, beside);
+  return resolve_config("robots", urdf, input_folder);
 }
 
 std::string RecordedRun::make_evaluate_command(const std::string& design,
-                                               const std::vector<std::string>& words) const {
-  if (problem_words.empty()) {
+                                               const std::vector<std::string>& arguments) const {
+  if (problem_arguments.empty()) {
     return "";
   }
   std::vector<std::string> all = {"armwright", "evaluate", design};
-  all.insert(all.end(), problem_words.begin(), problem_words.end());
-  all.insert(all.end(), words.begin(), words.end());
+  all.insert(all.end(), problem_arguments.begin(), problem_arguments.end());
+  all.insert(all.end(), arguments.begin(), arguments.end());
   return quote_command(all);
 }
 
@@ -284,7 +286,8 @@ RecordedRun read_recorded_run(const fs::path& folder) {
   RecordedRun run;
   run.folder = folder;
   read_manifest(run);
-  // The result first: a journal that is read after it holds all that the result tells of.
+  // Reads the result before the journal: then the journal holds at least every evaluation that the
+  // result counts.
   if (fs::exists(folder / "result.json")) {
     run.result = load_result(folder);
   }

@@ -1,6 +1,6 @@
-// A run's folder as a page reads it: what was asked for, what the journal has so far, the result if
-// there is one, and the problem made anew from what the manifest records. Nothing is changed, and
-// no lock is taken: another process may be writing. Only .cpp files include this.
+// Reads a run's folder for a page: the configuration, the journal so far, the result if the run has
+// ended, and the problem, which is rebuilt from the manifest. The folder may belong to a run in
+// progress: this code changes nothing in it and takes no lock. Only .cpp files include this.
 #pragma once
 
 #include <filesystem>
@@ -16,41 +16,46 @@
 
 namespace armwright {
 
+// The contents of a run's folder.
 struct RecordedRun {
   std::filesystem::path folder;
   std::string problem_name;
-  nlohmann::json configuration;              // the manifest's: "problem", "inputs", "run"
-  std::map<std::string, std::string> build;  // of the program that made the run
+  nlohmann::json configuration;              // of the manifest: "problem", "inputs", "run"
+  std::map<std::string, std::string> build;  // of the program that started the run
   std::vector<std::string> command_line;
-  std::string started;  // "2026-01-31T12:00:00Z", when the run was begun
+  std::string started;  // "2026-01-31T12:00:00Z"
   Schedule schedule;
   std::int64_t budget = 0;
   JournalContent journal;
-  std::optional<RunResult> result;  // nothing before its end
-  // Nothing if it cannot be made as it was; `problem_fault` and `notes` say why.
+  std::optional<RunResult> result;  // empty before the end of the run
+  // Empty if it cannot be rebuilt as it was; `problem_fault` and `notes` say why.
   std::optional<LoadedProblem> problem;
   std::string problem_fault;
-  std::filesystem::path beside;  // where files with relative names are looked for first
-  // "--problem", "q1-complex", "--set", ...: what brings `armwright evaluate` to this problem;
-  // empty if nothing does.
-  std::vector<std::string> problem_words;
-  std::vector<std::string> notes;
+  std::filesystem::path input_folder;  // the first place to look for files with relative names
+  // The arguments that make `armwright evaluate` use this problem: "--problem", "q1-complex",
+  // "--set", ...; empty if no arguments do.
+  std::vector<std::string> problem_arguments;
+  std::vector<std::string> notes;  // whole sentences for the page
 
-  // The arm's problem, or null.
+  // Returns the arm's problem; null for a function and if the problem cannot be rebuilt.
   const TrackingProblem* tracking() const { return problem ? problem->tracking() : nullptr; }
-  // Of the problem; without it what the result tells: objectives and constraints, no variables.
+  // Returns the problem's description. Without the problem it has what the result records:
+  // objectives and constraints, but no variables.
   ProblemDescription describe() const;
-  // The winner's decision vector, or of a run under way the best so far; empty if there is none.
+  // Returns the winner's decision vector, for an unfinished run the incumbent's; empty if there is
+  // none.
   std::vector<double> find_best() const;
-  // The robot's file; relative names of its meshes begin in its folder.
+  // Returns the robot's file. Relative names of meshes refer to its folder. Throws Error{usage} if
+  // the file is missing.
   std::filesystem::path find_urdf() const;
-  // "armwright evaluate DESIGN --problem ... WORDS"; empty if no command does.
+  // Returns "armwright evaluate DESIGN --problem ... ARGUMENTS", or an empty text if
+  // `problem_arguments` is empty.
   std::string make_evaluate_command(const std::string& design,
-                                    const std::vector<std::string>& words) const;
+                                    const std::vector<std::string>& arguments) const;
 };
 
-// Error{usage} if the folder is no run's, Error{bad_data} if its files are not what armwright
-// wrote.
+// Throws Error{usage} if the folder is not a run's; Error{bad_data} if its files are not what
+// armwright wrote.
 RecordedRun read_recorded_run(const std::filesystem::path& folder);
 
 }  // namespace armwright

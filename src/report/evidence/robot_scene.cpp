@@ -10,8 +10,7 @@
 #include <string_view>
 
 #include "base/text.hpp"
-#include "report/evidence/packed.hpp"
-#include "report/evidence/plain_shapes.hpp"
+#include "report/evidence/page_json.hpp"
 #include "sim/robot/mesh_file.hpp"
 
 namespace armwright {
@@ -20,19 +19,15 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kMostTriangles = 200'000;
-const Eigen::Vector4d kLoadColour(0.16, 0.47, 0.71, 1.0);  // blue: no arm of ours has it
+const Eigen::Vector4d kLoadColour(0.16, 0.47, 0.71, 1.0);  // blue; no shipped arm has it
 
 json make_numbers(const Eigen::VectorXd& values) {
   return std::vector<double>(values.begin(), values.end());
 }
 
-// The reader of URDF keeps colours as 32-bit numbers: 0.2 is 0.200000003.
+// Rounds, because the URDF reader keeps colours as 32-bit numbers: 0.2 becomes 0.200000003.
 json make_colour(const Eigen::Vector4d& rgba) {
   return make_numbers((rgba * 1e4).array().round() / 1e4);
-}
-
-json make_limit(double value) {
-  return std::isfinite(value) ? json(value) : json(nullptr);
 }
 
 json make_pose(const Eigen::Isometry3d& pose) {
@@ -68,17 +63,18 @@ json make_joint(const Joint& joint) {
           {"kind", joint.kind == JointKind::revolute ? "revolute" : "prismatic"},
           {"origin", make_pose(joint.origin)},
           {"axis", make_numbers(joint.axis)},
-          {"lower", make_limit(joint.lower)},
-          {"upper", make_limit(joint.upper)}};
+          {"lower", finite_or_null(joint.lower)},
+          {"upper", finite_or_null(joint.upper)}};
 }
 
-// The robot's meshes, each file once.
+// The meshes of a robot. Each file is read once.
 class Meshes {
  public:
   Meshes(const std::filesystem::path& folder, std::vector<std::string>& notes)
       : folder_(folder), notes_(notes) {}
 
-  // Index of the mesh; nothing, and a note the first time, if it cannot be had.
+  // Returns the index of the mesh. If it cannot be read, returns nothing and adds a note the first
+  // time.
   std::optional<std::size_t> add(const std::string& name) {
     const auto known = indices_.find(name);
     if (known != indices_.end()) {
@@ -106,7 +102,7 @@ class Meshes {
       meshes_.push_back(
           {{"positions", pack_f32(mesh.positions)}, {"indices", pack_u32(mesh.indices)}});
       return meshes_.size() - 1;
-    } catch (const std::exception& error) {  // whatever a file from elsewhere does to its reader
+    } catch (const std::exception& error) {  // the reader may throw anything for a damaged file
       return skip(name, error.what());
     }
   }
@@ -192,7 +188,7 @@ std::size_t add_robot(const RobotModel& model, double load_kg,
     return static_cast<std::size_t>(known - robots.begin());
   }
   robots.push_back(std::move(robot));
-  for (std::string& note : its_notes) {  // an arm with other links lacks the same meshes
+  for (std::string& note : its_notes) {  // arms with other links may lack the same meshes
     if (std::ranges::find(notes, note) == notes.end()) {
       notes.push_back(std::move(note));
     }

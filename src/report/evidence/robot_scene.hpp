@@ -1,4 +1,4 @@
-// The arm as the page's replay draws it: its shapes, its chain of joints, its tip.
+// Makes the arm as the page's replay draws it: its shapes, its chain of joints, its tip.
 #pragma once
 
 #include <filesystem>
@@ -10,19 +10,25 @@
 
 namespace armwright {
 
-// Robot of web/src/data.ts. `model` is the arm without its load; add_load() puts `load_kg` (0:
-// none) onto the last body, as a box in a colour of its own. Meshes (STL, OBJ, Collada) are looked
-// for as find_mesh() says from `urdf_folder`, of at most 64 MiB a file and 200 000 triangles in
-// all. A mesh that cannot be read is left out; a body whose shapes are all missing, or all bodies
-// of a robot without any, get plain shapes along the chain. `notes` gets a whole sentence for each
-// of these. Error of add_load() if the robot cannot carry a load.
+// Returns Robot of web/src/data.ts. `model` is the arm without its load. A load above 0 kg is a box
+// on the last body in its own colour (add_load()). Meshes are STL, OBJ or Collada files, which
+// find_mesh() finds from `urdf_folder`; limits are 64 MiB per file and 200 000 triangles per robot.
+// A mesh that cannot be read is left out. A body whose shapes are all missing gets plain shapes,
+// and so do all bodies of a robot without any shapes. `notes` gets a whole sentence for each of
+// these cases. Throws what add_load() throws if the robot cannot carry a load.
 nlohmann::json make_robot(const RobotModel& model, double load_kg,
                           const std::filesystem::path& urdf_folder,
                           std::vector<std::string>& notes);
 
-// The index in `robots` of that robot, which is added unless it is there already.
+// Returns the index of this robot in `robots`, and adds it if it is missing.
 std::size_t add_robot(const RobotModel& model, double load_kg,
                       const std::filesystem::path& urdf_folder, nlohmann::json& robots,
                       std::vector<std::string>& notes);
+
+// Returns plain shapes for each body, the base first, for a robot whose description has none: a
+// tube with round ends from a joint to the next one or to the tip, a drum around the axis of a
+// revolute joint, a rod along the axis of a prismatic one. The thickness follows from the length of
+// the chain and decreases towards the tip.
+std::vector<std::vector<VisualShape>> make_plain_shapes(const RobotModel& model);
 
 }  // namespace armwright

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <nlohmann/json.hpp>
 
 #include "sim/tracking/reference_signal.hpp"
 
@@ -10,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-// Of a signal where its formula is one polynomial.
+// A piece of a signal in which its formula is one polynomial.
 struct Piece {
   double begin_s = 0;
   double end_s = 0;
@@ -66,9 +67,9 @@ std::string make_signal_title(SignalShape shape) {
 
 std::vector<SignalSample> sample_signal(SignalShape shape, double distance_m, double speed_m_per_s,
                                         double acceleration_m_per_s2, double rest_s) {
-  constexpr int kParts = 60;  // of a piece: smooth to the eye
+  constexpr int kParts = 60;  // per piece; the curve looks smooth
   const ReferenceSignal signal(shape, distance_m, speed_m_per_s, acceleration_m_per_s2);
-  std::vector<SignalSample> samples = {{}};  // at rest, before it begins
+  std::vector<SignalSample> samples = {{}};  // at rest, before the move
   for (const Piece& piece : make_pieces(signal.curve())) {
     for (int i = 0; i <= kParts; ++i) {
       const double t =
@@ -107,7 +108,7 @@ json make_signals(const TrackingTask& task, bool name_used) {
     }
     curves.push_back(std::move(curve));
   }
-  // Two straight lines, which meet at the limit.
+  // The speed over the length of the move: two straight lines, which meet at the limit.
   const double limit_m = task.distance_limit_m;
   json reduction = {{"distance_m", {0.0}},
                     {"speed_m_per_s", {limit_m > 0 ? 0.0 : task.speed_m_per_s}},

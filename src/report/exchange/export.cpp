@@ -6,32 +6,29 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "report/deliverables/deliverables.hpp"
-#include "report/deliverables/finished_arm.hpp"
-#include "report/formats/coco.hpp"
-#include "report/formats/export_folder.hpp"
-#include "report/formats/ioh.hpp"
-#include "report/formats/tables.hpp"
+#include "report/formats/export_files.hpp"
+#include "report/formats/formats.hpp"
 
 namespace armwright {
 
 namespace {
 
-void export_survey(const std::filesystem::path& folder, const ExportFormat& format,
-                   ExportSummary& summary) {
-  FoundRuns found = find_runs(folder);
-  ExportFolder target(summary.folder);
+void export_all(const std::filesystem::path& folder, const ExportFormat& format,
+                ExportSummary& summary) {
+  const FoundRuns found = find_runs(folder);
+  PartialFolder target(check_export_folder(summary.folder));
   summary.unfinished = found.unfinished;
-  summary.survey = survey_runs(found.runs);
-  format.write(summary.survey, target.path());
-  target.put_in_place();
+  summary.collected = collect_runs(found.runs);
+  format.write(summary.collected, target.path());
+  put_in_place(target);
 }
 
 void export_arm(const std::filesystem::path& folder, const ExportFormat& format,
                 ExportSummary& summary) {
   const FinishedArm arm = load_finished_arm(folder, format.name);
-  ExportFolder target(summary.folder);
+  PartialFolder target(check_export_folder(summary.folder));
   format.write_arm(arm, target.path());
-  target.put_in_place();
+  put_in_place(target);
   summary.winner = arm.describe();
   for (const auto& entry : std::filesystem::directory_iterator(summary.folder)) {
     summary.files.push_back(entry.path().filename().string());
@@ -67,7 +64,7 @@ ExportSummary export_runs(const std::filesystem::path& folder, std::string_view 
   }
   ExportSummary summary;
   summary.folder = out.empty() ? folder / ("export-" + chosen->name) : std::move(out);
-  (chosen->write_arm != nullptr ? export_arm : export_survey)(folder, *chosen, summary);
+  (chosen->write_arm != nullptr ? export_arm : export_all)(folder, *chosen, summary);
   return summary;
 }
 

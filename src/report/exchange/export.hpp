@@ -13,29 +13,32 @@ namespace armwright {
 
 struct FinishedArm;
 
-// Of all runs of a folder, or of one run of an arm: one of the two is there.
+// A row of the table of formats. A format has one of the two functions: `write` for all runs of a
+// folder, `write_arm` for one run of an arm.
 struct ExportFormat {
   std::string name;
   std::string title;  // one line
-  void (*write)(const Survey& survey, const std::filesystem::path& folder) = nullptr;
+  void (*write)(const CollectedRuns& runs, const std::filesystem::path& folder) = nullptr;
   void (*write_arm)(const FinishedArm& arm, const std::filesystem::path& folder) = nullptr;
 };
 
-// csv, ioh, coco, json; ros2-control, urdf, datasheet
+// Returns the table: csv, ioh, coco, json; ros2-control, urdf, datasheet.
 std::span<const ExportFormat> export_formats();
 
+// What export_runs() has written.
 struct ExportSummary {
   std::filesystem::path folder;
-  Survey survey;
+  CollectedRuns collected;     // empty for the formats of one arm
   std::size_t unfinished = 0;  // cells that were left out
-  // Of an arm: whose winner it is, and the files that were written. Empty for all other formats.
-  std::string winner;
-  std::vector<std::string> files;
+  // The next two are empty except for the formats of one arm.
+  std::string winner;              // a description of the winner
+  std::vector<std::string> files;  // the names of the files, sorted
 };
 
-// The runs in `folder` as `format` in the new folder `out`, or, if that is empty, in
-// folder/export-FORMAT. Error{usage} for an unknown format, if anything is at `out` already, and
-// what find_runs(), survey_runs(), load_finished_arm() and the formats refuse.
+// Exports the runs in `folder` as `format` to the new folder `out`. An empty `out` stands for
+// folder/export-FORMAT. Throws Error{usage} for an unknown format and if anything but an empty
+// folder is at `out`; Error{io}; and what find_runs(), collect_runs(), load_finished_arm() and the
+// formats throw.
 ExportSummary export_runs(const std::filesystem::path& folder, std::string_view format,
                           std::filesystem::path out);
 

@@ -7,12 +7,12 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "report/exchange/import_reader.hpp"
 
 namespace armwright {
 namespace {
 
-// Keeps the runs with that value; Error{usage} with those there are if there is none.
+// Keeps the runs with this value. Throws Error{usage} that lists the existing values if no run has
+// it.
 template <typename Value, typename Get>
 void keep(std::vector<ImportedRun>& runs, std::string_view flag, const std::optional<Value>& value,
           Get get) {
@@ -21,7 +21,7 @@ void keep(std::vector<ImportedRun>& runs, std::string_view flag, const std::opti
   }
   std::set<Value> there;
   for (const ImportedRun& run : runs) {
-    there.insert(get(run.point));
+    there.insert(get(run));
   }
   if (!there.contains(*value)) {
     std::vector<std::string> names;
@@ -30,20 +30,19 @@ void keep(std::vector<ImportedRun>& runs, std::string_view flag, const std::opti
     }
     throw Error(ErrorKind::usage, describe_unknown(flag, fmt::format("{}", *value), names));
   }
-  std::erase_if(runs, [&](const ImportedRun& run) { return get(run.point) != *value; });
+  std::erase_if(runs, [&](const ImportedRun& run) { return get(run) != *value; });
 }
 
 }  // namespace
 
-ImportedPoint import_best(const std::filesystem::path& folder, const ImportChoice& choice) {
+ImportedRun import_best(const std::filesystem::path& folder, const ImportChoice& choice) {
   std::vector<ImportedRun> runs = read_export(folder);
-  keep(runs, "--problem", choice.problem, [](const ImportedPoint& point) { return point.problem; });
-  keep(runs, "--optimizer", choice.label, [](const ImportedPoint& point) { return point.label; });
-  keep(runs, "--replicate", choice.replicate,
-       [](const ImportedPoint& point) { return point.replicate; });
+  keep(runs, "--problem", choice.problem, [](const ImportedRun& run) { return run.problem; });
+  keep(runs, "--optimizer", choice.label, [](const ImportedRun& run) { return run.label; });
+  keep(runs, "--replicate", choice.replicate, [](const ImportedRun& run) { return run.replicate; });
   std::set<std::string> problems;
   for (const ImportedRun& run : runs) {
-    problems.insert(run.point.problem);
+    problems.insert(run.problem);
   }
   if (problems.size() > 1) {
     std::vector<std::string> names;
@@ -60,9 +59,7 @@ ImportedPoint import_best(const std::filesystem::path& folder, const ImportChoic
     throw Error(ErrorKind::usage,
                 fmt::format("{}: no run that was chosen found anything feasible", folder.string()));
   }
-  return std::ranges::min_element(runs, {},
-                                  [](const ImportedRun& run) { return run.point.objective; })
-      ->point;
+  return *std::ranges::min_element(runs, {}, &ImportedRun::objective);
 }
 
 }  // namespace armwright

@@ -1,5 +1,3 @@
-#include "report/exchange/import_reader.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,8 +10,9 @@
 #include "base/file.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
+#include "report/exchange/import.hpp"
 #include "report/formats/csv_reader.hpp"
-#include "report/formats/tables.hpp"
+#include "report/formats/formats.hpp"
 #include "study/run/json_values.hpp"
 
 namespace armwright {
@@ -30,13 +29,13 @@ constexpr std::size_t kLimit_bytes = std::size_t{4} << 30;
 }
 
 void check(const ImportedRun& run, const fs::path& file) {
-  if (run.feasible && run.point.x.size() != run.point.variables.size()) {
-    refuse(file, fmt::format("a point has {} values for {} variables", run.point.x.size(),
-                             run.point.variables.size()));
+  if (run.feasible && run.x.size() != run.variables.size()) {
+    refuse(file, fmt::format("a point has {} values for {} variables", run.x.size(),
+                             run.variables.size()));
   }
 }
 
-// Where the columns of evaluations/PROBLEM.csv are.
+// The places of the columns in evaluations/PROBLEM.csv.
 class EvaluationColumns {
  public:
   explicit EvaluationColumns(const std::vector<std::string>& header) : header_(header) {
@@ -77,13 +76,13 @@ class EvaluationColumns {
     return *value;
   }
 
-  void read_point(const std::vector<std::string>& row, ImportedPoint& point) const {
-    point.evaluation = get_count(row, "evaluation");
-    point.objective = get_number(get(row, "objective"));
-    point.variables = variables_;
-    point.x.clear();
+  void read_best(const std::vector<std::string>& row, ImportedRun& run) const {
+    run.evaluation = get_count(row, "evaluation");
+    run.objective = get_number(get(row, "objective"));
+    run.variables = variables_;
+    run.x.clear();
     for (const std::size_t place : x_) {
-      point.x.push_back(get_number(row[place]));
+      run.x.push_back(get_number(row[place]));
     }
   }
 
@@ -111,14 +110,13 @@ void read_csv(const fs::path& file, std::vector<ImportedRun>& runs) {
       const std::string& label = columns.get(row, "label");
       const std::uint64_t replicate = columns.get_count(row, "replicate");
       ImportedRun& run = found[{problem, label, replicate}];
-      run.point.problem = problem;
-      run.point.label = label;
-      run.point.replicate = replicate;
+      run.problem = problem;
+      run.label = label;
+      run.replicate = replicate;
       if (columns.get(row, "feasible") == "1" &&
-          (!run.feasible ||
-           columns.get_number(columns.get(row, "objective")) < run.point.objective)) {
+          (!run.feasible || columns.get_number(columns.get(row, "objective")) < run.objective)) {
         run.feasible = true;
-        columns.read_point(row, run.point);
+        columns.read_best(row, run);
       }
     }
     for (auto& [key, run] : found) {
@@ -143,7 +141,8 @@ void read_csv_folder(const fs::path& folder, std::vector<ImportedRun>& runs) {
 }
 
 void read_json(const fs::path& file, std::vector<ImportedRun>& runs) {
-  // The best of each run stands beside its evaluations, which are by far the most of the file.
+  // The best evaluation of each run has its own entry. The list of evaluations, which is by far the
+  // largest part of the file, is not needed.
   const auto skip_evaluations = [](int /*depth*/, json::parse_event_t event, json& parsed) {
     return event != json::parse_event_t::key || parsed != "evaluations";
   };
@@ -152,16 +151,16 @@ void read_json(const fs::path& file, std::vector<ImportedRun>& runs) {
     for (const json& problem : root.at("problems")) {
       for (const json& run : problem.at("runs")) {
         ImportedRun imported;
-        imported.point.problem = problem.at("name");
-        imported.point.label = run.at("label");
-        imported.point.replicate = whole_from_json(run.at("replicate"));
-        imported.point.variables = problem.at("variables").get<std::vector<std::string>>();
+        imported.problem = problem.at("name");
+        imported.label = run.at("label");
+        imported.replicate = whole_from_json(run.at("replicate"));
+        imported.variables = problem.at("variables").get<std::vector<std::string>>();
         const json& best = run.at("best");
         if (!best.is_null()) {
           imported.feasible = true;
-          imported.point.evaluation = whole_from_json(best.at("evaluation"));
-          imported.point.objective = best.at("objective");
-          imported.point.x = best.at("x").get<std::vector<double>>();
+          imported.evaluation = whole_from_json(best.at("evaluation"));
+          imported.objective = best.at("objective");
+          imported.x = best.at("x").get<std::vector<double>>();
         }
         check(imported, file);
         runs.push_back(std::move(imported));
@@ -185,15 +184,15 @@ void read_ioh(const fs::path& file, std::vector<ImportedRun>& runs) {
     for (const json& scenario : root.at("scenarios")) {
       for (const json& run : scenario.at("runs")) {
         ImportedRun imported;
-        imported.point.problem = root.at("function_name");
-        imported.point.label = root.at("algorithm").at("name");
-        imported.point.replicate = whole_from_json(run.at("instance"));
-        imported.point.variables = variables;
+        imported.problem = root.at("function_name");
+        imported.label = root.at("algorithm").at("name");
+        imported.replicate = whole_from_json(run.at("instance"));
+        imported.variables = variables;
         const json& best = run.at("best");
-        imported.point.objective = best.at("y");
-        imported.feasible = imported.point.objective < std::numeric_limits<double>::max();
-        imported.point.evaluation = whole_from_json(best.at("evals"));
-        imported.point.x = best.at("x").get<std::vector<double>>();
+        imported.objective = best.at("y");
+        imported.feasible = imported.objective < std::numeric_limits<double>::max();
+        imported.evaluation = whole_from_json(best.at("evals"));
+        imported.x = best.at("x").get<std::vector<double>>();
         check(imported, file);
         runs.push_back(std::move(imported));
       }
@@ -203,7 +202,7 @@ void read_ioh(const fs::path& file, std::vector<ImportedRun>& runs) {
   }
 }
 
-// In the folder of one label, or in those of all.
+// Returns the index files in the folder of one label or in the folders of all labels.
 std::vector<fs::path> find_ioh_files(const fs::path& folder) {
   std::vector<fs::path> files;
   const auto is_index = [](const fs::path& file) {
@@ -227,9 +226,9 @@ std::vector<fs::path> find_ioh_files(const fs::path& folder) {
 std::vector<ImportedRun> read_export(const fs::path& folder) {
   std::vector<ImportedRun> runs;
   if (!fs::is_directory(folder)) {
-    throw Error(
-        ErrorKind::usage,
-        fmt::format("{}: is no folder; name the one that armwright export wrote", folder.string()));
+    throw Error(ErrorKind::usage,
+                fmt::format("{}: is not a folder; name the folder that armwright export wrote",
+                            folder.string()));
   }
   if (fs::exists(folder / kRunsCsv)) {
     read_csv_folder(folder, runs);
@@ -239,8 +238,8 @@ std::vector<ImportedRun> read_export(const fs::path& folder) {
     const auto files = find_ioh_files(folder);
     if (files.empty()) {
       throw Error(ErrorKind::usage,
-                  fmt::format("{}: holds no export as csv, json or ioh (coco rounds what it "
-                              "writes down, and cannot be imported)",
+                  fmt::format("{}: holds no export as csv, json or ioh (the format coco has "
+                              "rounded numbers and cannot be imported)",
                               folder.string()));
     }
     for (const fs::path& file : files) {

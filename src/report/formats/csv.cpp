@@ -4,9 +4,8 @@
 
 #include "base/file.hpp"
 #include "base/text.hpp"
-#include "report/formats/export_folder.hpp"
-#include "report/formats/export_names.hpp"
-#include "report/formats/tables.hpp"
+#include "report/formats/export_files.hpp"
+#include "report/formats/formats.hpp"
 
 namespace armwright {
 namespace {
@@ -15,7 +14,7 @@ std::string format_optional(const std::optional<double>& value) {
   return value ? format_exact(*value) : "";
 }
 
-// As many fields as there are columns; what is missing is empty.
+// Appends one field per column; a missing value gives an empty field.
 void append_numbers(std::string& row, const std::vector<double>& values, std::size_t columns) {
   for (std::size_t i = 0; i < columns; ++i) {
     row += ',';
@@ -73,7 +72,7 @@ std::string make_run_row(const RunTrace& trace, const std::string& design) {
 
 }  // namespace
 
-void write_csv(const Survey& survey, const std::filesystem::path& folder) {
+void write_csv(const CollectedRuns& collected, const std::filesystem::path& folder) {
   constexpr std::size_t kDesignLimit_bytes = std::size_t{1} << 20;
   OutputFile runs(folder / kRunsCsv);
   runs.write(
@@ -81,12 +80,12 @@ void write_csv(const Survey& survey, const std::filesystem::path& folder) {
       "best_evaluation,best_objective,test_set,test_objective,test_failed_cases,design\n");
   UniqueNames files;
   UniqueNames designs;
-  for (const ProblemRuns& problem : survey.problems) {
+  for (const ProblemRuns& problem : collected.problems) {
     OutputFile evaluations(folder / kEvaluationsFolder /
                            (files.add(escape_file_name(problem.name)) + ".csv"));
     evaluations.write(make_header(problem));
-    for (const LabelRuns& label : problem.labels) {
-      for (const RunEntry& run : label.runs) {
+    for (const auto& [label, entries] : problem.labels) {
+      for (const RunEntry& run : entries) {
         const RunTrace trace = read_trace(run);
         write_evaluations(evaluations, problem, trace);
         std::string design;
@@ -104,7 +103,7 @@ void write_csv(const Survey& survey, const std::filesystem::path& folder) {
     evaluations.close();
   }
   runs.close();
-  write_test_cases(survey, folder);
+  write_test_cases(collected, folder);
 }
 
 }  // namespace armwright

@@ -6,7 +6,8 @@
 namespace armwright {
 namespace {
 
-// The apostrophe that quote_csv() puts before what a spreadsheet would take for a formula.
+// Removes the apostrophe that quote_csv() puts before text that a spreadsheet would take for a
+// formula.
 std::string strip_apostrophe(std::string field) {
   if (field.starts_with('\'') && begins_as_formula(std::string_view(field).substr(1))) {
     field.erase(0, 1);

@@ -1,4 +1,4 @@
-// CSV as quote_csv() writes it (RFC 4180), row by row.
+// Reads CSV (RFC 4180) as quote_csv() writes it.
 #pragma once
 
 #include <string>
@@ -7,13 +7,15 @@
 
 namespace armwright {
 
+// A reader that returns one row per call. The text must outlive it.
 class CsvReader {
  public:
   explicit CsvReader(std::string_view text) : rest_(text) {}
-  // False at the end. Error{bad_data} for a quote that is not closed or stands amid a field; the
-  // caller knows the file, and row() the place.
+  // Returns false at the end of the text. Throws Error{bad_data} for a quote that is not closed or
+  // stands inside a field. The message names no file; the caller adds the file and row().
   bool read_row(std::vector<std::string>& fields);
-  std::size_t row() const { return row_; }  // which was read last or failed, from 1
+  // Returns the number of the row that was read last or could not be read, from 1.
+  std::size_t row() const { return row_; }
 
  private:
   std::string read_field();

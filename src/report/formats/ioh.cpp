@@ -1,5 +1,3 @@
-#include "report/formats/ioh.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,18 +6,19 @@
 
 #include "base/build_info.hpp"
 #include "base/text.hpp"
-#include "report/formats/export_folder.hpp"
-#include "report/formats/export_names.hpp"
+#include "report/formats/export_files.hpp"
+#include "report/formats/formats.hpp"
 
 namespace armwright {
 namespace {
 
 using nlohmann::ordered_json;
 
-// Of the format, as IOHexperimenter counts it; readers take anything below 0.3.3 for another one.
+// The format's version in IOHexperimenter's numbering. Readers take a number below 0.3.3 for
+// another format.
 constexpr const char* kVersion = "0.3.5";
 
-// It could be taken for a decision variable.
+// Returns whether a reader could take the name for a decision variable.
 bool looks_like_variable(std::string_view name) {
   return name.size() > 1 && (name[0] == 'x' || name[0] == 'X') &&
          name.find_first_not_of("0123456789", 1) == std::string_view::npos;
@@ -58,13 +57,14 @@ struct FunctionNames {
   std::string function;  // "f1_sphere", as part of a file's name
 };
 
-void write_function(const ProblemRuns& problem, const LabelRuns& label, const FunctionNames& names,
-                    const std::filesystem::path& root) {
+void write_function(const ProblemRuns& problem, const std::string& label,
+                    const FunctionNames& names, const std::filesystem::path& root) {
+  const std::vector<RunEntry>& entries = problem.labels.at(label);
   const std::string data = fmt::format("data_{}/IOHprofiler_f{}_DIM{}.dat", names.function,
                                        names.id, problem.names.variables.size());
   OutputFile file(root / data);
   ordered_json runs = ordered_json::array();
-  for (const RunEntry& run : label.runs) {
+  for (const RunEntry& run : entries) {
     const RunTrace trace = read_trace(run);
     file.write(make_ioh_rows(trace));
     runs.push_back(make_run(trace));
@@ -76,7 +76,7 @@ void write_function(const ProblemRuns& problem, const LabelRuns& label, const Fu
       {"function_id", names.id},
       {"function_name", problem.name},
       {"maximization", false},
-      {"algorithm", {{"name", label.label}, {"info", label.runs.front().optimizer}}},
+      {"algorithm", {{"name", label}, {"info", entries.front().optimizer}}},
       {"experiment_attributes",
        ordered_json::array({{{"armwright", get_version()}},
                             {{"variables", ordered_json(problem.names.variables).dump()}}})},
@@ -129,13 +129,13 @@ std::string make_ioh_rows(const RunTrace& trace) {
   return rows;
 }
 
-void write_ioh(const Survey& survey, const std::filesystem::path& folder) {
-  const auto labels = make_file_names(list_labels(survey));
-  for (std::size_t i = 0; i < survey.problems.size(); ++i) {
-    const ProblemRuns& problem = survey.problems[i];
+void write_ioh(const CollectedRuns& collected, const std::filesystem::path& folder) {
+  const auto labels = make_file_names(list_labels(collected));
+  for (std::size_t i = 0; i < collected.problems.size(); ++i) {
+    const ProblemRuns& problem = collected.problems[i];
     const FunctionNames names{i + 1, fmt::format("f{}_{}", i + 1, escape_file_name(problem.name))};
-    for (const LabelRuns& label : problem.labels) {
-      write_function(problem, label, names, folder / labels.at(label.label));
+    for (const auto& [label, runs] : problem.labels) {
+      write_function(problem, label, names, folder / labels.at(label));
     }
   }
 }

@@ -5,8 +5,8 @@
 
 #include "base/build_info.hpp"
 #include "base/text.hpp"
-#include "report/formats/export_folder.hpp"
-#include "report/formats/tables.hpp"
+#include "report/formats/export_files.hpp"
+#include "report/formats/formats.hpp"
 
 namespace armwright {
 namespace {
@@ -15,7 +15,7 @@ using nlohmann::ordered_json;
 
 constexpr int kExportFormat = 1;
 
-// Texts from plugins may hold anything; JSON is UTF-8.
+// JSON is UTF-8, but a plugin's text may hold any bytes; those that are not UTF-8 are replaced.
 std::string dump(const ordered_json& value) {
   return value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
@@ -56,7 +56,7 @@ ordered_json make_winner(const RunTrace& trace) {
       {"case_errors", errors}};
 }
 
-// All but its evaluations, the closing brace included.
+// Returns the run as JSON with its closing brace, without the evaluations.
 std::string make_run_head(const RunTrace& trace) {
   const auto& best = trace.evaluations.best();
   const ordered_json run = {
@@ -88,8 +88,8 @@ void write_problem(OutputFile& file, const ProblemRuns& problem) {
   head.pop_back();
   file.write(head + ",\"runs\":[");
   const char* separator = "\n";
-  for (const LabelRuns& label : problem.labels) {
-    for (const RunEntry& run : label.runs) {
+  for (const auto& [label, runs] : problem.labels) {
+    for (const RunEntry& run : runs) {
       file.write(separator);
       write_run(file, read_trace(run));
       separator = ",\n";
@@ -100,19 +100,19 @@ void write_problem(OutputFile& file, const ProblemRuns& problem) {
 
 }  // namespace
 
-void write_json(const Survey& survey, const std::filesystem::path& folder) {
+void write_json(const CollectedRuns& collected, const std::filesystem::path& folder) {
   OutputFile file(folder / kRunsJson);
   file.write(fmt::format("{{\"format\":{},\"armwright\":{},\"problems\":[", kExportFormat,
                          dump(ordered_json(get_version()))));
   const char* separator = "\n";
-  for (const ProblemRuns& problem : survey.problems) {
+  for (const ProblemRuns& problem : collected.problems) {
     file.write(separator);
     write_problem(file, problem);
     separator = ",\n";
   }
   file.write("]}\n");
   file.close();
-  write_test_cases(survey, folder);
+  write_test_cases(collected, folder);
 }
 
 }  // namespace armwright

@@ -49,8 +49,8 @@ RunEntry read_cell(const fs::path& folder) {
     run.replicate = replicate;
   } catch (const json::exception& error) {
     throw Error(ErrorKind::bad_data,
-                fmt::format("{}: is no cell that armwright wrote ({}); remove it and start the "
-                            "study again to have it rebuilt",
+                fmt::format("{}: is not a cell file that armwright wrote ({}); remove it and start "
+                            "the study again, which rebuilds it",
                             file.string(), sanitize(error.what())));
   }
   return run;
@@ -76,7 +76,7 @@ FoundRuns find_cells(const fs::path& folder) {
   if (found.runs.empty()) {
     throw Error(ErrorKind::usage,
                 fmt::format("{}: no cell of this study has finished, so there is nothing to "
-                            "export; start it again with the same command to go on",
+                            "export; start the study again with the same command to continue it",
                             folder.string()));
   }
   std::sort(found.runs.begin(), found.runs.end(),
@@ -93,7 +93,8 @@ FoundRuns find_cells(const fs::path& folder) {
   return found;
 }
 
-// From the journal rather than the result: it says which cases were simulated.
+// Returns the cases of the winner's test. The journal says which cases were simulated; the result
+// does not.
 std::optional<UsedCases> find_tested(const JournalContent& journal) {
   std::optional<UsedCases> used;
   for (const EvaluationRecord& record : journal.judgements) {
@@ -134,8 +135,8 @@ void include_trace(ProblemRuns& problem, const RunTrace& trace) {
   if (trace.tested_on) {
     if (problem.tested_on && problem.tested_on->set != trace.tested_on->set) {
       throw Error(ErrorKind::bad_data,
-                  fmt::format("{}: this run was tested on {}, others on problem '{}' on {}; export "
-                              "them apart",
+                  fmt::format("{}: this run was tested on {}, but other runs on problem '{}' were "
+                              "tested on {}; export them separately",
                               trace.run.folder.string(), sanitize(trace.tested_on->set),
                               sanitize(problem.name), sanitize(problem.tested_on->set)));
     }
@@ -143,10 +144,7 @@ void include_trace(ProblemRuns& problem, const RunTrace& trace) {
     problem.tested_on = trace.tested_on;
     problem.tested_on->count = std::max(before, trace.tested_on->count);
   }
-  if (problem.labels.empty() || problem.labels.back().label != trace.run.label) {
-    problem.labels.push_back({trace.run.label, {}});
-  }
-  problem.labels.back().runs.push_back(trace.run);
+  problem.labels[trace.run.label].push_back(trace.run);
 }
 
 }  // namespace
@@ -225,45 +223,44 @@ RunTrace read_trace(const RunEntry& run) {
   return trace;
 }
 
-Survey survey_runs(const std::vector<RunEntry>& runs) {
-  Survey survey;
+CollectedRuns collect_runs(const std::vector<RunEntry>& runs) {
+  CollectedRuns collected;
   for (const RunEntry& run : runs) {
     const RunTrace trace = read_trace(run);
     if (trace.evaluations.empty()) {
-      ++survey.empty;
+      ++collected.empty;
       continue;
     }
-    if (survey.problems.empty() || survey.problems.back().name != run.problem) {
+    if (collected.problems.empty() || collected.problems.back().name != run.problem) {
       ProblemRuns problem;
       problem.name = run.problem;
       problem.names = trace.names;
       problem.tracking = trace.tracking;
-      survey.problems.push_back(std::move(problem));
+      collected.problems.push_back(std::move(problem));
     }
-    ProblemRuns& problem = survey.problems.back();
+    ProblemRuns& problem = collected.problems.back();
     if (problem.names != trace.names) {
-      throw Error(
-          ErrorKind::bad_data,
-          fmt::format("{} and {} are both runs on '{}', but with other variables, objectives or "
-                      "metrics; export them apart",
-                      problem.labels.front().runs.front().folder.string(), run.folder.string(),
-                      sanitize(run.problem)));
+      throw Error(ErrorKind::bad_data,
+                  fmt::format("{} and {} are both runs on '{}', but with other variables, "
+                              "objectives or metrics; export them separately",
+                              problem.labels.begin()->second.front().folder.string(),
+                              run.folder.string(), sanitize(run.problem)));
     }
     include_trace(problem, trace);
-    ++survey.runs;
-    survey.evaluations += trace.evaluations.size();
+    ++collected.runs;
+    collected.evaluations += trace.evaluations.size();
   }
-  if (survey.problems.empty()) {
+  if (collected.problems.empty()) {
     throw Error(ErrorKind::usage, "no run has evaluated anything, so there is nothing to export");
   }
-  return survey;
+  return collected;
 }
 
-std::vector<std::string> list_labels(const Survey& survey) {
+std::vector<std::string> list_labels(const CollectedRuns& collected) {
   std::set<std::string> labels;
-  for (const ProblemRuns& problem : survey.problems) {
-    for (const LabelRuns& runs : problem.labels) {
-      labels.insert(runs.label);
+  for (const ProblemRuns& problem : collected.problems) {
+    for (const auto& [label, runs] : problem.labels) {
+      labels.insert(label);
     }
   }
   return {labels.begin(), labels.end()};

@@ -1,14 +1,15 @@
-// What the exports read: the runs in a run's folder or a study's, and of each run every evaluation
-// of its training, from its journal.
+// Reads what the exports write: the runs in the folder of a run or of a study, and every training
+// evaluation of each run from its journal.
 //
-// A study's folder holds cells/PROBLEM/LABEL/REPLICATE, each the folder of a run and, once the cell
-// has finished, with a file cell.json that tells the cell's true names; those of the folders are
+// A study's folder holds cells/PROBLEM/LABEL/REPLICATE. Each of these is the folder of a run. A
+// finished cell has a file cell.json with the cell's true names; the names of the folders are
 // escaped.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,53 +18,57 @@
 
 namespace armwright {
 
+// A run that can be exported.
 struct RunEntry {
   std::filesystem::path folder;
   std::string problem;
-  std::string label;      // of the optimizer with its options; of a single run the optimizer
+  std::string label;      // of the optimizer with its options; the optimizer's name for one run
   std::string optimizer;  // "ga"
   std::uint64_t replicate = 1;
 };
 
+// The runs of a folder.
 struct FoundRuns {
-  std::vector<RunEntry> runs;  // by problem, label and replicate
+  std::vector<RunEntry> runs;  // sorted by problem, label and replicate
   std::size_t unfinished = 0;  // cells without cell.json
 };
 
-// Error{usage} if the folder is neither a run's nor a study's or nothing in it has finished;
-// Error{bad_data} for a cell.json that cannot be used, or two that say the same.
+// Throws Error{usage} if the folder is neither a run's nor a study's, or holds no finished run;
+// Error{bad_data} if a cell.json cannot be used or two of them name the same cell.
 FoundRuns find_runs(const std::filesystem::path& folder);
 
+// A training evaluation, with its place in the run.
 struct TracedEvaluation {
   std::uint64_t number = 0;           // from 1
-  std::uint64_t simulated_cases = 0;  // of the budget, this one's included
+  std::uint64_t simulated_cases = 0;  // of the budget, up to and including this evaluation
   EvaluationStatus status = EvaluationStatus::ok;
   std::string reason;
   bool feasible = false;
-  std::optional<double> objective;  // several as their weighted sum; nothing if there is none
+  std::optional<double> objective;  // the weighted sum if there are several; empty if there is none
   std::vector<double> objectives;
   std::vector<double> constraint_values;
   std::vector<double> metrics;
   std::vector<double> x;
 };
 
-// A run's evaluations in their order. They are read from its journal one by one whenever somebody
-// goes over them: there may be more of them than fit into the memory.
+// The evaluations of a run, in their order. Each visit reads them from the journal again, one at a
+// time, because they may not all fit into the memory.
 class TracedEvaluations {
  public:
   using Visitor = std::function<void(const TracedEvaluation&)>;
-  using Source = std::function<void(const Visitor&)>;  // calls the visitor with each
+  using Source = std::function<void(const Visitor&)>;  // calls the visitor for every evaluation
 
-  TracedEvaluations() = default;              // none
-  explicit TracedEvaluations(Source source);  // goes over them once
+  TracedEvaluations() = default;              // no evaluations
+  explicit TracedEvaluations(Source source);  // calls the source once
 
   void visit(const Visitor& visitor) const;
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
-  // Nothing if there is none.
+  // These three are empty if there is no such evaluation. best() is the earliest of the feasible
+  // evaluations with the least objective.
   const std::optional<TracedEvaluation>& first() const { return first_; }
   const std::optional<TracedEvaluation>& last() const { return last_; }
-  const std::optional<TracedEvaluation>& best() const { return best_; }  // feasible, the earliest
+  const std::optional<TracedEvaluation>& best() const { return best_; }
 
  private:
   Source source_;
@@ -73,6 +78,7 @@ class TracedEvaluations {
   std::optional<TracedEvaluation> best_;
 };
 
+// The names of an evaluation's numbers.
 struct TraceNames {
   std::vector<std::string> variables;
   std::vector<std::string> objectives;
@@ -80,12 +86,13 @@ struct TraceNames {
   bool operator==(const TraceNames&) const = default;
 };
 
-// The first N cases of a set.
+// The first `count` cases of a set.
 struct UsedCases {
   std::string set;
   std::uint64_t count = 0;
 };
 
+// Everything that an export says about one run.
 struct RunTrace {
   RunEntry run;
   std::uint64_t seed = 0;
@@ -93,43 +100,43 @@ struct RunTrace {
   bool tracking = false;
   TraceNames names;
   TracedEvaluations evaluations;
-  std::optional<UsedCases> tested_on;    // what the winner was tested on, if there is one
-  std::optional<double> test_objective;  // its objective there, if it has one
-  std::optional<Evaluation> test;        // and how it did there
-  std::vector<double> winner;            // empty if there is none
+  // These four are empty if the run has no winner.
+  std::optional<UsedCases> tested_on;    // the winner's test cases
+  std::optional<double> test_objective;  // also empty if the test gave no objective
+  std::optional<Evaluation> test;
+  std::vector<double> winner;  // the decision vector
 };
 
+// Throws what load_result() and read_journal() throw. Visiting the evaluations throws
+// Error{bad_data} if the journal and result.json belong to different runs.
 RunTrace read_trace(const RunEntry& run);
 
-struct LabelRuns {
-  std::string label;
-  std::vector<RunEntry> runs;
-};
-
-// All runs on one problem, with what is known only when all have been read.
+// All runs on one problem, and the numbers that need all of them.
 struct ProblemRuns {
   std::string name;
   TraceNames names;
   bool tracking = false;
-  std::size_t constraints = 0;         // how many an evaluation has
-  std::optional<double> best;          // of all feasible evaluations
-  std::optional<double> worst;         // likewise
-  std::optional<UsedCases> tested_on;  // the most that a run used of the set
-  std::vector<LabelRuns> labels;
+  std::size_t constraints = 0;         // per evaluation
+  std::optional<double> best;          // the least objective of all feasible evaluations
+  std::optional<double> worst;         // the largest
+  std::optional<UsedCases> tested_on;  // the largest part of the set that a run used
+  std::map<std::string, std::vector<RunEntry>> labels;  // the runs of each label
 };
 
-struct Survey {
-  std::vector<ProblemRuns> problems;  // by name
+// The runs that an export writes.
+struct CollectedRuns {
+  std::vector<ProblemRuns> problems;  // sorted by name
   std::size_t runs = 0;
   std::size_t evaluations = 0;
   std::size_t empty = 0;  // runs without any evaluation, which are left out
 };
 
-// Reads all runs once. Error{bad_data} if two runs on one problem have other variables, objectives
-// or metrics, or were tested on other sets; Error{usage} if no run has an evaluation.
-Survey survey_runs(const std::vector<RunEntry>& runs);
+// Reads each of the runs once; they are sorted as find_runs() sorts them. Throws Error{bad_data} if
+// two runs on one problem have different variables, objectives or metrics, or were tested on
+// different sets; Error{usage} if no run has an evaluation.
+CollectedRuns collect_runs(const std::vector<RunEntry>& runs);
 
-// Of all problems, sorted.
-std::vector<std::string> list_labels(const Survey& survey);
+// Returns the labels of all problems, sorted.
+std::vector<std::string> list_labels(const CollectedRuns& runs);
 
 }  // namespace armwright

@@ -6,16 +6,15 @@
 #include "base/error.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
-#include "report/formats/export_folder.hpp"
-#include "report/formats/export_names.hpp"
-#include "report/formats/tables.hpp"
+#include "report/formats/export_files.hpp"
+#include "report/formats/formats.hpp"
 #include "sim/tracking/test_case.hpp"
 
 namespace armwright {
 namespace {
 
-// In which generated cases lie, from the resolved configuration that the run recorded. Nothing
-// where its cases are a path of the user's own, who has it.
+// Returns the workspace of generated cases, from the resolved configuration that the run recorded.
+// Returns nothing if the cases are a path: the user has its file.
 std::optional<WorkspaceSphere> read_workspace(const std::filesystem::path& run) {
   constexpr std::size_t kCaseFileLimit_bytes = std::size_t{16} << 20;
   const auto file = run / "manifest.json";
@@ -53,13 +52,13 @@ std::optional<WorkspaceSphere> read_workspace(const std::filesystem::path& run) 
 
 }  // namespace
 
-void write_test_cases(const Survey& survey, const std::filesystem::path& folder) {
+void write_test_cases(const CollectedRuns& collected, const std::filesystem::path& folder) {
   UniqueNames files;
-  for (const ProblemRuns& problem : survey.problems) {
+  for (const ProblemRuns& problem : collected.problems) {
     if (!problem.tracking || !problem.tested_on || problem.tested_on->set.starts_with("file:")) {
       continue;
     }
-    const auto workspace = read_workspace(problem.labels.front().runs.front().folder);
+    const auto workspace = read_workspace(problem.labels.begin()->second.front().folder);
     if (!workspace) {
       continue;
     }

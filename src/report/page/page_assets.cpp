@@ -1,6 +1,5 @@
-#include "report/page/page_assets.hpp"
-
 #include "base/error.hpp"
+#include "report/page/page_file.hpp"
 
 #ifdef ARMWRIGHT_WITH_PAGE
 

@@ -2,19 +2,29 @@
 
 #include <fmt/format.h>
 
+#include <fstream>
+
 #include "base/base64.hpp"
+#include "base/error.hpp"
+#include "base/file.hpp"
 #include "base/hash.hpp"
-#include "report/formats/html_text.hpp"
-#include "report/page/page_assets.hpp"
+#include "report/formats/export_text.hpp"
 
 namespace armwright {
 namespace {
+
+constexpr std::size_t kPageLimit_bytes = std::size_t{1} << 30;
+
+// Marks the file as a page, in its first 1024 bytes.
+constexpr const char* kPageMark = "<meta name=\"generator\" content=\"armwright\">";
+// Precedes the data.
+constexpr const char* kPageDataBegin = "<script type=\"application/json\" id=\"data\">";
 
 std::string calc_source_hash(std::string_view text) {
   return "'sha256-" + to_base64(calc_sha256(text)) + "'";
 }
 
-// In JSON a '<' can only stand within a text, where \u003c means the same.
+// Replaces every '<'. In JSON it can only stand within a string, where \u003c means the same.
 std::string escape_json(std::string_view text) {
   std::string escaped;
   escaped.reserve(text.size() + text.size() / 64);
@@ -55,6 +65,26 @@ std::string make_page_html(std::string_view title, std::string_view data,
   html += assets.script;
   html += "</script>\n</body>\n</html>\n";
   return html;
+}
+
+bool is_page_file(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string beginning(1024, '\0');
+  stream.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
+  beginning.resize(static_cast<std::size_t>(stream.gcount()));
+  return beginning.find(kPageMark) != std::string::npos;
+}
+
+std::string read_page_data(const std::filesystem::path& page) {
+  const std::string html = read_file(page, kPageLimit_bytes);
+  const std::size_t block = html.find(kPageDataBegin);
+  const std::size_t begin = block + std::string_view(kPageDataBegin).size();
+  const std::size_t end = block == std::string::npos ? block : html.find("</script>", begin);
+  if (!is_page_file(page) || end == std::string::npos) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("{}: is not a page that armwright report wrote", page.string()));
+  }
+  return html.substr(begin, end - begin);
 }
 
 }  // namespace armwright

@@ -1,22 +1,35 @@
-// The page as one HTML file that needs nothing else: script, style and data stand in it.
+// Writes and reads the page as one HTML file, which contains its script, style and data.
 //
-// Nothing in the data can become markup or code: it is JSON in a block that browsers do not run,
-// with every '<' written as \u003c, and a content security policy names the one script and the one
-// style by their SHA-256 and forbids all else, the network included.
+// Nothing in the data can become markup or code. The data are JSON in a block that browsers do not
+// run, with every '<' written as \u003c. A content security policy names the one script and the one
+// style by their SHA-256 and forbids everything else, including the network.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 
 namespace armwright {
 
-// What such a file has near its beginning, and what stands before its data.
-inline constexpr const char* kPageMark = "<meta name=\"generator\" content=\"armwright\">";
-inline constexpr const char* kPageDataBegin = "<script type=\"application/json\" id=\"data\">";
+// The built files of web/, which the program contains.
+struct PageAssets {
+  std::string_view script;   // the page's, one classic script
+  std::string_view style;    // CSS
+  std::string_view figures;  // the figures without a browser, ES5 (report/page/plotter.hpp)
+};
 
-// `data`: JSON (web/src/data.ts). `live_tag`: not empty for a page that the program serves itself,
-// and that asks it for newer data than those with this tag (report/page/page_server.hpp).
+// Throws Error{usage} if this build has no page; the message says how to get one.
+PageAssets get_page_assets();
+
+// Returns the file's text. `data` is JSON (web/src/data.ts). `live_tag` is empty except for a page
+// that the program itself serves: that page asks for data that are newer than those with this tag
+// (report/page/page_server.hpp).
 std::string make_page_html(std::string_view title, std::string_view data,
                            std::string_view live_tag = {});
+
+// Returns whether make_page_html() made a file.
+bool is_page_file(const std::filesystem::path& file);
+// Returns the data in such a file. Throws Error{bad_data} if the file is no such page; Error{io}.
+std::string read_page_data(const std::filesystem::path& page);
 
 }  // namespace armwright

@@ -12,7 +12,6 @@
 
 #include "base/error.hpp"
 #include "base/hash.hpp"
-#include "report/page/page_assets.hpp"
 #include "report/page/page_file.hpp"
 
 namespace armwright {
@@ -22,7 +21,7 @@ namespace armwright {
 namespace {
 
 constexpr const char* kAddress = "127.0.0.1";
-// Of which kinds browsers keep open a handful of connections at a time.
+// A browser keeps several connections open at a time.
 constexpr std::size_t kThreads = 8;
 
 struct TaggedData {
@@ -37,7 +36,7 @@ struct PageServer::Server {
   int port = 0;
   std::string title;
   std::function<std::string()> make_data;
-  std::mutex mutex;  // of what follows
+  std::mutex mutex;  // guards the members below
   TaggedData data;
   std::chrono::steady_clock::time_point made_at;
 
@@ -81,7 +80,7 @@ PageServer::PageServer(int port, std::string title, std::function<std::string()>
   server_->make_data = std::move(make_data);
   httplib::Server& http = server_->http;
   http.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
-  // The library's own choice would let a second server share the port.
+  // The library's default options would let a second server share the port.
   http.set_socket_options([](socket_t socket) {
     const int yes = 1;
     setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
@@ -137,7 +136,7 @@ int PageServer::port() const {
 void PageServer::serve(StopSignal& stop) {
   std::jthread watcher([this, &stop](const std::stop_token& ended) {
     while (!ended.stop_requested()) {
-      if (stop.requested()) {  // again and again: before the server listens, nothing comes of it
+      if (stop.requested()) {  // repeats it, because stop() has no effect before the server listens
         server_->http.stop();
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(50));

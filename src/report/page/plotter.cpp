@@ -7,7 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "report/page/page_assets.hpp"
+#include "report/page/page_file.hpp"
 
 #ifdef ARMWRIGHT_WITH_PAGE
 #include <duktape.h>
@@ -25,7 +25,8 @@ struct Plotter::Engine {
   };
   std::unique_ptr<duk_context, Destroyer> context;
 
-  // web/src/plot/main.ts leaves its functions in the global object `armwright`.
+  // Calls a function of web/src/plot/main.ts, which puts its functions into the global object
+  // `armwright`.
   std::string call(const char* function, std::initializer_list<std::string_view> arguments) {
     duk_context* const duk = context.get();
     duk_push_global_object(duk);
@@ -63,7 +64,7 @@ struct Plotter::Engine {
 namespace {
 
 [[noreturn]] void fail_fatally(void*, const char* message) {
-  // Duktape's contract: this must not return, and no frame of its own may be left in between.
+  // Duktape demands that this function never returns to it.
   throw std::runtime_error(fmt::format("the page's code ended its engine: {}", message));
 }
 

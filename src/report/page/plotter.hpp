@@ -1,6 +1,6 @@
-// The page's figures as SVG, without a browser: the very code that draws them in the page runs in a
-// small JavaScript engine here (Duktape), so there is one drawing of every figure. That code has
-// no access to files, network or clock.
+// Draws the page's figures as SVG without a browser. A small JavaScript engine (Duktape) runs the
+// same code as the page, so every figure has only one implementation. That code has no access to
+// files, network or clock.
 #pragma once
 
 #include <map>
@@ -11,6 +11,7 @@
 
 namespace armwright {
 
+// A choice that a figure offers, such as the test case.
 struct PlotChoice {
   std::string id;  // "case"
   std::string label;
@@ -18,18 +19,20 @@ struct PlotChoice {
   std::string initial;
 };
 
+// A figure or a table of the page.
 struct PlotEntry {
   std::string id;  // "distance-response"
   bool is_table = false;
   std::string tab;
   std::string title;
-  std::string thesis;  // its counterpart: "Fig. 6.4"; or empty
+  std::string thesis;  // the same figure in the thesis, "Fig. 6.4"; or empty
   std::vector<PlotChoice> choices;
 };
 
+// The figures of one page. One thread at a time may use it.
 class Plotter {
  public:
-  // `data`: as for make_page_html().
+  // `data` is as for make_page_html(). Throws Error{usage} if this build has no page.
   explicit Plotter(std::string_view data);
   ~Plotter();
   Plotter(Plotter&&) noexcept;
@@ -37,13 +40,14 @@ class Plotter {
 
   const std::vector<PlotEntry>& entries() const { return entries_; }
 
-  using Picks = std::map<std::string, std::string>;  // of choices, those that are not the initial
+  // Values by the id of their choice. A choice without a value has its initial one.
+  using Picks = std::map<std::string, std::string>;
   struct Format {
     bool dark = false;
-    int width = 0;  // pixels; 0: the figure's own, 640 x 400 for most
-    int height = 0;
+    int width = 0;   // pixels; 0: the figure's own width, 640 for most
+    int height = 0;  // pixels; 0: the figure's own height, 400 for most
   };
-  // Error{usage} for an id that is not there, a choice or value that it does not have.
+  // Both throw Error{usage} for an unknown id, an unknown choice or an unknown value.
   std::string draw(const std::string& id, const Format& format, const Picks& picks) const;
   std::string make_csv(const std::string& id, const Picks& picks) const;
 

@@ -1,5 +1,3 @@
-#include "report/page/reproduction_page.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +9,6 @@
 #include "report/evidence/page_json.hpp"
 #include "report/evidence/signals.hpp"
 #include "report/page/reproduction_replays.hpp"
-#include "report/reproduction/reproduction.hpp"
 #include "study/run/design_evaluation.hpp"
 
 namespace armwright {
@@ -22,7 +19,8 @@ using Kind = ReproductionPart::Kind;
 
 constexpr const char* kProgram = "armwright";
 
-// A few lost cases decide a mean: a sentence to put behind others, or nothing.
+// Returns a sentence to append to others if a few failed cases dominate the mean; otherwise
+// nothing.
 std::string describe_few_failures(const std::string& name, const ErrorSummary& summary) {
   if (summary.failures == 0 || 2 * summary.failures > summary.cases || !summary.median) {
     return "";
@@ -54,8 +52,8 @@ class ReproductionPage {
     const std::size_t planned = record_.planned.size();
     const std::size_t there = record_.results.size();
     if (there < planned) {
-      notes_.push_back(fmt::format("This reproduction is unfinished: {} of {} results are there.",
-                                   there, planned));
+      notes_.push_back(
+          fmt::format("This reproduction is unfinished: it has {} of {} results.", there, planned));
     }
     const auto is_anew = [](const PartResult* one) { return one->part.kind == Kind::anew; };
     if (!config_.remark.empty() && std::ranges::any_of(results_, is_anew)) {
@@ -64,8 +62,7 @@ class ReproductionPage {
     json responses = make_responses();
     json sweep = make_sweep();
     PageSimulator simulator(options.jobs, stop, observer);
-    ReproductionReplays replays =
-        make_reproduction_replays(record_, config_, options, simulator, notes_);
+    json replays = make_reproduction_replays(record_, config_, options, simulator, notes_);
     json progress = nullptr;
     if (there < planned) {
       progress = {{"done", there}, {"total", planned}, {"unit", "results"}};
@@ -81,18 +78,18 @@ class ReproductionPage {
             {"progress", std::move(progress)},
             {"notes", notes_},
             {"facts", make_facts()},
-            {"robots", std::move(replays.robots)},
-            {"replays", std::move(replays.replays)},
+            {"robots", std::move(replays["robots"])},
+            {"replays", std::move(replays["replays"])},
             {"rows", make_rows()},
             {"runs", make_runs()},
             {"responses", std::move(responses)},
             {"signals", make_signals(load_problem("q1-complex").tracking()->config().task, false)},
             {"sweep", std::move(sweep)},
-            {"momentary", std::move(replays.momentary)}};
+            {"momentary", std::move(replays["momentary"])}};
   }
 
  private:
-  // Flags that say the same as what was changed about every problem.
+  // Returns the flags that make the same changes to every problem as the record.
   std::vector<std::string> make_engine_flags() const {
     std::vector<std::string> words;
     for (const std::string& change : record_.overrides) {
@@ -125,7 +122,7 @@ class ReproductionPage {
     return (folder_ / "runs" / run).string();
   }
 
-  // That evaluates a part anew.
+  // Returns the command that evaluates a part again.
   std::string make_command(const ReproductionPart& part) const {
     std::vector<std::string> words = {
         kProgram, "evaluate",
@@ -138,7 +135,7 @@ class ReproductionPage {
     return quote_command(words);
   }
 
-  std::string make_run_command(const std::string& run) const {
+  std::string make_optimize_command(const std::string& run) const {
     const std::vector<std::string> words = {kProgram,
                                             "optimize",
                                             run,
@@ -225,15 +222,15 @@ class ReproductionPage {
       for (const std::string& change : part.overrides) {
         problem += " " + change;
       }
-      runs.push_back(
-          {{"name", part.label},
-           {"problem", problem},
-           {"cases", summary.cases},
-           {"mean_m", finite_or_null(summary.mean)},
-           {"torque_n_m", finite_or_null(result->total_torque_n_m)},
-           {"published_torque_n_m", finite_or_null(part.published_torque_n_m)},
-           {"folder", get_run_folder(part.run)},
-           {"command", part.overrides.empty() ? make_run_command(part.run) : make_command(part)}});
+      runs.push_back({{"name", part.label},
+                      {"problem", problem},
+                      {"cases", summary.cases},
+                      {"mean_m", finite_or_null(summary.mean)},
+                      {"torque_n_m", finite_or_null(result->total_torque_n_m)},
+                      {"published_torque_n_m", finite_or_null(part.published_torque_n_m)},
+                      {"folder", get_run_folder(part.run)},
+                      {"command", part.overrides.empty() ? make_optimize_command(part.run)
+                                                         : make_command(part)}});
     }
     return runs;
   }
@@ -254,8 +251,9 @@ class ReproductionPage {
         const PartResult& result = found->second;
         first = first == nullptr ? &result : first;
         remark += describe_few_failures(name, result.calc_summary());
-        series.push_back(make_response_series({name, make_command(result.part)}, result.case_errors,
-                                              result.points, result.part.published_error_m));
+        series.push_back(make_response_series(name, result.case_errors, result.points,
+                                              result.part.published_error_m,
+                                              make_command(result.part)));
       }
       if (first != nullptr) {
         const LoadedProblem problem = load_problem(first->part.problem, first->part.overrides);
@@ -265,7 +263,7 @@ class ReproductionPage {
       }
     }
     if (!missing.empty()) {
-      notes_.push_back("Not there: " + join(missing, ", ") + ".");
+      notes_.push_back("Missing: " + join(missing, ", ") + ".");
     }
     return responses;
   }
@@ -295,7 +293,7 @@ class ReproductionPage {
     }
     json series = json::array();
     if (values.empty()) {
-      notes_.emplace_back("The sweep over the speed (Fig. 6.16) is not there.");
+      notes_.emplace_back("The sweep over the speed (Fig. 6.16) is missing.");
     } else {
       series.push_back({{"name", get_table_name(plan.design)},
                         {"mean_m", means},
@@ -318,7 +316,7 @@ class ReproductionPage {
   std::filesystem::path folder_;
   ReproductionRecord record_;
   ReproductionConfig config_;
-  std::vector<const PartResult*> results_;  // in the order to show
+  std::vector<const PartResult*> results_;  // in the order of the page
   std::vector<std::string> notes_;
 };
 

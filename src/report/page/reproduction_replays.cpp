@@ -6,7 +6,7 @@
 
 #include "base/text.hpp"
 #include "problems/config/config_files.hpp"
-#include "report/evidence/replay_list.hpp"
+#include "report/evidence/motions.hpp"
 #include "report/evidence/robot_scene.hpp"
 #include "study/run/design_evaluation.hpp"
 
@@ -21,7 +21,8 @@ LoadedProblem load_problem_of(const PartResult& result, const ReproductionRecord
   return load_problem(result.part.problem, overrides);
 }
 
-// "table-a5": "A.5 (Winner of Q1)", of its title what is before the first colon.
+// Returns the design with the name "A.5 (Winner of Q1)" for "table-a5"; the parentheses have the
+// title up to its first colon.
 NamedDesign make_named_design(const std::string& name) {
   const DesignFile file = load_design(name);
   return {name,
@@ -41,7 +42,7 @@ std::vector<ReplayRequest> choose_cases(const TrackingProblem& problem, const Re
   return replays.take();
 }
 
-// One for each load.
+// The robots of the replays: one per file and load.
 class Robots {
  public:
   Robots(json& list, std::vector<std::string>& notes) : list_(list), notes_(notes) {}
@@ -68,17 +69,16 @@ class Robots {
 
 }  // namespace
 
-ReproductionReplays make_reproduction_replays(const ReproductionRecord& record,
-                                              const ReproductionConfig& config,
-                                              const PageOptions& options, PageSimulator& simulator,
-                                              std::vector<std::string>& notes) {
-  ReproductionReplays made;
+json make_reproduction_replays(const ReproductionRecord& record, const ReproductionConfig& config,
+                               const PageOptions& options, PageSimulator& simulator,
+                               std::vector<std::string>& notes) {
+  json made = {{"robots", json::array()}, {"replays", json::array()}, {"momentary", json::array()}};
   if (!options.simulate) {
     notes.emplace_back(
         "Motions were not simulated: there is no replay and no error over the time.");
     return made;
   }
-  Robots robots(made.robots, notes);
+  Robots robots(made["robots"], notes);
   std::vector<std::string> missing;
   for (const ReplayConfig& replay : config.replays) {
     const auto found = record.results.find(replay.of);
@@ -94,24 +94,22 @@ ReproductionReplays make_reproduction_replays(const ReproductionRecord& record,
       designs.push_back(make_named_design(name));
     }
     const auto cases = choose_cases(tracking, replay, result, options);
-    made.replays.push_back(make_replay_set(simulator, tracking, {replay.id, replay.title},
-                                           robots.find(problem), designs, cases));
+    made["replays"].push_back(make_replay_set(simulator, tracking, {replay.id, replay.title},
+                                              robots.find(problem), designs, cases));
   }
-  for (const MomentaryConfig& momentary : config.momentary) {
-    const auto replay = std::ranges::find(made.replays, momentary.replay, [](const json& one) {
-      return one["id"].get<std::string>();
-    });
-    if (replay != made.replays.end()) {
-      made.momentary.push_back({{"name", momentary.name},
-                                {"replay", momentary.replay},
-                                {"design", (*replay)["designs"][0]["id"]},
-                                {"case", (*replay)["cases"][0]["id"]}});
+  for (const auto& [name, id] : config.momentary) {
+    const auto replay = std::ranges::find(
+        made["replays"], id, [](const json& one) { return one["id"].get<std::string>(); });
+    if (replay != made["replays"].end()) {
+      made["momentary"].push_back({{"name", name},
+                                   {"replay", id},
+                                   {"design", (*replay)["designs"][0]["id"]},
+                                   {"case", (*replay)["cases"][0]["id"]}});
     }
   }
   if (!missing.empty()) {
     notes.push_back(
-        fmt::format("Without the published results that they belong to, these motions "
-                    "are left out: {}.",
+        fmt::format("These motions are left out, because their published results are missing: {}.",
                     join(missing, "; ")));
   }
   return made;

@@ -1,28 +1,23 @@
-// The motions that a reproduction's page shows. Only .cpp files include this.
+// Simulates the motions of a reproduction's page. Only .cpp files include this.
 #pragma once
 
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "report/evidence/page_options.hpp"
 #include "report/evidence/page_simulator.hpp"
-#include "report/reproduction/reproduction_config.hpp"
-#include "report/reproduction/reproduction_record.hpp"
+#include "report/page/page_data.hpp"
+#include "report/reproduction/reproduction.hpp"
 
 namespace armwright {
 
-struct ReproductionReplays {
-  nlohmann::json robots = nlohmann::json::array();     // Robot[]
-  nlohmann::json replays = nlohmann::json::array();    // ReplaySet[]
-  nlohmann::json momentary = nlohmann::json::array();  // ReproductionData.momentary
-};
-
-// Those of the config whose published result is in the record. `notes` gets whole sentences about
-// what is not shown. Throws PageStopped.
-ReproductionReplays make_reproduction_replays(const ReproductionRecord& record,
-                                              const ReproductionConfig& config,
-                                              const PageOptions& options, PageSimulator& simulator,
-                                              std::vector<std::string>& notes);
+// Returns an object with the lists robots (Robot), replays (ReplaySet) and momentary
+// (ReproductionData.momentary) of web/src/data.ts: the replays of the configuration whose published
+// result is in the record. `notes` gets a whole sentence on everything that is not shown. Throws
+// PageStopped; Error{usage} if a case of the options does not exist.
+nlohmann::json make_reproduction_replays(const ReproductionRecord& record,
+                                         const ReproductionConfig& config,
+                                         const PageOptions& options, PageSimulator& simulator,
+                                         std::vector<std::string>& notes);
 
 }  // namespace armwright

@@ -1,5 +1,3 @@
-#include "report/page/run_facts.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include "base/text.hpp"
 #include "problems/tracking/requirement_grade.hpp"
 #include "report/evidence/page_json.hpp"
+#include "report/page/run_parts.hpp"
 #include "study/run/run.hpp"
 
 namespace armwright {

@@ -1,11 +1,10 @@
-#include "report/page/run_history.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 
 #include "report/evidence/page_json.hpp"
+#include "report/page/run_parts.hpp"
 #include "study/statistics/summary.hpp"
 
 namespace armwright {
@@ -17,14 +16,14 @@ constexpr std::size_t kMostGenerations = 1000;
 constexpr std::size_t kMostBlocks = 400;
 constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
-// Of a feasible evaluation the scalar objective, otherwise nothing.
+// Returns the scalar objective of a feasible evaluation, otherwise nothing.
 std::optional<double> get_value(const ProblemDescription& problem, const EvaluationRecord& record) {
   return is_feasible(record.evaluation)
              ? std::optional(calc_scalar(problem, record.evaluation.objectives))
              : std::nullopt;
 }
 
-// The first of the best; null if none is feasible.
+// Returns the feasible record with the least objective, the first of equals; null if there is none.
 const EvaluationRecord* find_best(const ProblemDescription& problem,
                                   const std::vector<EvaluationRecord>& records) {
   const EvaluationRecord* best = nullptr;
@@ -39,7 +38,7 @@ const EvaluationRecord* find_best(const ProblemDescription& problem,
   return best;
 }
 
-// A part at a time, as a run may have more evaluations than fit into the memory.
+// Reads one part. The records of a whole run may not fit into the memory.
 std::vector<EvaluationRecord> read_part(const RecordedRun& run, const HistoryPart& part) {
   std::vector<EvaluationRecord> records;
   records.reserve(part.count);
@@ -62,7 +61,7 @@ PartSummary summarize_part(const ProblemDescription& problem,
   for (const EvaluationRecord& record : records) {
     summary.failed += record.evaluation.objectives.empty() ? 1 : 0;
     if (const auto value = get_value(problem, record)) {
-      summary.best = std::fmin(summary.best, *value);  // of a number and none, the number
+      summary.best = std::fmin(summary.best, *value);  // fmin ignores NaN
       summary.worst = std::fmax(summary.worst, *value);
       sum += *value;
       ++count;
@@ -179,7 +178,7 @@ json make_front(const RecordedRun& run) {
     return nullptr;
   }
   const RunResult& result = *run.result;
-  // As good in everything, fewer failures or a better objective included.
+  // Returns whether `a` is as good as `b` in failures and all objectives, with other objectives.
   const auto covers = [](const Evaluation& a, const Evaluation& b) {
     return a.failed_cases <= b.failed_cases && a.objectives != b.objectives &&
            std::ranges::equal(a.objectives, b.objectives, std::less_equal{});

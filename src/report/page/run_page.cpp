@@ -1,5 +1,3 @@
-#include "report/page/run_page.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,8 +9,8 @@
 #include "report/evidence/distance_response.hpp"
 #include "report/evidence/page_json.hpp"
 #include "report/evidence/robot_scene.hpp"
-#include "report/page/run_facts.hpp"
-#include "report/page/run_history.hpp"
+#include "report/page/page_data.hpp"
+#include "report/page/run_parts.hpp"
 #include "study/run/run.hpp"
 
 namespace armwright {
@@ -27,7 +25,7 @@ int count_incumbent_cases(const RecordedRun& run) {
   return std::min(run.problem->sets.test_cases, kMostIncumbentCases);
 }
 
-// Incumbents; `simulator` null: without their values on the test set.
+// Returns Incumbents. Without a simulator (null) they have no values on the test set.
 json make_incumbents(const RecordedRun& run, const std::vector<Incumbent>& shown,
                      bool by_generation, PageSimulator* simulator) {
   json incumbents = {
@@ -60,7 +58,7 @@ json make_incumbents(const RecordedRun& run, const std::vector<Incumbent>& shown
 void add_notes(const RecordedRun& run, const History& history, const PageOptions& options,
                std::vector<std::string>& notes) {
   if (!run.result) {
-    notes.push_back("The run has not come to its end: there is no winner yet, and no test of one.");
+    notes.push_back("The run has not ended, so it has no winner and no test of a winner yet.");
   } else if (!run.result->winner) {
     notes.push_back("No design that the run found has a number, so there is no winner.");
   }
@@ -76,12 +74,13 @@ void add_notes(const RecordedRun& run, const History& history, const PageOptions
                                 history.left_out + history.parts.size(), history.parts.size()));
   }
   if (!run.describe().constraints.empty()) {
-    notes.push_back("Best, mean and worst in training are of the designs that keep all limits.");
+    notes.push_back(
+        "In training, best, mean and worst count only the designs that meet all constraints.");
   }
   if (!run.problem) {
     notes.push_back(
-        "Without the problem the bounds of its variables are not known, so their "
-        "history is left out.");
+        "Without the problem the bounds of its variables are unknown, so their history is left "
+        "out.");
   } else if (!options.simulate) {
     notes.push_back(
         "Nothing was simulated for this page: replays, tests of incumbents and of "
@@ -89,7 +88,7 @@ void add_notes(const RecordedRun& run, const History& history, const PageOptions
   }
 }
 
-// That what is simulated here is what the run recorded.
+// Adds a note if the winner's errors, simulated now, differ from those that the run recorded.
 void compare_with_record(const RecordedRun& run, const std::vector<ShownDesign>& designs,
                          std::vector<std::string>& notes) {
   const auto now = get_case_errors(designs.front().results);
@@ -98,20 +97,20 @@ void compare_with_record(const RecordedRun& run, const std::vector<ShownDesign>&
     const bool same = now[i] == recorded[i] || (std::isnan(now[i]) && std::isnan(recorded[i]));
     if (!same) {
       notes.push_back(
-          fmt::format("What is simulated for this page differs from what the run "
-                      "recorded, first on test case {}: {} m then, {} m now.",
+          fmt::format("The simulations for this page differ from those that the run recorded, "
+                      "first on test case {}: {} m recorded, {} m now.",
                       i, format_exact(recorded[i]), format_exact(now[i])));
       return;
     }
   }
 }
 
-// All that an arm adds: everything that takes long is in here.
+// Adds the parts that only an arm has. All simulations except those of the incumbents happen here.
 void add_arm(const RecordedRun& run, const PageOptions& options, PageSimulator* simulator,
              json& page, std::vector<std::string>& notes) {
   auto designs = list_designs(run, notes);
   const TrackingProblem& problem = *run.tracking();
-  // A run under way has no winner to test; it shows how its best moves.
+  // An unfinished run has no winner to test. Its page shows the incumbent's motions.
   const bool has_winner = run.result && run.result->winner;
   if (simulator != nullptr) {
     const auto requests = choose_replays(run, designs, options.cases);
@@ -154,7 +153,7 @@ json make_page(const RecordedRun& run, const PageOptions& options, PageSimulator
   std::vector<std::string> notes = run.notes;
   add_notes(run, history, options, notes);
   std::vector<std::string> command = run.command_line;
-  if (!command.empty()) {  // wherever the program lay
+  if (!command.empty()) {  // without the program's folder
     command.front() = std::filesystem::path(command.front()).filename().string();
   }
   const Quantity quantity = get_scalar_quantity(description.objectives);

@@ -1,4 +1,4 @@
-// A study's plan in words.
+// Describes a study's plan.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-// The different ones of what a function says of every problem, in their order.
+// Joins the texts that `describe` gives for the problems, in their order, each text once.
 std::string join_different(const StudyPlan& plan, const auto& describe) {
   std::vector<std::string> texts;
   for (const StudyProblem& problem : plan.problems) {

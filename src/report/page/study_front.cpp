@@ -1,4 +1,4 @@
-// Fronts of a study's page: every replicate's points that none of its own dominates, and what a
+// Fronts of a study's page: the non-dominated points of every replicate, and the surfaces that a
 // share of the replicates attains.
 #include <algorithm>
 
@@ -12,10 +12,10 @@ namespace {
 using nlohmann::json;
 using Points = std::vector<std::vector<double>>;
 
-constexpr std::size_t kMostPoints = 200;  // a replicate, and a surface
+constexpr std::size_t kMostPoints = 200;  // per replicate and per surface
 constexpr double kShares[] = {0.25, 0.5, 0.75};
 
-// At even distances in their order, both ends included, if there are too many.
+// Keeps at most kMostPoints points, evenly spread in their order, with the first and the last.
 Points thin(Points points) {
   if (points.size() <= kMostPoints) {
     return points;
@@ -27,7 +27,7 @@ Points thin(Points points) {
   return kept;
 }
 
-// By increasing first objective.
+// Returns the non-dominated points, sorted by the first objective.
 Points find_front(const Points& points) {
   Points front;
   for (const std::size_t i : find_non_dominated(points)) {

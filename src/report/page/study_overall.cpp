@@ -1,4 +1,4 @@
-// What a study's page says over problems.
+// The part of a study's page that compares optimizers over all problems.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,8 +27,8 @@ bool has_all_cells(const StudyResult& result, std::size_t problem) {
   return std::ranges::find(result.missing, problem, &Cell::problem) == result.missing.end();
 }
 
-// Of each optimizer's mean rank, were these problems drawn from more of their kind. Nothing of
-// fewer problems than conclusions take.
+// Returns a confidence interval of each optimizer's mean rank, as if the problems were a random
+// sample. Returns null if there are fewer problems than a conclusion needs (kFewestPairs).
 json make_rank_intervals(const StudyPlan& plan, const StudyResult& result) {
   std::vector<std::vector<double>> ranks(plan.optimizers.size());
   for (std::size_t p = 0; p < result.problems.size(); ++p) {
@@ -63,20 +63,20 @@ json make_rank_intervals(const StudyPlan& plan, const StudyResult& result) {
 json make_cliques(const StudyPlan& plan, std::span<const PairResult> pairs,
                   std::vector<std::string>& notes) {
   if (pairs.empty()) {
-    return json::array();  // of one problem nothing is tested
+    return json::array();  // one problem allows no test
   }
-  std::vector<std::pair<std::size_t, std::size_t>> told_apart;
+  std::vector<std::pair<std::size_t, std::size_t>> distinguished;
   for (const PairResult& pair : pairs) {
     if (pair.is_significant()) {
-      told_apart.emplace_back(pair.a, pair.b);
+      distinguished.emplace_back(pair.a, pair.b);
     }
   }
-  const auto cliques = find_cliques(plan.optimizers.size(), told_apart, kMostCliques);
+  const auto cliques = find_cliques(plan.optimizers.size(), distinguished, kMostCliques);
   if (!cliques) {
-    notes.push_back(
-        fmt::format("There are more than {} sets of optimizers that cannot be told apart over the "
-                    "problems; they are left out, the table of pairs has all of it.",
-                    kMostCliques));
+    notes.push_back(fmt::format(
+        "Over the problems there are more than {} sets of optimizers without a significant "
+        "difference. They are left out; the table of pairs has every comparison.",
+        kMostCliques));
     return json::array();
   }
   return *cliques;

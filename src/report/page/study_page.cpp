@@ -1,11 +1,10 @@
-#include "report/page/study_page.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "base/text.hpp"
 #include "report/evidence/page_json.hpp"
+#include "report/page/page_data.hpp"
 #include "report/page/study_parts.hpp"
 #include "study/analysis/final_check.hpp"
 #include "study/analysis/verdict.hpp"

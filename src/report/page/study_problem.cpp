@@ -1,4 +1,4 @@
-// One problem of a study's page: cells, distributions, curves, tests.
+// A problem on a study's page: cells, distributions, curves, tests.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +22,8 @@ json rounded(std::span<const double> values) {
   return list;
 }
 
-// `armwright rerun` names a cell by its labels; where these could be read otherwise, by its folder.
+// Returns the cell's name for `armwright rerun`: its labels, or its folder if the labels would be
+// ambiguous.
 std::string name_cell(const StudyPlan& plan, const Cell& cell) {
   const std::string& problem = plan.problems[cell.problem].label;
   const std::string& optimizer = plan.optimizers[cell.optimizer].label;
@@ -40,7 +41,7 @@ json make_cell(const StudyPlan& plan, const Cell& cell, const CellOutcome& outco
           {"value", finite_or_null(value)},
           {"cases", outcome.cases},
           {"evaluations", outcome.evaluations},
-          {"seconds", nullptr},  // no run records how long it took
+          {"seconds", nullptr},  // runs do not record their duration
           {"failure", sanitize(outcome.failure)},
           {"failures", outcome.errors.failures},
           {"x", rounded(outcome.x)},
@@ -63,7 +64,7 @@ json make_running_times(std::span<const RunningTime> times) {
   return list;
 }
 
-// Of an optimizer to each of make_fixed_targets().
+// Returns an optimizer's times to the targets of make_fixed_targets().
 json make_target_times(std::span<const TargetTime> times) {
   json list = json::array();
   for (const TargetTime& time : times) {

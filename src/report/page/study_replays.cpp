@@ -8,7 +8,6 @@
 #include "problems/config/config_files.hpp"
 #include "report/evidence/motions.hpp"
 #include "report/evidence/page_json.hpp"
-#include "report/evidence/replay_list.hpp"
 #include "report/evidence/robot_scene.hpp"
 #include "report/page/study_parts.hpp"
 #include "study/analysis/final_check.hpp"
@@ -21,16 +20,17 @@ using nlohmann::json;
 
 constexpr std::size_t kMostProblemsShown = 4;
 constexpr std::size_t kMostDesigns = 6;
-constexpr std::size_t kMostGroups = 3;                    // with arms or targets of their own
-constexpr std::size_t kMostBytes = std::size_t{3} << 20;  // of all replays
+constexpr std::size_t kMostGroups = 3;                    // of divide_by_motion()
+constexpr std::size_t kMostBytes = std::size_t{3} << 20;  // all replays together
 
 struct BestDesign {
   const CellOutcome* cell = nullptr;
   NamedDesign named;
 };
 
-// Of the best optimizers one each, best optimizer first. A method's design is of its method's
-// problem: another controller may want efforts in advance that the others' problem does not make.
+// Returns the best design of each of the best optimizers, the best optimizer first. Each design
+// comes with its method's problem, because a controller may need precomputed efforts that the
+// problems of other methods do not have.
 std::vector<BestDesign> find_best_designs(const StudyPlan& plan, const StudyResult& result,
                                           std::size_t problem, std::vector<std::string>& notes) {
   std::vector<BestDesign> designs;
@@ -48,7 +48,7 @@ std::vector<BestDesign> find_best_designs(const StudyPlan& plan, const StudyResu
     try {
       its_problem.check_design(named.design);
       designs.push_back({cell, std::move(named)});
-    } catch (const Error& error) {  // the page is of more than this
+    } catch (const Error& error) {  // the page has other parts
       notes.push_back(fmt::format("The replay of {} on {} is left out: {}.", sanitize(label),
                                   sanitize(plan.problems[problem].label), sanitize(error.what())));
     }
@@ -70,7 +70,7 @@ std::vector<ReplayRequest> choose_cases(const StudyPlan& plan, const StudyProble
     const Cell where{static_cast<std::size_t>(&problem - plan.problems.data()),
                      static_cast<std::size_t>(optimizer - plan.optimizers.begin()), cell.replicate};
     const auto run = folder / make_cell_path(plan, where);
-    // The run's result may have been removed: its cell.json says all that the study needs.
+    // A study needs only cell.json, so the user may have removed the run's result.
     const auto errors = std::filesystem::exists(run / "result.json")
                             ? load_result(run).test.case_errors
                             : std::vector<double>{};
@@ -89,20 +89,20 @@ std::vector<ReplayRequest> choose_cases(const StudyPlan& plan, const StudyProble
 std::filesystem::path find_urdf_folder(const StudyProblem& problem) {
   const json resolved = json::parse(problem.loaded.resolved_json);
   const auto urdf = resolved.at("robot").at("urdf").get<std::string>();
-  const auto beside = std::filesystem::path(problem.name).parent_path();
-  if (std::filesystem::exists(beside / urdf)) {
-    return (beside / urdf).parent_path();
+  const auto problem_folder = std::filesystem::path(problem.name).parent_path();
+  if (std::filesystem::exists(problem_folder / urdf)) {
+    return (problem_folder / urdf).parent_path();
   }
   try {
     return resolve_config("robots", urdf).parent_path();
   } catch (const Error&) {
-    return beside;  // then its meshes are not found either, and plain shapes stand for them
+    return problem_folder;  // it has no meshes; the robot gets plain shapes
   }
 }
 
-// Takes out motions until the replay is small enough: the last cases but the first and those asked
-// for, then the designs before the start, the last of which are the worst. The leader and the
-// start stay.
+// Removes motions until the replay is small enough: first the cases between the first one and those
+// that the user asked for, then the worst designs, which stand last before the start. The best
+// design and the start stay.
 void shrink(json& replay, std::size_t most_bytes, std::size_t least_cases) {
   while (dump_page(replay).size() > most_bytes) {
     json& cases = replay["cases"];
@@ -147,7 +147,7 @@ json make_study_replays(const StudyPlan& plan, const StudyResult& result,
     designs.push_back({"start", "where the problem starts", tracking.config().start});
     auto groups = divide_by_motion(tracking, designs);
     bool is_whole = groups.size() <= kMostGroups;
-    if (!is_whole) {  // those of the leader, of the next and of the start stay
+    if (!is_whole) {  // the groups of the two best designs and of the start stay
       groups.erase(groups.begin() + kMostGroups - 1, groups.end() - 1);
     }
     const auto folder_of_meshes = find_urdf_folder(problem);

@@ -6,17 +6,16 @@
 #include <limits>
 
 #include "base/error.hpp"
-#include "report/evidence/point_statistics.hpp"
 
 namespace armwright {
 namespace {
 
-// Passes on what a run tells, with its name.
+// Passes on the messages of a run, after the run's name.
 class RunMessages final : public RunObserver {
  public:
   RunMessages(std::string name, RunObserver& observer)
       : name_(std::move(name)), observer_(observer) {}
-  // Runs have objectives of different units, and there is one bar for all.
+  // All runs share one progress bar, but their objectives have different units. So none is shown.
   void on_progress(const Progress& progress) override {
     Progress shown = progress;
     shown.best_objective = std::numeric_limits<double>::quiet_NaN();
@@ -37,14 +36,14 @@ class Executor {
            RunObserver& observer)
       : plan_(plan), work_(work), stop_(stop), observer_(observer) {
     for (const PlannedPart& part : plan_.parts) {
-      progress_.total += is_there(part) ? 0 : part.cases;
+      progress_.total += is_computed(part) ? 0 : part.cases;
     }
   }
 
   std::optional<std::vector<PartResult>> execute() {
     std::vector<PartResult> results;
     for (PlannedPart& part : plan_.parts) {
-      if (is_there(part)) {
+      if (is_computed(part)) {
         results.push_back(*work_.folder->find(part.part.label));
       } else {
         auto result = make_result(part);
@@ -56,13 +55,13 @@ class Executor {
         }
         results.push_back(std::move(*result));
       }
-      part.problem = {};  // its targets are of no use to the next
+      part.problem = {};  // frees the targets, which the next part cannot use
     }
     return results;
   }
 
  private:
-  bool is_there(const PlannedPart& part) const {
+  bool is_computed(const PlannedPart& part) const {
     return work_.folder != nullptr && work_.folder->find(part.part.label) != nullptr;
   }
 
@@ -90,7 +89,8 @@ class Executor {
                       .total_torque_n_m = evaluation->total_torque_n_m};
   }
 
-  // Nothing if it has to be optimized anew and that was stopped.
+  // Returns the part's design. If a run has to find it, makes the run first; returns nothing if
+  // that was stopped.
   std::optional<ArmDesign> find_design(const PlannedPart& part) {
     if (part.part.run.empty()) {
       return part.design;
@@ -104,7 +104,7 @@ class Executor {
     return load_design((folder / "winner.toml").string()).design;
   }
 
-  // False if it was stopped.
+  // Makes or continues a run. Returns false if it was stopped.
   bool execute(const RunPlan& run, const std::filesystem::path& folder) {
     if (std::filesystem::exists(folder / "result.json")) {
       return true;
@@ -113,7 +113,7 @@ class Executor {
     request.plan = run;
     request.folder = folder;
     request.jobs = work_.jobs;
-    request.command_line = make_run_words(work_.program, run, folder);
+    request.command_line = make_run_command(work_.program, run, folder);
     RunMessages messages(run.problem.name, observer_);
     const auto result = execute_run(request, stop_, messages);
     if (result && !result->winner) {
@@ -143,8 +143,8 @@ std::optional<std::vector<PartResult>> execute_reproduction(ReproductionPlan& pl
   return Executor(plan, work, stop, observer).execute();
 }
 
-std::vector<std::string> make_run_words(const std::string& program, const RunPlan& run,
-                                        const std::filesystem::path& folder) {
+std::vector<std::string> make_run_command(const std::string& program, const RunPlan& run,
+                                          const std::filesystem::path& folder) {
   return {program,
           "optimize",
           run.problem.name,

@@ -37,14 +37,33 @@ const SettingTable kReproFigureTable{.key = "figure", .is_array = true};
 const SettingTable kReproReplayTable{.key = "replay", .is_array = true};
 const SettingTable kReproMomentaryTable{.key = "momentary", .is_array = true};
 
-UnpublishedConfig read_unpublished(const ConfigTable& table) {
-  UnpublishedConfig design{.label = table.get(kReproLabel),
-                           .design = table.get(kReproDesign),
-                           .problem = table.get(kReproProblem),
-                           .total_torque_n_m = {},
-                           .where = table.get(kReproWhere)};
-  design.total_torque_n_m = table.find(kReproTorque);
-  return design;
+ReproductionPart read_run(const ConfigTable& table) {
+  ReproductionPart part;
+  part.kind = ReproductionPart::Kind::anew;
+  part.label = table.get(kReproLabel);
+  part.problem = table.get(kReproProblem);
+  return part;
+}
+
+ReproductionPart read_unpublished(const ConfigTable& table) {
+  ReproductionPart part;
+  part.kind = ReproductionPart::Kind::unpublished;
+  part.label = table.get(kReproLabel);
+  part.design = table.get(kReproDesign);
+  part.problem = table.get(kReproProblem);
+  part.where = table.get(kReproWhere);
+  part.published_torque_n_m = table.find(kReproTorque);
+  return part;
+}
+
+ReproductionPart read_reevaluation(const ConfigTable& table) {
+  ReproductionPart part;
+  part.kind = ReproductionPart::Kind::anew;
+  part.label = table.get(kReproLabel);
+  part.run = table.get(kReproRun);
+  part.overrides = table.get_or(kReproSet, {});
+  part.where = table.get(kReproWhere);
+  return part;
 }
 
 ResponseFigureConfig read_figure(const ConfigTable& table) {
@@ -54,7 +73,7 @@ ResponseFigureConfig read_figure(const ConfigTable& table) {
                               .remark = table.get(kReproRemark),
                               .series = {}};
   for (const ConfigTable& series : table.get_tables(kReproSeriesTable)) {
-    figure.series.push_back({series.get(kReproName), series.get(kReproOf)});
+    figure.series.emplace_back(series.get(kReproName), series.get(kReproOf));
   }
   return figure;
 }
@@ -70,15 +89,14 @@ ReproductionConfig load_reproduction_config(const std::string& name_or_path) {
   config.seed = static_cast<std::uint64_t>(table.get(kReproSeed));
   config.engine = table.get(kReproEngine);
   for (const ConfigTable& run : table.get_tables_or_empty(kReproRunsTable)) {
-    config.runs.push_back({run.get(kReproLabel), run.get(kReproProblem)});
+    config.runs.push_back(read_run(run));
   }
   for (const ConfigTable& design : table.get_tables_or_empty(kReproUnpublishedTable)) {
     config.unpublished.push_back(read_unpublished(design));
   }
   config.sweep = table.get(kReproSweep);
   for (const ConfigTable& again : table.get_tables_or_empty(kReproReevaluationTable)) {
-    config.reevaluations.push_back({again.get(kReproLabel), again.get(kReproRun),
-                                    again.get_or(kReproSet, {}), again.get(kReproWhere)});
+    config.reevaluations.push_back(read_reevaluation(again));
   }
   for (const ConfigTable& figure : table.get_tables_or_empty(kReproFigureTable)) {
     config.figures.push_back(read_figure(figure));
@@ -88,7 +106,7 @@ ReproductionConfig load_reproduction_config(const std::string& name_or_path) {
                               replay.get_or(kReproBeside, {}), replay.get(kReproTrainingCase)});
   }
   for (const ConfigTable& momentary : table.get_tables_or_empty(kReproMomentaryTable)) {
-    config.momentary.push_back({momentary.get(kReproName), momentary.get(kReproReplay)});
+    config.momentary.emplace_back(momentary.get(kReproName), momentary.get(kReproReplay));
   }
   table.refuse_unknown();
   return config;

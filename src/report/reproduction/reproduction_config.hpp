@@ -1,81 +1,70 @@
-// What a shipped reproduction (configs/reproductions/*.toml) says: what its source optimized
-// without printing the designs, what it swept, and which figures it made of all that.
+// Reads the configuration of a reproduction (configs/reproductions/*.toml): which problems the
+// source optimized without printing the designs, which parameter it swept, and which figures it
+// shows.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace armwright {
 
-struct AnewConfig {
-  std::string label;  // "E1"
+// A result to reproduce: one design on the test set of one problem.
+struct ReproductionPart {
+  // published: a shipped design with a printed error. unpublished: a shipped design without one.
+  // anew: the winner of a run of the reproduction. sweep: a shipped design at one value of a sweep.
+  enum class Kind { published, unpublished, anew, sweep };
+  Kind kind = Kind::published;
+  std::string label;   // unique: "A.10 (E6)", "E1", "q4-speed 0.5"
+  std::string design;  // a shipped one; empty for the winner of `run`
+  std::string run;     // the name of the run's problem, and of its folder
   std::string problem;
+  std::vector<std::string> overrides;  // KEY=VALUE
+  std::optional<double> published_error_m;
+  std::optional<double> published_torque_n_m;
+  std::string where;            // the place in the source
+  std::optional<double> value;  // of a sweep
 };
 
-// A shipped design of which its source prints no error.
-struct UnpublishedConfig {
-  std::string label;
-  std::string design;
-  std::string problem;
-  std::optional<double> total_torque_n_m;
-  std::string where;
-};
-
-// The winner of a run under other conditions than those it was optimized for.
-struct ReevaluationConfig {
-  std::string label;  // "E4, IK bug off"
-  std::string run;    // its problem
-  std::vector<std::string> overrides;
-  std::string where;
-};
-
-// A figure of average errors over the distance. `of` is the label of what is drawn: of a published
-// result, a run or a re-evaluation.
+// A distance response: mean errors over the length of the move.
 struct ResponseFigureConfig {
-  struct Series {
-    std::string name;
-    std::string of;
-  };
   std::string id;
   std::string title;
   std::string thesis;  // "Fig. 6.4"
   std::string remark;
-  std::vector<Series> series;
+  std::vector<std::pair<std::string, std::string>> series;  // name, and label of the part it shows
 };
 
-// Motions to look at: the design of the published result `of` under its conditions, beside others.
+// A replay: the design of the published part `of` under its conditions, and other designs.
 struct ReplayConfig {
   std::string id;
   std::string title;
-  std::string of;
-  std::vector<std::string> beside;  // designs
+  std::string of;                   // a part's label
+  std::vector<std::string> beside;  // the other designs
   std::string training_case;        // "train/1:1"
-};
-
-// A momentary error that is drawn over the time, of the first case of a replay.
-struct MomentaryConfig {
-  std::string name;
-  std::string replay;
 };
 
 struct ReproductionConfig {
   std::string title;
-  std::string remark;  // whole sentences on what was optimized anew
-  std::string optimizer;
+  std::string remark;     // whole sentences on what was optimized anew
+  std::string optimizer;  // of the runs
   std::uint64_t seed = 1;
-  std::string engine;  // that the runs are trained and judged with
-  std::vector<AnewConfig> runs;
-  std::vector<UnpublishedConfig> unpublished;
-  std::vector<ReevaluationConfig> reevaluations;
-  std::string sweep;  // a problem with a sweep of its own
+  std::string engine;  // for training and judging the runs
+  // The next three are incomplete: the plan completes them.
+  std::vector<ReproductionPart> runs;           // label and problem
+  std::vector<ReproductionPart> unpublished;    // designs whose errors the source does not print
+  std::vector<ReproductionPart> reevaluations;  // winners of runs under other conditions
+  std::string sweep;                            // a problem with [sweep]
   std::vector<ResponseFigureConfig> figures;
   std::vector<ReplayConfig> replays;
-  std::vector<MomentaryConfig> momentary;
+  // Errors over time in the first case of a replay: name, and id of the replay.
+  std::vector<std::pair<std::string, std::string>> momentary;
 };
 
-// A shipped one by name, or a file. Error{usage} names file, line, field and what is allowed.
+// Loads a shipped configuration by name, or a file. Throws Error{usage} with file, line, field and
+// what is allowed.
 ReproductionConfig load_reproduction_config(const std::string& name_or_path);
 
 }  // namespace armwright

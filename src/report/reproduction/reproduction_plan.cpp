@@ -10,7 +10,6 @@
 #include "base/text.hpp"
 #include "optimizers/table/optimizer_table.hpp"
 #include "problems/config/config_files.hpp"
-#include "report/reproduction/reproduction_config.hpp"
 #include "study/run/design_evaluation.hpp"
 
 namespace armwright {
@@ -82,8 +81,8 @@ class Planner {
         plan_.request.cases.value_or(static_cast<std::uint64_t>(planned.problem.sets.test_cases));
     if (!labels_.insert(part.label).second) {
       throw Error(ErrorKind::usage,
-                  fmt::format("two results to reproduce are called '{}'; each needs a label of its "
-                              "own, in configs/designs or configs/reproductions",
+                  fmt::format("two results to reproduce have the label '{}'; labels in "
+                              "configs/designs and configs/reproductions must differ",
                               sanitize(part.label)));
     }
     planned.part = std::move(part);
@@ -106,36 +105,25 @@ class Planner {
   }
 
   void add_unpublished(const ReproductionConfig& config) {
-    for (const UnpublishedConfig& unpublished : config.unpublished) {
-      ReproductionPart part;
-      part.kind = ReproductionPart::Kind::unpublished;
-      part.label = unpublished.label;
-      part.design = unpublished.design;
-      part.problem = unpublished.problem;
-      part.published_torque_n_m = unpublished.total_torque_n_m;
-      part.where = unpublished.where;
-      add(std::move(part), load_design(unpublished.design).design);
+    for (const ReproductionPart& part : config.unpublished) {
+      add(part, load_design(part.design).design);
     }
   }
 
   void add_runs(const ReproductionConfig& config) {
-    for (const auto& [label, name] : config.runs) {
-      plan_.runs.push_back(make_run(config, name));
+    for (ReproductionPart part : config.runs) {
+      plan_.runs.push_back(make_run(config, part.problem));
       const PublishedWinner& published = plan_.runs.back().problem.published;
-      ReproductionPart part;
-      part.kind = ReproductionPart::Kind::anew;
-      part.label = label;
       part.run = plan_.runs.back().problem.name;
-      part.problem = name;
       part.published_error_m = published.error_m;
       part.published_torque_n_m = published.total_torque_n_m;
       part.where = published.where;
       add(part, {});
-      for (const ReevaluationConfig& again : config.reevaluations) {
+      for (const ReproductionPart& again : config.reevaluations) {
         if (again.run == part.run) {
           part.label = again.label;
           part.overrides = again.overrides;
-          part.published_torque_n_m.reset();  // the same design: said once
+          part.published_torque_n_m.reset();  // the same design; its first row has the torque
           part.where = again.where;
           add(part, {});
         }

@@ -1,5 +1,3 @@
-#include "report/reproduction/reproduction_record.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +12,7 @@
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "report/evidence/page_json.hpp"
+#include "report/reproduction/reproduction.hpp"
 #include "study/run/json_values.hpp"
 
 namespace armwright {
@@ -138,7 +137,7 @@ std::string describe_settings(const std::optional<std::uint64_t>& cases,
       overrides.empty() ? "the problems' own engines" : join(overrides, " "));
 }
 
-// Makes the folder, or accepts one that holds a reproduction or nothing.
+// Creates the folder, or accepts one that holds a reproduction or nothing.
 std::filesystem::path claim_folder(const std::filesystem::path& path) {
   make_folder(path);
   if (is_reproduction_folder(path)) {
@@ -146,7 +145,7 @@ std::filesystem::path claim_folder(const std::filesystem::path& path) {
   }
   for (const auto& entry : std::filesystem::directory_iterator(path)) {
     const std::string name = entry.path().filename().string();
-    if (name != "lock" && !name.ends_with(".new")) {  // what a kill at the very start leaves
+    if (name != "lock" && !name.ends_with(".new")) {  // a program that is killed early leaves these
       throw Error(ErrorKind::usage,
                   fmt::format("{}: holds '{}' but no {}, so it is not the folder of a "
                               "reproduction; choose another with --out, or --new",
@@ -242,10 +241,11 @@ void ReproductionFolder::check(const ReproductionPlan& plan) const {
   const std::string recorded = describe_settings(record_.cases, record_.overrides);
   const std::string now = describe_settings(plan.request.cases, plan.request.overrides);
   if (recorded != now) {
-    throw Error(ErrorKind::usage,
-                fmt::format("{} holds a reproduction with other settings: recorded {}, now {}. Go "
-                            "on with the recorded ones, or use --new or --out for another folder",
-                            path_.string(), sanitize(recorded), now));
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("{} holds a reproduction with other settings: recorded {}, now {}. Continue "
+                    "with the recorded ones, or use --new or --out for another folder",
+                    path_.string(), sanitize(recorded), now));
   }
   if (record_.config != plan.request.config) {
     throw Error(

@@ -50,7 +50,7 @@ std::string format_toml_number(double value) {
   return digits.find_first_of(".e") == std::string::npos ? digits + ".0" : digits;
 }
 
-// Returns `value`, `reference` and the targets as TOML; keys with their default are left out.
+// Returns the keys `value` and `reference` as TOML. Leaves out a key that has its default.
 std::string make_questions(const StudyPlan& plan) {
   std::string text;
   if (plan.value == StudyValue::failures) {
@@ -62,6 +62,7 @@ std::string make_questions(const StudyPlan& plan) {
   return text;
 }
 
+// Returns the targets as TOML, one table [[target]] per target.
 std::string make_targets(const StudyPlan& plan) {
   std::string text;
   for (const StudyTarget& target : plan.targets) {
@@ -147,9 +148,10 @@ std::vector<std::string> describe_problem_change(const std::filesystem::path& fo
                                 problem.loaded.resolved_json);
   } catch (const json::exception& error) {
     throw Error(ErrorKind::bad_data,
-                fmt::format("{}: is not what armwright wrote ({}); choose another folder with "
-                            "--out, or --new",
-                            file.string(), sanitize(error.what())));
+                fmt::format("{}: cannot be read as a recorded problem (damaged, or edited): {}. Check "
+                            "the study with 'armwright doctor {}', or choose another folder with "
+                            "--out or --new",
+                            file.string(), sanitize(error.what()), folder.string()));
   }
 }
 
@@ -226,9 +228,10 @@ void StudyFolder::extend(const StudyPlan& plan, const std::string& text) {
   const auto file = path_ / kPlanFile;
   if (!ConfigTable::load(file).has("plan_sha256")) {
     throw Error(ErrorKind::bad_data,
-                fmt::format("{}: is not a plan that armwright recorded; choose another folder with "
-                            "--out, or --new",
-                            file.string()));
+                fmt::format("{}: cannot be read as a recorded plan (damaged, or edited): it has no "
+                            "plan_sha256. Check the study with 'armwright doctor {}', or choose "
+                            "another folder with --out or --new",
+                            file.string(), path_.string()));
   }
   check_plan_hash(file);
   json recorded = json::parse(ConfigTable::load(file).to_json());
@@ -242,7 +245,8 @@ void StudyFolder::extend(const StudyPlan& plan, const std::string& text) {
     for (const auto& [label, entry] : before.items()) {
       if (!after.contains(label)) {
         differences.push_back(
-            fmt::format("{} {} is recorded, but the plan lacks it", key, sanitize(label)));
+            fmt::format("{} {} is in the recorded plan, but not in this one; add it", key,
+                        sanitize(label)));
         continue;
       }
       for (const std::string& difference :
@@ -275,7 +279,7 @@ void StudyFolder::extend(const StudyPlan& plan, const std::string& text) {
   if (std::ranges::any_of(kQuestions, [&](const char* key) {
         return recorded.value(key, json()) != now.value(key, json());
       })) {
-    additions_.push_back("other targets, reference or value");
+    additions_.push_back("changed: targets, reference or value");
   }
   for (const char* key :
        {"plan_sha256", "name", "title", "baselines", "value", "reference", "target"}) {
@@ -289,9 +293,10 @@ void StudyFolder::extend(const StudyPlan& plan, const std::string& text) {
     throw Error(
         ErrorKind::usage,
         fmt::format("{} holds a study whose cells could not be compared with those of "
-                    "this plan:\n  {}\nA plan may only grow. Use the recorded plan, or choose "
-                    "another folder with --new or --out",
-                    path_.string(), join(differences, "\n  ")));
+                    "this plan:\n  {}\nReplicates, problems and optimizers can only be added. To "
+                    "continue the recorded study: armwright compare {} --out {}. For another one: "
+                    "--new, or another folder with --out",
+                    path_.string(), join(differences, "\n  "), file.string(), path_.string()));
   }
   if (!additions_.empty()) {
     int number = 1;

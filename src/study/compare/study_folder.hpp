@@ -5,9 +5,9 @@
 //   cells/PROBLEM/OPTIMIZER/rNN   the runs
 //   result.json, verdict.txt, tables/   derived from the files above
 //
-// A plan may grow: more replicates, problems or optimizers. Recorded entries must not be changed or
-// left out, so that all cells stay comparable. Only targets, reference and value may change,
-// because they are evaluated after the runs. The plans before each extension are kept as
+// A plan may grow by replicates, problems and optimizers. Recorded problems and optimizers must not
+// be changed or left out, so that all cells stay comparable. Title, targets, reference and value
+// may change and be removed, because no run depends on them. The plans before each extension are kept as
 // study-001.toml, study-002.toml, ...
 #pragma once
 

@@ -69,25 +69,29 @@ struct StudyPlan {
   std::uint64_t seed = 1;
   int replicates = 15;
   std::int64_t budget = 0;  // simulated training cases per cell
-  // Width of the box from which starts are drawn, as a fraction of the bounds' width.
+  // Width of the box from which starts are drawn, as a fraction (0 to 2) of the bounds' width.
+  // A part of the box outside the bounds is cut off.
   double start_spread = 0.1;
   Selection selection{.last = 5, .best = 5};
-  // If true, the winner is the best candidate of all checkpoints on the validation set, instead of
-  // the best candidate at the end. Long training on few cases can end with designs that fail on all
-  // other cases.
+  // If true, every checkpoint has judged candidates, and the winner is the best of them all on the
+  // validation set. If false, only the candidates at the end of the run are judged. Long training on
+  // few cases can end with designs that fail on all other cases.
   bool judge_along = false;
-  // A design counts as feasible on validation and test sets if it violates each constraint by at
-  // most this much. No design was trained on those sets.
+  // A winner has a value only if each of its constraints g on the test set is at most this number.
+  // A number above 0 allows for the fact that no design was trained on the test set.
   double constraint_tolerance = 0;
-  int checkpoints = 20;  // number of budgets at which incumbents are tested, log-spaced
-  // The smallest checkpoint, in cases; a smaller budget is its own only checkpoint.
+  // The largest number of checkpoints: budgets, logarithmically spaced, at which the incumbents are
+  // tested.
+  int checkpoints = 20;
+  // The smallest checkpoint, in cases. If the budget is smaller, the budget is the only checkpoint.
   std::int64_t first_checkpoint = 1;
   // Engine that simulates the best design of every optimizer and problem again; empty for none.
   std::string final_engine;
   bool baselines = true;  // adds a random search and a local search to the optimizers
   StudyValue value = StudyValue::objective;
   std::vector<StudyTarget> targets;
-  // Label of the optimizer by whose expected running times the others' are divided; may be empty.
+  // Label of the reference optimizer. Tables show the expected running time of every optimizer also
+  // divided by that of the reference. Empty for no reference.
   std::string reference;
   std::vector<StudyProblem> problems;
   std::vector<StudyOptimizer> optimizers;
@@ -108,24 +112,31 @@ struct StudyRequest {
   std::optional<Schedule> schedule;
   std::optional<std::uint64_t> seed;
   bool baselines = true;
-  // Optimizers that the calling program implements itself, by name (foreign_optimizer.hpp).
+  // Optimizers that the calling program implements itself, by name
+  // (optimizers/plugins/host_optimizer.hpp).
   std::vector<OptimizerRow> rows = {};
 };
 
 // Reads, completes and checks the whole plan. Throws Error{usage} or Error{bad_data}.
 StudyPlan make_study_plan(const StudyRequest& request);
 
-// Returns the SHA-256 of a problem's resolved configuration and of the files that it refers to.
+// Returns the SHA-256 of a problem's resolved configuration and of the hashes of the files that it
+// refers to. Reads no file and throws no Error.
 std::string calc_configuration_hash(const LoadedProblem& problem);
 
-// Throws Error{bad_data} if the file is a resolved plan (to_toml()) that was changed later.
+// Throws Error{bad_data} if the file is a resolved plan (to_toml()) that was changed later, and
+// Error{io} if it cannot be read. Does nothing for a file without a recorded hash.
 void check_plan_hash(const std::filesystem::path& path);
 
-// Adds to `plan` the baselines of the recorded plan that `plan` lacks. A grown plan may contain an
-// optimizer of the same kind and then gets no baseline of its own.
+// Adds to `plan` every baseline of the recorded plan that `plan` lacks. Example: the recorded plan
+// has the baseline nlopt:neldermead; if the user adds another local search to the study,
+// make_study_plan() adds no local baseline, but the recorded cells need it. Throws Error{usage} or
+// Error{bad_data} if the file or a baseline cannot be loaded, Error{io} if a file cannot be read.
 void keep_baselines(const std::filesystem::path& recorded, StudyPlan& plan);
 
-// Returns the title in a study's file, without loading what the file names.
+// Returns the title in a study's file, without loading the problems and optimizers that the file
+// names. `file` is a path or the name of a shipped study. Throws Error{usage} if there is no such
+// file or it is not valid, and Error{io} if it cannot be read.
 std::string read_study_title(const std::string& file);
 
 // Returns the declarations of every setting of a study's file.
@@ -142,7 +153,8 @@ struct Cell {
 std::vector<Cell> list_cells(const StudyPlan& plan);
 
 // Returns every problem that cells train on: the plan's problems, then the methods' versions of
-// them, in the plan's order. The pointers are valid as long as `plan` is.
+// them, in the plan's order. The pointers point into `plan`. They are valid until `plan` is
+// destroyed or its lists of problems or optimizers change.
 std::vector<const LoadedProblem*> list_problems(const StudyPlan& plan);
 // Returns the problem with the settings that the cell's optimizer trains on.
 const LoadedProblem& get_problem(const StudyPlan& plan, const Cell& cell);
@@ -150,24 +162,26 @@ Schedule get_schedule(const StudyPlan& plan, const Cell& cell);
 
 // Returns the name of the replicate's training set, which is the same for every optimizer.
 std::string make_training_set_name(const StudyPlan& plan, const Cell& cell);
-// Returns how many candidates are judged on the validation set. For one objective without
-// constraints this is the plan's selection. Otherwise it is at least the number that `optimize`
-// judges. The last few candidates may hold no front, and no design that keeps a limit on unseen
-// cases.
+// Returns how many candidates of a run are judged on the validation set. For one objective without
+// constraints this is the plan's selection. Otherwise `last` is at least the number that `armwright
+// optimize` uses. A few candidates would be too few for a front, and too few to find a design that
+// meets the constraints on unseen cases.
 Selection choose_selection(const StudyPlan& plan, const StudyProblem& problem);
-// Returns the plan of the cell's run.
+// Returns the plan of the cell's run. Throws Error{usage} if the start cannot be converted to the
+// controller of the cell's method.
 RunPlan make_run_plan(const StudyPlan& plan, const Cell& cell);
 // Returns "cells/q1-complex/ga/r01", relative to the study's folder.
 std::filesystem::path make_cell_path(const StudyPlan& plan, const Cell& cell);
 
-// Returns at most `count` budgets at which incumbents are tested, in cases. They run from `first`
-// (at least one evaluation of `cases` cases) to `budget`, logarithmically spaced. They are rounded
-// to whole evaluations, and each is listed once.
+// Returns the budgets, in cases, at which incumbents are tested: ascending, each once, at most
+// `count`. They are logarithmically spaced from `first` to `budget` and rounded to whole evaluations
+// of `cases` cases each. The smallest is at least one evaluation. Returns none if the budget does
+// not pay for one evaluation.
 std::vector<std::int64_t> calc_checkpoints(std::int64_t first, std::int64_t budget, int cases,
                                            int count);
 
-// Returns the checkpoints of a problem. They are the same for all optimizers and use the
-// evaluations of the problem's own schedule.
+// Returns the checkpoints of a problem, calc_checkpoints() with the number of cases per evaluation
+// of the problem's own schedule. A method with another schedule has the same checkpoints.
 std::vector<std::int64_t> list_checkpoints(const StudyPlan& plan, std::size_t problem);
 
 // The largest numbers of cases that the whole plan can simulate, per split.

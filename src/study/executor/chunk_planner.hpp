@@ -62,9 +62,13 @@ struct WorkerLoad {
   double latency_s = 0;    // see WorkerLatency
 };
 
-// Returns the number of pairs for a worker. It is 0 if the worker would finish them later than
-// `left_here_s`, the time in which the coordinator's threads alone would finish all that is left.
-// A worker gets the smallest possible chunk as long as the cost is not known.
+// Returns the number of pairs for a worker. `left_here_s` is the time in which the coordinator's
+// threads alone would finish all that is left. As long as the cost is not known, a worker gets the
+// smallest chunk: `size.granularity` pairs per thread. The number is 0 in these cases:
+// - The worker already has kChunksAhead chunks.
+// - The cost is not known, and the worker has a chunk, or at most `size.granularity` pairs are left
+//   per thread of the coordinator.
+// - The cost is known, and the worker would finish the pairs later than `left_here_s`.
 std::size_t plan_remote_chunk(BatchSize size, std::size_t left, TeamSize team,
                               std::optional<double> cost_s, double left_here_s,
                               const WorkerLoad& worker);

@@ -118,7 +118,7 @@ TEST(VerifyConclusion, SaysThatEverythingHolds) {
                           HasSubstr("Engines: It holds in b."),
                           HasSubstr("It holds with 2 substeps, 5 substeps and 10 substeps."),
                           HasSubstr("Masses: It holds with -10 % and +10 %."),
-                          HasSubstr("it holds in 17 of 17."), Not(HasSubstr("depends on"))));
+                          HasSubstr("it holds in 17 of 17 settings."), Not(HasSubstr("depends on"))));
 }
 
 TEST(VerifyConclusion, NamesWhatDoesNotHold) {
@@ -133,7 +133,7 @@ TEST(VerifyConclusion, NamesWhatDoesNotHold) {
                               "It fails with 5 substeps and 10 substeps."),
                     HasSubstr("depends on the time step of the simulation"),
                     HasSubstr("It holds with -10 %. It gets worse with +10 % (median 1.50"),
-                    HasSubstr("it holds in 0 of 6.")));
+                    HasSubstr("it holds in 0 of 6 settings.")));
 }
 
 TEST(VerifyConclusion, NamesPerturbedPlants) {

@@ -100,19 +100,26 @@ Specimen make_specimen(const std::string& path) {
   } else if (path.starts_with("function.")) {
     specimen.text = kFunction;
   }
+  if (path == "requirement[].joint") {  // settling_time is of the whole arm
+    const std::string tip = "quantity = \"settling_time\"\nlimit_s = 0.1\n";
+    specimen.text.replace(specimen.text.find(tip), tip.size(),
+                          "quantity = \"peak_torque\"\nlimit_n_m = 100\n");
+  }
   if (const auto found = overrides.find(path); found != overrides.end()) {
     specimen.overrides = found->second;
   }
   return specimen;
 }
 
-// Returns a [[requirement]] with a date as this limit, of a joint that slides if the limit is one
-// of such joints.
+// Returns a [[requirement]] with a date as this limit. A quantity of joints names a joint, one that
+// slides if the limit is one of such joints.
 std::string make_requirement(const std::string& limit) {
   for (const RequirementRow& row : requirement_table()) {
     if (row.limit_key == limit || row.slider_limit_key == limit) {
       return "[[requirement]]\nquantity = \"" + row.key + "\"\n" + limit + " = " + kDate + "\n" +
-             (row.limit_key == limit ? "" : "joint = \"rail\"\n");
+             (!row.of_joints           ? ""
+              : row.limit_key == limit ? "joint = \"pivot\"\n"
+                                       : "joint = \"rail\"\n");
     }
   }
   throw std::logic_error("no quantity has the limit " + limit);

@@ -1,6 +1,6 @@
-// What the YAML says of robots that no run has here: joints that slide or turn without end, limits
-// that differ. Whether it is YAML, and as ROS 2 wants it, a strict reader tells in
-// tests/e2e/deliverables_test.cpp.
+// Checks the YAML for robots that no other test has: with prismatic joints, joints without position
+// limits, and different effort limits. tests/e2e/deliverables_test.cpp checks with a strict reader
+// that the file is YAML in the form that ROS 2 wants.
 
 #include "report/deliverables/ros2_control.hpp"
 
@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "base/error.hpp"
-#include "report/deliverables/finished_arm.hpp"
+#include "report/deliverables/deliverables.hpp"
 
 namespace armwright {
 namespace {
@@ -38,8 +38,8 @@ class Ros2Control : public testing::Test {
   }
 
   std::string make(std::size_t distribution) const {
-    return make_ros2_control({robot_, design_, period_s_, {"Origin of it"}},
-                             ros2_distributions()[distribution]);
+    return make_ros2_control(ros2_distributions()[distribution], robot_, design_, period_s_,
+                             std::vector<std::string>{"Origin of it"});
   }
   void expect_refused(const testing::Matcher<std::string>& message) const {
     for (std::size_t i = 0; i < ros2_distributions().size(); ++i) {
@@ -105,8 +105,8 @@ TEST_F(Ros2Control, TheUpdateRateIsThePeriodsInverse) {
 
 TEST_F(Ros2Control, NoNameEndsAComment) {
   const std::string text =
-      make_ros2_control({robot_, design_, period_s_, {"a\u2028controller_manager: \nx"}},
-                        ros2_distributions()[kJazzy]);
+      make_ros2_control(ros2_distributions()[kJazzy], robot_, design_, period_s_,
+                        std::vector<std::string>{"a\u2028controller_manager: \nx"});
   EXPECT_THAT(text, HasSubstr("# a?controller_manager: ?"));
 }
 

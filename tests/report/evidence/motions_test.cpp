@@ -1,4 +1,4 @@
-// Motions and distance responses against the results that they are made of.
+// Compares motions and distance responses with the results that they are made of.
 #include "report/evidence/motions.hpp"
 
 #include <gtest/gtest.h>
@@ -53,7 +53,7 @@ TEST_F(Motions, TheLargestErrorOfAWindowIsThePointsError) {
     for (std::size_t i = segment["window_start"]; i < segment["steps"]; ++i) {
       largest = std::max(largest, error[first + i]);
     }
-    // Single precision of the largest.
+    // The single precision of the largest value.
     EXPECT_NEAR(largest, result.point_error_m[k], 1e-7 * result.point_error_m[k] + 1e-12) << k;
     EXPECT_EQ(motion["point_error_m"][k], result.point_error_m[k]);
   }
@@ -124,7 +124,8 @@ TEST_F(Motions, AResponseIsTheMeanOfEachPoint) {
     }
     const double mean = sum / kCases;
     EXPECT_NEAR(series["mean_m"][k].get<double>(), mean, 1e-15);
-    // The variance by another formula, which cancels: 1e-16 of squares of 1e-5.
+    // This formula for the variance subtracts nearly equal numbers. Their rounding errors are 1e-16
+    // of squares near 1e-5.
     EXPECT_NEAR(std::pow(series["standard_error_m"][k].get<double>(), 2),
                 (squares - kCases * mean * mean) / (kCases - 1) / kCases, 1e-17);
     all += response["counted"][k] ? mean / 24 : 0;

@@ -33,7 +33,7 @@ void write_text(const std::filesystem::path& file, const std::string& content) {
   std::ofstream(file, std::ios::binary) << content;
 }
 
-// A joint that turns about a slanted axis, one that slides, both off their parents.
+// A revolute joint with a slanted axis and a prismatic joint, both with an offset to their parents.
 RobotModel make_arm(const std::string& base_visual, const std::string& tool_visual) {
   return parse_urdf(R"(<robot name="bench">
 <link name="base">)" + base_visual +
@@ -73,7 +73,7 @@ Eigen::Isometry3d read_pose(const json& pose) {
   return result;
 }
 
-// What the page does with the chain.
+// Computes the poses as the page does.
 std::vector<Eigen::Isometry3d> follow_chain(const json& robot, const std::vector<double>& q) {
   std::vector<Eigen::Isometry3d> poses;
   Eigen::Isometry3d here = Eigen::Isometry3d::Identity();
@@ -123,7 +123,7 @@ std::vector<std::uint32_t> unpack(const json& packed, const char* key) {
   return words;
 }
 
-// The triangles' corners in the order in which the mesh names them.
+// Returns the triangles' corners in the order of the mesh's indices.
 std::vector<Eigen::Vector3f> read_corners(const json& mesh) {
   std::vector<float> positions;
   for (const std::uint32_t word : unpack(mesh["positions"], "f32")) {
@@ -213,7 +213,7 @@ TEST(RobotScene, DrawsPlainShapesWhereTheDescriptionHasNone) {
   const RobotModel arm = make_arm("", "");
   const json robot = make_robot(arm, 0, kRobots, notes);
   ASSERT_THAT(notes, ElementsAre(HasSubstr("robot bench has no visual shapes")));
-  // The base's tube ends in the first joint.
+  // The tube of the base ends at the first joint.
   const json& tube = robot["bodies"][0]["shapes"][1];
   ASSERT_EQ(tube["kind"], "cylinder");
   const Eigen::Isometry3d pose = read_pose(tube["pose"]);
@@ -229,7 +229,7 @@ TEST(RobotScene, DrawsPlainShapesWhereTheDescriptionHasNone) {
   }
 }
 
-// Two triangles of a square with the side 2.
+// A square with a side of 2, as two triangles.
 const char* const kTextStl = R"(solid square
 facet normal 0 0 1
 outer loop
@@ -280,7 +280,7 @@ TEST(RobotScene, ReadsMeshesOfEachFormat) {
              make_binary_stl({{0, 0, 0, 2, 0, 0, 2, 2, 0}, {0, 0, 0, 2, 2, 0, 0, 2, 0}}));
   write_text(folder.path() / "square.obj",
              "mtllib elsewhere.mtl\nv 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nf 1 2 3\nf 1 3 4\n");
-  // In centimetres, with y up, which a URDF disregards.
+  // The file says centimetres and y up, which readers of a URDF ignore.
   write_text(folder.path() / "square.dae", R"(<?xml version="1.0"?>
 <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
 <asset><unit name="centimetre" meter="0.01"/><up_axis>Y_UP</up_axis></asset>

@@ -1,10 +1,11 @@
-// The curves against each other: a distance is the integral of its speed, a speed that of its
-// acceleration, exactly where both are polynomials of low degree.
+// Compares the curves with each other: a distance is the integral of the speed, and a speed is the
+// integral of the acceleration. The quadrature is exact for polynomials of low degree.
 #include "report/evidence/signals.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "sim/tracking/reference_signal.hpp"
 
@@ -34,7 +35,8 @@ TEST_P(Signals, DistancesAreThoseOfTheTarget) {
   EXPECT_DOUBLE_EQ(samples.back().time_s, kDistance_m / kSpeed_m_per_s + kRest_s);
 }
 
-// Simpson's rule needs the middle; every second sample of a piece is one. Exact up to cubics.
+// Simpson's rule needs the middle of an interval, which is every second sample of a piece. The rule
+// is exact up to cubic polynomials.
 TEST_P(Signals, SpeedsAndAccelerationsAreDerivatives) {
   const auto samples = sample(GetParam());
   double checked = 0;
@@ -70,7 +72,7 @@ TEST_P(Signals, TheAreaUnderTheSpeedIsTheDistance) {
               (samples[i].speed_m_per_s + samples[i - 1].speed_m_per_s) / 2;
     largest = std::max(largest, samples[i].speed_m_per_s);
   }
-  EXPECT_NEAR(area_m, kDistance_m, 1e-3 * kDistance_m);  // trapezoids, 60 a piece
+  EXPECT_NEAR(area_m, kDistance_m, 1e-3 * kDistance_m);  // trapezoids, 60 per piece
   if (GetParam() == SignalShape::complex) {
     EXPECT_DOUBLE_EQ(largest, 2.5 * kSpeed_m_per_s);
   }

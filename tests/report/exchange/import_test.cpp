@@ -14,7 +14,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-// An export as csv of two files, by hand.
+// An export as csv whose two files are written by hand.
 class Import : public testing::Test {
  protected:
   Import() {
@@ -46,14 +46,14 @@ TEST_F(Import, TakesTheBestFeasibleOfTheRunsThatAreChosen) {
         "p,\"a,b\",2,2,1,2.5,0.25,-1e-300\n"
         "p,\"a,b\",2,3,1,2.5,7,7\n"
         "p,c,1,1,1,-4,1,2\n");
-  const ImportedPoint point = import_best(folder_.path(), {.label = "a,b"});
-  EXPECT_EQ(point.problem, "p");
-  EXPECT_EQ(point.label, "a,b");
-  EXPECT_EQ(point.replicate, 2u);
-  EXPECT_EQ(point.evaluation, 2u);
-  EXPECT_EQ(point.objective, 2.5);
-  EXPECT_THAT(point.variables, ElementsAre("a", "\"b\""));
-  EXPECT_THAT(point.x, ElementsAre(0.25, -1e-300));
+  const ImportedRun run = import_best(folder_.path(), {.label = "a,b"});
+  EXPECT_EQ(run.problem, "p");
+  EXPECT_EQ(run.label, "a,b");
+  EXPECT_EQ(run.replicate, 2u);
+  EXPECT_EQ(run.evaluation, 2u);
+  EXPECT_EQ(run.objective, 2.5);
+  EXPECT_THAT(run.variables, ElementsAre("a", "\"b\""));
+  EXPECT_THAT(run.x, ElementsAre(0.25, -1e-300));
   EXPECT_EQ(import_best(folder_.path(), {}).label, "c");
   EXPECT_EQ(import_best(folder_.path(), {.label = "a,b", .replicate = 1}).objective, 3);
 }

@@ -1,10 +1,9 @@
-#include "report/formats/coco.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
 
+#include "report/formats/formats.hpp"
 #include "report/hand_made_traces.hpp"
 
 namespace armwright {
@@ -12,33 +11,25 @@ namespace {
 
 using testing::ElementsAre;
 
-TEST(LevelTrigger, ReachesALevelOnceWhateverIsSkipped) {
-  LevelTrigger level;
-  EXPECT_TRUE(level.reaches(1));  // 10^(0/20)
-  EXPECT_FALSE(level.reaches(1));
-  EXPECT_FALSE(level.reaches(0.9));  // 10^(-1/20) is 0.891...
-  EXPECT_TRUE(level.reaches(0.89));
-  EXPECT_FALSE(level.reaches(0.95));
-  EXPECT_TRUE(level.reaches(0.5));
-  EXPECT_FALSE(level.reaches(0.45));  // above 10^(-7/20), 0.4467
-  EXPECT_TRUE(level.reaches(0.44));
+TEST(CocoLevel, IsTheLeastThatIsNotBelowTheDifference) {
+  EXPECT_EQ(calc_coco_level(1), 0);    // 10^(0/20)
+  EXPECT_EQ(calc_coco_level(0.9), 0);  // 10^(-1/20) is 0.891...
+  EXPECT_EQ(calc_coco_level(0.89), -1);
+  EXPECT_EQ(calc_coco_level(0.5), -6);
+  EXPECT_EQ(calc_coco_level(0.45), -6);  // above 10^(-7/20), 0.4467
+  EXPECT_EQ(calc_coco_level(0.44), -7);
 }
 
-TEST(LevelTrigger, EndsAtThePrecision) {
-  LevelTrigger level;
-  EXPECT_TRUE(level.reaches(2e-8));
-  EXPECT_TRUE(level.reaches(1e-8));
-  EXPECT_FALSE(level.reaches(1e-9));
-  EXPECT_FALSE(level.reaches(0));
-  LevelTrigger another;
-  EXPECT_TRUE(another.reaches(0));
+TEST(CocoLevel, EndsAtThePrecision) {
+  EXPECT_GT(calc_coco_level(2e-8), calc_coco_level(1e-8));
+  EXPECT_EQ(calc_coco_level(1e-9), calc_coco_level(1e-8));
+  EXPECT_EQ(calc_coco_level(0), calc_coco_level(1e-8));
 }
 
-TEST(EvaluationTrigger, IsThePowersOfTenByTwentiethsAndMultiplesOfTheDimension) {
-  EvaluationTrigger trigger(3);
+TEST(CocoMilestone, IsThePowersOfTenByTwentiethsAndMultiplesOfTheDimension) {
   std::vector<std::uint64_t> numbers;
   for (std::uint64_t i = 1; i <= 65; ++i) {
-    if (trigger.matches(i)) {
+    if (is_coco_milestone(i, 3)) {
       numbers.push_back(i);
     }
   }
@@ -49,15 +40,14 @@ TEST(EvaluationTrigger, IsThePowersOfTenByTwentiethsAndMultiplesOfTheDimension) 
                                    30, 31, 35, 39, 44, 50, 56, 60, 63));
 }
 
-TEST(EvaluationTrigger, MeetsTheWholePowersAndGapsInBetween) {
-  EvaluationTrigger trigger(7);
-  EXPECT_TRUE(trigger.matches(100));
-  EXPECT_FALSE(trigger.matches(101));
-  EXPECT_TRUE(trigger.matches(1000));
-  EXPECT_TRUE(trigger.matches(7000));
-  EXPECT_FALSE(trigger.matches(9000));
-  EXPECT_TRUE(trigger.matches(1000000));
-  EXPECT_TRUE(trigger.matches(3500000));
+TEST(CocoMilestone, MeetsTheWholePowersAndGapsInBetween) {
+  EXPECT_TRUE(is_coco_milestone(100, 7));
+  EXPECT_FALSE(is_coco_milestone(101, 7));
+  EXPECT_TRUE(is_coco_milestone(1000, 7));
+  EXPECT_TRUE(is_coco_milestone(7000, 7));
+  EXPECT_FALSE(is_coco_milestone(9000, 7));
+  EXPECT_TRUE(is_coco_milestone(1000000, 7));
+  EXPECT_TRUE(is_coco_milestone(3500000, 7));
 }
 
 TEST(ConstraintDigits, GrowWithTheViolation) {
@@ -68,9 +58,17 @@ TEST(ConstraintDigits, GrowWithTheViolation) {
   EXPECT_EQ(format_constraint_digits({}), "");
 }
 
-TEST(CocoRun, HasARowALevelAndARowATrigger) {
+ProblemRuns make_problem(double best, std::size_t constraints = 0) {
+  ProblemRuns problem;
+  problem.best = best;
+  problem.worst = best;
+  problem.constraints = constraints;
+  return problem;
+}
+
+TEST(CocoRun, HasARowPerLevelAndARowPerMilestone) {
   const CocoRun run = make_coco_run(make_trace({101.0, 102.0, 2.0, 1.99, 1.5, 1.0, 4.0, 4.0, 5.0}),
-                                    {.reference = 1});
+                                    make_problem(1));
   EXPECT_EQ(run.header,
             "% f evaluations | g evaluations | best noise-free fitness - Fref (1.000000000000e+00) "
             "+ sum g_i+ | measured fitness | best measured fitness or single-digit g-values | x1 | "
@@ -101,7 +99,7 @@ TEST(CocoRun, CountsConstraintsAndShowsThemAsDigits) {
         evaluations[0].feasible = false;
         evaluations[1].constraint_values = {0, -2};
       });
-  const CocoRun run = make_coco_run(trace, {.reference = 1.5, .constraints = 2});
+  const CocoRun run = make_coco_run(trace, make_problem(1.5, 2));
   EXPECT_EQ(run.dat,
             "1 1 +9.999999998e+09 +1.000000000e+10 80 +5.0000e-01\n"
             "2 2 +5.000000000e-01 +2.000000000e+00 00 +5.0000e-01\n"
@@ -123,16 +121,12 @@ TEST(CocoRun, ShowsUpToSixVariables) {
   EXPECT_THAT(make_coco_run(make(7), {}).dat, testing::EndsWith(" +2.000000000e+00\n"));
 }
 
-TEST(CocoScale, RefersToTheBestAndKeepsInfeasibleOnesAboveAll) {
+TEST(CocoInfeasible, IsAboveAllFeasibleObjectives) {
   ProblemRuns problem;
-  problem.constraints = 3;
-  EXPECT_EQ(make_coco_scale(problem).reference, 0);
-  EXPECT_EQ(make_coco_scale(problem).infeasible, 1e10);
+  EXPECT_EQ(calc_coco_infeasible(problem), 1e10);
   problem.best = -2;
   problem.worst = 3e11;
-  EXPECT_EQ(make_coco_scale(problem).reference, -2);
-  EXPECT_EQ(make_coco_scale(problem).infeasible, 1e12);
-  EXPECT_EQ(make_coco_scale(problem).constraints, 3u);
+  EXPECT_EQ(calc_coco_infeasible(problem), 1e12);
 }
 
 }  // namespace

@@ -1,8 +1,7 @@
-#include "report/formats/ioh.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "report/formats/formats.hpp"
 #include "report/hand_made_traces.hpp"
 
 namespace armwright {

@@ -18,7 +18,7 @@ using testing::HasSubstr;
 
 class FindRuns : public testing::Test {
  protected:
-  // cells/FOLDER/cell.json with this text, or the folder without the file.
+  // Writes cells/FOLDER/cell.json with this text, or the folder without the file.
   void make_cell(const std::string& folder, const std::string& text) {
     const auto cell = folder_ / ("cells/" + folder);
     std::filesystem::create_directories(cell);

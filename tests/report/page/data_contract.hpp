@@ -1,4 +1,4 @@
-// The keys of an interface in web/src/data.ts, which both sides of a page's data go by.
+// Reads the keys of an interface in web/src/data.ts, which defines the data of a page.
 #pragma once
 
 #include <nlohmann/json.hpp>

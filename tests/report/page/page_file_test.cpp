@@ -8,7 +8,6 @@
 #include "base/base64.hpp"
 #include "base/error.hpp"
 #include "base/hash.hpp"
-#include "report/page/page_assets.hpp"
 #include "report/page/page_data.hpp"
 
 namespace armwright {

@@ -1,7 +1,5 @@
-// The page of a reproduction has all keys of its type, the figures that there are results for, and
-// says what it lacks.
-
-#include "report/page/reproduction_page.hpp"
+// Checks the page of a reproduction: it has all keys of its type and the figures that have results,
+// and it says which ones are missing.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,6 +8,7 @@
 #include <set>
 
 #include "base/expect_error.hpp"
+#include "report/page/page_data.hpp"
 #include "report/reproduction/reproduction.hpp"
 #include "report/reproduction/small_reproduction.hpp"
 #include "study/run/run_observer.hpp"
@@ -119,7 +118,7 @@ TEST_F(ReproductionPageTest, SaysWhatIsMissing) {
   request.tables = {"A.8"};
   reproduce(request);
   {
-    // Planned, but interrupted before anything of it was computed.
+    // The reproduction is planned, but interrupted before its first result.
     request.tables = {"A.7", "A.8"};
     const ReproductionFolder folder(path(), plan_reproduction(request));
   }

@@ -1,6 +1,4 @@
-// Pages of tiny runs of every kind, and what their JSON promises.
-#include "report/page/run_page.hpp"
-
+// Makes pages of tiny runs of every kind and checks their JSON.
 #include <gmock/gmock.h>
 
 #include <fstream>
@@ -11,6 +9,7 @@
 #include "base/error.hpp"
 #include "optimizers/table/optimizer_table.hpp"
 #include "problems/config/config_files.hpp"
+#include "report/page/page_data.hpp"
 #include "report/page/unpack.hpp"
 #include "study/run_support.hpp"
 
@@ -22,7 +21,7 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::Not;
 
-// The fields of an interface in web/src/data.ts, those that it extends left out.
+// Returns the fields of an interface in web/src/data.ts, without those of its base.
 std::set<std::string> read_interface(const std::string& name) {
   std::ifstream file(std::string(ARMWRIGHT_CONFIGS) + "/../web/src/data.ts");
   const std::regex field("^  (\\w+)\\??: .*");
@@ -129,7 +128,7 @@ TEST_F(RunPage, HasWhatTheContractSaysForAnArm) {
     EXPECT_EQ(one["motions"].size(), 3u);
   }
   EXPECT_EQ(page["command"], "armwright optimize q1-complex --set physics.engine=articulated");
-  // What was simulated anew is what the run recorded.
+  // The simulation repeats the errors that the run recorded.
   EXPECT_EQ(page["notes"], json::array());
   EXPECT_EQ(page["arm"]["results"][0]["cases"], 6);
   EXPECT_EQ(page["test"]["designs"].size(), 3u);
@@ -150,7 +149,7 @@ TEST_F(RunPage, CommandsLeadToTheRunsProblem) {
   EXPECT_THAT(command, HasSubstr("--set task.load_kg=3"));
   EXPECT_THAT(command, HasSubstr("physics.engine"));
   EXPECT_THAT(command, HasSubstr("--test-set test/2 --cases 6"));
-  // Published numbers are of the arm without a load.
+  // The published numbers belong to the arm without a load.
   for (const json& row : page["arm"]["results"]) {
     EXPECT_TRUE(row["published_mean_m"].is_null());
   }
@@ -165,7 +164,7 @@ TEST_F(RunPage, CommandsNameMotorsAndPlants) {
   EXPECT_THAT(command, HasSubstr("motors.torque_per_mass_n_m_per_kg=50"));
   EXPECT_THAT(command, HasSubstr("perturbation.mass_relative=0.1"));
   EXPECT_THAT(command, HasSubstr("perturbation.load_kg=[1"));
-  // A preset is recorded as what it holds.
+  // The manifest records a preset as its settings.
   make_run(make_plan("q1-complex", "ga", 16, {"perturbation.preset=weak"}), "b");
   const std::string other = make_page("b")["arm"]["response"]["series"][0]["command"];
   EXPECT_THAT(other, HasSubstr("--set perturbation.effort_limit_sigma="));
@@ -177,11 +176,11 @@ TEST_F(RunPage, SweepsNoDesignWithASpeedOfItsOwn) {
            "a");
   const json page = make_page("a");
   const json& sweep = page["arm"]["sweep"];
-  ASSERT_EQ(sweep["series"].size(), 1u);  // the published one
+  ASSERT_EQ(sweep["series"].size(), 1u);  // the published design
   EXPECT_EQ(sweep["series"][0]["name"], page["arm"]["designs"][2]["name"]);
   EXPECT_THAT(sweep["command"].get<std::string>(), Not(HasSubstr("winner.toml")));
   EXPECT_THAT(notes_of(page), Contains(HasSubstr("leaves out winner.")));
-  // Its signals are at its speed, too.
+  // The signals have the winner's own speed too.
   const auto speed = page["arm"]["signals"]["speed_m_per_s"].get<double>();
   EXPECT_NE(speed, 1.5);
   EXPECT_EQ(speed, page["replays"][0]["task"]["speed_m_per_s"]);
@@ -229,7 +228,7 @@ TEST_F(RunPage, OfAFunctionHasNoArm) {
   EXPECT_EQ(page["training"]["index"].back(), page["training"]["cases"].back());
   EXPECT_LE(page["training"]["index"].size(), 400u);
   EXPECT_LE(page["training"]["incumbents"]["index"].size(), 24u);
-  // A function is the same on the test set.
+  // A function has the same value on the test set.
   EXPECT_EQ(page["training"]["incumbents"]["test"], page["training"]["incumbents"]["training"]);
 }
 
@@ -245,7 +244,7 @@ TEST_F(RunPage, OfSeveralObjectivesHasAFront) {
 TEST_F(RunPage, OfConstraintsCountsOnlyDesignsThatKeepThem) {
   make_run(make_plan("q2-torque", "ga", 24), "a");
   const json page = make_page("a");
-  EXPECT_THAT(notes_of(page), Contains(HasSubstr("keep all limits")));
+  EXPECT_THAT(notes_of(page), Contains(HasSubstr("meet all constraints")));
   const JournalContent journal = read("a");
   const json& training = page["training"];
   ASSERT_FALSE(training["index"].empty());
@@ -258,7 +257,8 @@ TEST_F(RunPage, OfConstraintsCountsOnlyDesignsThatKeepThem) {
   }
 }
 
-// One that any design meets, and one that none does: from the winner's test, not simulated again.
+// One requirement is met by every design, the other one by no design. The values come from the
+// winner's test and are not simulated again.
 TEST_F(RunPage, HasTheLightsOfWhatIsRequired) {
   make_run(make_plan("q1-complex", "ga", 24,
                      {"workspace.points=4",
@@ -287,7 +287,7 @@ TEST_F(RunPage, OfARunUnderWayReadsOnly) {
   for (const char* name : {"result.json", "winner.toml", "lock"}) {
     std::filesystem::remove(folder / name);
   }
-  // As a writer leaves it in the middle of a record.
+  // The journal ends in the middle of a record, as while another process writes.
   const auto size = std::filesystem::file_size(folder / "journal");
   std::filesystem::resize_file(folder / "journal", size - 3);
   const json page = make_page("a");
@@ -315,7 +315,7 @@ TEST_F(RunPage, OfAChangedRobotSimulatesNothing) {
   EXPECT_THAT(notes_of(page), Contains(HasSubstr("arm.urdf")));
   EXPECT_TRUE(page["replays"].empty());
   EXPECT_TRUE(page["arm"].is_null());
-  EXPECT_EQ(page["test"]["designs"].size(), 1u);  // what was recorded
+  EXPECT_EQ(page["test"]["designs"].size(), 1u);  // the recorded errors of the winner
   std::filesystem::remove(own / "arm.urdf");
   EXPECT_TRUE(make_page("a")["replays"].empty());
 }

@@ -1,5 +1,3 @@
-#include "report/page/study_page.hpp"
-
 #include <gmock/gmock.h>
 
 #include <cstdio>
@@ -12,6 +10,7 @@
 #include "base/expect_error.hpp"
 #include "base/text.hpp"
 #include "report/page/data_contract.hpp"
+#include "report/page/page_data.hpp"
 #include "report/page/study_parts.hpp"
 #include "study/compare/rerun.hpp"
 #include "study/compare/study_support.hpp"
@@ -129,7 +128,7 @@ TEST_F(StudyPage, HasReplaysOfTheBestDesigns) {
   const json& replay = page["replays"][0];
   EXPECT_EQ(list_keys(replay), read_contract("ReplaySet"));
   EXPECT_EQ(replay["robot"], 0);
-  ASSERT_EQ(replay["designs"].size(), 3u);  // two optimizers' and the start
+  ASSERT_EQ(replay["designs"].size(), 3u);  // of two optimizers, and the start
   const json& order = page["problems"][0]["order"];
   EXPECT_THAT(replay["designs"][0]["name"].get<std::string>(),
               HasSubstr(page["optimizers"][order[0].get<std::size_t>()]["label"]));
@@ -266,7 +265,7 @@ TEST_F(StudyPage, OfAStudyUnderWayShowsWhatIsThere) {
        {"min", "q1", "median", "q3", "max", "mean_rank", "anytime_area", "cases"}) {
     EXPECT_TRUE(none[key].is_null()) << key;
   }
-  // The other problem is as it was, and alone over problems.
+  // The other problem is complete. It is the only one in the comparison over problems.
   EXPECT_EQ(page["problems"][0]["pairs"].size(), whole.problems[0].pairs.size());
   EXPECT_EQ(page["problems"][0]["missing"], 0);
   EXPECT_THAT(page["overall"]["pairs"], IsEmpty());
@@ -346,7 +345,7 @@ TEST_F(StudyPage, OfAFrontWithManyPointsAtMostTwoHundredAreShown) {
   EXPECT_EQ(shown, 200);
 }
 
-// The words of a shell command, as a shell takes them.
+// Divides a shell command into words as a shell does.
 std::vector<std::string> read_words(const std::string& command) {
   const std::string script =
       "set -- " + command + "; for word; do printf '%s\\037' \"$word\"; done";

@@ -1,5 +1,5 @@
-// A reproduction's folder: going on with it, growing it, and what is refused. And what is shipped:
-// the plan of the thesis.
+// Checks a reproduction's folder: how it continues, how it grows, and what it refuses. Also checks
+// the shipped plan of the thesis.
 
 #include "report/reproduction/reproduction.hpp"
 
@@ -20,7 +20,7 @@ using testing::IsEmpty;
 
 constexpr std::size_t kLimit_bytes = std::size_t{1} << 24;
 
-// Asks for a stop the moment it hears of a phase for the `at`-th time.
+// Requests a stop when it hears of a phase for the `at`-th time.
 class Interrupter final : public RunObserver {
  public:
   Interrupter(StopSignal& stop, int at) : stop_(stop), at_(at) {}
@@ -83,7 +83,7 @@ TEST(Reproduction, AnInterruptedOneEndsWithTheBytesOfAnUninterruptedOne) {
   for (bool done = false; !done; ++interruptions) {
     ASSERT_LT(interruptions, 1000);
     StopSignal stop;
-    // Later each time: else a run would be cut at the same place for ever.
+    // Each stop comes later. Otherwise every attempt would end at the same place.
     Interrupter interrupter(stop, 2 + interruptions);
     done = reproduce(small.request(), resumed, stop, interrupter).has_value();
     cut_training = cut_training || (!done && interrupter.heard_training());
@@ -120,7 +120,7 @@ TEST(Reproduction, TablesRestrictItAndLaterItGrows) {
   ReproductionRequest request = small.request();
   request.tables = {"A.8"};
   const ReproductionPlan plan = plan_reproduction(request);
-  EXPECT_THAT(get_labels(plan), ElementsAre("A.8"));  // the sweep is of A.10
+  EXPECT_THAT(get_labels(plan), ElementsAre("A.8"));  // the sweep needs A.10
   EXPECT_THAT(plan.runs, IsEmpty());
   const auto path = small.path() / "reproduction";
   StopSignal stop;
@@ -132,7 +132,7 @@ TEST(Reproduction, TablesRestrictItAndLaterItGrows) {
   const ReproductionRecord record = load_reproduction(path);
   EXPECT_THAT(record.planned, ElementsAre("A.7", "A.8"));
   EXPECT_EQ(record.results.size(), 2);
-  // In whatever order: the same bytes.
+  // Every order gives the same bytes.
   const auto at_once = small.path() / "at-once";
   ASSERT_TRUE(reproduce(request, at_once, stop, observer));
   EXPECT_EQ(read(at_once / "reproduction.json"), read(path / "reproduction.json"));

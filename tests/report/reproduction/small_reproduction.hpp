@@ -1,4 +1,4 @@
-// A reproduction that takes a second: one run of two generations, two test cases each.
+// A reproduction that takes one second: one run of two generations, and two test cases per part.
 #pragma once
 
 #include <filesystem>
@@ -57,7 +57,7 @@ replay = "ramp"
 
   const std::filesystem::path& path() const { return folder_.path(); }
 
-  // Everything on two cases.
+  // All parts have two cases.
   ReproductionRequest request() const {
     ReproductionRequest request;
     request.config = (path() / "small.toml").string();

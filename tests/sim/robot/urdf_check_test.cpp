@@ -222,8 +222,8 @@ INSTANTIATE_TEST_SUITE_P(
              "<link name=\"tool\"/><joint name=\"x\" type=\"fixed\"><parent link=\"arm\"/><child "
              "link=\"tool\"/></joint>",
              51,
-             "link 'tool' is the child of the joints 'tool_joint' and 'x'; a link hangs on one "
-             "joint"},
+             "link 'tool' is the child of the joints 'tool_joint' and 'x'; a link can have "
+             "only one parent joint"},
         Trap{"cycle_of_all", "<link name=\"tool\"/>",
              "<link name=\"tool\"/><joint name=\"x\" type=\"fixed\"><parent link=\"tool\"/><child "
              "link=\"world\"/></joint>",
@@ -366,8 +366,8 @@ TEST(UrdfText, RefusesOtherRoots) {
   EXPECT_EQ(message_of("\n<sdf version=\"1.6\"/>"),
             "robot.urdf:2: the file: begins with <sdf>; a URDF's root element is <robot>");
   EXPECT_THAT(message_of("<robot name=\"r\">\n</link></robot>"),
-              HasSubstr("robot.urdf:1: is not well-formed XML: an element is closed by another "
-                        "name, or not at all"));
+              HasSubstr("robot.urdf:1: is not well-formed XML: an element has a closing tag of "
+                        "another name, or none"));
 }
 
 // Errors that are refused in a revolute joint are also refused in a prismatic one.

@@ -190,12 +190,12 @@ TEST(StudyTargets, MistakesAreNamed) {
   expect("", "[[target]]\nlabel = 'a'\nvalue = 1\nproblems = ['spere']\n",
          "target 'a': unknown problem 'spere'");
   expect("", "[[target]]\nlabel = 'a'\nfailures = 0\n",
-         "target 'a' counts failing test cases, and sphere is a function");
+         "target 'a' counts failing test cases, but sphere is a function");
   expect("", "[[target]]\nlabel = 'a'\nfailures = -1\n", "target[0].failures is -1");
   expect("reference = 'gaa'\n", "[[target]]\nlabel = 'a'\nvalue = 1\n",
          "reference: unknown optimizer 'gaa'");
-  expect("reference = 'ga'\n", "", "and the study has no [[target]]");
-  expect("value = 'failures'\n", "", "and sphere is a function");
+  expect("reference = 'ga'\n", "", "but the study has no [[target]]");
+  expect("value = 'failures'\n", "", "but sphere is a function");
   expect("value = 'failure'\n", "",
          "mine.toml:1: unknown value 'failure'; did you mean 'failures'?");
 }

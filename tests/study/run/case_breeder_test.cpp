@@ -201,7 +201,7 @@ TEST_F(RunTest, CoevolutionNeedsGenerationsAndRoomForChildren) {
   plan = make_small_plan("ga");
   plan.schedule = {.kind = Schedule::Kind::coevolution, .cases = 3};
   EXPECT_THAT(usage_error_of([&] { run(plan, "a"); }),
-              HasSubstr("breeds 3 training cases; it must be at least 4"));
+              HasSubstr("breeds 3 training cases; there must be at least 4"));
 }
 
 }  // namespace

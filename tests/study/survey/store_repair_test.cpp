@@ -141,7 +141,7 @@ TEST_F(StoreRepairTest, AResultThatIsNotTheJournalsIsNamed) {
   EXPECT_FALSE(survey_store(temporary_ / "hurt").is_damaged());
   replace("result.json", "\"failed_cases\": 0", "\"failed_cases\": 1");
   EXPECT_TRUE(names(survey_store(temporary_ / "hurt").runs[0], "result.json",
-                    "on the validation set is not in the journal"));
+                    "on the validation set are not in the journal"));
 }
 
 TEST_F(StoreRepairTest, AJournalThatLostItsEndIsGoneOnWith) {

@@ -1,20 +1,26 @@
-#include "report/deliverables/line_figure.hpp"
+#include "report/deliverables/datasheet_parts.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "report/formats/html_text.hpp"
+#include "report/formats/export_text.hpp"
 
 namespace armwright {
 namespace {
 
-// In the SVG's own units; the sheet's style says how large it is printed.
+std::string make_table_cell(const char* element, const HtmlCell& cell) {
+  const std::string text = escape_html(cell.text);
+  return fmt::format("<{0}{1} title=\"{2}\">{2}</{0}>", element,
+                     cell.style.empty() ? "" : fmt::format(" class=\"{}\"", cell.style), text);
+}
+
+// In the units of the SVG. The style sheet decides the printed size.
 constexpr double kWidth = 360, kHeight = 170;
 constexpr double kLeft = 42, kRight = 10, kTop = 20, kBottom = 34;
 
-// From a value to a place along an axis.
+// Maps values to places along an axis, in the units of the SVG.
 struct Axis {
   double low = 0, high = 1;
   bool logarithmic = false;
@@ -36,7 +42,7 @@ std::vector<double> make_decade_ticks(double low, double high) {
       }
     }
   }
-  // Over many decades the decades alone.
+  // Over many decades only the decades have ticks.
   constexpr std::size_t kMost = 9;
   if (ticks.size() > kMost) {
     std::erase_if(ticks, [](double tick) {
@@ -53,8 +59,39 @@ std::string make_text(double x, double y, const char* anchor, std::string_view t
 
 }  // namespace
 
+std::string make_table(std::span<const std::string> heads,
+                       std::span<const std::vector<HtmlCell>> rows) {
+  std::string html = "<table>\n<tr>";
+  for (const std::string& head : heads) {
+    html += make_table_cell("th", {head, ""});
+  }
+  html += "</tr>\n";
+  for (const std::vector<HtmlCell>& row : rows) {
+    html += "<tr>";
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      html += make_table_cell(i == 0 ? "th" : "td", row[i]);
+    }
+    html += "</tr>\n";
+  }
+  return html + "</table>\n";
+}
+
+std::string make_fact_list(std::span<const std::pair<std::string, std::string>> facts) {
+  std::string html = "<dl>\n";
+  for (const auto& [label, text] : facts) {
+    if (!text.empty()) {
+      html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escape_html(label), escape_html(text));
+    }
+  }
+  return html + "</dl>\n";
+}
+
+std::string make_section(std::string_view title, std::string_view content) {
+  return fmt::format("<section>\n<h2>{}</h2>\n{}</section>\n", escape_html(title), content);
+}
+
 std::vector<double> make_ticks(double largest) {
-  constexpr double kIntervals = 5;  // about as many
+  constexpr double kIntervals = 5;  // the wanted number, approximately
   const double rough = largest / kIntervals;
   const double decade = std::pow(10, std::floor(std::log10(rough)));
   const double step = decade * (rough / decade < 1.5   ? 1

@@ -1,4 +1,4 @@
-#include "report/deliverables/yaml_text.hpp"
+#include "report/formats/export_text.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 namespace armwright {
 namespace {
 
-// The character at `at`, which is moved behind it. The text is UTF-8.
+// Returns the character at `at` in a UTF-8 text and moves `at` behind it.
 char32_t take_character(std::string_view text, std::size_t& at) {
   const auto first = static_cast<unsigned char>(text[at++]);
   const int more = first < 0x80 ? 0 : first < 0xe0 ? 1 : first < 0xf0 ? 2 : 3;
@@ -21,6 +21,29 @@ char32_t take_character(std::string_view text, std::size_t& at) {
 }
 
 }  // namespace
+
+std::string escape_html(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      default:
+        escaped += c;
+    }
+  }
+  return escaped;
+}
 
 std::string escape_yaml(std::string_view text) {
   const std::string printable = sanitize(text);  // whole UTF-8

@@ -1,8 +1,7 @@
+#include "report/deliverables/datasheet_parts.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include "report/deliverables/html_table.hpp"
-#include "report/deliverables/line_figure.hpp"
 
 namespace armwright {
 namespace {
@@ -23,7 +22,7 @@ TEST(HtmlTable, EscapesEveryTextInElementsAndAttributes) {
 }
 
 TEST(HtmlTable, LeavesOutFactsWithoutText) {
-  const std::vector<HtmlFact> facts = {{"a", ""}, {"b<", "c&"}};
+  const std::vector<std::pair<std::string, std::string>> facts = {{"a", ""}, {"b<", "c&"}};
   EXPECT_EQ(make_fact_list(facts), "<dl>\n<dt>b&lt;</dt><dd>c&amp;</dd>\n</dl>\n");
 }
 
@@ -33,7 +32,7 @@ TEST(LineFigure, TicksAreRoundNumbersUpToTheLargest) {
   EXPECT_THAT(make_ticks(9.9), ElementsAre(0, 2, 4, 6, 8));
 }
 
-// Left 42, right 350, top 20, bottom 136.
+// The figure's area reaches from 42 to 350 and from 20 (top) to 136 (bottom).
 TEST(LineFigure, ReachesFromCornerToCorner) {
   const LineFigure linear{"t<", "x", "y", {{0, 0}, {5, 1}, {10, 4}}};
   const std::string svg = make_svg(linear);

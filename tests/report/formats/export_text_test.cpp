@@ -1,4 +1,4 @@
-#include "report/deliverables/yaml_text.hpp"
+#include "report/formats/export_text.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ TEST(YamlText, QuotesWhatIsNoPlainAsciiByNumber) {
   EXPECT_EQ(quote_yaml("😀"), R"("\U0001f600")");
   EXPECT_EQ(quote_yaml(""), R"("")");
   EXPECT_EQ(escape_yaml("a\"b"), R"(a\"b)");
-  EXPECT_EQ(escape_yaml("a\u2028b\nc\x85"), "a?b?c?");  // what is not printable
+  EXPECT_EQ(escape_yaml("a\u2028b\nc\x85"), "a?b?c?");  // characters that are not printable
 }
 
 TEST(YamlText, NumbersAreNeverIntegersAndLoseNoDigit) {
