@@ -1,14 +1,15 @@
-// How many jobs a batch should have.
+// How many jobs a chunk should have. A chunk is the part of a batch that one thread or worker gets
+// at once, as one call of Problem::simulate() or PhysicsEngine::simulate().
 #pragma once
 
 #include <cstddef>
 
 namespace armwright {
 
-// The size that suits a worker on batches.
+// The sizes of chunks that are simulated fastest, in jobs.
 struct BatchSize {
   std::size_t granularity = 1;  // a multiple of it leaves no SIMD lane idle
-  std::size_t largest = 1;      // larger batches are not faster; a multiple of the granularity
+  std::size_t largest = 1;      // larger chunks are not faster; a multiple of the granularity
 };
 
 // Returns the size of the chunks into which threads divide their jobs, at least 1: the largest

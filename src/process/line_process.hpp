@@ -42,7 +42,8 @@ class LineProcess {
   LineProcess(const LineProcess&) = delete;
   LineProcess& operator=(const LineProcess&) = delete;
 
-  // Limits the resident memory to its present value and `mib` more.
+  // Limits the resident memory of the program to its present value plus `mib` MiB. (A ChildProcess
+  // limits private writable memory instead.)
   void limit_memory(double mib);
 
   // Both throw LineProcessFailure. `silence_s` is the longest time to wait for the child.

@@ -59,7 +59,7 @@ struct ChildSettings {
   int socket = -1;
   int output = -1;  // where its output goes; -1: the standard error
   std::optional<std::int64_t> data_bytes_at_start = {};
-  double memory_mib = 0;  // that it may allocate in addition
+  double memory_mib = 0;  // ProcessLimits::memory_mib
 };
 
 // Does all the work of a child between fork() and its end.

@@ -15,8 +15,10 @@ inline constexpr double kMib = 1024.0 * 1024.0;  // bytes per MiB
 
 // Limits of a child process. A process that exceeds one is killed.
 struct ProcessLimits {
-  double silence_s = 60;     // longest time between two requests, without the time of the answers
-  double memory_mib = 4096;  // memory that it may allocate in addition to that at its start
+  double silence_s = 60;  // longest time between two requests, without the time of the answers
+  // Growth of ProcessMemory::data_bytes since the start of the child, in MiB. A LineProcess limits
+  // resident_bytes instead.
+  double memory_mib = 4096;
   bool are_options = false;  // both values are options of the user, and messages name them
 };
 

@@ -148,7 +148,7 @@ TEST_F(CliMatrix, MergeNamesWhatIsMissingAndTakesItFromOtherFolders) {
   const Outcome missing = run({"merge", "here", "--quiet"});
   EXPECT_EQ(missing.exit_code, 3);
   EXPECT_THAT(missing.err, HasSubstr("11 of 24 cells have not ended: sphere/random/r04, "));
-  EXPECT_THAT(missing.err, HasSubstr(" and 1 more. To run them here:"));
+  EXPECT_THAT(missing.err, HasSubstr(" and 1 more. To run them on this machine:"));
   EXPECT_THAT(missing.out, HasSubstr("11 of 24 cells have not ended"));
   const Outcome merged = run({"merge", "here", "there"});
   EXPECT_EQ(merged.exit_code, 0) << merged.err;

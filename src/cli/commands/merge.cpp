@@ -21,13 +21,14 @@ namespace armwright {
 namespace {
 
 constexpr const char* kMergeExamples = R"(Examples:
-  armwright merge results/q1                          # when all jobs have ended: statistics, tables, verdict
+  armwright merge results/q1                          # after all jobs have ended: writes statistics, tables, verdict
   armwright merge results/q1 /mnt/a/q1 /mnt/b/q1      # first copies cells from machines without a shared folder
   armwright merge results/q1 --json
 
-The tables are the same, byte for byte, as those of a study that ran on this machine only. Cells that have not ended are
-listed and count as runs that found nothing (exit code 3); run them, and merge again. Only cells of the same plan are
-copied. If two folders hold different results of one cell, nothing is copied. See docs/clusters.md.)";
+The tables are the same, byte for byte, as if all cells had run on this machine. The command lists the cells that have not
+ended. It counts them as runs without a result and ends with exit code 3. Run these cells and merge again. The command
+copies only cells of the same plan. If two folders hold different results of one cell, it copies nothing. See
+docs/clusters.md.)";
 
 struct MergeOptions {
   std::string study;
@@ -57,14 +58,16 @@ void tell_missing(const RecordedStudy& study, const std::string& program) {
   }
   const std::string more =
       count > names.size() ? fmt::format(" and {} more", count - names.size()) : "";
-  write_message(fmt::format("{} of {} cells have not ended: {}{}. To run them here:\n{}", count,
-                            list_cells(study.plan).size(), join(names, ", "), more,
+  write_message(fmt::format("{} of {} cells have not ended: {}{}. To run them on this machine:\n{}",
+                            count, list_cells(study.plan).size(), join(names, ", "), more,
                             sanitize(quote_command(std::vector<std::string>{
                                 program, "compare", (study.folder / "study.toml").string(), "--out",
                                 study.folder.string()}))));
   if (count == list_cells(study.plan).size()) {
-    throw Error(ErrorKind::usage, fmt::format("{}: no cell has ended, so there is nothing to merge",
-                                              sanitize(study.folder.string())));
+    throw Error(ErrorKind::usage,
+                fmt::format("{}: no cell has ended, so there is nothing to merge; run the cells, "
+                            "and merge again",
+                            sanitize(study.folder.string())));
   }
 }
 

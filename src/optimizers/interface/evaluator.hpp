@@ -2,6 +2,11 @@
 // access to a problem. A run implements it (study/run/run_evaluator.hpp): it counts the budget,
 // moves points into the bounds, chooses the training cases, writes the journal and remembers the
 // best feasible point. An optimizer returns no result; it may recommend points.
+//
+// A point is a decision vector: one number per decision variable, in the variable's own unit and
+// not scaled to 0..1. In a run, a coordinate outside its bounds is replaced by the nearest bound,
+// and NaN by the variable's start value. A point with another number of coordinates is an
+// OptimizerFailure.
 #pragma once
 
 #include <cstdint>
@@ -14,18 +19,22 @@
 
 namespace armwright {
 
-// The answer to one point. All numbers are finite: a failed evaluation has the problem's penalty as
-// objectives, and its status.
+// The evaluation of one point as an optimizer gets it. All numbers are finite. An evaluation
+// without objectives (Evaluation::objectives is empty) is called failed here.
 struct Score {
+  // One number per objective. A failed evaluation has the problem's penalty_objectives() here.
   std::vector<double> objectives;
-  // Empty for a failed evaluation: count every constraint as violated by an infinite amount.
+  // One number g per constraint, met if g <= 0. Empty for a failed evaluation. The optimizer must
+  // then treat every constraint as violated, by more than for any other point.
   std::vector<double> constraint_values;
+  // Empty if the evaluation failed or was abandoned, if the problem has no residuals, and if the
+  // optimizer declares no use of residuals.
   std::vector<double> residuals;
-  // Derivatives of the residuals, if the optimizer asked for them: one row per residual, one column
-  // per decision variable, row-major. Empty for a failed evaluation.
+  // Derivatives of the residuals: one row per residual, one column per decision variable,
+  // row-major. Empty for evaluate() and for a failed evaluation.
   std::vector<double> jacobian;
   EvaluationStatus status = EvaluationStatus::ok;
-  bool clipped = false;  // the point lay outside the bounds; the nearest point inside was evaluated
+  bool clipped = false;  // the point was moved into the bounds before it was evaluated
 };
 
 // Returns the price of one evaluation with exact derivatives, in evaluations: 1 for the values, and
@@ -34,33 +43,40 @@ constexpr std::int64_t calc_jacobian_charge(std::size_t variables) {
   return 1 + static_cast<std::int64_t>((variables + 3) / 4);
 }
 
+// An evaluator answers the requests of one optimizer. It is not thread-safe: one thread at a time
+// may call it. It distributes the points of a batch over threads by itself.
 class Evaluator {
  public:
   virtual ~Evaluator() = default;
   virtual const ProblemDescription& problem() const = 0;
 
-  // Evaluates the points in order and returns one score per point. Returns fewer scores if the
-  // budget ends, the time limit is reached or the user stops the run within the batch. From then on
-  // stopped() is true, and every further call returns an empty vector.
+  // Evaluates the points and returns one score per point, in the same order. Returns only the first
+  // scores if the budget ends, the time limit is reached or the user stops the run within the
+  // batch. From then on stopped() is true, and every further call returns an empty vector. Blocks
+  // until the points are evaluated.
   virtual std::vector<Score> evaluate(std::span<const std::vector<double>> points) = 0;
-  // Does the same with the exact derivatives of the residuals. Each point costs
-  // calc_jacobian_charge() evaluations; the budget ends where less is left. Throws std::logic_error
-  // if the problem has no Jacobian or this evaluator does not pass it on.
+  // Does the same as evaluate(), and also fills Score::jacobian. Each point is charged as
+  // calc_jacobian_charge() evaluations. The batch is cut before the first point that the rest of
+  // the budget does not cover. Throws std::logic_error if the problem has no Jacobian, or if this
+  // class of evaluator does not offer derivatives.
   virtual std::vector<Score> evaluate_with_jacobian(
       std::span<const std::vector<double>> /*points*/) {
     throw std::logic_error("this evaluator has no derivatives to give");
   }
+  // Returns true if no further point will be evaluated. The optimizer must then return.
   virtual bool stopped() const = 0;
 
-  // Returns how many more candidates the budget allows, at the current number of training cases per
-  // candidate.
+  // Returns how many more points evaluate() can evaluate with the rest of the budget, if each is
+  // simulated on all training cases that the schedule gives to one candidate. With racing there may
+  // be more.
   virtual std::int64_t remaining() const = 0;
 
-  // An optimizer with generations calls this before each generation, also before the first. A
-  // `fresh` schedule goes on to the next training cases here.
+  // An optimizer with generations calls this before each generation, also before the first. In a
+  // run, the schedules `fresh` and `coevolution` change the training cases at this call.
   virtual void begin_generation() = 0;
-  // Recommends a point as a candidate for the winner, besides the best evaluated ones; for example
-  // the mean of a distribution.
+  // Recommends a point as a candidate for the winner, for example the mean of a distribution. The
+  // run already knows the evaluated points. The call simulates nothing and costs no budget. A run
+  // ignores it once stopped() is true.
   virtual void recommend(std::span<const double> x) = 0;
 };
 

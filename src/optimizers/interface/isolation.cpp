@@ -222,7 +222,7 @@ void minimize_isolated(const std::string& name, const std::function<void(Evaluat
   }
 }
 
-std::vector<OptionSpec> make_watch_options() {
+std::vector<OptionSpec> make_isolation_options() {
   const ProcessLimits limits;
   return {{.name = "silence_s",
            .description = "longest time in seconds between two questions",
@@ -231,7 +231,9 @@ std::vector<OptionSpec> make_watch_options() {
            .upper = 1e6,
            .changes_result = false},
           {.name = "memory_mib",
-           .description = "memory in MiB that its process may take beyond what it began with",
+           .description =
+               "memory in MiB that its process may take beyond what it began with: of a library "
+               "private writable memory, of a program resident memory",
            .fallback = limits.memory_mib,
            .lower = 1,
            .upper = 1e9,

@@ -23,6 +23,6 @@ void minimize_isolated(const std::string& name, const std::function<void(Evaluat
 
 // Returns the options silence_s, memory_mib and log of optimizers that run in a process of their
 // own. They change no result: a run may be resumed with other values.
-std::vector<OptionSpec> make_watch_options();
+std::vector<OptionSpec> make_isolation_options();
 
 }  // namespace armwright

@@ -110,13 +110,13 @@ std::vector<OptionSpec> make_options(const NloptAlgorithm& algorithm) {
          .choices = choices});
   }
   if (takes_steps) {
-    options.push_back({.name = "initial_step",
-                       .description =
-                           "first step in every coordinate, as a share of the box; 0: NLopt derives "
-                           "it from start and bounds",
-                       .fallback = 0.05,
-                       .lower = 0,
-                       .upper = 0.49});  // BOBYQA wants two steps within the box
+    options.push_back(
+        {.name = "initial_step",
+         .description = "first step in every coordinate, as a share of the box; 0: NLopt derives "
+                        "it from start and bounds",
+         .fallback = 0.05,
+         .lower = 0,
+         .upper = 0.49});  // BOBYQA wants two steps within the box
   }
   if (algorithm.kind != NloptKind::covering) {
     const double xtol_rel = descends ? 1e-8 : takes_steps ? 1e-4 : 0.0;
@@ -134,19 +134,19 @@ std::vector<OptionSpec> make_options(const NloptAlgorithm& algorithm) {
                        .upper = 1});
   }
   if (algorithm.kind == NloptKind::drawing || algorithm.kind == NloptKind::starting) {
-    options.push_back(
-        {.name = "population",
-         .description = algorithm.kind == NloptKind::drawing
-                            ? "number of individuals; 0: NLopt chooses it"
-                            : "number of points drawn at a time; 0: NLopt chooses it",
-         .fallback = std::int64_t{0},
-         .lower = 0,
-         .upper = 100000});
+    options.push_back({.name = "population",
+                       .description = algorithm.kind == NloptKind::drawing
+                                          ? "number of individuals; 0: NLopt chooses it"
+                                          : "number of points drawn at a time; 0: NLopt chooses it",
+                       .fallback = std::int64_t{0},
+                       .lower = 0,
+                       .upper = 100000});
   }
   if (descends) {
     options.push_back({.name = "restarts",
-                       .description = "largest number of restarts at the best point seen, each with half "
-                                      "the step; a restart without an improvement is the last",
+                       .description =
+                           "largest number of restarts at the best point seen, each with half "
+                           "the step; a restart without an improvement is the last",
                        .fallback = algorithm.restarts,
                        .lower = 0,
                        .upper = 1000});

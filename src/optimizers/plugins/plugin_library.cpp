@@ -32,7 +32,7 @@ std::vector<OptionSpec> make_own_options() {
                       "watched nor logged, and a crash ends everything",
        .fallback = true,
        .changes_result = false}};
-  std::ranges::move(make_watch_options(), std::back_inserter(options));
+  std::ranges::move(make_isolation_options(), std::back_inserter(options));
   return options;
 }
 

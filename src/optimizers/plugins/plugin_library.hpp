@@ -14,8 +14,8 @@
 namespace armwright {
 
 // Returns a row named `name` (default: the path). Its options are those of the plugin, isolate, and
-// make_watch_options(). Throws Error{bad_data}, with the reason and the remedy, if the file is no
-// usable plugin.
+// make_isolation_options(). Throws Error{bad_data}, with the reason and the remedy, if the file is
+// no usable plugin.
 OptimizerRow load_library_plugin(const std::filesystem::path& file, const std::string& name = "",
                                  const ProcessLimits& loading = {.silence_s = 20});
 

@@ -30,7 +30,7 @@ constexpr int kMostNotes = 100000;  // recommendations without a question betwee
 
 std::vector<std::string> watch_option_names() {
   std::vector<std::string> names;
-  std::ranges::transform(make_watch_options(), std::back_inserter(names), &OptionSpec::name);
+  std::ranges::transform(make_isolation_options(), std::back_inserter(names), &OptionSpec::name);
   return names;
 }
 
@@ -237,7 +237,7 @@ std::map<std::string, std::string> hash_files(const std::vector<std::string>& wo
 }
 
 void check_option_names(const OptimizerRow& row) {
-  for (const OptionSpec& spec : make_watch_options()) {
+  for (const OptionSpec& spec : make_isolation_options()) {
     if (std::ranges::count(row.options, spec.name, &OptionSpec::name) > 0) {
       throw ProtocolError(
           fmt::format("describes an option '{}'; every process has one of that name: {}", spec.name,
@@ -258,7 +258,7 @@ OptimizerRow load_process_plugin(std::string_view command, double loading_s) {
     check_option_names(row);
     child.send(make_quit(), kFarewell_s);
     child.finish(kFarewell_s);
-    std::ranges::move(make_watch_options(), std::back_inserter(row.options));
+    std::ranges::move(make_isolation_options(), std::back_inserter(row.options));
     row.isolated = "always";
     row.input_hashes = hash_files(words);
     row.make = [=, name = row.name, capabilities = row.capabilities](

@@ -64,11 +64,12 @@ const SettingTable kSweepSettings{.key = "sweep",
 
 constexpr Range kAboveZero{.lower = 0, .lower_open = true};
 const Setting<double> kWinnerError{"error_m", kAboveZero, kNoDefault,
-                                   "error of the winner that the source reports, for comparison"};
+                                   "error of the winner in the published source, for comparison"};
 const Setting<double> kWinnerTorque{"total_torque_n_m", kAboveZero, kNoDefault,
                                     "total torque of that winner"};
 const Setting<std::string> kWinnerDesign{"design", kNoDefault, "design file of that winner"};
-const Setting<std::string> kWinnerWhere{"where", "", "place in the source that reports it"};
+const Setting<std::string> kWinnerWhere{"where", "",
+                                        "table or page of the source with these numbers"};
 const SettingTable kWinnerSettings{
     .key = "published", .settings = {&kWinnerError, &kWinnerTorque, &kWinnerDesign, &kWinnerWhere}};
 
@@ -153,13 +154,15 @@ std::string read_name(const ConfigTable& table, const std::filesystem::path& pat
   }
   if (sanitize(name) != name) {
     throw Error(ErrorKind::usage,
-                fmt::format("{}: a problem is named after its file, and this name is not printable "
-                            "UTF-8; rename the file",
+                fmt::format("{}: the problem's name is not printable UTF-8. It is the file's name, "
+                            "or the key 'name', where {{robot}} stands for the name of the URDF "
+                            "file; rename the file that gives the name, or change the key",
                             sanitize(path.string())));
   }
   if (name.empty() || name.find('/') != std::string::npos || name.front() == '.') {
     table.refuse(kProblemName,
-                 "it names folders: it must not be empty, begin with '.' or hold '/'");
+                 "folders are named after it, so it must not be empty, begin with '.' or contain "
+                 "'/'");
   }
   return name;
 }

@@ -8,7 +8,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "sim/controllers/laws.hpp"
+#include "sim/controllers/law_table.hpp"
 #include "sim/kinematics/kinematics.hpp"
 
 namespace armwright {

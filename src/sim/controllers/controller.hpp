@@ -1,7 +1,7 @@
 // Joint controllers behind one interface, and the explicit table of them, which is made from the
-// laws of controllers/laws.hpp. Once per control period, a controller maps setpoint and measurement
-// to an effort that is clamped to the joint's limits. It reads no clock and no file. The only thing
-// that it knows about its joint is the kind.
+// laws of controllers/law_table.hpp. Once per control period, a controller maps setpoint and
+// measurement to an effort that is clamped to the joint's limits. It reads no clock and no file.
+// The only thing that it knows about its joint is the kind.
 //
 // The keys of gains name the units of a revolute joint: N m and rad. For a prismatic joint read N
 // for N m and m for rad: gains in N/m, N/(m s) and N s/m.

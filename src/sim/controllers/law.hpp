@@ -1,6 +1,6 @@
-// The parts of a control law. A law is a struct in a file of this folder and a row of laws.hpp. The
-// same code runs on one number (TrackingLoop), on packs of SIMD lanes and on numbers that carry
-// derivatives. A law has these members:
+// The parts of a control law. A law is a struct in a file of this folder and a row of
+// law_table.hpp. The same code runs on one number (TrackingLoop), on packs of SIMD lanes and on
+// numbers that carry derivatives. A law has these members:
 //   kName, kSummary, kFormula    texts
 //   kGains                       its design variables, an array of Gain
 //   kStates                      count of numbers that it keeps from step to step, all 0 at first

@@ -1,9 +1,15 @@
 // One simulation: the job that an engine gets, and the result that it returns. A job is a design on
 // a test case.
 //
-// Point k's error is the largest |tip - target| at the ends of the control periods from t_m to the
-// end of segment k. A case's error is the mean over its points. The first point does not count
-// unless the task has `count_first_point`.
+// The target moves to point k in segment k (target_table.hpp), arrives t_m seconds after the start
+// of the segment, and rests there until the segment ends. The error of point k is the largest
+// distance |tip - target| (m) at the ends of the control periods from t_m to the end of the
+// segment. If the task has tool points, the distance is the root mean square over the tool points.
+// The error of a case is the mean over its points. The first point counts only if the task has
+// `count_first_point`.
+//
+// All types are plain data without locks. Threads may read one object at the same time; only one
+// thread may use an object that is being written.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,43 +24,61 @@
 
 namespace armwright {
 
+// Selects the optional parts of a TrackingResult.
 struct RecordingOptions {
-  bool error_series = false;  // |tip - target| at the end of every control period
-  bool trajectory = false;
-  bool motion = false;  // only what response.hpp needs: much less than a trajectory
+  bool error_series = false;  // fills TrackingResult::error_series_m
+  bool trajectory = false;    // fills TrackingResult::trajectory
+  bool motion = false;        // fills tips_m and joint_positions: less memory than a trajectory
 
   bool any() const { return error_series || trajectory || motion; }
 };
 
-// Joint positions are in rad or m, efforts in N m or N.
+// One design to simulate on one test case. The job owns none of the objects that it points to. The
+// caller keeps them alive and unchanged until PhysicsEngine::simulate() has returned; the result
+// refers to none of them. Jobs may share these objects.
 struct TrackingJob {
-  const ArmDesign* design = nullptr;
-  const TargetTable* targets = nullptr;
-  // For training only. A case is cut off at the first point whose error exceeds this: that point
-  // and all later ones get this error.
+  const ArmDesign* design = nullptr;     // must be set
+  const TargetTable* targets = nullptr;  // must be set
+  // A finite value is for training only. The simulation is cut off as soon as the error of a point
+  // exceeds this value (m). That point and all later points then get this value as their error.
   double cutoff_m = std::numeric_limits<double>::infinity();
   RecordingOptions recording;
   // The simulation is abandoned after the first point at which the case's error is certain to
-  // exceed this value: the sum of the errors so far, divided by the number of all points that
-  // count, exceeds it already. After the last point it is not abandoned.
+  // exceed this value (m). This is certain if the sum of the errors so far, divided by the number
+  // of all points that count, exceeds the value. After the last point no simulation is abandoned.
   double abandon_above_m = std::numeric_limits<double>::infinity();
-  // Not null if the design or the case changes the arm itself. The setup must have the same task
-  // (except speed and load) and the same number of joints as the batch's.
+  // The setup of this job, if the design or the case changes the arm itself. Null: the job uses the
+  // setup that simulate() gets for all jobs. Both setups must have the same number of joints and
+  // the same task, except for its speed and load.
   const TrackingSetup* setup = nullptr;
-  const PlantVariation* variation = nullptr;  // null: the nominal plant
+  // Friction, sensor errors and torque ripple. Null: the plant has none of them.
+  const PlantVariation* variation = nullptr;
 
-  // Returns the setup to simulate the job with: its own one, or else that of the batch.
+  // Returns the setup of the job, or `of_batch` if the job has none.
   const TrackingSetup& choose_setup(const TrackingSetup& of_batch) const {
     return setup != nullptr ? *setup : of_batch;
   }
 };
 
+// Says how a simulation ended. TrackingResult::mean_error_m depends on it:
+//
+//   status       meaning                                       mean_error_m
+//   ok           simulated to the end of the case              the error of the case
+//   cut_off      the error of a point exceeded `cutoff_m`      the error of the case, where the
+//                                                              missing points have `cutoff_m`
+//   diverged     the numbers left the range that the engine    as for cut_off if `cutoff_m` is
+//                accepts, or were not finite                   finite, else 0 (no error)
+//   unreachable  the arm cannot reach a target of the case,    0 (no error)
+//                so no step was simulated
+//   abandoned    the error will exceed `abandon_above_m`       a lower bound of the error
 enum class SimulationStatus : std::uint8_t { ok, cut_off, diverged, unreachable, abandoned };
 const char* to_string(SimulationStatus status);
 
+// The state at the end of one control period. Positions are in the world frame.
 struct TrajectorySample {
-  double time_s;
-  std::vector<double> q, target_q, effort;  // one number per joint; q (rad or m), effort (N m or N)
+  double time_s;  // since the start of the case
+  // One number per joint: joint positions and setpoints (rad or m), and efforts (N m or N).
+  std::vector<double> q, target_q, effort;
   Eigen::Vector3d tip_m, target_m;
 };
 
@@ -62,22 +86,23 @@ struct TrackingResult {
   SimulationStatus status = SimulationStatus::ok;
   std::string reason;  // empty only if the status is ok
   int steps = 0;       // control periods simulated
-  // One number per point that was reached. After a cut-off or a divergence in training, all points
-  // that were not reached have the cut-off error.
+  // The errors of the points whose segments were simulated to their ends. After a cut-off, or a
+  // divergence with a finite cut-off, the remaining points follow with the cut-off as their error.
   std::vector<double> point_error_m;
-  // The case's error. Meaningful if the status is ok, and under a cut-off also if it is cut_off or
-  // diverged. If the status is abandoned, it is a lower bound of the error.
-  double mean_error_m = 0;
-  // One number per joint: efforts in N m or N, and the share of control periods with a clamped one.
+  double mean_error_m = 0;  // see SimulationStatus
+  // One number per joint over the simulated control periods: the largest magnitude and the root
+  // mean square of the effort (N m or N), and the share (0 to 1) of periods with a clamped effort.
+  // Empty if the status is unreachable.
   std::vector<double> peak_effort, rms_effort, saturated_share;
   // Positive mechanical work of all joints: the sum of max(0, effort x displacement).
   double energy_j = 0;
-  std::vector<double> error_series_m;        // filled on request
-  std::vector<TrajectorySample> trajectory;  // filled on request
-  // With RecordingOptions::motion: the tip at the end of every control period.
-  std::vector<Eigen::Vector3d> tips_m;
-  // Likewise the joint positions (rad or m): steps x joints, row-major. Whether whole turns count
-  // depends on the engine.
+  // The members below are empty unless RecordingOptions asks for them. They have one row per
+  // simulated control period, taken at its end.
+  std::vector<double> error_series_m;  // |tip - target|
+  std::vector<TrajectorySample> trajectory;
+  std::vector<Eigen::Vector3d> tips_m;  // in the world frame
+  // Joint positions (rad or m): steps x joints, row-major. Some engines leave out the whole turns
+  // of a revolute joint.
   std::vector<double> joint_positions;
 };
 

@@ -147,11 +147,12 @@ std::vector<std::string> describe_problem_change(const std::filesystem::path& fo
     return describe_differences(read_json_file(file, kPlanLimit_bytes),
                                 problem.loaded.resolved_json);
   } catch (const json::exception& error) {
-    throw Error(ErrorKind::bad_data,
-                fmt::format("{}: cannot be read as a recorded problem (damaged, or edited): {}. Check "
-                            "the study with 'armwright doctor {}', or choose another folder with "
-                            "--out or --new",
-                            file.string(), sanitize(error.what()), folder.string()));
+    throw Error(
+        ErrorKind::bad_data,
+        fmt::format("{}: cannot be read as a recorded problem (damaged, or edited): {}. Check "
+                    "the study with 'armwright doctor {}', or choose another folder with "
+                    "--out or --new",
+                    file.string(), sanitize(error.what()), folder.string()));
   }
 }
 
@@ -244,9 +245,8 @@ void StudyFolder::extend(const StudyPlan& plan, const std::string& text) {
     const json after = index_by_label(now.at(key), ignored);
     for (const auto& [label, entry] : before.items()) {
       if (!after.contains(label)) {
-        differences.push_back(
-            fmt::format("{} {} is in the recorded plan, but not in this one; add it", key,
-                        sanitize(label)));
+        differences.push_back(fmt::format(
+            "{} {} is in the recorded plan, but not in this one; add it", key, sanitize(label)));
         continue;
       }
       for (const std::string& difference :

@@ -13,11 +13,11 @@ CaseBatch::CaseBatch(const Problem& problem, std::span<const std::span<const dou
       block_(block),
       extras_(extras),
       // Derivatives take far longer than the simulation that lanes make fast.
-      batch_size_(extras.jacobian ? BatchSize{} : problem.batch_size(block.role)),
+      chunk_size_(extras.jacobian ? BatchSize{} : problem.batch_size(block.role)),
       receive_(std::move(receive)) {}
 
 CaseBatch::Pair CaseBatch::operator[](std::size_t number) const {
-  const std::size_t lanes = batch_size_.granularity;
+  const std::size_t lanes = chunk_size_.granularity;
   const std::size_t cases = block_.numbers.size();
   const std::size_t first = number / (lanes * cases) * lanes;
   const std::size_t width = std::min(lanes, candidates_.size() - first);
@@ -78,7 +78,7 @@ void CaseExecutor::evaluate(const Problem& problem,
 
 void ThreadExecutor::run(const CaseBatch& batch, StopSignal& stop) {
   const std::size_t pairs = batch.size();
-  const std::size_t chunk = calc_chunk(batch.batch_size(), pairs, pool_.size());
+  const std::size_t chunk = calc_chunk(batch.chunk_size(), pairs, pool_.size());
   pool_.run((pairs + chunk - 1) / chunk, [&](std::size_t number) {
     if (!stop.requested()) {
       const std::size_t first = number * chunk;

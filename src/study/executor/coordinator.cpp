@@ -169,7 +169,7 @@ Coordinator::PiecePointer Coordinator::take_local_piece(const std::shared_ptr<Ba
   if (batch->closed) {
     return nullptr;
   }
-  return take_piece(batch, plan_local_chunk(batch->cases->batch_size(), count_untaken(*batch),
+  return take_piece(batch, plan_local_chunk(batch->cases->chunk_size(), count_untaken(*batch),
                                             calc_team(), batch->cost->get_s()));
 }
 

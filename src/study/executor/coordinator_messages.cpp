@@ -93,7 +93,7 @@ void Coordinator::assign() {
           continue;
         }
         const std::size_t pairs =
-            plan_remote_chunk(batch->cases->batch_size(), count_untaken(*batch), team,
+            plan_remote_chunk(batch->cases->chunk_size(), count_untaken(*batch), team,
                               batch->cost->get_s(), left_here_s, load);
         const PiecePointer piece = pairs > 0 ? take_piece(batch, pairs) : nullptr;
         if (piece) {

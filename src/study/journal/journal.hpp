@@ -3,17 +3,20 @@
 //
 // Format (little-endian): the 8 bytes "AWJRNL01", then records of
 //   u32 payload length | u32 CRC-32 of the payload | payload
-// A payload is a byte for its type and its fields (journal_format.hpp). Numbers are stored as their
-// bits.
+// A payload has one byte for its type, then its fields (journal_format.hpp). A floating-point
+// number is stored as its 64 bits, so reading gives the same number.
 //
-// Durability: append() hands a record over. It reaches the operating system after at most 10 ms or
-// at flush(), and the disk (fdatasync) at least once per second and at close(). Appending is
-// thread-safe. With several threads the records are in the order of completion, and the index of a
-// record is its place in the order of the optimizer.
+// Durability: append() puts a record into a buffer in memory. The buffer is written to the
+// operating system after at most 10 ms and at flush(), and synced to the disk (fdatasync) once per
+// second and at close(). A kill can therefore lose the last 10 ms, and a power cut the last second.
 //
-// Reading: a kill or a power cut leaves a record that is cut short or damaged at the very end of
-// the file. Such an end is cut off and reported, and its bytes are kept in "journal.torn-N". Damage
-// with intact records behind it is an Error{bad_data} that names the offset.
+// Order: the file has the records in the order of the calls of append(). Threads append evaluations
+// as they finish, so this order can differ from the order of the optimizer's requests, which
+// EvaluationRecord::index gives.
+//
+// Torn end: a kill or a power cut can leave an incomplete or damaged record at the end of the file.
+// The constructor cuts it off, reports its size and keeps its bytes in "journal.torn-N". If intact
+// records follow a damaged one, reading throws Error{bad_data} with the offset of the damage.
 #pragma once
 
 #include <cstdint>
@@ -28,37 +31,43 @@ namespace armwright {
 
 // The last record of a run that has ended.
 struct EndRecord {
-  std::string reason;  // "budget" or "optimizer finished"
-  std::uint64_t evaluations = 0;
+  std::string reason;             // "budget" or "optimizer finished"
+  std::uint64_t evaluations = 0;  // training evaluations of the whole run, over all its starts
 };
 
+// The records of a journal.
 struct JournalContent {
   RecordedEvaluations training;
   std::vector<EvaluationRecord> judgements;  // validation and test, in the order written
   bool ended = false;
   EndRecord end;                   // valid if `ended`
   std::uint64_t intact_bytes = 0;  // up to the end of the last intact record
-  std::uint64_t torn_bytes = 0;    // behind that
+  std::uint64_t torn_bytes = 0;    // the size of the torn end behind it
 };
 
+// A journal is open for appending from its construction until close(). append() and flush() are
+// thread-safe. close() and the destructor must not run while another thread uses the journal.
 class Journal {
  public:
-  // Opens the file for appending, and creates it if there is none. Reads its records to `content`
-  // and cuts off a torn end (see above). The caller must hold the run's lock. Throws Error{io} or
-  // Error{bad_data}, which name the file.
+  // Opens the file for appending, and creates it if it does not exist. Stores its records in
+  // `content`. Cuts off a torn end. The caller must hold the run's lock (run_lock.hpp). Throws
+  // Error{io} if the file cannot be read or written, and Error{bad_data} if it is damaged or is no
+  // journal. The messages name the file.
   Journal(const std::filesystem::path& file, JournalContent& content);
-  ~Journal();  // closes; an error that close() would throw is lost
+  ~Journal();  // closes the file; ignores errors, which close() would throw
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
 
-  // Throw Error{bad_data} if the record is too large for the journal, Error{io} if an earlier write
-  // has failed, and std::logic_error after close() or after an end record.
+  // Append a record. Throw Error{bad_data} if the record is too large for the journal, Error{io} if
+  // a write or a sync has failed since the opening, and std::logic_error after close() or after an
+  // end record.
   void append(const EvaluationRecord& record);
   void append(const EndRecord& record);
-  // Writes everything appended so far to the operating system. Throws Error{io} if any write has
-  // failed.
+  // Writes all appended records to the operating system. Throws Error{io} if a write or a sync has
+  // failed since the opening.
   void flush();
-  // Flushes, syncs to the disk and closes the file. Throws Error{io} as flush().
+  // Writes all appended records, syncs them to the disk and closes the file. Throws Error{io} as
+  // flush() does. A second call does nothing.
   void close();
 
  private:
@@ -66,8 +75,9 @@ class Journal {
   std::unique_ptr<Writer> writer_;
 };
 
-// Reads a journal without changing it: a torn end is counted and not cut off. Throws Error{io} or
-// Error{bad_data}, which name the file.
+// Reads a journal and leaves the file as it is: it only counts the bytes of a torn end. Throws
+// Error{io} if the file cannot be read, and Error{bad_data} if it is damaged or is no journal. The
+// messages name the file.
 JournalContent read_journal(const std::filesystem::path& file);
 
 }  // namespace armwright

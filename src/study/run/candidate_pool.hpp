@@ -14,7 +14,8 @@
 
 namespace armwright {
 
-// A design that may become the winner.
+// A candidate for the winner: an evaluated or recommended decision vector that the run keeps. The
+// glossary's word "candidate" alone means any decision vector that an optimizer proposes.
 struct Candidate {
   std::vector<double> x;
   std::uint64_t evaluation = 0;  // index of its training evaluation; unused if recommended
@@ -50,6 +51,7 @@ class RememberedCandidates {
   std::optional<Candidate> newest_;
 };
 
+// A candidate pool holds the candidates for the winner of one run. It is not thread-safe.
 class CandidatePool {
  public:
   explicit CandidatePool(const RunPlan& plan);  // the plan must outlive the pool

@@ -33,7 +33,7 @@ std::filesystem::path claim_folder(const std::filesystem::path& path) {
       throw Error(
           ErrorKind::usage,
           fmt::format("{}: holds '{}' but no manifest.json, so it is not the folder of a run; "
-                      "choose another with --out, or --new",
+                      "choose another folder with --out or --new",
                       path.string(), sanitize(name)));
     }
   }
@@ -57,7 +57,11 @@ json read_manifest(const std::filesystem::path& file) {
   try {
     json manifest = json::parse(read_json_file(file, kManifestLimit_bytes));
     if (manifest.at("format") != kManifestFormat) {
-      throw std::runtime_error("its format is not the one this version reads");
+      throw std::runtime_error(
+          fmt::format("its format is {}, and this version of armwright reads format {}; resume the "
+                      "run with the version that began it, or choose another folder with --out or "
+                      "--new",
+                      manifest.at("format").dump(), kManifestFormat));
     }
     manifest.at("configuration");
     manifest.at("build").get<std::map<std::string, std::string>>();
@@ -66,7 +70,7 @@ json read_manifest(const std::filesystem::path& file) {
     throw Error(
         ErrorKind::bad_data,
         fmt::format("{}: is not a manifest that armwright wrote ({}); choose another folder "
-                    "with --out, or --new",
+                    "with --out or --new",
                     file.string(), sanitize(error.what())));
   } catch (const std::runtime_error& error) {
     if (dynamic_cast<const Error*>(&error) != nullptr) {
@@ -87,12 +91,12 @@ std::string explain_simd(const json& recorded, const json& now) {
   const auto possible = supported_simd_names();
   if (std::ranges::find(possible, name) == possible.end()) {
     return fmt::format(
-        "\nThe SIMD level decides the last bits of every result, and this CPU lacks {}: go on with "
-        "the run on a machine that has it",
+        "\nThe SIMD level decides the last bits of every result, and this CPU lacks {}; resume the "
+        "run on a machine that has it",
         sanitize(name));
   }
   return fmt::format(
-      "\nThe SIMD level decides the last bits of every result: to go on, pass --simd {}",
+      "\nThe SIMD level decides the last bits of every result; to resume this run, pass --simd {}",
       sanitize(name));
 }
 
@@ -111,8 +115,8 @@ RunFolder::RunFolder(const std::filesystem::path& path, const RunPlan& plan,
   if (!differences.empty()) {
     throw Error(
         ErrorKind::usage,
-        fmt::format("{} holds a run with another configuration:\n  {}\nGo on with the recorded "
-                    "one, or use --new or --out for another folder{}",
+        fmt::format("{} holds a run with another configuration:\n  {}\nResume it with the recorded "
+                    "configuration, or use --new or --out for another folder{}",
                     path.string(), join(differences, "\n  "),
                     explain_simd(manifest["configuration"], json::parse(to_json(plan)))));
   }

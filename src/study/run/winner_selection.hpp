@@ -1,6 +1,7 @@
-// Selects the winner of a run, in the same way for every optimizer. All candidates are evaluated on
-// the validation set, and the best of them on the test set. These evaluations are not charged to
-// the budget, and no case is cut off.
+// Selects the winner of a run, in the same way for every optimizer. The candidates for the winner
+// come from CandidatePool::select(); Selection (run_plan.hpp) says how many there are. All of them
+// are evaluated on the validation set, and the winner on the test set. These evaluations are not
+// charged to the budget, and no case is cut off.
 #pragma once
 
 #include <optional>
@@ -13,9 +14,10 @@
 
 namespace armwright {
 
-// Returns the index of the winner: the candidate with the fewest failed validation cases, then with
-// the smallest constraint violation, then with the best objective (of several, the weighted sum).
-// The first of equal ones wins. Returns nothing if no candidate has an objective.
+// Returns the index of the winner: the candidate with the fewest validation cases without a number
+// (Evaluation::failed_cases), then with the smallest violation, then with the smallest objective
+// (of several, the weighted sum). The first of equal ones wins. Returns nothing if no candidate has
+// an objective.
 std::optional<std::size_t> choose_winner(const ProblemDescription& problem,
                                          const std::vector<JudgedCandidate>& judged);
 

@@ -114,11 +114,12 @@ std::string conclude_on(const std::vector<std::string>& engines, const Errors& e
 
 TEST(VerifyConclusion, SaysThatEverythingHolds) {
   const std::string text = conclude_on({"a", "b"}, [](const VerifySetting&) { return 0.002; });
-  EXPECT_THAT(text, AllOf(StartsWith("mine holds in 23 of the 23 settings beside its own."),
-                          HasSubstr("Engines: It holds in b."),
-                          HasSubstr("It holds with 2 substeps, 5 substeps and 10 substeps."),
-                          HasSubstr("Masses: It holds with -10 % and +10 %."),
-                          HasSubstr("it holds in 17 of 17 settings."), Not(HasSubstr("depends on"))));
+  EXPECT_THAT(text,
+              AllOf(StartsWith("mine holds in 23 of the 23 settings beside its own."),
+                    HasSubstr("Engines: It holds in b."),
+                    HasSubstr("It holds with 2 substeps, 5 substeps and 10 substeps."),
+                    HasSubstr("Masses: It holds with -10 % and +10 %."),
+                    HasSubstr("it holds in 17 of 17 settings."), Not(HasSubstr("depends on"))));
 }
 
 TEST(VerifyConclusion, NamesWhatDoesNotHold) {

@@ -116,8 +116,9 @@ TEST(RobotProposal, FilesExtendShippedProblems) {
   EXPECT_EQ(problem.tracking()->config().task.physics.substeps, 10);
   EXPECT_THAT(folder.refusal_of("extends = \"robt\"\n"),
               testing::HasSubstr("unknown file to extend 'robt'; did you mean 'robot'?"));
-  EXPECT_THAT(folder.refusal_of("extends = \"robot\"\nname = \"a/b\"\n"),
-              testing::HasSubstr("name is \"a/b\"; it names folders: it must not be empty"));
+  EXPECT_THAT(
+      folder.refusal_of("extends = \"robot\"\nname = \"a/b\"\n"),
+      testing::HasSubstr("name is \"a/b\"; folders are named after it, so it must not be empty"));
 }
 
 struct Refusal {

@@ -102,7 +102,7 @@ TEST_F(RunTest, AFolderWithOtherFilesIsLeftAlone) {
   EXPECT_THAT(
       usage_error_of([&] { run(make_small_plan(), "mine"); }),
       HasSubstr("mine: holds 'winner.toml' but no manifest.json, so it is not the folder of "
-                "a run; choose another with --out"));
+                "a run; choose another folder with --out"));
   EXPECT_EQ(read_file(temporary_ / "mine" / "winner.toml", 100), "precious");
   EXPECT_FALSE(std::filesystem::exists(temporary_ / "mine" / "lock"));
 }
@@ -161,7 +161,7 @@ TEST_F(RunTest, AnotherSimdLevelIsRefusedWithWhatToDo) {
   EXPECT_TRUE(run(make_plan(best), "a")) << "auto is " << best << " here";
   EXPECT_THAT(usage_error_of([&] { run(make_plan("scalar"), "a"); }),
               AllOf(HasSubstr("problem.physics.simd: recorded \"" + best + "\", now \"scalar\""),
-                    HasSubstr("to go on, pass --simd " + best)));
+                    HasSubstr("to resume this run, pass --simd " + best)));
   // As if the folder came from another machine.
   const auto manifest = temporary_ / "a" / "manifest.json";
   std::string text = read_file(manifest, 1 << 24);
@@ -170,7 +170,7 @@ TEST_F(RunTest, AnotherSimdLevelIsRefusedWithWhatToDo) {
   text.replace(text.find(recorded), recorded.size(), "\"simd\": \"avx8192\"");
   std::ofstream(manifest, std::ios::binary) << text;
   EXPECT_THAT(usage_error_of([&] { run(make_plan("auto"), "a"); }),
-              HasSubstr("this CPU lacks avx8192: go on with the run on a machine that has it"));
+              HasSubstr("this CPU lacks avx8192; resume the run on a machine that has it"));
 }
 
 TEST_F(RunTest, ResultsOfBatchesDoNotDependOnTheNumberOfThreads) {

@@ -1,8 +1,8 @@
-// The controllers of a pack of lanes: the laws of controllers/laws.hpp on lane types. Their efforts
-// are clamped, and the state records which steps were clamped.
+// The controllers of a pack of lanes: the laws of controllers/law_table.hpp on lane types. Their
+// efforts are clamped, and the state records which steps were clamped.
 #pragma once
 
-#include "sim/controllers/laws.hpp"
+#include "sim/controllers/law_table.hpp"
 #include "sim/engines/articulated/kernels.hpp"
 
 namespace armwright::articulated {

@@ -1,4 +1,4 @@
-#include "sim/robot/urdf_limits.hpp"
+#include "sim/robot/urdf_effort_writer.hpp"
 
 #include <fmt/format.h>
 
