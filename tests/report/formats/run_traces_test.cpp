@@ -75,7 +75,7 @@ TEST_F(FindRuns, RefusesCellsItCannotUseAndNamesTheFile) {
   for (const char* text : {"{", "[]", R"({"problem":"p","label":"l","optimizer":"ga"})",
                            R"({"problem":1,"label":"l","optimizer":"ga","replicate":1})"}) {
     make_cell("a/b/1", text);
-    expect_refused(ErrorKind::bad_data, HasSubstr("a/b/1/cell.json: is no cell"));
+    expect_refused(ErrorKind::bad_data, HasSubstr("a/b/1/cell.json: is not a cell file"));
   }
   make_cell("a/b/1", R"({"problem":"p","label":"l","optimizer":"ga","replicate":0})");
   expect_refused(ErrorKind::bad_data, HasSubstr("replicate is 0; they are counted from 1"));

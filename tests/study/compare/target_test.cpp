@@ -190,7 +190,7 @@ TEST(StudyTargets, MistakesAreNamed) {
   expect("", "[[target]]\nlabel = 'a'\nvalue = 1\nproblems = ['spere']\n",
          "target 'a': unknown problem 'spere'");
   expect("", "[[target]]\nlabel = 'a'\nfailures = 0\n",
-         "target 'a' counts failing test cases, but sphere is a function");
+         "target 'a' counts failing test cases, and sphere is a function");
   expect("", "[[target]]\nlabel = 'a'\nfailures = -1\n", "target[0].failures is -1");
   expect("reference = 'gaa'\n", "[[target]]\nlabel = 'a'\nvalue = 1\n",
          "reference: unknown optimizer 'gaa'");
