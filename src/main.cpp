@@ -1,3 +1,5 @@
+// Starts the program.
+
 #include "cli/app.hpp"
 
 int main(int argc, char** argv) {

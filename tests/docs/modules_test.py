@@ -80,5 +80,28 @@ class Modules(unittest.TestCase):
         types = [line.split()[4] for line in output.splitlines() if line.startswith("low")]
         self.assertEqual(types, ["4"])
 
+    def test_lists_every_file_with_its_first_sentence(self):
+        self.write("low/a.hpp", "// Adds a | b. Throws nothing.\n#pragma once\n")
+        self.write("low/a.cpp", "int a;\n")
+        self.write("high/b.cpp", "// Uses a\n// twice. More.\n\n// Other.\n")
+        code, output = self.run_script("--index")
+        self.assertEqual(code, 0, output)
+        page = (pathlib.Path(self.root) / "src/README.md").read_text(encoding="utf-8")
+        self.assertIn("| [a.hpp](low/a.hpp) | Adds a \\| b. |", page)
+        self.assertIn("| [b.cpp](high/b.cpp) | Uses a twice. |", page)
+        self.assertNotIn("a.cpp", page)
+        self.assertEqual(self.run_script("--index", "--check")[0], 0)
+        self.write("low/a.hpp", "// Subtracts.\n")
+        code, output = self.run_script("--index", "--check")
+        self.assertEqual(code, 1, output)
+        self.assertIn("src/README.md is out of date: run scripts/modules --index", output)
+
+    def test_the_index_refuses_a_file_without_a_comment(self):
+        self.write("low/a.hpp", "// Adds.\n")
+        self.write("high/b.cpp", "int b;\n")
+        code, output = self.run_script("--index")
+        self.assertEqual(code, 1, output)
+        self.assertIn("src/high/b.cpp:1: begins with no comment", output)
+
 
 unittest.main()

@@ -1,3 +1,5 @@
+// `armwright list robots` and `list designs`.
+
 #include <fmt/format.h>
 
 #include <cmath>

@@ -1,3 +1,5 @@
+// `armwright list controllers`.
+
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>

@@ -1,3 +1,5 @@
+// `armwright list engines`.
+
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>

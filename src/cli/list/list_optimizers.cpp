@@ -1,3 +1,5 @@
+// `armwright list optimizers`.
+
 #include <fmt/format.h>
 
 #include <algorithm>

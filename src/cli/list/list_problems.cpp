@@ -1,3 +1,5 @@
+// `armwright list problems`.
+
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// `armwright list studies`.
+
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>

@@ -1,3 +1,5 @@
+// Says for each argument and flag which values completion offers.
+
 #include <algorithm>
 #include <span>
 

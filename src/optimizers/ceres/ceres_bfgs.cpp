@@ -1,3 +1,5 @@
+// The optimizer ceres:bfgs: line searches along quasi-Newton directions.
+
 #include "optimizers/ceres/ceres_backend.hpp"
 
 #ifdef ARMWRIGHT_WITH_CERES

@@ -1,3 +1,5 @@
+// The optimizer ceres:lm: Levenberg-Marquardt on the residuals of a problem.
+
 #include "optimizers/ceres/ceres_backend.hpp"
 
 #ifdef ARMWRIGHT_WITH_CERES

@@ -1,3 +1,5 @@
+// Reads a problem's objective: the metrics, their weights and the limits.
+
 #include <fmt/format.h>
 
 #include "problems/config/problem_readers.hpp"

@@ -1,3 +1,5 @@
+// Reads a path of the tool from a CSV file.
+
 #include <fmt/format.h>
 
 #include <algorithm>

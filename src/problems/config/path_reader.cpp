@@ -1,3 +1,5 @@
+// Reads a path of the tool from a problem file: points, a line, a circle or the name of a CSV file.
+
 #include <fmt/format.h>
 
 #include <cmath>

@@ -1,3 +1,5 @@
+// Reads perturbations of the plant, from files and from the command line.
+
 #include <fmt/format.h>
 
 #include <utility>

@@ -1,3 +1,5 @@
+// Gives a replicate of a comparison its own training cases and its own start.
+
 #include <cassert>
 #include <nlohmann/json.hpp>
 #include <utility>

@@ -1,3 +1,5 @@
+// Reads the requirements of a problem.
+
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Fills what a problem file leaves open for a robot: tool, workspace, pace and start.
+
 #include <fmt/format.h>
 
 #include <algorithm>

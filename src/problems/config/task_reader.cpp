@@ -1,3 +1,5 @@
+// Reads the task of a problem: its signal, tool, times and workspace.
+
 #include <fmt/format.h>
 
 #include "base/error.hpp"

@@ -1,3 +1,5 @@
+// Loads a tracking problem: reads its whole file and makes the problem.
+
 #include <fmt/format.h>
 
 #include <utility>

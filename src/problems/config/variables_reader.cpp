@@ -1,3 +1,5 @@
+// Reads the decision variables of a problem: their start and bounds.
+
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Writes the data sheet of a tuned arm as one HTML page.
+
 #include <fmt/format.h>
 
 #include <algorithm>

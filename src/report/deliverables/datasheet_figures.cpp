@@ -1,3 +1,5 @@
+// Draws the figures of the data sheet.
+
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Chooses the designs that a page shows of a run.
+
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Chooses the test cases whose motion a page replays.
+
 #include <fmt/format.h>
 
 #include <algorithm>

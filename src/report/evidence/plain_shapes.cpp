@@ -1,3 +1,5 @@
+// Makes plain shapes for the links of a robot that has no meshes.
+
 #include <algorithm>
 #include <cmath>
 

@@ -1,3 +1,5 @@
+// Evaluates the shown designs at several nominal speeds.
+
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Reads the runs of an export folder, in any of the formats that armwright can import.
+
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Writes runs in the format of COCO's data archive, which cocopp reads.
+
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Writes runs as CSV files.
+
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Writes runs in the format of IOHprofiler, which IOHanalyzer and iohinspector read.
+
 #include <fmt/format.h>
 
 #include <algorithm>

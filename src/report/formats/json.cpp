@@ -1,3 +1,5 @@
+// Writes runs as one JSON file.
+
 #include <fmt/format.h>
 
 #include <cmath>

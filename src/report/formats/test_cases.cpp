@@ -1,3 +1,5 @@
+// Writes the test cases of runs, so that other programs can simulate them.
+
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>

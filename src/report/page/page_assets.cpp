@@ -1,3 +1,5 @@
+// The script and the style of pages, which the build puts into the program.
+
 #include "base/error.hpp"
 #include "report/page/page_file.hpp"
 

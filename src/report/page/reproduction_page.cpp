@@ -1,3 +1,5 @@
+// Makes the page of a reproduction.
+
 #include <fmt/format.h>
 
 #include <algorithm>

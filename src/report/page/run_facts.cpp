@@ -1,3 +1,5 @@
+// Makes the parts of a run's page that state facts: setting, counts, result and requirements.
+
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Makes the parts of a run's page that show the course of training.
+
 #include <algorithm>
 #include <cmath>
 #include <functional>

@@ -1,3 +1,5 @@
+// Makes the page of a run.
+
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Makes the page of a study.
+
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Reads and writes a reproduction's folder.
+
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Finds the serial chain from the base to the tip in the tree of a URDF.
+
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Checks the robot element of a URDF and what links and joints have in common.
+
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Checks the joints of a URDF and reads them.
+
 #include <fmt/format.h>
 
 #include <algorithm>

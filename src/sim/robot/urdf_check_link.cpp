@@ -1,3 +1,5 @@
+// Checks the links of a URDF and reads them.
+
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>

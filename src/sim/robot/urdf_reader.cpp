@@ -1,3 +1,5 @@
+// Makes a RobotModel of a URDF: joins links that do not move, and places joints and masses.
+
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Bounds the size and the nesting of a URDF before a parser sees it.
+
 #include <fmt/format.h>
 
 #include <algorithm>

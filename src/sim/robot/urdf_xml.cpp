@@ -1,3 +1,5 @@
+// Reads attributes of URDF elements strictly, with the line in every error.
+
 #include <fmt/format.h>
 #include <tinyxml2.h>
 

@@ -1,3 +1,5 @@
+// Reads test cases from a CSV or JSON file.
+
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Writes a study's tables about targets, choices and failures.
+
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Writes the verdict's sentences about targets.
+
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// The small problems on which the contract suite runs optimizers.
+
 #include <cmath>
 
 #include "optimizers/table/optimizer_table.hpp"

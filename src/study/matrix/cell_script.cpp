@@ -1,3 +1,5 @@
+// Writes the shell script that runs the cells of a submission.
+
 #include <fmt/format.h>
 
 #include "base/text.hpp"

@@ -1,3 +1,5 @@
+// Copies what an earlier attempt at a cell has left, so that a new attempt continues from it.
+
 #include <fmt/format.h>
 
 #include <algorithm>

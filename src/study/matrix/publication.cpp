@@ -1,3 +1,5 @@
+// Publishes a finished cell: one rename moves it from its attempt into the study.
+
 #include <fmt/format.h>
 #include <stdio.h>
 

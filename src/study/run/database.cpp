@@ -1,3 +1,5 @@
+// Writes a run's evaluations into the SQLite file results.sqlite.
+
 #include <fmt/format.h>
 #include <sqlite3.h>
 

@@ -1,3 +1,5 @@
+// Compares a run's result.json with its journal.
+
 #include <fmt/format.h>
 
 #include <algorithm>
