@@ -86,6 +86,12 @@ struct ProblemDescription {
   // failure.
   double failure_error = std::numeric_limits<double>::infinity();
   std::vector<double> known_optimum;  // a minimiser of an analytic function; empty if unknown
+  // The smallest value of calc_scalar() that a feasible decision vector has; nothing if unknown.
+  std::optional<double> optimum;
+  // A difference of calc_scalar() that matters; smaller differences count as equal in comparisons.
+  // If calc_scalar() is a logarithm, the difference is one of the number before the logarithm. In
+  // the unit of that number; 0 if every difference matters.
+  double resolution = 0;
   // The weights of calc_scalar(), one per objective. If empty, calc_scalar() returns the first
   // objective.
   std::vector<double> objective_weights;
