@@ -1,5 +1,6 @@
-// How many jobs a chunk should have. A chunk is the part of a batch that one thread or worker gets
-// at once, as one call of Problem::simulate() or PhysicsEngine::simulate().
+// The rule by which the threads of one process share a batch: how many jobs a chunk has. A chunk is
+// the part of a batch that one thread or worker gets at once, as one call of Problem::simulate() or
+// PhysicsEngine::simulate().
 #pragma once
 
 #include <cstddef>

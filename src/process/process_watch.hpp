@@ -1,4 +1,5 @@
-// Watches child processes: their memory, their end, and the time since their last message.
+// Limits and measures child processes: their memory, their end, and the time since their last
+// message. The classes ChildProcess and LineProcess wait for the messages and kill a silent child.
 #pragma once
 
 #include <sys/types.h>
@@ -15,7 +16,7 @@ inline constexpr double kMib = 1024.0 * 1024.0;  // bytes per MiB
 
 // Limits of a child process. A process that exceeds one is killed.
 struct ProcessLimits {
-  double silence_s = 60;  // longest time between two requests, without the time of the answers
+  double silence_s = 60;  // longest time from an answer to the child's next message
   // Growth of ProcessMemory::data_bytes since the start of the child, in MiB. A LineProcess limits
   // resident_bytes instead.
   double memory_mib = 4096;

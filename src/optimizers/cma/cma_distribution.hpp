@@ -6,17 +6,19 @@
 //   step size              sigma <- sigma exp(c_s / d_s (|p_s| / E|N(0, I)| - 1))
 //   path of the covariance p_c   <- (1 - c_c) p_c + h sqrt(c_c (2 - c_c) mu_eff) <y>_w
 //   covariance             C     <- (1 + c_1 delta(h) - c_1 - c_mu sum_i w_i) C
-//                                   + c_1 p_c p_c' + c_mu sum_i w_i' y_i y_i'
+//                                   + c_1 p_c p_c^T + c_mu sum_i v_i y_i y_i^T
 //
-// i counts from the best individual to the worst. The weights after mu are negative ("active"
-// update); for them w_i' = w_i n / |C^(-1/2) y_i|^2, which keeps C positive definite. h stops the
-// growth of p_c while p_s is long. Source: Hansen 2016, The CMA Evolution Strategy: A Tutorial
-// (arXiv:1604.00772v2), section 6, figure 6 and table 1.
+// i counts from the best individual to the worst. <y>_w is the sum of w_i y_i over the mu best, n
+// is the number of variables, and E|N(0, I)| is the mean length of a standard normal vector. p_c^T
+// is the transpose of p_c. h is 0 while p_s is long, otherwise 1; delta(h) = (1 - h) c_c (2 - c_c).
+// The weights after mu are negative ("active" update). For them v_i = w_i n / |C^(-1/2) y_i|^2,
+// which keeps C positive definite; for all others v_i = w_i. Source: Hansen 2016, The CMA Evolution
+// Strategy: A Tutorial (arXiv:1604.00772v2), section 6, figure 6 and table 1.
 //
 // The y of a generation are drawn at right angles to each other in the metric of C, n at a time.
 // Each of them is still distributed as N(0, C), and none repeats the direction of another. Source:
 // Wang, Emmerich and Baeck 2014, Mirrored orthogonal sampling with pairwise selection in evolution
-// strategies; here without the mirroring. C is decomposed every max(1, floor(1 / (10 n (c_1 +
+// strategies; this class does not mirror. C is decomposed every max(1, floor(1 / (10 n (c_1 +
 // c_mu)))) generations, as appendix B.2 of the tutorial advises.
 #pragma once
 

@@ -1,4 +1,4 @@
-// The row of cmaes: its options. cma_search.cpp runs the search; CmaDistribution::update() in
+// The row of cmaes: its options. cma_distribution.cpp computes their defaults. cma_search.cpp runs the search; CmaDistribution::update() in
 // cma_distribution.cpp adapts mean, step size and covariance.
 
 #include <utility>

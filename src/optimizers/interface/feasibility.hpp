@@ -1,10 +1,12 @@
 // Comparison of designs by feasibility first. Of two designs, the one with the smaller constraint
 // violation is better. If both violations are equal (often zero), the one with the smaller
-// objective is better. This needs no weight and no scale. It serves only optimizers that compare
-// designs and never subtract their values. Source: Deb 2000, An efficient constraint handling
-// method for genetic algorithms, section 3. Limits: violations are added in the units that the
-// problem gives them. As long as a design violates a constraint, its objective is ignored; so a
-// search reaches an optimum on a limit from one side only.
+// objective is better. is_fitter() needs no weight and no scale, and serves optimizers that only
+// compare designs. FeasibilityOrder serves those that need numbers; it needs the problem's scale of
+// violations. Source: Deb 2000, An efficient constraint handling method for genetic algorithms,
+// section 3. Limitations: violations are added in the units that the problem gives them. As long as
+// a design violates a constraint, its objective is ignored; so a search reaches an optimum on a
+// limit from one side only. A run selects its winner in an order of its own
+// (study/run/winner_selection.hpp).
 #pragma once
 
 #include <limits>
@@ -16,8 +18,9 @@
 namespace armwright {
 
 struct Fitness {
-  double violation =
-      0;  // sum of max(0, g); infinite for a failed evaluation without constraint values
+  // The sum of max(0, g); infinite for a failed evaluation without constraint values.
+  // FeasibilityOrder replaces infinity by a large number.
+  double violation = 0;
   double objective = 0;  // calc_scalar()
 };
 

@@ -8,7 +8,7 @@
 //   load_kg [l, u]         the load is l + (u - l) U and replaces the task's
 //   viscous, coulomb       of each joint b = B U, c = C U (sim/tracking/plant_variation.hpp)
 //   quantisation_rad       the same in every plant
-//   delay_s d              d U, rounded to whole plant substeps
+//   delay_s d              d U, rounded to whole substeps of the physics
 //   torque_ripple r        of each joint a = r U, its phase 2 pi U
 //   effort_limit_sigma s   both effort limits of each joint times exp(-s |N|)
 //   gain_sigma s           each gain times exp(s N)

@@ -4,8 +4,8 @@
 //   met      green    r <= 0.9
 //   tight    yellow   0.9 < r <= 1: met, but within 10 % of the limit
 //   missed   red      r > 1
-//   unknown  grey     no value; or r <= 1 while a case has no error, because that case could be the
-//                     worst
+//   unknown  grey     no value; or r <= 1 although a case ended without a number, because that
+//                     case could be the worst
 // The requirement with the largest r binds; requirements without a value do not take part.
 #pragma once
 
@@ -31,8 +31,8 @@ struct JudgedRequirement {
   bool binds = false;
 };
 
-// Grades the requirements. `values` has one value per requirement. `complete` says that every case
-// has an error.
+// Grades the requirements. `values` has one value per requirement. `complete` is true if no
+// case ended without a number.
 std::vector<JudgedRequirement> judge_requirements(std::span<const RequiredMetric> requirements,
                                                   std::span<const std::optional<double>> values,
                                                   bool complete);

@@ -2,7 +2,8 @@
 // controller on the speed gives the effort.
 //   v_ref = kp e + share (r - r_prev) / h,   e_v = v_ref - (y - y_prev) / h,
 //   u = kv e_v + ki sum(e_v) h,
-// r the setpoint, y the measurement, differences the short way round and zero in the first step.
+// where r is the setpoint, y the measurement, e = r - y, and h the control period. Differences of
+// angles take the short way round; differences in time are zero in the first step.
 // With share = 1 it is a PID of P = kv kp + ki, I = ki kp and D = kv, except that its integral
 // begins at another value. Converted from a PID it starts with kv = D, kp = P / D, ki = I D / P and
 // share = 1: the same I and D, and a P that is larger by ki.

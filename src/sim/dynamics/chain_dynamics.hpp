@@ -1,19 +1,21 @@
 // The equations of motion of a chain (chain_model.hpp) for a pack of lanes:
 //   M(q) qdd + b(q, qd) = tau.
 // The bias b comes from a recursive Newton-Euler pass at qdd = 0 (Luh, Walker and Paul 1980), the
-// mass matrix M from composite rigid bodies (Walker and Orin 1982), and qdd from the factors M = L
-// D L'.
+// mass matrix M from composite rigid bodies (Walker and Orin 1982), and qdd from the factors
+// M = L D L^T.
 //
 // Consecutive joints with parallel axes form a group. All links of a group are treated in one
 // frame, that of the group's last link. In it the angular velocities of the group's links differ
 // only in the component along the axis. So vectors and composite bodies need no rotation from joint
 // to joint; only the links' constant moments are rotated.
 //
-// Let U = [wd]x + [w]x[w]x of a link, with w its angular velocity and wd its derivative; a point r
-// of the link has the acceleration a + U r. With the link's mass m, first moments s and second
-// moments K, the force and the moment about the origin that move the link are
+// All vectors of a link refer to the origin of its group's frame. Let w be the link's angular
+// velocity, wd its derivative, and [w]x the matrix of the cross product with w. With
+// U = [wd]x + [w]x[w]x and the acceleration a of the origin, a point r of the link has the
+// acceleration a + U r. With the link's mass m, first moments s = integral r dm and second moments
+// K = integral r r^T dm, the force and the moment about the origin that move the link are
 //   force   U s + m a,
-//   moment  axial vector of (U K) + s x a,
+//   moment  (A_32 - A_23, A_13 - A_31, A_21 - A_12) + s x a,  A = U K,
 // where a includes gravity as an upward acceleration of the base.
 //
 // V is a lane type (lane_pack.hpp). Chain is a ChainShape, the facts about the chain that are known

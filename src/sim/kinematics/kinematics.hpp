@@ -1,4 +1,5 @@
-// Forward kinematics of a robot, and closed-form inverse kinematics of palletising arms.
+// Forward kinematics of a robot, and closed-form inverse kinematics of palletising arms, whose
+// formula stands in target_kernel.hpp.
 #pragma once
 
 #include <Eigen/Geometry>

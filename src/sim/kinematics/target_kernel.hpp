@@ -1,4 +1,5 @@
-// The formulas of targets.hpp for any lane type V of double. Only files that are compiled for one
+// The formulas of targets.hpp, with the closed form of the inverse kinematics, for any lane type V
+// of double. Only files that are compiled for one
 // instruction set, without fused multiply-add, include this header. Each uses its own `Isa` in V
 // (lane_pack.hpp).
 #pragma once

@@ -4,16 +4,16 @@
 //   speed        the longest move takes 1 s, or longer if necessary: joints stay below 60 % of
 //                their speed limits, and the efforts of inverse dynamics below 60 % of their
 //                effort limits
-//   gains        m is the largest M_ii of the mass matrix on the cases, w = 10 rad/s, z = 0.7, and
-//                h is the control period:
-//                  D = 2 z w m,          at most 0.7 / (h max (M^-1)_ii), which matters if other
-//                                        joints yield, for example nearly coaxial ones
+//   gains        m is the joint's largest M_ii, the diagonal element of the mass matrix, on the
+//                cases; w = 10 rad/s, z = 0.7, and h is the control period:
+//                  D = 2 z w m,          at most 0.7 / (h max (M^-1)_ii). This bound is the
+//                                        smaller one if other joints move when this one is
+//                                        driven, for example nearly coaxial joints
 //                  P = w^2 m,            at most D^2 / m
 //                  I = P sqrt(P / m) / 4
 //                These gains are slow, but stable.
-//   efforts      e = twice the largest effort of inverse dynamics, at least M_ii x 5 rad/s^2. If
-//                a tenth of the joint's limit is larger than e, that tenth, but at most 10 e.
-//                Never above the joint's limit.
+//   efforts      with e = max(2 x the largest effort of inverse dynamics, m x 5 rad/s^2) and the
+//                joint's own limit L, the proposed limit is min(L, max(e, min(L / 10, 10 e)))
 #pragma once
 
 #include <vector>
@@ -24,8 +24,9 @@
 
 namespace armwright {
 
-// Returns a speed (m/s) for a task whose other members are set; the cases' moves rest at their
-// ends. Throws Error{bad_data} if a joint cannot even hold the arm; the message names the joint.
+// Returns a speed (m/s) for a task whose other members are set. Assumes that the arm rests at both
+// ends of every move. Throws Error{bad_data} if a joint cannot even hold the arm; the message names
+// the joint.
 double propose_speed(const RobotModel& robot, TrackingTask task,
                      const std::vector<TestCase>& cases);
 

@@ -1,9 +1,9 @@
 // Perturbations of a plant that the controllers do not know of: friction in the joints, an encoder
 // of finite resolution that is read late, and torque that ripples with the angle. Engines apply
-// them in every plant substep (of length h) and whenever a controller measures:
+// them in every substep of the physics (of length h) and whenever a controller measures:
 //
 //   joint effort       u (1 + a sin(n q + phi)) - b qd - c clamp(qd / v_s, -1, 1)
-//   measured position  q at the start of the control period, `delay_substeps` plant steps earlier,
+//   measured position  q at the start of the control period, `delay_substeps` substeps earlier,
 //                      rounded to the nearest multiple of the quantum (to the even one of two)
 //
 //   u         the controller's effort (N m or N, positive along the joint), held for a control period

@@ -1,5 +1,6 @@
-// Plans how many pairs go out at a time, and to which thread or worker, from measured costs alone.
-// None of these functions influences a result. They throw nothing.
+// Plans how many pairs the coordinator of an MPI job gives out at a time, and to which of its
+// threads or workers, from measured costs alone. None of these functions influences a result.
+// They throw nothing.
 //
 // A chunk must be long enough for the time of its message to be negligible, and short enough for
 // all threads to end a batch at the same time. A chunk is therefore a fixed share of the pairs that

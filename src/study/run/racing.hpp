@@ -1,6 +1,6 @@
 // Races: candidates that do badly on their first training cases are not simulated on the rest
-// (docs/racing.md). Decisions are made between rungs or chunks of fixed sizes, from objectives
-// alone, so results depend on neither threads nor time.
+// (docs/racing.md). Decisions are made between the steps of a race (rungs) or between chunks of
+// fixed sizes, from objectives alone, so results depend on neither threads nor time.
 //
 // Successive halving (Karnin, Koren and Somekh 2013; Jamieson and Talwalkar 2016): all n candidates
 // of a batch get the first r_0 cases, the better ceil(n / eta) go on to eta r_0 cases, and so on;

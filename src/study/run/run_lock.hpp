@@ -17,8 +17,9 @@ class RunLock {
   // Takes the lock for writing. Throws Error{busy}, which names the process that has the lock, and
   // Error{io} if the file system or the rights of the folder do not allow a lock.
   explicit RunLock(const std::filesystem::path& folder);
-  // Returns a lock that keeps writers out, and creates no file. Without a lock file there has been
-  // no writer, and the result holds nothing. Throws Error{busy}, which names the process that
+  // Returns a lock that keeps writers out, and creates no file. If the
+  // folder has no lock file, no process has ever written it; the returned lock then locks nothing.
+  // Throws Error{busy}, which names the process that
   // writes the folder, and Error{io}.
   static RunLock for_reading(const std::filesystem::path& folder);
 
