@@ -1,5 +1,5 @@
-// The row of cmaes: its options. cma_distribution.cpp computes their defaults. cma_search.cpp runs the search; CmaDistribution::update() in
-// cma_distribution.cpp adapts mean, step size and covariance.
+// The row of cmaes: its options. cma_search.cpp runs the search. cma_distribution.cpp computes the
+// options' defaults; its CmaDistribution::update() adapts mean, step size and covariance.
 
 #include <utility>
 
