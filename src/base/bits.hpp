@@ -1,13 +1,16 @@
 // Compares numbers bit by bit: NaN equals itself, and -0 differs from +0.
 #pragma once
 
-#include <cstring>
+#include <algorithm>
+#include <bit>
+#include <cstdint>
 #include <span>
 
 namespace armwright {
 
 inline bool same_bits(std::span<const double> a, std::span<const double> b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+  return std::ranges::equal(a, b, {}, std::bit_cast<std::uint64_t, double>,
+                            std::bit_cast<std::uint64_t, double>);
 }
 
 }  // namespace armwright

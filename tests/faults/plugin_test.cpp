@@ -1,5 +1,7 @@
 // Tests faulty optimizers of users, besides those of tests/e2e/misbehaving_plugins_test.cpp. Only
 // their own run fails, never the program, and the budget is never exceeded.
+#include <unistd.h>
+
 #include <nlohmann/json.hpp>
 
 #include "faults/support.hpp"
@@ -14,7 +16,7 @@ class Plugins : public testing::Test {
   Outcome optimize(const std::string& optimizer, const Words& more = {}) {
     std::filesystem::remove_all(folder_ / "run");
     Environment environment;
-    environment.variables = {{"FAULTS_MARK", "plugin"}};
+    environment.variables = {{"FAULTS_MARK", mark_}};
     return run_program(folder_.path(),
                        Words{"optimize", "sphere", "--budget", "50", "--out", "run", "--quiet",
                              "--optimizer", optimizer} +
@@ -28,9 +30,11 @@ class Plugins : public testing::Test {
                                    HasSubstr("its evaluations are kept and judged")));
     EXPECT_EQ(json::parse(read_text(folder_ / "run/result.json"))["end_reason"],
               "optimizer failed");
-    EXPECT_TRUE(wait_until([] { return list_processes("plugin").empty(); }));
+    EXPECT_TRUE(wait_until([&] { return list_processes(mark_).empty(); }));
   }
   TemporaryFolder folder_;
+  // Other tests of this class may run at the same time and have processes too.
+  const std::string mark_ = "plugin-" + std::to_string(::getpid());
 };
 
 TEST_F(Plugins, FilesThatAreNoLibraryOfThisMachineAreRefused) {
@@ -65,7 +69,7 @@ TEST_F(Plugins, TheHostCountsTheBudgetWhateverTheyBelieve) {
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_EQ(read_journal(folder_ / "run/journal").training.size(), 50u);
     EXPECT_EQ(json::parse(read_text(folder_ / "run/result.json"))["end_reason"], "budget");
-    EXPECT_TRUE(wait_until([] { return list_processes("plugin").empty(); }));
+    EXPECT_TRUE(wait_until([&] { return list_processes(mark_).empty(); }));
   }
 }
 
