@@ -133,36 +133,37 @@ const SettingTable kPathSettings{
                  &kPathStart, &kPathRepeats, &kPathFile},
     .tables = {&kPointSettings}};
 
-std::optional<ReadPath> read_path(const ConfigTable& table, const TrackingTask& task) {
+std::optional<TestCase> read_path(const ConfigTable& table, const TrackingTask& task,
+                                  LoadedProblem& loaded) {
   if (!table.has(kPathKind)) {
     return std::nullopt;  // other keys without it are refused as unknown
   }
   const std::string kind = table.get(kPathKind);
-  ReadPath path;
+  TestCase path;
   if (kind == "points") {
-    path.the_case = make_points(table);
+    path = make_points(table);
   } else if (kind == "line") {
-    path.the_case = make_line(table);
+    path = make_line(table);
   } else if (kind == "circle") {
-    path.the_case = make_circle(table, task);
+    path = make_circle(table, task);
   } else {
     const std::filesystem::path named = table.get(kPathFile);
     const std::filesystem::path beside = table.file().parent_path() / named;
     std::error_code ignored;
-    path.file = std::filesystem::is_regular_file(beside, ignored) ? beside : named;
-    if (!std::filesystem::is_regular_file(*path.file, ignored)) {
+    const auto file = std::filesystem::is_regular_file(beside, ignored) ? beside : named;
+    if (!std::filesystem::is_regular_file(file, ignored)) {
       table.refuse(kPathFile, fmt::format("there is no such file, in {} or in the current folder",
                                           sanitize(table.file().parent_path().string())));
     }
-    path.the_case =
-        parse_path(read_file(*path.file, kPathLimit_bytes), sanitize(path.file->string()), task);
+    path = parse_path(read_file(file, kPathLimit_bytes), sanitize(file.string()), task);
+    add_input(loaded, file);
   }
-  if (!path.the_case.continuous) {
-    if (const auto fault = find_fault(path.the_case)) {
+  if (!path.continuous) {
+    if (const auto fault = find_fault(path)) {
       table.refuse(kPathKind, fmt::format("point {} {}", fault->point, fault->what));
     }
   }
-  if (!path.the_case.turns.empty() && task.tool.orientation == ToolOrientation::free) {
+  if (!path.turns.empty() && task.tool.orientation == ToolOrientation::free) {
     table.refuse(kPathKind,
                  "the path says how the tool is turned, which does not count where "
                  "task.orientation is \"free\"; set it to \"pose\" or \"pointing\"");
