@@ -106,9 +106,9 @@ TestCase make_circle(const ConfigTable& table, const TrackingTask& task) {
                  "a circle needs a reference signal that moves; task.signal is \"step\"");
   }
   const double length_m = 2 * std::numbers::pi * radius_m * repeats;
-  const ReferenceSignal signal(task.signal, length_m, task.speed_m_per_s,
-                               task.trapezoid_acceleration_m_per_s2);
-  const double steps = std::ceil(signal.duration_s() / task.control_period_s - 1e-9);
+  const targets::SignalCurve signal = make_signal_curve(task.signal, length_m, task.speed_m_per_s,
+                                                        task.trapezoid_acceleration_m_per_s2);
+  const double steps = std::ceil(signal.duration_s / task.control_period_s - 1e-9);
   if (steps > kMostPathPoints) {
     table.refuse(kPathRadius, fmt::format("the circle would take {:.3g} control periods, possible "
                                           "are {}; raise task.speed_m_per_s",
@@ -117,7 +117,8 @@ TestCase make_circle(const ConfigTable& table, const TrackingTask& task) {
   TestCase path;
   path.continuous = true;
   for (int step = 0; step <= static_cast<int>(steps); ++step) {
-    const double angle_rad = signal.calc_distance(step * task.control_period_s) / radius_m;
+    const double angle_rad =
+        targets::calc_distance(signal, step * task.control_period_s) / radius_m;
     path.points_m.push_back(
         centre_m + radius_m * (std::cos(angle_rad) * first + std::sin(angle_rad) * second));
   }
