@@ -87,8 +87,8 @@ RobotModel load_robot(const ConfigTable& table, const std::filesystem::path& urd
   try {
     RobotModel robot = load_urdf(urdf, options);
     add_input(loaded, urdf);
-    for (const MassFile& mesh : robot.mass_files) {
-      loaded.input_hashes[mesh.name] = calc_sha256_hex(read_file(mesh.path, kMeshFileLimit_bytes));
+    for (const auto& [name, path] : robot.mass_files) {
+      loaded.input_hashes[name] = calc_sha256_hex(read_file(path, kMeshFileLimit_bytes));
     }
     return robot;
   } catch (const RobotOptionError& error) {
