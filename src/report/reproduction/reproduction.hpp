@@ -89,7 +89,8 @@ class ReproductionFolder {
 // result is kept. `program` is the program's name in the manifests of the runs. Returns one result
 // per part in the plan's order, or nothing after a request to stop: then the folder has every
 // finished part, and the same call continues. Frees each of the plan's problems after its part.
-// Throws Error{usage} for a plan with runs without a folder; Error{bad_data} if a run has no winner.
+// Throws Error{usage} for a plan with runs without a folder; Error{bad_data} if a run has no
+// winner.
 std::optional<std::vector<PartResult>> execute_reproduction(ReproductionPlan& plan,
                                                             ReproductionFolder* folder,
                                                             const std::string& program,

@@ -15,8 +15,8 @@ namespace armwright {
 // readers refuse infinity.
 inline constexpr double kNoVelocityLimit_rad_per_s = 1e6;
 
-// Returns the text with <limit effort="..."> of some joints replaced. `efforts` has their new limits
-// by name, in N m, or in N for a prismatic joint. A joint without <limit> gets one, with
+// Returns the text with <limit effort="..."> of some joints replaced. `efforts` has their new
+// limits by name, in N m, or in N for a prismatic joint. A joint without <limit> gets one, with
 // kNoVelocityLimit_rad_per_s. Inserts `comment` as an XML comment after the XML
 // declaration; inserts blanks where the comment's text would end it early. `name` is the file's
 // name in messages. Throws Error{bad_data} if a joint does not exist.

@@ -31,9 +31,9 @@ std::vector<std::string> make_sbatch_words(const StudyPlan& plan, std::span<cons
 
 // Writes the script, submits it and returns the job's number. Throws Error{busy} while a job of an
 // earlier submission is in the queue, or another process submits for the study. Throws Error{usage}
-// with Slurm's message if Slurm refuses, or if squeue is missing or fails. If Slurm refuses, removes
-// the submission's folder. Throws Error{bad_data} for an earlier submission.json that cannot be
-// read.
+// if squeue is missing or fails. Throws Error{usage} with Slurm's message if Slurm refuses, and
+// then removes the submission's folder. Throws Error{bad_data} for an earlier submission.json that
+// cannot be read.
 std::string submit_to_slurm(const StudyPlan& plan, std::span<const Chunk> chunks,
                             const SlurmRequest& request, const std::string& script);
 
