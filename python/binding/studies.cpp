@@ -130,7 +130,7 @@ py::tuple compare(StudyRequest request, const py::list& optimizers, const Place&
   host.run([&] { run_python_cells(plan, path, place.jobs, host.stop(), host); });
   std::optional<StudyResult> result;
   host.run_aside([&] {
-    if (run_cells(plan, path, place.jobs, host.stop(), host).stopped) {
+    if (!run_cells(plan, path, place.jobs, host.stop(), host)) {
       return;
     }
     StudyResult found = analyze_study(plan, path);

@@ -38,10 +38,10 @@ std::string get_release_date() {
   return ARMWRIGHT_RELEASE_DATE;
 }
 
-std::vector<LibraryVersion> list_libraries() {
-  std::vector<LibraryVersion> libraries;
+std::map<std::string, std::string> list_libraries() {
+  std::map<std::string, std::string> libraries;
   for (const auto& row : kLibraryVersions) {
-    libraries.push_back({row.name, row.version});
+    libraries[row.name] = row.version;
   }
   return libraries;
 }
@@ -52,8 +52,8 @@ std::map<std::string, std::string> describe_build() {
       {"compiler", ARMWRIGHT_COMPILER}, {"build_type", ARMWRIGHT_BUILD_TYPE},
       {"cpu", read_cpu_name()},         {"host", read_host_name()},
   };
-  for (const LibraryVersion& library : list_libraries()) {
-    build[library.name] = library.version.empty() ? kNotInBuild : library.version;
+  for (const auto& [library, version] : list_libraries()) {
+    build[library] = version.empty() ? kNotInBuild : version;
   }
   return build;
 }

@@ -12,13 +12,9 @@ namespace armwright {
 std::string get_version();       // "1.0.0"
 std::string get_release_date();  // of that version: "2026-11-23"
 
-// A library and its version when the build was configured. The version is empty if the build does
-// not use the library.
-struct LibraryVersion {
-  std::string name;
-  std::string version;
-};
-std::vector<LibraryVersion> list_libraries();  // by name
+// Returns each library's version when the build was configured, by the library's name. The version
+// is empty if the build does not use the library.
+std::map<std::string, std::string> list_libraries();
 
 // Returns version, git, compiler, build_type, cpu, host, and the version of every library or
 // kNotInBuild.

@@ -46,4 +46,7 @@ class StopSignal {
   std::function<void()> lookout_;
 };
 
+// Thrown by work that a StopSignal ended and that cannot return the part done.
+struct WorkStopped {};
+
 }  // namespace armwright

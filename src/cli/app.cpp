@@ -76,11 +76,11 @@ std::string describe_version() {
   add("host", build.at("host"));
   text += "Libraries it was built with:\n";
   std::vector<std::string> missing;
-  for (const LibraryVersion& library : list_libraries()) {
-    if (library.version.empty()) {
-      missing.push_back(library.name);
+  for (const auto& [library, version] : list_libraries()) {
+    if (version.empty()) {
+      missing.push_back(library);
     } else {
-      add(library.name, library.version);
+      add(library, version);
     }
   }
   if (!missing.empty()) {

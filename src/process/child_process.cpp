@@ -31,22 +31,20 @@ constexpr std::uint64_t kMaxFrameBytes = std::uint64_t{1} << 32;
 
 }  // namespace
 
-ChildProcess::SocketPair ChildProcess::open_sockets() {
+ChildProcess::ChildProcess(const std::function<void(ParentLink&)>& body,
+                           const ProcessLimits& limits, OutputLog* log)
+    : limits_(limits), memory_at_start_(measure_memory("self")) {
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
     fail("open a socket for a child process", errno);
   }
-  return {FileDescriptor(ends[0]), FileDescriptor(ends[1])};
-}
-
-ChildProcess::ChildProcess(const std::function<void(ParentLink&)>& body,
-                           const ProcessLimits& limits, OutputLog* log)
-    : limits_(limits), sockets_(open_sockets()), memory_at_start_(measure_memory("self")) {
+  socket_.reset(ends[0]);
+  FileDescriptor child_end(ends[1]);
   if (log != nullptr) {
     output_.emplace(*log);
   }
   ChildSettings settings{.parent = getpid(),
-                         .socket = sockets_.child.get(),
+                         .socket = child_end.get(),
                          .output = output_ ? output_->child_end() : -1,
                          .memory_mib = limits_.memory_mib};
   if (memory_at_start_) {
@@ -62,7 +60,7 @@ ChildProcess::ChildProcess(const std::function<void(ParentLink&)>& body,
   if (pid_ < 0) {
     fail("start a child process", errno);
   }
-  sockets_.child.close();
+  child_end.close();
   if (output_) {
     output_->close_child_end();
   }
@@ -124,7 +122,7 @@ std::optional<ChildProcess::Event> ChildProcess::send(std::string_view message,
   const std::string frame = make_frame(FrameKind::message, message);
   silence_.restart();
   for (std::size_t sent = 0; sent < frame.size();) {
-    const ssize_t count = ::send(sockets_.parent.get(), frame.data() + sent, frame.size() - sent,
+    const ssize_t count = ::send(socket_.get(), frame.data() + sent, frame.size() - sent,
                                  MSG_NOSIGNAL | MSG_DONTWAIT);
     if (count >= 0) {
       sent += static_cast<std::size_t>(count);
@@ -178,7 +176,7 @@ std::optional<ChildProcess::Event> ChildProcess::take_message(std::string& messa
 
 bool ChildProcess::wait_for(short events) {
   std::array<pollfd, 2> waiting{
-      pollfd{.fd = events == 0 ? -1 : sockets_.parent.get(), .events = events, .revents = 0},
+      pollfd{.fd = events == 0 ? -1 : socket_.get(), .events = events, .revents = 0},
       pollfd{.fd = output_ ? output_->get() : -1, .events = POLLIN, .revents = 0}};
   poll(waiting.data(), waiting.size(), events == 0 ? kClosedPollMs : kPollMs);
   silence_.look();
@@ -200,7 +198,7 @@ void ChildProcess::check_silence() const {
 
 bool ChildProcess::read_available() {
   std::array<char, 65536> buffer;
-  const ssize_t count = recv(sockets_.parent.get(), buffer.data(), buffer.size(), MSG_DONTWAIT);
+  const ssize_t count = recv(socket_.get(), buffer.data(), buffer.size(), MSG_DONTWAIT);
   if (count > 0) {
     received_.append(buffer.data(), static_cast<std::size_t>(count));
   }

@@ -44,12 +44,7 @@ class ChildProcess {
 
  private:
   using Clock = std::chrono::steady_clock;
-  struct SocketPair {
-    FileDescriptor parent;
-    FileDescriptor child;
-  };
 
-  static SocketPair open_sockets();
   std::optional<Event> take_message(std::string& message);
   bool wait_for(short events);  // true if an event has happened
   bool read_available();        // false at the end of the stream
@@ -59,7 +54,7 @@ class ChildProcess {
   [[noreturn]] void explain_death();
 
   ProcessLimits limits_;
-  SocketPair sockets_;
+  FileDescriptor socket_;  // our end of the connection to the child
   std::optional<OutputPipe> output_;
   pid_t pid_ = -1;
   std::string received_;

@@ -12,10 +12,10 @@ TEST(BuildInfo, NamesEveryLibraryThatIsThereOrNot) {
   const auto build = describe_build();
   const auto libraries = list_libraries();
   EXPECT_GE(libraries.size(), 19U);
-  for (const LibraryVersion& library : libraries) {
-    const std::string version = build.at(library.name);
-    EXPECT_EQ(version, library.version.empty() ? kNotInBuild : library.version);
-    EXPECT_NE(version, "unknown") << library.name;  // where the build did not find it out
+  for (const auto& [library, version] : libraries) {
+    const std::string recorded = build.at(library);
+    EXPECT_EQ(recorded, version.empty() ? kNotInBuild : version);
+    EXPECT_NE(recorded, "unknown") << library;  // where the build did not find it out
   }
   EXPECT_EQ(build.at("version"), get_version());
 }

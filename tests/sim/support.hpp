@@ -5,11 +5,14 @@
 
 #include <functional>
 #include <limits>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "base/error.hpp"
 #include "physics/test_arms.hpp"
 #include "physics/tracking_arms.hpp"
+#include "sim/controllers/controller.hpp"
 
 namespace armwright {
 
@@ -28,6 +31,12 @@ inline std::string usage_message(const std::function<void()>& action) {
     return error.what();
   }
   return "(no error)";
+}
+
+// Returns the controller 'pid' of one joint.
+inline std::unique_ptr<Controller> make_pid(double p, double i, double d, EffortLimits limits,
+                                            JointKind kind = JointKind::revolute) {
+  return find_controller("pid").make(std::vector<double>{p, i, d}, limits, kind);
 }
 
 }  // namespace armwright

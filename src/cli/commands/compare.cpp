@@ -175,9 +175,9 @@ int run_compare(const CompareOptions& options, Session& session) {
   LockedObserver observer(bar);
   adopt_attempts(plan, path, observer);
   auto coordinator = job.make_coordinator(list_problems(plan), jobs, observer);
-  const CellsResult cells = run_cells(plan, path, jobs, session.stop, observer, coordinator.get());
+  const auto broken = run_cells(plan, path, jobs, session.stop, observer, coordinator.get());
   job.end_workers(std::move(coordinator));
-  if (cells.stopped) {
+  if (!broken) {
     bar.clear();
     return end_stopped(session, session.command_line);
   }

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
+#include "base/stop_signal.hpp"
 #include "base/text.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/commands/system_check.hpp"
@@ -17,7 +18,6 @@
 #include "cli/terminal/table.hpp"
 #include "cli/terminal/terminal.hpp"
 #include "cli/views/store_view.hpp"
-#include "study/survey/folder_copy.hpp"
 #include "study/survey/store_repair.hpp"
 #include "study/survey/store_survey.hpp"
 
@@ -114,7 +114,7 @@ int repair(const DoctorOptions& options, Session& session) {
   std::optional<StoreRepair> repaired;
   try {
     repaired = repair_store(folder, target, session.stop);
-  } catch (const CopyStopped&) {
+  } catch (const WorkStopped&) {
     write_message(fmt::format("{}: no copy was made", describe_stop(session.stop.reason())));
     return get_stop_code(session.stop.reason());
   }

@@ -98,14 +98,14 @@ CellScriptRequest make_script_request(const std::filesystem::path& folder, unsig
 
 int submit(const StudyPlan& plan, const SlurmRequest& request, const Work& work,
            const std::string& script, const Session& session) {
-  const Submission submission = submit_to_slurm(plan, work.chunks, request, script);
+  const std::string job = submit_to_slurm(plan, work.chunks, request, script);
   write_stdout(
       fmt::format("job {0}: {1} of cells\n"
                   "  squeue -j {0}\n"
                   "  {2}\n"
                   "When all jobs have ended:\n"
                   "  {3}\n",
-                  submission.job, format_count(work.chunks.size(), "chunk"),
+                  job, format_count(work.chunks.size(), "chunk"),
                   quote_own_command(session, {"status", request.study.string()}),
                   quote_own_command(session, {"merge", request.study.string()})));
   return exit_code::kDone;

@@ -251,18 +251,15 @@ int run_reproduce(const ReproduceOptions& options, Session& session) {
     request.cases =
         static_cast<std::uint64_t>(parse_count("--cases", options.cases, 1, kMostCases));
   }
-  ReproductionWork work;
-  work.program = session.command_line.front();
-  work.jobs = parse_jobs(options.jobs);
+  const unsigned jobs = parse_jobs(options.jobs);
   apply_time_limit(options.time_limit, session.stop);
   ReproductionPlan plan = plan_reproduction(request);
   std::optional<ReproductionFolder> folder;
   if (is_kept) {
     folder.emplace(options.folder.choose("reproduction"), plan);
-    work.folder = &*folder;
   }
   if (!options.quiet) {
-    announce(options, plan, work.folder, work.jobs);
+    announce(options, plan, folder ? &*folder : nullptr, jobs);
   }
   catch_signals(session.stop);
   ProgressBar bar(options.quiet, {"error", "m"});
@@ -271,7 +268,8 @@ int run_reproduce(const ReproduceOptions& options, Session& session) {
       bar.on_message("warning: " + warning + "; existing results are not computed again");
     }
   }
-  const auto results = execute_reproduction(plan, work, session.stop, bar);
+  const auto results = execute_reproduction(plan, folder ? &*folder : nullptr,
+                                            session.command_line.front(), jobs, session.stop, bar);
   bar.clear();
   if (!results) {
     const char* stop = describe_stop(session.stop.reason());

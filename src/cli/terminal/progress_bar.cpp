@@ -67,6 +67,8 @@ std::string join_what_fits(std::vector<Piece> pieces, std::size_t width) {
 
 }  // namespace
 
+enum class ProgressBar::Mode : std::uint8_t { none, lines, bar };
+
 ProgressBar::ProgressBar(bool quiet, Quantity objective)
     : mode_(quiet                        ? Mode::none
             : is_terminal(Stream::error) ? Mode::bar

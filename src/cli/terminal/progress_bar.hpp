@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <string>
 
 #include "problems/interface/problem.hpp"
@@ -26,7 +27,7 @@ class ProgressBar final : public RunObserver {
 
  private:
   using Clock = std::chrono::steady_clock;
-  enum class Mode { none, lines, bar };
+  enum class Mode : std::uint8_t;
 
   // Returns the mean rate since the phase began, in cases per second. Returns 0 if less than 0.3 s
   // have passed or nothing was simulated.

@@ -5,13 +5,20 @@
 #include <cmath>
 
 namespace armwright {
+namespace {
 
-DifferencedFunction::Shift DifferencedFunction::add_shifts(
-    const std::vector<double>& base, std::size_t variable,
-    std::vector<std::vector<double>>& batch) const {
-  const double lower = space().lower()[variable];
-  const double upper = space().upper()[variable];
-  const double step = settings_.step * (upper - lower);
+struct Shift {
+  std::optional<std::size_t> above;  // places in the batch
+  std::optional<std::size_t> below;
+};
+
+// Adds the points that one variable's derivative needs to the batch.
+Shift add_shifts(const SearchSpace& space, const DifferenceSettings& settings,
+                 const std::vector<double>& base, std::size_t variable,
+                 std::vector<std::vector<double>>& batch) {
+  const double lower = space.lower()[variable];
+  const double upper = space.upper()[variable];
+  const double step = settings.step * (upper - lower);
   const auto add = [&](double coordinate) -> std::optional<std::size_t> {
     if (coordinate < lower || coordinate > upper) {
       return std::nullopt;
@@ -22,11 +29,13 @@ DifferencedFunction::Shift DifferencedFunction::add_shifts(
   };
   Shift shift;
   shift.above = add(base[variable] + step);
-  if (settings_.central || !shift.above) {
+  if (settings.central || !shift.above) {
     shift.below = add(base[variable] - step);
   }
   return shift;
 }
+
+}  // namespace
 
 std::vector<Score> DifferencedFunction::evaluate(const std::vector<std::vector<double>>& batch) {
   std::vector<Score> scores = function_.evaluate_batch(batch);
@@ -87,7 +96,7 @@ const DifferencedFunction::Place& DifferencedFunction::evaluate_place(
   std::vector<Shift> shifts;
   if (with_derivatives) {
     for (std::size_t i = 0; i < coordinates.size(); ++i) {
-      shifts.push_back(add_shifts(coordinates, i, batch));
+      shifts.push_back(add_shifts(space(), settings_, coordinates, i, batch));
     }
   }
   const std::vector<Score> scores = evaluate(batch);

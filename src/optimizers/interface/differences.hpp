@@ -81,14 +81,6 @@ class DifferencedFunction {
   }
 
  private:
-  struct Shift {
-    std::optional<std::size_t> above;  // places in the batch
-    std::optional<std::size_t> below;
-  };
-
-  Shift add_shifts(const std::vector<double>& base, std::size_t variable,
-                   std::vector<std::vector<double>>& batch) const;
-
   std::vector<Score> evaluate(const std::vector<std::vector<double>>& batch);
   void remember_best(const std::vector<double>& coordinates, const Score& score);
   const Place& evaluate_exactly(const std::vector<double>& coordinates);

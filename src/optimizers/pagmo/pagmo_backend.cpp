@@ -8,18 +8,138 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <pagmo/population.hpp>
 #include <pagmo/problem.hpp>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "base/random.hpp"
 #include "optimizers/interface/scalar_function.hpp"
 #include "optimizers/pagmo/pagmo_algorithms.hpp"
-#include "optimizers/pagmo/pagmo_bridge.hpp"
 
 namespace armwright {
 namespace {
+
+// The value of each constraint of a failed evaluation. It is finite, because the methods add and
+// square violations.
+constexpr double kViolatedBeyondMeasure = 1e12;
+
+// Evaluates points and returns pagmo's fitness vectors: the objectives, then the constraints.
+class PagmoBridge {
+ public:
+  PagmoBridge(const PagmoMethod& method, const Options& options, Evaluator& evaluator);
+
+  const SearchSpace& space() const { return function_.space(); }
+  const ProblemDescription& problem() const { return function_.evaluator().problem(); }
+  std::size_t objective_count() const {
+    return method_.multi_objective ? problem().objectives.size() : 1;
+  }
+  std::size_t constraint_count() const {
+    return method_.constraints ? problem().constraints.size() : 0;
+  }
+  std::int64_t evaluation_count() const { return evaluation_count_; }
+  // True after an exception of the evaluator has passed through pagmo.
+  bool has_thrown() const { return has_thrown_; }
+
+  std::vector<std::vector<double>> evaluate(std::span<const std::vector<double>> coordinates);
+
+ private:
+  void require_finite(std::span<const double> coordinates) const;
+  std::vector<double> calc_fitness(const Score& score) const;
+
+  const PagmoMethod& method_;
+  double constraint_weight_;
+  ScalarFunction function_;
+  std::int64_t evaluation_count_ = 0;
+  bool has_thrown_ = false;
+};
+
+// The problem as pagmo needs it: default-constructible and copyable. All copies share the bridge.
+struct BridgedPagmoProblem {
+  PagmoBridge* bridge = nullptr;
+
+  std::vector<double> fitness(const std::vector<double>& coordinates) const {
+    return bridge->evaluate({&coordinates, 1}).front();
+  }
+  // Evaluates many points. pagmo stores points and fitness vectors one after the other in one
+  // vector.
+  std::vector<double> batch_fitness(const std::vector<double>& all) const;
+
+  std::pair<std::vector<double>, std::vector<double>> get_bounds() const {
+    return {bridge->space().lower(), bridge->space().upper()};
+  }
+  // pagmo calls these on a default-constructed object as well.
+  std::size_t get_nobj() const { return bridge == nullptr ? 1 : bridge->objective_count(); }
+  std::size_t get_nic() const { return bridge == nullptr ? 0 : bridge->constraint_count(); }
+};
+
+PagmoBridge::PagmoBridge(const PagmoMethod& method, const Options& options, Evaluator& evaluator)
+    : method_(method),
+      constraint_weight_(method.constraints ? 0 : options.get_number("constraint_weight")),
+      function_(evaluator) {}
+
+std::vector<std::vector<double>> PagmoBridge::evaluate(
+    std::span<const std::vector<double>> coordinates) {
+  try {
+    for (const std::vector<double>& one : coordinates) {
+      require_finite(one);
+    }
+    const std::vector<Score> scores = function_.evaluate_batch(coordinates);
+    evaluation_count_ += static_cast<std::int64_t>(scores.size());
+    std::vector<std::vector<double>> fitness;
+    std::ranges::transform(scores, std::back_inserter(fitness),
+                           [this](const Score& score) { return calc_fitness(score); });
+    return fitness;
+  } catch (...) {
+    has_thrown_ = true;
+    throw;
+  }
+}
+
+void PagmoBridge::require_finite(std::span<const double> coordinates) const {
+  if (!std::ranges::all_of(coordinates, [](double u) { return std::isfinite(u); })) {
+    throw OptimizerFailure(
+        fmt::format("optimizer '{}' asked for a point that is not finite", method_.row));
+  }
+}
+
+std::vector<double> PagmoBridge::calc_fitness(const Score& score) const {
+  if (method_.multi_objective) {
+    const double violation = problem().violation_scale * calc_violation(score.constraint_values);
+    std::vector<double> fitness = score.objectives;
+    for (double& objective : fitness) {
+      objective += constraint_weight_ * violation;
+    }
+    return fitness;
+  }
+  if (!method_.constraints) {
+    return {calc_merit(problem(), score, constraint_weight_)};
+  }
+  std::vector<double> fitness = {calc_scalar(problem(), score.objectives)};
+  if (score.constraint_values.size() == constraint_count()) {
+    // Some methods compare the objective with the constraints.
+    std::ranges::transform(score.constraint_values, std::back_inserter(fitness),
+                           [this](double g) { return problem().violation_scale * g; });
+  } else {
+    fitness.resize(1 + constraint_count(), kViolatedBeyondMeasure);
+  }
+  return fitness;
+}
+
+std::vector<double> BridgedPagmoProblem::batch_fitness(const std::vector<double>& all) const {
+  const auto dimension = static_cast<std::ptrdiff_t>(bridge->space().dimension());
+  std::vector<std::vector<double>> points;
+  for (auto from = all.begin(); from != all.end(); from += dimension) {
+    points.emplace_back(from, from + dimension);
+  }
+  std::vector<double> joined;
+  for (const std::vector<double>& one : bridge->evaluate(points)) {
+    joined.insert(joined.end(), one.begin(), one.end());
+  }
+  return joined;
+}
 
 // pagmo's messages have several lines; the last one says what is wrong.
 std::string get_reason(const std::exception& error) {

@@ -108,9 +108,9 @@ TestCase make_circle(const ConfigTable& table, const TrackingTask& task) {
                  "a circle needs a reference signal that moves; task.signal is \"step\"");
   }
   const double length_m = 2 * std::numbers::pi * radius_m * repeats;
-  const ReferenceSignal signal(task.signal, length_m, task.speed_m_per_s,
-                               task.trapezoid_acceleration_m_per_s2);
-  const double steps = std::ceil(signal.duration_s() / task.control_period_s - 1e-9);
+  const targets::SignalCurve signal = make_signal_curve(task.signal, length_m, task.speed_m_per_s,
+                                                        task.trapezoid_acceleration_m_per_s2);
+  const double steps = std::ceil(signal.duration_s / task.control_period_s - 1e-9);
   if (steps > kMostPathPoints) {
     table.refuse(kPathRadius, fmt::format("the circle would take {:.3g} control periods, possible "
                                           "are {}; raise task.speed_m_per_s",
@@ -119,7 +119,8 @@ TestCase make_circle(const ConfigTable& table, const TrackingTask& task) {
   TestCase path;
   path.continuous = true;
   for (int step = 0; step <= static_cast<int>(steps); ++step) {
-    const double angle_rad = signal.calc_distance(step * task.control_period_s) / radius_m;
+    const double angle_rad =
+        targets::calc_distance(signal, step * task.control_period_s) / radius_m;
     path.points_m.push_back(
         centre_m + radius_m * (std::cos(angle_rad) * first + std::sin(angle_rad) * second));
   }
@@ -135,36 +136,37 @@ const SettingTable kPathSettings{
                  &kPathStart, &kPathRepeats, &kPathFile},
     .tables = {&kPointSettings}};
 
-std::optional<ReadPath> read_path(const ConfigTable& table, const TrackingTask& task) {
+std::optional<TestCase> read_path(const ConfigTable& table, const TrackingTask& task,
+                                  LoadedProblem& loaded) {
   if (!table.has(kPathKind)) {
     return std::nullopt;  // other keys without it are refused as unknown
   }
   const std::string kind = table.get(kPathKind);
-  ReadPath path;
+  TestCase path;
   if (kind == "points") {
-    path.the_case = make_points(table);
+    path = make_points(table);
   } else if (kind == "line") {
-    path.the_case = make_line(table);
+    path = make_line(table);
   } else if (kind == "circle") {
-    path.the_case = make_circle(table, task);
+    path = make_circle(table, task);
   } else {
     const std::filesystem::path named = table.get(kPathFile);
     const std::filesystem::path beside = table.file().parent_path() / named;
     std::error_code ignored;
-    path.file = std::filesystem::is_regular_file(beside, ignored) ? beside : named;
-    if (!std::filesystem::is_regular_file(*path.file, ignored)) {
+    const auto file = std::filesystem::is_regular_file(beside, ignored) ? beside : named;
+    if (!std::filesystem::is_regular_file(file, ignored)) {
       table.refuse(kPathFile, fmt::format("there is no such file, in {} or in the current folder",
                                           sanitize(table.file().parent_path().string())));
     }
-    path.the_case =
-        parse_path(read_file(*path.file, kPathLimit_bytes), sanitize(path.file->string()), task);
+    path = parse_path(read_file(file, kPathLimit_bytes), sanitize(file.string()), task);
+    add_input(loaded, file);
   }
-  if (!path.the_case.continuous) {
-    if (const auto fault = find_fault(path.the_case)) {
+  if (!path.continuous) {
+    if (const auto fault = find_fault(path)) {
       table.refuse(kPathKind, fmt::format("point {} {}", fault->point, fault->what));
     }
   }
-  if (!path.the_case.turns.empty() && task.tool.orientation == ToolOrientation::free) {
+  if (!path.turns.empty() && task.tool.orientation == ToolOrientation::free) {
     table.refuse(kPathKind,
                  "the path says how the tool is turned, which does not count where "
                  "task.orientation is \"free\"; set it to \"pose\" or \"pointing\"");

@@ -134,13 +134,10 @@ ArmDesign propose_start(const TrackingConfig& config);
 
 extern const SettingTable kPathSettings;
 
-struct ReadPath {
-  TestCase the_case;
-  std::optional<std::filesystem::path> file;  // the file that the path was read from, if any
-};
-
-// Returns nothing if the table has no kind. Throws Error{bad_data} with file and line of the path.
-std::optional<ReadPath> read_path(const ConfigTable& table, const TrackingTask& task);
+// Returns nothing if the table has no kind. Adds the file of a path to the problem's inputs. Throws
+// Error{bad_data} with file and line of the path.
+std::optional<TestCase> read_path(const ConfigTable& table, const TrackingTask& task,
+                                  LoadedProblem& loaded);
 
 // path_file.cpp
 

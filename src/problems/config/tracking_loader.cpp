@@ -68,14 +68,11 @@ std::shared_ptr<const TrackingProblem> make_tracking(TrackingConfig config,
 // Reads the path, if there is one, and proposes what is left out.
 void read_path_and_proposal(const ConfigTable& table, TrackingConfig& config,
                             LoadedProblem& loaded) {
-  if (const auto path = read_path(table.get_table_or_empty(kPathSettings), config.task)) {
-    config.path = path->the_case;
+  config.path = read_path(table.get_table_or_empty(kPathSettings), config.task, loaded);
+  if (config.path) {
     // The user chose every move, so that the first one counts unless the file says otherwise.
     config.task.count_first_point =
         table.get_table_or_empty(kTaskSettings).get_or(kTaskCountFirstPoint, true);
-    if (path->file) {
-      add_input(loaded, *path->file);
-    }
   }
   if (table.get_table(kRobotSettings).get(kRobotPropose)) {
     apply_proposal(table, config);
@@ -92,8 +89,8 @@ RobotModel load_robot(const ConfigTable& table, const std::filesystem::path& urd
   try {
     RobotModel robot = load_urdf(urdf, options);
     add_input(loaded, urdf);
-    for (const MassFile& mesh : robot.mass_files) {
-      loaded.input_hashes[mesh.name] = calc_sha256_hex(read_file(mesh.path, kMeshFileLimit_bytes));
+    for (const auto& [name, path] : robot.mass_files) {
+      loaded.input_hashes[name] = calc_sha256_hex(read_file(path, kMeshFileLimit_bytes));
     }
     return robot;
   } catch (const RobotOptionError& error) {

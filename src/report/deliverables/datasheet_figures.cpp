@@ -25,8 +25,8 @@ LineFigure make_spread(const FinishedArm& arm) {
   const auto all = static_cast<double>(arm.result().test.case_errors.size());
   for (std::size_t i = 0; i < errors_m.size(); ++i) {
     const double error_mm = kMillimetresPerMetre * errors_m[i];
-    figure.points.push_back({error_mm, 100 * static_cast<double>(i) / all});
-    figure.points.push_back({error_mm, 100 * static_cast<double>(i + 1) / all});
+    figure.points.emplace_back(error_mm, 100 * static_cast<double>(i) / all);
+    figure.points.emplace_back(error_mm, 100 * static_cast<double>(i + 1) / all);
   }
   // On a linear axis, a few cases with a lost target would press all others against the left edge.
   constexpr double kWide = 20;
@@ -49,16 +49,17 @@ std::size_t find_column(const std::vector<std::string>& heads, std::string_view 
 
 // Returns at most kPoints points, which the eye can still tell apart: the largest error of each
 // stretch of time.
-std::vector<FigurePoint> keep_peaks(const std::vector<FigurePoint>& points) {
+std::vector<Eigen::Vector2d> keep_peaks(const std::vector<Eigen::Vector2d>& points) {
   constexpr std::size_t kPoints = 400;
   const std::size_t stretch = (points.size() + kPoints - 1) / kPoints;
-  std::vector<FigurePoint> thinned;
+  std::vector<Eigen::Vector2d> thinned;
   for (std::size_t i = 0; i < points.size(); i += std::max<std::size_t>(stretch, 1)) {
     const auto first = points.begin() + static_cast<std::ptrdiff_t>(i);
     const auto last =
         points.begin() + static_cast<std::ptrdiff_t>(std::min(i + stretch, points.size()));
     thinned.push_back(*std::max_element(
-        first, last, [](const FigurePoint& a, const FigurePoint& b) { return a.y < b.y; }));
+        first, last,
+        [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.y() < b.y(); }));
   }
   return thinned;
 }
@@ -87,7 +88,7 @@ LineFigure make_first_case(const FinishedArm& arm) {
                               "rebuilt",
                               sanitize(file.string()), reader.row()));
     }
-    figure.points.push_back({*time_s, kMillimetresPerMetre * *error_m});
+    figure.points.emplace_back(*time_s, kMillimetresPerMetre * *error_m);
   }
   figure.points = keep_peaks(figure.points);
   return figure;

@@ -106,15 +106,15 @@ std::vector<double> make_ticks(double largest) {
 }
 
 std::string make_svg(const LineFigure& figure) {
-  const double largest_x = figure.points.back().x;
+  const double largest_x = figure.points.back().x();
   double largest_y = 0;
-  for (const FigurePoint& point : figure.points) {
-    largest_y = std::max(largest_y, point.y);
+  for (const Eigen::Vector2d& point : figure.points) {
+    largest_y = std::max(largest_y, point.y());
   }
   largest_y = largest_y > 0 ? largest_y : 1;
   Axis x{0, largest_x > 0 ? largest_x : 1, false, kLeft, kWidth - kRight};
   if (figure.logarithmic_x) {
-    x.low = figure.points.front().x;
+    x.low = figure.points.front().x();
     x.logarithmic = true;
   }
   const Axis y{0, largest_y, false, kHeight - kBottom, kTop};
@@ -135,8 +135,8 @@ std::string make_svg(const LineFigure& figure) {
   svg += make_text((kLeft + kWidth - kRight) / 2, kHeight - 6, "middle", figure.x_label);
   svg += make_text(4, kTop - 8, "start", figure.y_label);
   svg += "<polyline points=\"";
-  for (const FigurePoint& point : figure.points) {
-    svg += fmt::format("{:.1f},{:.1f} ", x.place(point.x), y.place(point.y));
+  for (const Eigen::Vector2d& point : figure.points) {
+    svg += fmt::format("{:.1f},{:.1f} ", x.place(point.x()), y.place(point.y()));
   }
   return svg + "\"/>\n</svg>\n";
 }

@@ -2,6 +2,7 @@
 // include this. Callers give plain text, and these functions escape it.
 #pragma once
 
+#include <Eigen/Core>
 #include <span>
 #include <string>
 #include <string_view>
@@ -30,16 +31,12 @@ std::string make_fact_list(std::span<const std::pair<std::string, std::string>> 
 // Returns a section. `content` is HTML and is not escaped.
 std::string make_section(std::string_view title, std::string_view content);
 
-struct FigurePoint {
-  double x = 0, y = 0;
-};
-
 // A small figure of one line.
 struct LineFigure {
   std::string title;
   std::string x_label, y_label;
-  std::vector<FigurePoint> points = {};  // at least two, finite, sorted by x
-  bool logarithmic_x = false;            // requires x > 0 for all points
+  std::vector<Eigen::Vector2d> points = {};  // at least two, finite, sorted by x
+  bool logarithmic_x = false;                // requires x > 0 for all points
 };
 
 // Returns the figure as SVG that can stand within HTML. It has no script and loads nothing.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "base/build_info.hpp"
 #include "base/error.hpp"
@@ -157,11 +158,11 @@ void write_urdf(const FinishedArm& arm, const fs::path& folder) {
   std::string comment = join(describe_origin(arm), "\n");
   comment +=
       "\nChanged: the effort of these joints' <limit>, to the larger of the design's two limits.\n";
-  std::vector<JointEffort> efforts;
+  std::map<std::string, double> efforts;
   for (std::size_t i = 0; i < arm.design.joints.size(); ++i) {
     const Joint& joint = arm.config().robot.joints[i];
     const JointDrive& drive = arm.design.joints[i];
-    efforts.push_back({joint.name, calc_largest_effort(drive)});
+    efforts[joint.name] = calc_largest_effort(drive);
     comment += fmt::format("  {}: {} to {} {}\n", joint.name, format_exact(drive.limits.min),
                            format_exact(drive.limits.max), get_joint_unit("N m", joint.kind));
   }

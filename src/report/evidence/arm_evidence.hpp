@@ -27,7 +27,7 @@ struct ShownDesign {
 // far as they exist and fit the robot. `notes` gets a sentence for each one that does not fit.
 std::vector<ShownDesign> list_designs(const RecordedRun& run, std::vector<std::string>& notes);
 
-// Simulates every design on the whole test set. Throws PageStopped.
+// Simulates every design on the whole test set. Throws WorkStopped.
 void simulate_designs(const RecordedRun& run, PageSimulator& simulator,
                       std::vector<ShownDesign>& designs);
 
@@ -36,12 +36,12 @@ void simulate_designs(const RecordedRun& run, PageSimulator& simulator,
 nlohmann::json make_test_errors(const RecordedRun& run, const std::vector<ShownDesign>& designs);
 
 // Returns ArmEvidence of web/src/data.ts. Without a simulator (null) it has no sweep. `notes` gets
-// a sentence for each design that the sweep leaves out. Throws PageStopped.
+// a sentence for each design that the sweep leaves out. Throws WorkStopped.
 nlohmann::json make_arm_evidence(const RecordedRun& run, const std::vector<ShownDesign>& designs,
                                  PageSimulator* simulator, std::vector<std::string>& notes);
 
 // Returns Sweep of web/src/data.ts: the designs at other mean speeds of the target, as in the
-// thesis's Fig. 6.16. Returns null if there is nothing to sweep. Throws PageStopped.
+// thesis's Fig. 6.16. Returns null if there is nothing to sweep. Throws WorkStopped.
 nlohmann::json make_speed_sweep(const RecordedRun& run, const std::vector<ShownDesign>& designs,
                                 PageSimulator& simulator, std::vector<std::string>& notes);
 // Returns the number of cases that make_speed_sweep() simulates.

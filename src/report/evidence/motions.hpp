@@ -85,7 +85,7 @@ ReplayText make_group_text(ReplayText text, std::span<const std::vector<NamedDes
 // Returns ReplaySet of web/src/data.ts: every design on every case, simulated by the judging
 // engine. The motion of a diverged simulation ends where it diverged. `designs` are one group of
 // divide_by_motion(); `robot` is the index of their robot with its load. Most numbers have single
-// precision, which is exact to a hundredth of a micrometre. Throws PageStopped.
+// precision, which is exact to a hundredth of a micrometre. Throws WorkStopped.
 nlohmann::json make_replay_set(PageSimulator& simulator, const TrackingProblem& problem,
                                const ReplayText& text, std::size_t robot,
                                std::span<const NamedDesign> designs,

@@ -23,7 +23,7 @@ void PageSimulator::run(std::size_t jobs, std::size_t cases_per_job, std::uint64
   const std::size_t at_once = kRoundsAtOnce * executor_.pool().size();
   for (std::size_t first = 0; first < jobs; first += at_once) {
     if (stop_.requested()) {
-      throw PageStopped{};
+      throw WorkStopped{};
     }
     const std::size_t count = std::min(at_once, jobs - first);
     executor_.pool().run(count, [&](std::size_t i) {
@@ -35,7 +35,7 @@ void PageSimulator::run(std::size_t jobs, std::size_t cases_per_job, std::uint64
     report(std::min<std::uint64_t>(cases - before, count * cases_per_job));
   }
   if (stop_.requested()) {
-    throw PageStopped{};
+    throw WorkStopped{};
   }
 }
 
@@ -65,7 +65,7 @@ Evaluation PageSimulator::evaluate(const Problem& problem, std::span<const doubl
   executor_.evaluate(problem, std::span(&x, 1), block, {}, stop_,
                      [&](std::size_t, Evaluation done) { evaluation = std::move(done); });
   if (stop_.requested()) {
-    throw PageStopped{};
+    throw WorkStopped{};
   }
   report(block.numbers.size());
   return evaluation;

@@ -13,12 +13,10 @@
 
 namespace armwright {
 
-// Thrown by PageSimulator after a request to stop. The function that makes the page catches it.
-struct PageStopped {};
-
 // A simulator that divides the work among threads, checks the stop signal between chunks, and
 // reports its progress to an observer as a test phase, counted in simulated cases. One thread may
-// call it.
+// call it. After a request to stop it throws WorkStopped; the function that makes the page catches
+// it.
 class PageSimulator {
  public:
   PageSimulator(unsigned jobs, StopSignal& stop, RunObserver& observer)
@@ -29,14 +27,14 @@ class PageSimulator {
   void expect(std::uint64_t cases) { expected_ += cases; }
 
   // Simulates a design with the judging engine on the cases first, ..., first + count - 1 of a set.
-  // Returns one result per case; they do not depend on the number of threads. Throws PageStopped.
+  // Returns one result per case; they do not depend on the number of threads. Throws WorkStopped.
   std::vector<TrackingResult> evaluate(const TrackingProblem& problem, const ArmDesign& design,
                                        const TestSet& set, std::uint64_t first,
                                        std::uint64_t count);
-  // Evaluates a decision vector of any problem on all cases of a block. Throws PageStopped.
+  // Evaluates a decision vector of any problem on all cases of a block. Throws WorkStopped.
   Evaluation evaluate(const Problem& problem, std::span<const double> x, const CaseBlock& block);
   // Calls job(0) to job(jobs - 1) in any order, on several threads. Each call simulates one case.
-  // Throws PageStopped.
+  // Throws WorkStopped.
   void run(std::size_t jobs, const std::function<void(std::size_t)>& job);
 
  private:

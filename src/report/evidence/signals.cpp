@@ -68,9 +68,10 @@ std::string make_signal_title(SignalShape shape) {
 std::vector<SignalSample> sample_signal(SignalShape shape, double distance_m, double speed_m_per_s,
                                         double acceleration_m_per_s2, double rest_s) {
   constexpr int kParts = 60;  // per piece; the curve looks smooth
-  const ReferenceSignal signal(shape, distance_m, speed_m_per_s, acceleration_m_per_s2);
+  const targets::SignalCurve curve =
+      make_signal_curve(shape, distance_m, speed_m_per_s, acceleration_m_per_s2);
   std::vector<SignalSample> samples = {{}};  // at rest, before the move
-  for (const Piece& piece : make_pieces(signal.curve())) {
+  for (const Piece& piece : make_pieces(curve)) {
     for (int i = 0; i <= kParts; ++i) {
       const double t =
           i == kParts ? piece.end_s : piece.begin_s + (piece.end_s - piece.begin_s) * i / kParts;
@@ -79,7 +80,7 @@ std::vector<SignalSample> sample_signal(SignalShape shape, double distance_m, do
     }
   }
   samples.push_back({samples.back().time_s, distance_m, 0, 0});
-  samples.push_back({signal.duration_s() + rest_s, distance_m, 0, 0});
+  samples.push_back({curve.duration_s + rest_s, distance_m, 0, 0});
   return samples;
 }
 

@@ -329,7 +329,7 @@ std::optional<std::string> make_reproduction_page(const std::filesystem::path& f
                                                   RunObserver& observer) {
   try {
     return dump_page(ReproductionPage(folder).make(options, stop, observer));
-  } catch (const PageStopped&) {
+  } catch (const WorkStopped&) {
     return std::nullopt;
   }
 }

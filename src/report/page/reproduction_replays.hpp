@@ -14,7 +14,7 @@ namespace armwright {
 // Returns an object with the lists robots (Robot), replays (ReplaySet) and momentary
 // (ReproductionData.momentary) of web/src/data.ts: the replays of the configuration whose published
 // result is in the record. `notes` gets a whole sentence on everything that is not shown. Throws
-// PageStopped; Error{usage} if a case of the options does not exist.
+// WorkStopped; Error{usage} if a case of the options does not exist.
 nlohmann::json make_reproduction_replays(const ReproductionRecord& record,
                                          const ReproductionConfig& config,
                                          const PageOptions& options, PageSimulator& simulator,

@@ -205,7 +205,7 @@ std::optional<std::string> make_run_page(const std::filesystem::path& folder,
   PageSimulator simulator(options.jobs, stop, observer);
   try {
     return dump_page(make_page(run, options, simulator));
-  } catch (const PageStopped&) {
+  } catch (const WorkStopped&) {
     return std::nullopt;
   }
 }

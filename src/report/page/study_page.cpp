@@ -105,7 +105,7 @@ std::optional<std::string> make_study_page(const std::filesystem::path& folder,
     try {
       page["replays"] =
           make_study_replays(plan, result, folder, options.cases, simulator, page["robots"], notes);
-    } catch (const PageStopped&) {
+    } catch (const WorkStopped&) {
       return std::nullopt;
     }
   }

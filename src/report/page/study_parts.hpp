@@ -39,7 +39,7 @@ nlohmann::json make_study_facts(const StudyPlan& plan);
 // Returns a list of ReplaySet for the first problems with an arm. Each shows the best designs of
 // the best optimizers and the problem's own start, on a few cases of the test set and on `cases`
 // ("test/2:17"). The replays have at most 3 MB. `robots` gets the robots, and `notes` a sentence on
-// what is left out. Throws Error{usage} if one of `cases` is not a case; PageStopped.
+// what is left out. Throws Error{usage} if one of `cases` is not a case; WorkStopped.
 nlohmann::json make_study_replays(const StudyPlan& plan, const StudyResult& result,
                                   const std::filesystem::path& folder,
                                   std::span<const std::string> cases, PageSimulator& simulator,

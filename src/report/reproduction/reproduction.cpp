@@ -32,9 +32,14 @@ class RunMessages final : public RunObserver {
 
 class Executor {
  public:
-  Executor(ReproductionPlan& plan, const ReproductionWork& work, StopSignal& stop,
-           RunObserver& observer)
-      : plan_(plan), work_(work), stop_(stop), observer_(observer) {
+  Executor(ReproductionPlan& plan, ReproductionFolder* folder, const std::string& program,
+           unsigned jobs, StopSignal& stop, RunObserver& observer)
+      : plan_(plan),
+        folder_(folder),
+        program_(program),
+        jobs_(jobs),
+        stop_(stop),
+        observer_(observer) {
     for (const PlannedPart& part : plan_.parts) {
       progress_.total += is_computed(part) ? 0 : part.cases;
     }
@@ -44,14 +49,14 @@ class Executor {
     std::vector<PartResult> results;
     for (PlannedPart& part : plan_.parts) {
       if (is_computed(part)) {
-        results.push_back(*work_.folder->find(part.part.label));
+        results.push_back(*folder_->find(part.part.label));
       } else {
         auto result = make_result(part);
         if (!result) {
           return std::nullopt;
         }
-        if (work_.folder != nullptr) {
-          work_.folder->add(*result);
+        if (folder_ != nullptr) {
+          folder_->add(*result);
         }
         results.push_back(std::move(*result));
       }
@@ -62,7 +67,7 @@ class Executor {
 
  private:
   bool is_computed(const PlannedPart& part) const {
-    return work_.folder != nullptr && work_.folder->find(part.part.label) != nullptr;
+    return folder_ != nullptr && folder_->find(part.part.label) != nullptr;
   }
 
   std::optional<PartResult> make_result(const PlannedPart& part) {
@@ -73,7 +78,7 @@ class Executor {
     }
     const ChosenCases cases{problem.get_set(part.problem.sets.test), part.cases};
     const auto evaluation =
-        evaluate_with_progress(problem, *design, cases, work_.jobs, stop_, observer_, progress_);
+        evaluate_with_progress(problem, *design, cases, jobs_, stop_, observer_, progress_);
     if (!evaluation) {
       return std::nullopt;
     }
@@ -95,7 +100,7 @@ class Executor {
     if (part.part.run.empty()) {
       return part.design;
     }
-    const auto folder = work_.folder->get_run_folder(part.part.run);
+    const auto folder = folder_->get_run_folder(part.part.run);
     const auto run = std::ranges::find(plan_.runs, part.part.run,
                                        [](const RunPlan& one) { return one.problem.name; });
     if (!execute(*run, folder)) {
@@ -112,8 +117,8 @@ class Executor {
     RunRequest request;
     request.plan = run;
     request.folder = folder;
-    request.jobs = work_.jobs;
-    request.command_line = make_run_command(work_.program, run, folder);
+    request.jobs = jobs_;
+    request.command_line = make_run_command(program_, run, folder);
     RunMessages messages(run.problem.name, observer_);
     const auto result = execute_run(request, stop_, messages);
     if (result && !result->winner) {
@@ -125,7 +130,9 @@ class Executor {
   }
 
   ReproductionPlan& plan_;
-  const ReproductionWork& work_;
+  ReproductionFolder* const folder_;  // not owned; null: results are not kept
+  const std::string& program_;
+  const unsigned jobs_;
   StopSignal& stop_;
   RunObserver& observer_;
   Progress progress_;
@@ -134,13 +141,14 @@ class Executor {
 }  // namespace
 
 std::optional<std::vector<PartResult>> execute_reproduction(ReproductionPlan& plan,
-                                                            const ReproductionWork& work,
-                                                            StopSignal& stop,
+                                                            ReproductionFolder* folder,
+                                                            const std::string& program,
+                                                            unsigned jobs, StopSignal& stop,
                                                             RunObserver& observer) {
-  if (work.folder == nullptr && !plan.runs.empty()) {
+  if (folder == nullptr && !plan.runs.empty()) {
     throw Error(ErrorKind::usage, "what is optimized anew needs a folder to be kept in");
   }
-  return Executor(plan, work, stop, observer).execute();
+  return Executor(plan, folder, program, jobs, stop, observer).execute();
 }
 
 std::vector<std::string> make_run_command(const std::string& program, const RunPlan& run,

@@ -85,20 +85,16 @@ class ReproductionFolder {
   std::vector<std::string> warnings_;
 };
 
-// How a plan is computed.
-struct ReproductionWork {
-  std::string program = "armwright";     // the program's name in the manifests of the runs
-  unsigned jobs = 1;                     // threads
-  ReproductionFolder* folder = nullptr;  // not owned; null: results are not kept
-};
-
-// Computes the parts that `work.folder` does not hold. Returns one result per part in the plan's
-// order, or nothing after a request to stop: then the folder has every finished part, and the same
-// call continues. Frees each of the plan's problems after its part. Throws Error{usage} for a plan
-// with runs without a folder; Error{bad_data} if a run has no winner.
+// Computes the parts that `folder` does not hold, on `jobs` threads. Without a folder (null) no
+// result is kept. `program` is the program's name in the manifests of the runs. Returns one result
+// per part in the plan's order, or nothing after a request to stop: then the folder has every
+// finished part, and the same call continues. Frees each of the plan's problems after its part.
+// Throws Error{usage} for a plan with runs without a folder; Error{bad_data} if a run has no
+// winner.
 std::optional<std::vector<PartResult>> execute_reproduction(ReproductionPlan& plan,
-                                                            const ReproductionWork& work,
-                                                            StopSignal& stop,
+                                                            ReproductionFolder* folder,
+                                                            const std::string& program,
+                                                            unsigned jobs, StopSignal& stop,
                                                             RunObserver& observer);
 
 // Returns the command line, beginning with `program`, that makes or continues one of the runs.

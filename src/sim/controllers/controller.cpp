@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <type_traits>
 
@@ -63,6 +64,45 @@ struct PidInput : LawInput {
     return turns ? ControllerNumber(wrap_angle(difference.v)) : difference;
   }
   ControllerNumber calc_rate(ControllerNumber change) const { return change / period_s; }
+};
+
+// The PID (controllers/pid.hpp) with the arithmetic that reproduced the published results: it
+// divides by the period, where lanes multiply by the inverse, and uses the library's remainder.
+class PidController final : public Controller {
+ public:
+  PidController(double p, double i, double d, EffortLimits limits, JointKind kind)
+      : gains_{p, i, d}, limits_(limits), kind_(kind) {
+    check<controllers::Pid>(gains_, limits, kind);
+  }
+
+  using Controller::step;
+  double step(double setpoint, double measurement, double dt_s, double feed_forward) override {
+    const auto in = make_input<PidInput>(setpoint, measurement, dt_s, feed_forward, limits_, kind_,
+                                         first_, saturated_);
+    std::array<ControllerNumber, 3> gains = {gains_[0], gains_[1], gains_[2]};
+    std::array<ControllerNumber, 2> states = {states_[0], states_[1]};
+    const double wanted = controllers::Pid::calc(in, Fields<ControllerNumber>{gains.data(), 1},
+                                                 Fields<ControllerNumber>{states.data(), 1})
+                              .v;
+    states_ = {states[0].v, states[1].v};
+    first_ = false;
+    saturated_ = wanted < limits_.min || wanted > limits_.max;
+    return std::clamp(wanted, limits_.min, limits_.max);
+  }
+  void reset() override {
+    states_ = {};
+    first_ = true;
+    saturated_ = false;
+  }
+  bool saturated() const override { return saturated_; }
+
+ private:
+  std::array<double, 3> gains_;
+  std::array<double, 2> states_{};
+  EffortLimits limits_;
+  JointKind kind_;
+  bool first_ = true;
+  bool saturated_ = false;
 };
 
 // The controller of one joint under any law.
@@ -141,31 +181,6 @@ void replace_all(std::string& text, std::string_view from, std::string_view to) 
 }
 
 }  // namespace
-
-PidController::PidController(double p, double i, double d, EffortLimits limits, JointKind kind)
-    : gains_{p, i, d}, limits_(limits), kind_(kind) {
-  check<controllers::Pid>(gains_, limits, kind);
-}
-
-double PidController::step(double setpoint, double measurement, double dt_s, double feed_forward) {
-  const auto in = make_input<PidInput>(setpoint, measurement, dt_s, feed_forward, limits_, kind_,
-                                       first_, saturated_);
-  std::array<ControllerNumber, 3> gains = {gains_[0], gains_[1], gains_[2]};
-  std::array<ControllerNumber, 2> states = {states_[0], states_[1]};
-  const double wanted = controllers::Pid::calc(in, Fields<ControllerNumber>{gains.data(), 1},
-                                               Fields<ControllerNumber>{states.data(), 1})
-                            .v;
-  states_ = {states[0].v, states[1].v};
-  first_ = false;
-  saturated_ = wanted < limits_.min || wanted > limits_.max;
-  return std::clamp(wanted, limits_.min, limits_.max);
-}
-
-void PidController::reset() {
-  states_ = {};
-  first_ = true;
-  saturated_ = false;
-}
 
 const std::vector<ControllerRow>& controller_table() {
   static const std::vector<ControllerRow> table = make_table(controllers::AllLaws{});

@@ -7,7 +7,6 @@
 // for N m and m for rad: gains in N/m, N/(m s) and N s/m.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <span>
 #include <string>
@@ -39,28 +38,6 @@ class Controller {
 struct EffortLimits {  // N m or N
   double min = 0;
   double max = 0;
-};
-
-// The PID (controllers/pid.hpp) with the arithmetic that reproduced the published results: it
-// divides by the period, where lanes multiply by the inverse, and uses the library's remainder.
-class PidController final : public Controller {
- public:
-  // Gains in N m/rad, N m/(rad s) and N m s/rad. Throws Error{usage} unless they are finite and the
-  // limits are in order.
-  PidController(double p, double i, double d, EffortLimits limits,
-                JointKind kind = JointKind::revolute);
-  using Controller::step;
-  double step(double setpoint, double measurement, double dt_s, double feed_forward) override;
-  void reset() override;
-  bool saturated() const override { return saturated_; }
-
- private:
-  std::array<double, 3> gains_;
-  std::array<double, 2> states_{};
-  EffortLimits limits_;
-  JointKind kind_;
-  bool first_ = true;
-  bool saturated_ = false;
 };
 
 struct ControllerRow {

@@ -11,10 +11,7 @@
 
 namespace armwright::articulated {
 
-template <class V>
-struct Vec3 {
-  V x, y, z;
-};
+using lanes::Vec3;
 
 // Rotates (x, y) by the angle with cosine c and sine s; rotate_back() rotates by its opposite.
 template <class V>

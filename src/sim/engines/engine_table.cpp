@@ -49,10 +49,10 @@ std::vector<TrackingResult> simulate_in_ode(const TrackingSetup& setup,
 #ifdef ARMWRIGHT_WITH_MUJOCO
 std::vector<TrackingResult> simulate_in_mujoco(const TrackingSetup& setup,
                                                std::span<const TrackingJob> jobs) {
-  const MujocoModel model(setup.robot(), setup.task().physics);
+  const auto model = compile_for_mujoco(setup.robot(), setup.task().physics);
   return simulate_one_by_one(
       setup, jobs, [&](const TrackingSetup& own, std::span<const double> start) {
-        return &own == &setup ? MujocoArm(model, start)
+        return &own == &setup ? MujocoArm(*model, start)
                               : MujocoArm(own.robot(), start, own.task().physics);
       });
 }

@@ -13,6 +13,7 @@ using lanes::calc_angle_above;
 using lanes::calc_atan2;
 using lanes::select;
 using lanes::sqrt;
+using lanes::Vec3;
 
 template <class V>
 ARMWRIGHT_INLINE V calc_distance(const SignalCurve& curve, V t) {
@@ -49,14 +50,9 @@ ARMWRIGHT_INLINE V calc_distance(const SignalCurve& curve, V t) {
   return select(t < V(curve.duration_s), s, whole);
 }
 
-template <class V>
-struct Point {
-  V x, y, z;
-};
-
 // Returns the target's position in each lane. `step` has one whole number per lane.
 template <class V>
-ARMWRIGHT_INLINE Point<V> calc_position(const Move& move, V step) {
+ARMWRIGHT_INLINE Vec3<V> calc_position(const Move& move, V step) {
   const V time = (step + V(1.0)) * V(move.period_s);
   const V share = calc_distance(move.curve, time) / V(move.curve.distance_m);
   // From t_m on this is exactly the end point, not the start plus a rounded move.
@@ -74,7 +70,7 @@ struct Wrist {
   V forward, up, squared_distance;  // f, e, b^2
 };
 template <class V>
-ARMWRIGHT_INLINE Wrist<V> calc_wrist(const ElbowUpArm& arm, Point<V> target) {
+ARMWRIGHT_INLINE Wrist<V> calc_wrist(const ElbowUpArm& arm, Vec3<V> target) {
   Wrist<V> wrist;
   wrist.forward = sqrt(target.x * target.x + target.y * target.y) - V(arm.shoulder_radius_m);
   if (arm.shoulder_offset_m > 0) {
@@ -89,7 +85,7 @@ ARMWRIGHT_INLINE Wrist<V> calc_wrist(const ElbowUpArm& arm, Point<V> target) {
 // Writes the four angles of each lane. Returns one bit per lane, set if the target is within reach;
 // the angles of other lanes are invalid.
 template <class V>
-ARMWRIGHT_INLINE unsigned solve(const ElbowUpArm& arm, Point<V> target, V* angles) {
+ARMWRIGHT_INLINE unsigned solve(const ElbowUpArm& arm, Vec3<V> target, V* angles) {
   const double a = arm.forearm_m;
   const double c = arm.upper_arm_m;
   const V farthest = (a + c) * (a + c);

@@ -1,6 +1,7 @@
 // The position of the moving target and the joint angles that put an elbow-up arm's tip there.
-// ReferenceSignal, ElbowUpKinematics and TrackingSetup use these plain structs and functions. The
-// formulas are written once (target_kernel.hpp), for one number or for a SIMD register of numbers.
+// make_signal_curve(), ElbowUpKinematics and TrackingSetup use these plain structs and functions.
+// The formulas are written once (target_kernel.hpp), for one number or for a SIMD register of
+// numbers.
 //
 // Every engine uses these angles. Therefore they have the same bits at every SIMD level and on
 // every machine: the code uses only correctly rounded operations, in a fixed order, without fused
@@ -19,7 +20,7 @@ enum class SignalShape { step, ramp, trapezoid, triangular, complex };
 
 namespace targets {
 
-// The parameters of a ReferenceSignal, which explains them.
+// A reference signal (sim/tracking/reference_signal.hpp).
 struct SignalCurve {
   SignalShape shape = SignalShape::complex;
   double distance_m = 0;

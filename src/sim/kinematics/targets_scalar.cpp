@@ -15,21 +15,20 @@ double calc_distance(const SignalCurve& curve, double t_s) {
 }
 
 void calc_position(const Move& move, int step, double position_m[3]) {
-  const Point<Number> position = calc_position(move, Number(static_cast<double>(step)));
+  const Vec3<Number> position = calc_position(move, Number(static_cast<double>(step)));
   position_m[0] = position.x.v;
   position_m[1] = position.y.v;
   position_m[2] = position.z.v;
 }
 
 double calc_wrist_distance(const ElbowUpArm& arm, const double target_m[3]) {
-  return sqrt(
-             calc_wrist(arm, Point<Number>{target_m[0], target_m[1], target_m[2]}).squared_distance)
+  return sqrt(calc_wrist(arm, Vec3<Number>{target_m[0], target_m[1], target_m[2]}).squared_distance)
       .v;
 }
 
 bool solve(const ElbowUpArm& arm, const double target_m[3], double angles_rad[4]) {
   Number angles[4];
-  if (solve(arm, Point<Number>{target_m[0], target_m[1], target_m[2]}, angles) == 0) {
+  if (solve(arm, Vec3<Number>{target_m[0], target_m[1], target_m[2]}, angles) == 0) {
     return false;
   }
   for (int i = 0; i < 4; ++i) {

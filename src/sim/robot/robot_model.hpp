@@ -9,6 +9,7 @@
 
 #include <Eigen/Geometry>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -68,12 +69,6 @@ struct Joint {
   double effort_limit = 0;  // N m or N
 };
 
-// A mesh file from which the mass of a link was computed.
-struct MassFile {
-  std::string name;  // as written in the URDF
-  std::filesystem::path path;
-};
-
 struct RobotModel {
   std::string name;
   Link base;                  // fixed to the world; its frame is the world's
@@ -88,8 +83,8 @@ struct RobotModel {
   // Notes for the user, one line each, safe to print on a terminal. They name the parts of the file
   // that simulations ignore and the assumptions that the reader made.
   std::vector<std::string> notes;
-  // The mesh files from which masses were computed.
-  std::vector<MassFile> mass_files;
+  // The mesh files from which masses were computed, by their names as written in the URDF.
+  std::map<std::string, std::filesystem::path> mass_files;
 
   std::size_t joint_count() const { return joints.size(); }
 };

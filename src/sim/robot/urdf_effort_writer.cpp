@@ -214,15 +214,11 @@ std::size_t find_beginning(std::string_view xml) {
 }  // namespace
 
 std::string set_effort_limits(std::string_view xml, const std::string& name,
-                              std::span<const JointEffort> efforts, std::string_view comment) {
+                              std::map<std::string, double> efforts, std::string_view comment) {
   scan_urdf(xml, name);
-  std::map<std::string, double> wanted;
-  for (const JointEffort& joint : efforts) {
-    wanted[joint.joint] = joint.effort;
-  }
-  std::vector<Edit> edits = find_edits(xml, wanted);
-  if (!wanted.empty()) {
-    fail_urdf(name, 1, fmt::format("has no joint '{}'", sanitize(wanted.begin()->first)));
+  std::vector<Edit> edits = find_edits(xml, efforts);
+  if (!efforts.empty()) {
+    fail_urdf(name, 1, fmt::format("has no joint '{}'", sanitize(efforts.begin()->first)));
   }
   const std::size_t beginning = find_beginning(xml);
   edits.push_back({{beginning, beginning}, make_comment(comment)});

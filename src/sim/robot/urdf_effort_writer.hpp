@@ -4,28 +4,23 @@
 // validates nothing.
 #pragma once
 
-#include <span>
+#include <map>
 #include <string>
 #include <string_view>
 
 namespace armwright {
-
-// The new effort limit of one joint.
-struct JointEffort {
-  std::string joint;
-  double effort = 0;  // N m, or N for a prismatic joint
-};
 
 // The velocity that is written into a new <limit>. URDF requires a velocity there, but a continuous
 // joint without <limit> has none. The value is faster than any joint. It is finite because strict
 // readers refuse infinity.
 inline constexpr double kNoVelocityLimit_rad_per_s = 1e6;
 
-// Returns the text with <limit effort="..."> of these joints replaced. A joint without <limit> gets
-// one, with kNoVelocityLimit_rad_per_s. Inserts `comment` as an XML comment after the XML
+// Returns the text with <limit effort="..."> of some joints replaced. `efforts` has their new
+// limits by name, in N m, or in N for a prismatic joint. A joint without <limit> gets one, with
+// kNoVelocityLimit_rad_per_s. Inserts `comment` as an XML comment after the XML
 // declaration; inserts blanks where the comment's text would end it early. `name` is the file's
 // name in messages. Throws Error{bad_data} if a joint does not exist.
 std::string set_effort_limits(std::string_view xml, const std::string& name,
-                              std::span<const JointEffort> efforts, std::string_view comment);
+                              std::map<std::string, double> efforts, std::string_view comment);
 
 }  // namespace armwright

@@ -128,7 +128,7 @@ class Builder {
         throw Error(error.kind(), fmt::format("{}: link '{}': {}", name_, link, error.what()));
       }
       if (file) {
-        model_.mass_files.push_back({shape.mesh_file, *file});
+        model_.mass_files[shape.mesh_file] = *file;
       }
     }
     mass_notes_.push_back(fmt::format(

@@ -70,19 +70,11 @@ ARMWRIGHT_INLINE V calc_cosine_polynomial(V z, float) {
 }
 
 template <class T>
-struct HalfPi;
+inline constexpr T kHalfPi[] = {1.57079632673412561417e+00, 6.07710050630396597660e-11,
+                                2.02226624879595063154e-21};
 template <>
-struct HalfPi<double> {
-  static constexpr double kFirst = 1.57079632673412561417e+00;
-  static constexpr double kSecond = 6.07710050630396597660e-11;
-  static constexpr double kThird = 2.02226624879595063154e-21;
-};
-template <>
-struct HalfPi<float> {
-  static constexpr float kFirst = 1.5703125F;
-  static constexpr float kSecond = 4.837512969970703125e-4F;
-  static constexpr float kThird = 7.54978995489188216e-8F;
-};
+inline constexpr float kHalfPi<float>[] = {1.5703125F, 4.837512969970703125e-4F,
+                                           7.54978995489188216e-8F};
 
 // Turns the sine s and cosine c of the reduced argument into those of the argument: swaps them in
 // odd quadrants and sets their signs. The lowest bits of `rounded` hold the quadrant's number as an
@@ -123,11 +115,11 @@ ARMWRIGHT_INLINE void place_in_quadrant(Single<T, Isa> rounded, Single<T, Isa>& 
 template <class V>
 ARMWRIGHT_INLINE void calc_sine_cosine(V x, V& sine, V& cosine) {
   using T = typename V::Scalar;
-  using Parts = detail::HalfPi<T>;
   const V rounded = x * V(static_cast<T>(0.636619772367581343076)) + V(kRounder<T>);
   const V quadrant = rounded - V(kRounder<T>);
-  const V reduced = ((x - quadrant * V(Parts::kFirst)) - quadrant * V(Parts::kSecond)) -
-                    quadrant * V(Parts::kThird);
+  const V reduced =
+      ((x - quadrant * V(detail::kHalfPi<T>[0])) - quadrant * V(detail::kHalfPi<T>[1])) -
+      quadrant * V(detail::kHalfPi<T>[2]);
   const V square = reduced * reduced;
   sine = detail::calc_sine_polynomial(reduced, square, T{});
   cosine = detail::calc_cosine_polynomial(square, T{});

@@ -314,4 +314,10 @@ ARMWRIGHT_PAIR std::uint32_t find_less(Pair<P> a, Pair<P> b) {
 }
 #undef ARMWRIGHT_PAIR
 
+// A point or a vector in every lane.
+template <class V>
+struct Vec3 {
+  V x, y, z;
+};
+
 }  // namespace armwright::lanes

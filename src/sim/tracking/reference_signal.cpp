@@ -37,35 +37,33 @@ SignalShape find_signal(const std::string& name) {
   return static_cast<SignalShape>(found - names.begin());
 }
 
-ReferenceSignal::ReferenceSignal(SignalShape shape, double distance_m, double speed_m_per_s,
-                                 double acceleration_m_per_s2) {
-  curve_.shape = shape;
-  curve_.distance_m = distance_m;
-  curve_.speed_m_per_s = speed_m_per_s;
-  curve_.duration_s = distance_m / speed_m_per_s;
+targets::SignalCurve make_signal_curve(SignalShape shape, double distance_m, double speed_m_per_s,
+                                       double acceleration_m_per_s2) {
+  targets::SignalCurve curve;
+  curve.shape = shape;
+  curve.distance_m = distance_m;
+  curve.speed_m_per_s = speed_m_per_s;
+  curve.duration_s = distance_m / speed_m_per_s;
   require_positive("the distance", distance_m, "m");
   require_positive("the speed", speed_m_per_s, "m/s");
-  require_positive("the duration (distance / speed)", curve_.duration_s, "s");
-  if (curve_.shape == SignalShape::trapezoid) {
+  require_positive("the duration (distance / speed)", curve.duration_s, "s");
+  if (curve.shape == SignalShape::trapezoid) {
     require_positive("the acceleration", acceleration_m_per_s2, "m/s^2");
     // Solves ds = a t_a (t_m - t_a) for t_a, in the form that does not cancel if a is large.
     const double rest_s2 =
-        curve_.duration_s * curve_.duration_s - 4 * distance_m / acceleration_m_per_s2;
+        curve.duration_s * curve.duration_s - 4 * distance_m / acceleration_m_per_s2;
     if (rest_s2 >= 0) {
-      curve_.acceleration_m_per_s2 = acceleration_m_per_s2;
-      curve_.ramp_up_s =
-          2 * distance_m / acceleration_m_per_s2 / (curve_.duration_s + std::sqrt(rest_s2));
+      curve.acceleration_m_per_s2 = acceleration_m_per_s2;
+      curve.ramp_up_s =
+          2 * distance_m / acceleration_m_per_s2 / (curve.duration_s + std::sqrt(rest_s2));
     } else {
-      curve_.shape = SignalShape::triangular;
+      curve.shape = SignalShape::triangular;
     }
   }
-  if (curve_.shape == SignalShape::triangular) {
-    curve_.acceleration_m_per_s2 = 4 * speed_m_per_s / curve_.duration_s;
+  if (curve.shape == SignalShape::triangular) {
+    curve.acceleration_m_per_s2 = 4 * speed_m_per_s / curve.duration_s;
   }
-}
-
-double ReferenceSignal::calc_distance(double t_s) const {
-  return targets::calc_distance(curve_, t_s);
+  return curve;
 }
 
 }  // namespace armwright

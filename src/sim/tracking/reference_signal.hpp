@@ -21,20 +21,10 @@ const std::vector<std::string>& signal_names();  // in the order of the enum
 // Returns the shape of that name. Throws Error{usage} if there is none.
 SignalShape find_signal(const std::string& name);
 
-// A move of one distance at one speed. Immutable.
-class ReferenceSignal {
- public:
-  // Throws Error{usage} unless distance, speed and duration are finite and > 0, and for a trapezoid
-  // also the acceleration. The other shapes do not use the acceleration.
-  ReferenceSignal(SignalShape shape, double distance_m, double speed_m_per_s,
-                  double acceleration_m_per_s2);
-
-  double duration_s() const { return curve_.duration_s; }  // t_m
-  double calc_distance(double t_s) const;                  // s(t) in m, for t >= 0
-  const targets::SignalCurve& curve() const { return curve_; }
-
- private:
-  targets::SignalCurve curve_;
-};
+// Returns the signal of a move of one distance at one speed; targets::calc_distance() computes its
+// s(t). Throws Error{usage} unless distance, speed and duration are finite and > 0, and for a
+// trapezoid also the acceleration. The other shapes do not use the acceleration.
+targets::SignalCurve make_signal_curve(SignalShape shape, double distance_m, double speed_m_per_s,
+                                       double acceleration_m_per_s2);
 
 }  // namespace armwright

@@ -109,12 +109,12 @@ std::shared_ptr<const NumericKinematics> TrackingSetup::get_kinematics() const {
                                              task_.limits != LimitPolicy::ignore);
 }
 
-ReferenceSignal TrackingSetup::make_signal(double distance_m) const {
+targets::SignalCurve TrackingSetup::make_signal(double distance_m) const {
   double speed = task_.speed_m_per_s;
   if (distance_m < task_.distance_limit_m) {
     speed *= distance_m / task_.distance_limit_m;
   }
-  return {task_.signal, distance_m, speed, task_.trapezoid_acceleration_m_per_s2};
+  return make_signal_curve(task_.signal, distance_m, speed, task_.trapezoid_acceleration_m_per_s2);
 }
 
 targets::Move TrackingSetup::make_move(const Segment& segment) const {
@@ -123,7 +123,7 @@ targets::Move TrackingSetup::make_move(const Segment& segment) const {
   Eigen::Vector3d::Map(move.from_m) = segment.from_m;
   Eigen::Vector3d::Map(move.to_m) = segment.to_m;
   Eigen::Vector3d::Map(move.way_m) = way;
-  move.curve = make_signal(way.norm()).curve();
+  move.curve = make_signal(way.norm());
   move.period_s = task_.control_period_s;
   return move;
 }
@@ -153,7 +153,7 @@ ToolPose TrackingSetup::calc_target_pose(const TestCase& test_case, const Target
     // The tool turns in proportion to the distance covered (Shoemake 1985, Animating rotation with
     // quaternion curves, SIGGRAPH 19).
     const double distance_m = (its.to_m - its.from_m).norm();
-    const double share = make_signal(distance_m).calc_distance(time_s) / distance_m;
+    const double share = targets::calc_distance(make_signal(distance_m), time_s) / distance_m;
     pose.turn =
         test_case.turns[segment].slerp(share, test_case.turns[segment + 1]).toRotationMatrix();
   }
@@ -177,7 +177,7 @@ void TrackingSetup::make_timeline(const TestCase& test_case, TargetTable& table)
       segment.steps = 1;
     } else {
       const double distance = (segment.to_m - segment.from_m).norm();
-      segment.duration_s = make_signal(distance).duration_s();
+      segment.duration_s = make_signal(distance).duration_s;
       segment.steps = calc_steps_covering(segment.duration_s + task_.rest_s, period);
       segment.window_start = std::max(0, calc_steps_covering(segment.duration_s, period) - 1);
     }

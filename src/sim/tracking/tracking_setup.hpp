@@ -15,7 +15,6 @@
 
 namespace armwright {
 
-class ReferenceSignal;
 namespace articulated {
 class ChainModel;
 }
@@ -40,7 +39,7 @@ class TrackingSetup {
   bool has_closed_form() const { return closed_form_.has_value(); }
 
  private:
-  ReferenceSignal make_signal(double distance_m) const;
+  targets::SignalCurve make_signal(double distance_m) const;
   targets::Move make_move(const Segment& segment) const;
   void make_timeline(const TestCase& test_case, TargetTable& table) const;
   void solve_closed_form(const TestCase& test_case, TargetTable& table) const;

@@ -11,8 +11,10 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <system_error>
 #include <thread>
+#include <vector>
 
 #include "base/error.hpp"
 #include "process/child_process.hpp"
@@ -46,7 +48,7 @@ class Runner {
     under_way_.resize(cells_.size());
   }
 
-  CellsResult run(unsigned jobs) {
+  std::optional<std::size_t> run(unsigned jobs) {
     observer_.on_progress(progress_);
     auto workers = start_workers(std::min(count_at_once(jobs), cells_.size()));
     std::vector<std::thread> threads;
@@ -64,10 +66,7 @@ class Runner {
     if (failure_) {
       std::rethrow_exception(failure_);
     }
-    result_.stopped = stop_.requested();
-    std::ranges::sort(result_.broken, {},
-                      [&](const BrokenCell& broken) { return make_cell_path(plan_, broken.cell); });
-    return std::move(result_);
+    return stop_.requested() ? std::nullopt : std::optional(broken_);
   }
 
  private:
@@ -270,7 +269,7 @@ class Runner {
     tell(number, "error: " + reason);
     report(number, static_cast<std::uint64_t>(plan_.budget));
     const std::lock_guard lock(mutex_);
-    result_.broken.push_back({cells_[number], reason});
+    ++broken_;
   }
 
   const StudyPlan& plan_;
@@ -285,14 +284,15 @@ class Runner {
   Progress progress_;
   std::vector<std::uint64_t> under_way_;          // counted cases per cell
   std::map<const Problem*, std::size_t> in_use_;  // number of cells that use it
-  CellsResult result_;
+  std::size_t broken_ = 0;                        // count of cells that did not end
   std::exception_ptr failure_;
 };
 
 }  // namespace
 
-CellsResult run_cells(const StudyPlan& plan, const std::filesystem::path& study, unsigned jobs,
-                      StopSignal& stop, RunObserver& observer, Coordinator* coordinator) {
+std::optional<std::size_t> run_cells(const StudyPlan& plan, const std::filesystem::path& study,
+                                     unsigned jobs, StopSignal& stop, RunObserver& observer,
+                                     Coordinator* coordinator) {
   return Runner(plan, study, stop, observer, coordinator).run(jobs);
 }
 

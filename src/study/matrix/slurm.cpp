@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <system_error>
 
 #include "base/error.hpp"
@@ -116,6 +117,37 @@ void record_submission(const std::filesystem::path& folder, const std::string& j
   }
 }
 
+// Returns a job of an earlier submission that is still in the queue, or nothing. Throws
+// Error{usage} if squeue is missing or fails, and Error{bad_data} for a submission.json that cannot
+// be read.
+std::optional<std::string> find_queued_job(const std::filesystem::path& study) {
+  std::error_code error;
+  std::vector<std::filesystem::path> records;
+  for (std::filesystem::directory_iterator entry(get_submissions(study), error), end;
+       !error && entry != end; entry.increment(error)) {
+    if (std::filesystem::exists(entry->path() / kSubmissionRecord)) {
+      records.push_back(entry->path() / kSubmissionRecord);
+    }
+  }
+  std::ranges::sort(records);
+  for (const auto& record : records) {
+    const std::string job = read_submitted_job(record);
+    const CommandOutput queue = run_command(std::vector<std::string>{"squeue", "-h", "-j", job});
+    // Slurm forgets a job some minutes after its end.
+    const bool is_forgotten = queue.err.find("Invalid job id") != std::string::npos;
+    if (queue.exit_code != 0 && !is_forgotten) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("squeue cannot tell whether job {} of this study is still in the "
+                              "queue (exit code {}):\n{}",
+                              job, queue.exit_code, join_streams(queue)));
+    }
+    if (queue.exit_code == 0 && !queue.out.empty()) {
+      return job;
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::filesystem::path choose_submission_folder(const std::filesystem::path& study) {
@@ -160,36 +192,8 @@ std::vector<std::string> make_sbatch_words(const StudyPlan& plan, std::span<cons
   return words;
 }
 
-std::optional<std::string> find_queued_job(const std::filesystem::path& study) {
-  std::error_code error;
-  std::vector<std::filesystem::path> records;
-  for (std::filesystem::directory_iterator entry(get_submissions(study), error), end;
-       !error && entry != end; entry.increment(error)) {
-    if (std::filesystem::exists(entry->path() / kSubmissionRecord)) {
-      records.push_back(entry->path() / kSubmissionRecord);
-    }
-  }
-  std::ranges::sort(records);
-  for (const auto& record : records) {
-    const std::string job = read_submitted_job(record);
-    const CommandOutput queue = run_command(std::vector<std::string>{"squeue", "-h", "-j", job});
-    // Slurm forgets a job some minutes after its end.
-    const bool is_forgotten = queue.err.find("Invalid job id") != std::string::npos;
-    if (queue.exit_code != 0 && !is_forgotten) {
-      throw Error(ErrorKind::usage,
-                  fmt::format("squeue cannot tell whether job {} of this study is still in the "
-                              "queue (exit code {}):\n{}",
-                              job, queue.exit_code, join_streams(queue)));
-    }
-    if (queue.exit_code == 0 && !queue.out.empty()) {
-      return job;
-    }
-  }
-  return std::nullopt;
-}
-
-Submission submit_to_slurm(const StudyPlan& plan, std::span<const Chunk> chunks,
-                           const SlurmRequest& request, const std::string& script) {
+std::string submit_to_slurm(const StudyPlan& plan, std::span<const Chunk> chunks,
+                            const SlurmRequest& request, const std::string& script) {
   make_folder(get_submissions(request.study));
   const RunLock lock(get_submissions(request.study));
   if (const auto job = find_queued_job(request.study)) {
@@ -210,7 +214,7 @@ Submission submit_to_slurm(const StudyPlan& plan, std::span<const Chunk> chunks,
     }
     const std::string job = parse_job(output);
     record_submission(folder, job, to_json(plan, job, chunks.size(), words));
-    return {job, folder};
+    return job;
   } catch (const Error&) {
     std::error_code ignored;
     std::filesystem::remove_all(folder, ignored);

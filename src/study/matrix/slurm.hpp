@@ -3,7 +3,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,19 +29,12 @@ std::vector<std::string> make_sbatch_words(const StudyPlan& plan, std::span<cons
                                            const SlurmRequest& request,
                                            const std::filesystem::path& folder);
 
-// Returns a job of an earlier submission that is still in the queue, or nothing. Throws
-// Error{usage} if squeue is missing or fails, and Error{bad_data} for a submission.json that cannot
-// be read.
-std::optional<std::string> find_queued_job(const std::filesystem::path& study);
-
-struct Submission {
-  std::string job;
-  std::filesystem::path folder;
-};
-// Writes the script and submits it. Throws Error{busy} while a job of an earlier submission is in
-// the queue, or another process submits for the study. Throws Error{usage} with Slurm's message if
-// Slurm refuses, and then removes the submission's folder.
-Submission submit_to_slurm(const StudyPlan& plan, std::span<const Chunk> chunks,
-                           const SlurmRequest& request, const std::string& script);
+// Writes the script, submits it and returns the job's number. Throws Error{busy} while a job of an
+// earlier submission is in the queue, or another process submits for the study. Throws Error{usage}
+// if squeue is missing or fails. Throws Error{usage} with Slurm's message if Slurm refuses, and
+// then removes the submission's folder. Throws Error{bad_data} for an earlier submission.json that
+// cannot be read.
+std::string submit_to_slurm(const StudyPlan& plan, std::span<const Chunk> chunks,
+                            const SlurmRequest& request, const std::string& script);
 
 }  // namespace armwright

@@ -135,7 +135,7 @@ std::size_t import_cells(const StudyPlan& plan, const std::filesystem::path& stu
   for (const FoundCell& found : cells.found()) {
     try {
       copy_cell(plan, found, study, stop);
-    } catch (const CopyStopped&) {
+    } catch (const WorkStopped&) {
       break;
     }
     ++copied;

@@ -49,7 +49,7 @@ FolderCopy::FolderCopy(const std::filesystem::path& target, StopSignal& stop)
 
 void FolderCopy::check_stop() {
   if (stop_.requested()) {
-    throw CopyStopped();
+    throw WorkStopped();
   }
 }
 

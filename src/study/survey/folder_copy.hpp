@@ -12,9 +12,6 @@
 
 namespace armwright {
 
-// Thrown when `stop` ends a copy.
-struct CopyStopped {};
-
 // A folder under construction. The destructor removes it unless put_in_place() was called.
 class FolderCopy {
  public:
@@ -23,7 +20,7 @@ class FolderCopy {
 
   const std::filesystem::path& target() const { return folder_.target(); }
   // In the functions below `name` is relative to the new folder. They throw Error{io} or
-  // CopyStopped.
+  // WorkStopped.
   void make_folder(const std::filesystem::path& name);
   // Copies a file, or a symbolic link without following it. Returns false for anything else, which
   // is not copied.

@@ -39,7 +39,7 @@ struct StoreRepair {
 // Makes the copy completely or not at all (folder_copy.hpp). Returns nothing and makes no copy if
 // the store has no damage. Throws Error{busy} while a process writes the store, Error{usage} if
 // `target` exists or lies in the store, and Error{io}. Throws Error{bad_data} if the store's record
-// is lost: the manifest of a run, or the plan of a study. Throws CopyStopped if `stop` ends the
+// is lost: the manifest of a run, or the plan of a study. Throws WorkStopped if `stop` ends the
 // copy.
 std::optional<StoreRepair> repair_store(const std::filesystem::path& folder,
                                         const std::filesystem::path& target, StopSignal& stop);

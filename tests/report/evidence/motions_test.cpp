@@ -152,7 +152,7 @@ TEST(PointStatistics, LeaveOutCasesWithoutANumber) {
 TEST_F(Motions, AStopEndsTheSimulating) {
   stop_.request(StopReason::interrupted);
   EXPECT_THROW(simulator_.evaluate(*problem_, design_, problem_->get_set("test/2"), 0, 3),
-               PageStopped);
+               WorkStopped);
 }
 
 }  // namespace

@@ -24,10 +24,11 @@ std::vector<SignalSample> sample(SignalShape shape) {
 class Signals : public testing::TestWithParam<SignalShape> {};
 
 TEST_P(Signals, DistancesAreThoseOfTheTarget) {
-  const ReferenceSignal signal(GetParam(), kDistance_m, kSpeed_m_per_s, kAcceleration_m_per_s2);
+  const auto signal =
+      make_signal_curve(GetParam(), kDistance_m, kSpeed_m_per_s, kAcceleration_m_per_s2);
   const auto samples = sample(GetParam());
   for (std::size_t i = 1; i < samples.size(); ++i) {
-    EXPECT_NEAR(samples[i].distance_m, signal.calc_distance(samples[i].time_s), 1e-14) << i;
+    EXPECT_NEAR(samples[i].distance_m, calc_distance(signal, samples[i].time_s), 1e-14) << i;
     EXPECT_GE(samples[i].time_s, samples[i - 1].time_s);
   }
   EXPECT_EQ(samples.front().distance_m, 0);

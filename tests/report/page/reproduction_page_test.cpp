@@ -32,9 +32,7 @@ class ReproductionPageTest : public testing::Test {
   void reproduce(const ReproductionRequest& request) {
     ReproductionPlan plan = plan_reproduction(request);
     ReproductionFolder folder(path(), plan);
-    ReproductionWork work;
-    work.folder = &folder;
-    ASSERT_TRUE(execute_reproduction(plan, work, stop_, observer_));
+    ASSERT_TRUE(execute_reproduction(plan, &folder, "armwright", 1, stop_, observer_));
   }
   std::string make_page(const PageOptions& options = {}) {
     return make_reproduction_page(path(), options, stop_, observer_).value();

@@ -46,9 +46,7 @@ std::optional<std::vector<PartResult>> reproduce(const ReproductionRequest& requ
                                                  StopSignal& stop, RunObserver& observer) {
   ReproductionPlan plan = plan_reproduction(request);
   ReproductionFolder folder(path, plan);
-  ReproductionWork work;
-  work.folder = &folder;
-  return execute_reproduction(plan, work, stop, observer);
+  return execute_reproduction(plan, &folder, "armwright", 1, stop, observer);
 }
 
 std::string read(const std::filesystem::path& file) {

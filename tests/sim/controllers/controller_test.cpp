@@ -38,98 +38,98 @@ const std::vector<PidStep> kByHand = {
 };
 
 TEST(PidController, FollowsASequenceComputedByHand) {
-  PidController pid(100, 50, 2, {-30, 40});
-  EXPECT_FALSE(pid.saturated());
+  const auto pid = make_pid(100, 50, 2, {-30, 40});
+  EXPECT_FALSE(pid->saturated());
   for (std::size_t i = 0; i < kByHand.size(); ++i) {
     const PidStep& step = kByHand[i];
-    EXPECT_NEAR(pid.step(step.setpoint_rad, step.measurement_rad, 0.1), step.effort_n_m,
+    EXPECT_NEAR(pid->step(step.setpoint_rad, step.measurement_rad, 0.1), step.effort_n_m,
                 kPidTolerance)
         << "step " << i;
-    EXPECT_EQ(pid.saturated(), step.saturated) << "step " << i;
+    EXPECT_EQ(pid->saturated(), step.saturated) << "step " << i;
   }
 }
 
 // Every number below is exact in binary. P = 4, I = 4, D = 0, h = 0.5 s, -3 to 3 N m.
 TEST(PidController, AnEffortExactlyAtTheLimitIsNotClamped) {
   for (const double sign : {1.0, -1.0}) {
-    PidController pid(4, 4, 0, {-3, 3});
-    EXPECT_EQ(pid.step(sign * 0.5, 0, 0.5), sign * 3);  // 2 + 4 x 0.25
-    EXPECT_FALSE(pid.saturated());
-    EXPECT_EQ(pid.step(sign * 0.5, 0, 0.5), sign * 3);  // integrates: 2 + 4 x 0.5 = 4
-    EXPECT_TRUE(pid.saturated());
-    EXPECT_EQ(pid.step(sign * 0.125, 0, 0.5), sign * 2.5);  // does not: 0.5 + 4 x 0.5
-    EXPECT_FALSE(pid.saturated());
-    EXPECT_EQ(pid.step(sign * 0.125, 0, 0.5), sign * 2.75);  // does again: 0.5 + 4 x 0.5625
+    const auto pid = make_pid(4, 4, 0, {-3, 3});
+    EXPECT_EQ(pid->step(sign * 0.5, 0, 0.5), sign * 3);  // 2 + 4 x 0.25
+    EXPECT_FALSE(pid->saturated());
+    EXPECT_EQ(pid->step(sign * 0.5, 0, 0.5), sign * 3);  // integrates: 2 + 4 x 0.5 = 4
+    EXPECT_TRUE(pid->saturated());
+    EXPECT_EQ(pid->step(sign * 0.125, 0, 0.5), sign * 2.5);  // does not: 0.5 + 4 x 0.5
+    EXPECT_FALSE(pid->saturated());
+    EXPECT_EQ(pid->step(sign * 0.125, 0, 0.5), sign * 2.75);  // does again: 0.5 + 4 x 0.5625
   }
 }
 
 // Anti-windup: after a long saturation the controller has the same integral as before it.
 TEST(PidController, DoesNotWindUp) {
-  PidController pid(4, 4, 0, {-3, 3});
+  const auto pid = make_pid(4, 4, 0, {-3, 3});
   for (int i = 0; i < 100; ++i) {
-    EXPECT_EQ(pid.step(2, 0, 0.5), 3);  // S = 1 from the first step
+    EXPECT_EQ(pid->step(2, 0, 0.5), 3);  // S = 1 from the first step
   }
-  EXPECT_EQ(pid.step(-0.5, 0, 0.5), 2);  // -2 + 4 x 1
-  EXPECT_FALSE(pid.saturated());
+  EXPECT_EQ(pid->step(-0.5, 0, 0.5), 2);  // -2 + 4 x 1
+  EXPECT_FALSE(pid->saturated());
 }
 
 TEST(PidController, TheFirstStepHasNoDerivative) {
-  PidController pid(0, 0, 8, {-100, 100});
-  EXPECT_EQ(pid.step(0.75, 0.25, 0.125), 0);
-  EXPECT_EQ(pid.step(1.25, 0.25, 0.125), 32);   // 8 x (1 - 0.5) / 0.125
-  EXPECT_EQ(pid.step(0.25, 0.25, 0.125), -64);  // 8 x (0 - 1) / 0.125
+  const auto pid = make_pid(0, 0, 8, {-100, 100});
+  EXPECT_EQ(pid->step(0.75, 0.25, 0.125), 0);
+  EXPECT_EQ(pid->step(1.25, 0.25, 0.125), 32);   // 8 x (1 - 0.5) / 0.125
+  EXPECT_EQ(pid->step(0.25, 0.25, 0.125), -64);  // 8 x (0 - 1) / 0.125
 }
 
 TEST(PidController, TurnsTheShortWayRound) {
-  PidController pid(10, 0, 0, {-100, 100});
-  EXPECT_NEAR(pid.step(3.1, -3.1, 0.01), 10 * (6.2 - 2 * kPi), kPidTolerance);
-  EXPECT_NEAR(pid.step(-3.1, 3.1, 0.01), 10 * (2 * kPi - 6.2), kPidTolerance);
-  EXPECT_NEAR(pid.step(kPi - 0.01, 0, 0.01), 10 * (kPi - 0.01), kPidTolerance);
-  EXPECT_NEAR(pid.step(kPi + 0.01, 0, 0.01), 10 * (0.01 - kPi), kPidTolerance);
-  EXPECT_NEAR(pid.step(0.5, 0.2 + 6 * kPi, 0.01), 10 * 0.3, kPidTolerance);
+  const auto pid = make_pid(10, 0, 0, {-100, 100});
+  EXPECT_NEAR(pid->step(3.1, -3.1, 0.01), 10 * (6.2 - 2 * kPi), kPidTolerance);
+  EXPECT_NEAR(pid->step(-3.1, 3.1, 0.01), 10 * (2 * kPi - 6.2), kPidTolerance);
+  EXPECT_NEAR(pid->step(kPi - 0.01, 0, 0.01), 10 * (kPi - 0.01), kPidTolerance);
+  EXPECT_NEAR(pid->step(kPi + 0.01, 0, 0.01), 10 * (0.01 - kPi), kPidTolerance);
+  EXPECT_NEAR(pid->step(0.5, 0.2 + 6 * kPi, 0.01), 10 * 0.3, kPidTolerance);
 }
 
 // Positions in metres are not wrapped. Every number is exact in binary.
 TEST(PidController, GoesTheWholeWayOfAPrismaticJoint) {
-  PidController pid(8, 4, 2, {-1000, 1000}, JointKind::prismatic);
-  EXPECT_EQ(pid.step(4, -4, 0.5), 80);     // e 8, S 4: 64 + 16 + 0
-  EXPECT_EQ(pid.step(-4, 4, 0.5), -128);   // e -8, S 0, rate -32: -64 + 0 - 64
-  EXPECT_EQ(pid.step(100, 0, 0.5), 1000);  // e 100, S 50, rate 216: 800 + 200 + 432
-  EXPECT_TRUE(pid.saturated());
+  const auto pid = make_pid(8, 4, 2, {-1000, 1000}, JointKind::prismatic);
+  EXPECT_EQ(pid->step(4, -4, 0.5), 80);     // e 8, S 4: 64 + 16 + 0
+  EXPECT_EQ(pid->step(-4, 4, 0.5), -128);   // e -8, S 0, rate -32: -64 + 0 - 64
+  EXPECT_EQ(pid->step(100, 0, 0.5), 1000);  // e 100, S 50, rate 216: 800 + 200 + 432
+  EXPECT_TRUE(pid->saturated());
 }
 
 // The target moves from 3.13 past pi to -3.13, and the arm follows: the derivative must not jump by
 // 2 pi / h.
 TEST(PidController, TheDerivativeDoesNotSeeTheWrap) {
-  PidController pid(0, 0, 1, {-1000, 1000});
-  pid.step(3.13, 3.10, 0.01);
-  EXPECT_NEAR(pid.step(3.13 + 0.04 - 2 * kPi, 3.12, 0.01), 2,
+  const auto pid = make_pid(0, 0, 1, {-1000, 1000});
+  pid->step(3.13, 3.10, 0.01);
+  EXPECT_NEAR(pid->step(3.13 + 0.04 - 2 * kPi, 3.12, 0.01), 2,
               kPidTolerance);  // (0.05 - 0.03) / 0.01
 }
 
 TEST(PidController, ResetForgetsEverything) {
-  PidController pid(100, 50, 2, {-30, 40});
-  pid.step(0.9, 0.1, 0.1);
-  pid.step(2.9, 0.1, 0.1);
-  ASSERT_TRUE(pid.saturated());
-  pid.reset();
-  EXPECT_FALSE(pid.saturated());
-  PidController fresh(100, 50, 2, {-30, 40});
+  const auto pid = make_pid(100, 50, 2, {-30, 40});
+  pid->step(0.9, 0.1, 0.1);
+  pid->step(2.9, 0.1, 0.1);
+  ASSERT_TRUE(pid->saturated());
+  pid->reset();
+  EXPECT_FALSE(pid->saturated());
+  const auto fresh = make_pid(100, 50, 2, {-30, 40});
   for (const PidStep& step : kByHand) {
-    EXPECT_EQ(pid.step(step.setpoint_rad, step.measurement_rad, 0.1),
-              fresh.step(step.setpoint_rad, step.measurement_rad, 0.1));
+    EXPECT_EQ(pid->step(step.setpoint_rad, step.measurement_rad, 0.1),
+              fresh->step(step.setpoint_rad, step.measurement_rad, 0.1));
   }
 }
 
 TEST(PidController, AcceptsASingleEffort) {
-  PidController pid(100, 0, 0, {0, 0});
-  EXPECT_EQ(pid.step(1, 0, 0.01), 0);
-  EXPECT_TRUE(pid.saturated());
+  const auto pid = make_pid(100, 0, 0, {0, 0});
+  EXPECT_EQ(pid->step(1, 0, 0.01), 0);
+  EXPECT_TRUE(pid->saturated());
 }
 
 TEST(PidController, RefusesWhatCannotWork) {
   const auto refusal = [](double p, double i, double d, EffortLimits limits) {
-    return usage_message([=] { PidController(p, i, d, limits); });
+    return usage_message([=] { make_pid(p, i, d, limits); });
   };
   EXPECT_EQ(refusal(kNan, 1, 1, {-1, 1}),
             "controller 'pid': p_n_m_per_rad is nan; it must be finite");
@@ -142,7 +142,7 @@ TEST(PidController, RefusesWhatCannotWork) {
       "controller 'pid': the effort limits are 2 to -3 N m; the lower must not exceed the upper");
   EXPECT_EQ(
       usage_message([] {
-        PidController(1, 1, 1, {2, -3}, JointKind::prismatic);
+        make_pid(1, 1, 1, {2, -3}, JointKind::prismatic);
       }),
       "controller 'pid': the effort limits are 2 to -3 N; the lower must not exceed the upper");
   EXPECT_THAT(refusal(1, 1, 1, {kNan, 3}),

@@ -28,7 +28,7 @@ Move make_move(const Eigen::Vector3d& from, const Eigen::Vector3d& to, SignalSha
   Eigen::Vector3d::Map(move.from_m) = from;
   Eigen::Vector3d::Map(move.to_m) = to;
   Eigen::Vector3d::Map(move.way_m) = way;
-  move.curve = ReferenceSignal(shape, way.norm(), speed_m_per_s, 15).curve();
+  move.curve = make_signal_curve(shape, way.norm(), speed_m_per_s, 15);
   move.period_s = 0.01;
   return move;
 }

@@ -395,8 +395,9 @@ TEST(LinkMass, ComesFromMeshes) {
     const RobotModel arm = parse_urdf(make_mesh_arm(file), urdf, {.density_kg_per_m3 = 2700});
     expect_near(arm.links[0].inertial, same, kRounding);
     ASSERT_EQ(arm.mass_files.size(), 1u);
-    EXPECT_EQ(arm.mass_files[0].name, "../" + file);
-    EXPECT_TRUE(std::filesystem::equivalent(arm.mass_files[0].path, folder.path() / file));
+    const auto& [name, path] = *arm.mass_files.begin();
+    EXPECT_EQ(name, "../" + file);
+    EXPECT_TRUE(std::filesystem::equivalent(path, folder.path() / file));
   }
   const std::string message = refusal_of(make_mesh_arm("open.stl"), urdf);
   EXPECT_THAT(message, StartsWith(urdf + ": link 'bar': the mesh "));

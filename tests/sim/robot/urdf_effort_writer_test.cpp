@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 
 #include "base/error.hpp"
 #include "base/file.hpp"
@@ -35,7 +36,7 @@ std::string cut_comment(const std::string& text) {
 
 TEST(SetEffortLimits, ChangesTheseValuesAndNoOtherByte) {
   const std::string xml = read_arm("rail_and_pole.urdf");
-  const std::vector<JointEffort> efforts = {{"pivot", 12.5}, {"rail", 1.0 / 3}};
+  const std::map<std::string, double> efforts = {{"pivot", 12.5}, {"rail", 1.0 / 3}};
   const std::string changed = set_effort_limits(xml, "r.urdf", efforts, "by us");
   std::string expected = xml;
   const auto replace = [&](const std::string& from, const std::string& to) {
@@ -51,7 +52,7 @@ TEST(SetEffortLimits, ChangesTheseValuesAndNoOtherByte) {
 
 TEST(SetEffortLimits, IsTheSameRobotToOurReaderButForTheLimits) {
   const std::string xml = read_arm("rail_and_pole.urdf");
-  const std::vector<JointEffort> efforts = {{"rail", 7}, {"pivot", 9}};
+  const std::map<std::string, double> efforts = {{"rail", 7}, {"pivot", 9}};
   RobotModel before = parse_urdf(xml, "before");
   const RobotModel after = parse_urdf(set_effort_limits(xml, "r", efforts, ""), "after");
   ASSERT_EQ(after.joint_count(), before.joint_count());
@@ -82,7 +83,7 @@ TEST(SetEffortLimits, FindsJointsBehindEntitiesQuotesAndLookalikes) {
       "<safety_controller k_velocity='1'/></joint>"
       "<gazebo><joint name='a&b;'/></gazebo>");
   // '&b;' is not a defined entity, so the text is invalid.
-  const std::vector<JointEffort> efforts = {{"a&b", 6}};
+  const std::map<std::string, double> efforts = {{"a&b", 6}};
   EXPECT_THROW(set_effort_limits(xml, "r", efforts, ""), Error);
   std::string valid = xml;
   valid.replace(valid.find("<gazebo>"), std::string("<gazebo><joint name='a&b;'/></gazebo>").size(),
@@ -98,7 +99,7 @@ TEST(SetEffortLimits, FindsJointsBehindEntitiesQuotesAndLookalikes) {
 TEST(SetEffortLimits, TakesTheJointOfThatNameInAnyScript) {
   const std::string xml = make_urdf("<joint name='&#252;&#x4E2D;&#128512;' type='continuous'>" +
                                     std::string(kEnds) + "</joint>");
-  const std::vector<JointEffort> efforts = {{"ü中😀", 2}};
+  const std::map<std::string, double> efforts = {{"ü中😀", 2}};
   const std::string changed = set_effort_limits(xml, "r", efforts, "");
   EXPECT_THAT(changed,
               HasSubstr("<child link=\"l\"/><limit effort=\"2\" velocity=\"1000000\"/></joint>"));
@@ -110,7 +111,7 @@ TEST(SetEffortLimits, KeepsLineEndsAndWhatMustComeFirst) {
   for (std::size_t at = 0; (at = xml.find('\n', at)) != std::string::npos; at += 2) {
     xml.replace(at, 1, "\r\n");
   }
-  const std::vector<JointEffort> efforts = {{"pivot", 1}};
+  const std::map<std::string, double> efforts = {{"pivot", 1}};
   const std::string changed = set_effort_limits("\xef\xbb\xbf" + xml, "r", efforts, "us");
   EXPECT_THAT(changed, StartsWith("\xef\xbb\xbf<?xml version=\"1.0\"?>\r\n<!--\nus\n-->\n<robot"));
   EXPECT_THAT(changed,
@@ -127,7 +128,7 @@ TEST(SetEffortLimits, NothingInItsCommentEndsIt) {
 }
 
 TEST(SetEffortLimits, RefusesAJointThatIsNotThere) {
-  const std::vector<JointEffort> efforts = {{"nowhere", 1}};
+  const std::map<std::string, double> efforts = {{"nowhere", 1}};
   try {
     set_effort_limits(read_arm("two_joints.urdf"), "r.urdf", efforts, "");
     FAIL();

@@ -22,13 +22,13 @@ double rounding(double distance_m) {
   return 8 * std::numeric_limits<double>::epsilon() * distance_m;
 }
 
-double calc_slope(const ReferenceSignal& signal, double from_s, double to_s) {
-  return (signal.calc_distance(to_s) - signal.calc_distance(from_s)) / (to_s - from_s);
+double calc_slope(const targets::SignalCurve& signal, double from_s, double to_s) {
+  return (calc_distance(signal, to_s) - calc_distance(signal, from_s)) / (to_s - from_s);
 }
 
-double calc_curvature(const ReferenceSignal& signal, double t_s, double h_s) {
-  return (signal.calc_distance(t_s + h_s) - 2 * signal.calc_distance(t_s) +
-          signal.calc_distance(t_s - h_s)) /
+double calc_curvature(const targets::SignalCurve& signal, double t_s, double h_s) {
+  return (calc_distance(signal, t_s + h_s) - 2 * calc_distance(signal, t_s) +
+          calc_distance(signal, t_s - h_s)) /
          (h_s * h_s);
 }
 
@@ -41,29 +41,29 @@ struct Motion {
 // All shapes but the step, which has its own test below because it arrives at once.
 class EveryMovingSignal : public testing::TestWithParam<Motion> {
  protected:
-  ReferenceSignal signal_{GetParam().shape, GetParam().distance_m, GetParam().speed_m_per_s,
-                          kAcceleration};
+  targets::SignalCurve signal_ = make_signal_curve(GetParam().shape, GetParam().distance_m,
+                                                   GetParam().speed_m_per_s, kAcceleration);
   double distance_m_ = GetParam().distance_m;
   double speed_m_per_s_ = GetParam().speed_m_per_s;
 };
 
 TEST_P(EveryMovingSignal, ArrivesExactlyAndStays) {
-  const double end_s = signal_.duration_s();
+  const double end_s = signal_.duration_s;
   EXPECT_EQ(end_s, distance_m_ / speed_m_per_s_);
   for (const double t_s : {end_s, std::nextafter(end_s, 1e9), end_s + 0.5, 1e9}) {
-    EXPECT_EQ(signal_.calc_distance(t_s), distance_m_) << t_s;
+    EXPECT_EQ(calc_distance(signal_, t_s), distance_m_) << t_s;
   }
 }
 
 TEST_P(EveryMovingSignal, StartsAtZero) {
-  EXPECT_EQ(signal_.calc_distance(0), 0.0);
+  EXPECT_EQ(calc_distance(signal_, 0), 0.0);
 }
 
 TEST_P(EveryMovingSignal, NeverGoesBackNorBeyond) {
   constexpr int kSamples = 10007;
   double previous_m = 0;
   for (int i = 0; i <= kSamples; ++i) {
-    const double s_m = signal_.calc_distance(signal_.duration_s() * i / kSamples);
+    const double s_m = calc_distance(signal_, signal_.duration_s * i / kSamples);
     ASSERT_GE(s_m, previous_m - rounding(distance_m_)) << i;
     ASSERT_LE(s_m, distance_m_) << i;
     previous_m = s_m;
@@ -73,9 +73,9 @@ TEST_P(EveryMovingSignal, NeverGoesBackNorBeyond) {
 // No shape is ever faster than 2.5 v, so a jump between its pieces would show as a steeper slope.
 TEST_P(EveryMovingSignal, HasNoJumps) {
   constexpr int kSamples = 10007;
-  const double dt_s = signal_.duration_s() / kSamples;
+  const double dt_s = signal_.duration_s / kSamples;
   for (int i = 0; i < kSamples; ++i) {
-    ASSERT_LE(signal_.calc_distance((i + 1) * dt_s) - signal_.calc_distance(i * dt_s),
+    ASSERT_LE(calc_distance(signal_, (i + 1) * dt_s) - calc_distance(signal_, i * dt_s),
               2.5 * speed_m_per_s_ * dt_s + rounding(distance_m_))
         << i;
   }
@@ -86,7 +86,7 @@ TEST_P(EveryMovingSignal, HasNoJumps) {
 // the complex one.
 TEST_P(EveryMovingSignal, EndsAtItsOwnSpeed) {
   constexpr double kShare = 1e-4;
-  const double end_s = signal_.duration_s();
+  const double end_s = signal_.duration_s;
   const double speed = calc_slope(signal_, end_s * (1 - kShare), end_s);
   const double noise = rounding(speed_m_per_s_) / kShare;
   switch (GetParam().shape) {
@@ -126,12 +126,12 @@ INSTANTIATE_TEST_SUITE_P(Motions, EveryMovingSignal, testing::ValuesIn(make_moti
                          });
 
 TEST(ReferenceSignal, StepIsThereAtOnce) {
-  const ReferenceSignal signal(SignalShape::step, 0.7, 1.4, kAcceleration);
-  EXPECT_EQ(signal.duration_s(), 0.5);  // the error is measured from here on, too
-  EXPECT_EQ(signal.calc_distance(0.0), 0.7);
-  EXPECT_EQ(signal.calc_distance(0.2), 0.7);
-  EXPECT_EQ(signal.calc_distance(0.5), 0.7);
-  EXPECT_EQ(signal.calc_distance(7.0), 0.7);
+  const auto signal = make_signal_curve(SignalShape::step, 0.7, 1.4, kAcceleration);
+  EXPECT_EQ(signal.duration_s, 0.5);  // the error is measured from here on, too
+  EXPECT_EQ(calc_distance(signal, 0.0), 0.7);
+  EXPECT_EQ(calc_distance(signal, 0.2), 0.7);
+  EXPECT_EQ(calc_distance(signal, 0.5), 0.7);
+  EXPECT_EQ(calc_distance(signal, 7.0), 0.7);
 }
 
 // v t_m is not always ds in floating point.
@@ -139,26 +139,26 @@ TEST(ReferenceSignal, RampsArriveExactlyWhateverTheRounding) {
   int rounded = 0;
   for (int i = 1; i <= 1000; ++i) {
     const double distance_m = 0.0017 * i;
-    const ReferenceSignal signal(SignalShape::ramp, distance_m, 1.3, kAcceleration);
-    ASSERT_EQ(signal.calc_distance(signal.duration_s()), distance_m);
-    ASSERT_LE(signal.calc_distance(std::nextafter(signal.duration_s(), 0.0)), distance_m);
-    rounded += 1.3 * signal.duration_s() != distance_m;
+    const auto signal = make_signal_curve(SignalShape::ramp, distance_m, 1.3, kAcceleration);
+    ASSERT_EQ(calc_distance(signal, signal.duration_s), distance_m);
+    ASSERT_LE(calc_distance(signal, std::nextafter(signal.duration_s, 0.0)), distance_m);
+    rounded += 1.3 * signal.duration_s != distance_m;
   }
   EXPECT_GT(rounded, 0);  // else this test would check nothing
 }
 
 TEST(ReferenceSignal, RampIsSpeedTimesTime) {
-  const ReferenceSignal signal(SignalShape::ramp, 1.2, 1.5, kAcceleration);
-  EXPECT_NEAR(signal.calc_distance(0.3), 0.45, rounding(1.2));
-  EXPECT_NEAR(signal.calc_distance(0.79), 1.185, rounding(1.2));
+  const auto signal = make_signal_curve(SignalShape::ramp, 1.2, 1.5, kAcceleration);
+  EXPECT_NEAR(calc_distance(signal, 0.3), 0.45, rounding(1.2));
+  EXPECT_NEAR(calc_distance(signal, 0.79), 1.185, rounding(1.2));
 }
 
 // ds = 1 m, v = 1.5 m/s. t = 0.1 s: 25 x 2.25 x 0.01 / 8 = 0.0703125. t = 0.5 s: 1 - 125 x 0.25^3 /
 // 54 = 1 - 1.953125 / 54.
 TEST(ReferenceSignal, ComplexByHand) {
-  const ReferenceSignal signal(SignalShape::complex, 1.0, 1.5, kAcceleration);
-  EXPECT_NEAR(signal.calc_distance(0.1), 0.0703125, rounding(1));
-  EXPECT_NEAR(signal.calc_distance(0.5), 1 - 1.953125 / 54, rounding(1));
+  const auto signal = make_signal_curve(SignalShape::complex, 1.0, 1.5, kAcceleration);
+  EXPECT_NEAR(calc_distance(signal, 0.1), 0.0703125, rounding(1));
+  EXPECT_NEAR(calc_distance(signal, 0.5), 1 - 1.953125 / 54, rounding(1));
 }
 
 // The slope over e t_m beside the peak misses it by half of the curvature: (25/8) e v before,
@@ -166,11 +166,11 @@ TEST(ReferenceSignal, ComplexByHand) {
 TEST(ReferenceSignal, ComplexPeaksAtTwoAndAHalfTimesTheAverageSpeed) {
   constexpr double kShare = 1e-5;
   const double speed = 1.37;
-  const ReferenceSignal signal(SignalShape::complex, 0.753, speed, kAcceleration);
-  const double peak_s = 0.4 * signal.duration_s();
-  const double h_s = kShare * signal.duration_s();
-  EXPECT_NEAR(signal.calc_distance(peak_s), 0.753 / 2, rounding(0.753));
-  EXPECT_NEAR(signal.calc_distance(std::nextafter(peak_s, 1.0)), 0.753 / 2, rounding(0.753));
+  const auto signal = make_signal_curve(SignalShape::complex, 0.753, speed, kAcceleration);
+  const double peak_s = 0.4 * signal.duration_s;
+  const double h_s = kShare * signal.duration_s;
+  EXPECT_NEAR(calc_distance(signal, peak_s), 0.753 / 2, rounding(0.753));
+  EXPECT_NEAR(calc_distance(signal, std::nextafter(peak_s, 1.0)), 0.753 / 2, rounding(0.753));
   const double noise = rounding(speed) / kShare;
   EXPECT_NEAR(calc_slope(signal, peak_s - h_s, peak_s), speed * (2.5 - 25.0 / 8.0 * kShare), noise);
   // ... and 125/54 e^2, the cubic's own term
@@ -181,12 +181,12 @@ TEST(ReferenceSignal, ComplexPeaksAtTwoAndAHalfTimesTheAverageSpeed) {
 // ds = 1.2 m, v = 1.5 m/s, a = 15 m/s^2: t_m = 0.8 s, t_a = (0.8 - sqrt(0.64 - 0.32)) / 2 = 0.4 -
 // sqrt(0.08) s.
 TEST(ReferenceSignal, TrapezoidByHand) {
-  const ReferenceSignal signal(SignalShape::trapezoid, 1.2, 1.5, 15);
+  const auto signal = make_signal_curve(SignalShape::trapezoid, 1.2, 1.5, 15);
   const double ramp_up_s = 0.4 - std::sqrt(0.08);
-  EXPECT_NEAR(signal.calc_distance(0.1), 0.075, rounding(1.2));  // 15 / 2 x 0.1^2
-  EXPECT_NEAR(signal.calc_distance(0.7), 1.125, rounding(1.2));
-  EXPECT_NEAR(signal.calc_distance(0.4), 0.6, rounding(1.2));
-  EXPECT_NEAR(signal.calc_distance(0.3), 0.6 - 0.1 * 15 * ramp_up_s, rounding(1.2));
+  EXPECT_NEAR(calc_distance(signal, 0.1), 0.075, rounding(1.2));  // 15 / 2 x 0.1^2
+  EXPECT_NEAR(calc_distance(signal, 0.7), 1.125, rounding(1.2));
+  EXPECT_NEAR(calc_distance(signal, 0.4), 0.6, rounding(1.2));
+  EXPECT_NEAR(calc_distance(signal, 0.3), 0.6 - 0.1 * 15 * ramp_up_s, rounding(1.2));
   // The second difference of a quadratic is exact but for rounding, which 1 / h^2 magnifies.
   constexpr double kStep_s = 1e-3;
   const double noise = 4 * rounding(1.2) / (kStep_s * kStep_s);
@@ -196,34 +196,34 @@ TEST(ReferenceSignal, TrapezoidByHand) {
 }
 
 TEST(ReferenceSignal, TriangularByHand) {
-  const ReferenceSignal signal(SignalShape::triangular, 0.6, 1.5,
-                               1e-9);                            // acceleration not used
-  EXPECT_NEAR(signal.calc_distance(0.1), 0.075, rounding(0.6));  // 4 ds / t_m^2 = 15 m/s^2
-  EXPECT_NEAR(signal.calc_distance(0.2), 0.3, rounding(0.6));
-  EXPECT_NEAR(signal.calc_distance(0.3), 0.525, rounding(0.6));
+  const auto signal = make_signal_curve(SignalShape::triangular, 0.6, 1.5,
+                                        1e-9);                    // acceleration not used
+  EXPECT_NEAR(calc_distance(signal, 0.1), 0.075, rounding(0.6));  // 4 ds / t_m^2 = 15 m/s^2
+  EXPECT_NEAR(calc_distance(signal, 0.2), 0.3, rounding(0.6));
+  EXPECT_NEAR(calc_distance(signal, 0.3), 0.525, rounding(0.6));
 }
 
 // ds = 0.6 m at v = 1.5 m/s needs at least a = 4 v^2 / ds = 15 m/s^2. With (1 + d) times that, t_a
 // falls short of t_m / 2 by the fraction sqrt(d / (1 + d)), so that no point of the path moves by
 // more than ds sqrt(d).
 TEST(ReferenceSignal, TrapezoidFallsBackToTriangularWhereItsAccelerationIsTooSmall) {
-  const ReferenceSignal triangular(SignalShape::triangular, 0.6, 1.5, 15);
+  const auto triangular = make_signal_curve(SignalShape::triangular, 0.6, 1.5, 15);
   constexpr double kExcess = 1e-6;
-  const ReferenceSignal below(SignalShape::trapezoid, 0.6, 1.5, 15 * (1 - kExcess));
-  const ReferenceSignal far_below(SignalShape::trapezoid, 0.6, 1.5, 0.3);
-  const ReferenceSignal above(SignalShape::trapezoid, 0.6, 1.5, 15 * (1 + kExcess));
-  const ReferenceSignal far_above(SignalShape::trapezoid, 0.6, 1.5, 30);
+  const auto below = make_signal_curve(SignalShape::trapezoid, 0.6, 1.5, 15 * (1 - kExcess));
+  const auto far_below = make_signal_curve(SignalShape::trapezoid, 0.6, 1.5, 0.3);
+  const auto above = make_signal_curve(SignalShape::trapezoid, 0.6, 1.5, 15 * (1 + kExcess));
+  const auto far_above = make_signal_curve(SignalShape::trapezoid, 0.6, 1.5, 30);
   double largest_m = 0;
   for (int i = 0; i <= 1000; ++i) {
     const double t_s = 0.4 * i / 1000;
-    const double expected_m = triangular.calc_distance(t_s);
-    ASSERT_EQ(below.calc_distance(t_s), expected_m) << t_s;
-    ASSERT_EQ(far_below.calc_distance(t_s), expected_m) << t_s;
-    ASSERT_NEAR(above.calc_distance(t_s), expected_m, 0.6 * std::sqrt(kExcess)) << t_s;
-    largest_m = std::max(largest_m, std::abs(far_above.calc_distance(t_s) - expected_m));
+    const double expected_m = calc_distance(triangular, t_s);
+    ASSERT_EQ(calc_distance(below, t_s), expected_m) << t_s;
+    ASSERT_EQ(calc_distance(far_below, t_s), expected_m) << t_s;
+    ASSERT_NEAR(calc_distance(above, t_s), expected_m, 0.6 * std::sqrt(kExcess)) << t_s;
+    largest_m = std::max(largest_m, std::abs(calc_distance(far_above, t_s) - expected_m));
   }
-  const ReferenceSignal little_above(SignalShape::trapezoid, 0.6, 1.5, 16.5);
-  EXPECT_NEAR(little_above.calc_distance(0.05), 0.5 * 16.5 * 0.0025, rounding(0.6));
+  const auto little_above = make_signal_curve(SignalShape::trapezoid, 0.6, 1.5, 16.5);
+  EXPECT_NEAR(calc_distance(little_above, 0.05), 0.5 * 16.5 * 0.0025, rounding(0.6));
   // At 30 m/s^2, t_a = 0.2 (1 - sqrt(1/2)): well ahead of the triangular signal at that time.
   const double ramp_up_s = 0.2 * (1 - std::sqrt(0.5));
   EXPECT_GE(largest_m, 0.99 * 0.5 * 15 * ramp_up_s * ramp_up_s);
@@ -232,16 +232,16 @@ TEST(ReferenceSignal, TrapezoidFallsBackToTriangularWhereItsAccelerationIsTooSma
 // t_a = v / a to first order: the plateau's speed is v (1 + v / (a t_m)). Cancellation in t_a would
 // show as 1e-4 here.
 TEST(ReferenceSignal, TrapezoidKeepsItsPrecisionAtHugeAccelerations) {
-  const ReferenceSignal signal(SignalShape::trapezoid, 1.2, 1.5, 1e12);
+  const auto signal = make_signal_curve(SignalShape::trapezoid, 1.2, 1.5, 1e12);
   EXPECT_NEAR(calc_slope(signal, 0.2, 0.6), 1.5, 1e-11);
 }
 
 TEST(ReferenceSignal, TrapezoidAndTriangularBrakeAsTheyAccelerate) {
   for (const SignalShape shape : {SignalShape::trapezoid, SignalShape::triangular}) {
-    const ReferenceSignal signal(shape, 1.018, 1.31, 17.3);
+    const auto signal = make_signal_curve(shape, 1.018, 1.31, 17.3);
     for (int i = 0; i <= 100; ++i) {
-      const double t_s = signal.duration_s() * i / 100;
-      EXPECT_NEAR(signal.calc_distance(t_s) + signal.calc_distance(signal.duration_s() - t_s),
+      const double t_s = signal.duration_s * i / 100;
+      EXPECT_NEAR(calc_distance(signal, t_s) + calc_distance(signal, signal.duration_s - t_s),
                   1.018, 4 * rounding(1.018))
           << t_s;
     }
@@ -263,7 +263,7 @@ TEST(ReferenceSignal, NamesFollowTheEnum) {
 
 TEST(ReferenceSignal, RefusesImpossibleMotions) {
   const auto refusal = [](SignalShape shape, double distance_m, double speed, double acceleration) {
-    return usage_message([=] { ReferenceSignal(shape, distance_m, speed, acceleration); });
+    return usage_message([=] { make_signal_curve(shape, distance_m, speed, acceleration); });
   };
   for (const double bad : {0.0, -0.3, kInfinity, kNan}) {
     EXPECT_THAT(refusal(SignalShape::ramp, bad, 1.5, 15),

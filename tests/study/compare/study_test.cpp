@@ -64,7 +64,7 @@ TEST_F(StudyTest, AStoppedStudyGoesOnToTheSameTables) {
     StudyFolder folder(path, plan);
     StopSignal stop;
     StopAfterTenCells observer(stop, static_cast<std::uint64_t>(plan.budget));
-    EXPECT_TRUE(run_cells(plan, path, 2, stop, observer).stopped);
+    EXPECT_FALSE(run_cells(plan, path, 2, stop, observer));
   }
   EXPECT_FALSE(analyze_study(plan, path).missing.empty());
   study(plan, "stopped");

@@ -87,7 +87,7 @@ TEST_F(FolderCopyTest, WhereNothingMoreCanBeWrittenNothingIsLeft) {
 
 TEST_F(FolderCopyTest, AStopLeavesNothing) {
   stop_.request(StopReason::interrupted);
-  EXPECT_THROW(make_copy(), CopyStopped);
+  EXPECT_THROW(make_copy(), WorkStopped);
   EXPECT_EQ(folder_.list(), std::vector<std::string>{"source"});
 }
 

@@ -78,7 +78,8 @@ class ArticulatedEngine final : public PhysicsEngine {
     for (const std::vector<std::size_t>& group : alike) {
       for (std::size_t first = 0; first < group.size(); first += most) {
         const std::size_t count = std::min(most, group.size() - first);
-        LaneBlock<T>(setup, kernel_, jobs, std::span(group).subspan(first, count), results).run();
+        simulate_block(setup, kernel_, jobs,
+                       std::span<const std::size_t>(group).subspan(first, count), results);
       }
     }
     return results;

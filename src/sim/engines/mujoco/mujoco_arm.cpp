@@ -136,17 +136,18 @@ ModelHandle compile(const std::string& mjcf, const std::string& robot_name) {
 
 }  // namespace
 
-struct MujocoModel::Compiled {
+struct MujocoModel {
   const RobotModel* robot;
   double gravity_m_per_s2;
   ModelHandle model;
 };
 
-MujocoModel::MujocoModel(const RobotModel& robot, const PhysicsSettings& physics) {
+std::shared_ptr<const MujocoModel> compile_for_mujoco(const RobotModel& robot,
+                                                      const PhysicsSettings& physics) {
   prepare_mujoco();
-  compiled_ = std::make_unique<Compiled>(
-      Compiled{&robot, physics.gravity_m_per_s2, compile(make_mjcf(robot, physics), robot.name)});
-  mjModel* const model = compiled_->model.get();
+  auto compiled = std::make_shared<MujocoModel>(MujocoModel{
+      &robot, physics.gravity_m_per_s2, compile(make_mjcf(robot, physics), robot.name)});
+  mjModel* const model = compiled->model.get();
   for (std::size_t i = 0; i < robot.joint_count(); ++i) {
     const Inertial& inertial = robot.links[i].inertial;
     const std::size_t body = i + 1;  // body 0 is the world
@@ -157,9 +158,8 @@ MujocoModel::MujocoModel(const RobotModel& robot, const PhysicsSettings& physics
   // Computes the numbers that MuJoCo derives from masses: subtrees' masses, inertias at position 0.
   const DataHandle data(mj_makeData(model));
   mj_setConst(model, data.get());
+  return compiled;
 }
-
-MujocoModel::~MujocoModel() = default;
 
 struct MujocoArm::World {
   const RobotModel* robot;
@@ -184,12 +184,11 @@ struct MujocoArm::World {
 };
 
 MujocoArm::MujocoArm(const MujocoModel& model, std::span<const double> q) {
-  const MujocoModel::Compiled& compiled = *model.compiled_;
   world_ = std::make_unique<World>();
   World& w = *world_;
-  w.robot = compiled.robot;
-  w.gravity_m_per_s2 = compiled.gravity_m_per_s2;
-  w.model.reset(mj_copyModel(nullptr, compiled.model.get()));
+  w.robot = model.robot;
+  w.gravity_m_per_s2 = model.gravity_m_per_s2;
+  w.model.reset(mj_copyModel(nullptr, model.model.get()));
   w.data.reset(mj_makeData(w.model.get()));
   std::copy(q.begin(), q.end(), w.data->qpos);
   w.update();
@@ -197,7 +196,7 @@ MujocoArm::MujocoArm(const MujocoModel& model, std::span<const double> q) {
 
 MujocoArm::MujocoArm(const RobotModel& robot, std::span<const double> q,
                      const PhysicsSettings& physics)
-    : MujocoArm(MujocoModel(robot, physics), q) {}
+    : MujocoArm(*compile_for_mujoco(robot, physics), q) {}
 
 MujocoArm::~MujocoArm() = default;
 

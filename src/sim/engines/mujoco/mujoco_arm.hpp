@@ -24,19 +24,11 @@ namespace armwright {
 
 // A robot in MuJoCo's form, compiled once (half a millisecond) for any number of arms. Immutable,
 // so several threads may make arms from one object.
-class MujocoModel {
- public:
-  // The robot must outlive the model. Throws Error{bad_data} if MuJoCo rejects the robot.
-  MujocoModel(const RobotModel& robot, const PhysicsSettings& physics);
-  ~MujocoModel();
-  MujocoModel(const MujocoModel&) = delete;
-  MujocoModel& operator=(const MujocoModel&) = delete;
+struct MujocoModel;
 
- private:
-  friend class MujocoArm;
-  struct Compiled;
-  std::unique_ptr<Compiled> compiled_;
-};
+// The robot must outlive the model. Throws Error{bad_data} if MuJoCo rejects the robot.
+std::shared_ptr<const MujocoModel> compile_for_mujoco(const RobotModel& robot,
+                                                      const PhysicsSettings& physics);
 
 class MujocoArm {
  public:

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -88,11 +89,10 @@ Outcome simulate_one_arm(const LaneCase& one, const Timeline& time) {
   const std::size_t n = one.model.joint_count();
   const auto size = static_cast<Eigen::Index>(n);
   auto arm = make_arm<ArticulatedArm>(one.model, one.start);
-  std::vector<PidController> controllers;
+  std::vector<std::unique_ptr<Controller>> controllers;
   for (std::size_t i = 0; i < n; ++i) {
-    const auto& gains = one.drives[i].gains;
-    controllers.emplace_back(gains[0], gains[1], gains[2], one.drives[i].limits,
-                             one.model.joints[i].kind);
+    controllers.push_back(find_controller("pid").make(one.drives[i].gains, one.drives[i].limits,
+                                                      one.model.joints[i].kind));
   }
   Outcome o{VectorXd(size),
             VectorXd(size),
@@ -106,8 +106,8 @@ Outcome simulate_one_arm(const LaneCase& one, const Timeline& time) {
     for (std::size_t i = 0; i < n; ++i) {
       const auto joint = static_cast<Eigen::Index>(i);
       const double target = one.targets[static_cast<std::size_t>(step) * n + i];
-      effort[joint] = controllers[i].step(target, q[joint], kPeriod_s);
-      o.clamped[joint] += controllers[i].saturated() ? 1 : 0;
+      effort[joint] = controllers[i]->step(target, q[joint], kPeriod_s);
+      o.clamped[joint] += controllers[i]->saturated() ? 1 : 0;
     }
     for (int substep = 0; substep < time.substeps; ++substep) {
       physics_test::step(arm, effort, kPeriod_s / time.substeps);

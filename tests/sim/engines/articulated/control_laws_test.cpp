@@ -62,12 +62,12 @@ TEST(ControlLaws, PidFilteredIsThePidWithoutFilterAndWeights) {
   const auto filtered =
       find_controller("pid_filtered")
           .make(std::vector<double>{100, 50, 2, 0, 1, 1}, {-30, 40}, JointKind::revolute);
-  PidController pid(100, 50, 2, {-30, 40});
+  const auto pid = make_pid(100, 50, 2, {-30, 40});
   RandomStream random("test/sim/filtered", 1);
   for (int i = 0; i < 100; ++i) {
     const double setpoint = random.uniform(-3, 3);
     const double measurement = setpoint + random.uniform(-0.3, 0.3);
-    EXPECT_NEAR(filtered->step(setpoint, measurement, 0.1), pid.step(setpoint, measurement, 0.1),
+    EXPECT_NEAR(filtered->step(setpoint, measurement, 0.1), pid->step(setpoint, measurement, 0.1),
                 kLawTolerance);
   }
 }
@@ -101,11 +101,11 @@ TEST(ControlLaws, CascadeIsAPidInDisguise) {
   const double kp = 12, kv = 5, ki = 20;
   const auto cascade = find_controller("cascade").make(std::vector<double>{kp, kv, ki, 1},
                                                        {-1e6, 1e6}, JointKind::revolute);
-  PidController pid(kv * kp + ki, ki * kp, kv, {-1e6, 1e6});
+  const auto pid = make_pid(kv * kp + ki, ki * kp, kv, {-1e6, 1e6});
   for (int i = 0; i < 200; ++i) {
     const double setpoint = std::sin(0.05 * i);
     const double measurement = i == 0 ? 0 : std::sin(0.05 * i - 0.1) + 0.01 * i;
-    EXPECT_NEAR(cascade->step(setpoint, measurement, 0.01), pid.step(setpoint, measurement, 0.01),
+    EXPECT_NEAR(cascade->step(setpoint, measurement, 0.01), pid->step(setpoint, measurement, 0.01),
                 1e-9);
   }
 }
@@ -193,12 +193,12 @@ TEST_P(EveryController, StartsWithUsableGains) {
 // PID, to a quarter.
 TEST_P(EveryController, StartsNearThePid) {
   const auto controller = make();
-  PidController pid(270000, 700000, 30000, kLimits);
+  const auto pid = make_pid(270000, 700000, 30000, kLimits);
   double largest = 0;
   double difference = 0;
   for (int k = 0; k < 100; ++k) {
     const double error = 0.02 * std::sin(0.08 * k);
-    const double expected = pid.step(0.5, 0.5 - error, 0.01);
+    const double expected = pid->step(0.5, 0.5 - error, 0.01);
     largest = std::max(largest, std::abs(expected));
     difference =
         std::max(difference, std::abs(controller->step(0.5, 0.5 - error, 0.01) - expected));
