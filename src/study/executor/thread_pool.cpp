@@ -22,6 +22,10 @@ ThreadPool::ThreadPool(std::size_t threads) {
     stop_workers();
     throw;
   }
+  // A child that is forked while a thread starts may inherit a lock that the thread holds, for
+  // example the lock of a sanitizer's memory. Nobody opens that lock in the child.
+  std::unique_lock lock(mutex_);
+  workers_done_.wait(lock, [this] { return started_workers_ == workers_.size(); });
 }
 
 ThreadPool::~ThreadPool() {
@@ -74,6 +78,8 @@ void ThreadPool::run(std::size_t jobs, const std::function<void(std::size_t)>& j
 void ThreadPool::work_loop() {
   std::uint64_t last_batch = 0;
   std::unique_lock lock(mutex_);
+  ++started_workers_;
+  workers_done_.notify_one();
   while (true) {
     batch_began_.wait(lock, [&] { return stopping_ || (job_ != nullptr && batch_ != last_batch); });
     if (stopping_) {

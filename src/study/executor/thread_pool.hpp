@@ -46,6 +46,7 @@ class ThreadPool {
   std::condition_variable workers_done_;
   const std::function<void(std::size_t)>* job_ = nullptr;  // null between batches
   std::uint64_t batch_ = 0;
+  std::size_t started_workers_ = 0;
   std::size_t active_workers_ = 0;
   bool stopping_ = false;
   std::size_t failed_job_ = kNone;  // the lowest number of a job that threw

@@ -127,7 +127,9 @@ class Journal::Writer {
     sync_folder_of(file_);
   }
 
-  // If the system grants no more threads, add() writes every record at once instead.
+  // If the system grants no more threads, add() writes every record at once instead. Returns when
+  // the threads wait for work: a child that is forked while a thread starts may inherit a lock that
+  // the thread holds (study/executor/thread_pool.cpp).
   void start_threads() {
     try {
       write_thread_ = std::thread([this] { write_loop(); });
@@ -135,8 +137,10 @@ class Journal::Writer {
     } catch (const std::system_error&) {
       // has_threads_ stays false
     }
-    const std::lock_guard lock(mutex_);
-    has_threads_ = write_thread_.joinable() && sync_thread_.joinable();
+    const int threads = (write_thread_.joinable() ? 1 : 0) + (sync_thread_.joinable() ? 1 : 0);
+    std::unique_lock lock(mutex_);
+    thread_started_.wait(lock, [&] { return started_threads_ == threads; });
+    has_threads_ = threads == 2;
   }
 
   void stop_threads() {
@@ -227,6 +231,8 @@ class Journal::Writer {
 
   void write_loop() {
     std::unique_lock lock(mutex_);
+    ++started_threads_;
+    thread_started_.notify_one();
     while (!stopping_) {
       if (buffer_.empty()) {
         writer_idle_ = true;
@@ -246,6 +252,8 @@ class Journal::Writer {
 
   void sync_loop() {
     std::unique_lock lock(mutex_);
+    ++started_threads_;
+    thread_started_.notify_one();
     while (true) {
       sync_wanted_.wait(lock, [this] { return stopping_ || unsynced_; });
       sync_wanted_.wait_until(lock, last_sync_ + kSyncInterval, [this] { return stopping_; });
@@ -266,12 +274,14 @@ class Journal::Writer {
   std::mutex mutex_;  // guards all that follows
   std::condition_variable write_wanted_;
   std::condition_variable sync_wanted_;
+  std::condition_variable thread_started_;
   std::string buffer_;              // whole records
   std::uint64_t intact_bytes_ = 0;  // of the file: the magic and whole records
   std::string error_;               // the first one, empty if there is none
   bool ended_ = false;
   bool unsynced_ = false;
   bool writer_idle_ = false;
+  int started_threads_ = 0;
   bool has_threads_ = false;
   bool stopping_ = false;
   Clock::time_point last_write_ = Clock::now();

@@ -103,7 +103,8 @@ TEST(SpeedReduction, IsProportionalBelowTheLimitAndWholeAbove) {
                 1e-14);
   }
   task.distance_limit_m = 0;
-  for (const auto& speed : make_signals(task, false)["reduction"]["speed_m_per_s"]) {
+  const auto unlimited = make_signals(task, false);
+  for (const auto& speed : unlimited["reduction"]["speed_m_per_s"]) {
     EXPECT_EQ(speed, 1.2);
   }
 }
