@@ -65,12 +65,12 @@ std::vector<std::string> describe_differences(const std::string& recorded_json,
   const json recorded = json::parse(recorded_json).flatten();
   const json now = json::parse(now_json).flatten();
   std::vector<std::string> differences;
-  const auto name = [](std::string pointer) {
-    pointer.erase(0, 1);
-    for (char& c : pointer) {
-      c = c == '/' ? '.' : c;
+  const auto name = [](const std::string& text) {
+    std::vector<std::string> keys;
+    for (json::json_pointer pointer(text); !pointer.empty(); pointer.pop_back()) {
+      keys.insert(keys.begin(), pointer.back());
     }
-    return cut(pointer);
+    return cut(join(keys, "."));
   };
   const auto show = [](const json& value) { return cut(value.dump()); };
   for (const auto& [key, value] : recorded.items()) {
