@@ -59,6 +59,15 @@ std::string read_json_file(const std::filesystem::path& file, std::size_t limit_
   return text;
 }
 
+std::string describe_json_error(std::string_view message) {
+  constexpr std::string_view kEnd = "] ";
+  const std::size_t end = message.find(kEnd);
+  if (message.starts_with("[json.exception.") && end != std::string_view::npos) {
+    message.remove_prefix(end + kEnd.size());
+  }
+  return sanitize(message);
+}
+
 std::vector<std::string> describe_differences(const std::string& recorded_json,
                                               const std::string& now_json) {
   constexpr std::size_t kMostShown = 50;

@@ -72,7 +72,7 @@ json read_manifest(const std::filesystem::path& file) {
         ErrorKind::bad_data,
         fmt::format("{}: is not a manifest that armwright wrote ({}); choose another folder "
                     "with --out or --new",
-                    file.string(), sanitize(error.what())));
+                    file.string(), describe_json_error(error.what())));
   } catch (const std::runtime_error& error) {
     if (dynamic_cast<const Error*>(&error) != nullptr) {
       throw;
