@@ -109,7 +109,13 @@ toml::table parse_toml(const Source& source) {
   try {
     return toml::parse(std::string_view(source.text));
   } catch (const toml::parse_error& error) {
-    fail({&source, error.source().begin.line}, sanitize(error.description()));
+    std::string_view reason = error.description();
+    constexpr std::string_view kLead = "Error while parsing ";
+    if (reason.starts_with(kLead)) {
+      reason.remove_prefix(kLead.size());
+    }
+    fail({&source, error.source().begin.line},
+         fmt::format("this is not valid TOML; {}", sanitize(reason)));
   }
 }
 
@@ -168,7 +174,7 @@ class Loader {
     const std::string content = read_config_file(file);
     document_.files.push_back(file);
     chain_.push_back(file.filename().string());
-    Value value = parse_source(document_, file.string(), content);
+    Value value = parse(file, content);
     const auto found = value.keys.find("extends");
     if (found == value.keys.end()) {
       return value;
@@ -181,6 +187,18 @@ class Loader {
   }
 
  private:
+  Value parse(const std::filesystem::path& file, const std::string& content) {
+    try {
+      return parse_source(document_, file.string(), content);
+    } catch (const Error& error) {
+      if (chain_.size() < 2) {
+        throw;
+      }
+      throw Error(error.kind(), fmt::format("{} ({} extends this file)", error.what(),
+                                            sanitize(chain_[chain_.size() - 2])));
+    }
+  }
+
   std::filesystem::path find_extended(const Value& extends,
                                       const std::filesystem::path& file) const {
     constexpr std::string_view kMust =

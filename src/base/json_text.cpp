@@ -59,18 +59,27 @@ std::string read_json_file(const std::filesystem::path& file, std::size_t limit_
   return text;
 }
 
+std::string describe_json_error(std::string_view message) {
+  constexpr std::string_view kEnd = "] ";
+  const std::size_t end = message.find(kEnd);
+  if (message.starts_with("[json.exception.") && end != std::string_view::npos) {
+    message.remove_prefix(end + kEnd.size());
+  }
+  return sanitize(message);
+}
+
 std::vector<std::string> describe_differences(const std::string& recorded_json,
                                               const std::string& now_json) {
   constexpr std::size_t kMostShown = 50;
   const json recorded = json::parse(recorded_json).flatten();
   const json now = json::parse(now_json).flatten();
   std::vector<std::string> differences;
-  const auto name = [](std::string pointer) {
-    pointer.erase(0, 1);
-    for (char& c : pointer) {
-      c = c == '/' ? '.' : c;
+  const auto name = [](const std::string& text) {
+    std::vector<std::string> keys;
+    for (json::json_pointer pointer(text); !pointer.empty(); pointer.pop_back()) {
+      keys.insert(keys.begin(), pointer.back());
     }
-    return cut(pointer);
+    return cut(join(keys, "."));
   };
   const auto show = [](const json& value) { return cut(value.dump()); };
   for (const auto& [key, value] : recorded.items()) {

@@ -25,7 +25,8 @@ namespace armwright {
 namespace {
 
 constexpr const char* kSummary =
-    "Tunes and designs robot arms by simulation, with interchangeable gradient-free optimizers.";
+    "Tunes and designs robot arms by simulation, with interchangeable optimizers that need no "
+    "derivatives.";
 
 constexpr const char* kFooter = R"(Examples:
   armwright list problems                          # the problems that can be optimized

@@ -137,10 +137,14 @@ LineProcess::LineProcess(const std::vector<std::string>& words, OutputLog& log)
   const int error = read_report(our_report.get());
   if (error != 0) {
     reap(std::exchange(pid_, -1));
-    throw Error(ErrorKind::usage,
-                fmt::format("cannot start '{}': {}; name a program on the PATH or give a "
-                            "program's path",
-                            sanitize(words.front()), std::generic_category().message(error)));
+    const std::string name = sanitize(words.front());
+    const std::string advice =
+        error == EACCES && name.find('/') != std::string::npos
+            ? "; make it executable: " +
+                  quote_command(std::vector<std::string>{"chmod", "+x", name})
+            : "; name a program on the PATH or give a program's path";
+    throw Error(ErrorKind::usage, fmt::format("cannot start '{}': {}{}", name,
+                                              std::generic_category().message(error), advice));
   }
 }
 

@@ -137,7 +137,9 @@ TEST_F(ConfigFiles, AMistakeInAnExtendedFileIsReportedThere) {
   write("base.toml", "x = 1\ny = \n");
   const auto path = write("q1.toml", "extends = 'base'\n");
   EXPECT_EQ(usage_error_of([&] { ConfigTable::load(path); }),
-            at("base.toml") + ":2: Error while parsing key-value pair: expected value, saw '\\n'");
+            at("base.toml") +
+                ":2: this is not valid TOML; key-value pair: expected value, saw '\\n' "
+                "(q1.toml extends this file)");
 }
 
 ConfigTable parse(const std::vector<std::string>& overrides,

@@ -33,5 +33,18 @@ TEST(JsonText, MayHaveAnyBracketsInStrings) {
       HasSubstr("nest deeper"));
 }
 
+TEST(JsonText, ErrorsLoseTheNumberOfTheLibrary) {
+  EXPECT_EQ(describe_json_error("[json.exception.out_of_range.403] key 'a' not found"),
+            "key 'a' not found");
+  EXPECT_EQ(describe_json_error("[1] is wrong"), "[1] is wrong");
+}
+
+// A JSON pointer writes / and ~ of a key as ~1 and ~0.
+TEST(Differences, NameKeysAsTheyAre) {
+  EXPECT_THAT(describe_differences(R"({"inputs": {"./p~8": 1}, "seed": 2})",
+                                   R"({"inputs": {"./p~8": 3}, "seed": 2})"),
+              testing::ElementsAre("inputs../p~8: recorded 1, now 3"));
+}
+
 }  // namespace
 }  // namespace armwright

@@ -193,7 +193,22 @@ TEST_F(CliOptimize, AFolderThatCannotBeMadeIsAnIoError) {
 TEST_F(CliOptimize, ShowRefusesWhatIsNoRun) {
   const Outcome outcome = run({"show", "."});
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("is not the folder of a run"));
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("is not the folder of a run"), HasSubstr("of a study")));
+  EXPECT_THAT(run({"show", "nothere"}).err, HasSubstr("nothere: there is no such folder"));
+}
+
+TEST_F(CliOptimize, ABudgetOfNothingIsRefused) {
+  const Outcome outcome = run({"optimize", "sphere", "--budget", "0"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--budget is '0'; it must be an integer from 1"));
+}
+
+TEST_F(CliOptimize, ACompleteRunWithoutItsJournalIsWarnedOf) {
+  ASSERT_EQ(run(sphere_).exit_code, 0);
+  std::filesystem::remove(folder_.path() / "results/sphere-ga-seed1/journal");
+  const Outcome outcome = run(sphere_);
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("warning: the journal holds 0 of the "));
 }
 
 // Four points and few cases, so that it is quick; the limit is one that a good deal of designs

@@ -88,7 +88,7 @@ TEST_F(ChangedInputs, AByteOfTheProblem) {
 TEST_F(ChangedInputs, AByteOfTheRobot) {
   expect_refused(
       {"--optimizer", "ga"}, [&] { replace_in(folder_ / "arm.urdf", "229.6", "229.7"); },
-      HasSubstr("inputs.arm.urdf: recorded \""));
+      HasSubstr("the input 'arm.urdf' has changed since the run began (SHA-256: recorded \""));
 }
 
 TEST_F(ChangedInputs, AByteOfTheDesign) {
@@ -110,14 +110,14 @@ TEST_F(ChangedInputs, AByteOfALibrary) {
   expect_refused(
       {"--optimizer", "./good.so"},
       [&] { replace_in(folder_ / "good.so", "Jeeves 1961", "Jeeves 1962"); },
-      AllOf(HasSubstr("good.so: recorded \""), HasSubstr("now \"")));
+      AllOf(HasSubstr("good.so' has changed since the run began"), HasSubstr("now \"")));
 }
 
 TEST_F(ChangedInputs, AByteOfAProgram) {
   expect_refused(
       {"--optimizer", "exec:python3 good.py"},
       [&] { replace_in(folder_ / "good.py", "1013904223", "1013904224"); },
-      AllOf(HasSubstr("good.py: recorded \""), HasSubstr("now \"")));
+      AllOf(HasSubstr("good.py' has changed since the run began"), HasSubstr("now \"")));
 }
 
 TEST_F(ChangedInputs, SeedOptionBudgetAndOptimizer) {

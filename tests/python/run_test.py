@@ -136,7 +136,7 @@ class RunTest(FolderTest):
         done = armwright.optimize("sphere", Slow, budget=30, set=SMALL, out="slow")
         self.assertEqual(len(done.history), 30)
         Slow.pause_s = 0.03
-        with self.expect_error(armwright.UsageError, "inputs.class", "recorded", "Slow"):
+        with self.expect_error(armwright.UsageError, "the input 'class", "recorded", "Slow"):
             armwright.optimize("sphere", Slow, budget=30, set=SMALL, out="slow")
 
     def test_objects_are_copied_and_their_attributes_recorded(self):
@@ -145,7 +145,7 @@ class RunTest(FolderTest):
         first = armwright.optimize("sphere", mine, budget=20, set=SMALL, out="object")
         self.assertFalse(hasattr(mine, "settings"))
         mine.note = np.array([1.0, 3.0])
-        with self.expect_error(armwright.UsageError, "inputs.attributes of the Steps"):
+        with self.expect_error(armwright.UsageError, "the input 'attributes of the Steps' has changed"):
             armwright.optimize("sphere", mine, budget=20, set=SMALL, out="object")
         mine.note = np.random.default_rng(1)
         with self.expect_error(armwright.UsageError, "an attribute of the Steps is a Generator"):

@@ -34,8 +34,8 @@ constexpr const char* kDoctorExamples = R"(Examples:
   armwright doctor results/q1 --json | jq .damaged
 
 The command only reads, also while a run is writing; --repair does not change the original. The exit code is 0 if
-everything is intact (or there), 3 if something that optimizing needs is missing, 4 if a stored file is damaged, and 5 if
---repair finds a process that writes the folder. docs/doctor.md explains the checks.)";
+everything is intact, or if nothing is missing on the machine, 3 if something that optimizing needs is missing, 4 if a
+stored file is damaged, and 5 if --repair finds a process that writes the folder. docs/doctor.md explains the checks.)";
 
 struct DoctorOptions {
   std::string folder;
@@ -170,7 +170,7 @@ void add_doctor(CLI::App& app, Session& session) {
                    "The folder of the copy that --repair makes (default: FOLDER.repaired)")
       ->type_name("FOLDER")
       ->group("Output");
-  command->add_flag("--json", options->json, "Print it as JSON")->group("Output");
+  command->add_flag("--json", options->json, "Print the findings as JSON")->group("Output");
   command->callback([options, &session] {
     session.action = [options, &session] { return run_doctor(*options, session); };
   });

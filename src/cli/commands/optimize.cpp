@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdlib>
 #include <limits>
 #include <utility>
 
@@ -42,7 +43,7 @@ Terms: a design is the gains and effort limits of all joints. A case is one path
 counts simulated training cases (one design on one case is 1). The schedule chooses the training cases: fresh:K takes
 the next K cases of the training set for every generation, fixed:K always takes the first K, and coevolution:K breeds
 K cases that are hard for the designs. Racing spends fewer cases on bad designs (docs/racing.md): halving:4:2 gives all
-designs of a generation 4 cases, the better half of them twice as many, and so on; abandonment:1:4 checks every 4 cases
+designs of a generation 4 cases, the better half of the designs gets 8, and so on; abandonment:1:4 checks every 4 cases
 and abandons a design that is certain to be worse than 1 times the best. At the end, the best designs are judged on the
 validation set and the winner on the test set; the budget does not count these cases. The seed determines the
 optimizer's random numbers; the same seed gives the same result on any number of threads.)";
@@ -88,15 +89,18 @@ std::vector<std::string> OptimizeOptions::get_overrides() const {
 
 RunPlan make_plan(const OptimizeOptions& options) {
   RunPlan plan;
-  plan.seed = static_cast<std::uint64_t>(parse_count("--seed (ARMWRIGHT_SEED)", options.seed, 0,
-                                                     std::numeric_limits<std::int64_t>::max()));
+  const char* const variable = std::getenv("ARMWRIGHT_SEED");
+  const bool is_from_variable = variable != nullptr && options.seed == variable;
+  plan.seed = static_cast<std::uint64_t>(
+      parse_count(is_from_variable ? "the environment variable ARMWRIGHT_SEED" : "--seed",
+                  options.seed, 0, std::numeric_limits<std::int64_t>::max()));
   plan.problem = load_problem(options.get_problem(), options.get_overrides());
   plan.optimizer =
       load_optimizer(options.optimizer.empty() ? plan.problem.optimizer : options.optimizer);
   plan.options = Options::parse(plan.optimizer.name, plan.optimizer.options, options.opt);
   plan.budget = options.budget.empty()
                     ? plan.problem.budget
-                    : parse_count("--budget", options.budget, 0, 1'000'000'000'000);
+                    : parse_count("--budget", options.budget, 1, 1'000'000'000'000);
   plan.schedule = options.schedule.empty() ? choose_schedule(plan.problem, plan.optimizer)
                                            : parse_schedule(options.schedule);
   plan.racing = options.racing.empty() ? plan.problem.racing : parse_racing(options.racing);

@@ -57,7 +57,7 @@ UnfinishedRun read_unfinished(const std::filesystem::path& folder) {
     run.budget = whole_from_json<std::int64_t>(manifest.at("configuration").at("run").at("budget"));
   } catch (const json::exception& error) {
     throw Error(ErrorKind::bad_data, fmt::format("{}: is not a manifest that armwright wrote ({})",
-                                                 file.string(), sanitize(error.what())));
+                                                 file.string(), describe_json_error(error.what())));
   }
   if (std::filesystem::exists(folder / "journal")) {
     const JournalContent journal = read_journal(folder / "journal");
@@ -97,9 +97,16 @@ int run_show(const ShowOptions& options, const Session& session) {
   if (is_study_folder(folder)) {
     return show_study(options, session);
   }
-  const bool a_run = std::filesystem::exists(folder / "manifest.json");
-  if (!a_run || std::filesystem::exists(folder / "result.json")) {
-    const RunResult result = load_result(folder);  // throws if it is not the folder of a run
+  if (!std::filesystem::exists(folder / "manifest.json")) {
+    const bool is_there = std::filesystem::exists(folder);
+    throw Error(ErrorKind::usage,
+                sanitize(folder.string()) +
+                    (is_there ? ": is not the folder of a run (it has no manifest.json) or of a "
+                                "study (it has no study.toml)"
+                              : ": there is no such folder"));
+  }
+  if (std::filesystem::exists(folder / "result.json")) {
+    const RunResult result = load_result(folder);
     if (options.json) {
       write_stdout(to_json(result));
     } else {

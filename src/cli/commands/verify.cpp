@@ -46,8 +46,8 @@ differ from the nominal one, with another plant for each case. It uses all shipp
 weaken motors or change gains. With --perturbations, these are combined with all engines and substeps. A list that is
 not given keeps its default. Each setting is compared with the design's own setting, the problem as it is:
 
-  holds   no more cases fail, and the median error is at most 1.1 times its own
-  worse   no more cases fail, but the median error is larger than that
+  holds   not more cases fail than in its own setting, and the median error is at most 1.1 times its own
+  worse   not more cases fail than in its own setting, but the median error is larger than that
   fails   more cases fail, or the median error is more than 10 times its own or does not exist
 
 A failure is a case with an error above 100 mm or without a number. For the first failure of each setting, the command

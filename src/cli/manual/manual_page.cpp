@@ -10,7 +10,7 @@
 namespace armwright {
 namespace {
 
-// An entry of a list: a name, at least two blanks, and a text: "holds   no more cases fail".
+// An entry of a list: a name, at least two blanks, and a text: "holds   not more cases fail".
 struct ListEntry {
   std::string name;
   std::string text;
@@ -111,7 +111,7 @@ Synopsis make_synopsis(const CommandDefinition& command) {
   const auto add = [&line](const std::string& name, bool is_required, bool repeats) {
     line.push_back({Emphasis::none, is_required ? " " : " ["});
     line.push_back(placeholder(name));
-    line.push_back({Emphasis::none, std::string(repeats ? " ..." : "") + (is_required ? "" : "]")});
+    line.push_back({Emphasis::none, std::string(repeats && !name.ends_with("...") ? " ..." : "") + (is_required ? "" : "]")});
   };
   // The synopsis shows required flags.
   for (const ArgumentDefinition& flag : command.flags) {

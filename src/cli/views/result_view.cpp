@@ -204,11 +204,17 @@ std::string format_design(const DesignFile& design, const Style& style) {
 
 std::string describe_no_winner(const RunResult& result) {
   if (result.counts.evaluations == 0) {
-    return "Nothing was evaluated, so there is no winner.";
+    return "The run ended before its first evaluation, so there is no winner. Either the budget "
+           "does "
+           "not pay for one design on all cases of the schedule, or the optimizer asked for none.";
   }
   if (result.counts.feasible == 0 && !result.first_failure.empty()) {
+    const bool is_too_far = result.first_failure.find("out of reach") != std::string::npos;
     return "No design worked, so there is no winner. The first failed with: " +
-           sanitize(result.first_failure);
+           sanitize(result.first_failure) +
+           (is_too_far ? ". Make workspace.radius_m smaller, or move workspace.centre_m towards "
+                         "the arm"
+                       : "");
   }
   if (result.counts.feasible > 0) {
     return "None of the designs that were good in training has a number on the validation set, so "

@@ -103,8 +103,12 @@ std::string describe_head(const StoreSurvey& survey, const Style& style) {
   const std::string folder = style.bold(show(survey.folder));
   if (survey.kind == StoreSurvey::Kind::run) {
     const RunSurvey& run = survey.runs.front();
-    return fmt::format("{}: a run, {}{}\n", folder, to_string(run.state),
-                       describe_writer(survey.writer));
+    const bool has_lost_result =
+        run.state == RunSurvey::State::begun && run.journal && run.journal->end;
+    return fmt::format(
+        "{}: a run, {}{}\n", folder,
+        has_lost_result ? "ended, without a readable result.json" : to_string(run.state),
+        describe_writer(survey.writer));
   }
   const Tally tally = count_runs(survey);
   std::string text =

@@ -107,7 +107,8 @@ std::string describe_problem(const StudyPlan& plan, const ProblemResult& problem
   }
   std::string text =
       style.bold(problem.label) +
-      fmt::format("  {} on the test set, {} runs each\n", problem.quantity.name, plan.replicates) +
+      fmt::format("  {} on the test set, {} each\n", problem.quantity.name,
+                  format_count(static_cast<unsigned long long>(plan.replicates), "run")) +
       table.format(style, 2);
   if (problem.friedman) {
     text += fmt::format("  Friedman test (Iman-Davenport): F = {:.3g}, p {}\n", problem.friedman->f,
@@ -180,9 +181,12 @@ std::string describe_plan(const StudyPlan& plan) {
   for (const StudyProblem& problem : plan.problems) {
     const std::string settings =
         problem.settings.empty() ? "" : " (" + join(problem.settings, ", ") + ")";
-    table.add_row({"problem", fmt::format("{}: schedule {}, {} test cases{}", problem.label,
-                                          to_text(problem.schedule), problem.loaded.sets.test_cases,
-                                          settings)});
+    table.add_row(
+        {"problem",
+         fmt::format("{}: schedule {}, {}{}", problem.label, to_text(problem.schedule),
+                     format_count(static_cast<unsigned long long>(problem.loaded.sets.test_cases),
+                                  "test case"),
+                     settings)});
   }
   table.add_row({"optimizers", list_labels(plan, false)});
   for (const StudyOptimizer& optimizer : plan.optimizers) {
@@ -209,8 +213,11 @@ std::string describe_plan(const StudyPlan& plan) {
   } else if (!plan.baselines) {
     table.add_row({"baselines", "left out on request"});
   }
-  table.add_row({"each", fmt::format("{} replicates, budget {} simulated cases", plan.replicates,
-                                     plan.budget)});
+  table.add_row(
+      {"each",
+       fmt::format("{}, budget {}",
+                   format_count(static_cast<unsigned long long>(plan.replicates), "replicate"),
+                   format_count(static_cast<unsigned long long>(plan.budget), "simulated case"))});
   table.add_row({"paired", fmt::format("start and training cases of a replicate are the same for "
                                        "all optimizers; study seed {}",
                                        plan.seed)});

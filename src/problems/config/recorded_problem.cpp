@@ -64,7 +64,7 @@ LoadedProblem load_recorded_problem(const std::string& resolved_json, const std:
   } catch (const nlohmann::json::exception& error) {
     throw Error(ErrorKind::bad_data,
                 fmt::format("the recorded configuration of {} is not what armwright wrote ({})",
-                            sanitize(name), sanitize(error.what())));
+                            sanitize(name), describe_json_error(error.what())));
   }
   const auto path = beside / (name + ".toml");
   LoadedProblem loaded = read_problem(ConfigTable::parse(problem_settings(), toml, path.string()),

@@ -109,7 +109,9 @@ std::vector<DesignParameter> read_parameters(const ConfigTable& table,
     }
     for (auto name = names.begin(); name != names.end(); ++name) {
       if (std::find(valid.begin(), valid.end(), *name) == valid.end()) {
-        where.refuse(optimize, describe_unknown("design parameter", *name, valid));
+        std::vector<std::string> known = {"gains"};
+        known.insert(known.end(), valid.begin(), valid.end());
+        where.refuse(optimize, describe_unknown("design parameter", *name, known));
       }
       if (std::find(names.begin(), name, *name) != name) {
         where.refuse(optimize, fmt::format("'{}' stands there twice; name it once", *name));

@@ -138,8 +138,9 @@ void read_manifest(RecordedRun& run) {
     run.configuration.at("problem").at("kind").get<std::string>();
     run.configuration.at("inputs").get<std::map<std::string, std::string>>();
   } catch (const json::exception& error) {
-    throw Error(ErrorKind::bad_data, fmt::format("{}: is not a manifest that armwright wrote ({})",
-                                                 sanitize(file.string()), error.what()));
+    throw Error(ErrorKind::bad_data,
+                fmt::format("{}: is not a manifest that armwright wrote ({})",
+                            sanitize(file.string()), describe_json_error(error.what())));
   }
 }
 

@@ -25,11 +25,10 @@ std::optional<std::string> make_page_data(const std::filesystem::path& folder,
   if (std::filesystem::exists(folder / "manifest.json")) {
     return make_run_page(folder, options, stop, observer);
   }
-  throw Error(
-      ErrorKind::usage,
-      fmt::format("{}: is the folder of neither a run, a comparison nor a reproduction; name "
-                  "one that optimize, compare or reproduce --out has made",
-                  folder.string()));
+  throw Error(ErrorKind::usage,
+              fmt::format("{}: is the folder of neither a run, a study nor a reproduction; name "
+                          "one that optimize, compare or reproduce --out has made",
+                          folder.string()));
 }
 
 std::string get_page_title(std::string_view data) {

@@ -68,6 +68,12 @@ void add_notes(const RecordedRun& run, const History& history, const PageOptions
     notes.push_back(
         fmt::format("The optimizer failed before its end: {}.", sanitize(run.result->failure)));
   }
+  if (run.result && run.journal.training.size() < run.result->counts.evaluations) {
+    notes.push_back(fmt::format(
+        "The journal holds {} of the {} evaluations of result.json. 'armwright doctor' on the "
+        "folder says more.",
+        run.journal.training.size(), run.result->counts.evaluations));
+  }
   if (run.journal.torn_bytes > 0) {
     notes.push_back("The journal ends in the middle of a record, which was left out.");
   }

@@ -217,7 +217,7 @@ void compare_file(const std::filesystem::path& recorded, const std::filesystem::
     } catch (const json::exception& error) {
       throw Error(ErrorKind::bad_data,
                   fmt::format("{}: is not what armwright wrote ({})", (recorded / file).string(),
-                              sanitize(error.what())));
+                              describe_json_error(error.what())));
     }
   }
   if (!comparison.difference) {
@@ -235,7 +235,7 @@ json read_manifest(const std::filesystem::path& folder) {
     return manifest;
   } catch (const json::exception& error) {
     throw Error(ErrorKind::bad_data, fmt::format("{}: is not a manifest that armwright wrote ({})",
-                                                 file.string(), sanitize(error.what())));
+                                                 file.string(), describe_json_error(error.what())));
   }
 }
 

@@ -152,7 +152,7 @@ std::vector<std::string> describe_problem_change(const std::filesystem::path& fo
         fmt::format("{}: cannot be read as a recorded problem (damaged, or edited): {}. Check "
                     "the study with 'armwright doctor {}', or choose another folder with "
                     "--out or --new",
-                    file.string(), sanitize(error.what()), folder.string()));
+                    file.string(), describe_json_error(error.what()), folder.string()));
   }
 }
 

@@ -111,7 +111,10 @@ ContractFinding check_resume(const OptimizerRow& row, const Options& options) {
     return make_broken("stopped after every 40 evaluations, a run of 150 has not ended");
   }
   if (!whole->failure.empty() || !resumed->failure.empty()) {
-    return make_broken(whole->failure + resumed->failure);
+    const bool is_same = whole->failure == resumed->failure || resumed->failure.empty();
+    const bool is_one = whole->failure.empty() || is_same;
+    return make_broken(is_one ? (whole->failure.empty() ? resumed->failure : whole->failure)
+                              : whole->failure + "; resumed: " + resumed->failure);
   }
   if (to_json(*whole) != to_json(*resumed)) {
     return make_broken("a run that was stopped and resumed ends with another result");

@@ -145,9 +145,9 @@ JournalContent scan_journal(FileDescriptor descriptor, const std::filesystem::pa
   JournalWindow window(descriptor.get(), file);
   const auto begin_bytes = std::min<std::uint64_t>(window.size(), kMagic.size());
   if (window.view(0, begin_bytes) != kMagic.substr(0, begin_bytes)) {
-    throw Error(ErrorKind::bad_data, fmt::format("{}: is not an armwright journal (one begins with "
-                                                 "the bytes {}); it was left untouched",
-                                                 file.string(), kMagic));
+    throw Error(ErrorKind::bad_data,
+                fmt::format("{}: is not an armwright journal (one begins with the bytes {}). {}",
+                            file.string(), kMagic, advise_on_damage(file)));
   }
   JournalContent content;
   if (begin_bytes < kMagic.size()) {
@@ -161,25 +161,25 @@ JournalContent scan_journal(FileDescriptor descriptor, const std::filesystem::pa
     if (!attempt.record) {
       if (const auto next = find_intact_record(window, offset)) {
         throw Error(ErrorKind::bad_data,
-                    fmt::format("{}: record {} (from 0) at byte {} is damaged ({}), yet an intact "
-                                "one follows at byte {}: that is not what a kill or a power cut "
-                                "leaves. {}",
-                                file.string(), number, offset, attempt.fault, *next,
+                    fmt::format("{}: record {} at byte {} is damaged ({}), yet an intact "
+                                "one follows at byte {}. A kill or a power cut damages only the "
+                                "end, so the disk or another program changed the file. {}",
+                                file.string(), number + 1, offset, attempt.fault, *next,
                                 advise_on_damage(file)));
       }
       if (window.has_given_up()) {
-        throw Error(ErrorKind::bad_data,
-                    fmt::format("{}: record {} (from 0) at byte {} is damaged ({}), and {}. {}",
-                                file.string(), number, offset, attempt.fault, kGivenUp,
-                                advise_on_damage(file)));
+        throw Error(
+            ErrorKind::bad_data,
+            fmt::format("{}: record {} at byte {} is damaged ({}), and {}. {}", file.string(),
+                        number + 1, offset, attempt.fault, kGivenUp, advise_on_damage(file)));
       }
       break;
     }
     if (content.ended) {
       throw Error(ErrorKind::bad_data,
-                  fmt::format("{}: record {} (from 0) at byte {} follows the record that ends the "
+                  fmt::format("{}: record {} at byte {} follows the record that ends the "
                               "run. {}",
-                              file.string(), number, offset, advise_on_damage(file)));
+                              file.string(), number + 1, offset, advise_on_damage(file)));
     }
     if (auto* const end = std::get_if<EndRecord>(&*attempt.record)) {
       content.ended = true;

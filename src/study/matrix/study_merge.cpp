@@ -35,7 +35,7 @@ std::string find_other_settings(const StudyPlan& plan, const Cell& cell,
     return differences.empty() ? "" : differences.front();
   } catch (const json::exception& error) {
     throw Error(ErrorKind::bad_data, fmt::format("{}: is not a manifest that armwright wrote ({})",
-                                                 file.string(), sanitize(error.what())));
+                                                 file.string(), describe_json_error(error.what())));
   }
 }
 

@@ -8,6 +8,7 @@
 #include "base/file.hpp"
 #include "base/text.hpp"
 #include "process/output_log.hpp"
+#include "study/journal/journal_format.hpp"
 #include "study/run/run_evaluator.hpp"
 #include "study/run/run_folder.hpp"
 #include "study/run/winner_selection.hpp"
@@ -69,6 +70,19 @@ void describe_start(const RunFolder& folder, const JournalContent& journal, RunO
   }
 }
 
+// Warns if the journal of a complete run is missing or has no records. Reads only its size.
+void warn_of_lost_journal(const RunFolder& folder, const RunResult& result, RunObserver& observer) {
+  std::error_code error;
+  const auto bytes = std::filesystem::file_size(folder.journal(), error);
+  if (result.counts.evaluations > 0 && (error || bytes <= journal_format::kMagic.size())) {
+    const std::vector<std::string> check = {"armwright", "doctor", folder.path().string()};
+    observer.on_message(
+        fmt::format("warning: the journal holds 0 of the {} evaluations of "
+                    "result.json; '{}' says more",
+                    result.counts.evaluations, quote_command(check)));
+  }
+}
+
 void warn_of_fewer_threads(std::size_t granted, std::size_t wanted, RunObserver& observer) {
   if (granted < wanted) {
     observer.on_message(
@@ -91,11 +105,13 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   optimizer->check_problem(plan.problem.problem->description());
   const RunFolder folder(request.folder, plan, request.command_line);
   if (are_derived_files_there(folder.path(), request.derived)) {
+    RunResult result = load_result(folder.path());
     if (request.derived == DerivedFiles::all) {  // a comparison's user did not ask for this cell
       observer.on_message(fmt::format("{}: this run is complete; use --new for another one",
                                       folder.path().string()));
+      warn_of_lost_journal(folder, result, observer);
     }
-    return load_result(folder.path());
+    return result;
   }
 
   JournalContent recorded;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -71,7 +72,7 @@ json read_manifest(const std::filesystem::path& file) {
         ErrorKind::bad_data,
         fmt::format("{}: is not a manifest that armwright wrote ({}); choose another folder "
                     "with --out or --new",
-                    file.string(), sanitize(error.what())));
+                    file.string(), describe_json_error(error.what())));
   } catch (const std::runtime_error& error) {
     if (dynamic_cast<const Error*>(&error) != nullptr) {
       throw;
@@ -100,6 +101,71 @@ std::string explain_simd(const json& recorded, const json& now) {
       sanitize(name));
 }
 
+// Returns the value at a JSON pointer, or null if there is none.
+json find(const json& in, const char* pointer) {
+  const json::json_pointer place(pointer);
+  return in.contains(place) ? in[place] : json();
+}
+
+// Returns one line per input (a file, or a class in Python) that both configurations have and that
+// has changed. Removes these inputs from both.
+std::vector<std::string> take_changed_inputs(json& recorded, json& now) {
+  std::vector<std::string> changes;
+  const json before = find(recorded, "/inputs");
+  for (const auto& [name, hash] : before.items()) {
+    json& current = now["inputs"];
+    if (before.is_object() && hash.is_string() && current.contains(name) && current[name] != hash) {
+      changes.push_back(fmt::format(
+          "the input '{}' has changed since the run began (SHA-256: recorded {}, now {})",
+          sanitize(name), sanitize(hash.dump().substr(0, 66)), current[name].dump()));
+      current.erase(name);
+      recorded["inputs"].erase(name);
+    }
+  }
+  return changes;
+}
+
+// Removes what differs only because something else does: the problem's budget, if the run's budget
+// differs, and the SIMD level, if one of the two engines has none.
+void remove_consequences(json& recorded, json& now) {
+  const auto differs = [&](const char* pointer) {
+    return find(recorded, pointer) != find(now, pointer);
+  };
+  const auto remove = [&](const char* table, const char* key) {
+    for (json* one : {&recorded, &now}) {
+      if (find(*one, table).is_object()) {
+        (*one)[json::json_pointer(table)].erase(key);
+      }
+    }
+  };
+  if (differs("/run/budget")) {
+    remove("/problem/run", "budget");
+  }
+  const bool one_has_none = find(recorded, "/problem/physics/simd").is_null() !=
+                            find(now, "/problem/physics/simd").is_null();
+  if (one_has_none && differs("/problem/physics/engine")) {
+    remove("/problem/physics", "simd");
+  }
+}
+
+// Returns one line per difference of the configurations. Empty if they are the same.
+std::vector<std::string> list_changes(json recorded, json now) {
+  std::vector<std::string> changes = take_changed_inputs(recorded, now);
+  remove_consequences(recorded, now);
+  std::ranges::copy(describe_differences(recorded.dump(), now.dump()), std::back_inserter(changes));
+  return changes;
+}
+
+// Returns a line with the command that began the run, or an empty text if none is recorded.
+std::string describe_command(const json& manifest) {
+  try {
+    const auto words = manifest.value("command_line", std::vector<std::string>());
+    return words.empty() ? "" : "\nThe run was begun with:\n  " + sanitize(quote_command(words));
+  } catch (const json::exception&) {
+    return "";  // a damaged one does not prevent the list of differences
+  }
+}
+
 }  // namespace
 
 RunFolder::RunFolder(const std::filesystem::path& path, const RunPlan& plan,
@@ -111,14 +177,16 @@ RunFolder::RunFolder(const std::filesystem::path& path, const RunPlan& plan,
     return;
   }
   const json manifest = read_manifest(file);
-  const auto differences = describe_differences(manifest["configuration"].dump(), to_json(plan));
-  if (!differences.empty()) {
+  const json& recorded = manifest["configuration"];
+  const json now = json::parse(to_json(plan));
+  const std::vector<std::string> changes = list_changes(recorded, now);
+  if (!changes.empty()) {
     throw Error(
         ErrorKind::usage,
-        fmt::format("{} holds a run with another configuration:\n  {}\nResume it with the recorded "
-                    "configuration, or use --new or --out for another folder{}",
-                    path.string(), join(differences, "\n  "),
-                    explain_simd(manifest["configuration"], json::parse(to_json(plan)))));
+        fmt::format("{} holds a run with another configuration:\n  {}{}\nResume it with the "
+                    "recorded configuration, or use --new or --out for another folder{}",
+                    path.string(), join(changes, "\n  "), describe_command(manifest),
+                    explain_simd(recorded, now)));
   }
   warnings_ =
       describe_build_changes(manifest["build"].get<std::map<std::string, std::string>>(), "run");

@@ -315,9 +315,9 @@ RunResult parse_result(const std::string& text, const std::filesystem::path& fil
   } catch (const std::exception& error) {
     throw Error(
         ErrorKind::bad_data,
-        fmt::format("{}: is not a result that armwright wrote ({}); it can be rebuilt from the "
-                    "journal: remove it and start the run again",
-                    file.string(), sanitize(error.what())));
+        fmt::format("{}: is not a result that armwright wrote ({}). To rebuild it from an "
+                    "intact journal, remove it and give the command that began the run again",
+                    file.string(), describe_json_error(error.what())));
   }
 }
 

@@ -11,6 +11,7 @@
 #include "base/config.hpp"
 #include "base/error.hpp"
 #include "base/file.hpp"
+#include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "problems/config/design_file.hpp"
 
@@ -124,7 +125,7 @@ std::string find_json_fault(const std::filesystem::path& file) {
     }
     [[maybe_unused]] const auto parsed = nlohmann::json::parse(text);  // throws with the position
   } catch (const nlohmann::json::exception& error) {
-    return fmt::format("it is not JSON ({})", sanitize(error.what()));
+    return fmt::format("it is not JSON ({})", describe_json_error(error.what()));
   }
   return "it is not JSON";
 }

@@ -98,7 +98,8 @@ class RunSurveyor {
       }
       survey_.command_line = manifest.value("command_line", std::vector<std::string>());
     } catch (const json::exception& error) {
-      return fmt::format("it is not one that armwright wrote ({})", sanitize(error.what()));
+      return fmt::format("it is not one that armwright wrote ({})",
+                         describe_json_error(error.what()));
     }
     return "";
   }
@@ -113,7 +114,8 @@ class RunSurveyor {
       return "";
     });
     if (!fault.empty()) {
-      add_damaged_file("result.json", fault);
+      // The advice of parse_result() is for a user who has not run this check.
+      add_damaged_file("result.json", fault.substr(0, fault.find(". To rebuild it")));
       return;
     }
     const RunResult& result = result_->result();
@@ -162,9 +164,9 @@ class RunSurveyor {
       }
       const DamagedStretch& stretch = journal.damage[i];
       damage(
-          fmt::format("byte {}, {} bytes: record {} (from 0) is damaged: {}; {} intact before "
+          fmt::format("byte {}, {} bytes: record {} is damaged: {}; {} intact before "
                       "it, {} behind it",
-                      stretch.offset, stretch.bytes, stretch.records_before, stretch.fault,
+                      stretch.offset, stretch.bytes, stretch.records_before + 1, stretch.fault,
                       stretch.records_before, stretch.records_behind));
     }
     for (const std::uint64_t index : journal.contradictory) {
@@ -208,9 +210,11 @@ class RunSurveyor {
   // If they differ and the journal is complete, the journal is right.
   void compare_result() {
     if (!result_) {
-      if (survey_.journal && survey_.journal->end) {
+      if (survey_.journal && survey_.journal->end && !survey_.journal->is_damaged() &&
+          !is_there(folder_ / "result.json")) {
         add(Finding::Kind::note, "result.json",
-            "it is not there, though the run has ended; the same command makes it");
+            "it is missing, though the run has ended; the command that began the run makes it "
+            "again from the journal");
       }
       return;
     }

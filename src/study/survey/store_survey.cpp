@@ -188,11 +188,13 @@ class StoreSurveyor {
       check("result.json", find_json_fault);
       if (!is_there(survey_.folder / "verdict.txt")) {
         survey_.findings.push_back(
-            {Finding::Kind::note, "verdict.txt", "it is not there; the same command makes it"});
+            {Finding::Kind::note, "verdict.txt",
+             "it is missing; the command that began the study makes it again"});
       }
     } else if (survey_.planned_cells > 0 && survey_.finished_cells == survey_.planned_cells) {
       survey_.findings.push_back(
-          {Finding::Kind::note, "result.json", "it is not there; the same command makes it"});
+          {Finding::Kind::note, "result.json",
+           "it is missing; the command that began the study makes it again"});
     }
     std::ranges::sort(survey_.findings, {}, &Finding::file);
   }

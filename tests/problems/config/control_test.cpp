@@ -150,7 +150,7 @@ TEST(Control, GainsStandForAllOfAController) {
       usage_error_of([] {
         load_with_gains({"control.controller=cascade", R"(variables.optimize=["p"])"});
       }),
-      HasSubstr("unknown design parameter 'p'; did you mean 'kp'? Valid: kp, kv, ki, share, "
+      HasSubstr("unknown design parameter 'p'; did you mean 'kp'? Valid: gains, kp, kv, ki, share, "
                 "effort_min, effort_max"));
   EXPECT_THAT(usage_error_of([] { load_with_gains({R"(variables.optimize=["gains", "i"])"}); }),
               HasSubstr("'i' stands there twice"));

@@ -284,7 +284,7 @@ TEST(Journal, EveryFlippedByteIsNoticed) {
       const std::size_t number = at < ends[1] ? 0 : 1;
       EXPECT_THAT(
           error.what(),
-          AllOf(StartsWith(file.string() + ": record " + std::to_string(number) + " (from 0)"),
+          AllOf(StartsWith(file.string() + ": record " + std::to_string(number + 1) + " at byte"),
                 HasSubstr("at byte " + std::to_string(ends[number]) + " is damaged"),
                 HasSubstr("intact one follows at byte " + std::to_string(ends[number + 1])),
                 HasSubstr("The journal was left untouched")));
@@ -340,7 +340,7 @@ TEST(Journal, ThatIsMadeToBeReadForEverIsRefused) {
   const Error error = catch_error([&] { read_journal(file); });
   EXPECT_EQ(error.kind(), ErrorKind::bad_data);
   EXPECT_THAT(error.what(),
-              AllOf(StartsWith(file.string() + ": record 1 (from 0)"),
+              AllOf(StartsWith(file.string() + ": record 2 at byte"),
                     HasSubstr("the search for intact ones was given up"), HasSubstr("--repair")));
   const JournalSurvey survey = survey_journal(file, {});
   EXPECT_EQ(survey.records, 1U);
@@ -423,7 +423,7 @@ TEST(Journal, NothingFollowsTheEnd) {
   write_bytes(file, read_bytes(file) + alone);
   const Error error = catch_error([&] { read_journal(file); });
   EXPECT_EQ(error.kind(), ErrorKind::bad_data);
-  EXPECT_THAT(error.what(), HasSubstr("record 1 (from 0) at byte 35 follows the record that ends"));
+  EXPECT_THAT(error.what(), HasSubstr("record 2 at byte 35 follows the record that ends"));
 }
 
 TEST(Journal, ARecordBeyondTheLimitIsRefusedAndHarmsNothing) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "base/expect_error.hpp"
 #include "problems/lanes_engine.hpp"
@@ -141,6 +142,32 @@ TEST_F(RunTest, AnotherConfigurationIsRefusedWithTheDifference) {
       AllOf(HasSubstr("holds a run with another configuration"),
             HasSubstr("run.budget: recorded 40, now 48"),
             HasSubstr("problem.task.speed_m_per_s: recorded 1.5, now 2"), HasSubstr("--new")));
+}
+
+// A difference that follows from another one is not listed.
+TEST_F(RunTest, ARefusalNamesTheCommandAndEachDifferenceOnce) {
+  const auto make_plan = [](const std::string& engine, const char* budget) {
+    RunPlan plan = make_small_plan();
+    plan.budget = std::stoll(budget);
+    plan.problem =
+        load_problem("q1-complex",
+                     std::vector<std::string>{"workspace.points=4", "sets.validation_cases=3",
+                                              "sets.test_cases=4", "physics.engine=" + engine,
+                                              "run.budget=" + std::string(budget)},
+                     engines_with_lanes());
+    return plan;
+  };
+  run(make_plan("lanes", "40"), "a");
+  const auto manifest = temporary_ / "a" / "manifest.json";
+  nlohmann::json content = nlohmann::json::parse(read_file(manifest, 1 << 24));
+  content["command_line"] = {"armwright", "optimize", "my problem"};
+  std::ofstream(manifest, std::ios::binary) << content;
+  EXPECT_THAT(
+      usage_error_of([&] { run(make_plan("ode", "48"), "a"); }),
+      AllOf(HasSubstr("problem.physics.engine: recorded \"lanes\", now \"ode\""),
+            HasSubstr("run.budget: recorded 40, now 48"),
+            HasSubstr("The run was begun with:\n  armwright optimize 'my problem'\n"),
+            testing::Not(HasSubstr("simd")), testing::Not(HasSubstr("problem.run.budget"))));
 }
 
 // Results differ in the last bits between SIMD levels, so a run keeps the level it began with.

@@ -144,6 +144,21 @@ TEST_F(StoreRepairTest, AResultThatIsNotTheJournalsIsNamed) {
                     "on the validation set are not in the journal"));
 }
 
+// A file that is there and cannot be read is not called missing.
+TEST_F(StoreRepairTest, AnUnreadableResultIsNamedOnce) {
+  ASSERT_TRUE(run(make_small_plan(), "hurt"));
+  const auto result = temporary_ / "hurt" / "result.json";
+  std::ofstream(result) << "{}";
+  const auto unreadable = survey_store(temporary_ / "hurt").runs[0].findings;
+  ASSERT_EQ(unreadable.size(), 1u);
+  EXPECT_TRUE(unreadable[0].what.ends_with("(key 'format' not found)")) << unreadable[0].what;
+  std::filesystem::remove(result);
+  const auto missing = survey_store(temporary_ / "hurt").runs[0].findings;
+  ASSERT_EQ(missing.size(), 1u);
+  EXPECT_NE(missing[0].what.find("the command that began the run makes it again"),
+            std::string::npos);
+}
+
 TEST_F(StoreRepairTest, AJournalThatLostItsEndIsGoneOnWith) {
   const RunPlan plan = make_small_plan();
   ASSERT_TRUE(run(plan, "whole"));
