@@ -111,7 +111,8 @@ Synopsis make_synopsis(const CommandDefinition& command) {
   const auto add = [&line](const std::string& name, bool is_required, bool repeats) {
     line.push_back({Emphasis::none, is_required ? " " : " ["});
     line.push_back(placeholder(name));
-    line.push_back({Emphasis::none, std::string(repeats && !name.ends_with("...") ? " ..." : "") + (is_required ? "" : "]")});
+    line.push_back({Emphasis::none, std::string(repeats && !name.ends_with("...") ? " ..." : "") +
+                                        (is_required ? "" : "]")});
   };
   // The synopsis shows required flags.
   for (const ArgumentDefinition& flag : command.flags) {
