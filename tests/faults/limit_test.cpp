@@ -38,7 +38,7 @@ TEST_F(Limits, HugeNumbersAreRefusedWithWhatIsAllowed) {
            {{"optimize", "sphere", "--set", "function.dimension=1000000000"},
             "function.dimension is 1000000000; it must be"},
            {optimize + Words{"--budget", "1000000000000000"}, "--budget is '1000000000000000'"},
-           {optimize + Words{"--budget", "99999999999999999999"}, "an integer from 0 to"},
+           {optimize + Words{"--budget", "99999999999999999999"}, "an integer from 1 to"},
            {optimize + Words{"--schedule", "fixed:1000000000"}, "--schedule is 'fixed:1000000000'"},
            {optimize + Words{"--set", "sets.test_cases=1000000000"},
             "sets.test_cases=1000000000: sets.test_cases is 1000000000"},
