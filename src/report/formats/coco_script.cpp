@@ -51,6 +51,9 @@ class ArmwrightTestbed(testbedsettings.GECCOBBOBTestbed):
     def filter(self, dsl):
         return dsl
 
+    def info(self, fun_number=None):
+        return self.__doc__ if fun_number is None else f"{{fun_number}} {{FUNCTIONS[fun_number]}}"
+
 
 testbedsettings.ArmwrightTestbed = ArmwrightTestbed
 testbedsettings.suite_to_testbed["{suite}"] = "ArmwrightTestbed"
