@@ -4,7 +4,6 @@
 #include <array>
 #include <utility>
 
-#include "base/error.hpp"
 #include "problems/config/problem_loader.hpp"
 #include "report/formats/export_files.hpp"
 
@@ -75,10 +74,11 @@ std::vector<ExportFunction> number_functions(const CollectedRuns& runs) {
   UniqueNames names;
   for (ExportFunction& function : functions) {
     const ProblemRuns& first = *function.problems.front();
-    const auto id =
-        is_shipped(first.function) ? find_function_id(first.function.problem) : std::nullopt;
-    const bool taken = std::ranges::count(functions, id.value_or(0), &ExportFunction::id) > 0;
-    function.id = id && !taken ? *id : next++;
+    // 0 stands for no number.
+    const std::size_t id =
+        is_shipped(first.function) ? find_function_id(first.function.problem).value_or(0) : 0;
+    const bool taken = std::ranges::count(functions, id, &ExportFunction::id) > 0;
+    function.id = id > 0 && !taken ? id : next++;
     const bool is_own_name = function.id < kFirstOwnFunction || function.problems.size() > 1;
     function.name = names.add(is_own_name ? first.function.problem : first.name);
     std::ranges::sort(function.problems, {}, get_dimension);
