@@ -1,9 +1,10 @@
 // The rows of the exports give the expected running times that cocopp and IOHanalyzer have computed
 // from them. The numbers and how they were made: tests/data/exports/running_times.json.
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cctype>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
