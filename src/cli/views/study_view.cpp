@@ -49,7 +49,7 @@ std::string describe_check(const std::optional<FinalCheck>& check, const Quantit
 // Returns the comparison with the problem's leader: A12 and p.
 std::string describe_against_leader(const ProblemResult& problem, std::size_t optimizer) {
   const std::size_t leader = problem.order.front();
-  if (optimizer == leader) {
+  if (optimizer == leader || problem.pairs.empty()) {
     return "";
   }
   const PairResult& pair = find_pair(problem.pairs, leader, optimizer);
@@ -228,9 +228,8 @@ std::string describe_power(const StudyPlan& plan) {
     return "";
   }
   const std::size_t tests = optimizers * (optimizers - 1) / 2;
-  const std::string design =
-      fmt::format("{} replicates and {} {} of optimizers per problem", plan.replicates, tests,
-                  tests == 1 ? "pair" : "pairs");
+  const std::string design = fmt::format("{} replicates and {} {} of optimizers per problem",
+                                         plan.replicates, tests, tests == 1 ? "pair" : "pairs");
   const int needed = find_needed_pairs(kMediumA12, tests);
   if (!can_be_significant(plan.replicates, tests)) {
     return fmt::format(

@@ -32,7 +32,8 @@ double calc_rounded_share(const ProblemResult& problem, std::size_t optimizer) {
   const auto round = [&](const OptimizerResult& one) {
     return problem.margin.round(one.spread.median);
   };
-  const auto first = std::ranges::find(problem.optimizers, round(problem.optimizers[optimizer]), round);
+  const auto first =
+      std::ranges::find(problem.optimizers, round(problem.optimizers[optimizer]), round);
   return calc_share_left(problem, first->spread.median);
 }
 
@@ -65,8 +66,8 @@ Costs calc_costs(const StudyPlan& plan, std::span<const ProblemResult> results,
       const double target = calc_convergence_target(start, best, tolerance);
       std::vector<double> row;
       for (std::size_t o = 0; o < optimizers; ++o) {
-        const double cases = calc_cost_to_target(
-            make_trace(get_cell(o), results[p].exact_times), target);
+        const double cases =
+            calc_cost_to_target(make_trace(get_cell(o), results[p].exact_times), target);
         row.push_back(cases / problem.schedule.cases);
       }
       costs.table.push_back(std::move(row));

@@ -209,8 +209,8 @@ ProblemResult analyze_problem(const StudyPlan& plan, std::size_t number,
   }
   result.checkpoints = list_checkpoints(plan, number);
   result.margin = make_margin(plan, problem);
-  result.exact_times = std::ranges::all_of(
-      cells, [](const CellOutcome& cell) { return cell.trace.has_value(); });
+  result.exact_times =
+      std::ranges::all_of(cells, [](const CellOutcome& cell) { return cell.trace.has_value(); });
   set_best_and_start(cells, result);
   result.targets = make_targets(result.best_known, result.start);
   std::vector<double> ideal;

@@ -110,7 +110,7 @@ struct ProblemResult {
   // The optimum if it is known, else the best value on the test set in all traces or curves; may be
   // infinite.
   double best_known = 0;
-  double start = 0;                     // median value of the start points
+  double start = 0;  // median value of the start points
   std::vector<std::int64_t> checkpoints;
   std::vector<double> targets;
   bool exact_times = false;  // running times come from traces; if false, from curves

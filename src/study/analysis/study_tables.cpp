@@ -100,8 +100,8 @@ std::string make_summary(const StudyPlan& plan, const StudyResult& result) {
                          number(one.median_interval.lower), number(one.median_interval.upper),
                          number(one.mean_rank), number(one.anytime_area), number(one.cases));
       if (const auto& check = one.final_check) {
-        csv += fmt::format(",{},{},{},{},{}", check->engine, check->replicate,
-                           number(check->value), check->errors.failures, check->errors.cases);
+        csv += fmt::format(",{},{},{},{},{}", check->engine, check->replicate, number(check->value),
+                           check->errors.failures, check->errors.cases);
       } else {
         csv += ",,,,,";
       }
@@ -175,11 +175,11 @@ std::string make_running_times(const StudyPlan& plan, const StudyResult& result)
       const OptimizerResult& one = problem.optimizers[o];
       for (std::size_t t = 0; t < one.running_times.size(); ++t) {
         const RunningTime& time = one.running_times[t];
-        csv += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", quote_csv(problem.label),
-                           name(plan, o), number(kRunningTimeTargets[t]), number(time.target),
-                           time.reached, one.values.size(), number(time.expected),
-                           number(time.interval.lower), number(time.interval.upper),
-                           problem.exact_times ? 1 : 0);
+        csv +=
+            fmt::format("{},{},{},{},{},{},{},{},{},{}\n", quote_csv(problem.label), name(plan, o),
+                        number(kRunningTimeTargets[t]), number(time.target), time.reached,
+                        one.values.size(), number(time.expected), number(time.interval.lower),
+                        number(time.interval.upper), problem.exact_times ? 1 : 0);
       }
     }
   }
@@ -385,19 +385,20 @@ std::string to_json(const StudyPlan& plan, const StudyResult& result) {
                   {"f", value_to_json(problem.friedman->f)},
                   {"f_p", problem.friedman->f_p_value}};
     }
-    problems.push_back({{"problem", problem.label},
-                        {"quantity", problem.quantity.name},
-                        {"unit", problem.quantity.unit},
-                        {"resolution", problem.margin.resolution},
-                        {"optimum", problem.margin.optimum ? json(*problem.margin.optimum) : json()},
-                        {"exact_running_times", problem.exact_times},
-                        {"best_known", value_to_json(problem.best_known)},
-                        {"start", value_to_json(problem.start)},
-                        {"order", order},
-                        {"optimizers", optimizers},
-                        {"friedman", friedman},
-                        {"pairs", pairs},
-                        {"failure_pairs", failure_pairs}});
+    problems.push_back(
+        {{"problem", problem.label},
+         {"quantity", problem.quantity.name},
+         {"unit", problem.quantity.unit},
+         {"resolution", problem.margin.resolution},
+         {"optimum", problem.margin.optimum ? json(*problem.margin.optimum) : json()},
+         {"exact_running_times", problem.exact_times},
+         {"best_known", value_to_json(problem.best_known)},
+         {"start", value_to_json(problem.start)},
+         {"order", order},
+         {"optimizers", optimizers},
+         {"friedman", friedman},
+         {"pairs", pairs},
+         {"failure_pairs", failure_pairs}});
   }
   json pairs = json::array();
   for (const PairResult& pair : result.overall.pairs) {

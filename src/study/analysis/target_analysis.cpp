@@ -44,8 +44,8 @@ Trial make_target_trial(const StudyPlan& plan, const StudyTarget& target, const 
                         std::span<const CurvePoint> points) {
   // A run that ended early has only spent its own cases, whether it reached the target or not.
   const std::int64_t spent = cell.cases > 0 ? static_cast<std::int64_t>(cell.cases) : plan.budget;
-  const auto first = std::ranges::find_if(
-      points, [&](const CurvePoint& point) { return meets(target, point); });
+  const auto first =
+      std::ranges::find_if(points, [&](const CurvePoint& point) { return meets(target, point); });
   if (first == points.end()) {
     return {.cost = static_cast<double>(spent), .reached = false};
   }

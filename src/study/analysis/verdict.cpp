@@ -55,18 +55,19 @@ std::vector<std::string> describe_problem(const StudyPlan& plan, const ProblemRe
     sentences.insert(sentences.end(), more.begin(), more.end());
   };
   if (plan.replicates < kFewestPairs) {
-    add({fmt::format("{} no pair of optimizers can be decided: there are {} replicates, and with "
+    add(
+        {fmt::format("{} no pair of optimizers can be decided: there are {} replicates, and with "
                      "fewer than {} no outcome is significant.",
                      where, plan.replicates, kFewestPairs)});
     add(describe_friedman(problem.friedman));
     return sentences;
   }
   if (!can_be_significant(plan.replicates, problem.pairs.size())) {
-    add({fmt::format("{} no pair of optimizers can be decided: with {} replicates and {} pairs of "
-                     "optimizers no difference, however clear, is significant after Holm's "
-                     "correction; {} replicates would do.",
-                     where, plan.replicates, problem.pairs.size(),
-                     find_fewest_pairs(problem.pairs.size()))});
+    add({fmt::format(
+        "{} no pair of optimizers can be decided: with {} replicates and {} pairs of "
+        "optimizers no difference, however clear, is significant after Holm's "
+        "correction; {} replicates would do.",
+        where, plan.replicates, problem.pairs.size(), find_fewest_pairs(problem.pairs.size()))});
     add(describe_friedman(problem.friedman));
     return sentences;
   }
@@ -180,9 +181,10 @@ std::vector<std::string> describe_coarse_times(const StudyResult& result) {
   if (labels.empty()) {
     return {};
   }
-  return {fmt::format("Running times on {} are only as exact as the checkpoints, because cells of "
-                      "version 1.0 do not record when each incumbent was found.",
-                      join_names(labels))};
+  return {
+      fmt::format("Running times on {} are only as exact as the checkpoints, because cells of "
+                  "version 1.0 do not record when each incumbent was found.",
+                  join_names(labels))};
 }
 
 std::vector<std::string> describe_limits(const StudyPlan& plan, const StudyResult& result) {

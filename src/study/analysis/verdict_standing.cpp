@@ -111,9 +111,9 @@ std::vector<std::string> describe_medians(const StudyPlan& plan, const ProblemRe
   for (const PairResult& pair : problem.pairs) {
     const bool has_leader = pair.a == leader || pair.b == leader;
     if (has_leader && pair.is_significant() && get_median(pair.b) < get_median(pair.a)) {
-      sentences.push_back(fmt::format(
-          "The median of {} is better than that of {}, but the pairs of runs decide.",
-          get_label(plan, pair.b), get_label(plan, pair.a)));
+      sentences.push_back(
+          fmt::format("The median of {} is better than that of {}, but the pairs of runs decide.",
+                      get_label(plan, pair.b), get_label(plan, pair.a)));
     }
   }
   return sentences;

@@ -116,9 +116,9 @@ bool test_progress(const StudyPlan& plan, const Cell& cell, const RunPlan& run,
   outcome.trace.emplace();
   for (const Incumbent& incumbent : traced) {
     outcome.trace->push_back(
-        is_function ? CurvePoint{incumbent.cases, incumbent.objective, 0}
-                    : make_point(run, incumbent.cases, &bench.get(find_design(incumbent)),
-                                 tolerance));
+        is_function
+            ? CurvePoint{incumbent.cases, incumbent.objective, 0}
+            : make_point(run, incumbent.cases, &bench.get(find_design(incumbent)), tolerance));
   }
   for (std::size_t i = 0; i < choices.size(); ++i) {
     const Evaluation* evaluation = choices[i] ? &bench.get(choices[i]->candidate.x) : nullptr;

@@ -54,7 +54,7 @@ struct CellOutcome {
   // The start point, which is the same for all optimizers.
   double start_value = 0;
   std::optional<std::uint64_t> start_failures;  // as CurvePoint::failures
-  std::vector<CurvePoint> curve;  // the incumbents at the checkpoints
+  std::vector<CurvePoint> curve;                // the incumbents at the checkpoints
   // The run's incumbents, each with the number of cases when it was found (incumbents.hpp). Arms
   // have at most kMostTraced of them, and those of the curve. Nothing for cells that version 1.0
   // recorded.

@@ -202,9 +202,8 @@ StudyCost calc_cost(const StudyPlan& plan) {
     // Tested designs: the winner, the start, the incumbents at the checkpoints, those of an arm's
     // trace, and a front.
     const std::int64_t evaluations = plan.budget / problem.schedule.cases;
-    const std::int64_t traced = problem.loaded.tracking() == nullptr
-                                    ? 0
-                                    : std::min<std::int64_t>(evaluations, kMostTraced);
+    const std::int64_t traced =
+        problem.loaded.tracking() == nullptr ? 0 : std::min<std::int64_t>(evaluations, kMostTraced);
     cost.test += runs * (2 + tested * (has_targets ? 2 : 1) + traced + (fronts ? judged : 0)) *
                  sets.test_cases;
     if (!plan.final_engine.empty() && problem.loaded.tracking()) {

@@ -16,8 +16,7 @@ double remove_logarithm(const Margin& margin, double value) {
 }  // namespace
 
 bool Margin::is_equal(double a, double b) const {
-  return a == b ||
-         std::abs(remove_logarithm(*this, a) - remove_logarithm(*this, b)) <= resolution;
+  return a == b || std::abs(remove_logarithm(*this, a) - remove_logarithm(*this, b)) <= resolution;
 }
 
 double Margin::round(double value) const {
@@ -35,9 +34,8 @@ double Margin::round(double value) const {
 }
 
 bool Margin::is_success(double value) const {
-  return std::isfinite(value) &&
-         (!optimum || remove_logarithm(*this, value) <=
-                          remove_logarithm(*this, *optimum) + resolution);
+  return std::isfinite(value) && (!optimum || remove_logarithm(*this, value) <=
+                                                  remove_logarithm(*this, *optimum) + resolution);
 }
 
 }  // namespace armwright

@@ -95,9 +95,9 @@ double approximate_power(int pairs, double shift, int critical) {
   }
   p3 *= 2 * kReach / kSteps / 3;
   const double mean = n * p1 + n * (n - 1) / 2 * p2;
-  const double variance =
-      n * p1 * (1 - p1) + n * (n - 1) / 2 * (2 * (p1 - p2) * (p1 - p2) + 3 * p2 * (1 - p2)) +
-      n * (n - 1) * (n - 2) * (p3 - p2 * p2);
+  const double variance = n * p1 * (1 - p1) +
+                          n * (n - 1) / 2 * (2 * (p1 - p2) * (p1 - p2) + 3 * p2 * (1 - p2)) +
+                          n * (n - 1) * (n - 2) * (p3 - p2 * p2);
   if (!(variance > 0)) {
     return mean <= critical ? 1 : 0;
   }

@@ -3,12 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
+
+#include "study/statistics/support.hpp"
 
 namespace armwright {
 namespace {
-
-constexpr double kInf = std::numeric_limits<double>::infinity();
 
 TEST(Margin, WithoutAResolutionEveryDifferenceCounts) {
   const Margin margin;
