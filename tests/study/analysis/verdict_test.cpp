@@ -58,6 +58,7 @@ TEST(Verdict, NeverContradictsTheTests) {
         for (const bool third_is_beaten : {false, true}) {
           ProblemResult problem;
           problem.optimizers.resize(3);
+          problem.optimizers[0].values = {1};  // the verdict reads that there are values
           problem.optimizers[0].spread.median = 5 + get_sign(median);
           problem.optimizers[1].spread.median = 5;
           problem.optimizers[2].spread.median = 7;
