@@ -339,6 +339,7 @@ export interface StudyCell {
 
 export interface StudyOptimizerResult {
   cells: StudyCell[]; // the cells that have ended, by replicate
+  successes: number; // runs within the problem's resolution of the optimum, or with any value if it is unknown
   infinite: number;
   infeasible: number;
   failed: number;
@@ -375,7 +376,7 @@ export interface Friedman {
 }
 
 export interface StudyPair {
-  a: number; // index of the optimizer; the median of a is not worse than that of b
+  a: number; // index of the optimizer that is better by the ranks of the pairs
   b: number;
   p: number;
   p_holm: number;
@@ -391,8 +392,11 @@ export interface StudyProblem {
   title: string;
   quantity: Quantity;
   has_front: boolean;
-  best_known: number | null;
+  resolution: number; // differences up to it count as none
+  optimum: number | null; // null if it is unknown
+  best_known: number | null; // the optimum if it is known
   start: number | null;
+  exact_times: boolean; // running times come from every incumbent, not only from the checkpoints
   checkpoints: number[];
   targets: number[];
   fixed_targets: string[]; // in words

@@ -104,6 +104,7 @@ double measure_duration_s(const StudyPlan& plan) {
 void announce(const CompareOptions& options, const StudyPlan& plan, unsigned jobs,
               const std::filesystem::path& folder) {
   std::string text = fmt::format("{}: {}\n", plan.name, plan.title) + describe_plan(plan) +
+                     describe_power(plan) +
                      describe_cost(plan, measure_duration_s(plan) / jobs, jobs) +
                      fmt::format("plan {}", calc_plan_hash(plan).substr(0, 16));
   if (is_study_folder(folder)) {

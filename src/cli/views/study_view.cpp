@@ -11,6 +11,7 @@
 #include "study/analysis/final_check.hpp"
 #include "study/analysis/study_tables.hpp"
 #include "study/analysis/verdict.hpp"
+#include "study/statistics/power.hpp"
 
 namespace armwright {
 namespace {
@@ -48,15 +49,13 @@ std::string describe_check(const std::optional<FinalCheck>& check, const Quantit
 // Returns the comparison with the problem's leader: A12 and p.
 std::string describe_against_leader(const ProblemResult& problem, std::size_t optimizer) {
   const std::size_t leader = problem.order.front();
-  if (optimizer == leader) {
+  if (optimizer == leader || problem.pairs.empty()) {
     return "";
   }
-  const auto pair = std::ranges::find_if(problem.pairs, [&](const PairResult& one) {
-    return std::minmax(one.a, one.b) == std::minmax(leader, optimizer);
-  });
-  const double a12 = pair->a == leader ? pair->a12 : 1 - pair->a12;
-  return fmt::format("{:.2f}, p {}{}", a12, format_p(pair->p_holm),
-                     pair->is_beaten_by(leader) ? " *" : "");
+  const PairResult& pair = find_pair(problem.pairs, leader, optimizer);
+  const double a12 = pair.a == leader ? pair.a12 : 1 - pair.a12;
+  const char* mark = pair.is_won_by(leader) ? " *" : pair.is_significant() ? " **" : "";
+  return fmt::format("{:.2f}, p {}{}", a12, format_p(pair.p_holm), mark);
 }
 
 std::string describe_problem(const StudyPlan& plan, const ProblemResult& problem,
@@ -66,6 +65,9 @@ std::string describe_problem(const StudyPlan& plan, const ProblemResult& problem
   const bool has_cost = std::isfinite(problem.best_known) && !problem.has_front;
   std::vector<Column> columns = {{"optimizer", false}, {"median"},   {"quartiles"},
                                  {"mean rank"},        {"no value"}, {"A12, p"}};
+  if (problem.margin.optimum) {
+    columns.push_back({"success"});
+  }
   if (has_cost) {
     columns.push_back({"cases to 1 %"});
   }
@@ -91,6 +93,9 @@ std::string describe_problem(const StudyPlan& plan, const ProblemResult& problem
         fmt::format("{:.2f}", one.mean_rank),
         one.infinite == 0 ? "" : fmt::format("{}", one.infinite),
         describe_against_leader(problem, o)};
+    if (problem.margin.optimum) {
+      row.push_back(fmt::format("{}/{}", one.successes, one.values.size()));
+    }
     if (has_cost) {
       const double expected = one.running_times[1].expected;
       row.push_back(std::isfinite(expected) ? fmt::format("{:.0f}", expected) : "-");
@@ -112,7 +117,7 @@ std::string describe_problem(const StudyPlan& plan, const ProblemResult& problem
       table.format(style, 2);
   if (problem.friedman) {
     text += fmt::format("  Friedman test (Iman-Davenport): F = {:.3g}, p {}\n", problem.friedman->f,
-                        format_p(problem.friedman->f_p_value));
+                        format_p(problem.friedman->get_p()));
   }
   return text + "\n";
 }
@@ -224,6 +229,30 @@ std::string describe_plan(const StudyPlan& plan) {
   return table.format(Style(false), 0, get_text_width(Stream::error));
 }
 
+std::string describe_power(const StudyPlan& plan) {
+  const std::size_t optimizers = plan.optimizers.size();
+  if (optimizers < 2) {
+    return "";
+  }
+  const std::size_t tests = optimizers * (optimizers - 1) / 2;
+  const std::string design = fmt::format("{} replicates and {} {} of optimizers per problem",
+                                         plan.replicates, tests, tests == 1 ? "pair" : "pairs");
+  const int needed = find_needed_pairs(kMediumA12, tests);
+  if (!can_be_significant(plan.replicates, tests)) {
+    return fmt::format(
+        "warning: with {} no difference, however clear, is significant after Holm's correction.\n"
+        "{} replicates are the fewest that can decide a pair; {} find a medium difference (A12 = "
+        "{:.2f}) with probability {:.1f}.\n",
+        design, find_fewest_pairs(tests), needed, kMediumA12, kPower);
+  }
+  return fmt::format(
+      "With {}, a difference from A12 = {:.2f} on is found with probability {:.1f}, after Holm's "
+      "correction.\nA medium difference (A12 = {:.2f}) is found with probability {:.2f}; {} "
+      "replicates find it with probability {:.1f}.\n",
+      design, find_detectable_a12(plan.replicates, tests), kPower, kMediumA12,
+      calc_power(plan.replicates, kMediumA12, tests), needed, kPower);
+}
+
 std::string describe_cost(const StudyPlan& plan, double expected_s, unsigned jobs) {
   const StudyCost cost = calc_cost(plan);
   std::string text = fmt::format(
@@ -259,9 +288,10 @@ std::string describe_study(const StudyPlan& plan, const StudyResult& result,
              "\nA12: share of the pairs of runs in which the first optimizer of the table is "
              "better "
              "than this one.\np: p-value of the paired difference (Wilcoxon, after Holm); * below "
-             "{}. Cases to 1 %: expected number,\nwith restarts, until 1 % of the way from the "
-             "start to the best known value is left. Cases failed: mean\nshare of test cases "
-             "with an error above 100 mm.\nTables: {}\n",
+             "{}; ** below it, and this one is\nbetter than the first. Success: runs within the "
+             "problem's resolution of the optimum. Cases to 1 %: expected\nnumber, with restarts, "
+             "until 1 % of the way from the start to the best known value is left. Cases\nfailed: "
+             "mean share of test cases with an error above 100 mm.\nTables: {}\n",
              kSignificance, sanitize((folder / "tables").string()));
 }
 

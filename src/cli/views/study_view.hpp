@@ -14,6 +14,10 @@ namespace armwright {
 
 // Returns a table of the problems, the optimizers, the budget and what is paired.
 std::string describe_plan(const StudyPlan& plan);
+// Says which differences the study can find with its replicates, after Holm's correction over all
+// pairs of a problem, and how many replicates a medium difference needs (study/statistics/power.hpp).
+// Warns if no outcome can be significant. Empty if there is nothing to compare.
+std::string describe_power(const StudyPlan& plan);
 // Returns the number of cells and of simulated cases. If `expected_s` is above 0, the expected time
 // with `jobs` threads is added.
 std::string describe_cost(const StudyPlan& plan, double expected_s, unsigned jobs);

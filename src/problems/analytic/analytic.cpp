@@ -18,6 +18,9 @@ namespace {
 // square is far from overflow, and the spacing of numbers near it is 1e-4.
 constexpr double kPenalty = 1e12;
 
+// The smallest difference of values that counts in comparisons. It is the last target of COCO.
+constexpr double kResolution = 1e-8;
+
 double calc_shift(int index) {
   const double multiple = (index + 1) * (std::numbers::phi - 1);
   return 4 * (multiple - std::floor(multiple) - 0.5);
@@ -49,6 +52,8 @@ class AnalyticProblem : public Problem {
       description_.constraints.push_back({fmt::format("g_{}", i + 1), ""});
     }
     description_.cost_unit = "function evaluation";
+    description_.optimum = function.optimum;
+    description_.resolution = kResolution;
     description_.has_residuals = function.calc_residuals != nullptr;
   }
 

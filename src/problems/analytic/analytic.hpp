@@ -46,6 +46,7 @@ struct AnalyticFunction {
   double upper = 0;
   std::vector<double> start = {};      // one number: the same for every variable
   std::vector<double> minimiser = {};  // empty: the shift s; otherwise s = 0
+  double optimum = 0;                  // the smallest value that meets the constraints
   int constraint_count = 0;
   double (*calc_value)(Point) = nullptr;
   std::vector<double> (*calc_constraints)(Point) = nullptr;  // null: no constraints

@@ -153,6 +153,7 @@ const std::vector<AnalyticFunction>& analytic_table() {
        // Feasible. The source starts at the origin, which shares a coordinate with the minimiser.
        .start = {-1, -1, -1, 0.5},
        .minimiser = {0, 1, 2, -1},
+       .optimum = -44,
        .constraint_count = 3,
        .calc_value = calc_rosen_suzuki,
        .calc_constraints = calc_rosen_suzuki_constraints},

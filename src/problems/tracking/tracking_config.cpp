@@ -190,6 +190,7 @@ ProblemDescription make_tracking_description(const TrackingConfig& config) {
   }
   const TrackingObjective& objective = config.objective;
   description.objectives = describe_objectives(objective);
+  description.resolution = calc_resolution(objective);
   switch (objective.kind) {
     case TrackingObjective::Kind::error:
     case TrackingObjective::Kind::error_and_torque:

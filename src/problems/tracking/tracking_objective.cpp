@@ -118,6 +118,21 @@ std::vector<Quantity> describe_objectives(const TrackingObjective& objective) {
   return {describe(describe_error(objective), "m")};
 }
 
+double calc_resolution(const TrackingObjective& objective) {
+  const double share = kErrorResolution_m / objective.error_scale_m;
+  switch (objective.kind) {
+    case Kind::error_vs_torque:
+      return share;  // of the weighted sum
+    case Kind::torque_with_error_limit:
+      return objective.torque_scale_n_m * share;
+    case Kind::error:
+    case Kind::error_and_torque:
+    case Kind::error_with_torque_limit:
+      break;
+  }
+  return objective.is_sum() ? share : kErrorResolution_m;
+}
+
 double calc_error_statistic(const TrackingObjective& objective, std::span<const double> errors_m,
                             double lost_share) {
   switch (objective.statistic) {

@@ -53,6 +53,8 @@ namespace armwright {
 
 // A case with a larger error counts as failed: the arm lost its target.
 inline constexpr double kFailureError_m = 0.1;
+// Comparisons count smaller differences of the error e as equal.
+inline constexpr double kErrorResolution_m = 1e-6;
 
 // The choice of objective, and its parameters.
 struct TrackingObjective {
@@ -99,6 +101,12 @@ struct ObjectiveTerms {
 std::string describe_error(const TrackingObjective& objective);
 // Returns the names and units of the objectives, in the order of calc_objectives().
 std::vector<Quantity> describe_objectives(const TrackingObjective& objective);
+
+// Returns ProblemDescription::resolution: kErrorResolution_m where the number is an error (m), and
+// kErrorResolution_m / e_0 where it is a sum of terms without unit. A total torque (N m) has the
+// same share of its scale: tau_0 kErrorResolution_m / e_0. The resolution of a logarithm is that of
+// the number before the logarithm.
+double calc_resolution(const TrackingObjective& objective);
 
 // Returns e from the errors of the cases that have one; there must be at least one. `lost_share` is
 // the share of all cases in which the arm lost its target.

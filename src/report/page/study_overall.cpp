@@ -37,7 +37,7 @@ json make_rank_intervals(const StudyPlan& plan, const StudyResult& result) {
     }
     std::vector<double> medians;
     for (const OptimizerResult& one : result.problems[p].optimizers) {
-      medians.push_back(one.spread.median);
+      medians.push_back(result.problems[p].margin.round(one.spread.median));
     }
     const auto its_ranks = calc_ranks(medians);
     for (std::size_t o = 0; o < ranks.size(); ++o) {

@@ -122,6 +122,7 @@ json make_result(const StudyPlan& plan, const Cell& first, std::span<const CellO
   const auto extreme = [&](double p) { return of_any(any ? calc_quantile(one.values, p) : 0); };
   return {
       {"cells", std::move(cells)},
+      {"successes", one.successes},
       {"infinite", one.infinite},
       {"infeasible", one.infeasible},
       {"failed", one.failed},
@@ -191,9 +192,7 @@ json make_friedman(const std::optional<FriedmanTest>& test) {
   if (!test) {
     return nullptr;
   }
-  const bool is_infinite = !std::isfinite(test->f);
-  return {{"statistic", finite_or_null(test->f)},
-          {"p", is_infinite ? test->p_value : test->f_p_value}};
+  return {{"statistic", finite_or_null(test->f)}, {"p", test->get_p()}};
 }
 
 json make_study_problem(const StudyPlan& plan, std::size_t number,
@@ -212,8 +211,11 @@ json make_study_problem(const StudyPlan& plan, std::size_t number,
           {"title", problem.loaded.title},
           {"quantity", make_quantity(result.quantity)},
           {"has_front", result.has_front},
+          {"resolution", result.margin.resolution},
+          {"optimum", result.margin.optimum ? json(*result.margin.optimum) : json(nullptr)},
           {"best_known", finite_or_null(result.best_known)},
           {"start", finite_or_null(result.start)},
+          {"exact_times", result.exact_times},
           {"checkpoints", result.checkpoints},
           {"targets", result.targets},
           {"fixed_targets", make_fixed_targets(plan, problem, result)},

@@ -26,13 +26,25 @@ double calc_share_left(const ProblemResult& problem, double median) {
   return way > 0 ? (median - problem.best_known) / way : 0;
 }
 
+// Returns the share that is left by the first optimizer whose median rounds to the same number.
+// Medians that count as equal so leave the same share.
+double calc_rounded_share(const ProblemResult& problem, std::size_t optimizer) {
+  const auto round = [&](const OptimizerResult& one) {
+    return problem.margin.round(one.spread.median);
+  };
+  const auto first =
+      std::ranges::find(problem.optimizers, round(problem.optimizers[optimizer]), round);
+  return calc_share_left(problem, first->spread.median);
+}
+
 // The costs, in evaluations, of every optimizer to converge on every (problem, replicate).
 struct Costs {
   std::vector<std::vector<double>> table;
   std::vector<int> dimensions;
 };
 
-Costs calc_costs(const StudyPlan& plan, std::span<const CellOutcome> cells, double tolerance) {
+Costs calc_costs(const StudyPlan& plan, std::span<const ProblemResult> results,
+                 std::span<const CellOutcome> cells, double tolerance) {
   Costs costs;
   const auto optimizers = plan.optimizers.size();
   const auto replicates = static_cast<std::size_t>(plan.replicates);
@@ -46,14 +58,16 @@ Costs calc_costs(const StudyPlan& plan, std::span<const CellOutcome> cells, doub
       double start = kInfinity;
       for (std::size_t o = 0; o < optimizers; ++o) {
         start = std::min(start, get_cell(o).start_value);  // infinite for missing cells
-        for (const CurvePoint& point : get_cell(o).curve) {
+        const CellOutcome& cell = get_cell(o);
+        for (const CurvePoint& point : results[p].exact_times ? *cell.trace : cell.curve) {
           best = std::min(best, point.value);
         }
       }
       const double target = calc_convergence_target(start, best, tolerance);
       std::vector<double> row;
       for (std::size_t o = 0; o < optimizers; ++o) {
-        const double cases = calc_cost_to_target(make_trace(get_cell(o)), target);
+        const double cases =
+            calc_cost_to_target(make_trace(get_cell(o), results[p].exact_times), target);
         row.push_back(cases / problem.schedule.cases);
       }
       costs.table.push_back(std::move(row));
@@ -76,6 +90,7 @@ CellOutcome make_missing(const StudyPlan& plan, const Cell& cell) {
   for (const std::int64_t budget : list_checkpoints(plan, cell.problem)) {
     outcome.curve.push_back({budget, kInfinity, std::nullopt});
   }
+  outcome.trace.emplace();
   return outcome;
 }
 
@@ -84,21 +99,29 @@ CellOutcome make_missing(const StudyPlan& plan, const Cell& cell) {
 OverallResult analyze_overall(const StudyPlan& plan, std::span<const ProblemResult> problems,
                               std::span<const CellOutcome> cells) {
   OverallResult overall;
-  std::vector<std::vector<double>> medians;  // one row per problem
-  std::vector<std::vector<double>> by_optimizer(plan.optimizers.size());
+  std::vector<std::vector<double>> rounded;  // medians, one row per problem
+  std::vector<std::vector<double>> shares(plan.optimizers.size());
+  std::vector<std::vector<double>> rounded_shares(plan.optimizers.size());
   for (const ProblemResult& problem : problems) {
-    auto& row = medians.emplace_back();
+    auto& row = rounded.emplace_back();
     for (std::size_t o = 0; o < problem.optimizers.size(); ++o) {
-      row.push_back(problem.optimizers[o].spread.median);
-      by_optimizer[o].push_back(calc_share_left(problem, row.back()));
+      const double median = problem.optimizers[o].spread.median;
+      row.push_back(problem.margin.round(median));
+      shares[o].push_back(calc_share_left(problem, median));
+      rounded_shares[o].push_back(calc_rounded_share(problem, o));
     }
   }
-  overall.ranking = calc_ranking_stability(medians);
-  if (medians.size() > 1 && plan.optimizers.size() > 1) {
-    overall.friedman = calc_friedman_test(medians);
+  overall.ranking = calc_ranking_stability(rounded);
+  if (rounded.size() > 1 && plan.optimizers.size() > 1) {
+    overall.friedman = calc_friedman_test(rounded);
   }
-  if (medians.size() > 1) {
-    overall.pairs = compare_pairs(by_optimizer);
+  if (rounded.size() > 1) {
+    const auto is_equal = [&](std::size_t o, std::size_t other, std::size_t p) {
+      const auto& optimizers = problems[p].optimizers;
+      return problems[p].margin.is_equal(optimizers[o].spread.median,
+                                         optimizers[other].spread.median);
+    };
+    overall.pairs = compare_pairs(shares, rounded_shares, is_equal);
   }
   constexpr double kMostTimes = 100;
   constexpr int kSteps = 40;
@@ -112,7 +135,7 @@ OverallResult analyze_overall(const StudyPlan& plan, std::span<const ProblemResu
   }
   overall.kappas = make_grid(least, most, kSteps);
   for (const double tolerance : kProfileTolerances) {
-    const Costs costs = calc_costs(plan, cells, tolerance);
+    const Costs costs = calc_costs(plan, problems, cells, tolerance);
     overall.data_profiles.push_back(
         {tolerance, calc_data_profiles(costs.table, costs.dimensions, overall.kappas)});
     overall.performance_profiles.push_back(

@@ -68,7 +68,7 @@ std::vector<double> make_targets(double best, double start) {
 }
 
 void set_best_and_start(std::span<const CellOutcome> cells, ProblemResult& result) {
-  result.best_known = kInfinity;
+  result.best_known = result.margin.optimum.value_or(kInfinity);
   double worst = -kInfinity;
   std::vector<double> starts;
   const auto meet = [&](double value) {
@@ -78,7 +78,7 @@ void set_best_and_start(std::span<const CellOutcome> cells, ProblemResult& resul
   for (const CellOutcome& cell : cells) {
     starts.push_back(cell.start_value);
     meet(result.has_front ? kInfinity : cell.value);
-    for (const CurvePoint& point : cell.curve) {
+    for (const CurvePoint& point : result.exact_times ? *cell.trace : cell.curve) {
       meet(point.value);
     }
   }
@@ -91,10 +91,12 @@ void set_best_and_start(std::span<const CellOutcome> cells, ProblemResult& resul
 void add_running_times(const StudyPlan& plan, const ProblemResult& problem,
                        std::span<const CellOutcome* const> runs, const std::string& stream,
                        OptimizerResult& result) {
+  std::vector<std::vector<TracePoint>> traces;
   std::vector<double> times;  // one per pair of run and target
   for (const CellOutcome* run : runs) {
+    traces.push_back(make_trace(*run, problem.exact_times));
     for (const double target : problem.targets) {
-      times.push_back(calc_cost_to_target(make_trace(*run), target));
+      times.push_back(calc_cost_to_target(traces.back(), target));
     }
   }
   const auto costs = std::vector<double>(problem.checkpoints.begin(), problem.checkpoints.end());
@@ -111,18 +113,18 @@ void add_running_times(const StudyPlan& plan, const ProblemResult& problem,
     time.interval = {kInfinity, kInfinity};
     time.target = calc_convergence_target(problem.start, problem.best_known, share);
     std::vector<Trial> trials;
-    for (const CellOutcome* run : runs) {
-      const double cost = calc_cost_to_target(make_trace(*run), time.target);
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      const double cost = calc_cost_to_target(traces[i], time.target);
       const bool reached = std::isfinite(cost);
       // A run that ended early has only spent its own cases, whether it reached the target or not.
-      const double spent =
-          run->cases > 0 ? static_cast<double>(run->cases) : static_cast<double>(plan.budget);
+      const double spent = runs[i]->cases > 0 ? static_cast<double>(runs[i]->cases)
+                                              : static_cast<double>(plan.budget);
       trials.push_back({std::min(cost, spent), reached});
       time.reached += reached ? 1 : 0;
     }
     if (time.reached > 0) {
       time.expected = calc_expected_running_time(trials);
-      time.interval = calc_expected_running_time_interval(
+      time.interval = calc_resampled_running_time_interval(
           trials, kIntervalLevel, kResamples, fmt::format("{}/running time {}", stream, share));
     }
     result.running_times.push_back(time);
@@ -144,12 +146,7 @@ void add_curve(const ProblemResult& problem, std::span<const CellOutcome* const>
 
 // Computes ranks, tests and pairs over the replicates.
 void compare_optimizers(std::span<const std::vector<double>> values, ProblemResult& result) {
-  std::vector<std::vector<double>> blocks(values.front().size());
-  for (std::size_t r = 0; r < blocks.size(); ++r) {
-    for (const auto& its_values : values) {
-      blocks[r].push_back(its_values[r]);
-    }
-  }
+  const auto blocks = make_blocks(round_values(values, result.margin));
   const Ranking ranking = calc_ranking(blocks);
   for (std::size_t i = 0; i < values.size(); ++i) {
     result.optimizers[i].mean_rank = ranking.mean_ranks[i];
@@ -157,15 +154,27 @@ void compare_optimizers(std::span<const std::vector<double>> values, ProblemResu
   if (blocks.size() > 1 && values.size() > 1) {
     result.friedman = calc_friedman_test(blocks);
   }
-  result.pairs = compare_pairs(values);
+  result.pairs = compare_pairs(values, result.margin);
 }
 
 }  // namespace
 
-std::vector<TracePoint> make_trace(const CellOutcome& cell) {
+Margin make_margin(const StudyPlan& plan, const StudyProblem& problem) {
+  const ProblemDescription& description = problem.loaded.problem->description();
+  if (plan.value == StudyValue::failures || description.objectives.size() > 1) {
+    return {};
+  }
+  const TrackingProblem* tracking = problem.loaded.tracking();
+  return {.resolution = description.resolution,
+          .logarithm = tracking != nullptr && tracking->config().objective.logarithm,
+          .optimum = description.optimum};
+}
+
+std::vector<TracePoint> make_trace(const CellOutcome& cell, bool exact) {
+  const std::vector<CurvePoint>& points = exact ? *cell.trace : cell.curve;
   std::vector<TracePoint> trace;
   double worst = -kInfinity;
-  for (auto point = cell.curve.rbegin(); point != cell.curve.rend(); ++point) {
+  for (auto point = points.rbegin(); point != points.rend(); ++point) {
     worst = std::max(worst, point->value);
     trace.push_back({static_cast<double>(point->budget), worst});
   }
@@ -173,30 +182,16 @@ std::vector<TracePoint> make_trace(const CellOutcome& cell) {
   return trace;
 }
 
-std::vector<PairResult> compare_pairs(std::span<const std::vector<double>> values) {
-  std::vector<PairResult> pairs;
-  std::vector<double> p_values;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    for (std::size_t j = i + 1; j < values.size(); ++j) {
-      PairResult pair{.a = i, .b = j, .test = {}, .wins = {}};
-      const double a12 = calc_a12(values[i], values[j]);
-      const double median_i = calc_spread(values[i]).median;
-      const double median_j = calc_spread(values[j]).median;
-      if (median_j < median_i || (median_j == median_i && a12 < 0.5)) {
-        std::swap(pair.a, pair.b);
-      }
-      pair.a12 = calc_a12(values[pair.a], values[pair.b]);
-      pair.test = calc_signed_rank_test(values[pair.a], values[pair.b]);
-      pair.wins = count_wins(values[pair.a], values[pair.b]);
-      p_values.push_back(pair.test.p_value);
-      pairs.push_back(pair);
-    }
-  }
-  const auto adjusted = adjust_holm(p_values);
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    pairs[i].p_holm = adjusted[i];
-  }
-  return pairs;
+std::vector<std::size_t> order_optimizers(std::span<const OptimizerResult> optimizers,
+                                          bool complete) {
+  std::vector<std::size_t> order(optimizers.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) {
+    const OptimizerResult& one = optimizers[i];
+    return std::tuple(complete ? one.mean_rank : 0, complete ? -one.successes : 0,
+                      one.spread.median);
+  });
+  return order;
 }
 
 ProblemResult analyze_problem(const StudyPlan& plan, std::size_t number,
@@ -213,6 +208,9 @@ ProblemResult analyze_problem(const StudyPlan& plan, std::size_t number,
                                        : get_scalar_quantity(description.objectives);
   }
   result.checkpoints = list_checkpoints(plan, number);
+  result.margin = make_margin(plan, problem);
+  result.exact_times =
+      std::ranges::all_of(cells, [](const CellOutcome& cell) { return cell.trace.has_value(); });
   set_best_and_start(cells, result);
   result.targets = make_targets(result.best_known, result.start);
   std::vector<double> ideal;
@@ -235,6 +233,7 @@ ProblemResult analyze_problem(const StudyPlan& plan, std::size_t number,
       const double value =
           result.has_front ? calc_missed_volume(cell, ideal, result.reference_point) : cell.value;
       one.values.push_back(value);
+      one.successes += result.margin.is_success(value) ? 1 : 0;
       one.infinite += std::isfinite(value) ? 0 : 1;
       one.infeasible += cell.violation > plan.constraint_tolerance ? 1 : 0;
       one.failed += cell.failure.empty() ? 0 : 1;
@@ -263,11 +262,7 @@ ProblemResult analyze_problem(const StudyPlan& plan, std::size_t number,
   if (problem.loaded.tracking()) {
     add_failures(all_runs, complete, result);
   }
-  result.order.resize(values.size());
-  std::iota(result.order.begin(), result.order.end(), std::size_t{0});
-  std::ranges::stable_sort(result.order, {}, [&](std::size_t i) {
-    return std::tuple(result.optimizers[i].spread.median, result.optimizers[i].mean_rank);
-  });
+  result.order = order_optimizers(result.optimizers, complete);
   return result;
 }
 

@@ -7,15 +7,21 @@
 // optimizer's front misses. A pair of values belongs to one replicate: both runs had the same
 // training cases and start.
 //
-// Running times come from curves on the test set. The running time to a target is the budget from
-// which on every incumbent is at the target or below. The incumbents are simulated again on the
-// test set. Running times are as coarse as the checkpoints. For several objectives, curves, running
-// times and profiles use the weighted sum of the objectives.
+// Running times come from the trace of a run: its incumbents, each with the exact number of cases
+// when it was found and with its value on the test set (CellOutcome::trace). The running time to a
+// target is the number of cases from which on every incumbent is at the target or below. On
+// functions this is the first evaluation that reaches the target. Cells that version 1.0 recorded
+// have no trace. If a problem has such a cell, running times of all its cells come from the curves
+// and are as coarse as the checkpoints. For several objectives, curves, running times and profiles
+// use the weighted sum of the objectives.
 //
-// Fixed targets are evaluated differently. They model a user who stops a run early and takes the
-// design that is best on the validation set at that time (choices.hpp). A run reaches a fixed
-// target at the first checkpoint at which this design meets the target on the test set, whatever
-// follows. A running time must not depend on how much longer the run went on.
+// Fixed targets on arms are evaluated differently. They model a user who stops a run early and
+// takes the design that is best on the validation set at that time (choices.hpp). A run reaches a
+// fixed target at the first checkpoint at which this design meets the target on the test set,
+// whatever follows. A running time must not depend on how much longer the run went on. Functions
+// need no validation, so there the first evaluation counts that meets the target.
+//
+// Values are compared with the problem's margin (make_margin()).
 #pragma once
 
 #include <cstdint>
@@ -24,6 +30,7 @@
 #include <string>
 #include <vector>
 
+#include "study/analysis/pair_comparison.hpp"
 #include "study/compare/cell.hpp"
 #include "study/statistics/ranking.hpp"
 #include "study/statistics/running_time.hpp"
@@ -32,9 +39,6 @@
 
 namespace armwright {
 
-inline constexpr double kSignificance = 0.05;
-// With fewer pairs no outcome is significant: 2 / 2^5 > 0.05.
-inline constexpr int kFewestPairs = 6;
 inline constexpr double kIntervalLevel = 0.95;
 inline constexpr int kResamples = 2000;
 // Targets of expected running times: the share of the distance from the start value to the best
@@ -74,6 +78,7 @@ struct FinalCheck {
 // The statistics of one optimizer on one problem.
 struct OptimizerResult {
   std::vector<double> values;  // one per replicate
+  int successes = 0;           // number of replicates with a success (Margin::is_success())
   int infinite = 0;            // number of replicates without a value
   int infeasible = 0;          // those of them whose winner violates a constraint on the test set
   int failed = 0;              // number of replicates in which the optimizer itself failed
@@ -87,30 +92,12 @@ struct OptimizerResult {
   // for a run without a winner.
   std::vector<double> failure_shares;
   Spread failure_spread;
+  double failure_mean_rank = 0;  // by these shares, over replicates; 0 if cells are missing
   double mean_failure_share = 0;
   std::vector<double> ecdf;   // at ProblemResult::checkpoints
   std::vector<Spread> curve;  // likewise
   double cases = 0;           // charged to the budget, median over replicates
   std::optional<FinalCheck> final_check;
-};
-
-// The comparison of two optimizers.
-struct PairResult {
-  std::size_t a = 0;  // index of an optimizer; a's median is not worse than b's
-  std::size_t b = 0;
-  SignedRankTest test;
-  double p_holm = 1;
-  double a12 = 0.5;  // probability that a run of a is better than a run of b
-  WinTieLoss wins;
-  bool is_significant() const {
-    return test.pairs + test.zeros >= kFewestPairs && p_holm < kSignificance;
-  }
-  // Returns whether `winner` is significantly better than the other one. The ranks of the pairs
-  // decide, which may contradict the medians.
-  bool is_beaten_by(std::size_t winner) const {
-    const bool a_is_better = test.negative_rank_sum > test.positive_rank_sum;
-    return is_significant() && winner == (a_is_better ? a : b);
-  }
 };
 
 // The statistics of one problem.
@@ -119,16 +106,20 @@ struct ProblemResult {
   Quantity quantity;  // name and unit of the values
   bool has_front = false;
   std::vector<double> reference_point;  // of the hypervolume
-  double best_known = 0;                // best value on the test set in all curves; may be infinite
-  double start = 0;                     // median value of the start points
+  Margin margin;                        // of the values
+  // The optimum if it is known, else the best value on the test set in all traces or curves; may be
+  // infinite.
+  double best_known = 0;
+  double start = 0;  // median value of the start points
   std::vector<std::int64_t> checkpoints;
   std::vector<double> targets;
+  bool exact_times = false;  // running times come from traces; if false, from curves
   std::vector<OptimizerResult> optimizers;
   std::optional<FriedmanTest> friedman;    // blocks are replicates; empty for fewer than 2
   std::vector<PairResult> pairs;           // every two optimizers; Holm's correction over all pairs
   std::vector<std::size_t> fixed_targets;  // indices of the plan's targets for this problem
   std::vector<PairResult> failure_pairs;   // as `pairs`, for failure shares; only for arms
-  std::vector<std::size_t> order;          // by median, then mean rank, then the plan's order
+  std::vector<std::size_t> order;          // best first (order_optimizers())
 };
 
 // A data or performance profile at one tolerance.
@@ -178,8 +169,9 @@ double calc_failure_share(const CellOutcome& cell);
 CellOutcome count_failures_only(CellOutcome cell, const CaseSets& sets);
 
 // Returns the trial of one run to reach a fixed target: its cost in simulated cases and whether it
-// reached the target.
-Trial make_target_trial(const StudyPlan& plan, const StudyTarget& target, const CellOutcome& cell);
+// reached the target. `points` are the run's designs over the cases, its choices or its trace.
+Trial make_target_trial(const StudyPlan& plan, const StudyTarget& target, const CellOutcome& cell,
+                        std::span<const CurvePoint> points);
 
 // The functions below are the parts of analyze_study().
 
@@ -190,12 +182,19 @@ ProblemResult analyze_problem(const StudyPlan& plan, std::size_t problem,
 OverallResult analyze_overall(const StudyPlan& plan, std::span<const ProblemResult> problems,
                               std::span<const CellOutcome> cells);
 
-// Returns for each checkpoint the worst value on the test set from there on: the quality that the
-// run keeps. The best value so far would be a selection on the test set and profit from luck.
-std::vector<TracePoint> make_trace(const CellOutcome& cell);
+// Returns the margin of the problem's values: its resolution and optimum. Shares of failing test
+// cases and of missed hypervolume have none, so there every difference counts.
+Margin make_margin(const StudyPlan& plan, const StudyProblem& problem);
 
-// Compares every two optimizers. values[o][i] and values[p][i] form a pair.
-std::vector<PairResult> compare_pairs(std::span<const std::vector<double>> values);
+// Returns the quality that a run keeps: for each point of its trace (`exact`) or of its curve the
+// worst value on the test set from there on. The best value so far would be a selection on the test
+// set and profit from luck. With `exact`, the cell must have a trace.
+std::vector<TracePoint> make_trace(const CellOutcome& cell, bool exact);
+
+// Returns the optimizers, best first: by mean rank, then by the number of successes, then by
+// median, then in the plan's order. If cells are missing there are no ranks, and the median decides.
+std::vector<std::size_t> order_optimizers(std::span<const OptimizerResult> optimizers,
+                                          bool complete);
 
 // Set the target times and the failure shares of all optimizers; optimizer `o` has the cells
 // `runs[o]`. Pairs are compared only if `complete`.

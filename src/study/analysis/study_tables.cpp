@@ -89,7 +89,7 @@ std::string make_summary(const StudyPlan& plan, const StudyResult& result) {
       "problem,optimizer,unit,runs,without_value,infeasible,failed,median,lower_quartile,upper_"
       "quartile,"
       "median_lower_95,median_upper_95,mean_rank,anytime_area,median_cases,final_engine,"
-      "final_replicate,final_value,final_failures,final_cases\n";
+      "final_replicate,final_value,final_failures,final_cases,successes,resolution,optimum\n";
   for (const ProblemResult& problem : result.problems) {
     for (std::size_t o = 0; o < problem.optimizers.size(); ++o) {
       const OptimizerResult& one = problem.optimizers[o];
@@ -100,11 +100,13 @@ std::string make_summary(const StudyPlan& plan, const StudyResult& result) {
                          number(one.median_interval.lower), number(one.median_interval.upper),
                          number(one.mean_rank), number(one.anytime_area), number(one.cases));
       if (const auto& check = one.final_check) {
-        csv += fmt::format(",{},{},{},{},{}\n", check->engine, check->replicate,
-                           number(check->value), check->errors.failures, check->errors.cases);
+        csv += fmt::format(",{},{},{},{},{}", check->engine, check->replicate, number(check->value),
+                           check->errors.failures, check->errors.cases);
       } else {
-        csv += ",,,,,\n";
+        csv += ",,,,,";
       }
+      csv += fmt::format(",{},{},{}\n", one.successes, number(problem.margin.resolution),
+                         number(problem.margin.optimum));
     }
   }
   return csv;
@@ -166,16 +168,18 @@ std::string make_friedman(const StudyResult& result) {
 
 std::string make_running_times(const StudyPlan& plan, const StudyResult& result) {
   std::string csv =
-      "problem,optimizer,target_share,target,reached,runs,expected_cases,lower_95,upper_95\n";
+      "problem,optimizer,target_share,target,reached,runs,expected_cases,lower_95,upper_95,"
+      "exact\n";
   for (const ProblemResult& problem : result.problems) {
     for (std::size_t o = 0; o < problem.optimizers.size(); ++o) {
       const OptimizerResult& one = problem.optimizers[o];
       for (std::size_t t = 0; t < one.running_times.size(); ++t) {
         const RunningTime& time = one.running_times[t];
-        csv += fmt::format("{},{},{},{},{},{},{},{},{}\n", quote_csv(problem.label), name(plan, o),
-                           number(kRunningTimeTargets[t]), number(time.target), time.reached,
-                           one.values.size(), number(time.expected), number(time.interval.lower),
-                           number(time.interval.upper));
+        csv +=
+            fmt::format("{},{},{},{},{},{},{},{},{},{}\n", quote_csv(problem.label), name(plan, o),
+                        number(kRunningTimeTargets[t]), number(time.target), time.reached,
+                        one.values.size(), number(time.expected), number(time.interval.lower),
+                        number(time.interval.upper), problem.exact_times ? 1 : 0);
       }
     }
   }
@@ -330,6 +334,7 @@ json optimizer_to_json(const StudyPlan& plan, const ProblemResult& problem,
     values.push_back(value_to_json(value));
   }
   json j = {{"values", values},
+            {"successes", one.successes},
             {"without_value", one.infinite},
             {"infeasible", one.infeasible},
             {"failed", one.failed},
@@ -380,16 +385,20 @@ std::string to_json(const StudyPlan& plan, const StudyResult& result) {
                   {"f", value_to_json(problem.friedman->f)},
                   {"f_p", problem.friedman->f_p_value}};
     }
-    problems.push_back({{"problem", problem.label},
-                        {"quantity", problem.quantity.name},
-                        {"unit", problem.quantity.unit},
-                        {"best_known", value_to_json(problem.best_known)},
-                        {"start", value_to_json(problem.start)},
-                        {"order", order},
-                        {"optimizers", optimizers},
-                        {"friedman", friedman},
-                        {"pairs", pairs},
-                        {"failure_pairs", failure_pairs}});
+    problems.push_back(
+        {{"problem", problem.label},
+         {"quantity", problem.quantity.name},
+         {"unit", problem.quantity.unit},
+         {"resolution", problem.margin.resolution},
+         {"optimum", problem.margin.optimum ? json(*problem.margin.optimum) : json()},
+         {"exact_running_times", problem.exact_times},
+         {"best_known", value_to_json(problem.best_known)},
+         {"start", value_to_json(problem.start)},
+         {"order", order},
+         {"optimizers", optimizers},
+         {"friedman", friedman},
+         {"pairs", pairs},
+         {"failure_pairs", failure_pairs}});
   }
   json pairs = json::array();
   for (const PairResult& pair : result.overall.pairs) {

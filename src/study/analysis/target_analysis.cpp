@@ -17,6 +17,13 @@ bool meets(const StudyTarget& target, const CurvePoint& point) {
           (point.failures && *point.failures <= static_cast<std::uint64_t>(*target.failures)));
 }
 
+// Returns whether the first evaluation counts that meets a target. On arms, designs are chosen on
+// the validation set, which is done at checkpoints.
+bool uses_traces(const StudyPlan& plan, const ProblemResult& result) {
+  const auto problem = std::ranges::find(plan.problems, result.label, &StudyProblem::label);
+  return result.exact_times && problem->loaded.tracking() == nullptr;
+}
+
 TargetTime make_time(const std::string& stream, std::vector<Trial> trials) {
   TargetTime time;
   time.trials = std::move(trials);
@@ -33,12 +40,13 @@ TargetTime make_time(const std::string& stream, std::vector<Trial> trials) {
 
 }  // namespace
 
-Trial make_target_trial(const StudyPlan& plan, const StudyTarget& target, const CellOutcome& cell) {
+Trial make_target_trial(const StudyPlan& plan, const StudyTarget& target, const CellOutcome& cell,
+                        std::span<const CurvePoint> points) {
   // A run that ended early has only spent its own cases, whether it reached the target or not.
   const std::int64_t spent = cell.cases > 0 ? static_cast<std::int64_t>(cell.cases) : plan.budget;
-  const auto first = std::ranges::find_if(
-      cell.choices, [&](const CurvePoint& point) { return meets(target, point); });
-  if (first == cell.choices.end()) {
+  const auto first =
+      std::ranges::find_if(points, [&](const CurvePoint& point) { return meets(target, point); });
+  if (first == points.end()) {
     return {.cost = static_cast<double>(spent), .reached = false};
   }
   return {.cost = static_cast<double>(std::min(first->budget, spent)), .reached = true};
@@ -52,6 +60,7 @@ void add_targets(const StudyPlan& plan, std::span<const std::vector<const CellOu
       continue;
     }
     result.fixed_targets.push_back(t);
+    const bool is_exact = uses_traces(plan, result);
     const auto get_stream = [&](std::size_t o) {
       return fmt::format("analysis/{}/{}/target {}", result.label, plan.optimizers[o].label,
                          target.label);
@@ -59,7 +68,8 @@ void add_targets(const StudyPlan& plan, std::span<const std::vector<const CellOu
     for (std::size_t o = 0; o < runs.size(); ++o) {
       std::vector<Trial> trials;
       for (const CellOutcome* run : runs[o]) {
-        trials.push_back(make_target_trial(plan, target, *run));
+        trials.push_back(
+            make_target_trial(plan, target, *run, is_exact ? *run->trace : run->choices));
       }
       TargetTime time = make_time(get_stream(o), std::move(trials));
       time.kept = static_cast<int>(std::ranges::count_if(runs[o], [&](const CellOutcome* run) {
@@ -99,6 +109,9 @@ CellOutcome count_failures_only(CellOutcome cell, const CaseSets& sets) {
   for (CurvePoint& point : cell.curve) {
     point.value = share(point.failures);
   }
+  for (std::size_t i = 0; cell.trace && i < cell.trace->size(); ++i) {
+    (*cell.trace)[i].value = share((*cell.trace)[i].failures);
+  }
   return cell;
 }
 
@@ -123,6 +136,10 @@ void add_failures(std::span<const std::vector<const CellOutcome*>> runs, bool co
   }
   if (complete) {
     result.failure_pairs = compare_pairs(shares);
+    const std::vector<double> ranks = calc_ranking(make_blocks(shares)).mean_ranks;
+    for (std::size_t o = 0; o < ranks.size(); ++o) {
+      result.optimizers[o].failure_mean_rank = ranks[o];
+    }
   }
 }
 

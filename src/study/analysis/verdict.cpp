@@ -7,96 +7,29 @@
 #include <numeric>
 #include <utility>
 
-#include "base/text.hpp"
+#include "study/statistics/power.hpp"
 
 namespace armwright {
 namespace {
-
-const PairResult& find_pair(std::span<const PairResult> pairs, std::size_t a, std::size_t b) {
-  return *std::ranges::find_if(pairs, [&](const PairResult& pair) {
-    return (pair.a == a && pair.b == b) || (pair.a == b && pair.b == a);
-  });
-}
-
-std::string join_names(std::vector<std::string> names) {
-  if (names.size() < 2) {
-    return names.empty() ? "" : names.front();
-  }
-  const std::string last = names.back();
-  names.pop_back();
-  return join(names, ", ") + " and " + last;
-}
-
-constexpr double kSmallestP = 1e-6;
-
-std::string format_p_value(double p) {
-  return fmt::format("{:.2g}", std::max(p, kSmallestP));
-}
-
-std::string format_a12(double a12) {
-  return fmt::format("{:.2f}", a12);
-}
-
-// The optimizers that the first one in the order beats, and those that do not differ significantly
-// from it.
-struct Standing {
-  std::vector<const PairResult*> beaten;
-  std::vector<std::size_t> equal;
-};
-
-Standing find_standing(std::span<const PairResult> pairs, std::span<const std::size_t> order) {
-  Standing standing;
-  for (std::size_t i = 1; i < order.size(); ++i) {
-    const PairResult& pair = find_pair(pairs, order[0], order[i]);
-    if (pair.is_beaten_by(order[0])) {
-      standing.beaten.push_back(&pair);
-    } else {
-      standing.equal.push_back(order[i]);
-    }
-  }
-  return standing;
-}
-
-std::string describe_beaten(const StudyPlan& plan, std::size_t best,
-                            std::span<const PairResult* const> beaten) {
-  std::vector<std::string> names;
-  double least_a12 = 1, most_a12 = 0, worst_p = 0;
-  for (const PairResult* pair : beaten) {
-    const std::size_t other = pair->a == best ? pair->b : pair->a;
-    const double a12 = pair->a == best ? pair->a12 : 1 - pair->a12;
-    names.push_back(plan.optimizers[other].label);
-    least_a12 = std::min(least_a12, a12);
-    most_a12 = std::max(most_a12, a12);
-    worst_p = std::max(worst_p, pair->p_holm);
-  }
-  const std::string a12 = format_a12(least_a12) == format_a12(most_a12)
-                              ? format_a12(least_a12)
-                              : format_a12(least_a12) + " to " + format_a12(most_a12);
-  const bool one = beaten.size() == 1;
-  return fmt::format("{} beats {} (A12 {}, p {}{} after Holm)", plan.optimizers[best].label,
-                     join_names(names), a12, one ? "" : "at most ",
-                     one ? format_p(worst_p) : format_p_value(worst_p));
-}
 
 // Returns "at 5000 simulations", the budget of every optimizer.
 std::string describe_budget(const StudyPlan& plan) {
   return fmt::format("at {} simulations", plan.budget);
 }
 
-// Returns whether the largest possible difference is significant after Holm's correction over so
-// many tests.
-bool can_be_significant(std::ptrdiff_t pairs_of_values, std::size_t tests) {
-  const double least_p = std::ldexp(2.0, -static_cast<int>(pairs_of_values));
-  return least_p * static_cast<double>(tests) < kSignificance;
-}
-
-// Returns the fewest replicates with which the largest possible difference is significant.
-int calc_fewest_replicates(std::size_t pairs) {
-  int replicates = kFewestPairs;
-  while (!can_be_significant(replicates, pairs)) {
-    ++replicates;
+// Says what Friedman's test adds if no pair can be decided or none is significant.
+std::vector<std::string> describe_friedman(const std::optional<FriedmanTest>& test) {
+  if (!test) {
+    return {};
   }
-  return replicates;
+  const std::string p = format_p(test->get_p());
+  return {test->get_p() < kSignificance
+              ? fmt::format("The optimizers do differ (Friedman's test, p {}), but this test does "
+                            "not say which ones.",
+                            p)
+              : fmt::format("Friedman's test does not show that the optimizers differ at all "
+                            "(p {}).",
+                            p)};
 }
 
 std::vector<std::string> describe_problem(const StudyPlan& plan, const ProblemResult& problem,
@@ -117,36 +50,31 @@ std::vector<std::string> describe_problem(const StudyPlan& plan, const ProblemRe
   if (nothing_found) {
     return {where + " no optimizer found a design that has a value on the test set."};
   }
+  std::vector<std::string> sentences;
+  const auto add = [&](const std::vector<std::string>& more) {
+    sentences.insert(sentences.end(), more.begin(), more.end());
+  };
   if (plan.replicates < kFewestPairs) {
-    return {
-        fmt::format("{} nothing can be concluded: there are {} replicates, and of fewer than "
-                    "{} no outcome is significant.",
-                    where, plan.replicates, kFewestPairs)};
+    add(
+        {fmt::format("{} no pair of optimizers can be decided: there are {} replicates, and with "
+                     "fewer than {} no outcome is significant.",
+                     where, plan.replicates, kFewestPairs)});
+    add(describe_friedman(problem.friedman));
+    return sentences;
   }
   if (!can_be_significant(plan.replicates, problem.pairs.size())) {
-    return {
-        fmt::format("{} nothing can be concluded: with {} replicates and {} pairs of optimizers "
-                    "no difference, however clear, is significant after Holm's correction; {} "
-                    "replicates would do.",
-                    where, plan.replicates, problem.pairs.size(),
-                    calc_fewest_replicates(problem.pairs.size()))};
+    add({fmt::format(
+        "{} no pair of optimizers can be decided: with {} replicates and {} pairs of "
+        "optimizers no difference, however clear, is significant after Holm's "
+        "correction; {} replicates would do.",
+        where, plan.replicates, problem.pairs.size(), find_fewest_pairs(problem.pairs.size()))});
+    add(describe_friedman(problem.friedman));
+    return sentences;
   }
-  const std::size_t best = problem.order.front();
-  const Standing standing = find_standing(problem.pairs, problem.order);
-  std::vector<std::string> equal;
-  for (const std::size_t i : standing.equal) {
-    equal.push_back(plan.optimizers[i].label);
-  }
-  std::vector<std::string> sentences;
-  if (!standing.beaten.empty()) {
-    sentences.push_back(fmt::format("{} {}.", where, describe_beaten(plan, best, standing.beaten)));
-  }
+  add(describe_standing(plan, where, "On " + problem.label, problem.order, problem.pairs));
+  add(describe_medians(plan, problem));
   if (std::ranges::none_of(problem.pairs, &PairResult::is_significant)) {
-    sentences.push_back(where + " no two optimizers can be told apart.");
-  } else if (!equal.empty()) {
-    sentences.push_back(fmt::format("{} {} cannot be told apart from {}.",
-                                    standing.beaten.empty() ? where : "On " + problem.label,
-                                    plan.optimizers[best].label, join_names(equal)));
+    add(describe_friedman(problem.friedman));
   }
   return sentences;
 }
@@ -161,21 +89,13 @@ std::vector<std::string> describe_failures(const StudyPlan& plan, const ProblemR
     return {};
   }
   const std::string where = fmt::format("On {}, by failed test cases,", problem.label);
-  if (std::ranges::none_of(problem.failure_pairs, &PairResult::is_significant)) {
-    return {where + " no two optimizers can be told apart."};
-  }
   std::vector<std::size_t> order(problem.optimizers.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, {}, [&](std::size_t o) {
     const OptimizerResult& one = problem.optimizers[o];
-    return std::pair(one.failure_spread.median, one.mean_failure_share);
+    return std::pair(one.failure_mean_rank, one.mean_failure_share);
   });
-  const Standing standing = find_standing(problem.failure_pairs, order);
-  if (standing.beaten.empty()) {
-    return {fmt::format("{} {} fails least, but beats none of the others.", where,
-                        plan.optimizers[order.front()].label)};
-  }
-  return {fmt::format("{} {}.", where, describe_beaten(plan, order.front(), standing.beaten))};
+  return describe_standing(plan, where, where, order, problem.failure_pairs);
 }
 
 std::vector<std::string> describe_overall(const StudyPlan& plan, const StudyResult& result) {
@@ -196,28 +116,29 @@ std::vector<std::string> describe_overall(const StudyPlan& plan, const StudyResu
       plan.problems.size(), join_names(leaders), leaders.size() == 1 ? "has" : "share",
       stability.full.mean_ranks[stability.full.leaders.front()], plan.optimizers.size(), changes,
       stability.without.size()));
-  if (std::ssize(plan.problems) < kFewestPairs) {
+  const auto add = [&](const std::vector<std::string>& more) {
+    sentences.insert(sentences.end(), more.begin(), more.end());
+  };
+  const auto problems = static_cast<int>(plan.problems.size());
+  const std::size_t pairs = result.overall.pairs.size();
+  if (!can_be_significant(problems, pairs)) {
     sentences.push_back(
-        fmt::format("That is no more than a description: of {} problems, fewer than {}, nothing "
-                    "can be concluded about others.",
-                    plan.problems.size(), kFewestPairs));
+        problems < kFewestPairs
+            ? fmt::format("These ranks only describe the problems: with {} problems, fewer than "
+                          "{}, no pair of optimizers can be decided over problems.",
+                          problems, kFewestPairs)
+            : fmt::format("These ranks only describe the problems: with {} problems and {} pairs "
+                          "of optimizers no difference over problems is significant after Holm's "
+                          "correction.",
+                          problems, pairs));
+    add(describe_friedman(result.overall.friedman));
     return sentences;
   }
-  if (!can_be_significant(std::ssize(plan.problems), result.overall.pairs.size())) {
-    sentences.push_back(
-        fmt::format("That is no more than a description: with {} problems and {} "
-                    "pairs of optimizers no difference is significant after Holm's "
-                    "correction.",
-                    plan.problems.size(), result.overall.pairs.size()));
-    return sentences;
+  add(describe_standing(plan, "Over problems", "Over problems", stability.full.order,
+                        result.overall.pairs));
+  if (std::ranges::none_of(result.overall.pairs, &PairResult::is_significant)) {
+    add(describe_friedman(result.overall.friedman));
   }
-  const std::size_t best = stability.full.order.front();
-  const Standing standing = find_standing(result.overall.pairs, stability.full.order);
-  sentences.push_back(
-      standing.beaten.empty()
-          ? fmt::format("Over problems {} cannot be told apart from any other.",
-                        plan.optimizers[best].label)
-          : fmt::format("Over problems {}.", describe_beaten(plan, best, standing.beaten)));
   return sentences;
 }
 
@@ -249,8 +170,25 @@ std::vector<std::string> describe_raceless(const StudyPlan& plan) {
   return sentences;
 }
 
+// Names the problems whose running times are as coarse as the checkpoints.
+std::vector<std::string> describe_coarse_times(const StudyResult& result) {
+  std::vector<std::string> labels;
+  for (const ProblemResult& problem : result.problems) {
+    if (!problem.exact_times) {
+      labels.push_back(problem.label);
+    }
+  }
+  if (labels.empty()) {
+    return {};
+  }
+  return {
+      fmt::format("Running times on {} are only as exact as the checkpoints, because cells of "
+                  "version 1.0 do not record when each incumbent was found.",
+                  join_names(labels))};
+}
+
 std::vector<std::string> describe_limits(const StudyPlan& plan, const StudyResult& result) {
-  std::vector<std::string> sentences;
+  std::vector<std::string> sentences = describe_coarse_times(result);
   std::vector<std::string> failed;
   for (std::size_t o = 0; o < plan.optimizers.size(); ++o) {
     int runs = 0;
@@ -309,10 +247,6 @@ std::vector<std::string> describe_limits(const StudyPlan& plan, const StudyResul
 }
 
 }  // namespace
-
-std::string format_p(double p) {
-  return p < kSmallestP ? "< 1e-06" : "= " + format_p_value(p);
-}
 
 std::vector<std::string> describe_verdict(const StudyPlan& plan, const StudyResult& result) {
   std::vector<std::string> verdict;

@@ -1,6 +1,7 @@
 // Writes the verdict of a study in plain words. The verdict uses only the statistics in the result.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,5 +21,19 @@ std::vector<std::string> describe_target_verdict(const StudyPlan& plan, const St
 
 // Returns "= 0.0004" or "< 1e-06".
 std::string format_p(double p);
+// Returns the pair of two optimizers, in either order. It must be among `pairs`.
+const PairResult& find_pair(std::span<const PairResult> pairs, std::size_t a, std::size_t b);
+
+// Internal to study/analysis.
+// Returns "a, b and c".
+std::string join_names(std::vector<std::string> names);
+// Says whom the first optimizer of `order` beats, who beats it, and who cannot be told apart from
+// it. The first sentence begins with `where`, the others with `again`.
+std::vector<std::string> describe_standing(const StudyPlan& plan, const std::string& where,
+                                           const std::string& again,
+                                           std::span<const std::size_t> order,
+                                           std::span<const PairResult> pairs);
+// Names the pairs with the leader in which the loser has the better median.
+std::vector<std::string> describe_medians(const StudyPlan& plan, const ProblemResult& problem);
 
 }  // namespace armwright

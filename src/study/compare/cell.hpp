@@ -54,7 +54,11 @@ struct CellOutcome {
   // The start point, which is the same for all optimizers.
   double start_value = 0;
   std::optional<std::uint64_t> start_failures;  // as CurvePoint::failures
-  std::vector<CurvePoint> curve;
+  std::vector<CurvePoint> curve;                // the incumbents at the checkpoints
+  // The run's incumbents, each with the number of cases when it was found (incumbents.hpp). Arms
+  // have at most kMostTraced of them, and those of the curve. Nothing for cells that version 1.0
+  // recorded.
+  std::optional<std::vector<CurvePoint>> trace;
   // Only for plans with targets: the winner on the validation set if the run had ended at that
   // budget (choices.hpp).
   std::vector<CurvePoint> choices;
@@ -63,6 +67,7 @@ struct CellOutcome {
   std::vector<std::vector<double>> front;
 };
 
+// Returns the text of cell.json.
 std::string to_json(const CellOutcome& outcome);
 // Reads the text of a cell.json. Throws Error{bad_data} with the name of `file`.
 CellOutcome parse_cell(const std::string& json, const std::filesystem::path& file);

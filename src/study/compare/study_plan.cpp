@@ -14,6 +14,7 @@
 #include "optimizers/interface/search_space.hpp"
 #include "problems/config/problem_loader.hpp"
 #include "sim/tracking/design.hpp"
+#include "study/compare/incumbents.hpp"
 
 namespace armwright {
 namespace {
@@ -198,9 +199,13 @@ StudyCost calc_cost(const StudyPlan& plan) {
     // With targets, the winners at all checkpoints are chosen and tested as well.
     const bool has_targets = !plan.targets.empty() || plan.judge_along;
     cost.validation += runs * judged * (has_targets ? tested : 1) * sets.validation_cases;
-    // Tested designs: the winner, the start, the incumbents at the checkpoints, and a front.
-    cost.test +=
-        runs * (2 + tested * (has_targets ? 2 : 1) + (fronts ? judged : 0)) * sets.test_cases;
+    // Tested designs: the winner, the start, the incumbents at the checkpoints, those of an arm's
+    // trace, and a front.
+    const std::int64_t evaluations = plan.budget / problem.schedule.cases;
+    const std::int64_t traced =
+        problem.loaded.tracking() == nullptr ? 0 : std::min<std::int64_t>(evaluations, kMostTraced);
+    cost.test += runs * (2 + tested * (has_targets ? 2 : 1) + traced + (fronts ? judged : 0)) *
+                 sets.test_cases;
     if (!plan.final_engine.empty() && problem.loaded.tracking()) {
       cost.test += static_cast<std::int64_t>(plan.optimizers.size()) * sets.test_cases;
     }

@@ -34,18 +34,6 @@ void check_running_times(std::span<const double> running_times) {
   }
 }
 
-// Draws trials until one has reached the target; at least one must have.
-double draw_running_time(std::span<const Trial> trials, RandomStream& random) {
-  double cost = 0;
-  while (true) {
-    const Trial& trial = trials[random.below(trials.size())];
-    cost += trial.cost;
-    if (trial.reached) {
-      return cost;
-    }
-  }
-}
-
 std::vector<std::size_t> draw_numbers(std::size_t count, RandomStream& random) {
   std::vector<std::size_t> numbers(count);
   for (std::size_t& number : numbers) {
@@ -127,32 +115,6 @@ double calc_expected_running_time(std::span<const Trial> trials) {
     cost += trial.cost;
   }
   return successes == 0 ? kInfinity : cost / successes;
-}
-
-std::vector<double> simulate_running_times(std::span<const Trial> trials, int count,
-                                           std::string_view stream) {
-  const int successes = count_successes(trials);
-  RandomStream random(stream);
-  std::vector<double> times;
-  for (int i = 0; i < count; ++i) {
-    times.push_back(successes == 0 ? kInfinity : draw_running_time(trials, random));
-  }
-  return times;
-}
-
-Interval calc_expected_running_time_interval(std::span<const Trial> trials, double level,
-                                             int resamples, std::string_view stream) {
-  const int successes = count_successes(trials);
-  RandomStream random(stream);
-  std::vector<double> means;
-  for (int resample = 0; resample < resamples; ++resample) {
-    double sum = successes == 0 ? kInfinity : 0;
-    for (int i = 0; i < successes; ++i) {
-      sum += draw_running_time(trials, random);
-    }
-    means.push_back(sum / std::max(successes, 1));
-  }
-  return calc_percentile_interval(means, level);
 }
 
 Interval calc_resampled_running_time_interval(std::span<const Trial> trials, double level,

@@ -38,17 +38,6 @@ struct Trial {
 // the optimizer is restarted until it reaches the target. Infinity if no trial reached it.
 double calc_expected_running_time(std::span<const Trial> trials);
 
-// Returns `count` running times with simulated restarts: trials are drawn with replacement until
-// one has reached the target, and their costs are added. The mean tends to ERT. All are infinite if
-// no trial reached the target.
-std::vector<double> simulate_running_times(std::span<const Trial> trials, int count,
-                                           std::string_view stream);
-
-// Returns a bootstrap interval of ERT. A resample is the mean of as many simulated running times as
-// there are trials that reached the target. Both ends are infinite if there is no such trial.
-Interval calc_expected_running_time_interval(std::span<const Trial> trials, double level,
-                                             int resamples, std::string_view stream);
-
 // Returns the percentile bootstrap interval of ERT over trials: each resample has as many trials as
 // there are, drawn with replacement. A resample in which no trial reached the target has an
 // infinite ERT, so one or both ends may be infinite.

@@ -16,12 +16,11 @@
 namespace armwright {
 namespace {
 
-// Returns twice the probability that the positive ranks, with random signs, have a sum of at most
-// `sum`, the smaller of the two observed sums. Counts are whole numbers up to 2^50, so they are
-// exact.
-double calc_exact_p(const std::vector<double>& ranks, double sum) {
-  // Ranks are whole numbers or halves, so the doubled sums are indices.
-  std::vector<double> ways = {1};  // ways[s]: number of choices of signs with the doubled sum s
+// Returns how many choices of signs give the positive ranks each doubled sum; the index is the
+// doubled sum, because ranks are whole numbers or halves. Counts are whole numbers up to 2^50, so
+// they are exact.
+std::vector<double> count_signs(const std::vector<double>& ranks) {
+  std::vector<double> ways = {1};
   for (const double rank : ranks) {
     const auto doubled = static_cast<std::size_t>(2 * rank);
     ways.resize(ways.size() + doubled, 0);
@@ -29,6 +28,13 @@ double calc_exact_p(const std::vector<double>& ranks, double sum) {
       ways[s] += ways[s - doubled];
     }
   }
+  return ways;
+}
+
+// Returns twice the probability that the positive ranks, with random signs, have a sum of at most
+// `sum`, the smaller of the two observed sums.
+double calc_exact_p(const std::vector<double>& ranks, double sum) {
+  const std::vector<double> ways = count_signs(ranks);
   const auto last = static_cast<std::size_t>(2 * sum);
   double favourable = 0;
   for (std::size_t s = 0; s <= last; ++s) {
@@ -115,6 +121,37 @@ SignedRankTest calc_signed_rank_test(std::span<const double> a, std::span<const 
   test.p_value = test.exact ? calc_exact_p(ranks, smaller)
                             : calc_normal_p(test.pairs, calc_tie_term(sizes), smaller);
   return test;
+}
+
+double FriedmanTest::get_p() const {
+  return std::isfinite(f) ? f_p_value : p_value;
+}
+
+std::optional<int> calc_critical_rank_sum(int pairs, double level) {
+  check_range(pairs, 1, std::numeric_limits<int>::max(), "signed-rank test: the number of pairs");
+  if (!(level > 0 && level < 1)) {
+    throw std::invalid_argument("signed-rank test: the level must lie between 0 and 1");
+  }
+  if (pairs > kExactPairs) {
+    const double n = pairs;
+    const double deviation = std::sqrt(n * (n + 1) * (2 * n + 1) / 24);
+    const double z = quantile(complement(boost::math::normal(), level / 2));
+    double sum = std::floor(n * (n + 1) / 4 - z * deviation);
+    sum -= calc_normal_p(n, 0, sum) < level ? 0 : 1;  // the bound itself is not below the level
+    return sum < 0 ? std::nullopt : std::optional(static_cast<int>(sum));
+  }
+  std::vector<double> ranks(static_cast<std::size_t>(pairs));
+  std::iota(ranks.begin(), ranks.end(), 1.0);
+  const std::vector<double> ways = count_signs(ranks);
+  std::optional<int> critical;
+  double favourable = 0;
+  for (int sum = 0;; ++sum) {
+    favourable += ways[2 * static_cast<std::size_t>(sum)];
+    if (std::ldexp(favourable, 1 - pairs) >= level) {
+      return critical;
+    }
+    critical = sum;
+  }
 }
 
 std::vector<double> adjust_holm(std::span<const double> p_values) {

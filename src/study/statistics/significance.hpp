@@ -2,10 +2,16 @@
 // without a result. All functions throw std::invalid_argument for NaN and -infinity.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
 namespace armwright {
+
+// A difference is significant if its p-value, adjusted for the number of tests, is below this.
+inline constexpr double kSignificance = 0.05;
+// With fewer pairs no outcome is significant: 2 / 2^5 > 0.05.
+inline constexpr int kFewestPairs = 6;
 
 // The result of Friedman's test: do k treatments differ, if they are ranked within each of n
 // blocks? Source: Friedman, M. 1937, The use of ranks to avoid the assumption of normality implicit
@@ -32,6 +38,8 @@ struct FriedmanTest {
   double f_degrees_1 = 0;
   double f_degrees_2 = 0;
   double f_p_value = 1;
+  // Returns the p-value of F, or of chi^2 where F is infinite.
+  double get_p() const;
 };
 
 // Tests blocks[i][j], the result of treatment j in block i. Also throws std::invalid_argument for
@@ -66,6 +74,11 @@ struct SignedRankTest {
 
 // Tests the pairs a[i] and b[i]. Also throws std::invalid_argument for different lengths.
 SignedRankTest calc_signed_rank_test(std::span<const double> a, std::span<const double> b);
+
+// Returns the largest rank sum of one side at which this test has a p-value below `level`, for
+// `pairs` pairs (at least 1) that differ and without ties. Nothing if no outcome has such a p-value.
+// Throws std::invalid_argument for a level outside (0, 1).
+std::optional<int> calc_critical_rank_sum(int pairs, double level);
 
 // Adjusts the p-values of several tests, and returns them in their order. Rejecting all hypotheses
 // with an adjusted value of at most alpha rejects any true one with probability at most alpha, also

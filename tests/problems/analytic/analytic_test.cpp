@@ -106,6 +106,8 @@ TEST_P(AnalyticTable, DescribesItselfConsistently) {
     EXPECT_THAT(at_start.constraint_values, SizeIs(description.constraints.size()));
     EXPECT_THAT(at_start.constraint_values, testing::Each(testing::Le(0)));
     EXPECT_GT(at_start.objectives.at(0), calc_value(*problem, description.known_optimum));
+    EXPECT_EQ(description.optimum, calc_value(*problem, description.known_optimum));
+    EXPECT_EQ(description.resolution, 1e-8);
   }
 }
 

@@ -96,6 +96,25 @@ TEST(ErrorStatistic, NeverFallsWhereACaseRises) {
   }
 }
 
+// 1 um of error, as the objective counts it. A total torque has the same share of its scale.
+TEST(Resolution, IsAMicrometreOfErrorInTheUnitOfTheObjective) {
+  TrackingObjective objective;
+  objective.error_scale_m = 0.004;
+  objective.torque_scale_n_m = 8000;
+  EXPECT_EQ(calc_resolution(objective), 1e-6);
+  objective.logarithm = true;
+  EXPECT_EQ(calc_resolution(objective), 1e-6);
+  objective.energy_weight = 1;
+  EXPECT_DOUBLE_EQ(calc_resolution(objective), 2.5e-4);
+  for (const Kind kind : {Kind::error_and_torque, Kind::error_vs_torque}) {
+    EXPECT_DOUBLE_EQ(calc_resolution({.kind = kind, .error_scale_m = 0.004}), 2.5e-4);
+  }
+  EXPECT_EQ(calc_resolution({.kind = Kind::error_with_torque_limit}), 1e-6);
+  objective.kind = Kind::torque_with_error_limit;
+  EXPECT_DOUBLE_EQ(calc_resolution(objective), 2);
+  EXPECT_EQ(load_tracking("q1-complex")->description().resolution, 1e-6);
+}
+
 TEST(ObjectiveTerms, EnergyAndDurationAreAddedInPartsOfTheirScales) {
   TrackingObjective objective;
   objective.error_scale_m = 0.5;

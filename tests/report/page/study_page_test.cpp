@@ -109,7 +109,8 @@ TEST_F(StudyPage, ShowsTheNumbersOfTheTables) {
   EXPECT_EQ(page["overall"]["mean_ranks"].get<std::vector<double>>(),
             result.overall.ranking.full.mean_ranks);
   EXPECT_THAT(page["verdict"].get<std::vector<std::string>>(),
-              Contains(HasSubstr("of 2 problems, fewer than 6, nothing can be concluded")));
+              Contains(HasSubstr("with 2 problems, fewer than 6, no pair of optimizers can be "
+                                 "decided over problems")));
 }
 
 TEST_F(StudyPage, IsTheSameBytesForAnyNumberOfThreadsAndChangesNothing) {

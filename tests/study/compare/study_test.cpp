@@ -114,14 +114,15 @@ TEST_F(StudyTest, TheVerdictFollowsFromTheStatistics) {
       const bool says_so = std::ranges::any_of(verdict, [&](const std::string& sentence) {
         return sentence.starts_with(beats) && sentence.find(other) != std::string::npos;
       });
-      EXPECT_EQ(says_so, pair.is_significant()) << problem.label << " " << other;
+      EXPECT_EQ(says_so, pair.is_won_by(best)) << problem.label << " " << other;
     }
   }
   EXPECT_THAT(verdict,
-              Contains(HasSubstr("of 2 problems, fewer than 6, nothing can be concluded")));
+              Contains(HasSubstr("with 2 problems, fewer than 6, no pair of optimizers can be "
+                                 "decided over problems")));
 }
 
-TEST_F(StudyTest, OfFewerThanSixPairsNothingIsConcluded) {
+TEST_F(StudyTest, OfFewerThanSixPairsNoPairIsDecided) {
   StudyRequest request = make_small_request();
   request.replicates = 5;
   const StudyPlan plan = make_study_plan(request);
@@ -132,7 +133,7 @@ TEST_F(StudyTest, OfFewerThanSixPairsNothingIsConcluded) {
     }
   }
   EXPECT_THAT(describe_verdict(plan, result),
-              Contains(HasSubstr("nothing can be concluded: there are 5 replicates")));
+              Contains(HasSubstr("no pair of optimizers can be decided: there are 5 replicates")));
 }
 
 TEST_F(StudyTest, WhereNoDifferenceCouldBeSignificantTheVerdictSaysSo) {
@@ -206,32 +207,6 @@ TEST_F(StudyTest, WithoutAllCellsThereIsNoVerdict) {
   const auto verdict = describe_verdict(plan, result);
   EXPECT_THAT(verdict, Contains(HasSubstr("On rosenbrock at 120 simulations there is no verdict")));
   EXPECT_THAT(verdict, Contains(HasSubstr("1 of 48 cells have not ended")));
-}
-
-// An optimizer with the lower median that loses the pairs does not win.
-TEST(PairResult, TheDirectionIsThatOfThePairs) {
-  std::vector<double> a, b;
-  for (int i = 0; i < 15; ++i) {
-    a.push_back(i == 7 ? 6.95 : i + 0.5);
-    b.push_back(i);
-  }
-  const std::vector<std::vector<double>> values = {a, b};
-  const PairResult pair = compare_pairs(values).front();
-  EXPECT_EQ(pair.a, 0u);  // has the lower median
-  EXPECT_TRUE(pair.is_significant());
-  EXPECT_FALSE(pair.is_beaten_by(0));
-  EXPECT_TRUE(pair.is_beaten_by(1));
-}
-
-// The trace counts the quality that a run keeps, not a value that it had once by luck.
-TEST(Trace, IsTheWorstFromThereOn) {
-  CellOutcome cell;
-  cell.curve = {{10, 5, {}}, {20, 1, {}}, {30, 4, {}}, {40, 3, {}}};
-  std::vector<double> values;
-  for (const TracePoint& point : make_trace(cell)) {
-    values.push_back(point.best_value);
-  }
-  EXPECT_THAT(values, testing::ElementsAre(5, 4, 4, 3));
 }
 
 TEST_F(StudyTest, FrontsAreComparedByTheHypervolumeTheyMiss) {

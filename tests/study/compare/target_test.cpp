@@ -60,7 +60,8 @@ value = 1.0
 failures = 1
 )");
   const auto find = [&](std::vector<CurvePoint> choices) {
-    return make_target_trial(plan, plan.targets[0], make_cell("ga", 1, std::move(choices)));
+    const CellOutcome cell = make_cell("ga", 1, std::move(choices));
+    return make_target_trial(plan, plan.targets[0], cell, cell.choices);
   };
   const auto expect = [](const Trial& trial, double cost, bool reached) {
     EXPECT_EQ(trial.cost, cost);
@@ -78,7 +79,7 @@ failures = 1
   const auto find_ended = [&](std::vector<CurvePoint> choices) {
     CellOutcome cell = make_cell("ga", 1, std::move(choices));
     cell.cases = 25;
-    return make_target_trial(plan, plan.targets[0], cell);
+    return make_target_trial(plan, plan.targets[0], cell, cell.choices);
   };
   expect(find_ended({{10, 1.1, 0}, {20, 1.1, 0}, {30, 0.4, 0}}), 25, true);
   expect(find_ended({{10, 1.1, 0}, {20, 0.4, 0}, {30, 0.4, 0}}), 20, true);
@@ -138,7 +139,7 @@ TEST(FailureShares, AreComparedAsValuesAre) {
   EXPECT_DOUBLE_EQ(result.optimizers[0].mean_failure_share, 0.4);
   ASSERT_EQ(result.failure_pairs.size(), 1u);
   EXPECT_EQ(result.failure_pairs[0].test.p_value, 2.0 / 128);  // all seven in one direction
-  EXPECT_TRUE(result.failure_pairs[0].is_beaten_by(1));
+  EXPECT_TRUE(result.failure_pairs[0].is_won_by(1));
   EXPECT_FALSE(result.pairs[0].is_significant());  // their values are equal
 }
 

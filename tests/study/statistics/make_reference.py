@@ -65,8 +65,8 @@ def suits_r(case):
         return any(len(set(block)) > 1 for block in arguments)
     if function == "kendall":
         return all(len(set(xs)) > 1 for xs in arguments)
-    if function == "restart_interval":
-        return any(arguments[1])
+    if function == "resampled_interval":
+        return True
     return function == "a12" and finite
 
 

@@ -40,11 +40,11 @@ friedman <- function(...) {
   c(colMeans(ranks), test$statistic, test$parameter, test$p.value, f[1], k - 1, (k - 1) * (n - 1), f[2])
 }
 
-restart_interval <- function(costs, reached, options) {
-  successes <- sum(reached)
+resampled_interval <- function(costs, reached, options) {
+  n <- length(costs)
   level <- options[1]
-  failures <- qnbinom(c(1 - level, 1 + level) / 2, successes, successes / length(costs))
-  costs[reached == 1][1] + failures / successes * c(costs[reached == 0], 0)[1]
+  successes <- qbinom(c(1 + level, 1 - level) / 2, n, sum(reached) / n)
+  ifelse(successes == 0, Inf, c(costs[reached == 1], 0)[1] + (n - successes) / successes * c(costs[reached == 0], 0)[1])
 }
 
 functions <- list(
@@ -60,7 +60,7 @@ functions <- list(
   holm = function(p) p.adjust(p, "holm"),
   a12 = function(a, b) unname(wilcox.test(b, a, exact = FALSE)$statistic) / (length(a) * length(b)),
   kendall = function(a, b) cor(a, b, method = "kendall"),
-  restart_interval = restart_interval,
+  resampled_interval = resampled_interval,
   runtime_ecdf = function(costs, times) ecdf(times)(pmin(costs, .Machine$double.xmax))
 )
 

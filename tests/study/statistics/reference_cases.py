@@ -97,9 +97,9 @@ def make_cases():
     for n, successes, level in sure:  # other levels lie where the draws' luck would show
         reached = [float(i < successes) for i in range(n)]
         costs = [70.0 if r else 1000.0 for r in reached]
-        yield "restart_interval", f"{successes} of {n}", [costs, reached, [level, 100000]]
-    yield "restart_interval", "all", [[70.0] * 4, [1.0] * 4, [0.95, 1000]]
-    yield "restart_interval", "none", [[70.0] * 4, [0.0] * 4, [0.95, 1000]]
+        yield "resampled_interval", f"{successes} of {n}", [costs, reached, [level, 100000]]
+    yield "resampled_interval", "all", [[70.0] * 4, [1.0] * 4, [0.95, 1000]]
+    yield "resampled_interval", "none", [[70.0] * 4, [0.0] * 4, [0.95, 1000]]
     times = [INF if draw.random() < 0.3 else float(draw.randrange(1, 2000)) for _ in range(60)]
     yield "runtime_ecdf", "random", [[0.0, 1.0, 10.0, 100.0, times[0], 1000.0, INF], times]
     yield "runtime_ecdf", "never", [[0.0, 1.0, INF], [INF] * 3]

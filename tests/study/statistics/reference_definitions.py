@@ -10,22 +10,20 @@ def ert(costs, reached):
     return [math.fsum(costs) / sum(reached) if sum(reached) else math.inf]
 
 
-def restart_interval(costs, reached, options):
-    """All failures cost the same, and all successes: the number of failures before the k-th success has the
-    negative binomial distribution."""
+def resampled_interval(costs, reached, options):
+    """All failures cost the same, and all successes: the number of successes in a resample has the binomial
+    distribution, and ERT falls with it."""
     level, resamples = options
-    successes = sum(reached)
-    if successes == 0:
-        return [math.inf, math.inf]
-    success = max(c for c, r in zip(costs, reached) if r)
+    n = len(costs)
+    success = max((c for c, r in zip(costs, reached) if r), default=0)
     failure = max((c for c, r in zip(costs, reached) if not r), default=0)
-    failures = stats.nbinom(successes, successes / len(costs))
+    successes = stats.binom(n, sum(reached) / n)
     result = []
-    for p in ((1 - level) / 2, (1 + level) / 2):
+    for p in ((1 + level) / 2, (1 - level) / 2):
         deviation = math.sqrt(p * (1 - p) / resamples)
-        count = failures.ppf(p)
-        assert failures.ppf(p - 4 * deviation) == count == failures.ppf(p + 4 * deviation)
-        result.append(success + count * failure / successes)
+        count = successes.ppf(p)
+        assert successes.ppf(p - 4 * deviation) == count == successes.ppf(p + 4 * deviation)
+        result.append(success + (n - count) * failure / count if count else math.inf)
     return result
 
 

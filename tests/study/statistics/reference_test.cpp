@@ -126,10 +126,10 @@ const std::map<std::string, std::function<Numbers(const Table&)>>& functions() {
       {"kendall", [](const Table& in) { return Numbers{calc_kendall_tau(in[0], in[1])}; }},
       {"ranking_stability", list_stability},
       {"ert", [](const Table& in) { return Numbers{calc_expected_running_time(make_trials(in))}; }},
-      {"restart_interval",
+      {"resampled_interval",
        [](const Table& in) {
-         return list(calc_expected_running_time_interval(make_trials(in), in[2][0],
-                                                         static_cast<int>(in[2][1]), "restarts"));
+         return list(calc_resampled_running_time_interval(make_trials(in), in[2][0],
+                                                          static_cast<int>(in[2][1]), "trials"));
        }},
       {"runtime_ecdf", [](const Table& in) { return calc_runtime_ecdf(in[1], in[0]); }},
       {"anytime_area",

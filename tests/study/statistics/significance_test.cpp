@@ -102,6 +102,35 @@ TEST(SignedRank, RefusesWhatIsNoPair) {
   EXPECT_THAT([] { calc_signed_rank_test(std::vector{1.0}, std::vector{kNan}); }, refuses("nan"));
 }
 
+// The largest rank sum with a p-value below the level, found here by the test itself.
+TEST(SignedRank, TheCriticalRankSumIsTheLastBelowTheLevel) {
+  const auto calc_p = [](int pairs, int sum) {
+    std::vector<double> a = make_steps(pairs);
+    for (int rank = pairs; rank > 0; --rank) {  // each sum is a sum of different ranks
+      if (rank <= sum) {
+        a[static_cast<std::size_t>(rank - 1)] = -rank;
+        sum -= rank;
+      }
+    }
+    return calc_signed_rank_test(a, std::vector<double>(static_cast<std::size_t>(pairs), 0))
+        .p_value;
+  };
+  for (const int pairs : {6, 9, 15, 50, 51, 200}) {
+    for (const double level : {0.05, 0.05 / 6, 0.05 / 66}) {
+      const auto critical = calc_critical_rank_sum(pairs, level);
+      const double least = calc_p(pairs, 0);
+      ASSERT_EQ(critical.has_value(), least < level) << pairs << " " << level;
+      if (critical) {
+        EXPECT_LT(calc_p(pairs, *critical), level) << pairs << " " << level;
+        EXPECT_GE(calc_p(pairs, *critical + 1), level) << pairs << " " << level;
+      }
+    }
+  }
+  EXPECT_EQ(calc_critical_rank_sum(6, 1 / 32.0), std::nullopt);  // p = 1/32 is not below it
+  EXPECT_THAT([] { calc_critical_rank_sum(0, 0.05); }, refuses("must lie from 1"));
+  EXPECT_THAT([] { calc_critical_rank_sum(6, 1); }, refuses("between 0 and 1"));
+}
+
 TEST(Friedman, IsItsEquationsOnASmallTable) {
   // Ranks (1,2,3), (1,3,2), (1,2,3): sums 3, 7 and 8, which differ from 6 by -3, 1 and 2.
   const FriedmanTest test = calc_friedman_test(
@@ -124,6 +153,7 @@ TEST(Friedman, OfCompleteAgreementHasAnInfiniteF) {
     EXPECT_NEAR(test.p_value, std::exp(-5), 1e-15);
     EXPECT_EQ(test.f, kInf);
     EXPECT_EQ(test.f_p_value, 0);
+    EXPECT_EQ(test.get_p(), test.p_value);
   }
 }
 

@@ -207,7 +207,7 @@ export function tabulate_pairs(scope: Scope, problems: StudyProblem[]): DataTabl
     [] as (string | number)[][],
   );
   const columns = [
-    { label: 'a, with the better median' },
+    { label: 'a, better by the pairs' },
     { label: 'b' },
     { label: 'p', numeric: true },
     { label: 'p after Holm', numeric: true },

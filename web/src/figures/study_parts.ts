@@ -122,7 +122,7 @@ export function describe_size(scope: Scope): string {
   const missing = scope.problems.reduce((sum, problem) => sum + problem.missing, 0);
   const size =
     n === 1
-      ? 'There is one replicate per optimizer, so nothing can be concluded from its value.'
+      ? 'There is one replicate per optimizer, so its value decides nothing.'
       : 'There are ' + n + ' replicates per optimizer.';
   return missing === 0
     ? size
@@ -131,6 +131,13 @@ export function describe_size(scope: Scope): string {
         missing +
         (missing === 1 ? ' run has' : ' runs have') +
         ' not ended. The numbers are those of the runs that have ended, so optimizers may be compared on different replicates.';
+}
+
+// Says how exact the running times are.
+export function describe_times(scope: Scope): string {
+  return scope.problems.every((problem) => problem.exact_times)
+    ? ''
+    : 'Running times are as coarse as the checkpoints, because some runs were recorded by version 1.0. ';
 }
 
 export function end_title(scope: Scope, title: string): string {

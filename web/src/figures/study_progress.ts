@@ -10,6 +10,7 @@ import { format_number } from '../numbers';
 import {
   convert_all,
   describe_size,
+  describe_times,
   describe_value,
   end_title,
   get_curve_name,
@@ -191,8 +192,9 @@ export function make_runtime_ecdf(scope: Scope): Figure {
     title: end_title(scope, 'Targets reached over the budget'),
     caption:
       'The share of all pairs of a run and a target that are reached, against the number of simulated training cases. Curves that are higher and further left are better. ' +
-      'Targets lie between the start and the best value that any optimizer of this study found. They are spaced evenly on a logarithmic scale of the remaining way to that value, and depend on the optimizers that take part. ' +
-      'A target counts as reached from the checkpoint on from which all later incumbents reach it too. ' +
+      'Targets lie between the start and the best known value: the optimum if it is known, else the best value that any optimizer of this study found. They are spaced evenly on a logarithmic scale of the remaining way to that value, and depend on the optimizers that take part. ' +
+      'A target counts as reached when all later incumbents reach it too. ' +
+      describe_times(scope) +
       describe_size(scope) +
       kFirstOnes(scope.names.length),
     height: 400,

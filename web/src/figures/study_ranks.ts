@@ -257,7 +257,7 @@ export function make_overall_ranks(scope: Scope): Figure | null {
   const ranks: Ranks = { ranks: overall.mean_ranks, intervals: overall.rank_intervals, cliques: overall.cliques };
   const few =
     scope.data.problems.length < 6
-      ? 'With fewer than six problems no difference can be significant. The ranks only describe these problems, and nothing can be concluded about others. '
+      ? 'With fewer than six problems no difference between two optimizers can be significant. The ranks only describe these problems. '
       : 'A bar does not prove that its members are equal. ';
   const caption =
     'Critical-difference diagram of the mean ranks over ' +

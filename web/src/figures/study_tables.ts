@@ -47,6 +47,7 @@ export function make_ranking_table(scope: Scope): TableItem {
     { label: 'checked on' },
     { label: 'best design there', unit, numeric: true },
     { label: 'failures there', numeric: true, digits: 9 },
+    { label: 'successes', numeric: true, digits: 9 },
   ];
   const rows = (problem: StudyProblem, unit: Unit): Row[] =>
     get_order(scope, problem).map((o) => {
@@ -69,6 +70,7 @@ export function make_ranking_table(scope: Scope): TableItem {
         check ? check.engine : null,
         check ? { value: convert(check.value, unit), note: 'replicate ' + check.replicate } : null,
         check ? check.failures : null,
+        one.successes,
       ];
     });
   const tests = scope.problems
@@ -87,7 +89,7 @@ export function make_ranking_table(scope: Scope): TableItem {
     id: 'ranking' + scope.suffix,
     title: end_title(scope, 'Ranking'),
     caption:
-      'Values on the test set, best median first. A run without a value counts as the worst. A dash is a median or quartile that does not exist for this reason. ' +
+      'Values on the test set, best mean rank first. A success is a run within the resolution of the known optimum; if the optimum is not known, it is a run with a value. A run without a value counts as the worst. A dash is a median or quartile that does not exist for this reason. ' +
       'Intervals are bootstrapped. If another engine is named, the best design of each optimizer, by the validation set, was simulated again on that engine. ' +
       describe_size(scope) +
       (tests.length > 0 && tests.length <= 6

@@ -185,7 +185,7 @@ export function make_values(scope: Scope): Figure {
     id: 'values' + scope.suffix,
     title: end_title(scope, 'Value of every run'),
     caption:
-      'Each point is a run. Its place is the value of the winner on the test set, which was not used for training. The boxes are quartiles with the median, and the whiskers reach to the best and the worst run. The best median is at the top. ' +
+      'Each point is a run. Its place is the value of the winner on the test set, which was not used for training. The boxes are quartiles with the median, and the whiskers reach to the best and the worst run. The best mean rank is at the top. ' +
       'A run whose winner fails on a test case or violates a constraint has no value. It counts as the worst and is shown beyond the axis. ' +
       (scope.problems.some((problem) => problem.has_front)
         ? 'With several objectives the value is the share of the hypervolume that the front of a run misses. It depends on the optimizers that take part. '

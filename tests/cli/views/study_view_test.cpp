@@ -1,0 +1,46 @@
+#include "cli/views/study_view.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include "study/statistics/power.hpp"
+
+namespace armwright {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+StudyPlan make_plan(int replicates) {
+  StudyRequest request;
+  request.problems = {"sphere"};
+  request.optimizers = {"ga", "cmaes"};  // with the two baselines six pairs
+  request.replicates = replicates;
+  request.budget = 100;
+  return make_study_plan(request);
+}
+
+TEST(DescribePower, SaysWhichDifferenceTheStudyCanShow) {
+  const std::string text = describe_power(make_plan(15));
+  EXPECT_THAT(text, HasSubstr("With 15 replicates and 6 pairs of optimizers per problem"));
+  EXPECT_THAT(text, HasSubstr(fmt::format("A12 = {:.2f} on", find_detectable_a12(15, 6))));
+  EXPECT_THAT(text, HasSubstr("A medium difference (A12 = 0.64)"));
+  EXPECT_THAT(text, HasSubstr(fmt::format("{} replicates find it", find_needed_pairs(0.64, 6))));
+  EXPECT_THAT(text, Not(HasSubstr("warning")));
+}
+
+TEST(DescribePower, WarnsIfNoOutcomeCanBeSignificant) {
+  EXPECT_THAT(describe_power(make_plan(7)),
+              HasSubstr("warning: with 7 replicates and 6 pairs of optimizers per problem no "
+                        "difference, however clear, is significant after Holm's correction.\n"
+                        "8 replicates are the fewest that can decide a pair"));
+}
+
+TEST(DescribePower, IsEmptyForOneOptimizer) {
+  StudyPlan plan = make_plan(15);
+  plan.optimizers.resize(1);
+  EXPECT_EQ(describe_power(plan), "");
+}
+
+}  // namespace
+}  // namespace armwright

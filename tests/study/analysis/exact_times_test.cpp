@@ -1,0 +1,151 @@
+// Running times are exact numbers of evaluations.
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "study/analysis/analysis_support.hpp"
+#include "study/analysis/verdict.hpp"
+#include "study/compare/study_support.hpp"
+#include "study/journal/journal.hpp"
+
+namespace armwright {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+// A trace counts the quality that a run keeps, not a value that it had once by luck.
+TEST(Trace, IsTheWorstFromThereOn) {
+  CellOutcome cell;
+  cell.curve = {{10, 5, {}}, {20, 1, {}}, {30, 4, {}}, {40, 3, {}}};
+  cell.trace = {{7, 5, {}}, {13, 2, {}}, {29, 4, {}}};
+  const auto list_values = [&](bool exact) {
+    std::vector<double> values;
+    for (const TracePoint& point : make_trace(cell, exact)) {
+      values.push_back(point.best_value);
+    }
+    return values;
+  };
+  EXPECT_THAT(list_values(false), ElementsAre(5, 4, 4, 3));
+  EXPECT_THAT(list_values(true), ElementsAre(5, 4, 4));
+  EXPECT_EQ(make_trace(cell, true)[1].cost, 13);
+}
+
+TEST(ExactTimes, ComeFromTheTraceAndNotFromTheCheckpoints) {
+  const StudyPlan plan = make_sphere_plan({"ga", "cmaes"}, 2);
+  std::vector<CellOutcome> cells;
+  for (std::size_t o = 0; o < 2; ++o) {
+    for (const int replicate : {1, 2}) {
+      CellOutcome cell = make_value_cell(plan, o, replicate, 0);
+      cell.curve = {{500, 60, 0}, {1000, 0, 0}};
+      cell.trace = {{3, 60, 0}, {replicate == 1 ? 701 : 801, 0, 0}};
+      cells.push_back(cell);
+    }
+  }
+  ProblemResult problem = analyze_problem(plan, 0, cells);
+  EXPECT_TRUE(problem.exact_times);
+  EXPECT_EQ(problem.optimizers[0].running_times[0].target, 10);
+  EXPECT_EQ(problem.optimizers[0].running_times[0].expected, 751);
+  EXPECT_EQ(problem.optimizers[0].running_times[0].interval.lower, 701);
+  EXPECT_EQ(problem.optimizers[0].running_times[0].interval.upper, 801);
+  cells[2].trace.reset();  // recorded by version 1.0: times of both optimizers are then alike
+  problem = analyze_problem(plan, 0, cells);
+  EXPECT_FALSE(problem.exact_times);
+  EXPECT_EQ(problem.optimizers[0].running_times[0].expected, 1000);
+}
+
+class ExactTimesOfRuns : public StudyTest {
+ protected:
+  // Returns the number of cases until the journal has a value of at most `target`; the whole budget
+  // if it never has.
+  Trial find_hit(const StudyPlan& plan, const Cell& cell, double target) {
+    const auto journal =
+        read_journal(temporary_ / "study" / make_cell_path(plan, cell) / "journal");
+    double cases = 0;
+    for (const EvaluationRecord& record : journal.training) {
+      cases += static_cast<double>(record.calc_charge());
+      if (record.evaluation.objectives.at(0) <= target) {
+        return {cases, true};
+      }
+    }
+    return {cases, false};
+  }
+};
+
+TEST_F(ExactTimesOfRuns, AreTheFirstHitsInTheJournals) {
+  const StudyPlan plan = load_plan(temporary_, R"(problems = ["sphere"]
+optimizers = ["ga", "cmaes", "nlopt:cobyla"]
+set = ["function.dimension=5"]
+replicates = 6
+budget = 800
+baselines = false
+[[target]]
+label = "one"
+value = 1.0
+)");
+  const StudyResult result = study(plan, "study");
+  const ProblemResult& problem = result.problems.front();
+  EXPECT_TRUE(problem.exact_times);
+  EXPECT_EQ(problem.best_known, 0);
+  int reached = 0;
+  for (std::size_t o = 0; o < plan.optimizers.size(); ++o) {
+    const auto find_trials = [&](double target) {
+      std::vector<Trial> trials;
+      for (int r = 1; r <= plan.replicates; ++r) {
+        trials.push_back(find_hit(plan, {0, o, r}, target));
+      }
+      return trials;
+    };
+    EXPECT_EQ(problem.optimizers[o].target_times[0].expected,
+              calc_expected_running_time(find_trials(1)));
+    for (const RunningTime& time : problem.optimizers[o].running_times) {
+      EXPECT_EQ(time.expected, calc_expected_running_time(find_trials(time.target)));
+      reached += time.reached;
+    }
+  }
+  EXPECT_GT(reached, 0);
+  // The first cells of version 1.0 have no trace: all times come from checkpoints.
+  const auto file = temporary_ / "study" / make_cell_path(plan, {0, 0, 1}) / "cell.json";
+  nlohmann::json cell = nlohmann::json::parse(read_file(file, 1 << 24));
+  ASSERT_EQ(cell.erase("trace"), 1u);
+  std::ofstream(file) << cell.dump(1);
+  const StudyResult coarse = analyze_study(plan, temporary_ / "study");
+  EXPECT_TRUE(coarse.missing.empty());
+  EXPECT_FALSE(coarse.problems.front().exact_times);
+  for (std::size_t o = 0; o < plan.optimizers.size(); ++o) {
+    EXPECT_GE(coarse.problems.front().optimizers[o].target_times[0].expected,
+              problem.optimizers[o].target_times[0].expected);
+    EXPECT_THAT(problem.checkpoints,
+                Contains(coarse.problems.front().optimizers[o].target_times[0].trials[0].cost));
+  }
+}
+
+TEST_F(ExactTimesOfRuns, OfAnArmAreThoseOfItsIncumbents) {
+  StudyRequest request;
+  request.problems = {"q1-complex"};
+  request.optimizers = {"cmaes"};
+  request.settings = {"physics.engine=articulated", "sets.validation_cases=3", "sets.test_cases=4"};
+  request.replicates = 1;
+  request.budget = 150;
+  request.baselines = false;
+  const StudyPlan plan = make_study_plan(request);
+  const StudyResult result = study(plan, "study");
+  const CellOutcome& cell = result.cells.front();
+  const auto& trace = *cell.trace;
+  ASSERT_GT(trace.size(), 2u);
+  // Where a checkpoint and an incumbent coincide, both have the same value.
+  for (const CurvePoint& point : cell.curve) {
+    const auto after = std::ranges::upper_bound(trace, point.budget, {}, &CurvePoint::budget);
+    ASSERT_NE(after, trace.begin()) << point.budget;
+    EXPECT_EQ(std::prev(after)->value, point.value) << point.budget;
+  }
+  const auto file = temporary_ / "study" / make_cell_path(plan, {0, 0, 1}) / "cell.json";
+  const CellOutcome read = parse_cell(read_file(file, 1 << 24), file);
+  EXPECT_EQ(to_json(read), read_file(file, 1 << 24));
+  EXPECT_EQ(read.trace->back().budget, trace.back().budget);
+}
+
+}  // namespace
+}  // namespace armwright

@@ -1,0 +1,142 @@
+// The words of the verdict follow the tests of the pairs.
+#include "study/analysis/verdict.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "base/text.hpp"
+#include "study/analysis/analysis_support.hpp"
+
+namespace armwright {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+enum class Side { better, worse, undecided };
+constexpr Side kSides[] = {Side::better, Side::worse, Side::undecided};
+
+// Returns a number that puts ga before cmaes (-1), behind it (1), or level with it.
+int get_sign(Side side) {
+  return side == Side::better ? -1 : side == Side::worse ? 1 : 0;
+}
+
+PairResult make_pair(std::size_t winner, std::size_t loser, bool is_significant) {
+  PairResult pair;
+  pair.a = winner;
+  pair.b = loser;
+  pair.test.pairs = 15;
+  pair.test.negative_rank_sum = 100;
+  pair.test.positive_rank_sum = 20;
+  pair.p_holm = is_significant ? 0.01 : 0.5;
+  return pair;
+}
+
+std::string describe(const StudyPlan& plan, ProblemResult problem) {
+  problem.label = plan.problems.front().label;
+  problem.exact_times = true;
+  problem.order = order_optimizers(problem.optimizers, true);
+  StudyResult result;
+  result.problems = {problem};
+  return join(describe_verdict(plan, result), "\n");
+}
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+// Every combination of what the median, the mean rank and the test say about ga and cmaes. A third
+// optimizer is beaten by the better ones or not told apart from them.
+TEST(Verdict, NeverContradictsTheTests) {
+  const StudyPlan plan = make_sphere_plan({"ga", "cmaes", "lhs"}, 15);
+  for (const Side median : kSides) {
+    for (const Side rank : kSides) {
+      for (const Side test : kSides) {
+        for (const bool third_is_beaten : {false, true}) {
+          ProblemResult problem;
+          problem.optimizers.resize(3);
+          problem.optimizers[0].values = {1};  // the verdict reads that there are values
+          problem.optimizers[0].spread.median = 5 + get_sign(median);
+          problem.optimizers[1].spread.median = 5;
+          problem.optimizers[2].spread.median = 7;
+          problem.optimizers[0].mean_rank = 1.5 + 0.2 * get_sign(rank);
+          problem.optimizers[1].mean_rank = 1.5 - 0.2 * get_sign(rank);
+          problem.optimizers[2].mean_rank = 3;
+          const std::size_t winner = test == Side::worse ? 1 : 0;
+          problem.pairs = {make_pair(winner, 1 - winner, test != Side::undecided),
+                           make_pair(0, 2, third_is_beaten), make_pair(1, 2, third_is_beaten)};
+          const std::string text = describe(plan, problem);
+          SCOPED_TRACE(text);
+          EXPECT_EQ(has(text, "ga beats cmaes"), test == Side::better);
+          EXPECT_EQ(has(text, "cmaes beats ga"), test == Side::worse);
+          EXPECT_EQ(has(text, "ga cannot be told apart from cmaes") ||
+                        has(text, "cmaes cannot be told apart from ga") ||
+                        has(text, "no two optimizers can be told apart"),
+                    test == Side::undecided);
+          EXPECT_EQ(has(text, "no two"), test == Side::undecided && !third_is_beaten);
+          EXPECT_FALSE(has(text, "lhs beats"));
+          const bool contradicts = (median == Side::better && test == Side::worse) ||
+                                   (median == Side::worse && test == Side::better);
+          EXPECT_EQ(has(text, "but the pairs of runs decide"), contradicts);
+          const bool leader_loses = (rank == Side::better && test == Side::worse) ||
+                                    (rank == Side::worse && test == Side::better);
+          EXPECT_TRUE(!leader_loses || has(text, "leads the ranking"));
+        }
+      }
+    }
+  }
+}
+
+// Fifteen pairs; the second optimizer wins fourteen of them, but its median is worse.
+TEST(Verdict, LeadsWithTheMeanRankAndNotWithTheMedian) {
+  const StudyPlan plan = make_sphere_plan({"ga", "cmaes"}, 15);
+  std::vector<double> a, b;
+  for (int i = 0; i < 15; ++i) {
+    a.push_back(i == 7 ? 6.95 : i + 0.5);
+    b.push_back(i);
+  }
+  const StudyResult result = analyze_values(plan, {a, b});
+  const ProblemResult& problem = result.problems.front();
+  ASSERT_LT(problem.optimizers[0].spread.median, problem.optimizers[1].spread.median);
+  EXPECT_THAT(problem.order, ElementsAre(1u, 0u));
+  EXPECT_TRUE(problem.pairs.front().is_won_by(1));
+  EXPECT_FALSE(problem.pairs.front().is_won_by(0));
+  EXPECT_EQ(problem.pairs.front().wins.wins, 14);
+  const auto verdict = describe_verdict(plan, result);
+  EXPECT_THAT(verdict, Contains(HasSubstr("cmaes beats ga (A12 ")));
+  EXPECT_THAT(verdict, Contains(HasSubstr("The median of ga is better than that of cmaes, but")));
+  EXPECT_THAT(verdict, Not(Contains(HasSubstr("told apart"))));
+}
+
+TEST(Verdict, SaysWhatFriedmansTestShowsWhereNoPairCanBeDecided) {
+  const StudyPlan plan = make_sphere_plan({"ga", "cmaes", "lhs"}, 5);
+  const std::vector<double> good = {1, 2, 3, 4, 5};
+  const std::vector<double> fair = {2, 3, 4, 5, 6};
+  const std::vector<double> poor = {3, 4, 5, 6, 7};
+  const auto different = describe_verdict(plan, analyze_values(plan, {good, fair, poor}));
+  EXPECT_THAT(different, Contains(HasSubstr("no pair of optimizers can be decided: there are 5 ")));
+  EXPECT_THAT(different, Contains(HasSubstr("The optimizers do differ (Friedman's test, p = ")));
+  const auto alike = describe_verdict(plan, analyze_values(plan, {good, good, good}));
+  EXPECT_THAT(alike,
+              Contains("Friedman's test does not show that the optimizers differ at all (p = 1)."));
+  for (const auto& verdict : {different, alike}) {
+    EXPECT_THAT(verdict, Not(Contains(HasSubstr("nothing can be concluded"))));
+  }
+}
+
+TEST(Verdict, SaysThatRunningTimesOfVersionOneAreCoarse) {
+  const StudyPlan plan = make_sphere_plan({"ga", "cmaes"}, 6);
+  StudyResult result = analyze_values(plan, {{1, 2, 3, 4, 5, 6}, {2, 3, 4, 5, 6, 7}});
+  EXPECT_THAT(describe_verdict(plan, result), Not(Contains(HasSubstr("checkpoints"))));
+  result.cells[3].trace.reset();
+  result.problems = {analyze_problem(plan, 0, result.cells)};
+  EXPECT_FALSE(result.problems.front().exact_times);
+  EXPECT_THAT(describe_verdict(plan, result),
+              Contains(HasSubstr("Running times on sphere are only as exact as the checkpoints")));
+}
+
+}  // namespace
+}  // namespace armwright
