@@ -39,6 +39,8 @@ def split_declarations(code):
 def make_title(declaration):
     if match := re.match(r"struct (\w+)", declaration):
         return f"`struct {match.group(1)}`"
+    if match := re.match(r"static inline \w+ (\w+)\(", declaration):
+        return f"`{match.group(1)}()`"
     if declaration.startswith("enum"):
         names = re.findall(r"\bARMWRIGHT_\w+(?= =)", declaration)
         return f"`{names[0]}` to `{names[-1]}`"

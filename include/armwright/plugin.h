@@ -9,7 +9,8 @@
  *
  * Everything that crosses the border is a plain struct that begins with its size. Later versions of
  * armwright may append fields; they never change or remove any without a new ARMWRIGHT_PLUGIN_ABI.
- * Texts are UTF-8 and end with a zero byte. No pointer that armwright hands over outlives the call.
+ * A plugin that was built with an earlier version of this header runs unchanged. A field marked
+ * "since 2.0" is there if struct_size is larger than its offset. Texts are UTF-8 and end with a zero byte. No pointer that armwright hands over outlives the call.
  */
 #ifndef ARMWRIGHT_PLUGIN_H
 #define ARMWRIGHT_PLUGIN_H
@@ -43,7 +44,9 @@ enum {
   ARMWRIGHT_STOCHASTIC = 1u << 5,      /* uses its seed */
   ARMWRIGHT_GENERATIONS = 1u << 6,     /* calls begin_generation() before each of its generations */
   ARMWRIGHT_LOCAL = 1u << 7,           /* descends from the start and ends by itself */
-  ARMWRIGHT_PACED = 1u << 8            /* divides the budget up beforehand */
+  ARMWRIGHT_PACED = 1u << 8,           /* divides the budget up beforehand */
+  ARMWRIGHT_RESIDUALS = 1u << 9,       /* since 2.0: uses residuals, so that evaluations have them */
+  ARMWRIGHT_SAMPLING = 1u << 10        /* since 2.0: does not learn from evaluations */
 };
 
 /* How an evaluation went. Objectives are finite always: a failed one shows the problem's penalty.
@@ -75,7 +78,32 @@ struct armwright_problem {
   const char* const* objective_names;
   size_t constraint_count;
   const char* const* constraint_names;
+
+  /* Since 2.0. */
+  const char* const* objective_units;
+  const char* const* constraint_units;
+  /* One weight per objective: the run is judged by the weighted sum of the objectives. NULL: it is
+   * judged by the first objective. armwright_scalar() computes the number. */
+  const double* objective_weights;
+  /* 1: evaluations have residuals. The sum of their squares is the objective, or its exponential. */
+  size_t has_residuals;
 };
+
+/* Returns the number by which the run is judged: the weighted sum of the objectives or, without
+ * weights, the first objective. Since 2.0. */
+static inline double armwright_scalar(const struct armwright_problem* problem,
+                                      const double* objectives) {
+  size_t i;
+  double sum = 0;
+  if (problem->struct_size <= offsetof(struct armwright_problem, objective_weights) ||
+      problem->objective_weights == NULL) {
+    return objectives[0];
+  }
+  for (i = 0; i < problem->objective_count; ++i) {
+    sum += problem->objective_weights[i] * objectives[i];
+  }
+  return sum;
+}
 
 /* The only door to the problem. Pass `context` to every function. The functions may be called from
  * one thread at a time. Who calls them 100 000 times in a row without a point to evaluate has lost
@@ -102,8 +130,19 @@ struct armwright_evaluator {
   /* Optimizers with generations (ARMWRIGHT_GENERATIONS) call it before each, the first included. */
   void (*begin_generation)(void* context);
 
-  /* A point worth judging at the end beside the best ones evaluated: a distribution's mean, say. */
+  /* A point worth judging at the end beside the best ones evaluated: a distribution's mean, say. It
+   * counts also when the budget has ended, for one second and for up to 100 points. */
   void (*recommend)(void* context, const double* point);
+
+  /* Since 2.0. Both are about point number `point`, from 0, of the latest evaluate(). */
+
+  /* Returns the residuals of the point, valid until the next evaluate(), and sets *count to their
+   * number. NULL and 0 where the evaluation failed or was abandoned, where the problem has no
+   * residuals, and without the capability ARMWRIGHT_RESIDUALS. */
+  const double* (*residuals)(void* context, size_t point, size_t* count);
+
+  /* Returns 1 if the point was outside the bounds and was evaluated at the nearest point inside. */
+  int (*is_clipped)(void* context, size_t point);
 };
 
 /* Types of options. */
@@ -144,13 +183,19 @@ struct armwright_plugin {
   const struct armwright_option* options; /* or NULL */
   size_t option_count;
 
-  /* Returns 0 when the evaluator has stopped or there is nothing more to try. On a failure it
-   * returns anything else and leaves a text in `message`, which has room for `message_size` bytes,
-   * the zero byte included. The same seed must give the same points, whatever else happens. */
+  /* Returns 0 when the evaluator has stopped or there is nothing more to try; a text that it leaves
+   * in `message` then says why it ended. On a failure it returns anything else and leaves the reason
+   * in `message`, which has room for `message_size` bytes, the zero byte included. The same seed
+   * must give the same points, whatever else happens. */
   int (*minimize)(const struct armwright_problem* problem,
                   const struct armwright_evaluator* evaluator,
                   const struct armwright_options* options, uint64_t seed, char* message,
                   size_t message_size);
+
+  /* Since 2.0: the least that a problem must have. 0 asks for nothing. */
+  size_t least_objectives;
+  size_t least_variables;
+  size_t needs_residuals; /* 1: residuals */
 };
 
 /* What every plugin defines:

@@ -20,6 +20,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <exception>
@@ -51,6 +52,15 @@ struct Problem {
       variables.push_back({raw.variable_names[i], raw.variable_units[i], raw.lower[i], raw.upper[i],
                            raw.start[i], raw.is_logarithmic[i] != 0});
     }
+    if (raw.struct_size <= offsetof(armwright_problem, has_residuals)) {
+      return;  // an armwright of version 1.0
+    }
+    objective_units.assign(raw.objective_units, raw.objective_units + raw.objective_count);
+    constraint_units.assign(raw.constraint_units, raw.constraint_units + raw.constraint_count);
+    if (raw.objective_weights != nullptr) {
+      objective_weights.assign(raw.objective_weights, raw.objective_weights + raw.objective_count);
+    }
+    has_residuals = raw.has_residuals != 0;
   }
 
   std::vector<double> start() const {
@@ -59,6 +69,15 @@ struct Problem {
       x.push_back(variable.start);
     }
     return x;
+  }
+  // The number by which the run is judged: the weighted sum of the objectives or, without weights,
+  // the first objective.
+  double calc_scalar(std::span<const double> values) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < objective_weights.size(); ++i) {
+      sum += objective_weights[i] * values[i];
+    }
+    return objective_weights.empty() ? values.front() : sum;
   }
   // The nearest point inside the box.
   std::vector<double> clip(std::span<const double> x) const {
@@ -73,17 +92,25 @@ struct Problem {
   std::vector<Variable> variables;
   std::vector<std::string> objectives;
   std::vector<std::string> constraints;
+  std::vector<std::string> objective_units;
+  std::vector<std::string> constraint_units;
+  std::vector<double> objective_weights;  // empty: only the first objective counts
+  bool has_residuals = false;
 };
 
 struct Score {
   std::vector<double> objectives;         // finite always
   std::vector<double> constraint_values;  // g <= 0 is met; empty for a failed evaluation
   int status = ARMWRIGHT_OK;
+  // Empty for an evaluation that failed or was abandoned, and without ARMWRIGHT_RESIDUALS.
+  std::vector<double> residuals = {};
+  bool clipped = false;  // the point was outside the bounds and was evaluated at the nearest inside
 };
 
 // Thrown by Evaluator::operator() when there is nothing more to come, and caught by the macro:
-// minimize() need not look for the end. Do not derive it from std::exception: catching those must
-// not stop the way out.
+// minimize() need not look for the end. One that wants to recommend a point at the end catches it:
+// points that are recommended then still count. Do not derive it from std::exception: catching those
+// must not stop the way out.
 struct Stopped {};
 
 class Evaluator {
@@ -93,8 +120,10 @@ class Evaluator {
 
   const Problem& problem() const { return problem_; }
 
-  // One point's first objective; throws Stopped at the end.
-  double operator()(std::span<const double> x) { return evaluate(x).objectives.front(); }
+  // The number by which one point is judged (Problem::calc_scalar()); throws Stopped at the end.
+  double operator()(std::span<const double> x) {
+    return problem_.calc_scalar(evaluate(x).objectives);
+  }
 
   // One point; throws Stopped at the end.
   Score evaluate(std::span<const double> x) {
@@ -125,6 +154,9 @@ class Evaluator {
     check(x);
     raw_.recommend(raw_.context, x.data());
   }
+  // Says why minimize() ends before the evaluator has stopped, in a few words.
+  void explain_end(std::string reason) { end_ = std::move(reason); }
+  const std::string& end() const { return end_; }
 
  private:
   // The border knows no lengths of points.
@@ -156,12 +188,24 @@ class Evaluator {
       if (statuses[i] == ARMWRIGHT_OK) {
         scores[i].constraint_values.assign(g, g + static_cast<std::ptrdiff_t>(constraint_count));
       }
+      add_residuals(i, scores[i]);
     }
     return scores;
   }
 
+  void add_residuals(std::size_t point, Score& score) const {
+    if (raw_.struct_size <= offsetof(armwright_evaluator, is_clipped)) {
+      return;  // an armwright of version 1.0
+    }
+    std::size_t count = 0;
+    const double* const residuals = raw_.residuals(raw_.context, point, &count);
+    score.residuals.assign(residuals, residuals + count);
+    score.clipped = raw_.is_clipped(raw_.context, point) != 0;
+  }
+
   Problem problem_;
   const armwright_evaluator& raw_;
+  std::string end_;
 };
 
 class Options {
@@ -215,6 +259,10 @@ struct Description {
   std::string source;
   std::uint32_t capabilities = 0;  // ARMWRIGHT_BOUNDS | ...
   std::vector<Option> options = {};
+  // The least that a problem must have.
+  std::size_t least_objectives = 1;
+  std::size_t least_variables = 1;
+  bool needs_residuals = false;
 };
 
 // A description in the border's form, with everything that it points to. Made once.
@@ -244,7 +292,10 @@ class Exported {
             description_.capabilities,
             options_.data(),
             options_.size(),
-            minimize};
+            minimize,
+            description_.least_objectives,
+            description_.least_variables,
+            description_.needs_residuals ? std::size_t{1} : std::size_t{0}};
   }
   Exported(const Exported&) = delete;
   Exported& operator=(const Exported&) = delete;
@@ -282,6 +333,7 @@ int minimize_with(const armwright_problem* problem, const armwright_evaluator* e
       [&] {
         Evaluator wrapped(*problem, *evaluator);
         Method().minimize(wrapped, Options(*options), seed);
+        std::snprintf(message, message_size, "%s", wrapped.end().c_str());
       },
       message, message_size);
 }

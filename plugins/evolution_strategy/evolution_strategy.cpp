@@ -124,7 +124,8 @@ class EvolutionStrategy {
       if (scores.size() < lambda) {
         break;
       }
-      const std::vector<double> z = calc_mean_of_best(steps, scores, mu, weight);
+      const std::vector<double> z =
+          calc_mean_of_best(evaluator.problem(), steps, scores, mu, weight);
       double square = 0;
       for (std::size_t i = 0; i < n; ++i) {
         mean[i] = move(box, mean, i, sigma, z[i]);
@@ -145,12 +146,13 @@ class EvolutionStrategy {
                       box.upper[i]);
   }
 
-  static std::vector<double> calc_mean_of_best(const std::vector<std::vector<double>>& steps,
+  static std::vector<double> calc_mean_of_best(const plugin::Problem& problem,
+                                               const std::vector<std::vector<double>>& steps,
                                                const std::vector<plugin::Score>& scores,
                                                std::size_t mu, double weight) {
     std::vector<double> merits;
     for (const plugin::Score& score : scores) {
-      merits.push_back(score.objectives.front());
+      merits.push_back(problem.calc_scalar(score.objectives));
       for (const double g : score.constraint_values) {
         merits.back() += weight * std::max(0.0, g);
       }

@@ -59,7 +59,7 @@ static double calc_merit(struct search* s, const double* coordinates) {
     s->is_over = 1;
     return INFINITY;
   }
-  merit = s->objectives[0];
+  merit = armwright_scalar(s->problem, s->objectives);
   for (i = 0; status == ARMWRIGHT_OK && i < s->problem->constraint_count; ++i) {
     merit += s->violation_weight * fmax(0, s->constraints[i]);
   }
@@ -163,15 +163,16 @@ static const struct armwright_option kOptions[] = {
      1e6, 0, 1e15, NULL, NULL}};
 
 static const struct armwright_plugin kPlugin = {
-    ARMWRIGHT_PLUGIN_ABI,
-    sizeof(struct armwright_plugin),
-    "hooke-jeeves",
-    "Pattern search: steps along one variable at a time, and the whole move again",
-    "Hooke and Jeeves 1961, \"Direct search\" solution of numerical and statistical problems",
-    ARMWRIGHT_BOUNDS | ARMWRIGHT_LOCAL,
-    kOptions,
-    sizeof(kOptions) / sizeof(kOptions[0]),
-    minimize};
+    .abi = ARMWRIGHT_PLUGIN_ABI,
+    .struct_size = sizeof(struct armwright_plugin),
+    .name = "hooke-jeeves",
+    .summary = "Pattern search: steps along one variable at a time, and the whole move again",
+    .source =
+        "Hooke and Jeeves 1961, \"Direct search\" solution of numerical and statistical problems",
+    .capabilities = ARMWRIGHT_BOUNDS | ARMWRIGHT_LOCAL,
+    .options = kOptions,
+    .option_count = sizeof(kOptions) / sizeof(kOptions[0]),
+    .minimize = minimize};
 
 ARMWRIGHT_PLUGIN_EXPORT const struct armwright_plugin* armwright_plugin(void) {
   return &kPlugin;

@@ -83,7 +83,10 @@ def minimize(task):
 
     def calc_merit(score):
         violation = sum(max(0.0, g) for g in score["constraints"])
-        return score["objectives"][0] + options["violation_weight"] * violation
+        # Without weights, only the first objective counts.
+        weights = task["problem"]["objective_weights"] or [1.0]
+        value = sum(weight * one for weight, one in zip(weights, score["objectives"]))
+        return value + options["violation_weight"] * violation
 
     def calc_merits(columns):  # one column per point
         points = [to_point(column).tolist() for column in np.atleast_2d(columns.T)]

@@ -9,7 +9,12 @@ Problem.evaluate() evaluates points. Problem.evaluate_design() judges a design. 
 compare() compares optimizers. docs/python.md describes all of this. The results are the same as those of the program `armwright`, bit for bit.
 """
 
-from . import _armwright
+try:
+    from . import _armwright
+except ImportError as error:
+    from ._missing_module import explain
+
+    raise ImportError(explain(error)) from None
 from .description import Description, Quantity, Variable
 from .errors import ArmwrightWarning, BadDataError, BusyError, Error, IoError, UsageError
 from .optimizer import CAPABILITIES, Evaluator, Finding, Optimizer, OptimizerInfo, Option, Scores, check_optimizer, optimizers

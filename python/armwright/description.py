@@ -31,6 +31,11 @@ class Quantity:
     unit: str
 
 
+def _restore_shape(matrix: FloatArray, given: npt.ArrayLike) -> FloatArray:
+    """Returns the only row of the matrix if one point was given as a vector, otherwise the matrix."""
+    return np.asarray(matrix[0]) if np.ndim(given) == 1 else matrix
+
+
 class Description:
     """The description of a problem.
 
@@ -77,23 +82,23 @@ class Description:
         return len(self.variables)
 
     def clip(self, points: npt.ArrayLike) -> FloatArray:
-        """Returns the nearest points within the bounds, (n, d)."""
-        return np.clip(to_points(points), self.lower, self.upper)
+        """Returns the nearest points within the bounds, in the shape of `points`: (n, d), or (d,) for one point."""
+        return _restore_shape(np.clip(to_points(points), self.lower, self.upper), points)
 
     def to_unit(self, points: npt.ArrayLike) -> FloatArray:
-        """Returns points as fractions, (n, d): 0 at the lower bound, 1 at the upper bound, on the scale of each variable.
+        """Returns points as fractions, (n, d) or (d,) as given: 0 at the lower bound, 1 at the upper bound, on the scale of each variable.
 
         With fractions, a step of one size means the same for all variables, linear or logarithmic.
         """
         low, high = self._to_scale(self.lower[np.newaxis]), self._to_scale(self.upper[np.newaxis])
-        return np.asarray((self._to_scale(to_points(points)) - low) / (high - low), dtype=np.float64)
+        return _restore_shape(np.asarray((self._to_scale(to_points(points)) - low) / (high - low), dtype=np.float64), points)
 
     def from_unit(self, shares: npt.ArrayLike) -> FloatArray:
-        """Returns the points for fractions of to_unit(), (n, d), clipped to the bounds."""
+        """Returns the points for fractions of to_unit(), (n, d) or (d,) as given, clipped to the bounds."""
         low, high = self._to_scale(self.lower[np.newaxis]), self._to_scale(self.upper[np.newaxis])
         scaled = low + to_points(shares, "shares") * (high - low)
         magnitude = np.exp(np.where(self.is_logarithmic, scaled, 0.0))
-        return self.clip(np.where(self.is_logarithmic, self._sign * magnitude, scaled))
+        return _restore_shape(self.clip(np.where(self.is_logarithmic, self._sign * magnitude, scaled)), shares)
 
     def _to_scale(self, points: FloatArray) -> FloatArray:
         logarithm = np.log(np.where(self.is_logarithmic, np.abs(points), 1.0))

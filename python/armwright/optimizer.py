@@ -146,6 +146,8 @@ class _Bridge(Protocol):
 
     def recommend(self, point: FloatArray, /) -> None: ...
 
+    def explain_end(self, reason: str, /) -> None: ...
+
 
 class Evaluator:
     """The only access of an optimizer to a problem. It counts the budget, supplies the training cases and records every evaluation.
@@ -187,7 +189,10 @@ class Evaluator:
         self._bridge.begin_generation()
 
     def recommend(self, x: npt.ArrayLike) -> None:
-        """Names a point (d,) to judge at the end beside the best evaluated points, for example the mean of a distribution."""
+        """Names a point (d,) to judge at the end beside the best evaluated points, for example the mean of a distribution.
+
+        It counts also after the budget has ended, until minimize() returns.
+        """
         self._bridge.recommend(to_points(x, "x"))
 
 
@@ -207,6 +212,8 @@ class Optimizer:
         A subset of CAPABILITIES. "generations": the optimizer calls begin_generation(), so schedules with fresh cases work. "residuals":
         the scores contain residuals. "constraints", "multi_objective": the optimizer uses them.
     options : sequence of Option
+    requirements : mapping
+        The least that a problem must have: "objectives" and "variables" are numbers, "residuals" is true or false.
     settings : dict
         The values of the options by name; available in minimize().
 
@@ -224,10 +231,14 @@ class Optimizer:
     source: str = ""
     capabilities: ClassVar[Iterable[str]] = ()
     options: ClassVar[Sequence[Option]] = ()
+    requirements: ClassVar[Mapping[str, Union[int, bool]]] = {}
     settings: dict[str, OptionValue]
 
-    def minimize(self, evaluator: Evaluator, seed: int) -> None:
-        """Minimises through the evaluator until it has stopped, or until there is nothing more to try. The return value is ignored."""
+    def minimize(self, evaluator: Evaluator, seed: int) -> Optional[str]:
+        """Minimises through the evaluator until it has stopped, or until there is nothing more to try.
+
+        If it returns before the evaluator has stopped, it may return a text that says why. Any other return value is ignored.
+        """
         raise NotImplementedError(f"{type(self).__name__} has no minimize(self, evaluator, seed)")
 
 
@@ -249,7 +260,9 @@ class PythonOptimizer:
     def run(self, bridge: _Bridge, settings: dict[str, OptionValue], seed: int) -> None:
         optimizer = self.make()
         optimizer.settings = settings
-        optimizer.minimize(Evaluator(bridge), seed)
+        reason: Any = optimizer.minimize(Evaluator(bridge), seed)
+        if isinstance(reason, str):
+            bridge.explain_end(reason)
 
 
 class _Copies:
@@ -294,11 +307,21 @@ def read_optimizer(optimizer: Union[Optimizer, type[Optimizer]]) -> PythonOptimi
         "capabilities": [one for one in CAPABILITIES if one in set(cls.capabilities)],
         "options": [option.describe() for option in cls.options],
     }
+    if cls.requirements:
+        description["requirements"] = _check_requirements(cls)
     _armwright.check_description(f"python:{name}", json.dumps(description))
     hashes = {f"class {cls.__qualname__}": hash_class(cls)}
     if state:
         hashes[f"attributes of the {cls.__qualname__}"] = _hash(canonical_text(state, f"an attribute of the {cls.__name__}"))
     return PythonOptimizer(name, description, hashes, make)
+
+
+def _check_requirements(cls: type[Optimizer]) -> dict[str, Union[int, bool]]:
+    known = ("objectives", "variables", "residuals")
+    for name in cls.requirements:
+        if name not in known:
+            raise UsageError(f"{cls.__name__} has the requirement {name!r}; it must be among {', '.join(known)}")
+    return dict(cls.requirements)
 
 
 def to_row(optimizer: AnyOptimizer) -> Any:

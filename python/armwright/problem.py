@@ -67,6 +67,10 @@ class Evaluations:
     def __len__(self) -> int:
         return len(self.values)
 
+    def __repr__(self) -> str:
+        best = f", smallest value {self.values.min():.6g}" if len(self) > 0 else ""
+        return f"<armwright.Evaluations: {int(self.ok.sum())} of {len(self)} ok{best}>"
+
 
 @dataclass(frozen=True)
 class DesignEvaluation:
@@ -96,6 +100,12 @@ class DesignEvaluation:
     status: list[str]
     reasons: list[str]
     requirements: list[dict[str, Any]] = field(default_factory=list)
+
+    def __repr__(self) -> str:
+        of = self.summary
+        mean = "no mean error" if of["mean_error_m"] is None else f"mean error {of['mean_error_m'] * 1000:.6g} mm"
+        return (f"<armwright.DesignEvaluation {of['design']} on {of['problem']}, {of['test_set']}: {mean}, "
+                f"{of['failures']} of {of['cases']} cases failed>")
 
     def to_dict(self) -> dict[str, Any]:
         """Returns everything as plain lists and numbers, ready for JSON. A number that does not exist is None."""

@@ -105,6 +105,10 @@ class Run:
         evaluations, cases, failed, clipped, feasible, generations.
     end_reason : str
         "budget", "optimizer finished" or "optimizer failed".
+    end_detail : str
+        Why the optimizer finished, in its own words; "" if it did not say.
+    unused_evaluations : int
+        The evaluations that the budget would still have paid for when the optimizer finished.
     failure : str
         The way in which the optimizer failed; "" if it did not.
     """
@@ -124,6 +128,8 @@ class Run:
         self.candidates: list[dict[str, Any]] = result.get("candidates", [])
         self.counts: dict[str, int] = result.get("counts", {})
         self.end_reason: str = result.get("end_reason", "")
+        self.end_detail: str = result.get("end_detail", "")
+        self.unused_evaluations: int = result.get("unused_evaluations", 0)
         self.failure: str = result.get("failure", "")
         winner: dict[str, Any] = result.get("winner") or {}
         self.x: Optional[FloatArray] = np.array(self.candidates[winner["candidate"]]["x"]) if winner else None

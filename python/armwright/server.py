@@ -25,6 +25,7 @@ class _Host:
         self._problem: dict[str, Any] = {}
         self.stopped = False
         self.remaining = 0
+        self.reason = ""
 
     def receive(self) -> dict[str, Any]:
         line = self._lines.readline()
@@ -84,6 +85,9 @@ class _Host:
     def recommend(self, point: FloatArray, /) -> None:
         self.send({"type": "recommend", "x": point[0].tolist()})
 
+    def explain_end(self, reason: str, /) -> None:
+        self.reason = reason
+
 
 def serve(optimizer: Union[Optimizer, type[Optimizer]]) -> None:
     """Makes a script an optimizer for the command line: `armwright optimize q1-complex --optimizer 'exec:python3 SCRIPT'`.
@@ -104,4 +108,4 @@ def serve(optimizer: Union[Optimizer, type[Optimizer]]) -> None:
     if task["type"] == "minimize":
         host.begin(task)
         mine.run(host, task["options"], task["seed"])
-        host.send({"type": "done"})
+        host.send({"type": "done", "reason": host.reason} if host.reason else {"type": "done"})

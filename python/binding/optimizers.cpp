@@ -38,6 +38,9 @@ class EvaluatorBridge {
     check_points(point, get().problem().variables, "x", false);
     guard([&] { evaluator_->recommend(get_row(point, 0)); });
   }
+  void explain_end(const std::string& reason) {
+    guard([&] { evaluator_->explain_end(reason); });
+  }
   // Returns (objectives, constraints, status, clipped, residuals, Jacobians) with one row per
   // evaluated point.
   py::tuple evaluate(const Numbers& points, bool with_jacobian) {
@@ -258,6 +261,7 @@ void add_optimizers(py::module_& module) {
       .def("evaluate", &EvaluatorBridge::evaluate)
       .def("begin_generation", &EvaluatorBridge::begin_generation)
       .def("recommend", &EvaluatorBridge::recommend)
+      .def("explain_end", &EvaluatorBridge::explain_end)
       .def_property_readonly("stopped", &EvaluatorBridge::stopped)
       .def_property_readonly("remaining", &EvaluatorBridge::remaining);
 }

@@ -23,7 +23,7 @@ class Hillclimber(armwright.Optimizer):
             tries = np.clip(best + step * random.standard_normal((8, len(problem))), 0, 1)
             values = evaluator.evaluate(problem.from_unit(tries)).values
             is_better = len(values) > 0 and values.min() < least.min()
-            best, least = (tries[[values.argmin()]], values) if is_better else (best, least)
+            best, least = (tries[values.argmin()], values) if is_better else (best, least)
             step *= 1.3 if is_better else 0.8
 
 

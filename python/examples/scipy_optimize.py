@@ -18,9 +18,9 @@ def calc_errors(columns):  # one column per point, from 0 to 1 between the bound
     return problem.evaluate(problem.from_unit(columns.T), cases=5).values
 
 
-result = differential_evolution(calc_errors, bounds=[(0, 1)] * len(problem), x0=problem.to_unit(problem.start)[0], maxiter=generations,
+result = differential_evolution(calc_errors, bounds=[(0, 1)] * len(problem), x0=problem.to_unit(problem.start), maxiter=generations,
                                 popsize=2, seed=1, polish=False, vectorized=True, updating="deferred")
-x = problem.from_unit(result.x)[0]
+x = problem.from_unit(result.x)
 print(f"training: {1000 * problem.evaluate(problem.start, cases=5).values[0]:.2f} mm at the start, {1000 * result.fun:.2f} mm after "
       f"{result.nfev} evaluations")
 summary = problem.evaluate_design(x, cases=100).summary

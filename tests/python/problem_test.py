@@ -1,6 +1,7 @@
 """Problems from Python: evaluating points and designs gives what the program gives, whatever the threads, and never NaN."""
 import json
 import os
+import pathlib
 import pty
 import signal
 import subprocess
@@ -33,6 +34,38 @@ class ProblemTest(FolderTest):
         self.assertEqual(problem.configuration["physics"]["engine"], "articulated")
         self.assertIn("q1-complex", armwright.list_problems())
         self.assertIn("table-a10", armwright.list_designs())
+
+    def test_one_point_stays_a_vector(self):
+        problem = self.problem
+        for convert in (problem.clip, problem.to_unit, problem.from_unit):
+            many = convert(np.vstack([problem.to_unit(problem.start)] * 2))
+            one = convert(problem.to_unit(problem.start))
+            self.assertEqual((one.shape, many.shape), ((20,), (2, 20)))
+            self.assertEqual(convert(problem.to_unit(problem.start).tolist()).shape, (20,))
+            self.assertEqual(one.tobytes(), many[1].tobytes())
+
+    def test_results_print_as_one_line(self):
+        done = repr(self.problem.evaluate(self.points, cases=1))
+        self.assertRegex(done, r"^<armwright.Evaluations: 40 of 40 ok, smallest value [0-9.e-]+>$")
+        problem = armwright.load_problem("q2-e6", set={"physics.judging_engine": "articulated", **FAST})
+        judged = repr(problem.evaluate_design("table-a10", cases=12))
+        self.assertRegex(judged, r"^<armwright.DesignEvaluation table-a10 on q2-e6, test/2: mean error [0-9.e-]+ mm, 0 of 12 cases failed>$")
+
+    def test_a_package_that_was_not_built_says_how_to_build_it(self):
+        package = self.folder / "python" / "armwright"
+        package.mkdir(parents=True)
+        for file in pathlib.Path(armwright.__file__).parent.glob("*.py"):
+            (package / file.name).write_text(file.read_text())
+        command = [sys.executable, "-c", "import armwright"]
+        for is_build_tree, piece in ((False, "cmake --build --preset release --target _armwright"),
+                                     (True, f"cmake --build {self.folder} --target _armwright")):
+            if is_build_tree:
+                (self.folder / "CMakeCache.txt").touch()
+            done = subprocess.run(command, env={**os.environ, "PYTHONPATH": str(package.parent)}, capture_output=True, text=True)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn("the compiled module _armwright is missing, because the Python package has not been built", done.stderr)
+            self.assertIn(piece, done.stderr)
+            self.assertNotIn("circular", done.stderr)
 
     def test_threads_and_slices_change_no_bit(self):
         alone = self.problem.evaluate(self.points, cases=3, jobs=1)
@@ -138,7 +171,7 @@ class ProblemTest(FolderTest):
         (self.folder / "cases.json").write_text(json.dumps({"cases": own.tolist()}))
         self.check_design(problem.evaluate_design("table-a10", cases=own), ["table-a10", *words[:4], "--test-cases", "cases.json"])
         # A point is the same as the file that is written of it.
-        x = problem.from_unit(problem.to_unit(problem.start) + 0.01)[0]
+        x = problem.from_unit(problem.to_unit(problem.start) + 0.01)
         problem.write_design(x, "mine.toml")
         self.check_design(problem.evaluate_design(x, cases=12), ["mine.toml", *words])
         self.check_design(problem.evaluate_design("start", cases=12), ["start", *words])

@@ -38,10 +38,58 @@ class Generations(armwright.Optimizer):
             shares = random.random((3, len(evaluator.problem)))
             scores = evaluator.evaluate(evaluator.problem.from_unit(shares))
             assert scores.residuals is None or scores.residuals.shape[0] == len(scores)
-            evaluator.recommend(evaluator.problem.from_unit(shares.mean(axis=0))[0])
+            evaluator.recommend(evaluator.problem.from_unit(shares.mean(axis=0)))
+
+
+class Late(armwright.Optimizer):
+    """Recommends the origin after the budget has ended."""
+
+    requirements = {"variables": 2}
+    is_early = False
+
+    def minimize(self, evaluator, seed):
+        evaluator.evaluate(evaluator.problem.start)
+        if self.is_early:
+            return "all is seen"
+        while not evaluator.stopped:
+            evaluator.evaluate(evaluator.problem.start)
+        evaluator.recommend(np.zeros(len(evaluator.problem)))
+        return 0  # not a text: nothing is said
+
+
+class Early(Late):
+    is_early = True
+
+
+class Idle(armwright.Optimizer):
+    def minimize(self, evaluator, seed):
+        return "no licence"
 
 
 class RunTest(FolderTest):
+    def test_a_recommendation_after_the_budget_wins(self):
+        run = armwright.optimize("sphere", Late, budget=10, out="late")
+        self.assertEqual((run.counts["evaluations"], run.end_reason, run.unused_evaluations), (10, "budget", 0))
+        self.assertEqual(run.value, 0.0)
+        self.assertEqual(run.x.tolist(), [0.0] * len(run.x))
+
+    def test_an_early_end_says_why_and_what_is_left(self):
+        run = armwright.optimize("sphere", Early, budget=10, out="early")
+        self.assertEqual((run.end_reason, run.end_detail, run.unused_evaluations), ("optimizer finished", "all is seen", 9))
+        run = armwright.optimize("sphere", Idle, budget=10, out="idle")
+        self.assertEqual(run.end_reason, "optimizer failed")
+        self.assertIn("returned without evaluating a point, although the budget pays for 10; its reason: no licence", run.failure)
+
+    def test_requirements_refuse_a_problem_that_is_too_small(self):
+        with self.expect_error(armwright.UsageError, "cannot work on sphere"):
+            armwright.optimize("sphere", Late, set={"function.dimension": 1}, budget=10)
+
+        class Unknown(Late):
+            requirements = {"objective": 2}
+
+        with self.expect_error(armwright.UsageError, "'objective'", "objectives, variables, residuals"):
+            armwright.optimize("sphere", Unknown, budget=10)
+
     def test_same_bytes_as_the_program(self):
         for problem, optimizer, settings, flags in (("q1-complex", "cmaes", FAST, ["--engine", "articulated"]),
                                                     ("q2-pareto", "pagmo:nsga2", FAST, ["--engine", "articulated"]),

@@ -72,7 +72,7 @@ class Steps(armwright.Optimizer):
     def minimize(self, evaluator, seed):
         random = np.random.default_rng(seed)
         problem = evaluator.problem
-        best = problem.to_unit(problem.start)[0]
+        best = problem.to_unit(problem.start)
         least = np.inf
         while not evaluator.stopped:
             shares = best + self.settings["spread"] * random.standard_normal((self.settings["batch"], len(problem)))

@@ -189,6 +189,21 @@ std::string describe_way_out(const OptimizeOptions& options, const RunRequest& r
       quote_command(anew));
 }
 
+// Returns what the user can do with the evaluations that the optimizer left unused.
+std::string describe_rest(const OptimizeOptions& options, const RunRequest& request,
+                          const RunResult& result) {
+  const std::string name =
+      options.optimizer.empty() ? request.plan.problem.optimizer : options.optimizer;
+  const std::string way =
+      request.plan.optimizer.capabilities.local
+          ? fmt::format("To spend the whole budget on further starts: --optimizer {}",
+                        quote_command(std::vector<std::string>{"multistart:" + name}))
+          : "Its options may let it search on: " +
+                quote_command(std::vector<std::string>{request.command_line.front(), "list",
+                                                       "optimizers", name});
+  return "note: " + describe_unused(result) + ". " + way;
+}
+
 // Returns commands to try next. They begin with the program's name as the user typed it.
 std::string describe_next(const OptimizeOptions& options, const std::string& program,
                           const std::filesystem::path& folder, const Style& style) {
@@ -241,6 +256,9 @@ int run_optimize(const OptimizeOptions& options, Session& session) {
   bar.clear();
   if (result && !result->failure.empty()) {
     write_message(describe_way_out(options, request));
+  }
+  if (result && result->unused_evaluations > 0) {
+    write_message(describe_rest(options, request, *result));
   }
   if (!result) {
     return end_stopped(session, request.command_line);

@@ -99,11 +99,12 @@ static int minimize(const struct armwright_problem* problem,
   memcpy(x, problem->start, n * sizeof(double));
   /* evaluate() returns 0 when the budget is spent. */
   while (evaluator->evaluate(evaluator->context, x, 1, objectives, NULL, NULL) == 1) {
-    const int is_better = objectives[0] < least;
+    const double value = armwright_scalar(problem, objectives);
+    const int is_better = value < least;
     size_t i;
     if (is_better) {
       memcpy(best, x, n * sizeof(double));
-      least = objectives[0];
+      least = value;
     }
     step = fmin(step * (is_better ? 1.5 : 0.92), 1);
     for (i = 0; i < n; ++i) {

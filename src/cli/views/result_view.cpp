@@ -202,6 +202,13 @@ std::string format_design(const DesignFile& design, const Style& style) {
   return text;
 }
 
+std::string describe_unused(const RunResult& result) {
+  const auto unused = static_cast<unsigned long long>(result.unused_evaluations);
+  return fmt::format("the optimizer left {} of the budget unused{}",
+                     format_count(unused, "evaluation"),
+                     result.end_detail.empty() ? "" : ": " + sanitize(result.end_detail));
+}
+
 std::string describe_no_winner(const RunResult& result) {
   if (result.counts.evaluations == 0) {
     return "The run ended before its first evaluation, so there is no winner. Either the budget "
@@ -247,8 +254,12 @@ std::string describe_result(const RunResult& result, const std::filesystem::path
   if (counts.abandoned > 0) {
     text += fmt::format(", {} of them abandoned by racing", counts.abandoned);
   }
-  text += fmt::format("; {} failed, {} clipped to the bounds; ended by: {}\n\n", counts.failed,
+  text += fmt::format("; {} failed, {} clipped to the bounds; ended by: {}\n", counts.failed,
                       counts.clipped, sanitize(result.end_reason));
+  if (result.unused_evaluations > 0) {
+    text += fmt::format("  {}\n", describe_unused(result));
+  }
+  text += "\n";
   if (!result.failure.empty()) {
     text += style.red("The optimizer failed: " + sanitize(result.failure)) +
             "\nIts evaluations until then are kept and judged. The same command tries again from "

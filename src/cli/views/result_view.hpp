@@ -19,6 +19,10 @@ std::string describe_result(const RunResult& result, const std::filesystem::path
 // Returns a table with one row per design that was judged on the validation set.
 std::string describe_judged(const RunResult& result, const Style& style);
 
+// Returns a clause that says how much of the budget the optimizer left unused, and why if it has said
+// so. For results with `unused_evaluations` above 0.
+std::string describe_unused(const RunResult& result);
+
 // Returns a table of a design's gains and effort limits, one row per joint.
 std::string format_design(const DesignFile& design, const Style& style);
 

@@ -116,6 +116,7 @@ class Bfgs : public Optimizer {
     ceres::GradientProblemSolver::Summary summary;
     ceres::Solve(options, problem, p.data(), &summary);
     held.rethrow_unless_stopped();
+    evaluator.explain_end("Ceres: " + summary.message);
   }
 
  private:

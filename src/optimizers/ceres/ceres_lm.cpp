@@ -205,6 +205,7 @@ class LevenbergMarquardt : public Optimizer {
     if (settings_.exact) {
       minimize_exactly(evaluator, held, logarithm);
       held.rethrow_unless_stopped();
+      evaluator.explain_end("it has converged, and another descent gained nothing");
       return;
     }
     DifferenceSettings differences = settings_.differences;
@@ -232,6 +233,9 @@ class LevenbergMarquardt : public Optimizer {
       });
     }
     held.rethrow_unless_stopped();
+    evaluator.explain_end(best ? "it has converged, and the steps of the differences are smaller "
+                                 "than smallest_step"
+                               : "the start failed, so there is nothing to descend from");
   }
 
  private:

@@ -139,7 +139,8 @@ class CmaSearch {
       std::vector<double> sorted = *values;
       std::ranges::sort(sorted);
       escape_plateau(distribution, sorted);
-      if (termination.check(distribution, sorted) != CmaEnd::none) {
+      if (const CmaEnd end = termination.check(distribution, sorted); end != CmaEnd::none) {
+        evaluator_.explain_end(describe(end));
         return true;
       }
     }

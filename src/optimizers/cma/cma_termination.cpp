@@ -22,6 +22,32 @@ bool is_without_progress(std::span<const double> history) {
 
 }  // namespace
 
+const char* describe(CmaEnd end) {
+  switch (end) {
+    case CmaEnd::none:
+      return "";
+    case CmaEnd::tol_hist_fun:
+      return "the best values of the last generations differ by less than tol_fun";
+    case CmaEnd::equal_values:
+      return "the values of many generations are equal";
+    case CmaEnd::tol_x:
+      return "its steps are smaller than tol_x";
+    case CmaEnd::tol_x_up:
+      return "its steps have grown without limit";
+    case CmaEnd::condition_cov:
+      return "its covariance matrix is too ill-conditioned";
+    case CmaEnd::no_effect_axis:
+      return "a step along an axis changes no number";
+    case CmaEnd::no_effect_coord:
+      return "a step along a coordinate changes no number";
+    case CmaEnd::stagnation:
+      return "its values have stopped improving";
+    case CmaEnd::generations:
+      return "it has reached its largest number of generations";
+  }
+  return "";
+}
+
 CmaTermination::CmaTermination(const CmaParameters& parameters, const CmaTolerances& tolerances,
                                double sigma)
     : tolerances_(tolerances), initial_sigma_(sigma) {

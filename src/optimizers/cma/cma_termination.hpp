@@ -31,6 +31,9 @@ enum class CmaEnd {
   generations
 };
 
+// Returns the criterion in a few words.
+const char* describe(CmaEnd end);
+
 class CmaTermination {
  public:
   CmaTermination(const CmaParameters& parameters, const CmaTolerances& tolerances, double sigma);

@@ -13,6 +13,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "problems/interface/problem.hpp"
@@ -36,6 +37,10 @@ struct Score {
   EvaluationStatus status = EvaluationStatus::ok;
   bool clipped = false;  // the point was moved into the bounds before it was evaluated
 };
+
+// An optimizer in a process of its own is told that the run has stopped. It then has this many
+// seconds to recommend points and to end.
+inline constexpr double kFarewell_s = 1;
 
 // Returns the price of one evaluation with exact derivatives, in evaluations: 1 for the values, and
 // 1 for every four variables (rounded up).
@@ -75,9 +80,13 @@ class Evaluator {
   // run, the schedules `fresh` and `coevolution` change the training cases at this call.
   virtual void begin_generation() = 0;
   // Recommends a point as a candidate for the winner, for example the mean of a distribution. The
-  // run already knows the evaluated points. The call simulates nothing and costs no budget. A run
-  // ignores it once stopped() is true.
+  // run already knows the evaluated points. The call simulates nothing and costs no budget. It
+  // counts also after the budget has ended, until minimize() returns or the optimizer's process has
+  // had kFarewell_s. A run that the user has stopped ignores it: the resumed run asks again.
   virtual void recommend(std::span<const double> x) = 0;
+  // Says why the optimizer ends before the evaluator has stopped, in a few words without a period:
+  // "its steps are smaller than xtol_rel". The last call before minimize() returns counts.
+  virtual void explain_end(std::string_view /*reason*/) {}
 };
 
 }  // namespace armwright

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cmath>
 #include <mutex>
 #include <optional>
@@ -13,7 +14,14 @@
 namespace armwright {
 namespace {
 
-enum class Question : std::uint8_t { evaluate, remaining, stopped, begin_generation, recommend };
+enum class Question : std::uint8_t {
+  evaluate,
+  remaining,
+  stopped,
+  begin_generation,
+  recommend,
+  explain_end
+};
 
 // The limit for consecutive requests without a point to evaluate. Such requests cost no budget,
 // count as signs of life and, as recommendations, use memory of this process.
@@ -31,6 +39,8 @@ const char* describe(Question question) {
       return "begin_generation()";
     case Question::recommend:
       return "recommend()";
+    case Question::explain_end:
+      return "explain_end()";
   }
   return "nothing that is known";
 }
@@ -78,6 +88,12 @@ class RemoteEvaluator : public Evaluator {
     question.put(x);
     ask(question);
   }
+  void explain_end(std::string_view reason) override {
+    PacketWriter question;
+    question.put(Question::explain_end);
+    question.put(reason);
+    ask(question);
+  }
 
  private:
   std::string ask(const PacketWriter& question) const {
@@ -104,7 +120,7 @@ class Answerer {
     PacketReader reader(question);
     PacketWriter writer;
     const auto kind = reader.get<Question>();
-    if (++idle_questions_ > kMostIdleQuestions) {
+    if (++idle_questions_ > kMostIdleQuestions && !evaluator_.stopped()) {
       fail(fmt::format("asked {} questions in a row without evaluating a point (the last: {})",
                        kMostIdleQuestions, describe(kind)));
     }
@@ -127,6 +143,9 @@ class Answerer {
         evaluator_.recommend(point);
         break;
       }
+      case Question::explain_end:
+        evaluator_.explain_end(reader.get_text());
+        break;
     }
     return writer.bytes();
   }
@@ -139,6 +158,10 @@ class Answerer {
 
  private:
   void answer_evaluate(PacketReader& reader, PacketWriter& writer) {
+    if (evaluator_.stopped()) {  // whatever it asks for, there are no scores
+      writer.put(std::uint64_t{0});
+      return;
+    }
     std::vector<std::vector<double>> points;
     for (auto left = reader.get<std::uint64_t>(); left > 0; --left) {
       points.push_back(reader.get_numbers());
@@ -180,10 +203,35 @@ class Answerer {
   int idle_questions_ = 0;
 };
 
+// The time that the child has after the evaluator has stopped.
+class Farewell {
+ public:
+  Farewell(const Evaluator& evaluator, double duration_s)
+      : evaluator_(evaluator), duration_(duration_s) {}
+
+  // Returns whether the evaluator has stopped and the time since then is over.
+  bool is_over() {
+    if (!evaluator_.stopped()) {
+      return false;
+    }
+    const auto now = Clock::now();
+    begin_ = begin_.value_or(now);
+    return now - *begin_ >= duration_;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  const Evaluator& evaluator_;
+  std::chrono::duration<double> duration_;
+  std::optional<Clock::time_point> begin_;
+};
+
 }  // namespace
 
 void minimize_isolated(const std::string& name, const std::function<void(Evaluator&)>& body,
-                       Evaluator& evaluator, const ProcessLimits& limits, OutputLog* log) {
+                       Evaluator& evaluator, const ProcessLimits& limits, OutputLog* log,
+                       double farewell_s) {
   if (evaluator.stopped()) {
     return;
   }
@@ -198,23 +246,29 @@ void minimize_isolated(const std::string& name, const std::function<void(Evaluat
     const std::string limit = limits.are_options ? failure.limit() : "";
     answerer.fail(failure.what() + (limit.empty() ? "" : fmt::format(" (option {})", limit)));
   };
-  const auto is_stopped = [&] { return evaluator.stopped(); };
+  Farewell farewell(evaluator, farewell_s);
+  const auto is_over = [&] { return farewell.is_over(); };
   const auto next_question = [&]() -> std::optional<std::string> {
     try {
       std::string question;
-      const auto event = child.receive(is_stopped, question);
+      const auto event = child.receive(is_over, question);
       return event == ChildProcess::Event::message ? std::optional(question) : std::nullopt;
     } catch (const ChildFailure& failure) {
-      fail(failure);
+      if (!evaluator.stopped()) {
+        fail(failure);
+      }
     }
     return std::nullopt;
   };
   while (const auto question = next_question()) {
     try {
-      if (child.send(answerer.answer(*question), is_stopped)) {
+      if (child.send(answerer.answer(*question), is_over)) {
         return;
       }
     } catch (const ChildFailure& failure) {
+      if (evaluator.stopped()) {
+        return;
+      }
       fail(failure);
     } catch (const PacketError&) {
       answerer.fail("sent a question that makes no sense");

@@ -13,13 +13,15 @@ namespace armwright {
 
 class OutputLog;
 
-// Calls `body` in a child process and returns when `body` returns. Kills the child as soon as
-// evaluator.stopped() is true. The child's output goes to `log`, or to the standard error of this
+// Calls `body` in a child process and returns when `body` returns. Kills the child `farewell_s`
+// seconds after evaluator.stopped() has become true. Until then the child may recommend points, and
+// no fault of it makes the run fail. The child's output goes to `log`, or to the standard error of this
 // process if there is no log. Throws OptimizerFailure, with `name` in its message, if the child
 // throws, dies, sends nothing for too long, sends invalid requests, keeps asking without
 // evaluating, or exceeds its memory limit. Throws Error{io} if no process can be started.
 void minimize_isolated(const std::string& name, const std::function<void(Evaluator&)>& body,
-                       Evaluator& evaluator, const ProcessLimits& limits, OutputLog* log = nullptr);
+                       Evaluator& evaluator, const ProcessLimits& limits, OutputLog* log = nullptr,
+                       double farewell_s = 0);
 
 // Returns the options silence_s, memory_mib and log of optimizers that run in a process of their
 // own. They change no result: a run may be resumed with other values.

@@ -76,27 +76,49 @@ class Search {
   }
 
   void run() {
+    const nlopt_result result = search();
+    if (!is_over()) {
+      evaluator_.explain_end(explain(result));
+    }
+  }
+
+ private:
+  // Returns how the last descent ended.
+  nlopt_result search() {
     const SearchSpace& space = questions_.space();
-    descend(space.start(), 1);
+    nlopt_result result = descend(space.start(), 1);
     double scale = 1;
     for (std::int64_t restart = 1; restart <= settings_.restarts && !is_over(); ++restart) {
       scale *= 0.5;
       if (!questions_.has_best() || scale < kSmallestRestartScale) {
-        return;
+        return result;
       }
       std::vector<double> from = questions_.best_coordinates();
       for (std::size_t i = 0; i < from.size(); ++i) {  // where it was evaluated
         from[i] = std::clamp(from[i], space.lower()[i], space.upper()[i]);
       }
       const auto before = questions_.best_rank();
-      descend(from, scale);
+      result = descend(from, scale);
       if (!(questions_.best_rank() < before)) {
-        return;
+        return result;
       }
+    }
+    return result;
+  }
+
+  static std::string explain(nlopt_result result) {
+    switch (result) {
+      case NLOPT_XTOL_REACHED:
+        return "its steps are smaller than xtol_rel";
+      case NLOPT_FTOL_REACHED:
+        return "its gains are smaller than ftol_rel";
+      case NLOPT_ROUNDOFF_LIMITED:
+        return "rounding errors prevent further progress";
+      default:
+        return fmt::format("NLopt reports {}", nlopt_result_to_string(result));
     }
   }
 
- private:
   bool is_over() const { return questions_.has_ended() || evaluator_.stopped(); }
 
   NloptHandle create(const std::string& algorithm) const {
@@ -148,7 +170,7 @@ class Search {
     apply(nlopt_set_initial_step(solver, step.data()), "option 'initial_step'");
   }
 
-  void descend(std::vector<double> from, double scale) {
+  nlopt_result descend(std::vector<double> from, double scale) {
     if (local_) {
       set_step(local_.get(), from, scale);
       apply(nlopt_set_local_optimizer(solver_.get(), local_.get()), "option 'local'");
@@ -171,6 +193,7 @@ class Search {
           message == nullptr ? "" : ": ", message == nullptr ? "" : message, from.size(),
           evaluator_.problem().constraints.size()));
     }
+    return result;
   }
 
   const NloptSettings& settings_;

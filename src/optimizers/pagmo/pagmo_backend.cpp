@@ -224,6 +224,8 @@ class PagmoOptimizer : public Optimizer {
       const std::int64_t before = bridge.evaluation_count();
       population = algorithm.evolve(population);
       if (method_.ends || bridge.evaluation_count() == before) {
+        evaluator.explain_end(method_.ends ? "its search has converged"
+                                           : "it asked for no further evaluation");
         return;
       }
       if (method_.paced) {  // a remainder shorter than one step of the schedule

@@ -28,9 +28,11 @@ class ProblemView {
     }
     for (const Quantity& objective : problem.objectives) {
       objectives_.push_back(objective.name.c_str());
+      objective_units_.push_back(objective.unit.c_str());
     }
     for (const Quantity& constraint : problem.constraints) {
       constraints_.push_back(constraint.name.c_str());
+      constraint_units_.push_back(constraint.unit.c_str());
     }
     raw = {.struct_size = sizeof raw,
            .name = problem.name.c_str(),
@@ -44,7 +46,12 @@ class ProblemView {
            .objective_count = objectives_.size(),
            .objective_names = objectives_.data(),
            .constraint_count = constraints_.size(),
-           .constraint_names = constraints_.data()};
+           .constraint_names = constraints_.data(),
+           .objective_units = objective_units_.data(),
+           .constraint_units = constraint_units_.data(),
+           .objective_weights =
+               problem.objective_weights.empty() ? nullptr : problem.objective_weights.data(),
+           .has_residuals = problem.has_residuals ? std::size_t{1} : std::size_t{0}};
   }
   ProblemView(const ProblemView&) = delete;
   ProblemView& operator=(const ProblemView&) = delete;
@@ -60,6 +67,8 @@ class ProblemView {
   std::vector<std::uint8_t> is_logarithmic_;
   std::vector<const char*> objectives_;
   std::vector<const char*> constraints_;
+  std::vector<const char*> objective_units_;
+  std::vector<const char*> constraint_units_;
 };
 
 class Call {
@@ -92,7 +101,14 @@ class Call {
                     call.evaluator_.recommend({point, call.dimension()});
                     return 0;
                   });
-                }};
+                },
+            .residuals = [](void* self, std::size_t point, std::size_t* count) -> const double* {
+              return static_cast<Call*>(self)->get_residuals(point, count);
+            },
+            .is_clipped = [](void* self, std::size_t point) -> int {
+              const std::vector<Score>& scores = static_cast<Call*>(self)->scores_;
+              return point < scores.size() && scores[point].clipped ? 1 : 0;
+            }};
   }
 
   struct armwright_options make_options() {
@@ -144,10 +160,10 @@ class Call {
     for (std::size_t i = 0; i < count; ++i) {
       asked.emplace_back(points + i * dimension(), points + (i + 1) * dimension());
     }
-    const std::vector<Score> scores = evaluator_.evaluate(asked);
+    scores_ = evaluator_.evaluate(asked);
     const std::size_t constraint_count = evaluator_.problem().constraints.size();
-    for (std::size_t i = 0; i < scores.size(); ++i) {
-      const Score& score = scores[i];
+    for (std::size_t i = 0; i < scores_.size(); ++i) {
+      const Score& score = scores_[i];
       if (objectives != nullptr) {
         objectives = std::ranges::copy(score.objectives, objectives).out;
       }
@@ -161,7 +177,12 @@ class Call {
         statuses[i] = static_cast<std::int32_t>(score.status);
       }
     }
-    return scores.size();
+    return scores_.size();
+  }
+
+  const double* get_residuals(std::size_t point, std::size_t* count) const {
+    *count = point < scores_.size() ? scores_[point].residuals.size() : 0;
+    return *count == 0 ? nullptr : scores_[point].residuals.data();
   }
 
   template <typename Value>
@@ -177,6 +198,7 @@ class Call {
 
   const Options& options_;
   Evaluator& evaluator_;
+  std::vector<Score> scores_;  // of the latest evaluate()
   std::exception_ptr held_;
 };
 
@@ -209,8 +231,11 @@ void call_plugin(const struct armwright_plugin& plugin, const Options& options,
     throw ChildFailure("threw something that is no std::exception");
   }
   call.rethrow_held();
+  message.back() = '\0';
+  if (status == 0 && message[0] != '\0') {
+    evaluator.explain_end(message.data());
+  }
   if (status != 0) {
-    message.back() = '\0';
     throw ChildFailure(
         fmt::format("failed with code {} ({})", status,
                     message[0] == '\0' ? "it gave no reason" : sanitize(message.data())));

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 
 #include "base/text.hpp"
@@ -92,6 +93,22 @@ OptionSpec take_option(const armwright_option& raw, std::size_t number) {
   return option;
 }
 
+// The size of the struct in version 1.0, which had no requirements.
+constexpr std::size_t kFirstSize = offsetof(struct armwright_plugin, least_objectives);
+
+Requirements take_requirements(const struct armwright_plugin& plugin) {
+  if (plugin.struct_size < sizeof(struct armwright_plugin)) {
+    return {};
+  }
+  const auto take = [](std::size_t least) {
+    constexpr std::size_t kMost = 1'000'000;
+    return static_cast<int>(std::clamp(least, std::size_t{1}, kMost));
+  };
+  return {.objectives = take(plugin.least_objectives),
+          .variables = take(plugin.least_variables),
+          .residuals = plugin.needs_residuals != 0};
+}
+
 OptionValue unpack_value(PacketReader& reader) {
   switch (reader.get<std::uint64_t>()) {
     case 0:
@@ -130,18 +147,18 @@ const struct armwright_plugin& open_plugin(const std::filesystem::path& file) {
                     "version {}; build it against this armwright's armwright/plugin.h",
                     plugin->abi, ARMWRIGHT_PLUGIN_ABI));
   }
-  if (plugin->struct_size < sizeof(struct armwright_plugin)) {
+  if (plugin->struct_size < kFirstSize) {
     throw PluginRefusal(
         fmt::format("says that its struct armwright_plugin has {} bytes; it has {} or "
                     "more",
-                    plugin->struct_size, sizeof(struct armwright_plugin)));
+                    plugin->struct_size, kFirstSize));
   }
   return *plugin;
 }
 
 PluginDescription describe_plugin(const struct armwright_plugin& plugin,
                                   std::span<const std::string> own_options) {
-  constexpr std::uint32_t kKnown = (ARMWRIGHT_PACED << 1) - 1;
+  constexpr std::uint32_t kKnown = (ARMWRIGHT_SAMPLING << 1) - 1;
   PluginDescription taken;
   take_name(plugin.name, "its name", "_-:ABCDEFGHIJKLMNOPQRSTUVWXYZ");
   taken.summary = take_text(plugin.summary, "its summary");
@@ -152,6 +169,7 @@ PluginDescription describe_plugin(const struct armwright_plugin& plugin,
         fmt::format("declares capabilities that this armwright does not know (bits {:#x})",
                     plugin.capabilities & ~kKnown));
   }
+  taken.requirements = take_requirements(plugin);
   if (plugin.minimize == nullptr) {
     throw PluginRefusal("has no function minimize: it is NULL");
   }
@@ -177,6 +195,9 @@ void pack(const PluginDescription& description, PacketWriter& writer) {
   writer.put(description.summary);
   writer.put(description.source);
   writer.put(description.capabilities);
+  writer.put(description.requirements.objectives);
+  writer.put(description.requirements.variables);
+  writer.put(description.requirements.residuals);
   writer.put(std::uint64_t{description.options.size()});
   for (const OptionSpec& option : description.options) {
     writer.put(option.name);
@@ -197,6 +218,9 @@ PluginDescription unpack_description(PacketReader& reader) {
   description.summary = reader.get_text();
   description.source = reader.get_text();
   description.capabilities = reader.get<std::uint32_t>();
+  description.requirements.objectives = reader.get<int>();
+  description.requirements.variables = reader.get<int>();
+  description.requirements.residuals = reader.get<bool>();
   for (auto left = reader.get<std::uint64_t>(); left > 0; --left) {
     OptionSpec& option = description.options.emplace_back();
     option.name = reader.get_text();

@@ -26,6 +26,7 @@ struct PluginDescription {
   std::string summary;
   std::string source;
   std::uint32_t capabilities = 0;
+  Requirements requirements;
   std::vector<OptionSpec> options;
 };
 

@@ -97,6 +97,7 @@ class StrictEvaluator : public Evaluator {
     check(x, [] { return "asked, recommending a point,"; });
     evaluator_.recommend(x);
   }
+  void explain_end(std::string_view reason) override { evaluator_.explain_end(reason); }
 
  private:
   // `describe_doing` says what the plugin was doing.
@@ -175,7 +176,7 @@ class LibraryOptimizer : public Optimizer {
                         {.silence_s = options_.get_number("silence_s"),
                          .memory_mib = options_.get_number("memory_mib"),
                          .are_options = true},
-                        log_.get());
+                        log_.get(), kFarewell_s);
     } catch (const OptimizerFailure& failure) {
       throw OptimizerFailure(failure.what(), log_->last_lines());
     }
@@ -206,9 +207,11 @@ Capabilities make_capabilities(std::uint32_t bits) {
           .multi_objective = has(ARMWRIGHT_MULTI_OBJECTIVE),
           .batch = has(ARMWRIGHT_BATCH),
           .noisy = has(ARMWRIGHT_NOISY),
+          .residuals = has(ARMWRIGHT_RESIDUALS),
           .stochastic = has(ARMWRIGHT_STOCHASTIC),
           .generations = has(ARMWRIGHT_GENERATIONS),
           .local = has(ARMWRIGHT_LOCAL),
+          .sampling = has(ARMWRIGHT_SAMPLING),
           .paced = has(ARMWRIGHT_PACED)};
 }
 
@@ -239,6 +242,7 @@ OptimizerRow load_library_plugin(const std::filesystem::path& file, const std::s
             .make = [library](const Options& options) -> std::unique_ptr<Optimizer> {
               return std::make_unique<LibraryOptimizer>(library, options);
             },
+            .requirements = description.requirements,
             .isolated = "with isolate=true",
             .input_hashes = {{file.filename().string(), library.hash}}};
   } catch (const PluginRefusal& refusal) {

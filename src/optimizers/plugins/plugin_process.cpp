@@ -14,6 +14,7 @@
 #include "base/file.hpp"
 #include "base/hash.hpp"
 #include "base/text.hpp"
+#include "optimizers/interface/isolation.hpp"
 #include "optimizers/plugins/plugin_messages.hpp"
 #include "process/command_words.hpp"
 #include "process/line_process.hpp"
@@ -25,7 +26,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kFarewell_s = 1;   // from the last word to the end of the process
 constexpr int kMostNotes = 100000;  // recommendations without a question between them
 
 std::vector<std::string> watch_option_names() {
@@ -105,7 +105,7 @@ class ProcessPlugin : public Optimizer {
       try {
         converse(seed);
       } catch (const ProtocolError&) {
-        if (!end_) {
+        if (!end_ || is_recommending_) {
           throw;
         }
       } catch (const LineProcessFailure&) {
@@ -134,6 +134,9 @@ class ProcessPlugin : public Optimizer {
         const json message = read_message(*line);
         const std::string type = read_type(message);
         if (type == "done") {
+          if (message.contains("reason")) {
+            evaluator_.explain_end(read_text(message, "reason", "\"done\""));
+          }
           finish();
           return;
         }
@@ -141,7 +144,9 @@ class ProcessPlugin : public Optimizer {
           answer(message);
           notes = 0;
         } else if (type == "recommend") {
+          is_recommending_ = true;
           evaluator_.recommend(read_recommendation(message, evaluator_.problem()));
+          is_recommending_ = false;
           if (++notes > kMostNotes) {
             throw ProtocolError(
                 fmt::format("sent {} recommendations without a question", kMostNotes));
@@ -204,6 +209,7 @@ class ProcessPlugin : public Optimizer {
     std::int64_t& evaluations_;
     LineProcess child_;
     std::optional<LineProcess::Clock::time_point> end_;
+    bool is_recommending_ = false;  // true while it reads a recommendation
   };
 
   [[noreturn]] void fail(const std::string& what, std::int64_t evaluations) const {

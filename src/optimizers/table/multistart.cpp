@@ -91,6 +91,9 @@ class Multistart : public Optimizer {
       inner_->minimize(restarted, inner_seed);
       idle_starts = restarted.has_evaluated() ? 0 : idle_starts + 1;
     }
+    if (idle_starts > 0) {
+      evaluator.explain_end("two starts one after the other have evaluated nothing");
+    }
   }
   void check_problem(const ProblemDescription& problem) const override {
     inner_->check_problem(problem);

@@ -187,6 +187,20 @@ std::vector<std::string> describe_coarse_times(const StudyResult& result) {
                   join_names(labels))};
 }
 
+// Returns the problems on which more candidates are judged than the plan says, as part of a sentence.
+std::string describe_wider_selections(const StudyPlan& plan) {
+  std::vector<std::string> problems;
+  int most = 0;
+  for (const StudyProblem& problem : plan.problems) {
+    const Selection selection = choose_selection(plan, problem);
+    if (selection.most > plan.selection.most) {
+      problems.push_back(problem.label);
+      most = selection.most;
+    }
+  }
+  return problems.empty() ? "" : fmt::format(" ({} on {})", most, join_names(problems));
+}
+
 std::vector<std::string> describe_limits(const StudyPlan& plan, const StudyResult& result) {
   std::vector<std::string> sentences = describe_coarse_times(result);
   std::vector<std::string> failed;
@@ -211,6 +225,12 @@ std::vector<std::string> describe_limits(const StudyPlan& plan, const StudyResul
     sentences.push_back(fmt::format(
         "{} of {} cells have not ended and {}.", result.missing.size(), list_cells(plan).size(),
         result.missing_left_out ? "are left out" : "count as if they had found nothing"));
+  }
+  if (plan.selection.most > 0) {
+    sentences.push_back(
+        fmt::format("At most {} candidates of every run are judged on the validation set, "
+                    "recommendations included{}.",
+                    plan.selection.most, describe_wider_selections(plan)));
   }
   if (!plan.baselines) {
     sentences.push_back(

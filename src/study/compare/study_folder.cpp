@@ -92,14 +92,16 @@ std::string make_body(const StudyPlan& plan) {
   std::string text = fmt::format(
       "name = {}\ntitle = {}\nseed = {}\nreplicates = {}\nbudget = {}\nstart_spread = {}\n"
       "constraint_tolerance = {}\ncheckpoints = {}\n{}final_engine = {}\nbaselines = "
-      "{}\n{}\n[selection]\nlast = {}\nbest = {}\n{}",
+      "{}\n{}\n[selection]\nlast = {}\nbest = {}\n{}{}",
       quote(plan.name), quote(plan.title), plan.seed, plan.replicates, plan.budget,
       format_toml_number(plan.start_spread), format_toml_number(plan.constraint_tolerance),
       plan.checkpoints,
       plan.first_checkpoint > 1 ? fmt::format("first_checkpoint = {}\n", plan.first_checkpoint)
                                 : "",
       quote(plan.final_engine), plan.baselines ? "true" : "false", make_questions(plan),
-      plan.selection.last, plan.selection.best, plan.judge_along ? "along = true\n" : "");
+      plan.selection.last, plan.selection.best,
+      plan.selection.most > 0 ? fmt::format("most = {}\n", plan.selection.most) : "",
+      plan.judge_along ? "along = true\n" : "");
   for (const StudyProblem& problem : plan.problems) {
     const CaseSets& sets = problem.loaded.sets;
     text += fmt::format(
@@ -168,9 +170,13 @@ std::string calc_plan_hash(const StudyPlan& plan) {
 }
 
 void adopt_recorded(const std::filesystem::path& folder, StudyPlan& plan) {
-  if (is_study_folder(folder) && plan.baselines) {
+  if (!is_study_folder(folder)) {
+    return;
+  }
+  if (plan.baselines) {
     keep_baselines(folder / kPlanFile, plan);
   }
+  keep_selection(folder / kPlanFile, plan);
 }
 
 bool is_study_folder(const std::filesystem::path& path) {

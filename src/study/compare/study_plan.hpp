@@ -72,7 +72,7 @@ struct StudyPlan {
   // Width of the box from which starts are drawn, as a fraction (0 to 2) of the bounds' width.
   // A part of the box outside the bounds is cut off.
   double start_spread = 0.1;
-  Selection selection{.last = 5, .best = 5};
+  Selection selection{.last = 9, .best = 5, .most = 9};
   // If true, every checkpoint has judged candidates, and the winner is the best of them all on the
   // validation set. If false, only the candidates at the end of the run are judged. Long training on
   // few cases can end with designs that fail on all other cases.
@@ -134,6 +134,11 @@ void check_plan_hash(const std::filesystem::path& path);
 // Error{bad_data} if the file or a baseline cannot be loaded, Error{io} if a file cannot be read.
 void keep_baselines(const std::filesystem::path& recorded, StudyPlan& plan);
 
+// Gives `plan` the rule of version 1.0 for the candidates that are judged (Selection::most = 0) if
+// the recorded plan has it. A plan with the defaults of now gets the defaults of then. Throws
+// Error{usage} or Error{io} if the file cannot be read.
+void keep_selection(const std::filesystem::path& recorded, StudyPlan& plan);
+
 // Returns the title in a study's file, without loading the problems and optimizers that the file
 // names. `file` is a path or the name of a shipped study. Throws Error{usage} if there is no such
 // file or it is not valid, and Error{io} if it cannot be read.
@@ -162,10 +167,11 @@ Schedule get_schedule(const StudyPlan& plan, const Cell& cell);
 
 // Returns the name of the replicate's training set, which is the same for every optimizer.
 std::string make_training_set_name(const StudyPlan& plan, const Cell& cell);
-// Returns how many candidates of a run are judged on the validation set. For one objective without
-// constraints this is the plan's selection. Otherwise `last` is at least the number that `armwright
-// optimize` uses. A few candidates would be too few for a front, and too few to find a design that
-// meets the constraints on unseen cases.
+// Returns how many candidates of a run are judged on the validation set, the same for every
+// optimizer. For one objective without constraints this is the plan's selection. Otherwise `last` is
+// at least the number that `armwright optimize` uses, and `most` grows with it. A few candidates
+// would be too few for a front, and too few to find a design that meets the constraints on unseen
+// cases.
 Selection choose_selection(const StudyPlan& plan, const StudyProblem& problem);
 // Returns the plan of the cell's run. Throws Error{usage} if the start cannot be converted to the
 // controller of the cell's method.

@@ -81,11 +81,18 @@ const Setting<int> kSelectionLast{"last",
 const Setting<int> kSelectionBest{
     "best", kSelectedRange, StudyPlan{}.selection.best,
     "the N candidates with the best training objective are judged on it too"};
+const Setting<int> kSelectionMost{
+    "most",
+    {.lower = 1, .upper = 2 * kSelectedRange.upper},
+    StudyPlan{}.selection.most,
+    "at most N candidates per run are judged, recommendations of the optimizer included (default "
+    "with last or best: their sum)"};
 const Setting<bool> kSelectionAlong{
     "along", StudyPlan{}.judge_along,
     "whether the candidates of all checkpoints are judged, not only those of the end"};
 const SettingTable kSelectionSettings{
-    .key = "selection", .settings = {&kSelectionLast, &kSelectionBest, &kSelectionAlong}};
+    .key = "selection",
+    .settings = {&kSelectionLast, &kSelectionBest, &kSelectionMost, &kSelectionAlong}};
 
 const Setting<std::string> kProblemEntryName{"name", kNoDefault, "a shipped problem or a file"};
 const Setting<std::string> kProblemEntryLabel{
@@ -215,6 +222,19 @@ NamedOptimizer read_optimizer_entry(const ConfigTable& table) {
   return optimizer;
 }
 
+// A resolved plan states `last` and `best`. It lacks `most` if version 1.0 recorded it.
+Selection read_selection(const ConfigTable& table, bool is_resolved) {
+  Selection selection{.last = table.get(kSelectionLast), .best = table.get(kSelectionBest)};
+  selection.most = table.get(kSelectionMost);
+  if (!table.has(kSelectionMost) && is_resolved) {
+    selection.most = 0;
+  } else if (!table.has(kSelectionMost) &&
+             (table.has(kSelectionLast) || table.has(kSelectionBest))) {
+    selection.most = selection.last + selection.best;
+  }
+  return selection;
+}
+
 }  // namespace
 
 const SettingTable& study_settings() {
@@ -247,8 +267,7 @@ RawPlan read_study_file(const std::filesystem::path& file, StudyPlan& plan) {
   plan.final_engine = table.get(kStudyFinalEngine);
   plan.baselines = table.get(kStudyBaselines);
   const ConfigTable selection = table.get_table_or_empty(kSelectionSettings);
-  plan.selection.last = selection.get(kSelectionLast);
-  plan.selection.best = selection.get(kSelectionBest);
+  plan.selection = read_selection(selection, table.has(kStudyPlanHash));
   plan.judge_along = selection.get(kSelectionAlong);
   read_targets(table, plan);
   raw.schedule = read_schedule_key(table, kStudySchedule);
@@ -281,6 +300,18 @@ std::vector<NamedOptimizer> read_baselines(const std::filesystem::path& file) {
     }
   }
   return baselines;
+}
+
+void keep_selection(const std::filesystem::path& recorded, StudyPlan& plan) {
+  constexpr Selection kFirstDefault{.last = 5, .best = 5, .most = 0};  // of version 1.0
+  const ConfigTable table = ConfigTable::load(study_settings(), recorded);
+  if (table.get_table_or_empty(kSelectionSettings).has(kSelectionMost)) {
+    return;
+  }
+  if (plan.selection == StudyPlan{}.selection) {
+    plan.selection = kFirstDefault;
+  }
+  plan.selection.most = 0;
 }
 
 std::string read_study_title(const std::string& file) {

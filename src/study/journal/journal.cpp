@@ -70,17 +70,12 @@ class Journal::Writer {
 
   ~Writer() { stop_threads(); }
 
-  void append(const EvaluationRecord& record) {
+  template <class Record>
+  void append(const Record& record) {
     const std::string bytes = encode(record);  // outside the lock, in parallel
     const std::lock_guard lock(mutex_);
     add(bytes);
-  }
-
-  void append(const EndRecord& record) {
-    const std::string bytes = encode(record);
-    const std::lock_guard lock(mutex_);
-    add(bytes);
-    ended_ = true;
+    ended_ = std::is_same_v<Record, EndRecord>;
   }
 
   void flush() {
@@ -302,6 +297,9 @@ Journal::~Journal() {
 }
 
 void Journal::append(const EvaluationRecord& record) {
+  writer_->append(record);
+}
+void Journal::append(const LateRecommendations& record) {
   writer_->append(record);
 }
 void Journal::append(const EndRecord& record) {

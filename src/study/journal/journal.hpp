@@ -22,6 +22,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,10 +36,19 @@ struct EndRecord {
   std::uint64_t evaluations = 0;  // training evaluations of the whole run, over all its starts
 };
 
+// The decision vectors that the optimizer recommended after the budget had ended. A run has at most
+// one such record. A resumed run takes them from here, because the optimizer may be too slow to
+// recommend them again within its time.
+struct LateRecommendations {
+  std::uint64_t count = 0;
+  std::vector<double> x;  // all vectors, one after the other
+};
+
 // The records of a journal.
 struct JournalContent {
   RecordedEvaluations training;
   std::vector<EvaluationRecord> judgements;  // validation and test, in the order written
+  std::optional<LateRecommendations> late;
   bool ended = false;
   EndRecord end;                   // valid if `ended`
   std::uint64_t intact_bytes = 0;  // up to the end of the last intact record
@@ -62,6 +72,7 @@ class Journal {
   // a write or a sync has failed since the opening, and std::logic_error after close() or after an
   // end record.
   void append(const EvaluationRecord& record);
+  void append(const LateRecommendations& record);
   void append(const EndRecord& record);
   // Writes all appended records to the operating system. Throws Error{io} if a write or a sync has
   // failed since the opening.

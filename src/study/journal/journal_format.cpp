@@ -21,6 +21,7 @@ static_assert(sizeof(double) == 8 && sizeof(std::uint64_t) == 8);
 constexpr std::uint8_t kEvaluationType = 1;
 constexpr std::uint8_t kEndType = 2;
 constexpr std::uint8_t kJacobianType = 3;
+constexpr std::uint8_t kLateType = 4;
 constexpr unsigned kStatuses = 1 + static_cast<unsigned>(EvaluationStatus::abandoned);
 
 // visit_fields lists the fields once, and four visitors measure, write, read and check them.
@@ -53,6 +54,9 @@ void visit_fields(Fields& fields, Record& record) {
   if constexpr (std::is_same_v<std::remove_const_t<Record>, EndRecord>) {
     fields.number(record.evaluations);
     fields.list(record.reason);
+  } else if constexpr (std::is_same_v<std::remove_const_t<Record>, LateRecommendations>) {
+    fields.number(record.count);
+    fields.list(record.x);
   } else {
     visit_evaluation(fields, record);
   }
@@ -194,6 +198,8 @@ auto with_blank_record(std::string_view payload, OnBlank on_blank)
       return on_blank(EvaluationRecord());
     case kEndType:
       return on_blank(EndRecord());
+    case kLateType:
+      return on_blank(LateRecommendations());
     case kJacobianType: {
       EvaluationRecord record;
       record.with_jacobian = true;
@@ -208,6 +214,10 @@ auto with_blank_record(std::string_view payload, OnBlank on_blank)
 
 void encode(const EvaluationRecord& record, std::string& buffer) {
   encode_as(record.with_jacobian ? kJacobianType : kEvaluationType, record, buffer);
+}
+
+void encode(const LateRecommendations& record, std::string& buffer) {
+  encode_as(kLateType, record, buffer);
 }
 
 void encode(const EndRecord& record, std::string& buffer) {
@@ -246,12 +256,14 @@ bool could_begin_payload(std::string_view probe, std::uint32_t payload_bytes) {
     read.choice(record.evaluation.status, kStatuses);
     return read.good;
   }
-  std::uint64_t evaluations = 0;
-  std::uint32_t reason_bytes = 0;
-  read.number(evaluations);
-  read.number(reason_bytes);
-  return type == kEndType && read.good &&
-         kProbeBytes + std::uint64_t{reason_bytes} == payload_bytes;
+  // Both other types have a number and one list.
+  std::uint64_t number = 0;
+  std::uint32_t elements = 0;
+  read.number(number);
+  read.number(elements);
+  const std::uint64_t element_bytes = type == kLateType ? sizeof(double) : 1;
+  return (type == kEndType || type == kLateType) && read.good &&
+         kProbeBytes + elements * element_bytes == payload_bytes;
 }
 
 bool is_payload(std::string_view bytes) {

@@ -3,13 +3,14 @@
 //
 //   file       = "AWJRNL01" record*
 //   record     = u32 payload length | u32 CRC-32 of the payload | payload
-//   payload    = evaluation | evaluation with Jacobian | end
+//   payload    = evaluation | evaluation with Jacobian | late recommendations | end
 //   evaluation = u8 1 | u8 clipped | u8 role | u8 status | i32 failed_cases | u64 index
 //                | u64 generation
 //                | text set | list numbers (u64) | list x | text reason
 //                | list objectives | list constraint_values | list case_errors | list metrics
 //                | list residuals (empty unless the optimizer uses them)
 //   evaluation with Jacobian = u8 3 | as above | list jacobian (one row per residual, row by row)
+//   late recommendations = u8 4 | u64 count | list x (one vector after the other)
 //   end        = u8 2 | u64 evaluations | text reason
 //   text       = u32 length | bytes          list = u32 count | 8 bytes each
 #pragma once
@@ -32,11 +33,12 @@ inline constexpr std::size_t kProbeBytes = 13;  // of could_begin_payload(); the
 // written, and counts as damage when it is read.
 inline constexpr std::size_t kMaxPayloadBytes = std::size_t{64} << 20;
 
-using Record = std::variant<EvaluationRecord, EndRecord>;
+using Record = std::variant<EvaluationRecord, LateRecommendations, EndRecord>;
 
 // Appends the record with its frame to `buffer`. Throws Error{bad_data} if the payload is larger
 // than kMaxPayloadBytes; `buffer` is unchanged then.
 void encode(const EvaluationRecord& record, std::string& buffer);
+void encode(const LateRecommendations& record, std::string& buffer);
 void encode(const EndRecord& record, std::string& buffer);
 
 struct Frame {

@@ -184,6 +184,8 @@ JournalContent scan_journal(FileDescriptor descriptor, const std::filesystem::pa
     if (auto* const end = std::get_if<EndRecord>(&*attempt.record)) {
       content.ended = true;
       content.end = std::move(*end);
+    } else if (auto* const late = std::get_if<LateRecommendations>(&*attempt.record)) {
+      content.late = std::move(*late);
     } else {
       auto& evaluation = std::get<EvaluationRecord>(*attempt.record);
       if (evaluation.cases.role == CaseRole::training) {

@@ -159,6 +159,18 @@ std::vector<Candidate> CandidatePool::thin_front() const {
   return thinned;
 }
 
+// Leaves at most `selection_.most` of the chosen candidates. The last ones stand in front, newest
+// first, so the oldest of them that are not among the best lose their places.
+void CandidatePool::limit_places(const std::vector<Candidate>& best,
+                                 std::vector<Candidate>& chosen) const {
+  const auto most = static_cast<std::size_t>(selection_.most);
+  for (std::size_t i = chosen.size(); most > 0 && i > 0 && chosen.size() > most; --i) {
+    if (!is_among(best, chosen[i - 1])) {
+      chosen.erase(chosen.begin() + static_cast<std::ptrdiff_t>(i - 1));
+    }
+  }
+}
+
 std::vector<Candidate> CandidatePool::select() const {
   RememberedCandidates all = candidates_;
   if (fresh_ && incumbent_) {
@@ -177,6 +189,7 @@ std::vector<Candidate> CandidatePool::select() const {
   }
   std::ranges::copy_if(all.best(), std::back_inserter(chosen),
                        [&](const Candidate& candidate) { return !is_among(chosen, candidate); });
+  limit_places(all.best(), chosen);
   std::stable_sort(chosen.begin(), chosen.end(), [](const Candidate& a, const Candidate& b) {
     return a.generation != b.generation ? a.generation < b.generation : a.evaluation < b.evaluation;
   });

@@ -66,7 +66,7 @@ class CandidatePool {
   // Returns the incumbent's objective on the present training cases; infinity if there is none.
   double incumbent_objective() const;
   // Returns the different designs to judge on the validation set, oldest first: the last and the
-  // best candidates. With constraints, candidates from the whole run replace the last ones; with
+  // best candidates, at most Selection::most. With constraints, candidates from the whole run replace the last ones; with
   // several objectives, members of the front come first.
   std::vector<Candidate> select() const;
 
@@ -74,6 +74,7 @@ class CandidatePool {
   struct FrontMember;
   void extend_front(const EvaluationRecord& record, double objective);
   std::vector<Candidate> thin_front() const;
+  void limit_places(const std::vector<Candidate>& best, std::vector<Candidate>& chosen) const;
 
   const ProblemDescription& problem_;
   const Selection selection_;

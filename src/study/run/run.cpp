@@ -83,6 +83,31 @@ void warn_of_lost_journal(const RunFolder& folder, const RunResult& result, RunO
   }
 }
 
+// Sets why and how early the run ended. Results of runs that version 1.0 began keep their bytes, so
+// they do not get the fields that it did not know.
+void describe_end(const RunPlan& plan, const RunEvaluator& evaluator, RunResult& result) {
+  result.end_reason = evaluator.budget_spent() ? "budget" : "optimizer finished";
+  if (!evaluator.budget_spent() && plan.selection.most > 0) {
+    result.unused_evaluations = std::max<std::int64_t>(0, evaluator.remaining());
+    result.end_detail = evaluator.end_detail();
+  }
+}
+
+// Throws OptimizerFailure if the optimizer has returned at once. Such a run of version 1.0 has ended
+// without a failure, and stays as it is.
+void check_not_idle(const RunPlan& plan, const RunEvaluator& evaluator) {
+  const bool is_idle = evaluator.counts().evaluations == 0 && !evaluator.stopped() &&
+                       evaluator.remaining() > 0 && plan.selection.most > 0;
+  if (is_idle) {
+    const std::string& detail = evaluator.end_detail();
+    throw OptimizerFailure(
+        fmt::format("optimizer '{}' returned without evaluating a point, although the budget pays "
+                    "for {}{}",
+                    sanitize(plan.optimizer.name), evaluator.remaining(),
+                    detail.empty() ? "" : "; its reason: " + detail));
+  }
+}
+
 void warn_of_fewer_threads(std::size_t granted, std::size_t wanted, RunObserver& observer) {
   if (granted < wanted) {
     observer.on_message(
@@ -96,13 +121,16 @@ void warn_of_fewer_threads(std::size_t granted, std::size_t wanted, RunObserver&
 
 std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop,
                                      RunObserver& observer) {
-  const RunPlan& plan = request.plan;
+  RunPlan plan = request.plan;
   check_plan(plan);
   if (request.derived == DerivedFiles::all) {
     check_path(request.folder);
   }
   const auto optimizer = plan.optimizer.make(plan.options);
   optimizer->check_problem(plan.problem.problem->description());
+  if (has_first_selection(request.folder)) {
+    plan.selection.most = 0;
+  }
   const RunFolder folder(request.folder, plan, request.command_line);
   if (are_derived_files_there(folder.path(), request.derived)) {
     RunResult result = load_result(folder.path());
@@ -128,6 +156,7 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   optimizer->log_to(folder.log());
   try {
     optimizer->minimize(evaluator, plan.seed);
+    check_not_idle(plan, evaluator);
   } catch (const OptimizerFailure& failure) {
     result.failure = failure.what();
     observer.on_message("error: " + result.failure + describe_printed(failure.printed()));
@@ -141,8 +170,9 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
     result.end_reason = "optimizer failed";
   } else {
     evaluator.check_replay_complete();
-    result.end_reason = evaluator.budget_spent() ? "budget" : "optimizer finished";
+    describe_end(plan, evaluator, result);
   }
+  evaluator.take_late_recommendations();
   result.counts = evaluator.counts();
   result.first_failure = evaluator.first_failure();
   result.least_violation = evaluator.least_violation();

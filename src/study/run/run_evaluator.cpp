@@ -17,6 +17,12 @@
 #include "study/run/racing.hpp"
 
 namespace armwright {
+namespace {
+
+// The most decision vectors that count after the end of the budget. Later ones are ignored.
+constexpr std::size_t kMostLate = 100;
+
+}  // namespace
 
 // Candidates that the optimizer asks for together, and what is known of them.
 struct RunEvaluator::Batch {
@@ -36,6 +42,7 @@ RunEvaluator::RunEvaluator(const RunPlan& plan, CaseExecutor& executor, StopSign
       observer_(observer),
       recorded_(recorded.training),
       journal_ended_(recorded.ended),
+      recorded_late_(recorded.late),
       candidates_(plan) {
   block_.role = CaseRole::training;
   block_.set = get_training_set(plan.problem.sets.training, plan.schedule);
@@ -81,10 +88,48 @@ void RunEvaluator::start_generation() {
 }
 
 void RunEvaluator::recommend(std::span<const double> x) {
-  if (stopped()) {
+  if (stopped_ || stop_.requested()) {
     return;
   }
-  candidates_.recommend(make_request(x).x, counts_.generations);
+  std::vector<double> inside = make_request(x).x;
+  if (!budget_spent_) {
+    candidates_.recommend(std::move(inside), counts_.generations);
+  } else if (late_.size() < kMostLate * inside.size()) {
+    late_.insert(late_.end(), inside.begin(), inside.end());
+  }
+}
+
+void RunEvaluator::take_late_recommendations() {
+  const std::size_t dimension = problem().variables.size();
+  if (plan_.selection.most == 0 || !budget_spent_ || (journal_ended_ && !recorded_late_)) {
+    return;
+  }
+  if (!recorded_late_) {
+    recorded_late_ = {.count = late_.size() / dimension, .x = std::move(late_)};
+    // Only what runs in a process of its own may recommend less when the machine is slow.
+    if (recorded_late_->count > 0 || !plan_.optimizer.isolated.empty()) {
+      journal_.append(*recorded_late_);
+    }
+  }
+  if (recorded_late_->count > kMostLate ||
+      recorded_late_->x.size() != recorded_late_->count * dimension) {
+    throw Error(
+        ErrorKind::bad_data,
+        fmt::format("the journal has {} recommendations with {} numbers in all, and problem "
+                    "{} has {} decision variables; start a new run with --new",
+                    recorded_late_->count, recorded_late_->x.size(), plan_.problem.name,
+                    dimension));
+  }
+  for (auto x = recorded_late_->x.begin(); x != recorded_late_->x.end();) {
+    const auto next = x + static_cast<std::ptrdiff_t>(dimension);
+    candidates_.recommend({x, next}, counts_.generations);
+    x = next;
+  }
+}
+
+void RunEvaluator::explain_end(std::string_view reason) {
+  constexpr std::size_t kLongest = 200;
+  end_detail_ = sanitize(reason.substr(0, kLongest));
 }
 
 EvaluationRecord RunEvaluator::make_request(std::span<const double> x) const {

@@ -38,6 +38,7 @@ class RunEvaluator final : public Evaluator {
   std::int64_t remaining() const override;
   void begin_generation() override;
   void recommend(std::span<const double> x) override;
+  void explain_end(std::string_view reason) override;
 
   bool budget_spent() const { return budget_spent_; }
   const RunCounts& counts() const { return counts_; }
@@ -48,10 +49,18 @@ class RunEvaluator final : public Evaluator {
   // To be called after the optimizer has returned by itself, not after a stop. Throws
   // Error{bad_data} if the journal holds more evaluations than the optimizer has asked for.
   void check_replay_complete() const;
+  // To be called after the optimizer has ended, before select_candidates(). Makes candidates of the
+  // decision vectors that it recommended after the budget had ended. A resumed run takes those that
+  // the journal has instead; a new one appends its own to the journal. Throws Error{bad_data} if
+  // the recorded ones do not fit the problem, and Error{io}.
+  void take_late_recommendations();
+  // Returns why the optimizer says that it ended; empty if it does not say.
+  const std::string& end_detail() const { return end_detail_; }
   // To be called after the optimizer has failed. Counts and keeps the recorded evaluations that the
   // optimizer has not asked for, also those behind a gap, as if it had. An attempt that fails
-  // earlier than a former one therefore loses none of its evaluations. (Recommendations are not in
-  // the journal, so those of former attempts are lost unless they are made again.) Throws
+  // earlier than a former one therefore loses none of its evaluations. (Recommendations before the
+  // end of the budget are not in the journal, so those of former attempts are lost unless they are
+  // made again.) Throws
   // Error{bad_data} if an evaluation belongs to a generation before the present one.
   void take_remaining_recorded();
   std::vector<Candidate> select_candidates() const { return candidates_.select(); }
@@ -90,6 +99,9 @@ class RunEvaluator final : public Evaluator {
   RunCounts counts_;
   std::uint64_t replayed_cases_ = 0;  // of the evaluations in counts_.replayed
   std::string first_failure_;
+  std::string end_detail_;
+  std::vector<double> late_;  // recommended after the end of the budget, one after the other
+  std::optional<LateRecommendations> recorded_late_;
   std::optional<double> least_violation_;
   CaseBlock block_;
   std::optional<CaseBreeder> breeder_;  // set if the schedule breeds cases

@@ -192,6 +192,16 @@ RunFolder::RunFolder(const std::filesystem::path& path, const RunPlan& plan,
       describe_build_changes(manifest["build"].get<std::map<std::string, std::string>>(), "run");
 }
 
+bool has_first_selection(const std::filesystem::path& folder) {
+  const auto file = folder / "manifest.json";
+  if (!std::filesystem::exists(file)) {
+    return false;
+  }
+  const json manifest = read_manifest(file);
+  const json::json_pointer selection("/configuration/run/selection");
+  return manifest.contains(selection) && !manifest[selection].contains("most");
+}
+
 std::filesystem::path choose_run_folder(const std::filesystem::path& parent,
                                         const std::string& name, bool fresh) {
   std::filesystem::path folder = parent / name;

@@ -46,6 +46,11 @@ class RunFolder {
   std::vector<std::string> warnings_;
 };
 
+// Returns whether the folder holds a run whose recorded plan has no Selection::most. Version 1.0
+// began such a run, which keeps the rule of that version. Throws Error{bad_data} if the manifest is
+// damaged, and Error{io}.
+bool has_first_selection(const std::filesystem::path& folder);
+
 // Returns parent/NAME or, with `fresh`, the first of NAME, NAME-002, NAME-003, ... that does not
 // exist.
 std::filesystem::path choose_run_folder(const std::filesystem::path& parent,

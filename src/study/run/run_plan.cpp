@@ -150,6 +150,9 @@ std::string to_json(const RunPlan& plan) {
       {"schedule", {{"kind", to_string(plan.schedule.kind)}, {"cases", plan.schedule.cases}}},
       {"selection", {{"last", plan.selection.last}, {"best", plan.selection.best}}},
   };
+  if (plan.selection.most > 0) {  // absent in plans of version 1.0
+    run["selection"]["most"] = plan.selection.most;
+  }
   if (plan.racing.kind != Racing::Kind::none) {  // as in plans from versions without racing
     run["racing"] = to_text(plan.racing);
   }

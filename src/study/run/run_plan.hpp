@@ -16,9 +16,15 @@ namespace armwright {
 // The candidates that are judged on the validation set. The best of them there is the winner, and
 // is evaluated on the test set.
 struct Selection {
-  int last = 40;  // the last N different incumbents; with training cases that change, the last N
-                  // bests of generations and recommendations
+  int last = 40;  // the last N different incumbents and recommendations; with training cases that
+                  // change, the last N bests of generations and recommendations
   int best = 5;   // the N with the best training objective besides
+  // The places of the pool: at most this many candidates are judged, recommendations included. If
+  // there are more, the oldest of the last ones lose their places. 0 is the rule of version 1.0: no
+  // such limit, and recommendations after the end of the budget do not count.
+  int most = 45;
+
+  bool operator==(const Selection&) const = default;
 };
 
 struct RunPlan {

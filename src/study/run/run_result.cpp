@@ -234,6 +234,12 @@ std::string to_json(const RunResult& result) {
   if (result.counts.abandoned > 0) {  // as in results from versions without racing
     j["counts"]["abandoned"] = result.counts.abandoned;
   }
+  if (!result.end_detail.empty()) {
+    j["end_detail"] = result.end_detail;
+  }
+  if (result.unused_evaluations > 0) {
+    j["unused_evaluations"] = result.unused_evaluations;
+  }
   for (const RequiredMetric& requirement :
        result.requirements) {  // the key is left out if there are none
     j["requirements"].push_back(requirement_to_json(result, requirement));
@@ -259,6 +265,9 @@ RunResult parse_result(const std::string& text, const std::filesystem::path& fil
     result.seed = whole_from_json(j.at("seed"));
     result.tracking = j.at("tracking");
     result.end_reason = j.at("end_reason");
+    result.end_detail = j.value("end_detail", std::string());
+    result.unused_evaluations =
+        whole_from_json<std::int64_t>(j.value("unused_evaluations", json(0U)));
     result.failure = j.at("failure");
     result.first_failure = j.at("first_failure");
     const json& counts = j.at("counts");

@@ -38,7 +38,11 @@ struct RunResult {
   std::string problem;
   std::string optimizer;
   std::uint64_t seed = 1;
-  std::string end_reason;     // "budget", "optimizer finished" or "optimizer failed"
+  std::string end_reason;  // "budget", "optimizer finished" or "optimizer failed"
+  // If the optimizer finished: why, in its own words, and how many more evaluations the budget would
+  // have paid for. Empty and 0 if that is not known, and in results of runs that version 1.0 began.
+  std::string end_detail;
+  std::int64_t unused_evaluations = 0;
   std::string failure;        // how the optimizer failed; empty if it did not
   std::string first_failure;  // the reason of the first evaluation without objectives, if any
   RunCounts counts;           // `replayed` is not recorded

@@ -108,6 +108,9 @@ class JournalSurveyor {
       survey_.end = *end;
       return;
     }
+    if (std::holds_alternative<LateRecommendations>(record)) {
+      return;
+    }
     const auto& evaluation = std::get<EvaluationRecord>(record);
     if (evaluation.cases.role != CaseRole::training) {
       ++survey_.judgements;
@@ -208,9 +211,11 @@ JournalRepair repair_journal(const std::filesystem::path& file, const JournalSur
       window,
       [&](const Record& record, Place place) {
         const auto* evaluation = std::get_if<EvaluationRecord>(&record);
-        const bool is_kept = evaluation != nullptr &&
-                             (evaluation->cases.role != CaseRole::training ||
-                              !std::ranges::binary_search(survey.contradictory, evaluation->index));
+        const bool is_kept =
+            std::holds_alternative<LateRecommendations>(record) ||
+            (evaluation != nullptr &&
+             (evaluation->cases.role != CaseRole::training ||
+              !std::ranges::binary_search(survey.contradictory, evaluation->index)));
         if (!is_kept) {
           ++repair.records_dropped;
           return;

@@ -334,5 +334,38 @@ TEST_F(Isolation, TheEvaluatorsExceptionsComeOutUnchanged) {
   }
 }
 
+TEST_F(Isolation, AfterTheStopAChildMayRecommendForAWhile) {
+  const auto body = [](Evaluator& remote) {
+    while (!remote.stopped()) {
+      evaluate(remote, {{1, 2}});
+    }
+    evaluate(remote, {{kNaN, 2}});  // no answer, and no fault
+    remote.recommend(std::vector<double>{3, 4});
+    while (true) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  };
+  const auto begin = std::chrono::steady_clock::now();
+  minimize_isolated("demo", body, evaluator_, kLimits, nullptr, 0.5);
+  const std::chrono::duration<double> duration = std::chrono::steady_clock::now() - begin;
+  EXPECT_EQ(evaluator_.recommended(), (std::vector<std::vector<double>>{{3, 4}}));
+  EXPECT_EQ(evaluator_.trace().size(), 100u);
+  EXPECT_GE(duration.count(), 0.5) << "it was not given its time";
+  EXPECT_LT(duration.count(), 20) << "it was given silence_s instead";
+}
+
+TEST_F(Isolation, TheReasonOfAnEndReachesTheEvaluator) {
+  class Listener : public MemoryEvaluator {
+   public:
+    using MemoryEvaluator::MemoryEvaluator;
+    void explain_end(std::string_view reason) override { reason_ = reason; }
+    std::string reason_;
+  };
+  Listener listener(*problem_, {.budget = 10});
+  minimize_isolated(
+      "demo", [](Evaluator& remote) { remote.explain_end("all is seen"); }, listener, kLimits);
+  EXPECT_EQ(listener.reason_, "all is seen");
+}
+
 }  // namespace
 }  // namespace armwright

@@ -11,6 +11,7 @@
 #include "base/error.hpp"
 #include "base/hash.hpp"
 #include "optimizers/table/optimizer_table.hpp"
+#include "optimizers/test_problems.hpp"
 #include "problems/analytic/analytic.hpp"
 #include "study/contract/memory_evaluator.hpp"
 
@@ -108,6 +109,76 @@ TEST_F(PluginLibrary, ItsRunIsTheSameInAProcessOfItsOwnAndHere) {
         ->minimize(again, 1);
     EXPECT_EQ(again.trace(), evaluator_.trace()) << isolate;
   }
+}
+
+// Two weighted objectives, f and 10 f, and residuals.
+class Weighted : public ResidualProblem {
+ public:
+  Weighted()
+      : ResidualProblem(
+            {{"x", "", -5, 5, 1}, {"y", "", -5, 5, 2}, {"z", "", -5, 5, 3}},
+            [](std::span<const double> x) { return std::vector<double>(x.begin(), x.end()); }) {
+    description_.objectives = {{"f", "m"}, {"g", "N"}};
+    description_.objective_weights = {2, 0.5};
+  }
+  Evaluation aggregate(std::span<const double> x,
+                       std::span<const CaseOutcome> outcomes) const override {
+    Evaluation evaluation = ResidualProblem::aggregate(x, outcomes);
+    evaluation.objectives.push_back(10 * evaluation.objectives[0]);
+    return evaluation;
+  }
+};
+
+TEST_F(PluginLibrary, InCAndCppItGetsWhatProgramsGet) {
+  const Weighted problem;
+  for (const char* name : {"late", "c_late"}) {
+    for (const char* isolate : {"isolate=true", "isolate=false"}) {
+      SCOPED_TRACE(std::string(name) + " " + isolate);
+      MemoryEvaluator evaluator(problem, {.budget = 10});
+      const OptimizerRow row = load_optimizer(plugin(name));
+      EXPECT_TRUE(row.capabilities.residuals);
+      EXPECT_EQ(row.requirements.variables, 2);
+      row.make(Options::parse(row.name, row.options, std::vector<std::string>{isolate}))
+          ->minimize(evaluator, 1);
+      // At the start f is 1 + 4 + 9 = 14, and the weighted sum 2 * 14 + 0.5 * 140 = 98.
+      EXPECT_EQ(evaluator.recommended(),
+                (std::vector<std::vector<double>>{
+                    {98, 98, 3}, {1, 14, 3}, {0, 1, 3}, {0, 0, 0}}));  // the last after the end
+    }
+  }
+}
+
+TEST_F(PluginLibrary, OneOfVersionOneRunsAsItDid) {
+  for (const std::string name : {"good", "c_plugin"}) {
+    MemoryEvaluator evaluators[] = {{*problem_, {.budget = 200}}, {*problem_, {.budget = 200}}};
+    for (const bool is_old : {false, true}) {
+      const OptimizerRow row = load_optimizer(plugin(name + (is_old ? "_v1" : "")));
+      EXPECT_FALSE(row.capabilities.residuals);
+      EXPECT_EQ(row.requirements.variables, 1);
+      row.make(Options::parse(row.name, row.options, {}))->minimize(evaluators[is_old], 1);
+    }
+    EXPECT_EQ(evaluators[1].trace().size(), 200u);
+    EXPECT_EQ(evaluators[1].trace(), evaluators[0].trace());
+  }
+}
+
+// Only a plugin that was built with the header of version 2.0 gets the weighted sum from
+// Evaluator::operator(). The sum of this problem has its minimum where the first objective has its
+// maximum.
+TEST_F(PluginLibrary, OnlyANewOneSeesTheWeightedSum) {
+  class Opposed : public Weighted {
+   public:
+    Opposed() { description_.objective_weights = {1, -0.2}; }  // f - 2 f
+  };
+  const Opposed problem;
+  const auto last_of = [&](const std::string& name) {
+    MemoryEvaluator evaluator(problem, {.budget = 60});
+    const OptimizerRow row = load_optimizer(plugin(name));
+    row.make(Options::parse(row.name, row.options, {}))->minimize(evaluator, 1);
+    return evaluator.trace().back().score.objectives[0];
+  };
+  EXPECT_LT(last_of("good_v1"), 14);
+  EXPECT_GT(last_of("good"), 14);
 }
 
 TEST_F(PluginLibrary, SeedAndOptionsReachIt) {

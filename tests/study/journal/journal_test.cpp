@@ -43,10 +43,14 @@ TEST(Journal, KeepsEveryFieldBitByBit) {
     for (const auto* const each : {&record, &validated, &empty, &judged}) {
       journal.append(*each);
     }
+    journal.append(LateRecommendations{2, {1.5, -2.5, 1e-300, 4}});
     journal.append(EndRecord{"budget", 12345678901});
     journal.close();
   }
   const JournalContent content = read_journal(folder / "journal");
+  ASSERT_TRUE(content.late.has_value());
+  EXPECT_EQ(content.late->count, 2u);
+  EXPECT_EQ(content.late->x, (std::vector<double>{1.5, -2.5, 1e-300, 4}));
   ASSERT_EQ(content.training.size(), 2);
   expect_same(content.training[0], empty);  // sorted by index
   expect_same(content.training[1], record);

@@ -42,6 +42,46 @@ TEST(CandidatePoolTest, WithConstraintsThoseOfTheWholeRun) {
   EXPECT_THAT(select_of_ten("constrained"), ElementsAre(0, 3, 6, 8, 9));
 }
 
+// Returns the kinds of the judged candidates of a run with twelve improvements, oldest first: the
+// objective of an evaluated one, 0 for a recommendation. After each of the last `recommendations`
+// improvements comes a recommendation.
+std::vector<double> select_with(const Selection& selection, int recommendations) {
+  RunPlan plan;
+  plan.problem = load_problem("sphere");
+  plan.selection = selection;
+  CandidatePool pool(plan);
+  for (int i = 0; i < 12; ++i) {
+    EvaluationRecord record;
+    record.index = static_cast<std::uint64_t>(i);
+    record.generation = record.index;
+    record.x = {static_cast<double>(i)};
+    record.evaluation.objectives = {112.0 - i};
+    pool.consider(record);
+    if (i >= 12 - recommendations) {
+      pool.recommend({i + 0.5}, record.generation);
+    }
+  }
+  std::vector<double> kinds;
+  for (const Candidate& candidate : pool.select()) {
+    kinds.push_back(candidate.recommended ? 0 : candidate.training_objective);
+  }
+  return kinds;
+}
+
+TEST(CandidatePoolTest, EveryOptimizerHasTheSameNumberOfPlaces) {
+  const Selection nine{.last = 9, .best = 5, .most = 9};
+  EXPECT_THAT(select_with(nine, 0), ElementsAre(109, 108, 107, 106, 105, 104, 103, 102, 101));
+  // Recommendations displace the oldest of the last candidates, never the five best.
+  EXPECT_THAT(select_with(nine, 2), ElementsAre(107, 106, 105, 104, 103, 0, 102, 0, 101));
+  EXPECT_THAT(select_with(nine, 12), ElementsAre(105, 0, 104, 0, 103, 0, 102, 0, 101));
+}
+
+TEST(CandidatePoolTest, VersionOneJudgedMoreOfAnOptimizerThatRecommends) {
+  const Selection old{.last = 5, .best = 5, .most = 0};
+  EXPECT_EQ(select_with(old, 0).size(), 5u);
+  EXPECT_EQ(select_with(old, 12).size(), 8u);
+}
+
 // The pool keeps few of a long run's candidates. They must be the same as if it kept all.
 TEST(RememberedCandidatesTest, AreThoseThatAllTogetherWouldHaveGiven) {
   RandomStream random("test/remembered-candidates", 1);

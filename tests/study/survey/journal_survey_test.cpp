@@ -199,5 +199,27 @@ TEST_F(JournalSurveyTest, WhatIsNoJournalIsRefused) {
   EXPECT_EQ(catch_error([&] { survey_journal(folder_ / "none"); }).kind(), ErrorKind::io);
 }
 
+TEST_F(JournalSurveyTest, LateRecommendationsOutliveARepair) {
+  std::filesystem::remove(file_);
+  {
+    JournalContent content;
+    Journal journal(file_, content);
+    journal.append(make_record(0));
+    journal.append(LateRecommendations{1, {1, 2}});
+    journal.append(make_record(1));
+    journal.close();
+  }
+  const JournalSurvey survey = survey_journal(file_);
+  EXPECT_FALSE(survey.is_damaged());
+  EXPECT_EQ(survey.records, 3u);
+  EXPECT_EQ(survey.evaluations.size(), 2u);
+  flip(28);  // in the first record
+  JournalRepair done;
+  const JournalContent repaired = repair(done);
+  EXPECT_EQ(done.records_kept, 2u);
+  ASSERT_TRUE(repaired.late.has_value());
+  EXPECT_EQ(repaired.late->x, (std::vector<double>{1, 2}));
+}
+
 }  // namespace
 }  // namespace armwright
