@@ -100,6 +100,17 @@ std::string explain_simd(const json& recorded, const json& now) {
       sanitize(name));
 }
 
+// Returns advice if the recorded run has the plain form of a function and the present one an
+// instance, else an empty text.
+std::string explain_instance(const json& recorded, const json& now) {
+  const json::json_pointer instance("/problem/function/instance");
+  return recorded.contains("/problem/function"_json_pointer) && !recorded.contains(instance) &&
+                 now.contains(instance)
+             ? "\nThe run has the plain form of the function, which was the only form before "
+               "version 2.0; to resume this run, pass --set function.instance=0"
+             : "";
+}
+
 }  // namespace
 
 RunFolder::RunFolder(const std::filesystem::path& path, const RunPlan& plan,
@@ -113,12 +124,14 @@ RunFolder::RunFolder(const std::filesystem::path& path, const RunPlan& plan,
   const json manifest = read_manifest(file);
   const auto differences = describe_differences(manifest["configuration"].dump(), to_json(plan));
   if (!differences.empty()) {
+    const json now = json::parse(to_json(plan));
     throw Error(
         ErrorKind::usage,
         fmt::format("{} holds a run with another configuration:\n  {}\nResume it with the recorded "
-                    "configuration, or use --new or --out for another folder{}",
+                    "configuration, or use --new or --out for another folder{}{}",
                     path.string(), join(differences, "\n  "),
-                    explain_simd(manifest["configuration"], json::parse(to_json(plan)))));
+                    explain_simd(manifest["configuration"], now),
+                    explain_instance(manifest["configuration"], now)));
   }
   warnings_ =
       describe_build_changes(manifest["build"].get<std::map<std::string, std::string>>(), "run");
