@@ -290,6 +290,21 @@ void keep_baselines(const std::filesystem::path& recorded, StudyPlan& plan) {
   }
 }
 
+void keep_plain_functions(const std::filesystem::path& recorded, StudyPlan& plan) {
+  StudyPlan ignored;
+  const RawPlan raw = read_study_file(recorded, ignored);
+  for (StudyProblem& problem : plan.problems) {
+    const auto found = std::ranges::find(raw.problems, problem.label, &NamedProblem::label);
+    if (found != raw.problems.end() && problem.loaded.function &&
+        found->configuration_sha256 != calc_configuration_hash(problem.loaded)) {
+      NamedProblem named = *found;
+      named.name = problem.name;
+      load_as_recorded(named, problem);
+    }
+  }
+  load_methods(plan);
+}
+
 StudyPlan make_study_plan(const StudyRequest& request) {
   StudyPlan plan;
   RawPlan raw;

@@ -168,9 +168,13 @@ std::string calc_plan_hash(const StudyPlan& plan) {
 }
 
 void adopt_recorded(const std::filesystem::path& folder, StudyPlan& plan) {
-  if (is_study_folder(folder) && plan.baselines) {
+  if (!is_study_folder(folder)) {
+    return;
+  }
+  if (plan.baselines) {
     keep_baselines(folder / kPlanFile, plan);
   }
+  keep_plain_functions(folder / kPlanFile, plan);
 }
 
 bool is_study_folder(const std::filesystem::path& path) {

@@ -134,6 +134,10 @@ void check_plan_hash(const std::filesystem::path& path);
 // Error{bad_data} if the file or a baseline cannot be loaded, Error{io} if a file cannot be read.
 void keep_baselines(const std::filesystem::path& recorded, StudyPlan& plan);
 
+// Gives functions of `plan` the plain form where the recorded plan has it and `plan` has an instance:
+// version 1.0 had no other form. Throws as keep_baselines().
+void keep_plain_functions(const std::filesystem::path& recorded, StudyPlan& plan);
+
 // Returns the title in a study's file, without loading the problems and optimizers that the file
 // names. `file` is a path or the name of a shipped study. Throws Error{usage} if there is no such
 // file or it is not valid, and Error{io} if it cannot be read.

@@ -53,6 +53,27 @@ TEST(StudyInstances, APlanOfVersion1KeepsThePlainForm) {
             make_analytic("rastrigin", 3)->description().known_optimum);
 }
 
+// The command of a study that version 1.0 began continues it, as the shipped problem was then.
+TEST_F(StudyTest, AStudyOfVersion1GoesOnWithThePlainForm) {
+  StudyRequest request = make_request();
+  StudyPlan old = make_study_plan(request);
+  old.problems[0].loaded = load_problem(
+      "rastrigin", std::vector<std::string>{"function.dimension=3", "function.instance=0"});
+  study(old, "study");
+  const auto before = read_cells("study");
+  request.replicates = 5;
+  StudyPlan now = make_study_plan(request);
+  adopt_recorded(temporary_ / "study", now);
+  study(now, "study");
+  const auto after = read_cells("study");
+  EXPECT_GT(after.size(), before.size());
+  for (const auto& [path, text] : before) {
+    EXPECT_EQ(after.at(path), text) << path;
+  }
+  EXPECT_EQ(make_run_plan(now, {0, 0, 5}).problem.problem->description().known_optimum,
+            make_analytic("rastrigin", 3)->description().known_optimum);
+}
+
 // An optimizer with settings of its own has the same function.
 TEST(StudyInstances, AnOptimizerWithSettingsHasThePlainFormTooInAPlanOfVersion1) {
   const TemporaryFolder folder;
