@@ -339,6 +339,13 @@ void ConfigTable::settle(const Setting<T>& setting, const std::type_identity_t<T
   settle_value(*node_, setting.key, make_settled(value));
 }
 
+void ConfigTable::leave_out(const AnySetting& setting) const {
+  check_declared(*node_, setting);
+  Value left_out;
+  left_out.is_left_out = true;
+  settle_value(*node_, setting.key, std::move(left_out));
+}
+
 void ConfigTable::settle_missing(const ConfigTable& other) const {
   for (const auto& [key, value] : other.node_->table->keys) {
     if (!has(key)) {

@@ -92,6 +92,9 @@ class ConfigTable {
   // number is recorded without decimal point.
   template <class Value>
   void settle(const Setting<Value>& setting, const std::type_identity_t<Value>& value) const;
+  // Leaves a key out of to_json(), whether the file has it or not. For a value that means the same
+  // as the key's absence.
+  void leave_out(const AnySetting& setting) const;
   // Records every value of `other` whose key this table lacks. `other` holds no tables.
   void settle_missing(const ConfigTable& other) const;
 

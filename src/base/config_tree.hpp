@@ -49,6 +49,7 @@ struct Value {
   std::int64_t integer = 0;
   double number = 0;
   bool boolean = false;
+  bool is_left_out = false;  // of a settled value: to_json() lacks the key
   std::vector<Value> items;
   std::map<std::string, std::unique_ptr<Value>, std::less<>> keys;
   mutable std::vector<std::string> asked;  // of a table: keys that were read, in order of reading

@@ -58,6 +58,9 @@ void append_json(const Value& value, const Value* settled, std::string& out) {
       if (settled != nullptr) {
         for (const auto& [key, child] : settled->keys) {
           both[key].second = child.get();
+          if (child->is_left_out) {
+            both.erase(key);
+          }
         }
       }
       out += '{';

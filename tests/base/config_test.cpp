@@ -389,6 +389,15 @@ TEST(Config, SettledValuesAreInTheJsonAndNowhereElse) {
   EXPECT_FALSE(config.has("absent"));
 }
 
+TEST(Config, LeftOutKeysAreMissingInTheJsonOnly) {
+  const ConfigTable config = parse("a = 1\n[task]\nspeed = 'auto'\nhome = [1, 2]\n");
+  const ConfigTable task = config.get_table(table("task"));
+  task.leave_out(text("speed"));
+  task.leave_out(text("gone"));
+  EXPECT_EQ(config.to_json(), R"({"a":1,"task":{"home":[1,2]}})");
+  EXPECT_EQ(task.get(text("speed")), "auto");
+}
+
 TEST(Config, SettlesWhatAnotherDocumentHasAndThisOneLacks) {
   const ConfigTable config = parse("[plant]\na = 1\n");
   const ConfigTable plant = config.get_table(table("plant"));

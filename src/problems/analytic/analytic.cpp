@@ -5,10 +5,11 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "problems/analytic/bbob.hpp"
+#include "problems/analytic/function_instance.hpp"
 
 namespace armwright {
 namespace {
@@ -18,20 +19,20 @@ namespace {
 // square is far from overflow, and the spacing of numbers near it is 1e-4.
 constexpr double kPenalty = 1e12;
 
-// The smallest difference of values that counts in comparisons. It is the last target of COCO.
+// A difference of function values that matters in comparisons. BBOB's targets end there too.
 constexpr double kResolution = 1e-8;
-
-double calc_shift(int index) {
-  const double multiple = (index + 1) * (std::numbers::phi - 1);
-  return 4 * (multiple - std::floor(multiple) - 0.5);
-}
 
 class AnalyticProblem : public Problem {
  public:
-  AnalyticProblem(const AnalyticFunction& function, int dimension) : function_(function) {
+  AnalyticProblem(const AnalyticFunction& function, const FunctionChoice& choice)
+      : function_(function), instance_(make_instance(function, choice)) {
+    const int dimension = choice.dimension;
     description_.name = function.name;
     description_.summary = fmt::format("{}; {} {}", function.summary, dimension,
                                        dimension == 1 ? "variable" : "variables");
+    if (choice.instance > 0) {
+      description_.summary += fmt::format(", instance {}", choice.instance);
+    }
     for (int i = 0; i < dimension; ++i) {
       const auto place = static_cast<std::size_t>(i);
       const double start = function.start.size() == 1 ? function.start[0] : function.start[place];
@@ -40,38 +41,34 @@ class AnalyticProblem : public Problem {
                                         .lower = function.lower,
                                         .upper = function.upper,
                                         .start = start});
-      const bool shifted = function.minimiser.empty();
-      shift_.push_back(shifted ? calc_shift(i) : 0);
-      description_.known_optimum.push_back(shifted ? shift_.back() : function.minimiser[place]);
     }
-    // A function without a minimiser of its own is least where z is 0.
-    description_.optimum = function.calc_value(
-        function.minimiser.empty() ? std::vector<double>(shift_.size()) : function.minimiser);
+    description_.known_optimum = instance_.minimiser;
+    description_.optimum = function.minimum + instance_.f_opt;
+    description_.resolution = kResolution;
     description_.objectives = {{"f", ""}};
     for (int i = 0; i < function.constraint_count; ++i) {
       description_.constraints.push_back({fmt::format("g_{}", i + 1), ""});
     }
     description_.cost_unit = "function evaluation";
-    description_.optimum = function.optimum;
-    description_.resolution = kResolution;
-    description_.has_residuals = function.calc_residuals != nullptr;
+    description_.has_residuals = function.calc_residuals != nullptr && !choice.adds_f_opt;
+    if (choice.adds_f_opt) {
+      description_.residuals_advice = "set function.add_f_opt to false";
+    }
   }
 
   const ProblemDescription& description() const override { return description_; }
 
   std::vector<CaseOutcome> simulate(std::span<const CaseJob> jobs) const override {
     std::vector<CaseOutcome> outcomes(jobs.size());
-    std::vector<double> z(shift_.size());
+    std::vector<double> z(description_.variables.size());
     for (std::size_t job = 0; job < jobs.size(); ++job) {
       assert(jobs[job].x.size() == z.size());
-      for (std::size_t i = 0; i < z.size(); ++i) {
-        z[i] = jobs[job].x[i] - shift_[i];
-      }
-      outcomes[job].error = function_.calc_value(z);
+      instance_.calc_z(jobs[job].x, z);
+      outcomes[job].error = function_.calc_value(z) + instance_.f_opt;
       if (function_.calc_constraints != nullptr) {
         outcomes[job].metrics = function_.calc_constraints(z);
       }
-      if (jobs[job].residuals && function_.calc_residuals != nullptr) {
+      if (jobs[job].residuals && description_.has_residuals) {
         outcomes[job].residuals = function_.calc_residuals(z);
       }
     }
@@ -117,6 +114,20 @@ class AnalyticProblem : public Problem {
   std::vector<double> penalty_objectives() const override { return {kPenalty}; }
 
  private:
+  static FunctionInstance make_instance(const AnalyticFunction& function,
+                                        const FunctionChoice& choice) {
+    const auto dimension = static_cast<std::size_t>(choice.dimension);
+    if (choice.instance == 0) {
+      return make_plain_instance(function, dimension);
+    }
+    if (function.bbob == 0) {
+      return make_random_instance(function, dimension, choice.instance);
+    }
+    FunctionInstance instance = make_bbob_instance(function.bbob, dimension, choice.instance);
+    instance.f_opt = choice.adds_f_opt ? instance.f_opt : 0;
+    return instance;
+  }
+
   // Returns the residuals of all cases that have an error, divided by sqrt(count). The sum of their
   // squares is then the mean over these `count` cases.
   static std::vector<double> collect_residuals(std::span<const CaseOutcome> outcomes,
@@ -136,8 +147,8 @@ class AnalyticProblem : public Problem {
   }
 
   const AnalyticFunction& function_;  // a row of the table, which lives as long as the program
+  FunctionInstance instance_;
   ProblemDescription description_;
-  std::vector<double> shift_;
 };
 
 }  // namespace
@@ -159,19 +170,37 @@ const AnalyticFunction& find_analytic(std::string_view name) {
   throw Error(ErrorKind::usage, describe_unknown("analytic function", name, analytic_names()));
 }
 
+int get_first_instance(const AnalyticFunction& function) {
+  return function.bbob != 0 ? 1 : 0;
+}
+
+std::unique_ptr<Problem> make_analytic(const FunctionChoice& choice) {
+  const AnalyticFunction& function = find_analytic(choice.name);
+  const auto refuse = [&](std::string_view what, int is, int lowest, int highest) {
+    const std::string allowed = lowest == highest
+                                    ? fmt::format("{}", lowest)
+                                    : fmt::format("between {} and {}", lowest, highest);
+    throw Error(ErrorKind::usage, fmt::format("analytic function '{}': {} is {}; it must be {}",
+                                              function.name, what, is, allowed));
+  };
+  if (choice.dimension < function.smallest_dimension ||
+      choice.dimension > function.largest_dimension) {
+    refuse("dimension", choice.dimension, function.smallest_dimension, function.largest_dimension);
+  }
+  const int first = get_first_instance(function);
+  const int last = function.has_instances ? kMostInstances : 0;
+  if (choice.instance < first || choice.instance > last) {
+    refuse("instance", choice.instance, first, last);
+  }
+  return std::make_unique<AnalyticProblem>(function, choice);
+}
+
 std::unique_ptr<Problem> make_analytic(std::string_view name, int dimension) {
   const AnalyticFunction& function = find_analytic(name);
-  if (dimension < function.smallest_dimension || dimension > function.largest_dimension) {
-    throw Error(
-        ErrorKind::usage,
-        function.smallest_dimension == function.largest_dimension
-            ? fmt::format("analytic function '{}': dimension is {}; it must be {}", function.name,
-                          dimension, function.smallest_dimension)
-            : fmt::format("analytic function '{}': dimension is {}; it must be between {} and {}",
-                          function.name, dimension, function.smallest_dimension,
-                          function.largest_dimension));
-  }
-  return std::make_unique<AnalyticProblem>(function, dimension);
+  return make_analytic({.name = function.name,
+                        .dimension = dimension,
+                        .instance = get_first_instance(function),
+                        .adds_f_opt = function.bbob != 0});
 }
 
 std::unique_ptr<Problem> make_analytic(std::string_view name) {

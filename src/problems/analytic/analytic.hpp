@@ -1,7 +1,7 @@
 // Analytic test functions: optimization problems with a known minimiser that cost almost nothing to
 // evaluate. They show whether an optimizer works before it is used on a robot.
 //
-// With z = x - s, i = 1..n, all on a box of equal sides, minimum 0 at x = s:
+// Every function is a sum over z, i = 1..n, with the minimum 0 at z = 0:
 //   sphere      sum z_i^2
 //   ellipsoid   sum 10^(6 (i-1)/(n-1)) z_i^2, condition number 10^6 (n = 1: the sphere)
 //   rosenbrock  sum_{i<n} 100 (y_{i+1} - y_i^2)^2 + (1 - y_i)^2 with y = z + 1
@@ -9,14 +9,18 @@
 // and with four variables
 //   constrained the Rosen-Suzuki problem: convex, three inequality constraints (two active),
 //               minimum -44 at (0, 1, 2, -1)
+// The functions bbob-f1, f2, f3, f8, f10 and f15 are the same sums over the z of bbob.hpp.
 //
-// The shift s_i = 4 (frac(i g) - 1/2), g = (sqrt(5) - 1)/2, lies in (-2, 2) and is the same for
-// every function. It moves the minimiser away from the centre of the box, from the start and from
-// any pattern that an optimizer might favour by construction.
+// An instance maps the decision vector x to z (function_instance.hpp). In the plain form, instance
+// 0, z = x - s. The shift s_i = 4 (frac(i g) - 1/2), g = (sqrt(5) - 1)/2, lies in (-2, 2) and is
+// the same for every function. It moves the minimiser away from the centre of the box, from the
+// start and from any pattern that an optimizer might favour by construction. The other instances
+// have a random shift and, except for the sphere, a random rotation.
 //
-// All functions but the last are sums of squares and have residuals. Rosenbrock has two residuals
-// per pair of neighbouring variables: 10 (y_{i+1} - y_i^2) and 1 - y_i. Rastrigin has two residuals
-// per variable: z_i and sqrt(20) sin(pi z_i).
+// All functions but `constrained` are sums of squares and have residuals. Rosenbrock has two
+// residuals per pair of neighbouring variables: 10 (y_{i+1} - y_i^2) and 1 - y_i. Rastrigin has two
+// residuals per variable: z_i and sqrt(20) sin(pi z_i). A BBOB function whose value includes f_opt
+// is no sum of squares and has no residuals.
 //
 // A test case is one function evaluation. The functions are deterministic, so every case gives the
 // same value. Each AnalyticFunction names its source.
@@ -45,13 +49,32 @@ struct AnalyticFunction {
   double lower = 0;  // bounds of every variable
   double upper = 0;
   std::vector<double> start = {};      // one number: the same for every variable
-  std::vector<double> minimiser = {};  // empty: the shift s; otherwise s = 0
-  double optimum = 0;                  // the smallest value that meets the constraints
+  std::vector<double> minimiser = {};  // of the plain form; empty: the shift s; otherwise s = 0
+  double minimum = 0;                  // the value at the minimiser, without f_opt
+  int bbob = 0;                        // its number if it is a function of BBOB; otherwise 0
+  bool has_instances = false;          // false: it has the plain form only
+  bool is_rotated = false;             // true: instances of our own functions are rotated
   int constraint_count = 0;
   double (*calc_value)(Point) = nullptr;
   std::vector<double> (*calc_constraints)(Point) = nullptr;  // null: no constraints
   std::vector<double> (*calc_residuals)(Point) = nullptr;    // null: no residuals
 };
+
+// What makes a problem of a function.
+struct FunctionChoice {
+  std::string name;
+  int dimension = 0;
+  // 0: the plain form. Functions of BBOB begin with 1, `constrained` has 0 only.
+  int instance = 0;
+  // True: replicate r of a comparison gets the instance with the number instance + r - 1
+  // (make_replicate). The plain form is always the same for all replicates.
+  bool instance_per_replicate = false;
+  bool adds_f_opt = false;  // of a BBOB function: the value includes the instance's f_opt
+};
+
+// The instances are 1 to this number. BBOB's generator takes seeds below 2^31 - 1, and instance i
+// uses seeds up to 10000 i + 1000015.
+inline constexpr int kMostInstances = 200000;
 
 // Returns all functions. The table lives as long as the program.
 const std::vector<AnalyticFunction>& analytic_table();
@@ -59,8 +82,14 @@ std::vector<std::string> analytic_names();
 // Throws Error{usage} for an unknown name.
 const AnalyticFunction& find_analytic(std::string_view name);
 
-// Makes the problem of a function. Throws Error{usage} for an unknown name and for a dimension that
-// the function does not have. Without a dimension, uses the default one.
+// Returns the lowest instance number: 0, the plain form, or 1 for a function of BBOB.
+int get_first_instance(const AnalyticFunction& function);
+
+// Makes the problem of a function. Throws Error{usage} for an unknown name, and for a dimension or
+// an instance that the function does not have.
+std::unique_ptr<Problem> make_analytic(const FunctionChoice& choice);
+// The same for the plain form or, for a function of BBOB, for instance 1 with its f_opt. Without a
+// dimension, uses the default one.
 std::unique_ptr<Problem> make_analytic(std::string_view name, int dimension);
 std::unique_ptr<Problem> make_analytic(std::string_view name);
 

@@ -1,4 +1,6 @@
 // The formulas of the analytic functions over z, and the table of all functions.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
 
@@ -100,6 +102,25 @@ std::vector<double> calc_rosen_suzuki_constraints(Point x) {
           2 * a + b + c + 2 * x[0] - x[1] - x[3] - 5};
 }
 
+// Returns the row of a function of BBOB: one of the sums above over the z of bbob.hpp.
+AnalyticFunction make_bbob_row(int number, const std::string& summary, double (*calc_value)(Point),
+                               std::vector<double> (*calc_residuals)(Point)) {
+  return {.name = fmt::format("bbob-f{}", number),
+          .summary = summary,
+          .source = fmt::format("Hansen, Finck, Ros and Auger 2009, Real-parameter black-box "
+                                "optimization benchmarking: noiseless functions definitions, f{}",
+                                number),
+          .smallest_dimension = 2,
+          .largest_dimension = 40,
+          .lower = -5,
+          .upper = 5,
+          .start = {kStart},
+          .bbob = number,
+          .has_instances = true,
+          .calc_value = calc_value,
+          .calc_residuals = calc_residuals};
+}
+
 }  // namespace
 
 const std::vector<AnalyticFunction>& analytic_table() {
@@ -111,6 +132,7 @@ const std::vector<AnalyticFunction>& analytic_table() {
        .lower = -5,
        .upper = 5,
        .start = {kStart},
+       .has_instances = true,
        .calc_value = calc_sphere,
        .calc_residuals = calc_sphere_residuals},
       {.name = "ellipsoid",
@@ -120,6 +142,8 @@ const std::vector<AnalyticFunction>& analytic_table() {
        .lower = -5,
        .upper = 5,
        .start = {kStart},
+       .has_instances = true,
+       .is_rotated = true,
        .calc_value = calc_ellipsoid,
        .calc_residuals = calc_ellipsoid_residuals},
       {.name = "rosenbrock",
@@ -130,6 +154,8 @@ const std::vector<AnalyticFunction>& analytic_table() {
        .lower = -5,
        .upper = 5,
        .start = {kStart},
+       .has_instances = true,
+       .is_rotated = true,
        .calc_value = calc_rosenbrock,
        .calc_residuals = calc_rosenbrock_residuals},
       {.name = "rastrigin",
@@ -139,6 +165,8 @@ const std::vector<AnalyticFunction>& analytic_table() {
        .lower = -5.12,
        .upper = 5.12,
        .start = {kStart},
+       .has_instances = true,
+       .is_rotated = true,
        .calc_value = calc_rastrigin,
        .calc_residuals = calc_rastrigin_residuals},
       {.name = "constrained",
@@ -153,10 +181,20 @@ const std::vector<AnalyticFunction>& analytic_table() {
        // Feasible. The source starts at the origin, which shares a coordinate with the minimiser.
        .start = {-1, -1, -1, 0.5},
        .minimiser = {0, 1, 2, -1},
-       .optimum = -44,
+       .minimum = -44,
        .constraint_count = 3,
        .calc_value = calc_rosen_suzuki,
        .calc_constraints = calc_rosen_suzuki_constraints},
+      make_bbob_row(1, "Sphere", calc_sphere, calc_sphere_residuals),
+      make_bbob_row(2, "Separable ellipsoid with oscillation, condition number 1e6", calc_ellipsoid,
+                    calc_ellipsoid_residuals),
+      make_bbob_row(3, "Separable Rastrigin with oscillation and asymmetry", calc_rastrigin,
+                    calc_rastrigin_residuals),
+      make_bbob_row(8, "Rosenbrock", calc_rosenbrock, calc_rosenbrock_residuals),
+      make_bbob_row(10, "Rotated ellipsoid with oscillation, condition number 1e6", calc_ellipsoid,
+                    calc_ellipsoid_residuals),
+      make_bbob_row(15, "Rotated Rastrigin with oscillation and asymmetry", calc_rastrigin,
+                    calc_rastrigin_residuals),
   };
   return table;
 }

@@ -80,9 +80,27 @@ const Setting<int> kFunctionDimension{
     {.lower = static_cast<double>(AnalyticFunction{}.smallest_dimension),
      .upper = static_cast<double>(AnalyticFunction{}.largest_dimension)},
     AnalyticFunction{}.default_dimension,
-    "for the kind analytic: number of variables (rosenbrock: at least 2; constrained: 4)"};
-const SettingTable kFunctionSettings{.key = "function",
-                                     .settings = {&kFunctionName, &kFunctionDimension}};
+    "for the kind analytic: number of variables (rosenbrock: at least 2; constrained: 4; bbob-f1 "
+    "to bbob-f15: 2 to 40)"};
+const Setting<int> kFunctionInstance{
+    "instance",
+    {.lower = 0, .upper = kMostInstances},
+    kNoDefault,
+    "for the kind analytic: number of the function's instance, which decides where the minimiser "
+    "lies and how the function is rotated. 0 is the plain form: a fixed shift, no rotation. "
+    "Default: 0, for bbob-f1 to bbob-f15 1"};
+const Setting<bool> kFunctionPerReplicate{
+    "instance_per_replicate", FunctionChoice{}.instance_per_replicate,
+    "for the kind analytic: whether replicate r of a comparison has instance + r - 1 as its "
+    "instance (without effect on the plain form)"};
+const Setting<bool> kFunctionAddsFOpt{
+    "add_f_opt", kNoDefault,
+    "for bbob-f1 to bbob-f15: whether the value includes f_opt, the instance's minimum; otherwise "
+    "the minimum is 0. Default: true"};
+const SettingTable kFunctionSettings{
+    .key = "function",
+    .settings = {&kFunctionName, &kFunctionDimension, &kFunctionInstance, &kFunctionPerReplicate,
+                 &kFunctionAddsFOpt}};
 
 // Reads the sets. `otherwise` holds the numbers of cases if the table lacks them.
 CaseSets read_sets(const ConfigTable& table, const CaseSets& otherwise) {
@@ -182,14 +200,51 @@ void settle_path(const ConfigTable& table, LoadedProblem& loaded) {
   settle_one_case(table.get_table_or_empty(kScheduleSettings), loaded);
 }
 
+void check_instance(const ConfigTable& function, const AnalyticFunction& row,
+                    const FunctionChoice& choice) {
+  if (choice.instance < get_first_instance(row)) {
+    function.refuse(
+        kFunctionInstance,
+        fmt::format("{} has no plain form; its instances are 1 to {}", row.name, kMostInstances));
+  }
+  if (choice.instance > 0 && !row.has_instances) {
+    function.refuse(kFunctionInstance,
+                    fmt::format("{} has the plain form only, instance 0", row.name));
+  }
+  if (choice.adds_f_opt && row.bbob == 0) {
+    function.refuse(kFunctionAddsFOpt,
+                    fmt::format("{} has no f_opt; its minimum is {}", row.name, row.minimum));
+  }
+  if (choice.adds_f_opt && choice.instance_per_replicate) {
+    function.refuse(kFunctionPerReplicate,
+                    "replicates whose minima differ cannot be compared; set function.add_f_opt to "
+                    "false");
+  }
+}
+
 void load_analytic(const ConfigTable& table, LoadedProblem& loaded) {
   const ConfigTable function = table.get_table(kFunctionSettings);
   const std::string name = function.get(kFunctionName);
   const AnalyticFunction& row = find_analytic(name);
   const Range dimensions{.lower = static_cast<double>(row.smallest_dimension),
                          .upper = static_cast<double>(row.largest_dimension)};
-  loaded.problem = make_analytic(
-      name, function.get_or(kFunctionDimension.within(dimensions), row.default_dimension));
+  FunctionChoice choice{
+      .name = row.name,
+      .dimension = function.get_or(kFunctionDimension.within(dimensions), row.default_dimension),
+      .instance = function.get_or(kFunctionInstance, get_first_instance(row)),
+      .instance_per_replicate = function.get(kFunctionPerReplicate),
+      .adds_f_opt = function.get_or(kFunctionAddsFOpt, row.bbob != 0)};
+  check_instance(function, row, choice);
+  if (choice.instance == 0) {
+    // So recorded the versions before 2.0, which had the plain form only.
+    choice.instance_per_replicate = false;
+    function.leave_out(kFunctionInstance);
+    function.leave_out(kFunctionPerReplicate);
+  } else {
+    function.settle(kFunctionInstance, choice.instance);
+  }
+  loaded.problem = make_analytic(choice);
+  loaded.function = choice;
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/setting.hpp"
+#include "problems/analytic/analytic.hpp"
 #include "problems/interface/problem.hpp"
 #include "problems/interface/schedule.hpp"
 #include "problems/tracking/tracking_problem.hpp"
@@ -51,6 +52,7 @@ struct LoadedProblem {
   std::shared_ptr<const Problem> problem;
   // Returns the tracking problem; null for an analytic function. Valid as long as `problem`.
   const TrackingProblem* tracking() const { return problem->tracking(); }
+  std::optional<FunctionChoice> function;  // of an analytic function
   Schedule schedule;
   int fixed_cases = 5;  // K for optimizers without generations, if the schedule needs generations
   Racing racing;
@@ -82,11 +84,13 @@ LoadedProblem load_recorded_problem(const std::string& resolved_json, const std:
                                     const std::filesystem::path& beside);
 
 // Returns the problem as one replicate of a comparison has it: with another training set
-// ("train/NAME") and another start (one value per variable, within the bounds). Everything that
-// decides what a design is worth is the same. The resolved configuration holds both as
-// "sets.training" and "replicate.start".
-LoadedProblem make_replicate(const LoadedProblem& problem, const std::string& training_set,
-                             const std::vector<double>& start);
+// ("train/NAME") and another start (one value per variable, within the bounds). A function with an
+// instance per replicate gets the instance of replicate number `replicate` >= 1. Everything else
+// that decides what a design is worth is the same. The resolved configuration holds the changes as
+// "sets.training", "replicate.start" and "function.instance". Throws Error{usage} if the function
+// has no instance with that number.
+LoadedProblem make_replicate(const LoadedProblem& problem, int replicate,
+                             const std::string& training_set, const std::vector<double>& start);
 
 struct ProblemTitle {
   std::string name;

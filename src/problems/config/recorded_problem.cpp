@@ -77,7 +77,8 @@ LoadedProblem load_recorded_problem(const std::string& resolved_json, const std:
                               sanitize(name), start.size(),
                               loaded.problem->description().variables.size()));
     }
-    loaded = make_replicate(loaded, loaded.sets.training, start);
+    // The recorded instance is that of the replicate.
+    loaded = make_replicate(loaded, 1, loaded.sets.training, start);
   }
   return loaded;
 }

@@ -1,9 +1,13 @@
-// Gives a replicate of a comparison its own training cases and its own start.
+// Gives a replicate of a comparison its own training cases, start and instance of a function.
+
+#include <fmt/format.h>
 
 #include <cassert>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "base/error.hpp"
+#include "problems/analytic/analytic.hpp"
 #include "problems/config/problem_loader.hpp"
 
 namespace armwright {
@@ -43,18 +47,38 @@ class StartedElsewhere final : public Problem {
   ProblemDescription description_;
 };
 
+// Returns the function as replicate number `replicate` has it.
+FunctionChoice choose_instance(const LoadedProblem& problem, int replicate) {
+  FunctionChoice choice = *problem.function;
+  choice.instance_per_replicate = false;
+  if (replicate - 1 > kMostInstances - choice.instance) {
+    throw Error(ErrorKind::usage,
+                fmt::format("problem '{}': replicate {} needs an instance above {}, the highest; "
+                            "choose a lower function.instance than {}",
+                            problem.name, replicate, kMostInstances, choice.instance));
+  }
+  choice.instance += replicate - 1;
+  return choice;
+}
+
 }  // namespace
 
-LoadedProblem make_replicate(const LoadedProblem& problem, const std::string& training_set,
-                             const std::vector<double>& start) {
-  LoadedProblem replicate = problem;
-  replicate.problem = std::make_shared<StartedElsewhere>(problem.problem, start);
-  replicate.sets.training = training_set;
+LoadedProblem make_replicate(const LoadedProblem& problem, int replicate,
+                             const std::string& training_set, const std::vector<double>& start) {
+  LoadedProblem made = problem;
   auto resolved = nlohmann::json::parse(problem.resolved_json);
+  if (problem.function && problem.function->instance_per_replicate) {
+    made.function = choose_instance(problem, replicate);
+    made.problem = make_analytic(*made.function);
+    resolved["function"]["instance"] = made.function->instance;
+    resolved["function"]["instance_per_replicate"] = false;
+  }
+  made.problem = std::make_shared<StartedElsewhere>(made.problem, start);
+  made.sets.training = training_set;
   resolved["sets"]["training"] = training_set;
   resolved["replicate"]["start"] = start;
-  replicate.resolved_json = resolved.dump(2);
-  return replicate;
+  made.resolved_json = resolved.dump(2);
+  return made;
 }
 
 }  // namespace armwright

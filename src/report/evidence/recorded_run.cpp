@@ -56,12 +56,15 @@ std::optional<NamedProblem> find_named_problem(const RecordedRun& run) {
 std::map<std::string, json> list_settings(const json& resolved) {
   std::map<std::string, json> settings;
   for (const char* table : {"robot", "task", "control", "physics", "motors", "perturbation",
-                            "workspace", "objective", "variables"}) {
+                            "workspace", "objective", "variables", "function"}) {
     if (resolved.contains(table) && resolved[table].is_object()) {
       for (const auto& [key, value] : resolved[table].items()) {
         settings[fmt::format("{}.{}", table, key)] = value;
       }
     }
+  }
+  if (resolved.contains("function")) {
+    settings.try_emplace("function.instance", 0);  // the plain form is recorded without a number
   }
   return settings;
 }

@@ -52,7 +52,7 @@ class Reporter final : public RunObserver {
 };
 
 // Lets the parent simulate the batches of a cell. A replicate's problem is simulated as the problem
-// of the plan from which it was made.
+// of the plan from which it was made, so it must not be an instance of its own.
 class ParentExecutor final : public CaseExecutor {
  public:
   ParentExecutor(const StudyPlan& plan, const Cell& cell, ParentLink& parent) : parent_(parent) {
@@ -138,8 +138,12 @@ void work_on_cells(const StudyPlan& plan, std::span<const Cell> cells,
     Reporter reporter(parent);
     try {
       ParentExecutor executor(plan, cells[number], parent);
+      // The parent has the problems of the plan, but not the instances of its replicates. Functions
+      // cost so little that this process evaluates them itself.
+      const auto& function = get_problem(plan, cells[number]).function;
+      const bool is_instance = function && function->instance_per_replicate;
       const CellRequest where{.folder = study / make_cell_path(plan, cells[number]),
-                              .executor = parent_simulates ? &executor : nullptr};
+                              .executor = parent_simulates && !is_instance ? &executor : nullptr};
       run_when_free(plan, cells[number], where, stop, reporter);
       if (stop.requested()) {
         return;

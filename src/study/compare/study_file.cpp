@@ -88,12 +88,21 @@ void refuse_repeated(std::string_view what, std::span<const std::string> labels)
   }
 }
 
-// Loads the problem on the SIMD level that the plan was made with: "auto" may choose another level
-// on this machine. Returns false if no level of this machine gives the recorded configuration.
-bool load_on_recorded_simd(const NamedProblem& named, StudyProblem& problem) {
-  for (const std::string& level : supported_simd_names()) {
+// Loads the problem as it was when the plan was made: on another SIMD level, because "auto" may
+// choose another one on this machine, or as the plain form of a function, which was the only form
+// before version 2.0. Returns false if neither gives the recorded configuration.
+bool load_as_recorded(const NamedProblem& named, StudyProblem& problem) {
+  std::vector<std::string> variants;
+  if (problem.loaded.function) {
+    variants = {"function.instance=0"};
+  } else {
+    for (const std::string& level : supported_simd_names()) {
+      variants.push_back("physics.simd=" + level);
+    }
+  }
+  for (const std::string& variant : variants) {
     std::vector<std::string> settings = problem.settings;
-    settings.push_back("physics.simd=" + level);
+    settings.push_back(variant);
     try {
       LoadedProblem loaded = load_problem(named.name, settings);
       if (calc_configuration_hash(loaded) == named.configuration_sha256) {
@@ -101,7 +110,7 @@ bool load_on_recorded_simd(const NamedProblem& named, StudyProblem& problem) {
         return true;
       }
     } catch (const Error&) {
-      return false;  // the problem is a function, or its engine has no SIMD
+      return false;  // the engine has no SIMD, or the function has no plain form
     }
   }
   return false;
@@ -121,7 +130,7 @@ void load_problems(const RawPlan& raw, StudyPlan& plan) {
         choose_study_schedule(problem.loaded, named.schedule ? named.schedule : raw.schedule);
     std::string hash = calc_configuration_hash(problem.loaded);
     if (!named.configuration_sha256.empty() && named.configuration_sha256 != hash &&
-        load_on_recorded_simd(named, problem)) {
+        load_as_recorded(named, problem)) {
       hash = named.configuration_sha256;
     }
     if (!named.configuration_sha256.empty() && named.configuration_sha256 != hash) {
@@ -279,6 +288,21 @@ void keep_baselines(const std::filesystem::path& recorded, StudyPlan& plan) {
       plan.optimizers.push_back(load_study_optimizer(baseline));
     }
   }
+}
+
+void keep_plain_functions(const std::filesystem::path& recorded, StudyPlan& plan) {
+  StudyPlan ignored;
+  const RawPlan raw = read_study_file(recorded, ignored);
+  for (StudyProblem& problem : plan.problems) {
+    const auto found = std::ranges::find(raw.problems, problem.label, &NamedProblem::label);
+    if (found != raw.problems.end() && problem.loaded.function &&
+        found->configuration_sha256 != calc_configuration_hash(problem.loaded)) {
+      NamedProblem named = *found;
+      named.name = problem.name;
+      load_as_recorded(named, problem);
+    }
+  }
+  load_methods(plan);
 }
 
 StudyPlan make_study_plan(const StudyRequest& request) {

@@ -177,6 +177,7 @@ void adopt_recorded(const std::filesystem::path& folder, StudyPlan& plan) {
     keep_baselines(folder / kPlanFile, plan);
   }
   keep_selection(folder / kPlanFile, plan);
+  keep_plain_functions(folder / kPlanFile, plan);
 }
 
 bool is_study_folder(const std::filesystem::path& path) {

@@ -49,8 +49,9 @@ std::string calc_plan_hash(const StudyPlan& plan);
 bool is_study_folder(const std::filesystem::path& path);
 // Throws Error{usage} if the folder does not exist or is not a study's.
 void check_study_folder(const std::filesystem::path& folder);
-// Adds to `plan` the baselines that the folder's recorded plan has, and keeps its rule for the
-// candidates that are judged (keep_selection()). To be called before the constructor of
+// Adds to `plan` the baselines that the folder's recorded plan has, and keeps its rules: the
+// candidates that are judged (keep_selection()), and the plain form of functions where version 1.0
+// recorded it (keep_plain_functions()). To be called before the constructor of
 // StudyFolder.
 void adopt_recorded(const std::filesystem::path& folder, StudyPlan& plan);
 // Returns the plan that a study's folder records. Throws Error{usage} or Error{bad_data}.

@@ -65,6 +65,9 @@ LoadedProblem load_method(const StudyProblem& problem, const StudyOptimizer& opt
   if (resolved.contains("physics") && resolved["physics"].contains("simd")) {
     settings.push_back("physics.simd=" + resolved["physics"]["simd"].get<std::string>());
   }
+  if (problem.loaded.function && problem.loaded.function->instance == 0) {
+    settings.push_back("function.instance=0");  // the plan may have been recorded before 2.0
+  }
   LoadedProblem loaded = load_problem(problem.name, settings);
   if (get_judged_perturbation(loaded) != get_judged_perturbation(problem.loaded)) {
     throw Error(ErrorKind::usage,

@@ -149,8 +149,8 @@ Schedule get_schedule(const StudyPlan& plan, const Cell& cell) {
 RunPlan make_run_plan(const StudyPlan& plan, const Cell& cell) {
   const StudyOptimizer& optimizer = plan.optimizers[cell.optimizer];
   RunPlan run;
-  run.problem = make_replicate(get_problem(plan, cell), make_training_set_name(plan, cell),
-                               draw_start(plan, cell));
+  run.problem = make_replicate(get_problem(plan, cell), cell.replicate,
+                               make_training_set_name(plan, cell), draw_start(plan, cell));
   run.optimizer = optimizer.row;
   run.options = optimizer.parsed;
   run.seed = make_seed(make_stream(plan, cell) + "/" + optimizer.label);

@@ -139,6 +139,10 @@ void keep_baselines(const std::filesystem::path& recorded, StudyPlan& plan);
 // Error{usage} or Error{io} if the file cannot be read.
 void keep_selection(const std::filesystem::path& recorded, StudyPlan& plan);
 
+// Gives functions of `plan` the plain form where the recorded plan has it and `plan` has an instance:
+// version 1.0 had no other form. Throws as keep_baselines().
+void keep_plain_functions(const std::filesystem::path& recorded, StudyPlan& plan);
+
 // Returns the title in a study's file, without loading the problems and optimizers that the file
 // names. `file` is a path or the name of a shipped study. Throws Error{usage} if there is no such
 // file or it is not valid, and Error{io} if it cannot be read.

@@ -166,6 +166,17 @@ std::string describe_command(const json& manifest) {
   }
 }
 
+// Returns advice if the recorded run has the plain form of a function and the present one an
+// instance, else an empty text.
+std::string explain_instance(const json& recorded, const json& now) {
+  const json::json_pointer instance("/problem/function/instance");
+  return recorded.contains("/problem/function"_json_pointer) && !recorded.contains(instance) &&
+                 now.contains(instance)
+             ? "\nThe run has the plain form of the function, which was the only form before "
+               "version 2.0; to resume this run, pass --set function.instance=0"
+             : "";
+}
+
 }  // namespace
 
 RunFolder::RunFolder(const std::filesystem::path& path, const RunPlan& plan,
@@ -184,9 +195,9 @@ RunFolder::RunFolder(const std::filesystem::path& path, const RunPlan& plan,
     throw Error(
         ErrorKind::usage,
         fmt::format("{} holds a run with another configuration:\n  {}{}\nResume it with the "
-                    "recorded configuration, or use --new or --out for another folder{}",
+                    "recorded configuration, or use --new or --out for another folder{}{}",
                     path.string(), join(changes, "\n  "), describe_command(manifest),
-                    explain_simd(recorded, now)));
+                    explain_simd(recorded, now), explain_instance(recorded, now)));
   }
   warnings_ =
       describe_build_changes(manifest["build"].get<std::map<std::string, std::string>>(), "run");

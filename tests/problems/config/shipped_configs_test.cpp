@@ -326,7 +326,7 @@ TEST(ShippedProblems, OnlyQ4Sweeps) {
 TEST(ShippedProblems, ReplicatesReachTheTrackingProblem) {
   const LoadedProblem loaded = load_problem("q1-complex");
   const LoadedProblem replicate = make_replicate(
-      loaded, "train/other", loaded.tracking()->make_vector(loaded.tracking()->config().start));
+      loaded, 2, "train/other", loaded.tracking()->make_vector(loaded.tracking()->config().start));
   EXPECT_NE(replicate.problem, loaded.problem);
   EXPECT_EQ(replicate.tracking(), loaded.tracking());
   EXPECT_EQ(replicate.problem->description().failure_error, kFailureError_m);

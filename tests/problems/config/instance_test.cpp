@@ -1,0 +1,123 @@
+// Instances of functions: the keys of [function], what is recorded, and what a replicate gets.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "problems/config/problem_loader.hpp"
+#include "problems/problem_folder.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr const char* kFunctionHead = "kind = 'analytic'\n[function]\n";
+
+LoadedProblem load_with(const std::string& name, const std::vector<std::string>& overrides) {
+  return load_problem(name, overrides);
+}
+
+const std::vector<double>& get_minimiser(const LoadedProblem& problem) {
+  return problem.problem->description().known_optimum;
+}
+
+LoadedProblem make_one(const LoadedProblem& problem, int replicate) {
+  return make_replicate(problem, replicate, "train/x",
+                        std::vector<double>(get_minimiser(problem).size(), 0.5));
+}
+
+// A configuration recorded by version 1.0 has none of the keys.
+TEST(Instances, WithoutAKeyAFunctionHasThePlainFormOfVersion1) {
+  const ProblemFolder folder;
+  folder.write("p.toml", std::string(kFunctionHead) + "name = 'rastrigin'\ndimension = 3\n");
+  const LoadedProblem loaded = folder.load("p.toml");
+  ASSERT_TRUE(loaded.function.has_value());
+  EXPECT_EQ(loaded.function->instance, 0);
+  EXPECT_EQ(get_minimiser(loaded),
+            get_minimiser(load_with("rastrigin", {"function.instance=0", "function.dimension=3"})));
+  EXPECT_EQ(loaded.resolved_json,
+            R"({"function":{"dimension":3,"name":"rastrigin"},"kind":"analytic"})");
+  EXPECT_EQ(get_minimiser(make_one(loaded, 1)), get_minimiser(make_one(loaded, 2)));
+}
+
+TEST(Instances, ThePlainFormIsRecordedAsVersion1Did) {
+  const LoadedProblem plain = load_with("sphere", {"function.instance=0"});
+  EXPECT_EQ(json::parse(plain.resolved_json).at("function"), json({{"name", "sphere"}}));
+  EXPECT_EQ(get_minimiser(plain), make_analytic("sphere", 10)->description().known_optimum);
+}
+
+TEST(Instances, ShippedFunctionsHaveAnotherInstancePerReplicate) {
+  for (const std::string name : {"sphere", "ellipsoid", "rosenbrock", "rastrigin", "bbob-f1",
+                                 "bbob-f2", "bbob-f3", "bbob-f8", "bbob-f10", "bbob-f15"}) {
+    SCOPED_TRACE(name);
+    const LoadedProblem loaded = load_problem(name);
+    EXPECT_EQ(loaded.function->instance, 1);
+    EXPECT_EQ(loaded.problem->description().optimum, 0);
+    const LoadedProblem first = make_one(loaded, 1);
+    const LoadedProblem fifth = make_one(loaded, 5);
+    EXPECT_EQ(get_minimiser(first), get_minimiser(loaded));
+    EXPECT_NE(get_minimiser(fifth), get_minimiser(loaded));
+    EXPECT_EQ(get_minimiser(fifth), get_minimiser(make_one(loaded, 5))) << "for every optimizer";
+    EXPECT_EQ(get_minimiser(fifth), get_minimiser(load_with(name, {"function.instance=5"})));
+    EXPECT_EQ(fifth.problem->description().variables[0].start, 0.5);
+  }
+  EXPECT_EQ(load_problem("constrained").function->instance, 0);
+}
+
+TEST(Instances, ARecordedReplicateIsLoadedWithItsInstance) {
+  const LoadedProblem fifth = make_one(load_problem("rosenbrock"), 5);
+  const json function = json::parse(fifth.resolved_json).at("function");
+  EXPECT_EQ(function.at("instance"), 5);
+  EXPECT_EQ(function.at("instance_per_replicate"), false);
+  const LoadedProblem again = load_recorded_problem(fifth.resolved_json, "rosenbrock", ".");
+  EXPECT_EQ(get_minimiser(again), get_minimiser(fifth));
+  EXPECT_EQ(json::parse(again.resolved_json), json::parse(fifth.resolved_json));
+}
+
+TEST(Instances, AFixedInstanceIsTheSameForAllReplicates) {
+  const LoadedProblem loaded =
+      load_with("sphere", {"function.instance=7", "function.instance_per_replicate=false"});
+  EXPECT_EQ(get_minimiser(make_one(loaded, 1)), get_minimiser(loaded));
+  EXPECT_EQ(get_minimiser(make_one(loaded, 9)), get_minimiser(loaded));
+  EXPECT_NE(get_minimiser(loaded), get_minimiser(load_problem("sphere")));
+}
+
+TEST(Instances, FunctionsOfBbobHaveTheirFOptUnlessToldOtherwise) {
+  const ProblemFolder folder;
+  folder.write("p.toml", std::string(kFunctionHead) + "name = 'bbob-f1'\n");
+  const LoadedProblem loaded = folder.load("p.toml");
+  EXPECT_EQ(loaded.problem->description().optimum, 79.48);  // instance 1 of the reference code
+  EXPECT_THAT(loaded.resolved_json, HasSubstr(R"("instance":1)"));
+  folder.write("p.toml", std::string(kFunctionHead) + "name = 'bbob-f1'\nadd_f_opt = false\n");
+  EXPECT_EQ(folder.load("p.toml").problem->description().optimum, 0);
+}
+
+TEST(Instances, MistakesAreNamed) {
+  const ProblemFolder folder;
+  const auto refusal_of = [&](const std::string& text) {
+    return folder.refusal_of(kFunctionHead + text);
+  };
+  EXPECT_EQ(refusal_of("name = 'sphere'\ninstance = -1"),
+            "p.toml:4: function.instance is -1; it must be an integer from 0 to 200000");
+  EXPECT_EQ(refusal_of("name = 'bbob-f8'\ninstance = 0"),
+            "p.toml:4: function.instance is 0; bbob-f8 has no plain form; its instances are 1 to "
+            "200000");
+  EXPECT_EQ(refusal_of("name = 'constrained'\ninstance = 1"),
+            "p.toml:4: function.instance is 1; constrained has the plain form only, instance 0");
+  EXPECT_EQ(refusal_of("name = 'sphere'\nadd_f_opt = true"),
+            "p.toml:4: function.add_f_opt is true; sphere has no f_opt; its minimum is 0");
+  EXPECT_EQ(refusal_of("name = 'bbob-f3'\ninstance_per_replicate = true"),
+            "p.toml:4: function.instance_per_replicate is true; replicates whose minima differ "
+            "cannot be compared; set function.add_f_opt to false");
+  const LoadedProblem highest = load_with("sphere", {"function.instance=200000"});
+  EXPECT_EQ(make_one(highest, 1).function->instance, 200000);
+  EXPECT_EQ(usage_error_of([&] { make_one(highest, 2); }),
+            "problem 'sphere': replicate 2 needs an instance above 200000, the highest; choose a "
+            "lower function.instance than 200000");
+}
+
+}  // namespace
+}  // namespace armwright
