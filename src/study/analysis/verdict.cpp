@@ -18,15 +18,6 @@ const PairResult& find_pair(std::span<const PairResult> pairs, std::size_t a, st
   });
 }
 
-std::string join_names(std::vector<std::string> names) {
-  if (names.size() < 2) {
-    return names.empty() ? "" : names.front();
-  }
-  const std::string last = names.back();
-  names.pop_back();
-  return join(names, ", ") + " and " + last;
-}
-
 constexpr double kSmallestP = 1e-6;
 
 std::string format_p_value(double p) {
@@ -310,6 +301,15 @@ std::vector<std::string> describe_limits(const StudyPlan& plan, const StudyResul
 
 }  // namespace
 
+std::string join_names(std::vector<std::string> names) {
+  if (names.size() < 2) {
+    return names.empty() ? "" : names.front();
+  }
+  const std::string last = names.back();
+  names.pop_back();
+  return join(names, ", ") + " and " + last;
+}
+
 std::string format_p(double p) {
   return p < kSmallestP ? "< 1e-06" : "= " + format_p_value(p);
 }
@@ -327,6 +327,7 @@ std::vector<std::string> describe_verdict(const StudyPlan& plan, const StudyResu
   }
   add(describe_overall(plan, result));
   add(describe_limits(plan, result));
+  add(describe_methods(plan, result));
   return verdict;
 }
 

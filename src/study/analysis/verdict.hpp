@@ -18,6 +18,12 @@ std::string describe_target(const StudyProblem& problem, const StudyTarget& targ
 std::vector<std::string> describe_target_verdict(const StudyPlan& plan, const StudyProblem& problem,
                                                  const ProblemResult& result);
 
+// Returns the verdict's sentences on what the optimizers saw and did, where they differ.
+std::vector<std::string> describe_methods(const StudyPlan& plan, const StudyResult& result);
+
+// Returns "a, b and c".
+std::string join_names(std::vector<std::string> names);
+
 // Returns "= 0.0004" or "< 1e-06".
 std::string format_p(double p);
 

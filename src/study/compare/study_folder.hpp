@@ -49,8 +49,9 @@ std::string calc_plan_hash(const StudyPlan& plan);
 bool is_study_folder(const std::filesystem::path& path);
 // Throws Error{usage} if the folder does not exist or is not a study's.
 void check_study_folder(const std::filesystem::path& folder);
-// Adds to `plan` the baselines that the folder's recorded plan has. To be called before the
-// constructor of StudyFolder.
+// Adds to `plan` the baselines that the folder's recorded plan has, and gives its optimizers the
+// random streams that are recorded. Does nothing if the folder is not a study's. To be called before
+// the constructor of StudyFolder.
 void adopt_recorded(const std::filesystem::path& folder, StudyPlan& plan);
 // Returns the plan that a study's folder records. Throws Error{usage} or Error{bad_data}.
 StudyPlan load_study_plan(const std::filesystem::path& folder);
