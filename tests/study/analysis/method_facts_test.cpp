@@ -164,11 +164,11 @@ TEST(MethodFacts, NameDefaultsThatWereChosenOnAProblemOfTheStudy) {
 TEST_F(StudyTest, MethodFactsAreInTheTablesAndInTheResult) {
   StudyRequest request = make_request();
   request.optimizers = {"random", "nlopt:neldermead"};
+  request.budget = 20'000;  // more than the local search needs
   const StudyPlan plan = make_study_plan(request);
   const StudyResult result = study(plan, "study");
   const auto facts = calc_method_facts(plan, "sphere", result.cells);
   ASSERT_TRUE(facts[1].judged);
-  std::vector<double> judged;
   for (const CellOutcome& cell : result.cells) {
     const auto folder = temporary_ / "study" / make_cell_path(plan, {0, 1, cell.replicate});
     const auto run = parse_result(read_file(folder / "result.json", 1 << 24), folder);

@@ -44,7 +44,7 @@ StudyPlan load(const std::filesystem::path& file) {
   return make_study_plan(request);
 }
 
-// Makes a plan like the recorded one, with one more optimizer in front.
+// Makes a plan like the recorded one, with ga once more.
 StudyPlan make_grown_plan() {
   StudyRequest request;
   request.problems = {"sphere", "rosenbrock"};
@@ -85,7 +85,8 @@ TEST(OptimizerStreams, DependOnWhatTheOptimizerIs) {
   const std::vector<std::string> others = {
       get_stream("name = 'ga:simple'\n"), get_stream("name = 'ga'\noptions = ['population=9']\n"),
       get_stream("name = 'ga'\nschedule = 'fresh:1'\n"),
-      get_stream("name = 'ga'\nset = ['racing.kind=halving']\n")};
+      get_stream("name = 'ga'\nschedule = 'fixed:4'\n"),
+      get_stream("name = 'ga'\nschedule = 'fixed:4'\nset = ['racing.kind=halving']\n")};
   for (const std::string& other : others) {
     EXPECT_NE(plain, other);
     EXPECT_EQ(std::ranges::count(others, other), 1);
