@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "host.hpp"
 #include "parts.hpp"
 #include "study/analysis/final_check.hpp"
