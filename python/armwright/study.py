@@ -188,7 +188,8 @@ def compare(
     set : mapping or list of str, optional
         Settings of every problem.
     schedule : str, optional
-        The schedule of training cases: "fixed:K"; or "fresh:K" or "coevolution:K" if all optimizers have generations.
+        The schedule of training cases: "fixed:K"; or "fresh:K" or "coevolution:K" if all optimizers have generations; or "own": "fresh:1" for
+        optimizers with generations, "fixed:5" for the others.
     seed : int, optional
         The seed of the study. It draws starts, training cases and the seeds of the optimizers (default: 1).
     baselines : bool

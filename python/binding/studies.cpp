@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "host.hpp"
 #include "parts.hpp"
 #include "study/analysis/final_check.hpp"
@@ -81,7 +82,7 @@ std::string describe(const StudyPlan& plan, const StudyResult& result) {
     problems.push_back({{"label", plan.problems[p].label},
                         {"name", plan.problems[p].name},
                         {"settings", plan.problems[p].settings},
-                        {"schedule", to_text(plan.problems[p].schedule)},
+                        {"schedule", describe_schedule(plan.problems[p])},
                         {"checkpoints", list_checkpoints(plan, p)}});
   }
   for (const StudyOptimizer& optimizer : plan.optimizers) {
@@ -173,7 +174,12 @@ void add_studies(py::module_& module) {
                  request.budget = check_number("budget", *budget, 1, kMostBudget);
                }
                if (schedule) {
-                 request.schedule = parse_schedule(*schedule);
+                 request.schedule = read_study_schedule(*schedule);
+                 if (!request.schedule) {
+                   throw Error(ErrorKind::usage,
+                               fmt::format("schedule is '{}'; it must be {}", sanitize(*schedule),
+                                           describe_study_schedules()));
+                 }
                }
                request.seed = seed;
                request.baselines = baselines;

@@ -82,7 +82,12 @@ StudyRequest make_request(const CompareOptions& options) {
     request.budget = parse_count("--budget", options.budget, 1, 1'000'000'000'000);
   }
   if (!options.schedule.empty()) {
-    request.schedule = parse_schedule(options.schedule);
+    request.schedule = read_study_schedule(options.schedule);
+    if (!request.schedule) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("--schedule is '{}'; it must be {}", sanitize(options.schedule),
+                              describe_study_schedules()));
+    }
   }
   if (!options.seed.empty()) {
     request.seed = static_cast<std::uint64_t>(
@@ -221,7 +226,8 @@ void add_compare(CLI::App& app, Session& session) {
   command
       ->add_option("--schedule", options->schedule,
                    "Schedule of the training cases: fixed:K, or, if all optimizers have\n"
-                   "generations, fresh:K or coevolution:K (default: fixed, K of the problem)")
+                   "generations, fresh:K or coevolution:K, or own: fresh:1 for optimizers with\n"
+                   "generations, fixed:5 for the others (default: fixed, K of the problem)")
       ->type_name("KIND:K");
   command
       ->add_option("--seed", options->seed,

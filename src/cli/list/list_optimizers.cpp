@@ -52,6 +52,9 @@ std::string format_facts(const OptimizerRow& row, const Style& style, int width)
   if (!row.backend.empty()) {
     facts.add_row({"Library", row.backend});
   }
+  if (!row.tuned_on.empty()) {
+    facts.add_row({"Defaults", "some were chosen on " + join(row.tuned_on, ", ")});
+  }
   facts.add_row({"Source", sanitize(row.source)});
   return facts.format(style, 2, width);
 }
@@ -118,6 +121,7 @@ json to_json(const OptimizerRow& row) {
           {"library", row.backend},
           {"isolated", row.isolated},
           {"capabilities", capabilities},
+          {"tuned_on", row.tuned_on},
           {"requirements",
            {{"objectives", row.requirements.objectives},
             {"variables", row.requirements.variables},

@@ -63,7 +63,16 @@ std::string format_facts(const OptimizerRow& row) {
   text += required.empty() ? "- **Problem:** any.\n"
                            : fmt::format("- **Problem:** one with {}.\n",
                                          escape_markdown(join(required, " and ")));
-  return text + fmt::format("- **Runs:** {}\n", format_sentence(describe_isolation(row)));
+  text += fmt::format("- **Runs:** {}\n", format_sentence(describe_isolation(row)));
+  if (!row.tuned_on.empty()) {
+    std::vector<std::string> problems;
+    std::ranges::transform(row.tuned_on, std::back_inserter(problems), format_code);
+    text += fmt::format(
+        "- **Defaults:** some were chosen on {}; the verdict of a study with such a problem says "
+        "so.\n",
+        join(problems, ", "));
+  }
+  return text;
 }
 
 std::string format_calls(const OptimizerRow& row) {

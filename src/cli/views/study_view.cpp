@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "base/text.hpp"
 #include "cli/terminal/format.hpp"
@@ -169,6 +170,18 @@ std::string describe_targets(const StudyPlan& plan, const StudyProblem& problem,
   return text;
 }
 
+// Returns the labels of the optimizers without a schedule of their own, by the schedule that they
+// get on problems whose schedule is "own".
+std::map<std::string, std::vector<std::string>> group_own_schedules(const StudyPlan& plan) {
+  std::map<std::string, std::vector<std::string>> groups;
+  for (const StudyOptimizer& optimizer : plan.optimizers) {
+    if (!optimizer.schedule) {
+      groups[to_text(optimizer.own_schedule)].push_back(optimizer.label);
+    }
+  }
+  return groups;
+}
+
 std::string describe_ranking(const StudyPlan& plan, const StudyResult& result, const Style& style) {
   Table table({{"optimizer", false}, {"mean rank"}});
   const Ranking& ranking = result.overall.ranking.full;
@@ -188,12 +201,17 @@ std::string describe_plan(const StudyPlan& plan) {
         problem.settings.empty() ? "" : " (" + join(problem.settings, ", ") + ")";
     table.add_row(
         {"problem",
-         fmt::format("{}: schedule {}, {}{}", problem.label, to_text(problem.schedule),
+         fmt::format("{}: schedule {}, {}{}", problem.label, describe_schedule(problem),
                      format_count(static_cast<unsigned long long>(problem.loaded.sets.test_cases),
                                   "test case"),
                      settings)});
   }
   table.add_row({"optimizers", list_labels(plan, false)});
+  if (std::ranges::any_of(plan.problems, &StudyProblem::own_schedules)) {
+    for (const auto& [schedule, labels] : group_own_schedules(plan)) {
+      table.add_row({"schedule " + schedule, join(labels, ", ")});
+    }
+  }
   for (const StudyOptimizer& optimizer : plan.optimizers) {
     std::vector<std::string> own = optimizer.settings;
     if (optimizer.schedule) {

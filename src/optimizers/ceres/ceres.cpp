@@ -141,6 +141,7 @@ OptimizerRow make_lm_row() {
       .make = make_lm,
       .requirements = {.residuals = true},
       .backend = kBackend,
+      .tuned_on = {"q1-complex"},  // step and tolerances
       .unavailable = kUnavailable,
   };
 }

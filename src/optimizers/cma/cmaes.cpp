@@ -152,6 +152,8 @@ std::vector<OptimizerRow> make_cmaes_rows() {
       .make = [](const Options& options) -> std::unique_ptr<Optimizer> {
         return std::make_unique<CmaEs>(options);
       },
+      // active, orthogonal and restarts: docs/cmaes.md
+      .tuned_on = {"sphere", "ellipsoid", "rosenbrock", "rastrigin"},
   }};
 }
 

@@ -99,6 +99,15 @@ std::vector<OptionSpec> swarm_options() {
              1000)});
 }
 
+OptimizerRow make_particle_swarm_row(PagmoMethod method, std::string summary) {
+  OptimizerRow row =
+      make_row(std::move(method), std::move(summary),
+               "Poli, Kennedy and Blackwell 2007, Particle swarm optimization: an overview",
+               swarm_options());
+  row.tuned_on = {"q1-complex"};  // max_vel
+  return row;
+}
+
 std::vector<OptionSpec> ant_options(std::vector<OptionSpec> others) {
   std::vector<OptionSpec> options =
       population(32, 8,
@@ -113,12 +122,9 @@ std::vector<OptionSpec> ant_options(std::vector<OptionSpec> others) {
 
 std::vector<OptimizerRow> make_swarm_rows() {
   return {
-      make_row({.algorithm = "pso"}, "Particle swarm, particles one after another",
-               "Poli, Kennedy and Blackwell 2007, Particle swarm optimization: an overview",
-               swarm_options()),
-      make_row({.algorithm = "pso_gen", .batch = true}, "Particle swarm, a generation at a time",
-               "Poli, Kennedy and Blackwell 2007, Particle swarm optimization: an overview",
-               swarm_options()),
+      make_particle_swarm_row({.algorithm = "pso"}, "Particle swarm, particles one after another"),
+      make_particle_swarm_row({.algorithm = "pso_gen", .batch = true},
+                              "Particle swarm, a generation at a time"),
       make_row({.algorithm = "gwo", .paced = true},
                "Grey wolves: all close in on the best three, at the pace of the budget",
                "Mirjalili, Mirjalili and Lewis 2014, Grey wolf optimizer", population(24, 4)),

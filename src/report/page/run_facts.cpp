@@ -99,9 +99,8 @@ void add_counts(const RecordedRun& run, Facts& facts) {
 void add_result(const RunResult& result, Facts& facts) {
   facts.add("End", result.end_reason);
   facts.add("Why the optimizer ended", result.end_detail);
-  facts.add("Unused evaluations", result.unused_evaluations > 0
-                                      ? fmt::format("{}", result.unused_evaluations)
-                                      : "");
+  facts.add("Unused evaluations",
+            result.unused_evaluations > 0 ? fmt::format("{}", result.unused_evaluations) : "");
   facts.add("Failure of the optimizer", result.failure);
   facts.add("Designs judged on the validation set", fmt::format("{}", result.judged.size()));
   if (!result.winner) {

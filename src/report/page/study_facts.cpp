@@ -75,8 +75,12 @@ json make_study_facts(const StudyPlan& plan) {
                                 "training cases are the same for all",
                                 plan.replicates));
   add("Budget", fmt::format("{} simulated training cases a run", plan.budget));
-  add("Schedule",
-      join_different(plan, [](const StudyProblem& problem) { return to_text(problem.schedule); }));
+  add("Schedule", join_different(plan, [](const StudyProblem& problem) {
+        return problem.own_schedules
+                   ? fmt::format("own: {} for optimizers with generations, {} for the others",
+                                 to_text(kOwnWithGenerations), to_text(kOwnWithoutGenerations))
+                   : to_text(problem.schedule);
+      }));
   add("Start", fmt::format("drawn from a box as wide as {} of the bounds, about the problem's own",
                            format_exact(plan.start_spread)));
   add("Engine", join_different(plan, describe_engine));

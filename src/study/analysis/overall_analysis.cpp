@@ -85,7 +85,7 @@ CellOutcome make_missing(const StudyPlan& plan, const Cell& cell) {
   outcome.optimizer = plan.optimizers[cell.optimizer].label;
   outcome.optimizer_name = plan.optimizers[cell.optimizer].row.name;
   outcome.replicate = cell.replicate;
-  outcome.end_reason = "not ended";
+  outcome.end_reason = kNotEnded;
   outcome.value = outcome.validation_value = outcome.start_value = kInfinity;
   for (const std::int64_t budget : list_checkpoints(plan, cell.problem)) {
     outcome.curve.push_back({budget, kInfinity, std::nullopt});
@@ -183,6 +183,8 @@ StudyResult analyze_study(const StudyPlan& plan, const std::filesystem::path& st
             continue;
           }
           outcome = make_missing(plan, cell);
+        } else {
+          outcome->judged = count_judged(study / make_cell_path(plan, cell));
         }
         if (plan.value == StudyValue::failures) {
           outcome = count_failures_only(std::move(*outcome), plan.problems[p].loaded.sets);

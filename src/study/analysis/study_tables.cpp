@@ -9,6 +9,7 @@
 #include "base/file.hpp"
 #include "base/text.hpp"
 #include "study/analysis/final_check.hpp"
+#include "study/analysis/method_facts.hpp"
 #include "study/analysis/verdict.hpp"
 #include "study/compare/case_sets.hpp"
 #include "study/compare/study_folder.hpp"
@@ -89,8 +90,11 @@ std::string make_summary(const StudyPlan& plan, const StudyResult& result) {
       "problem,optimizer,unit,runs,without_value,infeasible,failed,median,lower_quartile,upper_"
       "quartile,"
       "median_lower_95,median_upper_95,mean_rank,anytime_area,median_cases,final_engine,"
-      "final_replicate,final_value,final_failures,final_cases,successes,resolution,optimum\n";
+      "final_replicate,final_value,final_failures,final_cases,successes,resolution,optimum,";
+  csv += kMethodColumns;
+  csv += "\n";
   for (const ProblemResult& problem : result.problems) {
+    const auto methods = calc_method_facts(plan, problem.label, result.cells);
     for (std::size_t o = 0; o < problem.optimizers.size(); ++o) {
       const OptimizerResult& one = problem.optimizers[o];
       csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", quote_csv(problem.label),
@@ -105,8 +109,8 @@ std::string make_summary(const StudyPlan& plan, const StudyResult& result) {
       } else {
         csv += ",,,,,";
       }
-      csv += fmt::format(",{},{},{}\n", one.successes, number(problem.margin.resolution),
-                         number(problem.margin.optimum));
+      csv += fmt::format(",{},{},{},{}\n", one.successes, number(problem.margin.resolution),
+                         number(problem.margin.optimum), make_method_fields(methods[o]));
     }
   }
   return csv;
@@ -362,9 +366,11 @@ std::string to_json(const StudyPlan& plan, const StudyResult& result) {
   json problems = json::array();
   for (const ProblemResult& problem : result.problems) {
     json optimizers = json::object();
+    const auto methods = calc_method_facts(plan, problem.label, result.cells);
     for (std::size_t o = 0; o < problem.optimizers.size(); ++o) {
-      optimizers[plan.optimizers[o].label] =
-          optimizer_to_json(plan, problem, problem.optimizers[o]);
+      json& one = optimizers[plan.optimizers[o].label];
+      one = optimizer_to_json(plan, problem, problem.optimizers[o]);
+      one["method"] = method_to_json(methods[o]);
     }
     json pairs = json::array();
     for (const PairResult& pair : problem.pairs) {

@@ -4,7 +4,8 @@
 //   cells.csv              every run: values and errors on the test set, counts
 //   metrics.csv            every winner on the test set: objectives, torque, energy, ...
 //   best.csv               the same for every optimizer's best run on the validation set
-//   summary.csv            problem x optimizer: medians, quartiles, intervals, failures, ranks
+//   summary.csv            problem x optimizer: medians, quartiles, intervals, failures, ranks,
+//                          and what the optimizer saw and did (method_facts.hpp)
 //   pairs.csv              every two optimizers: Wilcoxon, Holm, A12, wins
 //   friedman.csv           test whether the optimizers differ at all
 //   running_times.csv      expected running times to targets

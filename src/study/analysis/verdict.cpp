@@ -281,6 +281,7 @@ std::vector<std::string> describe_verdict(const StudyPlan& plan, const StudyResu
   }
   add(describe_overall(plan, result));
   add(describe_limits(plan, result));
+  add(describe_methods(plan, result));
   return verdict;
 }
 

@@ -19,14 +19,18 @@ std::string describe_target(const StudyProblem& problem, const StudyTarget& targ
 std::vector<std::string> describe_target_verdict(const StudyPlan& plan, const StudyProblem& problem,
                                                  const ProblemResult& result);
 
+// Returns the verdict's sentences on what the optimizers saw and did, where they differ.
+std::vector<std::string> describe_methods(const StudyPlan& plan, const StudyResult& result);
+
+// Returns "a, b and c".
+std::string join_names(std::vector<std::string> names);
+
 // Returns "= 0.0004" or "< 1e-06".
 std::string format_p(double p);
+
 // Returns the pair of two optimizers, in either order. It must be among `pairs`.
 const PairResult& find_pair(std::span<const PairResult> pairs, std::size_t a, std::size_t b);
 
-// Internal to study/analysis.
-// Returns "a, b and c".
-std::string join_names(std::vector<std::string> names);
 // Says whom the first optimizer of `order` beats, who beats it, and who cannot be told apart from
 // it. The first sentence begins with `where`, the others with `again`.
 std::vector<std::string> describe_standing(const StudyPlan& plan, const std::string& where,

@@ -155,6 +155,14 @@ double calc_test_value(const ProblemDescription& problem, const Evaluation& eval
              : calc_scalar(problem, evaluation.objectives);
 }
 
+std::optional<std::uint64_t> count_judged(const std::filesystem::path& folder) {
+  const auto file = folder / "result.json";
+  if (!std::filesystem::exists(file)) {
+    return std::nullopt;
+  }
+  return parse_result(read_file(file, kResultLimit_bytes), file).judged.size();
+}
+
 std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
                                     const std::filesystem::path& study, StopSignal& stop,
                                     RunObserver& observer) {

@@ -30,6 +30,9 @@ struct CurvePoint {
   std::optional<std::uint64_t> failures;
 };
 
+// CellOutcome::end_reason of a cell that has not ended; no cell.json has it.
+inline constexpr const char* kNotEnded = "not ended";
+
 // The record of a finished cell (cell.json).
 struct CellOutcome {
   std::string problem;    // label
@@ -65,12 +68,19 @@ struct CellOutcome {
   // Only for several objectives: the objectives on the test set of all judged designs that have a
   // value there.
   std::vector<std::vector<double>> front;
+  // The number of candidates that were judged on the validation set at the end of the run. Not in
+  // cell.json: count_judged() reads it from the run's result. Empty if that file is missing.
+  std::optional<std::uint64_t> judged;
 };
 
 // Returns the text of cell.json.
 std::string to_json(const CellOutcome& outcome);
 // Reads the text of a cell.json. Throws Error{bad_data} with the name of `file`.
 CellOutcome parse_cell(const std::string& json, const std::filesystem::path& file);
+
+// Returns how many candidates the run in this folder judged on the validation set at its end;
+// nothing if it has no result.json. Throws Error{bad_data} if that file cannot be read.
+std::optional<std::uint64_t> count_judged(const std::filesystem::path& folder);
 
 // Runs the cell or resumes it. Writes cell.json last, so a cell that has this file is finished.
 // Returns nothing if `stop` ended the cell.

@@ -12,6 +12,7 @@
 #include "problems/config/config_files.hpp"
 #include "sim/simd/simd_level.hpp"
 #include "study/compare/case_sets.hpp"
+#include "study/compare/optimizer_streams.hpp"
 #include "study/compare/study_methods.hpp"
 #include "study/compare/study_plan.hpp"
 #include "study/compare/study_reader.hpp"
@@ -52,16 +53,37 @@ std::string make_study_name(const StudyPlan& plan) {
   return name.substr(0, kLongest);
 }
 
-// Returns the schedule that was asked for, else a fixed one: runs are compared in pairs, which need
+// Sets the schedule that was asked for, else a fixed one: runs are compared in pairs, which need
 // the same training cases for every optimizer. An optimizer without generations cannot have fresh
-// cases.
-Schedule choose_study_schedule(const LoadedProblem& problem, const std::optional<Schedule>& asked) {
-  if (asked) {
-    return *asked;
+// cases. A function has no training cases, so own schedules have no meaning there.
+void set_schedule(const std::optional<StudySchedule>& asked, StudyProblem& problem) {
+  const LoadedProblem& loaded = problem.loaded;
+  if (asked && std::holds_alternative<Schedule>(*asked)) {
+    problem.schedule = std::get<Schedule>(*asked);
+  } else if (asked && loaded.tracking()) {
+    problem.own_schedules = true;
+    problem.schedule = kOwnWithoutGenerations;
+  } else if (loaded.schedule.changes_cases()) {
+    problem.schedule = {.kind = Schedule::Kind::fixed, .cases = loaded.fixed_cases};
+  } else {
+    problem.schedule = loaded.schedule;
   }
-  return problem.schedule.changes_cases()
-             ? Schedule{.kind = Schedule::Kind::fixed, .cases = problem.fixed_cases}
-             : problem.schedule;
+}
+
+// Loads a problem of the study. An error of its settings names the problem, since the study's
+// settings are for all problems.
+LoadedProblem load_named_problem(const NamedProblem& named,
+                                 const std::vector<std::string>& settings) {
+  try {
+    return load_problem(named.name, settings);
+  } catch (const Error& error) {
+    if (settings.empty()) {
+      throw;
+    }
+    throw Error(error.kind(), fmt::format("problem {}: {}",
+                                          sanitize(named.label.empty() ? named.name : named.label),
+                                          error.what()));
+  }
 }
 
 void refuse_repeated(std::string_view what, std::span<const std::string> labels) {
@@ -124,10 +146,9 @@ void load_problems(const RawPlan& raw, StudyPlan& plan) {
     for (const auto* settings : {&raw.settings, &named.settings, &raw.last_settings}) {
       problem.settings.insert(problem.settings.end(), settings->begin(), settings->end());
     }
-    problem.loaded = load_problem(named.name, problem.settings);
+    problem.loaded = load_named_problem(named, problem.settings);
     problem.label = named.label.empty() ? problem.loaded.name : named.label;
-    problem.schedule =
-        choose_study_schedule(problem.loaded, named.schedule ? named.schedule : raw.schedule);
+    set_schedule(named.schedule ? named.schedule : raw.schedule, problem);
     std::string hash = calc_configuration_hash(problem.loaded);
     if (!named.configuration_sha256.empty() && named.configuration_sha256 != hash &&
         load_as_recorded(named, problem)) {
@@ -178,6 +199,8 @@ StudyOptimizer load_study_optimizer(const NamedOptimizer& named,
   optimizer.parsed = Options::parse(optimizer.row.name, optimizer.row.options, named.options);
   optimizer.schedule = named.schedule;
   optimizer.settings = named.settings;
+  optimizer.own_schedule = named.own_schedule.value_or(choose_own_schedule(optimizer.row));
+  optimizer.stream = named.stream;
   return optimizer;
 }
 
@@ -247,8 +270,10 @@ void check_cells(const StudyPlan& plan) {
         ErrorKind::usage,
         fmt::format("schedule {} gives every generation new training cases, so only optimizers "
                     "with generations can be compared on it, and these have none: {}. Use "
-                    "schedule fixed:K for all, give these a schedule of their own{}",
+                    "schedule own ({} for optimizers with generations, {} for the others) or "
+                    "fixed:K for all, give these a schedule of their own{}",
                     to_string(changing->schedule.kind), join(without_generations, ", "),
+                    to_text(kOwnWithGenerations), to_text(kOwnWithoutGenerations),
                     plan.baselines ? ", or take the baselines out (--no-baselines)" : ""));
   }
   for (const Cell& cell : list_cells(plan)) {
@@ -282,10 +307,10 @@ void check_plan_hash(const std::filesystem::path& path) {
 }
 
 void keep_baselines(const std::filesystem::path& recorded, StudyPlan& plan) {
-  for (const NamedOptimizer& baseline : read_baselines(recorded)) {
-    if (std::ranges::find(plan.optimizers, baseline.label, &StudyOptimizer::label) ==
-        plan.optimizers.end()) {
-      plan.optimizers.push_back(load_study_optimizer(baseline));
+  for (const NamedOptimizer& optimizer : read_recorded_optimizers(recorded)) {
+    if (optimizer.baseline && std::ranges::find(plan.optimizers, optimizer.label,
+                                                &StudyOptimizer::label) == plan.optimizers.end()) {
+      plan.optimizers.push_back(load_study_optimizer(optimizer));
     }
   }
 }
@@ -344,6 +369,11 @@ StudyPlan make_study_plan(const StudyRequest& request) {
                 "training cases every optimizer may simulate on a problem");
   }
   load_optimizers(raw, request.rows, plan);
+  if (raw.has_label_streams) {
+    name_streams_by_labels(plan);
+  } else {
+    name_streams(plan);
+  }
   load_methods(plan);
   check_targets(plan);
   if (plan.name.empty()) {

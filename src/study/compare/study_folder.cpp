@@ -11,6 +11,7 @@
 #include "base/hash.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
+#include "study/compare/optimizer_streams.hpp"
 #include "study/compare/study_plan.hpp"
 
 namespace armwright {
@@ -74,8 +75,16 @@ std::string make_targets(const StudyPlan& plan) {
   return text;
 }
 
-std::string make_method(const StudyOptimizer& optimizer) {
+// Returns the keys of an optimizer that not every plan has. A stream that is the label is left out,
+// as in plans of version 1.0.
+std::string make_method(const StudyPlan& plan, const StudyOptimizer& optimizer) {
   std::string text;
+  if (optimizer.stream != optimizer.label) {
+    text += fmt::format("stream = {}\n", quote(optimizer.stream));
+  }
+  if (!optimizer.schedule && std::ranges::any_of(plan.problems, &StudyProblem::own_schedules)) {
+    text += fmt::format("own_schedule = {}\n", quote(to_text(optimizer.own_schedule)));
+  }
   if (!optimizer.row.description.empty()) {
     text += fmt::format("description = {}\n", quote(optimizer.row.description));
   }
@@ -108,7 +117,7 @@ std::string make_body(const StudyPlan& plan) {
         "\n[[problem]]\nname = {}\nlabel = {}\nset = {}\nschedule = {}\nvalidation_set = {}\n"
         "test_set = {}\nconfiguration_sha256 = {}\n",
         quote(problem.name), quote(problem.label), quote_list(problem.settings),
-        quote(to_text(problem.schedule)), quote(sets.validation), quote(sets.test),
+        quote(describe_schedule(problem)), quote(sets.validation), quote(sets.test),
         quote(calc_configuration_hash(problem.loaded)));
   }
   for (const StudyOptimizer& optimizer : plan.optimizers) {
@@ -119,7 +128,7 @@ std::string make_body(const StudyPlan& plan) {
     text += fmt::format(
         "\n[[optimizer]]\nname = {}\nlabel = {}\nbaseline = {}\noptions = {}\ninputs = {}\n{}",
         quote(optimizer.name), quote(optimizer.label), optimizer.baseline ? "true" : "false",
-        quote_list(list_options(optimizer)), quote_list(inputs), make_method(optimizer));
+        quote_list(list_options(optimizer)), quote_list(inputs), make_method(plan, optimizer));
   }
   return text + make_targets(plan);
 }
@@ -178,6 +187,7 @@ void adopt_recorded(const std::filesystem::path& folder, StudyPlan& plan) {
   }
   keep_selection(folder / kPlanFile, plan);
   keep_plain_functions(folder / kPlanFile, plan);
+  adopt_streams(folder / kPlanFile, plan);
 }
 
 bool is_study_folder(const std::filesystem::path& path) {
@@ -256,8 +266,11 @@ void StudyFolder::extend(const StudyPlan& plan, const std::string& text) {
             "{} {} is in the recorded plan, but not in this one; add it", key, sanitize(label)));
         continue;
       }
-      for (const std::string& difference :
-           describe_differences(entry.dump(), after[label].dump())) {
+      json now_entry = after[label];
+      if (!entry.contains("own_schedule")) {  // no recorded problem has own schedules
+        now_entry.erase("own_schedule");
+      }
+      for (const std::string& difference : describe_differences(entry.dump(), now_entry.dump())) {
         differences.push_back(fmt::format("{} {}: {}", key, sanitize(label), difference));
       }
     }

@@ -50,9 +50,10 @@ bool is_study_folder(const std::filesystem::path& path);
 // Throws Error{usage} if the folder does not exist or is not a study's.
 void check_study_folder(const std::filesystem::path& folder);
 // Adds to `plan` the baselines that the folder's recorded plan has, and keeps its rules: the
-// candidates that are judged (keep_selection()), and the plain form of functions where version 1.0
-// recorded it (keep_plain_functions()). To be called before the constructor of
-// StudyFolder.
+// candidates that are judged (keep_selection()), the plain form of functions where version 1.0
+// recorded it (keep_plain_functions()), and the random streams of the optimizers
+// (adopt_streams()). Does nothing if the folder is not a study's. To be called before the
+// constructor of StudyFolder.
 void adopt_recorded(const std::filesystem::path& folder, StudyPlan& plan);
 // Returns the plan that a study's folder records. Throws Error{usage} or Error{bad_data}.
 StudyPlan load_study_plan(const std::filesystem::path& folder);

@@ -57,6 +57,17 @@ json leave_method_out(const LoadedProblem& problem) {
   return resolved;
 }
 
+// Loads the problem with the optimizer's settings. An error names both.
+LoadedProblem load_for_method(const StudyProblem& problem, const StudyOptimizer& optimizer,
+                              const std::vector<std::string>& settings) {
+  try {
+    return load_problem(problem.name, settings);
+  } catch (const Error& error) {
+    throw Error(error.kind(), fmt::format("optimizer {} on {}: {}", optimizer.label, problem.label,
+                                          error.what()));
+  }
+}
+
 LoadedProblem load_method(const StudyProblem& problem, const StudyOptimizer& optimizer) {
   std::vector<std::string> settings = problem.settings;
   settings.insert(settings.end(), optimizer.settings.begin(), optimizer.settings.end());
@@ -68,7 +79,7 @@ LoadedProblem load_method(const StudyProblem& problem, const StudyOptimizer& opt
   if (problem.loaded.function && problem.loaded.function->instance == 0) {
     settings.push_back("function.instance=0");  // the plan may have been recorded before 2.0
   }
-  LoadedProblem loaded = load_problem(problem.name, settings);
+  LoadedProblem loaded = load_for_method(problem, optimizer, settings);
   if (get_judged_perturbation(loaded) != get_judged_perturbation(problem.loaded)) {
     throw Error(ErrorKind::usage,
                 fmt::format("optimizer {} on {}: its designs would be judged on other plants than "

@@ -143,7 +143,14 @@ const LoadedProblem& get_problem(const StudyPlan& plan, const Cell& cell) {
 }
 
 Schedule get_schedule(const StudyPlan& plan, const Cell& cell) {
-  return plan.optimizers[cell.optimizer].schedule.value_or(plan.problems[cell.problem].schedule);
+  const StudyProblem& problem = plan.problems[cell.problem];
+  const StudyOptimizer& optimizer = plan.optimizers[cell.optimizer];
+  return optimizer.schedule.value_or(problem.own_schedules ? optimizer.own_schedule
+                                                           : problem.schedule);
+}
+
+std::string describe_schedule(const StudyProblem& problem) {
+  return problem.own_schedules ? std::string(kOwnSchedules) : to_text(problem.schedule);
 }
 
 RunPlan make_run_plan(const StudyPlan& plan, const Cell& cell) {
@@ -153,7 +160,7 @@ RunPlan make_run_plan(const StudyPlan& plan, const Cell& cell) {
                                make_training_set_name(plan, cell), draw_start(plan, cell));
   run.optimizer = optimizer.row;
   run.options = optimizer.parsed;
-  run.seed = make_seed(make_stream(plan, cell) + "/" + optimizer.label);
+  run.seed = make_seed(make_stream(plan, cell) + "/" + optimizer.stream);
   run.budget = plan.budget;
   run.schedule = get_schedule(plan, cell);
   run.racing = run.problem.racing;

@@ -4,8 +4,9 @@
 // optimizer gets the same training cases (set train/STUDY-SEED-P-R) and the same start point. The
 // start is a uniform draw from a box around the problem's own start, on the variables' scales. All
 // noise comes with the training cases, so it is the same too. The optimizer's own random numbers
-// come from a stream named after the cell. No random number depends on the plan as a whole, so a
-// plan can be extended.
+// come from a stream named after the problem, the replicate and what the optimizer is
+// (optimizer_streams.hpp). No random number depends on the plan as a whole, so a plan can be
+// extended.
 //
 // All optimizers have the same budget, in simulated training cases; a plan cannot give one of them
 // more. The problem defines how the budget is spent (schedule, racing, perturbed plants in
@@ -24,6 +25,7 @@
 #include <vector>
 
 #include "base/setting.hpp"
+#include "study/compare/study_schedules.hpp"
 #include "study/run/run_plan.hpp"
 
 namespace armwright {
@@ -33,7 +35,11 @@ struct StudyProblem {
   std::string name;   // as the user wrote it: a shipped name or a path
   std::vector<std::string> settings;  // KEY=VALUE, every change to the problem's settings
   LoadedProblem loaded;
+  // The schedule of all optimizers without one of their own. Its K also defines the checkpoints.
   Schedule schedule;
+  // True if every optimizer gets its StudyOptimizer::own_schedule instead. Never true for a
+  // function, which has no training cases.
+  bool own_schedules = false;
 };
 
 struct StudyOptimizer {
@@ -48,6 +54,8 @@ struct StudyOptimizer {
   std::optional<Schedule> schedule;
   std::vector<std::string> settings;
   std::map<std::string, LoadedProblem> loaded;  // with these settings; key: problem label
+  Schedule own_schedule;  // on problems with own schedules, unless `schedule` replaces it
+  std::string stream;     // names its random streams; unique in the plan (optimizer_streams.hpp)
 };
 
 // A fixed target: the quality that a design must have on the test set. At least one of `value` and
@@ -109,7 +117,7 @@ struct StudyRequest {
   std::vector<std::string> settings;  // for every problem
   std::optional<int> replicates;
   std::optional<std::int64_t> budget;
-  std::optional<Schedule> schedule;
+  std::optional<StudySchedule> schedule;
   std::optional<std::uint64_t> seed;
   bool baselines = true;
   // Optimizers that the calling program implements itself, by name
@@ -168,6 +176,8 @@ std::vector<const LoadedProblem*> list_problems(const StudyPlan& plan);
 // Returns the problem with the settings that the cell's optimizer trains on.
 const LoadedProblem& get_problem(const StudyPlan& plan, const Cell& cell);
 Schedule get_schedule(const StudyPlan& plan, const Cell& cell);
+// Returns the schedule of a problem as the key `schedule` has it: "fixed:5" or "own".
+std::string describe_schedule(const StudyProblem& problem);
 
 // Returns the name of the replicate's training set, which is the same for every optimizer.
 std::string make_training_set_name(const StudyPlan& plan, const Cell& cell);

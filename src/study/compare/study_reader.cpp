@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "problems/config/config_files.hpp"
@@ -37,7 +38,8 @@ const Setting<std::int64_t> kStudySeed{
     "seed of the study, for starts, training cases and the optimizers' streams"};
 const Setting<std::string> kStudySchedule{
     "schedule", kNoDefault,
-    "training cases: fixed:K, fresh:K or coevolution:K (default: fixed, with the problem's K)"};
+    "training cases: fixed:K, fresh:K or coevolution:K for all optimizers, or own (fresh:1 for "
+    "optimizers with generations, fixed:5 for the others; default: fixed, with the problem's K)"};
 const Setting<double> kStudyStartSpread{
     "start_spread",
     {.lower = 0, .upper = 2},
@@ -100,7 +102,7 @@ const Setting<std::string> kProblemEntryLabel{
 const Setting<std::vector<std::string>> kProblemEntrySet{
     "set", kNoDefault, "changes to this problem, a list of KEY=VALUE"};
 const Setting<std::string> kProblemEntrySchedule{"schedule", kNoDefault,
-                                                 "schedule of this problem"};
+                                                 "schedule of this problem, or own"};
 const Setting<std::string> kProblemEntryHash{
     "configuration_sha256", "",
     "in a resolved plan: SHA-256 of the problem's configuration when the plan was made"};
@@ -134,12 +136,20 @@ const Setting<std::string> kOptimizerEntryDescription{
     "description", "", "in a resolved plan: description of an optimizer in Python"};
 const Setting<std::vector<std::string>> kOptimizerEntryInputs{
     "inputs", kNoDefault, "in a resolved plan: hashes of a plugin's files"};
+const Setting<std::string> kOptimizerEntryOwnSchedule{
+    "own_schedule", kNoDefault,
+    "in a resolved plan: schedule of this optimizer on problems whose schedule is own"};
+const Setting<std::string> kOptimizerEntryStream{
+    "stream", "",
+    "in a resolved plan: name of the optimizer's random streams (a plan of version 1.0 lacks it: "
+    "the label)"};
 const SettingTable kOptimizerEntrySettings{
     .key = "optimizer",
     .is_array = true,
     .settings = {&kOptimizerEntryName, &kOptimizerEntryLabel, &kOptimizerEntryOptions,
                  &kOptimizerEntrySchedule, &kOptimizerEntrySet, &kOptimizerEntryBaseline,
-                 &kOptimizerEntryDescription, &kOptimizerEntryInputs}};
+                 &kOptimizerEntryDescription, &kOptimizerEntryInputs, &kOptimizerEntryOwnSchedule,
+                 &kOptimizerEntryStream}};
 
 const Setting<std::string> kTargetLabel{"label", kNoDefault, "name of a fixed target in tables"};
 const Setting<std::vector<std::string>> kTargetProblems{
@@ -163,6 +173,19 @@ std::optional<Schedule> read_schedule_key(const ConfigTable& table,
   const auto schedule = read_schedule(*text);
   if (!schedule) {
     table.refuse(setting, fmt::format("it must be {}", kScheduleForms));
+  }
+  return schedule;
+}
+
+std::optional<StudySchedule> read_study_schedule_key(const ConfigTable& table,
+                                                     const Setting<std::string>& setting) {
+  const auto text = table.find(setting);
+  if (!text) {
+    return std::nullopt;
+  }
+  const auto schedule = read_study_schedule(*text);
+  if (!schedule) {
+    table.refuse(setting, "it must be " + describe_study_schedules());
   }
   return schedule;
 }
@@ -200,7 +223,7 @@ NamedProblem read_problem_entry(const ConfigTable& table) {
   NamedProblem problem{.name = table.get(kProblemEntryName),
                        .label = table.get(kProblemEntryLabel),
                        .settings = table.get_or(kProblemEntrySet, {}),
-                       .schedule = read_schedule_key(table, kProblemEntrySchedule),
+                       .schedule = read_study_schedule_key(table, kProblemEntrySchedule),
                        .configuration_sha256 = table.get(kProblemEntryHash)};
   for (const auto* set : {&kProblemEntryTraining, &kProblemEntryValidation, &kProblemEntryTest}) {
     table.get(*set);  // the rest of the plan determines them
@@ -219,6 +242,8 @@ NamedOptimizer read_optimizer_entry(const ConfigTable& table) {
   check_method_settings(table, kOptimizerEntrySet, optimizer.settings);
   optimizer.description = table.get(kOptimizerEntryDescription);
   optimizer.inputs = table.get_or(kOptimizerEntryInputs, {});
+  optimizer.own_schedule = read_schedule_key(table, kOptimizerEntryOwnSchedule);
+  optimizer.stream = table.get(kOptimizerEntryStream);
   return optimizer;
 }
 
@@ -256,7 +281,8 @@ RawPlan read_study_file(const std::filesystem::path& file, StudyPlan& plan) {
   plan.title = table.get(kStudyTitle);
   table.get(kStudyDescription);
   plan.name = table.get(kStudyName);
-  table.get(kStudyPlanHash);  // check_plan_hash() compares it with the text
+  // check_plan_hash() compares it with the text.
+  const bool is_recorded = !table.get(kStudyPlanHash).empty();
   plan.seed = static_cast<std::uint64_t>(table.get(kStudySeed));
   plan.replicates = table.get(kStudyReplicates);
   plan.budget = table.get(kStudyBudget);
@@ -270,7 +296,7 @@ RawPlan read_study_file(const std::filesystem::path& file, StudyPlan& plan) {
   plan.selection = read_selection(selection, table.has(kStudyPlanHash));
   plan.judge_along = selection.get(kSelectionAlong);
   read_targets(table, plan);
-  raw.schedule = read_schedule_key(table, kStudySchedule);
+  raw.schedule = read_study_schedule_key(table, kStudySchedule);
   raw.settings = table.get_or(kStudySet, {});
   for (const std::string& name : table.get_or(kStudyProblems, {})) {
     raw.problems.push_back({.name = name});
@@ -284,22 +310,23 @@ RawPlan read_study_file(const std::filesystem::path& file, StudyPlan& plan) {
   for (const ConfigTable& optimizer : table.get_tables_or_empty(kOptimizerEntrySettings)) {
     raw.optimizers.push_back(read_optimizer_entry(optimizer));
   }
+  raw.has_label_streams = is_recorded && has_label_streams(raw.optimizers);
   table.refuse_unknown();
   return raw;
 }
 
-std::vector<NamedOptimizer> read_baselines(const std::filesystem::path& file) {
-  std::vector<NamedOptimizer> baselines;
+std::vector<NamedOptimizer> read_recorded_optimizers(const std::filesystem::path& file) {
+  std::vector<NamedOptimizer> optimizers;
   const ConfigTable plan = ConfigTable::load(study_settings(), file);
   for (const ConfigTable& table : plan.get_tables_or_empty(kOptimizerEntrySettings)) {
-    if (table.get(kOptimizerEntryBaseline)) {
-      baselines.push_back({.name = table.get(kOptimizerEntryName),
-                           .label = table.get(kOptimizerEntryLabel),
-                           .options = table.get_or(kOptimizerEntryOptions, {}),
-                           .baseline = true});
-    }
+    optimizers.push_back(read_optimizer_entry(table));
   }
-  return baselines;
+  return optimizers;
+}
+
+bool has_label_streams(std::span<const NamedOptimizer> optimizers) {
+  return std::ranges::all_of(optimizers,
+                             [](const NamedOptimizer& one) { return one.stream.empty(); });
 }
 
 void keep_selection(const std::filesystem::path& recorded, StudyPlan& plan) {

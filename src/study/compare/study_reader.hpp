@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,13 +23,16 @@ struct NamedOptimizer {
   // A resolved plan has these two for an optimizer of the program that made it.
   std::string description = {};
   std::vector<std::string> inputs = {};  // "NAME HASH"
+  // A resolved plan has these two; plans of version 1.0 do not.
+  std::optional<Schedule> own_schedule = {};
+  std::string stream = {};
 };
 
 struct NamedProblem {
   std::string name;
   std::string label = {};
   std::vector<std::string> settings = {};
-  std::optional<Schedule> schedule = {};
+  std::optional<StudySchedule> schedule = {};
   std::string configuration_sha256 = {};  // as a resolved plan records it; empty: not known
 };
 
@@ -38,14 +42,19 @@ struct RawPlan {
   std::vector<NamedOptimizer> optimizers;
   std::vector<std::string> settings;  // of every problem; a problem's own settings replace them
   std::vector<std::string> last_settings;  // of every problem; they replace all others
-  std::optional<Schedule> schedule;
+  std::optional<StudySchedule> schedule;
+  bool has_label_streams = false;  // the file is a plan that version 1.0 recorded
 };
 
 // Reads the file into the returned plan and, for all that needs no loading, into `plan`. Throws
 // Error{usage} that names file, line and key, Error{io} for a file that cannot be read.
 RawPlan read_study_file(const std::filesystem::path& file, StudyPlan& plan);
 
-// Returns the baselines of a resolved plan. Throws as read_study_file().
-std::vector<NamedOptimizer> read_baselines(const std::filesystem::path& file);
+// Returns the optimizers of a resolved plan. Throws as read_study_file().
+std::vector<NamedOptimizer> read_recorded_optimizers(const std::filesystem::path& file);
+
+// Returns whether the optimizers of a resolved plan have the random streams of version 1.0, which
+// are named after the labels. Version 1.0 did not record them.
+bool has_label_streams(std::span<const NamedOptimizer> optimizers);
 
 }  // namespace armwright

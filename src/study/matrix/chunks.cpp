@@ -72,8 +72,8 @@ double estimate_cell_memory_mib(const StudyPlan& plan) {
     return problem.loaded.tracking() != nullptr;
   });
   int fewest_cases = plan.problems.front().schedule.cases;
-  for (const StudyProblem& problem : plan.problems) {
-    fewest_cases = std::min(fewest_cases, problem.schedule.cases);
+  for (const Cell& cell : list_cells(plan)) {
+    fewest_cases = std::min(fewest_cases, get_schedule(plan, cell).cases);
   }
   const double evaluations =
       static_cast<double>(plan.budget) / static_cast<double>(std::max(1, fewest_cases));

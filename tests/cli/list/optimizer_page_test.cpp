@@ -89,6 +89,14 @@ TEST(OptimizerPage, SaysWhyItIsNotOffered) {
   EXPECT_THAT(format_optimizer_index({&row, 1}), HasSubstr("(not offered)"));
 }
 
+TEST(OptimizerPage, SaysOnWhichProblemsDefaultsWereChosen) {
+  OptimizerRow row = make_row();
+  EXPECT_THAT(format_optimizer_page(row), Not(HasSubstr("**Defaults:**")));
+  row.tuned_on = {"sphere", "q1-complex"};
+  EXPECT_THAT(format_optimizer_page(row),
+              HasSubstr("- **Defaults:** some were chosen on `sphere`, `q1-complex`;"));
+}
+
 TEST(OptimizerPage, LocalOnesCanBeginAgainElsewhere) {
   OptimizerRow row = make_row();
   const std::string call = "--optimizer multistart:lib:demo\n";

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "study/analysis/study_result.hpp"
+#include "study/compare/optimizer_streams.hpp"
 #include "study/compare/study_plan.hpp"
 #include "study/contract/memory_evaluator.hpp"
 
@@ -25,6 +26,8 @@ StudyPlan make_plan(std::uint64_t seed) {
   StudyPlan plan = make_study_plan(request);
   plan.optimizers.push_back(plan.optimizers.front());
   plan.optimizers.back().label = "ga under another name";
+  plan.optimizers.back().stream.clear();
+  name_streams(plan);
   return plan;
 }
 

@@ -72,6 +72,21 @@ TEST(StudyPlan, MistakesAreNamed) {
          "a budget of 100 cases does not pay for one evaluation");
 }
 
+TEST(StudyPlan, ASettingThatOneProblemDoesNotKnowIsRefusedWithTheProblem) {
+  StudyRequest request = make_small_request();
+  request.problems = {"sphere", "q1-complex"};
+  EXPECT_THAT(usage_error_of([&] { make_study_plan(request); }),
+              HasSubstr("problem q1-complex: --set function.dimension=3: unknown key function"));
+  const TemporaryFolder folder;
+  EXPECT_THAT(usage_error_of([&] {
+                load_plan(folder, std::string(kStudyHead) +
+                                      "[[optimizer]]\nname = 'ga'\nlabel = 'neural'\n"
+                                      "set = ['control.controller=neural']\n");
+              }),
+              HasSubstr("optimizer neural on sphere: --set control.controller=neural: unknown key "
+                        "control"));
+}
+
 TEST(StudyPlan, FreshCasesAreForOptimizersWithGenerationsOnly) {
   StudyRequest request = make_small_request();
   request.schedule = Schedule{.kind = Schedule::Kind::fresh, .cases = 1};
