@@ -110,7 +110,10 @@ const struct armwright_plugin kPlugin = {ARMWRIGHT_PLUGIN_ABI,
                                          ARMWRIGHT_BOUNDS,
                                          kOptions,
                                          1,
-                                         minimize};
+                                         minimize,
+                                         1,
+                                         1,
+                                         0};
 
 }  // namespace
 

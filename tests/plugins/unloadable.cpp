@@ -18,7 +18,7 @@ armwright_option options[] = {
     {"kind", "", ARMWRIGHT_TEXT, 0, 0, 0, "one", nullptr},
 };
 struct armwright_plugin plugin = {
-    ARMWRIGHT_PLUGIN_ABI, sizeof(struct armwright_plugin), "x", "", "", 0, options, 2, minimize};
+    ARMWRIGHT_PLUGIN_ABI, sizeof(struct armwright_plugin), "x", "", "", 0, options, 2, minimize, 1, 1, 0};
 
 }  // namespace
 

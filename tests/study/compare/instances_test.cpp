@@ -8,7 +8,7 @@
 namespace armwright {
 namespace {
 
-StudyRequest make_request() {
+StudyRequest make_rastrigin_request() {
   StudyRequest request;
   request.problems = {"rastrigin"};
   request.optimizers = {"cmaes"};
@@ -19,7 +19,7 @@ StudyRequest make_request() {
 }
 
 TEST(StudyInstances, AReplicateHasTheSameInstanceForEveryOptimizer) {
-  const StudyPlan plan = make_study_plan(make_request());
+  const StudyPlan plan = make_study_plan(make_rastrigin_request());
   std::map<int, std::set<std::vector<double>>> minimisers;  // by replicate
   std::set<std::vector<double>> all;
   for (const Cell& cell : list_cells(plan)) {
@@ -37,7 +37,7 @@ TEST(StudyInstances, AReplicateHasTheSameInstanceForEveryOptimizer) {
 // Version 1.0 recorded neither the instance nor a setting for the plain form, and its shipped file
 // had no other form.
 TEST(StudyInstances, APlanOfVersion1KeepsThePlainForm) {
-  StudyRequest request = make_request();
+  StudyRequest request = make_rastrigin_request();
   request.settings.push_back("function.instance=0");
   const StudyPlan made = make_study_plan(request);
   std::string toml = to_toml(made);
@@ -55,7 +55,7 @@ TEST(StudyInstances, APlanOfVersion1KeepsThePlainForm) {
 
 // The command of a study that version 1.0 began continues it, as the shipped problem was then.
 TEST_F(StudyTest, AStudyOfVersion1GoesOnWithThePlainForm) {
-  StudyRequest request = make_request();
+  StudyRequest request = make_rastrigin_request();
   StudyPlan old = make_study_plan(request);
   old.problems[0].loaded = load_problem(
       "rastrigin", std::vector<std::string>{"function.dimension=3", "function.instance=0"});

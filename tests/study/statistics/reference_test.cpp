@@ -24,9 +24,9 @@ namespace {
 using Numbers = std::vector<double>;
 using Table = std::vector<Numbers>;
 
-Numbers read_numbers(const nlohmann::json& json) {
+Numbers read_numbers(const nlohmann::json& numbers_json) {
   Numbers numbers;
-  for (const nlohmann::json& number : json) {
+  for (const nlohmann::json& number : numbers_json) {
     numbers.push_back(number.is_string() ? std::numeric_limits<double>::infinity()
                                          : number.get<double>());
   }
