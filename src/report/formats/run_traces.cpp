@@ -65,7 +65,8 @@ std::vector<std::string> read_problem_order(const fs::path& study) {
     return labels;
   }
   try {
-    for (const json& problem : json::parse(ConfigTable::load(file).to_json()).at("problem")) {
+    const json plan = json::parse(ConfigTable::load(file).to_json());
+    for (const json& problem : plan.at("problem")) {
       labels.push_back(problem.at("label").get<std::string>());
     }
   } catch (const json::exception& error) {
