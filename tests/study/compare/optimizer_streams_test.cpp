@@ -13,7 +13,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr const char* kHead =
+constexpr const char* kStreamHead =
     "problems = ['sphere']\nset = ['function.dimension=3']\nbudget = 60\nreplicates = 2\n"
     "baselines = false\n";
 
@@ -38,7 +38,7 @@ void expect_recorded_seeds(const StudyPlan& plan) {
   }
 }
 
-StudyPlan load(const std::filesystem::path& file) {
+StudyPlan load_file(const std::filesystem::path& file) {
   StudyRequest request;
   request.file = file.string();
   return make_study_plan(request);
@@ -63,8 +63,8 @@ StudyPlan make_grown_plan() {
 TEST_F(StudyTest, AnotherLabelDoesNotChangeTheResults) {
   const auto run = [&](const std::string& label) {
     const StudyPlan plan =
-        load_plan(temporary_, std::string(kHead) + "[[optimizer]]\nname = 'ga'\nlabel = '" + label +
-                                  "'\noptions = ['population=9']\n");
+        load_plan(temporary_, std::string(kStreamHead) + "[[optimizer]]\nname = 'ga'\nlabel = '" +
+                                  label + "'\noptions = ['population=9']\n");
     std::vector<std::vector<double>> winners;
     for (const CellOutcome& cell : study(plan, label).cells) {
       winners.push_back(cell.x);
@@ -77,7 +77,9 @@ TEST_F(StudyTest, AnotherLabelDoesNotChangeTheResults) {
 TEST(OptimizerStreams, DependOnWhatTheOptimizerIs) {
   const TemporaryFolder folder;
   const auto get_stream = [&](const std::string& entry) {
-    return load_plan(folder, std::string(kHead) + "[[optimizer]]\n" + entry).optimizers[0].stream;
+    return load_plan(folder, std::string(kStreamHead) + "[[optimizer]]\n" + entry)
+        .optimizers[0]
+        .stream;
   };
   const std::string plain = get_stream("name = 'ga'\n");
   EXPECT_EQ(plain, get_stream("name = 'ga'\nlabel = 'other'\n"));
@@ -96,7 +98,7 @@ TEST(OptimizerStreams, DependOnWhatTheOptimizerIs) {
 TEST(OptimizerStreams, OfEqualEntriesDifferByTheirOccurrence) {
   const TemporaryFolder folder;
   const StudyPlan plan = load_plan(
-      folder, std::string(kHead) +
+      folder, std::string(kStreamHead) +
                   "[[optimizer]]\nname = 'ga'\n[[optimizer]]\nname = 'ga'\nlabel = 'again'\n"
                   "[[optimizer]]\nname = 'ga'\nlabel = 'and again'\n");
   EXPECT_EQ(plan.optimizers[1].stream, plan.optimizers[0].stream + "-2");
@@ -107,10 +109,11 @@ TEST(OptimizerStreams, OfEqualEntriesDifferByTheirOccurrence) {
 
 TEST(OptimizerStreams, OfARecordedPlanStayWhenAnEqualEntryComesBeforeTheRecordedOne) {
   const TemporaryFolder folder;
-  const StudyPlan first = load_plan(folder, std::string(kHead) + "[[optimizer]]\nname = 'ga'\n");
+  const StudyPlan first =
+      load_plan(folder, std::string(kStreamHead) + "[[optimizer]]\nname = 'ga'\n");
   StudyFolder(folder / "study", first);
   StudyPlan grown = load_plan(
-      folder, std::string(kHead) +
+      folder, std::string(kStreamHead) +
                   "[[optimizer]]\nname = 'ga'\nlabel = 'new'\n[[optimizer]]\nname = 'ga'\n");
   adopt_recorded(folder / "study", grown);
   EXPECT_EQ(grown.optimizers[1].stream, first.optimizers[0].stream);
@@ -123,7 +126,7 @@ TEST(OptimizerStreams, ThatTwoEntriesShareAreRefused) {
   const TemporaryFolder folder;
   EXPECT_THAT(usage_error_of([&] {
                 load_plan(folder,
-                          std::string(kHead) +
+                          std::string(kStreamHead) +
                               "[[optimizer]]\nname = 'ga'\nstream = 's'\n[[optimizer]]\nname = "
                               "'ga'\nlabel = 'again'\nstream = 's'\n");
               }),
@@ -131,7 +134,7 @@ TEST(OptimizerStreams, ThatTwoEntriesShareAreRefused) {
 }
 
 TEST(OptimizerStreams, OfAPlanThatVersion1RecordedAreItsLabels) {
-  const StudyPlan plan = load(get_recorded_plan());
+  const StudyPlan plan = load_file(get_recorded_plan());
   expect_recorded_seeds(plan);
   EXPECT_EQ(to_toml(plan), read_file(get_recorded_plan(), 1 << 20));
 }

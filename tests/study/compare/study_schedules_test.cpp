@@ -13,7 +13,7 @@ namespace {
 using testing::Contains;
 using testing::HasSubstr;
 
-constexpr const char* kHead = R"(problems = ["q1-complex"]
+constexpr const char* kOwnHead = R"(problems = ["q1-complex"]
 schedule = "own"
 replicates = 2
 budget = 60
@@ -21,7 +21,7 @@ checkpoints = 3
 set = ["physics.engine=articulated", "workspace.points=4", "sets.test_cases=4",
        "sets.validation_cases=3"]
 )";
-constexpr const char* kOptimizers = R"(
+constexpr const char* kOwnOptimizers = R"(
 [[optimizer]]
 name = "ga"
 options = ["population=6"]
@@ -40,7 +40,7 @@ std::string get_schedule_text(const StudyPlan& plan, std::size_t problem, std::s
 
 TEST(OwnSchedules, AreFreshForGenerationsAndFixedForTheOthers) {
   const TemporaryFolder folder;
-  const StudyPlan plan = load_plan(folder, std::string(kHead) + kOptimizers);
+  const StudyPlan plan = load_plan(folder, std::string(kOwnHead) + kOwnOptimizers);
   EXPECT_EQ(get_schedule_text(plan, 0, 0), "fresh:1");
   EXPECT_EQ(get_schedule_text(plan, 0, 1), "fixed:5");
   EXPECT_EQ(get_schedule_text(plan, 0, 2), "fixed:3");  // a method keeps its own
@@ -53,7 +53,7 @@ TEST(OwnSchedules, AreFreshForGenerationsAndFixedForTheOthers) {
 
 TEST(OwnSchedules, AreRecordedForEveryOptimizer) {
   const TemporaryFolder folder;
-  const StudyPlan plan = load_plan(folder, std::string(kHead) + kOptimizers);
+  const StudyPlan plan = load_plan(folder, std::string(kOwnHead) + kOwnOptimizers);
   std::string text = to_toml(plan);
   EXPECT_THAT(
       text, testing::AllOf(HasSubstr("schedule = \"own\""), HasSubstr("own_schedule = \"fresh:1\""),
@@ -109,7 +109,7 @@ TEST(OwnSchedules, AreNamedAmongTheSchedulesThatAreAllowed) {
 }
 
 TEST_F(StudyTest, OwnSchedulesAreComparedAndTheVerdictNamesThem) {
-  const StudyPlan plan = load_plan(temporary_, std::string(kHead) + kOptimizers);
+  const StudyPlan plan = load_plan(temporary_, std::string(kOwnHead) + kOwnOptimizers);
   const StudyResult result = study(plan, "study");
   EXPECT_TRUE(result.missing.empty());
   EXPECT_THAT(describe_verdict(plan, result),
