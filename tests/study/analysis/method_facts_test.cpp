@@ -27,7 +27,7 @@ OptimizerRow make_residual_row() {
   return row;
 }
 
-StudyRequest make_request() {
+StudyRequest make_facts_request() {
   StudyRequest request;
   request.problems = {"sphere"};
   request.optimizers = {"random", "lhs"};
@@ -39,7 +39,7 @@ StudyRequest make_request() {
 }
 
 // Returns a result in which every run spent its budget and judged five candidates.
-StudyResult make_result(const StudyPlan& plan) {
+StudyResult make_even_result(const StudyPlan& plan) {
   StudyResult result;
   for (const StudyProblem& problem : plan.problems) {
     result.problems.emplace_back().label = problem.label;
@@ -59,15 +59,15 @@ StudyResult make_result(const StudyPlan& plan) {
 }
 
 TEST(MethodFacts, OfEqualMethodsAreNotInTheVerdict) {
-  const StudyPlan plan = make_study_plan(make_request());
-  EXPECT_THAT(describe_methods(plan, make_result(plan)), IsEmpty());
+  const StudyPlan plan = make_study_plan(make_facts_request());
+  EXPECT_THAT(describe_methods(plan, make_even_result(plan)), IsEmpty());
 }
 
 TEST(MethodFacts, NameUnusedBudgetAndWhy) {
-  StudyRequest request = make_request();
+  StudyRequest request = make_facts_request();
   request.problems.push_back("rosenbrock");
   const StudyPlan plan = make_study_plan(request);
-  StudyResult result = make_result(plan);
+  StudyResult result = make_even_result(plan);
   for (std::size_t i = 0; i < 3; ++i) {
     result.cells[3 + i].end_reason = "optimizer finished";
     result.cells[3 + i].cases = std::uint64_t{309} + 100 * i;
@@ -84,8 +84,8 @@ TEST(MethodFacts, NameUnusedBudgetAndWhy) {
 }
 
 TEST(MethodFacts, NameTheFewestAndTheMostJudgedCandidates) {
-  StudyPlan plan = make_study_plan(make_request());
-  StudyResult result = make_result(plan);
+  StudyPlan plan = make_study_plan(make_facts_request());
+  StudyResult result = make_even_result(plan);
   for (std::size_t i = 3; i < 6; ++i) {
     result.cells[i].judged = 9;
   }
@@ -97,17 +97,17 @@ TEST(MethodFacts, NameTheFewestAndTheMostJudgedCandidates) {
 }
 
 TEST(MethodFacts, NameTheOptimizersThatSeeResiduals) {
-  StudyRequest request = make_request();
+  StudyRequest request = make_facts_request();
   request.optimizers = {"gauss", "lhs"};
   request.rows = {make_residual_row()};
   const StudyPlan plan = make_study_plan(request);
-  EXPECT_THAT(describe_methods(plan, make_result(plan)),
+  EXPECT_THAT(describe_methods(plan, make_even_result(plan)),
               ElementsAre("On sphere gauss sees 3 residuals per evaluation; the others see only "
                           "the objective."));
 }
 
 TEST(MethodFacts, CountTheResidualsOfAllCasesOfTheSchedule) {
-  StudyRequest request = make_request();
+  StudyRequest request = make_facts_request();
   request.problems = {"q2-e6"};  // has residuals that belong to no case
   request.settings = {"physics.engine=articulated", "workspace.points=4", "sets.test_cases=3",
                       "sets.validation_cases=3"};
@@ -130,7 +130,7 @@ TEST(MethodFacts, CountTheResidualsOfAllCasesOfTheSchedule) {
 }
 
 TEST(MethodFacts, NameExactDerivatives) {
-  StudyRequest request = make_request();
+  StudyRequest request = make_facts_request();
   request.problems = {"q1-complex"};
   request.settings = {"physics.engine=articulated", "workspace.points=4", "sets.test_cases=3",
                       "sets.validation_cases=3", "task.ik_bug=false"};
@@ -142,13 +142,13 @@ TEST(MethodFacts, NameExactDerivatives) {
   request.optimizers = {"gauss", "lhs"};
   request.rows = {row};
   const StudyPlan plan = make_study_plan(request);
-  EXPECT_THAT(describe_methods(plan, make_result(plan)),
+  EXPECT_THAT(describe_methods(plan, make_even_result(plan)),
               Contains(HasSubstr("residuals per evaluation and their exact derivatives; the others "
                                  "see only the objective.")));
 }
 
 TEST(MethodFacts, NameDefaultsThatWereChosenOnAProblemOfTheStudy) {
-  StudyRequest request = make_request();
+  StudyRequest request = make_facts_request();
   request.problems = {"sphere", "rosenbrock"};
   OptimizerRow row = load_optimizer("random");
   row.name = "tuned";
@@ -156,13 +156,13 @@ TEST(MethodFacts, NameDefaultsThatWereChosenOnAProblemOfTheStudy) {
   request.optimizers = {"tuned", "lhs"};
   request.rows = {row};
   const StudyPlan plan = make_study_plan(request);
-  EXPECT_THAT(describe_methods(plan, make_result(plan)),
+  EXPECT_THAT(describe_methods(plan, make_even_result(plan)),
               ElementsAre("Default settings of tuned were chosen on rosenbrock, a problem of this "
                           "study."));
 }
 
 TEST_F(StudyTest, MethodFactsAreInTheTablesAndInTheResult) {
-  StudyRequest request = make_request();
+  StudyRequest request = make_facts_request();
   request.optimizers = {"random", "nlopt:neldermead"};
   request.budget = 20'000;  // more than the local search needs
   const StudyPlan plan = make_study_plan(request);
@@ -188,7 +188,7 @@ TEST_F(StudyTest, MethodFactsAreInTheTablesAndInTheResult) {
 }
 
 TEST_F(StudyTest, WithoutARunsResultItsJudgedCandidatesAreNotKnown) {
-  StudyRequest request = make_request();
+  StudyRequest request = make_facts_request();
   request.budget = 60;
   const StudyPlan plan = make_study_plan(request);
   study(plan, "study");
