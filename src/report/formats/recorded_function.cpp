@@ -24,9 +24,8 @@ std::string make_function_settings(const std::string& resolved_json) {
     }
     if (settings.contains("function")) {
       json& function = settings.at("function");
-      function.erase("dimension");
-      if (function.value("instance_per_replicate", false)) {
-        function.erase("instance");
+      for (const char* key : {"dimension", "instance", "instance_per_replicate"}) {
+        function.erase(key);
       }
     }
     if (settings.contains("physics")) {

@@ -178,7 +178,7 @@ TEST_F(StudyTest, MethodFactsAreInTheTablesAndInTheResult) {
   }
   const auto files = read_tree(temporary_ / "study");
   const auto lines = split(files.at("tables/summary.csv"), '\n');
-  EXPECT_THAT(lines[0], EndsWith("final_cases," + std::string(kMethodColumns)));
+  EXPECT_THAT(lines[0], EndsWith("optimum," + std::string(kMethodColumns)));
   EXPECT_THAT(lines[2], EndsWith("," + make_method_fields(facts[1])));
   EXPECT_THAT(lines[2], HasSubstr("optimizer finished"));
   EXPECT_EQ(std::ranges::count(lines[0], ','), std::ranges::count(lines[2], ','));

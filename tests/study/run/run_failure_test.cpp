@@ -45,7 +45,7 @@ class FailingOptimizer : public Optimizer {
 
 RunPlan make_failing_plan(int evaluations, const std::string& message = "it fell over") {
   RunPlan plan;
-  plan.problem = load_problem("sphere");
+  plan.problem = load_problem("sphere", std::vector<std::string>{"function.instance=0"});
   plan.optimizer.name = "failing";
   plan.optimizer.capabilities.generations = true;
   plan.optimizer.make = [=](const Options&) {
