@@ -23,8 +23,8 @@ struct RecordedFunction {
 RecordedFunction read_function(const std::filesystem::path& folder, const RunResult& result);
 
 // Returns RecordedFunction::settings of a problem's resolved configuration. Leaves out titles, the
-// number of variables, the instance, start, budget, schedule and sets
-// of cases, and the SIMD level. Throws Error{bad_data} for a text that is not such a configuration.
+// number of variables, the instance, start, budget, schedule and sets of cases, and the SIMD level.
+// Throws Error{bad_data} for a text that is not such a configuration.
 std::string make_function_settings(const std::string& resolved_json);
 
 }  // namespace armwright

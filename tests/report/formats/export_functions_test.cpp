@@ -79,9 +79,7 @@ TEST(FunctionSettings, LeaveOutWhatDoesNotDecideAnObjective) {
           R"({"title":"t","run":{},"sets":{"training":"train/x"},"replicate":{"start":[1]},
                     "physics":{"engine":"ode","simd":"avx2"},
                     "function":{"name":"f","dimension":5,"instance":3,"instance_per_replicate":true}})"),
-      R"({"function":{"instance_per_replicate":true,"name":"f"},"physics":{"engine":"ode"}})");
-  EXPECT_EQ(make_function_settings(R"({"function":{"instance":3}})"),
-            R"({"function":{"instance":3}})");
+      R"({"function":{"name":"f"},"physics":{"engine":"ode"}})");
 }
 
 }  // namespace
