@@ -128,15 +128,15 @@ static const struct armwright_option options[] = {
     {"step", "first step, as a share of the box", ARMWRIGHT_NUMBER, 0.1, 1e-9, 1, NULL, NULL}};
 
 static const struct armwright_plugin plugin = {
-    ARMWRIGHT_PLUGIN_ABI,
-    sizeof(struct armwright_plugin),
-    "@NAME@",
-    "Random steps from the best point so far",
-    "Schumer and Steiglitz 1968, Adaptive step size random search",
-    ARMWRIGHT_BOUNDS | ARMWRIGHT_STOCHASTIC,
-    options,
-    sizeof(options) / sizeof(options[0]),
-    minimize};
+    .abi = ARMWRIGHT_PLUGIN_ABI,
+    .struct_size = sizeof(struct armwright_plugin),
+    .name = "@NAME@",
+    .summary = "Random steps from the best point so far",
+    .source = "Schumer and Steiglitz 1968, Adaptive step size random search",
+    .capabilities = ARMWRIGHT_BOUNDS | ARMWRIGHT_STOCHASTIC,
+    .options = options,
+    .option_count = sizeof(options) / sizeof(options[0]),
+    .minimize = minimize};
 
 ARMWRIGHT_PLUGIN_EXPORT const struct armwright_plugin* armwright_plugin(void) { return &plugin; }
 )raw";
