@@ -121,7 +121,7 @@ class Export : public testing::Test {
   // Of a run, from its journal.
   struct Recorded {
     std::uint64_t evaluations = 0;
-    std::uint64_t rows = 0;  // improvements, and the last evaluation if it is none
+    std::uint64_t rows = 0;  // improvements, and the first and last evaluation if they are none
     double best = HUGE_VAL;  // of the feasible ones
   };
   static Recorded look_up(const std::filesystem::path& run_folder) {
@@ -134,7 +134,8 @@ class Export : public testing::Test {
       if (improves) {
         recorded.best = record.evaluation.objectives.front();
       }
-      recorded.rows += improves || record.index + 1 == recorded.evaluations ? 1 : 0;
+      const bool is_end = record.index == 0 || record.index + 1 == recorded.evaluations;
+      recorded.rows += improves || is_end ? 1 : 0;
     }
     return recorded;
   }
@@ -168,21 +169,15 @@ TEST_F(Export, AsCocoIsReadByAStrictReader) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const json all = read("read_coco.py", "coco");
   ASSERT_EQ(all.size(), 3u) << all;
-  const std::vector<std::string> problems = {kConstrained, kSphere, kRosenbrock};  // as they sort
+  // The smallest values of the functions are known, so they are the references.
+  const std::map<std::string, std::pair<std::string, double>> functions = {
+      {kConstrained, {"29-4", -44}}, {kSphere, {"25-10", 0}}, {kRosenbrock, {"27-10", 0}}};
   const std::map<std::string, std::string> ids = {
       {"", "unnamed"}, {kGa, "ga___p_12___x__50_"}, {kRandom, "ga___p_12___x__50_-2"}};
   for (std::size_t i = 0; i < list_cells().size(); ++i) {
     const Cell& cell = list_cells()[i];
-    const auto function = std::ranges::find(problems, cell.problem) - problems.begin() + 1;
-    double reference = HUGE_VAL;
-    for (std::size_t j = 0; j < list_cells().size(); ++j) {
-      for (int replicate = 1; replicate <= kReplicates; ++replicate) {
-        if (list_cells()[j].problem == cell.problem) {
-          reference = std::min(reference, look_up(get_cell_folder(j, replicate)).best);
-        }
-      }
-    }
-    const json& runs = all.at(ids.at(cell.label)).at(std::to_string(function));
+    const auto& [function, reference] = functions.at(cell.problem);
+    const json& runs = all.at(ids.at(cell.label)).at(function);
     ASSERT_EQ(runs.size(), static_cast<std::size_t>(kReplicates));
     for (int replicate = 1; replicate <= kReplicates; ++replicate) {
       const auto [evaluations, rows, best] = look_up(get_cell_folder(i, replicate));
@@ -197,10 +192,10 @@ TEST_F(Export, AsCocoIsReadByAStrictReader) {
 TEST_F(Export, IsReadStrictly) {
   const std::string run_folder = get_cell_folder(5, 1);
   ASSERT_EQ(run({"export", run_folder, "--format", "ioh", "--out", "cut-ioh"}).exit_code, 0);
-  cut_last_line("cut-ioh/ga/data_f1_constrained/IOHprofiler_f1_DIM4.dat");
+  cut_last_line("cut-ioh/ga/data_f29_constrained/IOHprofiler_f29_DIM4.dat");
   EXPECT_THAT(read_text_of("read_ioh.py", "cut-ioh"), HasSubstr("run 1: the last row is"));
   ASSERT_EQ(run({"export", run_folder, "--format", "coco", "--out", "cut-coco"}).exit_code, 0);
-  cut_last_line("cut-coco/ga/data_f1/bbobexp_f1_DIM4.tdat");
+  cut_last_line("cut-coco/ga/data_f29/bbobexp_f29_DIM4.tdat");
   EXPECT_THAT(read_text_of("read_coco.py", "cut-coco"), HasSubstr("run 1: .tdat has rows at"));
 }
 
@@ -267,8 +262,8 @@ TEST_F(Export, OfARunThatFoundNothingFeasibleHasNoInfinityInJson) {
   }
   EXPECT_EQ(read("read_ioh.py", "infeasible/export-ioh").at("ga").at("constrained").at("1"),
             json({1, std::numeric_limits<double>::max(), 1}));
-  EXPECT_EQ(read("read_coco.py", "infeasible/export-coco").at("ga").at("1").at("1"),
-            json({1, 1e10, 1, 1}));
+  EXPECT_EQ(read("read_coco.py", "infeasible/export-coco").at("ga").at("29-4").at("1"),
+            json({1, 1e10 + 40, 1, 1}));  // 1e10 - (-44) in ten digits
   const json root = json::parse(read_text(path("infeasible/export-json/runs.json")));
   EXPECT_TRUE(root.at("problems")[0].at("runs")[0].at("best").is_null());
   EXPECT_EQ(root.at("problems")[0].at("runs")[0].at("evaluations").size(), 1u);
@@ -312,8 +307,8 @@ TEST_F(Export, RefusesRunsOnOneProblemWithOtherVariables) {
                                  "variables")));
 }
 
-TEST_F(Export, AsCocoHasRoomFor24Problems) {
-  for (int i = 1; i <= 25; ++i) {
+TEST_F(Export, AsCocoHasRoomFor21FunctionsBesideTheShippedOnes) {
+  for (int i = 1; i <= 23; ++i) {
     const auto cell = path("many/cells") / std::to_string(i) / "ga/1";
     std::filesystem::create_directories(cell);
     std::filesystem::copy(path(get_cell_folder(0, 1)), cell,
@@ -323,10 +318,53 @@ TEST_F(Export, AsCocoHasRoomFor24Problems) {
         {"problem", std::to_string(i)}, {"label", "ga"}, {"optimizer", "ga"}, {"replicate", 1}};
   }
   expect_refused({"export", "many", "--format", "coco"}, 2,
-                 AllOf(HasSubstr("at most 24 problems"), HasSubstr("here are 25")));
-  std::filesystem::remove_all(path("many/cells/25"));
+                 AllOf(HasSubstr("at most 21 functions"), HasSubstr("here are 22")));
+  std::filesystem::remove_all(path("many/cells/23"));
   EXPECT_EQ(run({"export", "many", "--format", "coco"}).exit_code, 0);
-  EXPECT_EQ(read("read_coco.py", "many/export-coco").at("ga").size(), 24u);
+  EXPECT_EQ(read("read_coco.py", "many/export-coco").at("ga").size(), 22u);
+  ASSERT_EQ(run({"export", "many", "--format", "ioh"}).exit_code, 0);
+  EXPECT_EQ(read("read_ioh.py", "many/export-ioh").at("ga").size(), 22u);
+}
+
+TEST_F(Export, NumbersAFunctionOnceForAllItsDimensionsAndOthersAsThePlanLists) {
+  std::ofstream(path("dimensions.toml"))
+      << "optimizers = [\"random\"]\nreplicates = 1\nbudget = 40\nbaselines = false\n"
+         "[[problem]]\nname = \"sphere\"\nlabel = \"z\"\n"
+         "set = [\"function.name=ellipsoid\", \"function.dimension=3\"]\n"
+         "[[problem]]\nname = \"ellipsoid\"\nlabel = \"large\"\nset = "
+         "[\"function.dimension=20\"]\n"
+         "[[problem]]\nname = \"sphere\"\nlabel = \"a\"\n"
+         "set = [\"function.name=rastrigin\", \"function.dimension=3\"]\n"
+         "[[problem]]\nname = \"ellipsoid\"\nlabel = \"small\"\nset = "
+         "[\"function.dimension=5\"]\n";
+  const Outcome outcome = run({"compare", "dimensions.toml", "--out", "dimensions", "--quiet"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  ASSERT_EQ(run({"export", "dimensions", "--format", "coco"}).exit_code, 0);
+  ASSERT_EQ(run({"export", "dimensions", "--format", "ioh"}).exit_code, 0);
+  const auto list_keys = [](const json& runs) {
+    std::vector<std::string> keys;
+    for (const auto& [key, value] : runs.items()) {
+      keys.push_back(key);
+    }
+    return keys;
+  };
+  EXPECT_THAT(list_keys(read("read_coco.py", "dimensions/export-coco").at("random")),
+              ElementsAre("26-20", "26-5", "72-3", "73-3"));
+  EXPECT_THAT(read_text(path("dimensions/export-coco/run_cocopp.py")),
+              AllOf(HasSubstr("\nFUNCTIONS = {26: \"ellipsoid\", 72: \"z\", 73: \"a\"}\n"),
+                    HasSubstr("\nDIMENSIONS = [3, 5, 20]\n")));
+  EXPECT_THAT(list_keys(read("read_ioh.py", "dimensions/export-ioh").at("random")),
+              ElementsAre("a", "large", "small", "z"));
+  EXPECT_TRUE(std::filesystem::exists(
+      path("dimensions/export-ioh/random/data_f26_ellipsoid/IOHprofiler_f26_DIM20.dat")));
+  // The problem was found: it is only no arm, of which a design could be made.
+  expect_refused({"import", "dimensions/export-ioh", "--problem", "small", "--config", "ellipsoid"},
+                 2, HasSubstr("is an analytic function"));
+  // Nobody comes near 0 on the ellipsoid, and the export says so.
+  const json small = read("read_coco.py", "dimensions/export-coco").at("random").at("26-5").at("1");
+  const auto recorded = look_up("dimensions/cells/small/random/r01");
+  EXPECT_GT(recorded.best, 1);
+  EXPECT_NEAR(small[1].get<double>(), recorded.best, 1e-9 * recorded.best);
 }
 
 TEST_F(Export, HasTheWinnersDesignAndTheTestCasesThatItMet) {

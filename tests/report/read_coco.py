@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 """Reads an export in COCO's format bbob-new2, strictly: whatever the format does not allow ends it with a message.
 
-    read_coco.py FOLDER      FOLDER holds one root folder for each algorithm
+    read_coco.py FOLDER [TARGET ...]      FOLDER holds one root folder for each algorithm
 
 Written from the description of the format and independent of what writes it. Prints what it has read as JSON:
-{algId: {funcId: {instance: [evaluations, best f - Fref, rows in .dat, rows in .tdat]}}}.
+{algId: {"funcId-dimension": {instance: [evaluations, best f - reference, rows in .dat, rows in .tdat]}}}; with targets
+{algId: {"funcId-dimension": [expected running time to each target]}}.
 """
+import ast
 import json
 import math
 import pathlib
@@ -14,7 +16,7 @@ import sys
 
 FIRST_LINE = re.compile(
     r"suite = '([^',]*)', funcId = (\d+), DIM = (\d+), Precision = (\S+), algId = '([^',=]*)', "
-    r"coco_version = '(\d+\.\d+\.\d+)', logger = 'bbob', data_format = 'bbob-new2', settings = '([^']*)'")
+    r"coco_version = '(\d+\.\d+\.\d+)', logger = 'bbob', data_format = 'bbob-new2'")
 HEADER = re.compile(
     r"% f evaluations \| g evaluations \| best noise-free fitness - (Fopt|Fref) \((-?\d\.\d{12}e[+-]\d\d+)\) "
     r"\+ sum g_i\+ \| measured fitness \| best measured fitness or single-digit g-values \| x1 \| x2\.\.\.")
@@ -41,7 +43,7 @@ def read_rows(file, dimension):
         if line.startswith("%"):
             header = HEADER.fullmatch(line)
             require(header, f"{where}: not a header")
-            runs.append((float(header[2]), []))
+            runs.append(((header[1], float(header[2])), []))
             continue
         require(runs, f"{where}: a row without a header")
         fields = line.split(" ")
@@ -51,7 +53,7 @@ def read_rows(file, dimension):
         require(NUMBER.fullmatch(fields[2]) and NUMBER.fullmatch(fields[3]), f"{where}: fitness")
         require(NUMBER.fullmatch(fields[4]) or re.fullmatch(r"\d+", fields[4]), f"{where}: '{fields[4]}'")
         digits = not NUMBER.fullmatch(fields[4])
-        require(digits == (fields[1] != "0"), f"{where}: g-values belong to g evaluations")
+        require(fields[1] == "0", f"{where}: cocopp adds evaluations of g to those of f")
         for field in fields[5:]:
             require(COORDINATE.fullmatch(field), f"{where}: x is '{field}'")
         row = (int(fields[0]), float(fields[2]), float(fields[3]), None if digits else float(fields[4]))
@@ -62,7 +64,7 @@ def read_rows(file, dimension):
         require(row[1] >= 0, f"{where}: better than the reference")
         if row[3] is not None:
             require(row[3] <= row[2], f"{where}: the best is worse than this one")
-            require(math.isclose(row[3] - runs[-1][0], row[1], rel_tol=1e-8, abs_tol=1e-8 * max(1, abs(row[3]))),
+            require(math.isclose(row[3] - runs[-1][0][1], row[1], rel_tol=1e-8, abs_tol=1e-8 * max(1, abs(row[3]))),
                     f"{where}: best - reference is not {row[1]}")
         rows.append(row)
     return runs
@@ -103,12 +105,13 @@ def list_triggers(evaluations, dimension):
 def read_block(lines, root, file):
     first = FIRST_LINE.fullmatch(lines[0])
     require(first, f"{file}: the first line is {lines[0]}")
-    require(first[1] == "sbox-cost", f"{file}: suite {first[1]}")
+    require(first[1] == "armwright", f"{file}: suite {first[1]}")
     function, dimension = int(first[2]), int(first[3])
-    require(1 <= function <= 24, f"{file}: funcId {function}")
+    # cocopp has groups of its own for 1 to 24, and takes numbers above 92 for noisy functions or leaves them out.
+    require(25 <= function <= 92, f"{file}: funcId {function}")
     require(float(first[4]) == 1e-8 and re.fullmatch(r"\d\.\d{3}e-\d\d", first[4]), f"{file}: Precision {first[4]}")
     require(first[5] and first[5] == first[5].strip(), f"{file}: algId '{first[5]}'")
-    require(lines[1].startswith("%"), f"{file}: the second line is no comment")
+    require(lines[1].startswith("% "), f"{file}: the second line is no comment")
     parts = lines[2].split(", ")
     require(parts[0] == f"data_f{function}/bbobexp_f{function}_DIM{dimension}.dat", f"{file}: data {parts[0]}")
     instances = []
@@ -125,6 +128,7 @@ def read_block(lines, root, file):
         require(not runs or [run[0] for run in runs] == [run[0] for run in dat],
                 f"{data}: .rdat and .mdat have other runs")
     result = {}
+    hits = []
     for i, (instance, evaluations, shown) in enumerate(instances):
         where = f"{data}: run {i + 1}"
         require(dat[i][0] == tdat[i][0], f"{where}: the references differ")
@@ -138,17 +142,44 @@ def read_block(lines, root, file):
         require(rows[-1] == trows[-1], f"{where}: the last rows of .dat and .tdat differ")
         require(rows[-1][0] == evaluations, f"{where}: the last row is {rows[-1][0]}, the index says {evaluations}")
         require(f"{rows[-1][1]:.1e}" == shown, f"{where}: best {rows[-1][1]}, the index says {shown}")
+        require(dat[i][0][0] in lines[1] and ("known" in lines[1]) == (dat[i][0][0] == "Fopt"),
+                f"{file}: the comment names another source than {dat[i][0][0]}")
         result.setdefault(instance, []).append([evaluations, rows[-1][1], len(rows), len(trows)])
+        hits.append([(row[0], row[1]) for row in rows])
     require(all(len(runs) == 1 for runs in result.values()), f"{file}: an instance stands there twice")
-    return first[5], function, dat[0][0], {key: runs[0] for key, runs in result.items()}, files
+    references = {run[0] for run in dat}
+    return first[5], function, dimension, references, {key: runs[0] for key, runs in result.items()}, files, hits
+
+
+def calc_ert(hits, target):
+    """The evaluations of all runs up to their hit or end, divided by the number of hits; None without a hit."""
+    spent = hit = 0
+    for rows in hits:
+        reached = [evaluation for evaluation, difference in rows if difference <= target]
+        spent += reached[0] if reached else rows[-1][0]
+        hit += bool(reached)
+    return spent / hit if hit else None
+
+
+def read_names(script):
+    """The names of the functions, which the export's program tells cocopp."""
+    tree = ast.parse(script.read_text(encoding="utf-8"))
+    values = {node.targets[0].id: node.value for node in tree.body
+              if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name)}
+    return ast.literal_eval(values["FUNCTIONS"]), ast.literal_eval(values["DIMENSIONS"])
 
 
 def main():
-    require(len(sys.argv) == 2, "usage: read_coco.py FOLDER")
+    require(len(sys.argv) >= 2, "usage: read_coco.py FOLDER [TARGET ...]")
+    targets = [float(word) for word in sys.argv[2:]]
     result = {}
     references = {}
     best = {}
-    for root in sorted(pathlib.Path(sys.argv[1]).iterdir()):
+    folder = pathlib.Path(sys.argv[1])
+    names, dimensions = read_names(folder / "run_cocopp.py")
+    for root in sorted(folder.iterdir()):
+        if root.name == "run_cocopp.py":
+            continue
         require(root.is_dir(), f"{root}: a stray file")
         read = set()
         for file in sorted(root.glob("*.info")):
@@ -156,20 +187,26 @@ def main():
             require(len(lines) % 3 == 0 and lines, f"{file}: {len(lines)} lines, expected three a function and dimension")
             read.add(file)
             for i in range(0, len(lines), 3):
-                algorithm, function, reference, runs, files = read_block(lines[i:i + 3], root, file)
+                algorithm, function, dimension, found, runs, files, hits = read_block(lines[i:i + 3], root, file)
                 require(file.name == f"bbobexp_f{function}.info", f"{file}: holds function {function}")
+                require(function in names and dimension in dimensions, f"{file}: run_cocopp.py lacks it")
+                key = f"{function}-{dimension}"
                 functions = result.setdefault(algorithm, {})
-                require(function not in functions, f"{file}: function {function} has been there before")
-                require(references.setdefault(function, reference) == reference, f"{file}: the references differ")
-                best.setdefault(function, []).extend(run[1] for run in runs.values())
-                functions[function] = runs
+                require(key not in functions, f"{file}: function {key} has been there before")
+                # Each run may have its own known optimum. Where it is unknown, all runs have the same reference.
+                kinds = {kind for kind, _ in found}
+                require(len(kinds) == 1 and (kinds == {"Fopt"} or len(found) == 1), f"{file}: references {found}")
+                if kinds == {"Fref"}:
+                    require(references.setdefault(key, found) == found, f"{file}: the references differ")
+                    best.setdefault(key, []).extend(run[1] for run in runs.values())
+                functions[key] = [calc_ert(hits, target) for target in targets] if targets else runs
                 read |= set(files)
         for file in root.rglob("*"):
             require(file.is_dir() or file in read, f"{file}: a stray file")
     require(result, "no algorithm")
-    for function, differences in best.items():
-        nothing_feasible = references[function] == 0 and min(differences) == 1e10
-        require(min(differences) == 0 or nothing_feasible, f"function {function}: no run reaches the reference")
+    for key, differences in best.items():
+        nothing_feasible = references[key] == {("Fref", 0.0)} and min(differences) == 1e10
+        require(min(differences) == 0 or nothing_feasible, f"function {key}: no run reaches the reference")
     json.dump(result, sys.stdout)
 
 

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Reads an export in IOHprofiler's JSON format, strictly: whatever the format does not allow ends it with a message.
 
-    read_ioh.py FOLDER      FOLDER holds one root folder for each algorithm
+    read_ioh.py FOLDER [TARGET ...]      FOLDER holds one root folder for each algorithm
 
 Written from the description of the format and independent of what writes it. Prints what it has read as JSON:
-{algorithm: {function: {instance: [evaluations, best y, rows]}}}.
+{algorithm: {problem: {instance: [evaluations, best y, rows]}}}; with targets
+{algorithm: {"funcId-dimension": [expected running time to each target]}}.
 """
 import json
 import math
@@ -82,11 +83,12 @@ def check_run(run, rows, dimension, run_attributes, where):
     require(is_int(best["evals"]) and 1 <= best["evals"] <= run["evals"], f"{where}: best.evals is {best['evals']}")
     require(is_number(best["y"]), f"{where}: best.y is {best['y']}")
     require(len(best["x"]) == dimension and all(map(is_number, best["x"])), f"{where}: best.x is {best['x']}")
+    require(rows[0][0] == 1, f"{where}: the first row is {rows[0][0]}, and readers count runs by evaluation 1")
     require(rows[-1][0] == run["evals"], f"{where}: the last row is {rows[-1][0]}, evals {run['evals']}")
     lowest = math.inf
     for row in rows:
-        if row is not rows[-1]:
-            require(row[1] < lowest, f"{where}: row {row[0]} is neither an improvement nor the last")
+        if row is not rows[-1] and row is not rows[0]:
+            require(row[1] < lowest, f"{where}: row {row[0]} is neither an improvement nor the first or the last")
         if row[1] < lowest:
             lowest = row[1]
             lowest_row = row
@@ -110,6 +112,12 @@ def read_index(file, root):
     require(all(isinstance(text, str) for text in index["algorithm"].values()), f"{file}: algorithm")
     for attribute in index.get("experiment_attributes", []):
         require(len(attribute) == 1 and all(isinstance(v, str) for v in attribute.values()), f"{file}: {attribute}")
+        # iohinspector evaluates the text as Python; a list, a function, ... would be no column of its table.
+        try:
+            value = eval(next(iter(attribute.values())))
+        except Exception:
+            value = ""
+        require(isinstance(value, (bool, int, float, str)), f"{file}: {attribute} is no plain value")
     name = re.fullmatch(r"IOHprofiler_f(\d+)_([A-Za-z0-9_.-]+)\.json", file.name)
     require(name, f"{file}: not a portable name")
     require(int(name[1]) == index["function_id"], f"{file}: function_id is {index['function_id']}")
@@ -122,10 +130,13 @@ def read_index(file, root):
         require(not re.fullmatch(r"x\d+", attribute), f"{file}: column '{attribute}' looks like a variable")
     dimensions = [scenario["dimension"] for scenario in index["scenarios"]]
     require(dimensions and len(set(dimensions)) == len(dimensions), f"{file}: dimensions {dimensions}")
-    runs = {}
+    problems = {}
+    hits = {}
     read = {file}
     for scenario in index["scenarios"]:
-        require(set(scenario) == {"dimension", "path", "runs"}, f"{file}: a scenario has {sorted(scenario)}")
+        require(set(scenario) == {"dimension", "path", "runs", "problem", "variables"},
+                f"{file}: a scenario has {sorted(scenario)}")
+        require(len(scenario["variables"]) == scenario["dimension"], f"{file}: {len(scenario['variables'])} variables")
         dimension = scenario["dimension"]
         require(is_int(dimension) and dimension >= 1, f"{file}: dimension {dimension}")
         expected = f"data_{stem}/IOHprofiler_f{index['function_id']}_DIM{dimension}.dat"
@@ -133,16 +144,30 @@ def read_index(file, root):
         data = root / scenario["path"]
         rows = read_dat(data, attributes, dimension)
         require(len(rows) == len(scenario["runs"]), f"{data}: {len(rows)} runs, the index has {len(scenario['runs'])}")
+        require(scenario["problem"] not in problems, f"{file}: problem {scenario['problem']} stands there twice")
+        runs = problems.setdefault(scenario["problem"], {})
+        hits[f"{index['function_id']}-{dimension}"] = rows
         for i, run in enumerate(scenario["runs"]):
             check_run(run, rows[i], dimension, index.get("run_attributes", []), f"{data}: run {i + 1}")
             require(run["instance"] not in runs, f"{file}: instance {run['instance']} stands there twice")
             runs[run["instance"]] = [run["evals"], run["best"]["y"], len(rows[i])]
         read.add(data)
-    return index, runs, read
+    return index, problems, read, hits
+
+
+def calc_ert(runs, target):
+    """The evaluations of all runs up to their hit or end, divided by the number of hits; None without a hit."""
+    spent = hit = 0
+    for rows in runs:
+        reached = [row[0] for row in rows if row[1] <= target]
+        spent += reached[0] if reached else rows[-1][0]
+        hit += bool(reached)
+    return spent / hit if hit else None
 
 
 def main():
-    require(len(sys.argv) == 2, "usage: read_ioh.py FOLDER")
+    require(len(sys.argv) >= 2, "usage: read_ioh.py FOLDER [TARGET ...]")
+    targets = [float(word) for word in sys.argv[2:]]
     folder = pathlib.Path(sys.argv[1])
     result = {}
     ids = {}
@@ -151,13 +176,14 @@ def main():
         read = set()
         names = set()
         for file in sorted(root.glob("*.json")):
-            index, runs, files = read_index(file, root)
+            index, problems, files, hits = read_index(file, root)
             names.add(index["algorithm"]["name"])
             functions = result.setdefault(index["algorithm"]["name"], {})
-            require(index["function_name"] not in functions, f"{file}: the function has been there before")
+            new = {key: [calc_ert(runs, target) for target in targets] for key, runs in hits.items()} if targets else problems
+            require(not set(new) & set(functions), f"{file}: {sorted(new)} has been there before")
             require(ids.setdefault(index["function_name"], index["function_id"]) == index["function_id"],
                     f"{file}: the function has another id elsewhere")
-            functions[index["function_name"]] = runs
+            functions.update(new)
             read |= files
         require(len(names) == 1, f"{root}: holds the algorithms {sorted(names)}, not one")
         for file in root.rglob("*"):

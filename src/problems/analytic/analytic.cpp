@@ -41,6 +41,9 @@ class AnalyticProblem : public Problem {
       shift_.push_back(shifted ? calc_shift(i) : 0);
       description_.known_optimum.push_back(shifted ? shift_.back() : function.minimiser[place]);
     }
+    // A function without a minimiser of its own is least where z is 0.
+    description_.optimum = function.calc_value(
+        function.minimiser.empty() ? std::vector<double>(shift_.size()) : function.minimiser);
     description_.objectives = {{"f", ""}};
     for (int i = 0; i < function.constraint_count; ++i) {
       description_.constraints.push_back({fmt::format("g_{}", i + 1), ""});

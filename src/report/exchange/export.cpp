@@ -42,7 +42,7 @@ std::span<const ExportFormat> export_formats() {
   static const std::array<ExportFormat, 7> formats = {{
       {"csv", "tables: every run, every evaluation; designs and test cases", write_csv},
       {"ioh", "IOHprofiler's JSON, for IOHanalyzer", write_ioh},
-      {"coco", "COCO's bbob-new2, for cocopp; at most 24 problems", write_coco},
+      {"coco", "COCO's bbob-new2, for cocopp, with a program that starts it", write_coco},
       {"json", "all of it nested in one file, and the test cases", write_json},
       {"ros2-control", "one arm: the winner's gains as parameters of ROS 2 controllers (YAML)",
        nullptr, write_ros2_control},

@@ -176,6 +176,7 @@ void read_json(const fs::path& file, std::vector<ImportedRun>& runs) {
 void read_ioh(const fs::path& file, std::vector<ImportedRun>& runs) {
   try {
     const json root = json::parse(read_json_file(file, kLimit_bytes));
+    // Exports of version 1.0 name the variables in an attribute, and a function is one problem.
     std::vector<std::string> variables;
     for (const json& attribute : root.at("experiment_attributes")) {
       if (attribute.contains("variables")) {
@@ -184,9 +185,13 @@ void read_ioh(const fs::path& file, std::vector<ImportedRun>& runs) {
       }
     }
     for (const json& scenario : root.at("scenarios")) {
+      if (scenario.contains("variables")) {
+        variables = scenario.at("variables").get<std::vector<std::string>>();
+      }
+      const std::string problem = scenario.value("problem", root.at("function_name"));
       for (const json& run : scenario.at("runs")) {
         ImportedRun imported;
-        imported.problem = root.at("function_name");
+        imported.problem = problem;
         imported.label = root.at("algorithm").at("name");
         imported.replicate = whole_from_json(run.at("instance"));
         imported.variables = variables;

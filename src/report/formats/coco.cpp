@@ -8,13 +8,13 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "report/formats/export_files.hpp"
+#include "report/formats/export_functions.hpp"
 #include "report/formats/formats.hpp"
 
 namespace armwright {
 namespace {
 
-constexpr std::size_t kMostProblems = 24;  // functions that the suite has
-constexpr std::size_t kMostShown = 6;      // decision variables; with more of them, rows have none
+constexpr std::size_t kMostShown = 6;  // decision variables; with more of them, rows have none
 constexpr double kPrecision = 1e-8;
 constexpr int kLevelsPerDecade = 20;
 
@@ -23,8 +23,23 @@ std::string make_data_name(std::size_t id, std::size_t dimension) {
   return fmt::format("data_f{0}/bbobexp_f{0}_DIM{1}", id, dimension);
 }
 
-void write_function(const ProblemRuns& problem, const std::string& label, std::size_t id,
-                    const std::filesystem::path& root) {
+// Returns the second line of a block, which names the problem and the source of the reference.
+std::string make_comment(const ProblemRuns& problem, const std::string& label) {
+  std::string reference = "no exported run is feasible, so Fref is 0";
+  if (problem.function.optimum) {
+    reference = "Fopt is the known smallest value";
+  } else if (problem.best) {
+    reference =
+        fmt::format("Fref is the best feasible value of the exported runs, of '{}', replicate {}",
+                    sanitize(problem.best_run.label), problem.best_run.replicate);
+  }
+  return fmt::format("% {} on {}; {}\n", sanitize(label), sanitize(problem.name), reference);
+}
+
+// Writes the data files of one label on one problem. Returns the three lines of its block in the
+// function's .info file.
+std::string write_block(const ProblemRuns& problem, const std::string& label, std::size_t id,
+                        const std::filesystem::path& root) {
   const std::size_t dimension = problem.names.variables.size();
   const std::string name = make_data_name(id, dimension);
   OutputFile dat(root / (name + ".dat"));
@@ -45,13 +60,11 @@ void write_function(const ProblemRuns& problem, const std::string& label, std::s
   }
   // Quotes, commas and line breaks would end the fields of the first line. Therefore the first line
   // has the name of the label's folder, and the comment has both true names.
-  write_output_file(
-      root / fmt::format("bbobexp_f{}.info", id),
-      fmt::format("suite = 'sbox-cost', funcId = {}, DIM = {}, Precision = {:.3e}, algId = '{}', "
-                  "coco_version = '2.7.0', logger = 'bbob', data_format = 'bbob-new2', "
-                  "settings = ''\n% {} on {}\n{}.dat{}\n",
-                  id, dimension, kPrecision, root.filename().string(), sanitize(label),
-                  sanitize(problem.name), name, summaries));
+  return fmt::format(
+      "suite = '{}', funcId = {}, DIM = {}, Precision = {:.3e}, algId = '{}', "
+      "coco_version = '2.7.0', logger = 'bbob', data_format = 'bbob-new2'\n{}{}.dat{}\n",
+      kCocoSuite, id, dimension, kPrecision, root.filename().string(), make_comment(problem, label),
+      name, summaries);
 }
 
 }  // namespace
@@ -91,6 +104,10 @@ std::string format_constraint_digits(std::span<const double> constraint_values) 
   return digits;
 }
 
+double calc_coco_difference(double best, double reference) {
+  return std::max(0.0, best - reference);
+}
+
 double calc_coco_infeasible(const ProblemRuns& problem) {
   double infeasible = 1e10;
   while (problem.worst && infeasible <= *problem.worst) {
@@ -100,20 +117,22 @@ double calc_coco_infeasible(const ProblemRuns& problem) {
 }
 
 CocoRun make_coco_run(const RunTrace& trace, const ProblemRuns& problem) {
-  const double reference = problem.best.value_or(0);
+  const std::optional<double>& optimum = trace.function.optimum;
+  const double reference = optimum ? *optimum : problem.best.value_or(0);
   const double infeasible = calc_coco_infeasible(problem);
   CocoRun run;
   run.header = fmt::format(
-      "% f evaluations | g evaluations | best noise-free fitness - Fref ({:.12e}) + sum g_i+ | "
+      "% f evaluations | g evaluations | best noise-free fitness - {} ({:.12e}) + sum g_i+ | "
       "measured fitness | best measured fitness or single-digit g-values | x1 | x2...\n",
-      reference);
+      optimum ? "Fopt" : "Fref", reference);
   std::optional<int> level;
   double best = infeasible;
   trace.evaluations.visit([&](const TracedEvaluation& evaluation) {
     const bool last = evaluation.number == trace.evaluations.last()->number;
     const double measured = evaluation.feasible ? *evaluation.objective : infeasible;
     best = std::min(best, measured);
-    const int its_level = calc_coco_level(best - reference);
+    const double difference = calc_coco_difference(best, reference);
+    const int its_level = calc_coco_level(difference);
     const bool reaches = !level || its_level < *level;
     level = reaches ? its_level : level;
     const bool matches = is_coco_milestone(evaluation.number, trace.names.variables.size());
@@ -123,8 +142,7 @@ CocoRun make_coco_run(const RunTrace& trace, const ProblemRuns& problem) {
     std::vector<double> constraints = evaluation.constraint_values;
     constraints.resize(problem.constraints, HUGE_VAL);  // a failed evaluation satisfies none
     std::string row = fmt::format(
-        "{} {} {:+.9e} {:+.9e} {}", evaluation.number, constraints.empty() ? 0 : evaluation.number,
-        best - reference, measured,
+        "{} 0 {:+.9e} {:+.9e} {}", evaluation.number, difference, measured,
         constraints.empty() ? fmt::format("{:+.9e}", best) : format_constraint_digits(constraints));
     for (std::size_t i = 0; i < evaluation.x.size() && evaluation.x.size() <= kMostShown; ++i) {
       row += fmt::format(" {:+.4e}", evaluation.x[i]);
@@ -134,23 +152,34 @@ CocoRun make_coco_run(const RunTrace& trace, const ProblemRuns& problem) {
     run.tdat += matches || last ? row : "";
   });
   run.summary = fmt::format("{}:{}|{:.1e}", trace.run.replicate, trace.evaluations.last()->number,
-                            best - reference);
+                            calc_coco_difference(best, reference));
   return run;
 }
 
 void write_coco(const CollectedRuns& collected, const std::filesystem::path& folder) {
-  if (collected.problems.size() > kMostProblems) {
+  const std::vector<ExportFunction> functions = number_functions(collected);
+  if (functions.back().id > kLastCocoFunction) {
     throw Error(ErrorKind::usage,
-                fmt::format("the format coco holds at most {} problems, and here are {}; use "
-                            "another format, such as ioh",
-                            kMostProblems, collected.problems.size()));
+                fmt::format("the format coco holds at most {} functions that are not shipped "
+                            "problems with their own settings, and here are {}; use another "
+                            "format, such as ioh",
+                            kLastCocoFunction - kFirstOwnFunction + 1,
+                            functions.back().id - kFirstOwnFunction + 1));
   }
-  const auto labels = make_file_names(list_labels(collected));
-  for (std::size_t i = 0; i < collected.problems.size(); ++i) {
-    for (const auto& [label, runs] : collected.problems[i].labels) {
-      write_function(collected.problems[i], label, i + 1, folder / labels.at(label));
+  for (const auto& [label, root] : make_file_names(list_labels(collected))) {
+    for (const ExportFunction& function : functions) {
+      std::string blocks;
+      for (const ProblemRuns* problem : function.problems) {
+        if (problem->labels.contains(label)) {
+          blocks += write_block(*problem, label, function.id, folder / root);
+        }
+      }
+      if (!blocks.empty()) {
+        write_output_file(folder / root / fmt::format("bbobexp_f{}.info", function.id), blocks);
+      }
     }
   }
+  write_output_file(folder / kCocoScript, make_coco_script(functions));
 }
 
 }  // namespace armwright

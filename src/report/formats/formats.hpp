@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "report/formats/export_functions.hpp"
 #include "report/formats/run_traces.hpp"
 
 namespace armwright {
@@ -43,16 +44,18 @@ void write_test_cases(const CollectedRuns& runs, const std::filesystem::path& fo
 // heuristics", arXiv:1810.05281; de Nobel et al. 2024, "IOHexperimenter", Evolutionary Computation
 // 32(3).
 //
-//   LABEL/IOHprofiler_fN_PROBLEM.json              one root folder per label; N numbers the
-//                                                  problems by name, from 1
-//   LABEL/data_fN_PROBLEM/IOHprofiler_fN_DIMd.dat  per run a header, one row per improvement and
-//                                                  one row for the last evaluation
+//   LABEL/IOHprofiler_fN_NAME.json              one root folder per label; N is
+//                                               ExportFunction::id; one scenario per number of
+//                                               variables
+//   LABEL/data_fN_NAME/IOHprofiler_fN_DIMd.dat  per run a header, and one row for the first
+//                                               evaluation, each improvement and the last one
 //
 // raw_y is the objective of the row's evaluation, or the weighted sum of several objectives. It is
 // `inf` if the evaluation is not feasible. A metric without a value is `None`. JSON has no
 // infinity, so the largest double stands for the best of a run that found nothing feasible. The
-// format has no place for the names of the variables; they are the experiment attribute
-// "variables".
+// format has no place for the problem's label and the names of the variables; they are the keys
+// "problem" and "variables" of the scenario, which readers ignore. iohinspector finds the beginning
+// of a run by the row of evaluation 1.
 
 void write_ioh(const CollectedRuns& runs, const std::filesystem::path& folder);
 
@@ -64,22 +67,31 @@ std::string make_ioh_rows(const RunTrace& trace);
 // ---- COCO --------------------------------------------------------------------------------------
 // The data format "bbob-new2" of COCO as cocopp reads it. Source: Hansen, Auger, Ros, Mersmann,
 // Tušar, Brockhoff 2021, "COCO: a platform for comparing continuous optimizers in a black-box
-// setting", Optimization Methods and Software 36(1). The suite is called 'sbox-cost': of cocopp's
-// suites, this one needs no reference data of its own.
+// setting", Optimization Methods and Software 36(1).
 //
-//   LABEL/bbobexp_fN.info                          N numbers the problems by name, from 1 to 24
+//   LABEL/bbobexp_fN.info                          N: ExportFunction::id, from 25 to 92; one block
+//                                                  of three lines per number of variables
 //   LABEL/data_fN/bbobexp_fN_DIMd.dat              a row where a level of the objective is reached
 //   LABEL/data_fN/bbobexp_fN_DIMd.tdat             a row at certain numbers of evaluations
 //   LABEL/data_fN/bbobexp_fN_DIMd.{rdat,mdat}      headers only: no restarts, no recommendations
+//   run_cocopp.py                                  starts cocopp with the names of the functions
 //
-// The optimum is unknown. The best feasible objective of all exported runs on the problem stands
-// in its place as Fref (0 if nothing was feasible). An evaluation that is not feasible counts as
-// 1e10 in both fitness columns, or as the next power of ten above all feasible objectives. With
-// constraints, the evaluations of g are counted like those of f, and the column of g-values has
-// one digit per constraint.
+// The reference of a run is its function's smallest value if that is known (Fopt). Otherwise it is
+// the best feasible objective of all exported runs on the problem (Fref), or 0 if nothing was
+// feasible. An evaluation that is not feasible counts as 1e10 in both fitness columns, or as the
+// next power of ten above all feasible objectives. With constraints, the column of g-values has one
+// digit per constraint. The count of g-evaluations is 0, because one evaluation computes the
+// objective and all constraints, and cocopp adds both counts.
 
-// Throws Error{usage} for more than 24 problems.
+inline constexpr const char* kCocoSuite = "armwright";
+inline constexpr const char* kCocoScript = "run_cocopp.py";
+
+// Throws Error{usage} for functions above kLastCocoFunction.
 void write_coco(const CollectedRuns& runs, const std::filesystem::path& folder);
+
+// Returns a Python program that makes cocopp's pages of the folder it lies in. It tells cocopp the
+// suite, which cocopp does not know, with the functions' names and numbers of variables.
+std::string make_coco_script(std::span<const ExportFunction> functions);
 
 // Returns the least k with 10^(k/20) >= difference. Differences below 1e-8 count as 1e-8. A run
 // reaches a new level when k gets smaller than before; its first evaluation always does.
@@ -97,12 +109,15 @@ std::string format_constraint_digits(std::span<const double> constraint_values);
 // all feasible objectives of the problem.
 double calc_coco_infeasible(const ProblemRuns& problem);
 
+// Returns best - reference, or 0 where rounding has put `best` below a known smallest value.
+double calc_coco_difference(double best, double reference);
+
 // A run's part of the files.
 struct CocoRun {
   std::string header;   // the line above the rows in all files
   std::string dat;      // rows
   std::string tdat;     // rows
-  std::string summary;  // "1:200|3.1e-03": replicate, evaluations and best - Fref
+  std::string summary;  // "1:200|3.1e-03": replicate, evaluations and best - reference
 };
 CocoRun make_coco_run(const RunTrace& trace, const ProblemRuns& problem);
 

@@ -9,6 +9,7 @@
 #include "base/build_info.hpp"
 #include "base/text.hpp"
 #include "report/formats/export_files.hpp"
+#include "report/formats/export_functions.hpp"
 #include "report/formats/formats.hpp"
 
 namespace armwright {
@@ -54,41 +55,56 @@ ordered_json make_run(const RunTrace& trace) {
             {"x", shown.x}}}};
 }
 
-struct FunctionNames {
-  std::size_t id = 0;    // from 1
-  std::string function;  // "f1_sphere", as part of a file's name
-};
-
-void write_function(const ProblemRuns& problem, const std::string& label,
-                    const FunctionNames& names, const std::filesystem::path& root) {
-  const std::vector<RunEntry>& entries = problem.labels.at(label);
-  const std::string data = fmt::format("data_{}/IOHprofiler_f{}_DIM{}.dat", names.function,
-                                       names.id, problem.names.variables.size());
+// Writes the data file of one label on one problem, to `data` below `root`. Returns its scenario in
+// the index.
+ordered_json write_scenario(const ProblemRuns& problem, const std::string& label,
+                            const std::filesystem::path& root, const std::string& data) {
   OutputFile file(root / data);
   ordered_json runs = ordered_json::array();
-  for (const RunEntry& run : entries) {
+  for (const RunEntry& run : problem.labels.at(label)) {
     const RunTrace trace = read_trace(run);
     file.write(make_ioh_rows(trace));
     runs.push_back(make_run(trace));
   }
   file.close();
+  return {{"dimension", problem.names.variables.size()},
+          {"path", data},
+          {"problem", problem.name},
+          {"variables", problem.names.variables},
+          {"runs", std::move(runs)}};
+}
+
+// Writes a function's files for one label, if the label has runs on it.
+void write_function(const ExportFunction& function, const std::string& label,
+                    const std::filesystem::path& root) {
+  const std::string name = fmt::format("f{}_{}", function.id, escape_file_name(function.name));
+  ordered_json scenarios = ordered_json::array();
+  std::string optimizer;
+  for (const ProblemRuns* problem : function.problems) {
+    const auto runs = problem->labels.find(label);
+    if (runs != problem->labels.end()) {
+      optimizer = runs->second.front().optimizer;
+      scenarios.push_back(
+          write_scenario(*problem, label, root,
+                         fmt::format("data_{}/IOHprofiler_f{}_DIM{}.dat", name, function.id,
+                                     problem->names.variables.size())));
+    }
+  }
+  if (scenarios.empty()) {
+    return;
+  }
   const ordered_json index = {
       {"version", kVersion},
       {"suite", "armwright"},
-      {"function_id", names.id},
-      {"function_name", problem.name},
+      {"function_id", function.id},
+      {"function_name", function.name},
       {"maximization", false},
-      {"algorithm", {{"name", label}, {"info", entries.front().optimizer}}},
-      {"experiment_attributes",
-       ordered_json::array({{{"armwright", get_version()}},
-                            {{"variables", ordered_json(problem.names.variables).dump()}}})},
-      {"attributes", make_ioh_columns(problem.names)},
-      {"scenarios", ordered_json::array({{{"dimension", problem.names.variables.size()},
-                                          {"path", data},
-                                          {"runs", std::move(runs)}}})},
+      {"algorithm", {{"name", label}, {"info", optimizer}}},
+      {"experiment_attributes", ordered_json::array({{{"armwright", get_version()}}})},
+      {"attributes", make_ioh_columns(function.problems.front()->names)},
+      {"scenarios", std::move(scenarios)},
   };
-  write_output_file(root / fmt::format("IOHprofiler_{}.json", names.function),
-                    index.dump(2) + "\n");
+  write_output_file(root / fmt::format("IOHprofiler_{}.json", name), index.dump(2) + "\n");
 }
 
 }  // namespace
@@ -124,7 +140,9 @@ std::string make_ioh_rows(const RunTrace& trace) {
     if (improves) {
       best = *evaluation.objective;
     }
-    if (improves || evaluation.number == trace.evaluations.last()->number) {
+    const bool first = evaluation.number == trace.evaluations.first()->number;
+    const bool last = evaluation.number == trace.evaluations.last()->number;
+    if (first || improves || last) {
       rows += make_row(evaluation, trace.names);
     }
   });
@@ -132,12 +150,10 @@ std::string make_ioh_rows(const RunTrace& trace) {
 }
 
 void write_ioh(const CollectedRuns& collected, const std::filesystem::path& folder) {
-  const auto labels = make_file_names(list_labels(collected));
-  for (std::size_t i = 0; i < collected.problems.size(); ++i) {
-    const ProblemRuns& problem = collected.problems[i];
-    const FunctionNames names{i + 1, fmt::format("f{}_{}", i + 1, escape_file_name(problem.name))};
-    for (const auto& [label, runs] : problem.labels) {
-      write_function(problem, label, names, folder / labels.at(label));
+  const std::vector<ExportFunction> functions = number_functions(collected);
+  for (const auto& [label, root] : make_file_names(list_labels(collected))) {
+    for (const ExportFunction& function : functions) {
+      write_function(function, label, folder / root);
     }
   }
 }

@@ -7,6 +7,7 @@
 #include <set>
 #include <tuple>
 
+#include "base/config.hpp"
 #include "base/error.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
@@ -56,6 +57,25 @@ RunEntry read_cell(const fs::path& folder) {
   return run;
 }
 
+// Returns the labels of the problems in the order of the study's plan. Without a plan, none.
+std::vector<std::string> read_problem_order(const fs::path& study) {
+  std::vector<std::string> labels;
+  const auto file = study / "study.toml";
+  if (!fs::exists(file)) {
+    return labels;
+  }
+  try {
+    const json plan = json::parse(ConfigTable::load(file).to_json());
+    for (const json& problem : plan.at("problem")) {
+      labels.push_back(problem.at("label").get<std::string>());
+    }
+  } catch (const json::exception& error) {
+    throw Error(ErrorKind::usage, fmt::format("{}: is not a plan that armwright wrote ({})",
+                                              file.string(), sanitize(error.what())));
+  }
+  return labels;
+}
+
 auto make_key(const RunEntry& run) {
   return std::tie(run.problem, run.label, run.replicate);
 }
@@ -78,6 +98,11 @@ FoundRuns find_cells(const fs::path& folder) {
                 fmt::format("{}: no cell of this study has finished, so there is nothing to "
                             "export; start the study again with the same command to continue it",
                             folder.string()));
+  }
+  const auto order = read_problem_order(folder);
+  for (RunEntry& run : found.runs) {
+    run.problem_place =
+        static_cast<std::size_t>(std::ranges::find(order, run.problem) - order.begin());
   }
   std::sort(found.runs.begin(), found.runs.end(),
             [](const RunEntry& a, const RunEntry& b) { return make_key(a) < make_key(b); });
@@ -127,7 +152,10 @@ void include_trace(ProblemRuns& problem, const RunTrace& trace) {
   trace.evaluations.visit([&](const TracedEvaluation& evaluation) {
     problem.constraints = std::max(problem.constraints, evaluation.constraint_values.size());
     if (evaluation.feasible) {
-      problem.best = std::min(problem.best.value_or(*evaluation.objective), *evaluation.objective);
+      if (!problem.best || *evaluation.objective < *problem.best) {
+        problem.best = evaluation.objective;
+        problem.best_run = trace.run;
+      }
       problem.worst =
           std::max(problem.worst.value_or(*evaluation.objective), *evaluation.objective);
     }
@@ -160,7 +188,12 @@ FoundRuns find_runs(const fs::path& folder) {
                             folder.string()));
   }
   const RunResult result = load_result(folder);
-  return {{{folder, result.problem, result.optimizer, result.optimizer, 1}}, 0};
+  RunEntry run;
+  run.folder = folder;
+  run.problem = result.problem;
+  run.label = result.optimizer;
+  run.optimizer = result.optimizer;
+  return {{run}, 0};
 }
 
 TracedEvaluations::TracedEvaluations(Source source) : source_(std::move(source)) {
@@ -187,6 +220,7 @@ RunTrace read_trace(const RunEntry& run) {
   const JournalContent journal = read_journal(run.folder / "journal");
   RunTrace trace;
   trace.run = run;
+  trace.function = read_function(run.folder, result);
   trace.seed = result.seed;
   trace.end_reason = result.end_reason;
   trace.tracking = result.tracking;
@@ -234,6 +268,8 @@ CollectedRuns collect_runs(const std::vector<RunEntry>& runs) {
     if (collected.problems.empty() || collected.problems.back().name != run.problem) {
       ProblemRuns problem;
       problem.name = run.problem;
+      problem.place = run.problem_place;
+      problem.function = trace.function;
       problem.names = trace.names;
       problem.tracking = trace.tracking;
       collected.problems.push_back(std::move(problem));

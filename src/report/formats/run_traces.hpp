@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "problems/interface/problem.hpp"
+#include "report/formats/recorded_function.hpp"
 
 namespace armwright {
 
@@ -25,6 +26,7 @@ struct RunEntry {
   std::string label;      // of the optimizer with its options; the optimizer's name for one run
   std::string optimizer;  // "ga"
   std::uint64_t replicate = 1;
+  std::size_t problem_place = 0;  // of the problem in the study's plan, from 0; 0 without a plan
 };
 
 // The runs of a folder.
@@ -33,8 +35,9 @@ struct FoundRuns {
   std::size_t unfinished = 0;  // cells without cell.json
 };
 
-// Throws Error{usage} if the folder is neither a run's nor a study's, or holds no finished run;
-// Error{bad_data} if a cell.json cannot be used or two of them name the same cell.
+// Throws Error{usage} if the folder is neither a run's nor a study's, or holds no finished run, or
+// if its study.toml cannot be used; Error{bad_data} if a cell.json cannot be used or two of them
+// name the same cell.
 FoundRuns find_runs(const std::filesystem::path& folder);
 
 // A training evaluation, with its place in the run.
@@ -95,6 +98,7 @@ struct UsedCases {
 // Everything that an export says about one run.
 struct RunTrace {
   RunEntry run;
+  RecordedFunction function;
   std::uint64_t seed = 0;
   std::string end_reason;
   bool tracking = false;
@@ -107,17 +111,20 @@ struct RunTrace {
   std::vector<double> winner;  // the decision vector
 };
 
-// Throws what load_result() and read_journal() throw. Visiting the evaluations throws
+// Throws what load_result(), read_function() and read_journal() throw. Visiting the evaluations throws
 // Error{bad_data} if the journal and result.json belong to different runs.
 RunTrace read_trace(const RunEntry& run);
 
 // All runs on one problem, and the numbers that need all of them.
 struct ProblemRuns {
   std::string name;
+  std::size_t place = 0;      // RunEntry::problem_place
+  RecordedFunction function;  // of the first run
   TraceNames names;
   bool tracking = false;
   std::size_t constraints = 0;         // per evaluation
   std::optional<double> best;          // the least objective of all feasible evaluations
+  RunEntry best_run;                   // the first run that found it
   std::optional<double> worst;         // the largest
   std::optional<UsedCases> tested_on;  // the largest part of the set that a run used
   std::map<std::string, std::vector<RunEntry>> labels;  // the runs of each label

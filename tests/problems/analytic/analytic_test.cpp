@@ -114,6 +114,7 @@ TEST_P(AnalyticTable, NothingFeasibleBeatsTheKnownOptimum) {
   const ProblemDescription& description = problem->description();
   const Evaluation optimum = problem->evaluate(description.known_optimum, kOneCase);
   EXPECT_EQ(optimum.objectives.at(0), GetParam() == "constrained" ? -44 : 0);  // exact in doubles
+  EXPECT_EQ(description.optimum, optimum.objectives.at(0));
   EXPECT_THAT(optimum.constraint_values, testing::Each(testing::Le(0)));
   RandomStream random("test/analytic/" + GetParam());
   int feasible = 0;

@@ -92,7 +92,7 @@ TEST(CocoRun, HasARowPerLevelAndARowPerMilestone) {
   EXPECT_EQ(run.summary, "3:9|0.0e+00");
 }
 
-TEST(CocoRun, CountsConstraintsAndShowsThemAsDigits) {
+TEST(CocoRun, CountsNoConstraintsAndShowsThemAsDigits) {
   const RunTrace trace =
       make_trace({5.0, 2.0, std::nullopt}, [](std::vector<TracedEvaluation>& evaluations) {
         evaluations[0].constraint_values = {0.5, -1};
@@ -101,10 +101,27 @@ TEST(CocoRun, CountsConstraintsAndShowsThemAsDigits) {
       });
   const CocoRun run = make_coco_run(trace, make_problem(1.5, 2));
   EXPECT_EQ(run.dat,
-            "1 1 +9.999999998e+09 +1.000000000e+10 80 +5.0000e-01\n"
-            "2 2 +5.000000000e-01 +2.000000000e+00 00 +5.0000e-01\n"
-            "3 3 +5.000000000e-01 +1.000000000e+10 99 +5.0000e-01\n");
+            "1 0 +9.999999998e+09 +1.000000000e+10 80 +5.0000e-01\n"
+            "2 0 +5.000000000e-01 +2.000000000e+00 00 +5.0000e-01\n"
+            "3 0 +5.000000000e-01 +1.000000000e+10 99 +5.0000e-01\n");
   EXPECT_EQ(run.summary, "3:3|5.0e-01");
+}
+
+TEST(CocoRun, MeasuresFromAKnownOptimumHoweverFarTheBestRunIsFromIt) {
+  RunTrace trace = make_trace({500.0, 116.0});
+  trace.function.optimum = 100;
+  const CocoRun run = make_coco_run(trace, make_problem(116));
+  EXPECT_THAT(run.header, testing::HasSubstr("fitness - Fopt (1.000000000000e+02) +"));
+  EXPECT_EQ(run.dat,
+            "1 0 +4.000000000e+02 +5.000000000e+02 +5.000000000e+02 +5.0000e-01\n"
+            "2 0 +1.600000000e+01 +1.160000000e+02 +1.160000000e+02 +5.0000e-01\n");
+  EXPECT_EQ(run.summary, "3:2|1.6e+01");
+}
+
+TEST(CocoRun, IsNeverBelowAKnownOptimum) {
+  RunTrace trace = make_trace({-44.0000001});
+  trace.function.optimum = -44;
+  EXPECT_EQ(make_coco_run(trace, make_problem(-44.0000001)).summary, "3:1|0.0e+00");
 }
 
 TEST(CocoRun, ShowsUpToSixVariables) {

@@ -9,7 +9,7 @@ namespace {
 
 using testing::ElementsAre;
 
-TEST(IohRows, AreTheImprovementsAndTheLast) {
+TEST(IohRows, AreTheFirstTheImprovementsAndTheLast) {
   EXPECT_EQ(make_ioh_rows(make_trace({3.0, 4.0, 2.5, 2.5, 1e-12, 7.0, 0.1})),
             "evaluations raw_y simulated_cases feasible x0\n"
             "1 3 1 1 0.5\n"
@@ -28,10 +28,12 @@ TEST(IohRows, HaveNoSecondRowForALastImprovement) {
 TEST(IohRows, ShowWhatIsNotFeasibleAsInfinite) {
   EXPECT_EQ(make_ioh_rows(make_trace({std::nullopt, -1.0, std::nullopt})),
             "evaluations raw_y simulated_cases feasible x0\n"
+            "1 inf 1 0 0.5\n"
             "2 -1 2 1 0.5\n"
             "3 inf 3 0 0.5\n");
   EXPECT_EQ(make_ioh_rows(make_trace({std::nullopt, std::nullopt})),
             "evaluations raw_y simulated_cases feasible x0\n"
+            "1 inf 1 0 0.5\n"
             "2 inf 2 0 0.5\n");
 }
 

@@ -55,6 +55,19 @@ TEST_F(FindRuns, TakesNamesFromTheCellsAndSortsThem) {
   EXPECT_EQ(found.runs[2].folder, folder_ / "cells/a/b/010");
 }
 
+TEST_F(FindRuns, KnowsThePlaceOfAProblemInThePlan) {
+  make_cell("a/l/1", R"({"problem":"a","label":"l","optimizer":"ga","replicate":1})");
+  make_cell("z/l/1", R"({"problem":"z","label":"l","optimizer":"ga","replicate":1})");
+  std::ofstream(folder_ / "study.toml") << "[[problem]]\nname = \"p\"\nlabel = \"z\"\n"
+                                           "[[problem]]\nname = \"p\"\nlabel = \"a\"\n";
+  const FoundRuns found = find_runs(folder_.path());
+  EXPECT_EQ(found.runs.at(0).problem, "a");
+  EXPECT_EQ(found.runs.at(0).problem_place, 1u);
+  EXPECT_EQ(found.runs.at(1).problem_place, 0u);
+  std::ofstream(folder_ / "study.toml") << "name = 1\n";
+  expect_refused(ErrorKind::usage, HasSubstr("study.toml: is not a plan that armwright wrote"));
+}
+
 TEST_F(FindRuns, RefusesAFolderOfNeitherKind) {
   expect_refused(ErrorKind::usage, AllOf(HasSubstr("manifest.json"), HasSubstr("cells")));
 }
