@@ -17,8 +17,18 @@ armwright_option options[] = {
     {"rate", "", ARMWRIGHT_NUMBER, 0.5, 0, 1, nullptr, nullptr},
     {"kind", "", ARMWRIGHT_TEXT, 0, 0, 0, "one", nullptr},
 };
-struct armwright_plugin plugin = {
-    ARMWRIGHT_PLUGIN_ABI, sizeof(struct armwright_plugin), "x", "", "", 0, options, 2, minimize, 1, 1, 0};
+struct armwright_plugin plugin = {ARMWRIGHT_PLUGIN_ABI,
+                                  sizeof(struct armwright_plugin),
+                                  "x",
+                                  "",
+                                  "",
+                                  0,
+                                  options,
+                                  2,
+                                  minimize,
+                                  1,
+                                  1,
+                                  0};
 
 }  // namespace
 

@@ -53,7 +53,8 @@ std::string format_facts(const OptimizerRow& row, const Style& style, int width)
     facts.add_row({"Library", row.backend});
   }
   if (!row.tuned_on.empty()) {
-    facts.add_row({"Defaults", "some were chosen on " + join(row.tuned_on, ", ")});
+    facts.add_row(
+        {"Defaults", "some were chosen on " + join(row.tuned_on, ", ") + ": " + row.tuning});
   }
   facts.add_row({"Source", sanitize(row.source)});
   return facts.format(style, 2, width);
@@ -122,6 +123,7 @@ json to_json(const OptimizerRow& row) {
           {"isolated", row.isolated},
           {"capabilities", capabilities},
           {"tuned_on", row.tuned_on},
+          {"tuning", row.tuning},
           {"requirements",
            {{"objectives", row.requirements.objectives},
             {"variables", row.requirements.variables},

@@ -68,9 +68,9 @@ std::string format_facts(const OptimizerRow& row) {
     std::vector<std::string> problems;
     std::ranges::transform(row.tuned_on, std::back_inserter(problems), format_code);
     text += fmt::format(
-        "- **Defaults:** some were chosen on {}; the verdict of a study with such a problem says "
-        "so.\n",
-        join(problems, ", "));
+        "- **Defaults:** some were chosen on {}: {} The verdict of a study with such a problem "
+        "says so. [More](../defaults.md).\n",
+        join(problems, ", "), format_sentence(row.tuning));
   }
   return text;
 }

@@ -141,7 +141,10 @@ OptimizerRow make_lm_row() {
       .make = make_lm,
       .requirements = {.residuals = true},
       .backend = kBackend,
-      .tuned_on = {"q1-complex"},  // step and tolerances
+      .tuned_on = {"q1-complex", "irb4600_six", "planar2", "arm7"},
+      .tuning =
+          "transform, floor, step, min_lm_diagonal and function_tolerance were first chosen "
+          "on q1-complex; on the other arms no value was significantly better",
       .unavailable = kUnavailable,
   };
 }

@@ -123,9 +123,11 @@ struct OptimizerRow {
   std::string backend = {};  // the library that it needs: "NLopt (CMake option ...)"; empty: none
   // When it runs in a child process (isolation.hpp): "always", "with local=cobyla". Empty: never.
   std::string isolated = {};
-  // The problems on which defaults of its options were chosen, by measurements of this project. On
-  // them it has an advantage in comparisons.
+  // The problems, or the arms of problems, on which defaults of its options were chosen, by
+  // measurements of this project. On them it has an advantage in comparisons.
   std::vector<std::string> tuned_on = {};
+  // How these defaults were chosen, a clause for the optimizer's page. Empty without tuned_on.
+  std::string tuning = {};
   std::string unfit = {};        // why no build offers it; empty: builds offer it
   std::string unavailable = {};  // why it cannot be used here; empty: it can
   // Of a plugin: file -> SHA-256, so that a resumed run recognises the plugin.

@@ -71,6 +71,16 @@ void add_runs(const StudyPlan& plan, const StudyProblem& problem, const StudyOpt
   }
 }
 
+// Returns whether defaults of the optimizer were chosen on this problem, or on another problem with
+// the same arm.
+bool is_tuned_on(const OptimizerRow& row, const LoadedProblem& loaded) {
+  const auto has = [&](const std::string& name) {
+    return std::ranges::count(row.tuned_on, name) > 0;
+  };
+  const TrackingProblem* tracking = loaded.tracking();
+  return has(loaded.name) || (tracking != nullptr && has(tracking->config().robot.name));
+}
+
 }  // namespace
 
 std::vector<MethodFacts> calc_method_facts(const StudyPlan& plan, std::string_view problem,
@@ -88,7 +98,7 @@ std::vector<MethodFacts> calc_method_facts(const StudyPlan& plan, std::string_vi
       facts.residuals = count_residuals(make_run_plan(plan, cell));
       facts.has_jacobian = uses_jacobian(optimizer, description);
     }
-    facts.is_tuned_here = std::ranges::count(optimizer.row.tuned_on, found->loaded.name) > 0;
+    facts.is_tuned_here = is_tuned_on(optimizer.row, found->loaded);
     add_runs(plan, *found, optimizer, cells, facts);
     all.push_back(std::move(facts));
   }

@@ -93,8 +93,10 @@ TEST(OptimizerPage, SaysOnWhichProblemsDefaultsWereChosen) {
   OptimizerRow row = make_row();
   EXPECT_THAT(format_optimizer_page(row), Not(HasSubstr("**Defaults:**")));
   row.tuned_on = {"sphere", "q1-complex"};
+  row.tuning = "step was the best of three";
   EXPECT_THAT(format_optimizer_page(row),
-              HasSubstr("- **Defaults:** some were chosen on `sphere`, `q1-complex`;"));
+              HasSubstr("- **Defaults:** some were chosen on `sphere`, `q1-complex`: step was the "
+                        "best of three. The verdict"));
 }
 
 TEST(OptimizerPage, LocalOnesCanBeginAgainElsewhere) {

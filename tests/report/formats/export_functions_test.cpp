@@ -74,12 +74,11 @@ TEST(FunctionNumbers, TellTwoProblemsOfTheSameFunctionAndDimensionApart) {
 }
 
 TEST(FunctionSettings, LeaveOutWhatDoesNotDecideAnObjective) {
-  EXPECT_EQ(
-      make_function_settings(
-          R"({"title":"t","run":{},"sets":{"training":"train/x"},"replicate":{"start":[1]},
+  EXPECT_EQ(make_function_settings(
+                R"({"title":"t","run":{},"sets":{"training":"train/x"},"replicate":{"start":[1]},
                     "physics":{"engine":"ode","simd":"avx2"},
                     "function":{"name":"f","dimension":5,"instance":3,"instance_per_replicate":true}})"),
-      R"({"function":{"name":"f"},"physics":{"engine":"ode"}})");
+            R"({"function":{"name":"f"},"physics":{"engine":"ode"}})");
 }
 
 }  // namespace

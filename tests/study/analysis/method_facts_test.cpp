@@ -161,6 +161,19 @@ TEST(MethodFacts, NameDefaultsThatWereChosenOnAProblemOfTheStudy) {
                           "study."));
 }
 
+TEST(MethodFacts, KnowTheArmsOnWhichDefaultsWereChosen) {
+  const auto is_tuned = [](const std::string& optimizer, const std::string& urdf) {
+    StudyRequest request = make_facts_request();
+    request.problems = {"robot"};
+    request.optimizers = {optimizer};
+    request.settings = {"robot.urdf=" + urdf, "workspace.points=3"};
+    return calc_method_facts(make_study_plan(request), "robot", {})[0].is_tuned_here;
+  };
+  EXPECT_TRUE(is_tuned("ceres:lm", "planar2.urdf"));
+  EXPECT_FALSE(is_tuned("ceres:lm", "irb4600_40_255.urdf"));
+  EXPECT_FALSE(is_tuned("ceres:bfgs", "planar2.urdf"));
+}
+
 TEST_F(StudyTest, MethodFactsAreInTheTablesAndInTheResult) {
   StudyRequest request = make_facts_request();
   request.optimizers = {"random", "nlopt:neldermead"};

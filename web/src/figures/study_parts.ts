@@ -121,9 +121,7 @@ export function describe_size(scope: Scope): string {
   const n = scope.data.replicates;
   const missing = scope.problems.reduce((sum, problem) => sum + problem.missing, 0);
   const size =
-    n === 1
-      ? 'There is one replicate per optimizer, so its value decides nothing.'
-      : 'There are ' + n + ' replicates per optimizer.';
+    n === 1 ? 'There is one replicate per optimizer, so its value decides nothing.' : 'There are ' + n + ' replicates per optimizer.';
   return missing === 0
     ? size
     : size +
