@@ -220,8 +220,8 @@ bool needs_plain_form(const std::filesystem::path& folder, const LoadedProblem& 
     const std::size_t end = setting.find_first_of(" =", begin);
     return begin != std::string::npos && setting.substr(begin, end - begin) == "function.instance";
   };
-  if (std::ranges::any_of(settings, names_instance) || !problem.function || problem.function->instance == 0 ||
-      !has_first_selection(folder)) {
+  if (std::ranges::any_of(settings, names_instance) || !problem.function ||
+      problem.function->instance == 0 || !has_first_selection(folder)) {
     return false;
   }
   const json recorded = find(read_manifest(folder / "manifest.json"), "/configuration/problem");
