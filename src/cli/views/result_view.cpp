@@ -245,7 +245,7 @@ std::string describe_result(const RunResult& result, const std::filesystem::path
                             const Style& style) {
   const RunCounts& counts = result.counts;
   std::string text = style.bold(fmt::format("{}: {}, seed {}", sanitize(result.problem),
-                                            sanitize(result.optimizer), result.seed));
+                                            sanitize(shorten_optimizer(result.optimizer)), result.seed));
   text += fmt::format("\n  {} on {}", format_count(counts.evaluations, "evaluation"),
                       format_count(counts.cases, "case"));
   if (counts.generations > 0) {

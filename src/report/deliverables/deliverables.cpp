@@ -110,7 +110,7 @@ void check_links(const FinishedArm& arm) {
 }  // namespace
 
 std::string FinishedArm::describe() const {
-  return fmt::format("the winner of {} (seed {}) on {}", sanitize(result().optimizer),
+  return fmt::format("the winner of {} (seed {}) on {}", sanitize(shorten_optimizer(result().optimizer)),
                      result().seed, sanitize(result().problem));
 }
 

@@ -12,6 +12,7 @@
 #include "problems/config/config_files.hpp"
 #include "sim/simd/simd_level.hpp"
 #include "study/compare/case_sets.hpp"
+#include "study/compare/optimizer_labels.hpp"
 #include "study/compare/optimizer_streams.hpp"
 #include "study/compare/study_methods.hpp"
 #include "study/compare/study_plan.hpp"
@@ -192,7 +193,8 @@ StudyOptimizer load_study_optimizer(const NamedOptimizer& named,
                                     std::span<const OptimizerRow> rows = {}) {
   StudyOptimizer optimizer;
   optimizer.name = named.name;
-  optimizer.label = named.label.empty() ? named.name : named.label;
+  optimizer.label = named.label;
+  optimizer.has_given_label = !named.label.empty();
   optimizer.options = named.options;
   optimizer.baseline = named.baseline;
   optimizer.row = find_row(named, rows);
@@ -235,6 +237,7 @@ void load_optimizers(const RawPlan& raw, std::span<const OptimizerRow> rows, Stu
   if (plan.baselines && !has_local) {
     add(kLocalBaseline);
   }
+  choose_labels(plan);
   std::vector<std::string> labels;
   for (const StudyOptimizer& optimizer : plan.optimizers) {
     labels.push_back(optimizer.label);
