@@ -139,6 +139,7 @@ std::string describe_lead(const std::vector<std::vector<double>>& medians) {
   const StudyPlan plan = make_study_plan(request);
   StudyResult result;
   result.overall.ranking = calc_ranking_stability(medians);
+  result.overall.pairs.resize(6);
   return describe_verdict(plan, result).front();
 }
 

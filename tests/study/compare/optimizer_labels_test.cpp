@@ -73,7 +73,7 @@ TEST(OptimizerLabels, AReferenceMayBeThePath) {
 // The cells' folders and the recorded tables have these labels.
 TEST_F(StudyTest, AStudyOfVersion1KeepsThePathsOfPluginsAsLabels) {
   StudyPlan old = make_plan({kMine});
-  old.optimizers[0].label = kMine.name;
+  old.optimizers[0].label = old.reference = kMine.name;
   name_streams_by_labels(old);
   { const StudyFolder folder(temporary_ / "study", old); }
   StudyPlan now = make_plan({kMine, kTwin});
