@@ -464,9 +464,9 @@ std::string ConfigTable::describe_place(const AnySetting& setting,
   const Value* value = find_value(*node_, setting.key);
   assert(value != nullptr);
   const std::string path = config::join_path(node_->path, setting.key);
-  return element ? fmt::format("{}: {}[{}]", value->items.at(*element).place.describe(), path,
-                               *element)
-                 : fmt::format("{}: {}", value->place.describe(), path);
+  return element
+             ? fmt::format("{}: {}[{}]", value->items.at(*element).place.describe(), path, *element)
+             : fmt::format("{}: {}", value->place.describe(), path);
 }
 
 const std::filesystem::path& ConfigTable::file() const {

@@ -126,11 +126,11 @@ std::vector<std::string> describe_overall(const StudyPlan& plan, const StudyResu
   for (const std::size_t i : stability.full.leaders) {
     leaders.push_back(plan.optimizers[i].label);
   }
-  sentences.push_back(fmt::format("Over the {} problems {} {} the best mean rank ({:.2f} of {}). {}",
-                                  plan.problems.size(), join_names(leaders),
-                                  leaders.size() == 1 ? "has" : "share",
-                                  stability.full.mean_ranks[stability.full.leaders.front()],
-                                  plan.optimizers.size(), describe_stability(plan, stability)));
+  sentences.push_back(
+      fmt::format("Over the {} problems {} {} the best mean rank ({:.2f} of {}). {}",
+                  plan.problems.size(), join_names(leaders), leaders.size() == 1 ? "has" : "share",
+                  stability.full.mean_ranks[stability.full.leaders.front()], plan.optimizers.size(),
+                  describe_stability(plan, stability)));
   const auto add = [&](const std::vector<std::string>& more) {
     sentences.insert(sentences.end(), more.begin(), more.end());
   };

@@ -51,8 +51,7 @@ void choose_labels(StudyPlan& plan) {
 }
 
 void adopt_labels(const std::filesystem::path& recorded, StudyPlan& plan) {
-  const auto reference =
-      std::ranges::find(plan.optimizers, plan.reference, &StudyOptimizer::label);
+  const auto reference = std::ranges::find(plan.optimizers, plan.reference, &StudyOptimizer::label);
   for (StudyOptimizer& optimizer : plan.optimizers) {
     optimizer.label = optimizer.has_given_label ? optimizer.label : "";
   }

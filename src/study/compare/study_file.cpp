@@ -73,8 +73,7 @@ void set_schedule(const std::optional<StudySchedule>& asked, StudyProblem& probl
 
 // Returns the error with the place of the entry of the study's file that causes it.
 Error add_place(const std::string& place, const Error& error) {
-  return place.empty() ? error
-                       : Error(error.kind(), fmt::format("{}: {}", place, error.what()));
+  return place.empty() ? error : Error(error.kind(), fmt::format("{}: {}", place, error.what()));
 }
 
 // Loads a problem of the study. An error names its place. An error of its settings also names the
@@ -85,11 +84,11 @@ LoadedProblem load_named_problem(const NamedProblem& named,
     return load_problem(named.name, settings);
   } catch (const Error& error) {
     const std::string& label = named.label.empty() ? named.name : named.label;
-    throw add_place(named.place,
-                    settings.empty()
-                        ? error
-                        : Error(error.kind(),
-                                fmt::format("problem {}: {}", sanitize(label), error.what())));
+    throw add_place(
+        named.place,
+        settings.empty()
+            ? error
+            : Error(error.kind(), fmt::format("problem {}: {}", sanitize(label), error.what())));
   }
 }
 

@@ -50,7 +50,8 @@ TEST_F(StudyTest, CmaesNeedsAsManyEvaluationsAsPycma) {
     for (const CellOutcome& cell : result.cells) {
       if (cell.problem == problem.label) {
         own[cell.optimizer].push_back(count_to_target(cell));
-        const auto start = recorded.at("start_values").at(static_cast<std::size_t>(cell.replicate - 1));
+        const auto start =
+            recorded.at("start_values").at(static_cast<std::size_t>(cell.replicate - 1));
         EXPECT_NEAR(cell.start_value / start.get<double>(), 1, 1e-9);
       }
     }

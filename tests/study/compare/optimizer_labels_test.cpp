@@ -59,7 +59,10 @@ TEST(OptimizerLabels, APluginThatCallsItselfLikeAShippedOptimizerKeepsItsPath) {
 }
 
 TEST(OptimizerLabels, TheSamePluginTwiceNeedsALabel) {
-  EXPECT_THAT(error_of(ErrorKind::usage, [] { make_plan({kMine, kMine}); }),
+  EXPECT_THAT(error_of(ErrorKind::usage,
+                       [] {
+                         make_plan({kMine, kMine});
+                       }),
               HasSubstr("two optimizers of the study are called 'mine'; give one of them another"));
 }
 

@@ -64,8 +64,8 @@ StudyPlan make_grown_plan() {
 TEST_F(StudyTest, AnotherLabelDoesNotChangeTheResults) {
   const auto run = [&](const std::string& label) {
     const StudyPlan plan =
-        load_plan(temporary_, std::string(kSphereHead) + "[[optimizer]]\nname = 'ga'\nlabel = '" + label +
-                                  "'\noptions = ['population=9']\n");
+        load_plan(temporary_, std::string(kSphereHead) + "[[optimizer]]\nname = 'ga'\nlabel = '" +
+                                  label + "'\noptions = ['population=9']\n");
     std::vector<std::vector<double>> winners;
     for (const CellOutcome& cell : study(plan, label).cells) {
       winners.push_back(cell.x);
@@ -78,7 +78,9 @@ TEST_F(StudyTest, AnotherLabelDoesNotChangeTheResults) {
 TEST(OptimizerStreams, DependOnWhatTheOptimizerIs) {
   const TemporaryFolder folder;
   const auto get_stream = [&](const std::string& entry) {
-    return load_plan(folder, std::string(kSphereHead) + "[[optimizer]]\n" + entry).optimizers[0].stream;
+    return load_plan(folder, std::string(kSphereHead) + "[[optimizer]]\n" + entry)
+        .optimizers[0]
+        .stream;
   };
   const std::string plain = get_stream("name = 'ga'\n");
   EXPECT_EQ(plain, get_stream("name = 'ga'\nlabel = 'other'\n"));
@@ -108,7 +110,8 @@ TEST(OptimizerStreams, OfEqualEntriesDifferByTheirOccurrence) {
 
 TEST(OptimizerStreams, OfARecordedPlanStayWhenAnEqualEntryComesBeforeTheRecordedOne) {
   const TemporaryFolder folder;
-  const StudyPlan first = load_plan(folder, std::string(kSphereHead) + "[[optimizer]]\nname = 'ga'\n");
+  const StudyPlan first =
+      load_plan(folder, std::string(kSphereHead) + "[[optimizer]]\nname = 'ga'\n");
   StudyFolder(folder / "study", first);
   StudyPlan grown = load_plan(
       folder, std::string(kSphereHead) +
