@@ -11,6 +11,7 @@
 #include <ctime>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -20,6 +21,7 @@
 #include "base/random.hpp"
 #include "optimizers/interface/optimizer.hpp"
 #include "optimizers/table/optimizer_table.hpp"
+#include "problems/analytic/analytic.hpp"
 
 #ifdef ARMWRIGHT_WITH_PAGMO
 #include <pagmo/algorithm.hpp>
@@ -67,7 +69,7 @@ double calc_rastrigin(std::span<const double> x) {
 
 struct Function {
   const char* name = "";
-  double (*calc)(std::span<const double>) = nullptr;
+  std::function<double(std::span<const double>)> calc;
 };
 
 // A function on [-half_width, half_width]^n, and the range in which its search starts.
@@ -327,6 +329,34 @@ void print_restarts() {
   }
 }
 
+// Runs f2 and its rotated form f10 of BBOB, one instance per seed, in their box and in a box that no
+// run leaves.
+void print_bounds() {
+  fmt::print("\n| function | box | ours | orthogonal=false |\n|---|---|---|---|\n");
+  for (const char* name : {"bbob-f2", "bbob-f10"}) {
+    for (const double half_width : {5, 100}) {
+      const auto run = [&](int seed, const std::vector<std::string>& options) {
+        const std::shared_ptr<const Problem> problem =
+            make_analytic({.name = name, .dimension = 10, .instance = seed, .adds_f_opt = false});
+        const auto calc = [problem](std::span<const double> x) {
+          CaseJob job;
+          job.x = x;
+          return problem->simulate(std::span(&job, 1)).front().error;
+        };
+        return run_own({.function = {name, calc},
+                        .half_width = half_width,
+                        .start_lower = -4,
+                        .start_upper = 4,
+                        .sigma = 0.5},
+                       seed, options);
+      };
+      fmt::print("| {} | [-{}, {}]^10 | {} | {} |\n", name, half_width, half_width,
+                 describe([&](int seed) { return run(seed, {}); }),
+                 describe([&](int seed) { return run(seed, {"orthogonal=false"}); }));
+    }
+  }
+}
+
 void print_speed() {
   Setting s{.function = {"sphere", calc_sphere},
             .dimension = 20,
@@ -348,5 +378,6 @@ void print_speed() {
 int main() {
   print_comparison();
   print_restarts();
+  print_bounds();
   print_speed();
 }

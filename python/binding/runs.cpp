@@ -55,6 +55,11 @@ py::tuple optimize(const ProblemHandle& problem, const py::object& optimizer,
   RunRequest request;
   request.plan = make_plan(problem.loaded, load_row(optimizer, host), question);
   request.folder = place.choose(make_run_name(request.plan));
+  if (needs_plain_form(request.folder, problem.loaded, problem.settings)) {
+    std::vector<std::string> settings = problem.settings;
+    settings.emplace_back(kPlainForm);
+    request.plan.problem = load_problem(problem.name, settings);
+  }
   request.jobs = place.jobs;
   request.command_line = command;
   request.command_line.insert(request.command_line.end(), {"--out", request.folder.string()});

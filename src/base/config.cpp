@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <stdexcept>
 #include <utility>
 
@@ -456,6 +457,16 @@ void ConfigTable::refuse(std::string_view key, std::string_view must) const {
 
 void ConfigTable::refuse(const AnySetting& setting, std::string_view must) const {
   refuse(setting.key, must);
+}
+
+std::string ConfigTable::describe_place(const AnySetting& setting,
+                                        std::optional<std::size_t> element) const {
+  const Value* value = find_value(*node_, setting.key);
+  assert(value != nullptr);
+  const std::string path = config::join_path(node_->path, setting.key);
+  return element
+             ? fmt::format("{}: {}[{}]", value->items.at(*element).place.describe(), path, *element)
+             : fmt::format("{}: {}", value->place.describe(), path);
 }
 
 const std::filesystem::path& ConfigTable::file() const {

@@ -87,6 +87,10 @@ class ConfigTable {
   [[noreturn]] void refuse(std::string_view key, std::string_view must) const;
   [[noreturn]] void refuse(const AnySetting& setting, std::string_view must) const;
 
+  // Returns where a key stands, for errors that are found later: "FILE:LINE: KEY", or
+  // "FILE:LINE: KEY[3]" for the element 3 of a list. The key and the element must exist.
+  std::string describe_place(const AnySetting& setting,
+                             std::optional<std::size_t> element = std::nullopt) const;
   // Records a value that the reader chose because the file leaves it open, or in place of the
   // file's. Only to_json() shows it; reading and has() do not. Not for tables of an array. A whole
   // number is recorded without decimal point.

@@ -18,6 +18,7 @@
 #include "cli/commands/commands.hpp"
 #include "cli/terminal/session.hpp"
 #include "cli/terminal/terminal.hpp"
+#include "cli/terminal/typed_flags.hpp"
 #include "sim/simd/simd_level.hpp"
 #include "study/executor/mpi_transport.hpp"
 
@@ -226,7 +227,7 @@ int run_command(Session& session, int argc, char** argv) {
   } catch (const BrokenPipe&) {
     return exit_code::kIo;
   } catch (const Error& error) {
-    write_message(std::string("error: ") + error.what());
+    write_message("error: " + name_typed_flags(error.what(), session.command_line));
     return get_exit_code(error.kind());
   } catch (const std::system_error& error) {  // of std::filesystem, or if no thread can start
     write_message(std::string("error: ") + error.what());

@@ -129,8 +129,11 @@ TEST_F(Cli, RefusesWrongValuesAndSaysWhatIsAllowed) {
   refuse({"--opt", "population=1"}, {"population", "'1'"});
   refuse({"--engine", "ode", "--set", "physics.engine=ode"},
          {"--set physics.engine=ode", "give only one"});
-  refuse({"--engine", "ode", "--simd", "scalar"}, {"physics.simd", "'ode' has none to choose"});
-  refuse({"--precision", "float"}, {"physics.precision", "'ode' always computes in double"});
+  refuse({"--engine", "ode", "--simd", "scalar"}, {"--simd scalar: ", "'ode' has none to choose"});
+  refuse({"--precision", "float"}, {"--precision float: ", "'ode' always computes in double"});
+  refuse({"--tip", "tol"}, {"error: --tip tol: ", ".urdf: unknown link 'tol'"});
+  expect_refused({"optimize", "sphere", "--simd", "scalar"}, 2,
+                 {"error: --simd scalar: this problem has no setting physics.simd"});
   expect_refused({"evaluate", "table-a5", "--simd", "scalar"}, 2, {"'ode' has none to choose"});
   expect_refused({"evaluate", "table-a5", "--precision", "float"}, 2, {"unknown flag"});
   expect_refused({"sweep", "q1-complex", "--design", "table-a5", "--engine", "ode", "--parameter",

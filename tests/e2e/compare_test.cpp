@@ -14,7 +14,9 @@
 namespace armwright {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 std::vector<std::string> make_command(const std::string& out, const std::string& jobs,
                                       const std::string& budget = "1000") {
@@ -122,6 +124,25 @@ TEST(CliCompare, TheShippedStudiesAreListedAndExplained) {
     EXPECT_EQ(one.exit_code, 0) << one.err;
     EXPECT_THAT(one.out, testing::ContainsRegex("\nbaselines +random"));
   }
+}
+
+// Their names are long: a command with a path, and a path.
+TEST(CliCompare, PluginsHaveTheirOwnShortNamesInTables) {
+  const TemporaryFolder folder;
+  const std::string command =
+      "exec:python3 " + std::string(ARMWRIGHT_TEST_PLUGINS_SOURCE) + "/good.py";
+  const std::string library = std::string(ARMWRIGHT_TEST_PLUGINS) + "/libgood.so";
+  const Outcome outcome = run_program(
+      folder.path(), {"compare", "--problems", "sphere", "--optimizers", command + "," + library,
+                      "--replicates", "5", "--budget", "30", "--no-baselines", "--out", "study"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("plugin      lcg: " + command),
+                                 HasSubstr("plugin      pattern: " + library)));
+  for (const auto& [file, text] : read_study(folder / "study")) {
+    EXPECT_THAT(text, Not(HasSubstr("/good.py"))) << file;
+    EXPECT_THAT(text, Not(HasSubstr("/libgood.so"))) << file;
+  }
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("lcg"), HasSubstr("pattern")));
 }
 
 }  // namespace

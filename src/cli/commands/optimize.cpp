@@ -108,6 +108,19 @@ RunPlan make_plan(const OptimizeOptions& options) {
   return plan;
 }
 
+// Makes the plan of the run and chooses its folder. Returns whether the folder holds a run of version
+// 1.0 on the plain form of a function. Then `options` and the plan get the plain form too.
+bool make_request(OptimizeOptions& options, RunRequest& request) {
+  request.plan = make_plan(options);
+  request.folder = options.folder.choose(make_run_name(request.plan));
+  if (!needs_plain_form(request.folder, request.plan.problem, options.overrides.set)) {
+    return false;
+  }
+  options.overrides.set.emplace_back(kPlainForm);
+  request.plan.problem = load_problem(options.get_problem(), options.get_overrides());
+  return true;
+}
+
 // Returns the command that resumes this run. It is the typed command without --new, and with --out
 // and --seed where the typed command would choose another folder or seed the next time.
 std::vector<std::string> make_command(const OptimizeOptions& options, const Session& session,
@@ -222,22 +235,27 @@ std::string describe_next(const OptimizeOptions& options, const std::string& pro
   return text + fmt::format("  {}\n", sanitize(quote_command(show)));
 }
 
-int run_optimize(const OptimizeOptions& options, Session& session) {
+int run_optimize(OptimizeOptions options, Session& session) {
   MpiJob job(session);
   RunRequest request;
   request.jobs = parse_jobs(options.jobs);
   if (job.is_worker()) {
     job.serve(
         [&]() -> MpiJob::Problems {
-          request.plan = make_plan(options);
+          make_request(options, request);
           return {&request.plan.problem};
         },
         request.jobs);
   }
   apply_time_limit(options.time_limit, session.stop);
-  request.plan = make_plan(options);
-  const std::vector<std::string> notes = check_paths(request.plan.problem);
-  request.folder = options.folder.choose(make_run_name(request.plan));
+  const bool has_plain_form = make_request(options, request);
+  std::vector<std::string> notes = check_paths(request.plan.problem);
+  if (has_plain_form) {
+    notes.push_back(
+        fmt::format("version 1.0 began this run on the plain form of the function, so the run "
+                    "keeps it ({}); --new begins a run on the problem as it is now",
+                    kPlainForm));
+  }
   request.command_line = make_command(options, session, request.folder);
   if (!options.quiet) {
     announce(request, job.describe());

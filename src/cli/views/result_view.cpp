@@ -244,8 +244,9 @@ std::string describe_no_winner(const RunResult& result) {
 std::string describe_result(const RunResult& result, const std::filesystem::path& folder,
                             const Style& style) {
   const RunCounts& counts = result.counts;
-  std::string text = style.bold(fmt::format("{}: {}, seed {}", sanitize(result.problem),
-                                            sanitize(result.optimizer), result.seed));
+  std::string text =
+      style.bold(fmt::format("{}: {}, seed {}", sanitize(result.problem),
+                             sanitize(shorten_optimizer(result.optimizer)), result.seed));
   text += fmt::format("\n  {} on {}", format_count(counts.evaluations, "evaluation"),
                       format_count(counts.cases, "case"));
   if (counts.generations > 0) {

@@ -207,6 +207,11 @@ std::string describe_plan(const StudyPlan& plan) {
                      settings)});
   }
   table.add_row({"optimizers", list_labels(plan, false)});
+  for (const StudyOptimizer& optimizer : plan.optimizers) {
+    if (!optimizer.row.input_hashes.empty() && optimizer.label != optimizer.name) {
+      table.add_row({"plugin", fmt::format("{}: {}", optimizer.label, optimizer.name)});
+    }
+  }
   if (std::ranges::any_of(plan.problems, &StudyProblem::own_schedules)) {
     for (const auto& [schedule, labels] : group_own_schedules(plan)) {
       table.add_row({"schedule " + schedule, join(labels, ", ")});

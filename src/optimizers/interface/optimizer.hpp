@@ -135,6 +135,8 @@ struct OptimizerRow {
   // Of an optimizer of a host program: its description, so that its recorded runs can be read
   // without that program (plugins/host_optimizer.hpp).
   std::string description = {};
+  // Of a plugin whose `name` is a path: the name that it gives itself, for tables.
+  std::string short_name = {};
 };
 
 }  // namespace armwright

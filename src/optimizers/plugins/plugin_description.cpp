@@ -160,7 +160,7 @@ PluginDescription describe_plugin(const struct armwright_plugin& plugin,
                                   std::span<const std::string> own_options) {
   constexpr std::uint32_t kKnown = (ARMWRIGHT_SAMPLING << 1) - 1;
   PluginDescription taken;
-  take_name(plugin.name, "its name", "_-:ABCDEFGHIJKLMNOPQRSTUVWXYZ");
+  taken.name = take_name(plugin.name, "its name", "_-:ABCDEFGHIJKLMNOPQRSTUVWXYZ");
   taken.summary = take_text(plugin.summary, "its summary");
   taken.source = take_text(plugin.source, "its source");
   taken.capabilities = plugin.capabilities;
@@ -192,6 +192,7 @@ PluginDescription describe_plugin(const struct armwright_plugin& plugin,
 }
 
 void pack(const PluginDescription& description, PacketWriter& writer) {
+  writer.put(description.name);
   writer.put(description.summary);
   writer.put(description.source);
   writer.put(description.capabilities);
@@ -215,6 +216,7 @@ void pack(const PluginDescription& description, PacketWriter& writer) {
 
 PluginDescription unpack_description(PacketReader& reader) {
   PluginDescription description;
+  description.name = reader.get_text();
   description.summary = reader.get_text();
   description.source = reader.get_text();
   description.capabilities = reader.get<std::uint32_t>();

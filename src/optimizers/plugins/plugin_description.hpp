@@ -23,6 +23,7 @@ class PluginRefusal : public std::runtime_error {
 };
 
 struct PluginDescription {
+  std::string name;
   std::string summary;
   std::string source;
   std::uint32_t capabilities = 0;
@@ -35,7 +36,7 @@ struct PluginDescription {
 const struct armwright_plugin& open_plugin(const std::filesystem::path& file);
 
 // Reads and checks the description. `own_options` are names that the plugin may not use. The
-// plugin's own name is checked but not used; the name that the user typed counts. Throws
+// plugin's own name is for tables; everywhere else the name that the user typed counts. Throws
 // PluginRefusal.
 PluginDescription describe_plugin(const struct armwright_plugin& plugin,
                                   std::span<const std::string> own_options);

@@ -244,7 +244,8 @@ OptimizerRow load_library_plugin(const std::filesystem::path& file, const std::s
             },
             .requirements = description.requirements,
             .isolated = "with isolate=true",
-            .input_hashes = {{file.filename().string(), library.hash}}};
+            .input_hashes = {{file.filename().string(), library.hash}},
+            .short_name = name.empty() ? description.name : ""};
   } catch (const PluginRefusal& refusal) {
     throw Error(ErrorKind::bad_data, fmt::format("{}: {}", shown, refusal.what()));
   }

@@ -143,6 +143,7 @@ Options select_inner(const OptimizerRow& inner, const Options& options) {
 OptimizerRow make_multistart_row(const OptimizerRow& inner) {
   OptimizerRow row = inner;
   row.name = "multistart:" + inner.name;
+  row.short_name = inner.short_name.empty() ? "" : "multistart:" + inner.short_name;
   if (!inner.capabilities.local) {
     std::vector<std::string> local;
     for (const OptimizerRow& candidate : optimizer_table()) {

@@ -85,7 +85,7 @@ std::string make_run_facts_of(const FinishedArm& arm) {
   const RunResult& result = arm.result();
   const SheetFacts facts = {
       {"Run of", sanitize(arm.run.started)},
-      {"Optimizer", sanitize(result.optimizer)},
+      {"Optimizer", sanitize(shorten_optimizer(result.optimizer))},
       {"Seed", fmt::format("{}", result.seed)},
       {"Budget", fmt::format("{} of {} cases", result.counts.cases, arm.run.budget)},
       {"Designs tried", fmt::format("{}", result.counts.evaluations)},

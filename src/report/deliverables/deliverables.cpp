@@ -110,8 +110,9 @@ void check_links(const FinishedArm& arm) {
 }  // namespace
 
 std::string FinishedArm::describe() const {
-  return fmt::format("the winner of {} (seed {}) on {}", sanitize(result().optimizer),
-                     result().seed, sanitize(result().problem));
+  return fmt::format("the winner of {} (seed {}) on {}",
+                     sanitize(shorten_optimizer(result().optimizer)), result().seed,
+                     sanitize(result().problem));
 }
 
 FinishedArm load_finished_arm(const fs::path& folder, std::string_view format) {

@@ -173,7 +173,7 @@ json make_page(const RecordedRun& run, const PageOptions& options, PageSimulator
   }
   json page = {{"format", 1},
                {"kind", "run"},
-               {"title", fmt::format("{} on {}", optimizer, run.problem_name)},
+               {"title", fmt::format("{} on {}", shorten_optimizer(optimizer), run.problem_name)},
                {"subtitle", run.problem ? run.problem->title : ""},
                {"program", make_program()},
                {"folder", run.folder.string()},

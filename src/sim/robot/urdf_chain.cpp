@@ -193,8 +193,7 @@ class Chooser {
       for (const UrdfLink& other : links_) {
         known.push_back(other.name);
       }
-      fail(option,
-           fmt::format("the {}: {}", option, describe_unknown("link", sanitize(link), known)));
+      fail(option, describe_unknown("link", sanitize(link), known));
     }
     return link;
   }

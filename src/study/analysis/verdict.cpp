@@ -98,6 +98,24 @@ std::vector<std::string> describe_failures(const StudyPlan& plan, const ProblemR
   return describe_standing(plan, where, where, order, problem.failure_pairs);
 }
 
+// Says whether the best mean rank depends on a single problem.
+std::string describe_stability(const StudyPlan& plan, const RankingStability& stability) {
+  std::vector<std::string> needed;
+  for (const RankingWithout& one : stability.without) {
+    if (one.leader_changes) {
+      needed.push_back(plan.problems[one.problem].label);
+    }
+  }
+  if (needed.empty()) {
+    return fmt::format("The lead stays the same whichever one of the {} problems is left out.",
+                       plan.problems.size());
+  }
+  return needed.size() == 1
+             ? fmt::format("The lead changes if {} is left out.", needed.front())
+             : fmt::format("The lead changes if one of these problems alone is left out: {}.",
+                           join_names(needed));
+}
+
 std::vector<std::string> describe_overall(const StudyPlan& plan, const StudyResult& result) {
   if (plan.problems.size() < 2 || plan.optimizers.size() < 2 || !result.missing.empty()) {
     return {};
@@ -108,14 +126,11 @@ std::vector<std::string> describe_overall(const StudyPlan& plan, const StudyResu
   for (const std::size_t i : stability.full.leaders) {
     leaders.push_back(plan.optimizers[i].label);
   }
-  const auto changes = std::ranges::count_if(
-      stability.without, [](const RankingWithout& one) { return one.leader_changes; });
-  sentences.push_back(fmt::format(
-      "Over the {} problems {} {} the best mean rank ({:.2f} of {}); leaving one problem out, that "
-      "changes in {} of {} cases.",
-      plan.problems.size(), join_names(leaders), leaders.size() == 1 ? "has" : "share",
-      stability.full.mean_ranks[stability.full.leaders.front()], plan.optimizers.size(), changes,
-      stability.without.size()));
+  sentences.push_back(
+      fmt::format("Over the {} problems {} {} the best mean rank ({:.2f} of {}). {}",
+                  plan.problems.size(), join_names(leaders), leaders.size() == 1 ? "has" : "share",
+                  stability.full.mean_ranks[stability.full.leaders.front()], plan.optimizers.size(),
+                  describe_stability(plan, stability)));
   const auto add = [&](const std::vector<std::string>& more) {
     sentences.insert(sentences.end(), more.begin(), more.end());
   };

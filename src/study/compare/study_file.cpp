@@ -12,6 +12,7 @@
 #include "problems/config/config_files.hpp"
 #include "sim/simd/simd_level.hpp"
 #include "study/compare/case_sets.hpp"
+#include "study/compare/optimizer_labels.hpp"
 #include "study/compare/optimizer_streams.hpp"
 #include "study/compare/study_methods.hpp"
 #include "study/compare/study_plan.hpp"
@@ -70,19 +71,24 @@ void set_schedule(const std::optional<StudySchedule>& asked, StudyProblem& probl
   }
 }
 
-// Loads a problem of the study. An error of its settings names the problem, since the study's
-// settings are for all problems.
+// Returns the error with the place of the entry of the study's file that causes it.
+Error add_place(const std::string& place, const Error& error) {
+  return place.empty() ? error : Error(error.kind(), fmt::format("{}: {}", place, error.what()));
+}
+
+// Loads a problem of the study. An error names its place. An error of its settings also names the
+// problem, since the study's settings are for all problems.
 LoadedProblem load_named_problem(const NamedProblem& named,
                                  const std::vector<std::string>& settings) {
   try {
     return load_problem(named.name, settings);
   } catch (const Error& error) {
-    if (settings.empty()) {
-      throw;
-    }
-    throw Error(error.kind(), fmt::format("problem {}: {}",
-                                          sanitize(named.label.empty() ? named.name : named.label),
-                                          error.what()));
+    const std::string& label = named.label.empty() ? named.name : named.label;
+    throw add_place(
+        named.place,
+        settings.empty()
+            ? error
+            : Error(error.kind(), fmt::format("problem {}: {}", sanitize(label), error.what())));
   }
 }
 
@@ -192,11 +198,16 @@ StudyOptimizer load_study_optimizer(const NamedOptimizer& named,
                                     std::span<const OptimizerRow> rows = {}) {
   StudyOptimizer optimizer;
   optimizer.name = named.name;
-  optimizer.label = named.label.empty() ? named.name : named.label;
+  optimizer.label = named.label;
+  optimizer.has_given_label = !named.label.empty();
   optimizer.options = named.options;
   optimizer.baseline = named.baseline;
-  optimizer.row = find_row(named, rows);
-  optimizer.parsed = Options::parse(optimizer.row.name, optimizer.row.options, named.options);
+  try {
+    optimizer.row = find_row(named, rows);
+    optimizer.parsed = Options::parse(optimizer.row.name, optimizer.row.options, named.options);
+  } catch (const Error& error) {
+    throw add_place(named.place, error);
+  }
   optimizer.schedule = named.schedule;
   optimizer.settings = named.settings;
   optimizer.own_schedule = named.own_schedule.value_or(choose_own_schedule(optimizer.row));
@@ -235,6 +246,7 @@ void load_optimizers(const RawPlan& raw, std::span<const OptimizerRow> rows, Stu
   if (plan.baselines && !has_local) {
     add(kLocalBaseline);
   }
+  choose_labels(plan);
   std::vector<std::string> labels;
   for (const StudyOptimizer& optimizer : plan.optimizers) {
     labels.push_back(optimizer.label);

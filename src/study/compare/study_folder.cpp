@@ -11,6 +11,7 @@
 #include "base/hash.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
+#include "study/compare/optimizer_labels.hpp"
 #include "study/compare/optimizer_streams.hpp"
 #include "study/compare/study_plan.hpp"
 
@@ -182,6 +183,7 @@ void adopt_recorded(const std::filesystem::path& folder, StudyPlan& plan) {
   if (!is_study_folder(folder)) {
     return;
   }
+  adopt_labels(folder / kPlanFile, plan);
   if (plan.baselines) {
     keep_baselines(folder / kPlanFile, plan);
   }

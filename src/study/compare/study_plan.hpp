@@ -44,6 +44,7 @@ struct StudyProblem {
 
 struct StudyOptimizer {
   std::string label;                 // unique in the plan
+  bool has_given_label = false;      // by the plan; otherwise optimizer_labels.hpp chooses it
   std::string name;                  // as the user wrote it
   std::vector<std::string> options;  // KEY=VALUE
   bool baseline = false;             // added by armwright, unless the plan turns baselines off

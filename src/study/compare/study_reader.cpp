@@ -121,7 +121,9 @@ const SettingTable kProblemEntrySettings{
 
 const Setting<std::string> kOptimizerEntryName{"name", kNoDefault, "optimizer, as --optimizer"};
 const Setting<std::string> kOptimizerEntryLabel{
-    "label", "", "name of the optimizer in tables and folders (default: its name)"};
+    "label", "",
+    "name of the optimizer in tables and folders (default: its name, of a plugin the name that it "
+    "gives itself)"};
 const Setting<std::vector<std::string>> kOptimizerEntryOptions{
     "options", kNoDefault, "options of the optimizer, a list of KEY=VALUE"};
 const Setting<std::string> kOptimizerEntrySchedule{
@@ -224,7 +226,8 @@ NamedProblem read_problem_entry(const ConfigTable& table) {
                        .label = table.get(kProblemEntryLabel),
                        .settings = table.get_or(kProblemEntrySet, {}),
                        .schedule = read_study_schedule_key(table, kProblemEntrySchedule),
-                       .configuration_sha256 = table.get(kProblemEntryHash)};
+                       .configuration_sha256 = table.get(kProblemEntryHash),
+                       .place = table.describe_place(kProblemEntryName)};
   for (const auto* set : {&kProblemEntryTraining, &kProblemEntryValidation, &kProblemEntryTest}) {
     table.get(*set);  // the rest of the plan determines them
   }
@@ -244,6 +247,7 @@ NamedOptimizer read_optimizer_entry(const ConfigTable& table) {
   optimizer.inputs = table.get_or(kOptimizerEntryInputs, {});
   optimizer.own_schedule = read_schedule_key(table, kOptimizerEntryOwnSchedule);
   optimizer.stream = table.get(kOptimizerEntryStream);
+  optimizer.place = table.describe_place(kOptimizerEntryName);
   return optimizer;
 }
 
@@ -299,13 +303,15 @@ RawPlan read_study_file(const std::filesystem::path& file, StudyPlan& plan) {
   raw.schedule = read_study_schedule_key(table, kStudySchedule);
   raw.settings = table.get_or(kStudySet, {});
   for (const std::string& name : table.get_or(kStudyProblems, {})) {
-    raw.problems.push_back({.name = name});
+    raw.problems.push_back(
+        {.name = name, .place = table.describe_place(kStudyProblems, raw.problems.size())});
   }
   for (const ConfigTable& problem : table.get_tables_or_empty(kProblemEntrySettings)) {
     raw.problems.push_back(read_problem_entry(problem));
   }
   for (const std::string& name : table.get_or(kStudyOptimizers, {})) {
-    raw.optimizers.push_back({.name = name});
+    raw.optimizers.push_back(
+        {.name = name, .place = table.describe_place(kStudyOptimizers, raw.optimizers.size())});
   }
   for (const ConfigTable& optimizer : table.get_tables_or_empty(kOptimizerEntrySettings)) {
     raw.optimizers.push_back(read_optimizer_entry(optimizer));

@@ -26,6 +26,7 @@ struct NamedOptimizer {
   // A resolved plan has these two; plans of version 1.0 do not.
   std::optional<Schedule> own_schedule = {};
   std::string stream = {};
+  std::string place = {};  // of the name, "FILE:LINE: KEY"; empty if a flag gives it
 };
 
 struct NamedProblem {
@@ -34,6 +35,7 @@ struct NamedProblem {
   std::vector<std::string> settings = {};
   std::optional<StudySchedule> schedule = {};
   std::string configuration_sha256 = {};  // as a resolved plan records it; empty: not known
+  std::string place = {};                 // as NamedOptimizer::place
 };
 
 // The names that file and flags give.

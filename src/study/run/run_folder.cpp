@@ -213,6 +213,22 @@ bool has_first_selection(const std::filesystem::path& folder) {
   return manifest.contains(selection) && !manifest[selection].contains("most");
 }
 
+bool needs_plain_form(const std::filesystem::path& folder, const LoadedProblem& problem,
+                      std::span<const std::string> settings) {
+  const auto names_instance = [](const std::string& setting) {
+    const std::size_t begin = setting.find_first_not_of(' ');
+    const std::size_t end = setting.find_first_of(" =", begin);
+    return begin != std::string::npos && setting.substr(begin, end - begin) == "function.instance";
+  };
+  if (std::ranges::any_of(settings, names_instance) || !problem.function ||
+      problem.function->instance == 0 || !has_first_selection(folder)) {
+    return false;
+  }
+  const json recorded = find(read_manifest(folder / "manifest.json"), "/configuration/problem");
+  return find(recorded, "/function/name") == problem.function->name &&
+         find(recorded, "/function/instance").is_null();
+}
+
 std::filesystem::path choose_run_folder(const std::filesystem::path& parent,
                                         const std::string& name, bool fresh) {
   std::filesystem::path folder = parent / name;

@@ -51,6 +51,16 @@ class RunFolder {
 // damaged, and Error{io}.
 bool has_first_selection(const std::filesystem::path& folder);
 
+// The setting that gives a function its plain form.
+inline constexpr const char* kPlainForm = "function.instance=0";
+
+// Returns whether the run in the folder needs kPlainForm in addition to `settings`, with which
+// `problem` was loaded. This holds if version 1.0 began the run on the plain form of the function,
+// the only form that it had, while `problem` has an instance that `settings` do not name. Throws
+// Error{bad_data} if the manifest is damaged, and Error{io}.
+bool needs_plain_form(const std::filesystem::path& folder, const LoadedProblem& problem,
+                      std::span<const std::string> settings);
+
 // Returns parent/NAME or, with `fresh`, the first of NAME, NAME-002, NAME-003, ... that does not
 // exist.
 std::filesystem::path choose_run_folder(const std::filesystem::path& parent,

@@ -168,6 +168,15 @@ void RunCounts::add(const EvaluationRecord& record) {
   feasible += is_feasible(record.evaluation) ? 1 : 0;
 }
 
+std::string shorten_optimizer(const std::string& optimizer) {
+  constexpr std::string_view kMultistart = "multistart:";
+  const std::size_t begin = optimizer.starts_with(kMultistart) ? kMultistart.size() : 0;
+  const std::size_t slash = optimizer.rfind('/');
+  return slash == std::string::npos || slash < begin
+             ? optimizer
+             : optimizer.substr(0, begin) + optimizer.substr(slash + 1);
+}
+
 double get_failure_error(const RunResult& result) {
   return result.tracking ? kFailureError_m : std::numeric_limits<double>::infinity();
 }

@@ -65,6 +65,9 @@ struct RunResult {
   PublishedWinner published;
 };
 
+// Returns a recorded optimizer's name for texts and titles: of a plugin's path only the file's name.
+std::string shorten_optimizer(const std::string& optimizer);
+
 // Returns the error above which a test case has failed: kFailureError_m for an arm, infinity for a
 // function.
 double get_failure_error(const RunResult& result);

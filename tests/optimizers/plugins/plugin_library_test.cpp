@@ -78,6 +78,8 @@ class PluginLibrary : public testing::Test {
 TEST_F(PluginLibrary, ADescriptionBecomesARow) {
   const OptimizerRow row = load_optimizer(plugin("good"));
   EXPECT_EQ(row.name, plugin("good"));
+  EXPECT_EQ(row.short_name, "pattern");
+  EXPECT_EQ(load_optimizer("multistart:" + row.name).short_name, "multistart:pattern");
   EXPECT_THAT(row.summary, StartsWith("Steps along one variable"));
   EXPECT_THAT(row.source, StartsWith("Hooke, Jeeves 1961"));
   EXPECT_TRUE(row.capabilities.bounds && row.capabilities.stochastic && row.capabilities.local);

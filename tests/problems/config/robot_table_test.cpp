@@ -44,7 +44,7 @@ TEST(RobotTable, RefusalsNameFileAndKey) {
             "'jaw'; name the one whose frame is the tool centre point (or any other link) with "
             "robot.tip or --tip");
   EXPECT_THAT(folder.refusal_of_base_with(arm + "tip = 'tp'"),
-              StartsWith("p.toml:4: robot.tip is 'tp'; arm.urdf: the tip: unknown link 'tp'; did "
+              StartsWith("p.toml:4: robot.tip is 'tp'; arm.urdf: unknown link 'tp'; did "
                          "you mean 'tip'? Valid: base, "));
   EXPECT_THAT(folder.refusal_of_base_with(arm + "tip = 'link_2'\nbase = 'link_3'"),
               StartsWith("p.toml:5: robot.base is 'link_3'; arm.urdf: the base 'link_3' is not "

@@ -7,6 +7,7 @@
 
 #include "base/text.hpp"
 #include "study/analysis/analysis_support.hpp"
+#include "study/statistics/ranking.hpp"
 
 namespace armwright {
 namespace {
@@ -125,6 +126,34 @@ TEST(Verdict, SaysWhatFriedmansTestShowsWhereNoPairCanBeDecided) {
   for (const auto& verdict : {different, alike}) {
     EXPECT_THAT(verdict, Not(Contains(HasSubstr("nothing can be concluded"))));
   }
+}
+
+// medians[p][o] is the median of optimizer o on problem p.
+std::string describe_lead(const std::vector<std::vector<double>>& medians) {
+  StudyRequest request;
+  request.problems = {"sphere", "rosenbrock", "rastrigin"};
+  request.optimizers = {"ga", "cmaes", "lhs", "random"};
+  request.replicates = 6;
+  request.budget = 100;
+  request.baselines = false;
+  const StudyPlan plan = make_study_plan(request);
+  StudyResult result;
+  result.overall.ranking = calc_ranking_stability(medians);
+  result.overall.pairs.resize(6);
+  return describe_verdict(plan, result).front();
+}
+
+TEST(Verdict, SaysWhetherTheLeadDependsOnOneProblem) {
+  const std::vector<double> ga_first = {1, 2, 3, 4}, cmaes_first = {2, 1, 3, 4};
+  EXPECT_EQ(describe_lead({ga_first, ga_first, ga_first}),
+            "Over the 3 problems ga has the best mean rank (1.00 of 4). The lead stays the same "
+            "whichever one of the 3 problems is left out.");
+  EXPECT_EQ(describe_lead({{1, 4, 2, 3}, cmaes_first, cmaes_first}),
+            "Over the 3 problems ga has the best mean rank (1.67 of 4). The lead changes if sphere "
+            "is left out.");
+  EXPECT_EQ(describe_lead({ga_first, cmaes_first, ga_first}),
+            "Over the 3 problems ga has the best mean rank (1.33 of 4). The lead changes if one of "
+            "these problems alone is left out: sphere and rastrigin.");
 }
 
 TEST(Verdict, SaysThatRunningTimesOfVersionOneAreCoarse) {

@@ -55,6 +55,7 @@ StudyPlan make_grown_plan() {
   plan.start_spread = 1;
   plan.optimizers.push_back(plan.optimizers.front());
   plan.optimizers.back().label = "ga again";
+  plan.optimizers.back().has_given_label = true;
   plan.optimizers.back().stream.clear();
   name_streams(plan);
   return plan;

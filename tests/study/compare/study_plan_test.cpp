@@ -25,6 +25,25 @@ std::vector<std::string> get_labels(const StudyPlan& plan) {
 
 constexpr const char* kStudyHead = "problems = ['sphere']\nbudget = 100\nreplicates = 3\n";
 
+// The user sees which entry of the file is wrong.
+TEST(StudyFile, AnErrorOfAProblemOrOptimizerNamesItsPlace) {
+  const TemporaryFolder folder;
+  const auto refuse = [&](const std::string& toml) {
+    return usage_error_of([&] { load_plan(folder, toml); });
+  };
+  const std::string lists = "budget = 60\nproblems = ['sphere',\n  'spere']\n";
+  EXPECT_THAT(refuse(lists + "optimizers = ['ga']\n"),
+              HasSubstr("mine.toml:3: problems[1]: unknown problem 'spere'; did you mean"));
+  const std::string sphere = "budget = 60\n[[problem]]\nname = 'sphere'\n";
+  EXPECT_THAT(refuse(sphere + "set = ['function.dimension=0']\n[[optimizer]]\nname = 'ga'\n"),
+              HasSubstr("mine.toml:3: problem[0].name: problem sphere: --set "
+                        "function.dimension=0: function.dimension is 0; it must be"));
+  EXPECT_THAT(refuse(sphere + "[[optimizer]]\nname = 'ga'\n[[optimizer]]\nname = 'gaa'\n"),
+              HasSubstr("mine.toml:7: optimizer[1].name: unknown optimizer 'gaa'"));
+  EXPECT_THAT(refuse("budget = 60\nproblems = ['sphere']\noptimizers = ['ga', 'gaa']\n"),
+              HasSubstr("mine.toml:3: optimizers[1]: unknown optimizer 'gaa'"));
+}
+
 TEST(StudyPlan, BaselinesTakePartUnlessAskedNotTo) {
   StudyRequest request = make_small_request();
   EXPECT_THAT(get_labels(make_study_plan(request)),

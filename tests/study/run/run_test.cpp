@@ -198,6 +198,15 @@ Evaluation make_judgement(double objective, int failed_cases = 0, double violati
   return evaluation;
 }
 
+TEST(ShortenOptimizer, LeavesOutTheFoldersOfAPlugin) {
+  EXPECT_EQ(shorten_optimizer("/long/path/libmine.so"), "libmine.so");
+  EXPECT_EQ(shorten_optimizer("./libmine.so"), "libmine.so");
+  EXPECT_EQ(shorten_optimizer("multistart:/long/path/libmine.so"), "multistart:libmine.so");
+  for (const std::string name : {"ga", "nlopt:cobyla", "multistart:nlopt:cobyla", "python:mine"}) {
+    EXPECT_EQ(shorten_optimizer(name), name);
+  }
+}
+
 TEST(ChooseWinner, FewerFailedCasesThenFeasibilityThenTheObjective) {
   std::vector<JudgedCandidate> judged(4);
   judged[0].validation = make_judgement(1.0, 2);
