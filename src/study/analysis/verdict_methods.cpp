@@ -109,33 +109,45 @@ std::string describe_unused_budget(const StudyPlan& plan, std::span<const Method
   return join_names(parts);
 }
 
-// Returns the sentence on the optimizers with the fewest and the most judged candidates per run;
-// nothing if all have the same number.
-std::vector<std::string> describe_judged(const StudyPlan& plan, const ProblemResult& problem,
-                                         std::span<const MethodFacts> facts) {
-  std::optional<std::size_t> fewest, most;
+// The median number of judged candidates of an optimizer's runs on a problem.
+struct Judged {
+  double count = 0;
+  std::string optimizer, problem;
+};
+
+// Adds the numbers of a problem if they differ between the optimizers.
+void add_judged(const StudyPlan& plan, const std::string& problem,
+                std::span<const MethodFacts> facts, std::vector<Judged>& judged) {
+  std::vector<Judged> here;
   for (std::size_t o = 0; o < facts.size(); ++o) {
-    if (!facts[o].judged) {
-      continue;
+    if (facts[o].judged) {
+      here.push_back({*facts[o].judged, plan.optimizers[o].label, problem});
     }
-    fewest = fewest && facts[*fewest].judged <= facts[o].judged ? fewest : o;
-    most = most && facts[*most].judged >= facts[o].judged ? most : o;
   }
-  if (!fewest || facts[*fewest].judged == facts[*most].judged) {
-    return {};
+  const auto differs = [&](const Judged& one) { return one.count != here.front().count; };
+  if (std::ranges::any_of(here, differs)) {
+    judged.insert(judged.end(), here.begin(), here.end());
   }
-  return {fmt::format(
-      "On {} between {:g} ({}) and {:g} ({}) candidates of a run were judged on the validation "
-      "set, in the median.",
-      problem.label, *facts[*fewest].judged, plan.optimizers[*fewest].label, *facts[*most].judged,
-      plan.optimizers[*most].label)};
+}
+
+// Returns the sentence on the fewest and the most judged candidates per run.
+std::string describe_judged(std::span<const Judged> judged, bool has_problems) {
+  const auto [fewest, most] = std::ranges::minmax_element(judged, {}, &Judged::count);
+  const auto name = [&](const Judged& one) {
+    return has_problems ? fmt::format("{} on {}", one.optimizer, one.problem) : one.optimizer;
+  };
+  return fmt::format(
+      "Between {:g} ({}) and {:g} ({}) candidates of a run were judged on the validation set, in "
+      "the "
+      "median.",
+      fewest->count, name(*fewest), most->count, name(*most));
 }
 
 }  // namespace
 
 std::vector<std::string> describe_methods(const StudyPlan& plan, const StudyResult& result) {
   std::vector<Group> schedules, residuals, unused, tuned;
-  std::vector<std::string> judged;
+  std::vector<Judged> judged;
   for (const ProblemResult& problem : result.problems) {
     const auto facts = calc_method_facts(plan, problem.label, result.cells);
     if (const std::string text = describe_schedules(plan, facts); !text.empty()) {
@@ -147,25 +159,24 @@ std::vector<std::string> describe_methods(const StudyPlan& plan, const StudyResu
     if (const std::string text = describe_unused_budget(plan, facts); !text.empty()) {
       add_to_group(unused, text, problem.label);
     }
-    for (const std::string& sentence : describe_judged(plan, problem, facts)) {
-      judged.push_back(sentence);
-    }
+    add_judged(plan, problem.label, facts, judged);
     for (std::size_t o = 0; o < facts.size(); ++o) {
       if (facts[o].is_tuned_here) {
-        add_to_group(tuned, problem.label, plan.optimizers[o].label);
+        add_to_group(tuned, plan.optimizers[o].label, problem.label);
       }
     }
   }
   std::vector<std::string> sentences = make_sentences(schedules);
-  for (const std::vector<std::string>& more :
-       {make_sentences(residuals), make_sentences(unused), judged}) {
+  for (const std::vector<std::string>& more : {make_sentences(residuals), make_sentences(unused)}) {
     sentences.insert(sentences.end(), more.begin(), more.end());
   }
-  for (const auto& [problem, labels] : tuned) {
-    sentences.push_back(
-        fmt::format("Default settings of {} were chosen on {}, a problem of this "
-                    "study.",
-                    join_names(labels), problem));
+  if (!judged.empty()) {
+    sentences.push_back(describe_judged(judged, result.problems.size() > 1));
+  }
+  for (const auto& [label, problems] : tuned) {
+    sentences.push_back(fmt::format("Default settings of {} were chosen on {} of this study: {}.",
+                                    label, problems.size() == 1 ? "a problem" : "problems",
+                                    join_names(problems)));
   }
   return sentences;
 }

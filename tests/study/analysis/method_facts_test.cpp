@@ -90,8 +90,8 @@ TEST(MethodFacts, NameTheFewestAndTheMostJudgedCandidates) {
     result.cells[i].judged = 9;
   }
   EXPECT_THAT(describe_methods(plan, result),
-              ElementsAre("On sphere between 5 (random) and 9 (lhs) candidates of a run were "
-                          "judged on the validation set, in the median."));
+              ElementsAre("Between 5 (random on sphere) and 9 (lhs on sphere) candidates of a run "
+                          "were judged on the validation set, in the median."));
   plan.judge_along = true;  // candidates are judged at every checkpoint; these are not counted
   EXPECT_THAT(describe_methods(plan, result), IsEmpty());
 }
@@ -157,8 +157,8 @@ TEST(MethodFacts, NameDefaultsThatWereChosenOnAProblemOfTheStudy) {
   request.rows = {row};
   const StudyPlan plan = make_study_plan(request);
   EXPECT_THAT(describe_methods(plan, make_even_result(plan)),
-              ElementsAre("Default settings of tuned were chosen on rosenbrock, a problem of this "
-                          "study."));
+              ElementsAre("Default settings of tuned were chosen on a problem of this study: "
+                          "rosenbrock."));
 }
 
 TEST(MethodFacts, KnowTheArmsOnWhichDefaultsWereChosen) {
