@@ -56,6 +56,43 @@ TEST(ExactTimes, ComeFromTheTraceAndNotFromTheCheckpoints) {
   EXPECT_EQ(problem.optimizers[0].running_times[0].expected, 1000);
 }
 
+// Both tables give the expected running times that cocopp has computed from an export of the same
+// runs. The numbers and how they were made: tests/data/exports/running_times.json.
+TEST(ExactTimes, InTheTablesAreThoseOfCocopp) {
+  const auto oracle = nlohmann::json::parse(
+      read_file(std::string(ARMWRIGHT_TEST_DATA) + "/exports/running_times.json", 1 << 20));
+  int compared = 0;
+  for (const auto& times_and_runs : oracle.at("cells")) {
+    const auto& runs = times_and_runs.at("runs");
+    StudyPlan plan = make_sphere_plan({"ga"}, static_cast<int>(runs.size()));
+    plan.budget = 2000;
+    std::vector<CellOutcome> cells;
+    for (const auto& run : runs) {
+      CellOutcome cell = make_value_cell(plan, 0, static_cast<int>(cells.size()) + 1, 0);
+      cell.cases = run.at("evaluations");
+      cell.trace->clear();
+      for (const auto& improvement : run.at("improvements")) {
+        cell.trace->push_back({improvement.at(0), improvement.at(1), {}});
+      }
+      cells.push_back(cell);
+    }
+    for (const auto& time : times_and_runs.at("times")) {
+      const double target = time.at("target");
+      plan.targets = {{.label = "target", .problems = {"sphere"}, .value = target, .failures = {}}};
+      for (CellOutcome& cell : cells) {
+        cell.start_value = 10 * target;  // a tenth of the way to 0 is left at the target
+      }
+      const OptimizerResult ga = analyze_problem(plan, 0, cells).optimizers.at(0);
+      const double expected = time.at("cocopp");
+      EXPECT_NEAR(ga.target_times.at(0).expected, expected, 1e-3) << times_and_runs.at("problem");
+      EXPECT_NEAR(ga.running_times.at(0).target, target, 1e-12 * target);
+      EXPECT_NEAR(ga.running_times.at(0).expected, expected, 1e-3) << times_and_runs.at("problem");
+      ++compared;
+    }
+  }
+  EXPECT_GE(compared, 20);
+}
+
 class ExactTimesOfRuns : public StudyTest {
  protected:
   // Returns the number of cases until the journal has a value of at most `target`; the whole budget
