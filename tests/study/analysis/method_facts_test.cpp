@@ -167,7 +167,8 @@ TEST(MethodFacts, KnowTheArmsOnWhichDefaultsWereChosen) {
     request.problems = {"robot"};
     request.optimizers = {optimizer};
     request.settings = {"robot.urdf=" + urdf, "workspace.points=3"};
-    return calc_method_facts(make_study_plan(request), "robot", {})[0].is_tuned_here;
+    const StudyPlan plan = make_study_plan(request);
+    return calc_method_facts(plan, plan.problems.front().label, {})[0].is_tuned_here;
   };
   EXPECT_TRUE(is_tuned("ceres:lm", "planar2.urdf"));
   EXPECT_FALSE(is_tuned("ceres:lm", "irb4600_40_255.urdf"));
