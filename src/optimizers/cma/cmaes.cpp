@@ -152,10 +152,11 @@ std::vector<OptimizerRow> make_cmaes_rows() {
       .make = [](const Options& options) -> std::unique_ptr<Optimizer> {
         return std::make_unique<CmaEs>(options);
       },
-      .tuned_on = {"bbob-f1", "bbob-f2", "bbob-f3", "bbob-f8", "bbob-f10", "bbob-f15", "rastrigin"},
+      .tuned_on = {"bbob-f1", "bbob-f2", "bbob-f3", "bbob-f8", "bbob-f10", "bbob-f15", "rastrigin",
+                   "q2-torque", "q2-error"},
       .tuning = "active and orthogonal have the best mean rank on functions of BBOB; restarts was "
                 "first chosen on rastrigin, and on bbob-f3 and bbob-f15 bipop cannot be told apart "
-                "from ipop",
+                "from ipop; constraint_weight was chosen on q2-torque and q2-error",
   }};
 }
 

@@ -90,7 +90,7 @@ TEST(MethodFacts, NameTheFewestAndTheMostJudgedCandidates) {
     result.cells[i].judged = 9;
   }
   EXPECT_THAT(describe_methods(plan, result),
-              ElementsAre("Between 5 (random on sphere) and 9 (lhs on sphere) candidates of a run "
+              ElementsAre("Between 5 (random) and 9 (lhs) candidates of a run "
                           "were judged on the validation set, in the median."));
   plan.judge_along = true;  // candidates are judged at every checkpoint; these are not counted
   EXPECT_THAT(describe_methods(plan, result), IsEmpty());
