@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <new>
 #include <system_error>
 
@@ -229,7 +230,11 @@ int run_command(Session& session, int argc, char** argv) {
   } catch (const Error& error) {
     write_message("error: " + name_typed_flags(error.what(), session.command_line));
     return get_exit_code(error.kind());
-  } catch (const std::system_error& error) {  // of std::filesystem, or if no thread can start
+  } catch (const std::filesystem::filesystem_error& error) {
+    write_message(fmt::format("error: {}: the system refuses access: {}", error.path1().string(),
+                              error.code().message()));
+    return exit_code::kIo;
+  } catch (const std::system_error& error) {  // for example, no thread can start
     write_message(std::string("error: ") + error.what());
     return exit_code::kIo;
   } catch (const std::bad_alloc&) {

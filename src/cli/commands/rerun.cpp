@@ -136,13 +136,17 @@ int run_rerun(const RerunOptions& options, Session& session) {
   if (!options.quiet) {
     write_message(describe_cell(plan, cell));
     write_message(fmt::format("folder {} ({})", sanitize(folder.string()),
-                              std::filesystem::exists(folder) ? "found" : "new"));
+                              path_exists(folder) ? "found" : "new"));
   }
   catch_signals(session.stop);
   ProgressBar bar(
       options.quiet,
       get_scalar_quantity(plan.problems[cell.problem].loaded.problem->description().objectives));
-  const CellRequest where{.folder = folder, .jobs = jobs, .command_line = session.command_line};
+  const CellRequest where{
+      .folder = folder,
+      .root = options.out.empty() ? std::filesystem::path(options.study) : folder,
+      .jobs = jobs,
+      .command_line = session.command_line};
   const auto outcome = run_cell(plan, cell, where, session.stop, bar);
   bar.clear();
   if (!outcome) {

@@ -68,7 +68,7 @@ LineFigure make_first_case(const FinishedArm& arm) {
   constexpr std::size_t kTrajectoryLimit_bytes = std::size_t{1} << 28;
   LineFigure figure{"tip error in the first test case", "time in s", "mm", {}};
   const auto file = arm.run.folder / "winner-trajectory.csv";
-  if (!std::filesystem::exists(file)) {
+  if (!path_exists(file)) {
     return figure;
   }
   const std::string text = read_file(file, kTrajectoryLimit_bytes);

@@ -6,6 +6,7 @@
 
 #include "base/build_info.hpp"
 #include "base/error.hpp"
+#include "base/folder.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "problems/config/config_files.hpp"
@@ -119,7 +120,7 @@ std::vector<std::string> find_problem_arguments(const NamedProblem& named, const
 
 void read_manifest(RecordedRun& run) {
   const auto file = run.folder / "manifest.json";
-  if (!fs::exists(file)) {
+  if (!path_exists(file)) {
     throw Error(ErrorKind::usage,
                 fmt::format("{}: is not the folder of a run (it has no manifest.json)",
                             sanitize(run.folder.string())));
@@ -153,7 +154,7 @@ void read_name(RecordedRun& run) {
     return;
   }
   const auto cell = run.folder / "cell.json";
-  if (fs::exists(cell)) {
+  if (path_exists(cell)) {
     const json content = json::parse(read_json_file(cell, kCellLimit_bytes), nullptr, false);
     if (content.is_object() && content.contains("problem") && content["problem"].is_string()) {
       run.problem_name = content["problem"].get<std::string>();
@@ -292,10 +293,10 @@ RecordedRun read_recorded_run(const fs::path& folder) {
   read_manifest(run);
   // Reads the result before the journal: then the journal holds at least every evaluation that the
   // result counts.
-  if (fs::exists(folder / "result.json")) {
+  if (path_exists(folder / "result.json")) {
     run.result = load_result(folder);
   }
-  if (fs::exists(folder / "journal")) {
+  if (path_exists(folder / "journal")) {
     run.journal = read_journal(folder / "journal");
   }
   read_name(run);

@@ -91,7 +91,7 @@ void write_csv(const CollectedRuns& collected, const std::filesystem::path& fold
         const RunTrace trace = read_trace(run);
         write_evaluations(evaluations, problem, trace);
         std::string design;
-        if (std::filesystem::exists(run.folder / "winner.toml")) {
+        if (path_exists(run.folder / "winner.toml")) {
           design =
               fmt::format("designs/{}.toml",
                           designs.add(fmt::format("{}-{}-{}", escape_file_name(run.problem),

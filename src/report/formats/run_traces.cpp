@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <tuple>
 
 #include "base/config.hpp"
 #include "base/error.hpp"
+#include "base/folder.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "study/journal/journal.hpp"
@@ -24,12 +26,7 @@ namespace fs = std::filesystem;
 
 std::vector<fs::path> list_folders(const fs::path& parent) {
   std::vector<fs::path> folders;
-  for (const auto& entry : fs::directory_iterator(parent)) {
-    if (entry.is_directory()) {
-      folders.push_back(entry.path());
-    }
-  }
-  std::sort(folders.begin(), folders.end());
+  std::ranges::copy_if(list_folder(parent), std::back_inserter(folders), folder_exists);
   return folders;
 }
 
@@ -61,7 +58,7 @@ RunEntry read_cell(const fs::path& folder) {
 std::vector<std::string> read_problem_order(const fs::path& study) {
   std::vector<std::string> labels;
   const auto file = study / "study.toml";
-  if (!fs::exists(file)) {
+  if (!path_exists(file)) {
     return labels;
   }
   try {
@@ -85,7 +82,7 @@ FoundRuns find_cells(const fs::path& folder) {
   for (const fs::path& problem : list_folders(folder / "cells")) {
     for (const fs::path& label : list_folders(problem)) {
       for (const fs::path& replicate : list_folders(label)) {
-        if (fs::exists(replicate / "cell.json")) {
+        if (path_exists(replicate / "cell.json")) {
           found.runs.push_back(read_cell(replicate));
         } else {
           ++found.unfinished;
@@ -178,10 +175,10 @@ void include_trace(ProblemRuns& problem, const RunTrace& trace) {
 }  // namespace
 
 FoundRuns find_runs(const fs::path& folder) {
-  if (fs::is_directory(folder / "cells")) {
+  if (folder_exists(folder / "cells")) {
     return find_cells(folder);
   }
-  if (!fs::exists(folder / "manifest.json")) {
+  if (!path_exists(folder / "manifest.json")) {
     throw Error(ErrorKind::usage,
                 fmt::format("{}: is neither the folder of a run (it has no manifest.json) nor that "
                             "of a study (it has no folder cells)",

@@ -111,12 +111,13 @@ class Executor {
 
   // Makes or continues a run. Returns false if it was stopped.
   bool execute(const RunPlan& run, const std::filesystem::path& folder) {
-    if (std::filesystem::exists(folder / "result.json")) {
+    if (path_exists(folder / "result.json")) {
       return true;
     }
     RunRequest request;
     request.plan = run;
     request.folder = folder;
+    request.root = folder_->path();
     request.jobs = jobs_;
     request.command_line = make_run_command(program_, run, folder);
     RunMessages messages(run.problem.name, observer_);

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "base/folder.hpp"
 #include "report/evidence/distance_response.hpp"
 #include "report/reproduction/reproduction_plan.hpp"
 #include "study/run/design_evaluation.hpp"
@@ -63,9 +64,9 @@ class ReproductionFolder {
   // settings.
   ReproductionFolder(const std::filesystem::path& path, const ReproductionPlan& plan);
 
-  const std::filesystem::path& path() const { return path_; }
+  const std::filesystem::path& path() const { return folder_.path(); }
   std::filesystem::path get_run_folder(const std::string& run) const {
-    return path_ / "runs" / run;
+    return path() / "runs" / run;
   }
   // Returns how the program differs from the one that started the reproduction; empty if it does
   // not differ.
@@ -79,7 +80,7 @@ class ReproductionFolder {
   void check(const ReproductionPlan& plan) const;
   void write() const;
 
-  std::filesystem::path path_;
+  Folder folder_;
   RunLock lock_;
   ReproductionRecord record_;
   std::vector<std::string> warnings_;

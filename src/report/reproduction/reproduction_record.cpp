@@ -140,13 +140,13 @@ std::string describe_settings(const std::optional<std::uint64_t>& cases,
 }
 
 // Creates the folder, or accepts one that holds a reproduction or nothing.
-std::filesystem::path claim_folder(const std::filesystem::path& path) {
-  make_folder(path);
+Folder claim_folder(const std::filesystem::path& path) {
+  Folder folder = Folder::make(path, path);
   if (is_reproduction_folder(path)) {
-    return path;
+    return folder;
   }
-  for (const auto& entry : std::filesystem::directory_iterator(path)) {
-    const std::string name = entry.path().filename().string();
+  for (const auto& entry : list_folder(path)) {
+    const std::string name = entry.filename().string();
     if (name != "lock" && !name.ends_with(".new")) {  // a program that is killed early leaves these
       throw Error(ErrorKind::usage,
                   fmt::format("{}: holds '{}' but no {}, so it is not the folder of a "
@@ -154,7 +154,7 @@ std::filesystem::path claim_folder(const std::filesystem::path& path) {
                               path.string(), sanitize(name), kRecordFile));
     }
   }
-  return path;
+  return folder;
 }
 
 }  // namespace
@@ -216,7 +216,7 @@ std::string calc_inputs_hash(const ReproductionPlan& plan, const PlannedPart& pa
 
 ReproductionFolder::ReproductionFolder(const std::filesystem::path& path,
                                        const ReproductionPlan& plan)
-    : path_(claim_folder(path)), lock_(path) {
+    : folder_(claim_folder(path)), lock_(folder_) {
   if (is_reproduction_folder(path)) {
     record_ = load_reproduction(path);
     check(plan);
@@ -247,14 +247,14 @@ void ReproductionFolder::check(const ReproductionPlan& plan) const {
         ErrorKind::usage,
         fmt::format("{} holds a reproduction with other settings: recorded {}, now {}. Continue "
                     "with the recorded ones, or use --new or --out for another folder",
-                    path_.string(), sanitize(recorded), now));
+                    path().string(), sanitize(recorded), now));
   }
   if (record_.config != plan.request.config) {
     throw Error(
         ErrorKind::usage,
         fmt::format("{} holds a reproduction of '{}', not of '{}'; use --new or --out for "
                     "another folder",
-                    path_.string(), sanitize(record_.config), sanitize(plan.request.config)));
+                    path().string(), sanitize(record_.config), sanitize(plan.request.config)));
   }
   for (const PlannedPart& part : plan.parts) {
     const PartResult* result = find(part.part.label);
@@ -263,7 +263,7 @@ void ReproductionFolder::check(const ReproductionPlan& plan) const {
                   fmt::format("{} holds a result '{}' that was computed from another problem, "
                               "design or SIMD level than there is now; use --new or --out for "
                               "another folder",
-                              path_.string(), sanitize(part.part.label)));
+                              path().string(), sanitize(part.part.label)));
     }
   }
 }
@@ -281,7 +281,7 @@ void ReproductionFolder::add(PartResult result) {
 
 void ReproductionFolder::write() const {
   write_file_atomically(
-      path_ / kRecordFile,
+      folder_, kRecordFile,
       record_to_json(record_).dump(1, ' ', false, json::error_handler_t::replace) + "\n");
 }
 

@@ -334,7 +334,7 @@ std::vector<TestCase> parse_test_cases(std::string_view text, const std::string&
 }
 
 std::vector<TestCase> read_test_cases(const std::filesystem::path& file) {
-  return parse_test_cases(read_file(file, kLargestFile_bytes), sanitize(file.string()));
+  return parse_test_cases(read_input(file, kLargestFile_bytes), sanitize(file.string()));
 }
 
 }  // namespace armwright

@@ -24,7 +24,7 @@ constexpr std::size_t kCheckLimit_bytes = std::size_t{1} << 20;
 
 std::optional<FinalCheck> load_check(const std::filesystem::path& file, const StudyPlan& plan,
                                      const CellOutcome& cell) {
-  if (!std::filesystem::exists(file)) {
+  if (!path_exists(file)) {
     return std::nullopt;
   }
   try {
@@ -43,15 +43,15 @@ std::optional<FinalCheck> load_check(const std::filesystem::path& file, const St
   }
 }
 
-void save_check(const std::filesystem::path& file, const FinalCheck& check,
-                const CellOutcome& cell) {
-  make_folder(file.parent_path());
+void save_check(const std::filesystem::path& file, const std::filesystem::path& study,
+                const FinalCheck& check, const CellOutcome& cell) {
+  const Folder folder = Folder::make(file.parent_path(), study);
   const json j = {{"engine", check.engine},
                   {"replicate", check.replicate},
                   {"x", cell.x},
                   {"value", value_to_json(check.value)},
                   {"test", summary_to_json(check.errors)}};
-  write_file_atomically(file, j.dump(1) + "\n");
+  write_file_atomically(folder, file.filename().string(), j.dump(1) + "\n");
 }
 
 // Loads the problem with the settings of the optimizer, but with the final engine.
@@ -163,7 +163,7 @@ bool add_final_checks(const StudyPlan& plan, const std::filesystem::path& study,
         one.best->replicate, plan.final_engine,
         calc_test_value(judged.problem->description(), evaluation, plan.constraint_tolerance),
         summarize(evaluation.case_errors, kFailureError_m)};
-    save_check(one.file, check, *one.best);
+    save_check(one.file, study, check, *one.best);
     *one.check = as_compared(plan, check);
   }
   return true;

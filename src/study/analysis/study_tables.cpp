@@ -428,10 +428,10 @@ std::string to_json(const StudyPlan& plan, const StudyResult& result) {
 
 void write_study_tables(const StudyPlan& plan, const StudyResult& result,
                         const std::filesystem::path& study) {
-  const auto tables = study / "tables";
-  make_folder(tables);
+  const Folder folder(study);
+  const Folder tables = Folder::make(study / "tables", study);
   const auto write = [&](const char* file, const std::string& text) {
-    write_file_atomically(tables / file, text);
+    write_file_atomically(tables, file, text);
   };
   write("cells.csv", make_cells(result));
   write("metrics.csv", make_metrics(plan, result.cells));
@@ -463,8 +463,8 @@ void write_study_tables(const StudyPlan& plan, const StudyResult& result,
     write("attainment.csv", make_attainment(plan, result));
   }
   const auto verdict = describe_verdict(plan, result);
-  write_file_atomically(study / "verdict.txt", join(verdict, "\n") + "\n");
-  write_file_atomically(study / "result.json", to_json(plan, result));
+  write_file_atomically(folder, "verdict.txt", join(verdict, "\n") + "\n");
+  write_file_atomically(folder, "result.json", to_json(plan, result));
 }
 
 }  // namespace armwright

@@ -157,7 +157,7 @@ double calc_test_value(const ProblemDescription& problem, const Evaluation& eval
 
 std::optional<std::uint64_t> count_judged(const std::filesystem::path& folder) {
   const auto file = folder / "result.json";
-  if (!std::filesystem::exists(file)) {
+  if (!path_exists(file)) {
     return std::nullopt;
   }
   return parse_result(read_file(file, kResultLimit_bytes), file).judged.size();
@@ -166,7 +166,7 @@ std::optional<std::uint64_t> count_judged(const std::filesystem::path& folder) {
 std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
                                     const std::filesystem::path& study, StopSignal& stop,
                                     RunObserver& observer) {
-  const CellRequest where{.folder = study / make_cell_path(plan, cell)};
+  const CellRequest where{.folder = study / make_cell_path(plan, cell), .root = study};
   return run_cell(plan, cell, where, stop, observer);
 }
 
@@ -176,6 +176,7 @@ std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
   RunRequest request;
   request.plan = make_run_plan(plan, cell);
   request.folder = where.folder;
+  request.root = where.root;
   request.jobs = where.jobs;
   request.executor = where.executor;
   request.command_line = where.command_line;
@@ -204,7 +205,7 @@ std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
   if (!test_progress(plan, cell, request.plan, *result, where, stop, outcome)) {
     return std::nullopt;
   }
-  write_file_atomically(request.folder / "cell.json", to_json(outcome));
+  write_file_atomically(Folder::make(where.folder, where.root), "cell.json", to_json(outcome));
   // One process may run cells of many problems; each problem would keep its cases in memory.
   request.plan.problem.problem->forget_cases();
   return outcome;
@@ -213,7 +214,7 @@ std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
 std::optional<CellOutcome> load_cell(const StudyPlan& plan, const Cell& cell,
                                      const std::filesystem::path& study) {
   const auto file = study / make_cell_path(plan, cell) / "cell.json";
-  if (!std::filesystem::exists(file)) {
+  if (!path_exists(file)) {
     return std::nullopt;
   }
   CellOutcome outcome = parse_cell(read_file(file, kCellLimit_bytes), file);

@@ -211,8 +211,8 @@ CellDifference compare_lines(const std::string& recorded, const std::string& now
 
 void compare_file(const std::filesystem::path& recorded, const std::filesystem::path& now,
                   const std::string& file, CellComparison& comparison) {
-  const bool was_there = std::filesystem::exists(recorded / file);
-  const bool is_there = std::filesystem::exists(now / file);
+  const bool was_there = path_exists(recorded / file);
+  const bool is_there = path_exists(now / file);
   if (was_there != is_there) {
     comparison.difference = CellDifference{file, "the file", was_there ? "there" : kAbsent,
                                            is_there ? "there" : kAbsent};

@@ -152,7 +152,7 @@ std::filesystem::path get_problem_file(const std::filesystem::path& folder,
 std::vector<std::string> describe_problem_change(const std::filesystem::path& folder,
                                                  const StudyProblem& problem) {
   const auto file = get_problem_file(folder, problem.label);
-  if (!std::filesystem::exists(file)) {
+  if (!path_exists(file)) {
     return {};
   }
   try {
@@ -219,11 +219,11 @@ StudyPlan load_study_plan(const std::filesystem::path& folder) {
 }
 
 StudyFolder::StudyFolder(const std::filesystem::path& path, const StudyPlan& plan)
-    : path_(path), lock_((make_folder(path), path)) {
+    : folder_(Folder::make(path, path)), lock_(folder_) {
   const std::string text = to_toml(plan);
   if (!is_study_folder(path)) {
-    for (const auto& entry : std::filesystem::directory_iterator(path)) {
-      const std::string name = entry.path().filename().string();
+    for (const auto& entry : list_folder(path)) {
+      const std::string name = entry.filename().string();
       if (name != "lock" && name != "problems" && !name.ends_with(".new")) {
         throw Error(ErrorKind::usage,
                     fmt::format("{}: holds '{}' but no {}, so it is not the folder of a study; "
@@ -234,24 +234,24 @@ StudyFolder::StudyFolder(const std::filesystem::path& path, const StudyPlan& pla
   } else {
     extend(plan, text);
   }
-  make_folder(path / "problems");
+  const Folder problems = Folder::make(path / "problems", path);
   for (const StudyProblem& problem : plan.problems) {
-    write_file_atomically(get_problem_file(path, problem.label),
+    write_file_atomically(problems, get_problem_file(path, problem.label).filename().string(),
                           json::parse(problem.loaded.resolved_json).dump(2) + "\n");
   }
   if (!is_study_folder(path) || !additions_.empty()) {
-    write_file_atomically(path / kPlanFile, text);
+    write_file_atomically(folder_, kPlanFile, text);
   }
 }
 
 void StudyFolder::extend(const StudyPlan& plan, const std::string& text) {
-  const auto file = path_ / kPlanFile;
+  const auto file = path() / kPlanFile;
   if (!ConfigTable::load(file).has("plan_sha256")) {
     throw Error(ErrorKind::bad_data,
                 fmt::format("{}: cannot be read as a recorded plan (damaged, or edited): it has no "
                             "plan_sha256. Check the study with 'armwright doctor {}', or choose "
                             "another folder with --out or --new",
-                            file.string(), path_.string()));
+                            file.string(), path().string()));
   }
   check_plan_hash(file);
   json recorded = json::parse(ConfigTable::load(file).to_json());
@@ -285,7 +285,7 @@ void StudyFolder::extend(const StudyPlan& plan, const std::string& text) {
     now.erase(key);
   }
   for (const StudyProblem& problem : plan.problems) {
-    for (const std::string& difference : describe_problem_change(path_, problem)) {
+    for (const std::string& difference : describe_problem_change(path(), problem)) {
       differences.push_back(fmt::format("problem {}: {}", problem.label, difference));
     }
   }
@@ -318,14 +318,14 @@ void StudyFolder::extend(const StudyPlan& plan, const std::string& text) {
                     "this plan:\n  {}\nReplicates, problems and optimizers can only be added. To "
                     "continue the recorded study: armwright compare {} --out {}. For another one: "
                     "--new, or another folder with --out",
-                    path_.string(), join(differences, "\n  "), file.string(), path_.string()));
+                    path().string(), join(differences, "\n  "), file.string(), path().string()));
   }
   if (!additions_.empty()) {
     int number = 1;
-    while (std::filesystem::exists(path_ / fmt::format("study-{:03}.toml", number))) {
+    while (path_exists(path() / fmt::format("study-{:03}.toml", number))) {
       ++number;
     }
-    write_file_atomically(path_ / fmt::format("study-{:03}.toml", number),
+    write_file_atomically(folder_, fmt::format("study-{:03}.toml", number),
                           read_file(file, kPlanLimit_bytes));
   }
 }

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "base/folder.hpp"
 #include "study/compare/study_plan.hpp"
 #include "study/run/run_lock.hpp"
 
@@ -28,14 +29,14 @@ class StudyFolder {
   // Throws Error{usage} with every difference that would make recorded cells incomparable.
   StudyFolder(const std::filesystem::path& path, const StudyPlan& plan);
 
-  const std::filesystem::path& path() const { return path_; }
+  const std::filesystem::path& path() const { return folder_.path(); }
   // Returns one text per part of the plan that the recorded plan did not have; empty if it has all.
   const std::vector<std::string>& additions() const { return additions_; }
 
  private:
   void extend(const StudyPlan& plan, const std::string& text);
 
-  std::filesystem::path path_;
+  Folder folder_;
   RunLock lock_;
   std::vector<std::string> additions_;
 };

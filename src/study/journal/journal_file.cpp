@@ -39,24 +39,26 @@ void copy_from(int source, std::uint64_t offset, int target,
   }
 }
 
-// Saves the bytes behind `offset` in the first free "<file>.torn-N".
-void save_torn_end(int fd, std::uint64_t offset, const std::filesystem::path& file) {
+// Saves the bytes behind `offset` in the first free "<journal>.torn-N".
+void save_torn_end(int fd, std::uint64_t offset, const Folder& folder, const std::string& journal) {
   for (int n = 1;; ++n) {
-    const std::filesystem::path name = fmt::format("{}.torn-{}", file.string(), n);
-    FileDescriptor target(::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644));
+    const std::string name = fmt::format("{}.torn-{}", journal, n);
+    FileDescriptor target(::openat(folder.get(), name.c_str(),
+                                   O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0644));
     if (!target.is_open() && errno == EEXIST) {
       continue;
     }
+    const auto file = folder.path() / name;
     if (!target.is_open()) {
-      fail_io(name, "save the torn end of the journal in it", errno);
+      fail_io(file, "save the torn end of the journal in it", errno);
     }
     try {
-      copy_from(fd, offset, target.get(), file, name);
+      copy_from(fd, offset, target.get(), folder.path() / journal, file);
       if (target.close() != 0) {
-        fail_io(name, "close it", errno);
+        fail_io(file, "close it", errno);
       }
     } catch (...) {
-      ::unlink(name.c_str());  // the journal is still complete, so half a copy is removed
+      folder.remove(name);  // the journal is still complete, so half a copy is removed
       throw;
     }
     return;
@@ -98,11 +100,11 @@ bool is_deleted(int fd) {
   return ::fstat(fd, &status) == 0 && status.st_nlink == 0;
 }
 
-void cut_torn_end(int fd, std::uint64_t offset, const std::filesystem::path& file) {
-  save_torn_end(fd, offset, file);
-  sync_folder_of(file);
+void cut_torn_end(int fd, std::uint64_t offset, const Folder& folder, const std::string& name) {
+  save_torn_end(fd, offset, folder, name);
+  folder.sync();
   if (::ftruncate(fd, static_cast<off_t>(offset)) != 0) {
-    fail_io(file, "cut off its torn end", errno);
+    fail_io(folder.path() / name, "cut off its torn end", errno);
   }
 }
 

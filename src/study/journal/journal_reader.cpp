@@ -1,6 +1,5 @@
 #include "study/journal/journal_reader.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -25,23 +24,10 @@ using journal_format::kMagic;
 using journal_format::kMaxPayloadBytes;
 using journal_format::kProbeBytes;
 
-FileDescriptor open_journal(const std::filesystem::path& file) {
-  // Without O_NONBLOCK, opening a named pipe would block forever before it could be refused.
-  FileDescriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  if (!descriptor.is_open()) {
-    fail_io(file, "open it", errno);
-  }
-  return descriptor;
-}
-
 JournalWindow::JournalWindow(int fd, std::filesystem::path file) : fd_(fd), file_(std::move(file)) {
   struct stat status {};
   if (::fstat(fd, &status) != 0) {
     fail_io(file_, "read it", errno);
-  }
-  if (!S_ISREG(status.st_mode)) {
-    throw Error(ErrorKind::io,
-                fmt::format("{}: is not a regular file; a journal must be one", file_.string()));
   }
   size_ = static_cast<std::uint64_t>(status.st_size);
 }
@@ -203,7 +189,7 @@ JournalContent scan_journal(FileDescriptor descriptor, const std::filesystem::pa
 }
 
 JournalContent read_journal(const std::filesystem::path& file) {
-  return scan_journal(open_journal(file), file);
+  return scan_journal(open_to_read(file), file);
 }
 
 }  // namespace armwright

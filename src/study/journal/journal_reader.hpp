@@ -14,9 +14,6 @@
 
 namespace armwright {
 
-// Opens a journal for reading. Throws Error{io}.
-FileDescriptor open_journal(const std::filesystem::path& file);
-
 // A window onto the bytes of a journal. Not thread-safe.
 class JournalWindow {
  public:

@@ -104,7 +104,7 @@ CellAttempt attempt_cell(const StudyPlan& plan, const Cell& cell, const CellAtte
       !successor.empty()) {
     return {CellAttempt::End::superseded, std::move(successor), false};
   }
-  const Attempt attempt(attempts, request.process_begun_s);
+  const Attempt attempt(attempts, request.study, request.process_begun_s);
   try {
     // An earlier attempt may have published the cell before it could see this one.
     if (load_cell(plan, cell, request.study)) {
@@ -116,11 +116,12 @@ CellAttempt attempt_cell(const StudyPlan& plan, const Cell& cell, const CellAtte
     std::optional<CellOutcome> outcome;
     {
       const Watcher watcher(attempt, counting, stop);
-      outcome = run_cell(
-          plan, cell,
-          CellRequest{
-              .folder = attempt.run(), .jobs = request.jobs, .command_line = request.command_line},
-          stop, counting);
+      outcome = run_cell(plan, cell,
+                         CellRequest{.folder = attempt.run(),
+                                     .root = request.study,
+                                     .jobs = request.jobs,
+                                     .command_line = request.command_line},
+                         stop, counting);
       if (!outcome && !watcher.has_stopped_it()) {
         attempt.end_in_order();
         return {CellAttempt::End::stopped, "", false};

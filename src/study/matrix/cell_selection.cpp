@@ -7,6 +7,7 @@
 
 #include "base/config.hpp"
 #include "base/error.hpp"
+#include "base/folder.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "study/compare/rerun.hpp"
@@ -19,7 +20,7 @@ std::filesystem::path find_study_folder(const std::filesystem::path& name) {
   if (is_study_folder(name)) {
     return name;
   }
-  if (name.filename() == "study.toml" && std::filesystem::is_regular_file(name)) {
+  if (name.filename() == "study.toml" && regular_file_exists(name)) {
     return name.has_parent_path() ? name.parent_path() : std::filesystem::path(".");
   }
   throw Error(ErrorKind::usage,

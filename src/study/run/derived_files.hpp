@@ -38,8 +38,9 @@ void write_derived_files(const RunFolder& folder, const RunPlan& plan, const Run
 //     role: training, validation or test; objective: of several, the weighted sum;
 //     x and metrics: JSON arrays in the order of the tables variable and metric
 //   case_error(role, number, case_number, error)     error is NULL if the simulation yielded none
-// Replaces `file` in one step. Throws Error{io} with SQLite's reason if it cannot be written.
-void write_database(const std::filesystem::path& file, const ProblemDescription& problem,
-                    const JournalContent& journal);
+// Replaces the file `name` in one step. Throws Error{io} with SQLite's reason if it cannot be
+// written.
+void write_database(const Folder& folder, const std::string& name,
+                    const ProblemDescription& problem, const JournalContent& journal);
 
 }  // namespace armwright

@@ -20,7 +20,8 @@ namespace {
 // noticed at the end of the run.
 void check_path(const std::filesystem::path& folder) {
   constexpr std::size_t kLongestPath_bytes = 480;
-  const std::size_t size = std::filesystem::absolute(folder).native().size();
+  std::error_code error;  // without links, as SQLite resolves them
+  const std::size_t size = std::filesystem::weakly_canonical(folder, error).native().size();
   if (size > kLongestPath_bytes) {
     throw Error(ErrorKind::usage,
                 fmt::format("{}... is too long a path for a run: {} bytes, and {} are possible; "
@@ -131,7 +132,7 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   if (has_first_selection(request.folder)) {
     plan.selection.most = 0;
   }
-  const RunFolder folder(request.folder, plan, request.command_line);
+  const RunFolder folder(request.folder, request.root, plan, request.command_line);
   if (are_derived_files_there(folder.path(), request.derived)) {
     RunResult result = load_result(folder.path());
     if (request.derived == DerivedFiles::all) {  // a comparison's user did not ask for this cell
@@ -142,8 +143,9 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
     return result;
   }
 
+  folder.check_writable();
   JournalContent recorded;
-  Journal journal(folder.journal(), recorded);
+  Journal journal(folder.folder(), folder.journal().filename().string(), recorded);
   describe_start(folder, recorded, observer);
   std::optional<ThreadExecutor> threads;
   if (request.executor == nullptr) {
@@ -192,12 +194,12 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
 
 RunResult load_result(const std::filesystem::path& folder) {
   const auto file = folder / "result.json";
-  if (!std::filesystem::exists(folder / "manifest.json")) {
+  if (!path_exists(folder / "manifest.json")) {
     throw Error(
         ErrorKind::usage,
         fmt::format("{}: is not the folder of a run (it has no manifest.json)", folder.string()));
   }
-  if (!std::filesystem::exists(file)) {
+  if (!path_exists(file)) {
     throw Error(
         ErrorKind::usage,
         fmt::format("{}: this run has not come to its end; start it again with the same command "

@@ -23,13 +23,13 @@ using nlohmann::json;
 
 // Creates the folder, or accepts one that is empty or holds a run. Refuses others, because the
 // run's files must not replace the user's own files of the same names.
-std::filesystem::path claim_folder(const std::filesystem::path& path) {
-  make_folder(path);
-  if (std::filesystem::exists(path / "manifest.json")) {
-    return path;
+Folder claim_folder(const std::filesystem::path& path, const std::filesystem::path& root) {
+  Folder folder = Folder::make(path, root);
+  if (path_exists(path / "manifest.json")) {
+    return folder;
   }
-  for (const auto& entry : std::filesystem::directory_iterator(path)) {
-    const std::string name = entry.path().filename().string();
+  for (const auto& entry : list_folder(path)) {
+    const std::string name = entry.filename().string();
     if (name != "lock" && name != "manifest.json.new") {  // a kill at the very start leaves these
       throw Error(
           ErrorKind::usage,
@@ -38,7 +38,21 @@ std::filesystem::path claim_folder(const std::filesystem::path& path) {
                       path.string(), sanitize(name)));
     }
   }
-  return path;
+  return folder;
+}
+
+// Takes the lock for writing. Where the rights do not allow that, a recorded run can still be
+// shown: then it takes the lock for reading and stores the reason in `obstacle`.
+RunLock take_lock(const Folder& folder, std::string& obstacle) {
+  try {
+    return RunLock(folder);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::io || !path_exists(folder.path() / "manifest.json")) {
+      throw;
+    }
+    obstacle = error.what();
+    return RunLock::for_reading(folder.path());
+  }
 }
 
 json make_manifest(const RunPlan& plan, std::span<const std::string> command_line) {
@@ -179,12 +193,13 @@ std::string explain_instance(const json& recorded, const json& now) {
 
 }  // namespace
 
-RunFolder::RunFolder(const std::filesystem::path& path, const RunPlan& plan,
-                     std::span<const std::string> command_line)
-    : path_(claim_folder(path)), lock_(path) {
+RunFolder::RunFolder(const std::filesystem::path& path, const std::filesystem::path& root,
+                     const RunPlan& plan, std::span<const std::string> command_line)
+    : folder_(claim_folder(path, root)), lock_(take_lock(folder_, obstacle_)) {
   const auto file = path / "manifest.json";
-  if (!std::filesystem::exists(file)) {
-    write_file_atomically(file, make_manifest(plan, command_line).dump(2) + "\n");
+  if (!path_exists(file)) {
+    write_file_atomically(folder_, "manifest.json",
+                          make_manifest(plan, command_line).dump(2) + "\n");
     return;
   }
   const json manifest = read_manifest(file);
@@ -203,9 +218,15 @@ RunFolder::RunFolder(const std::filesystem::path& path, const RunPlan& plan,
       describe_build_changes(manifest["build"].get<std::map<std::string, std::string>>(), "run");
 }
 
+void RunFolder::check_writable() const {
+  if (!obstacle_.empty()) {
+    throw Error(ErrorKind::io, obstacle_);
+  }
+}
+
 bool has_first_selection(const std::filesystem::path& folder) {
   const auto file = folder / "manifest.json";
-  if (!std::filesystem::exists(file)) {
+  if (!path_exists(file)) {
     return false;
   }
   const json manifest = read_manifest(file);
@@ -232,7 +253,7 @@ bool needs_plain_form(const std::filesystem::path& folder, const LoadedProblem& 
 std::filesystem::path choose_run_folder(const std::filesystem::path& parent,
                                         const std::string& name, bool fresh) {
   std::filesystem::path folder = parent / name;
-  for (int number = 2; fresh && std::filesystem::exists(folder); ++number) {
+  for (int number = 2; fresh && path_exists(folder); ++number) {
     folder = parent / fmt::format("{}-{:03}", name, number);
   }
   return folder;

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "base/folder.hpp"
 #include "study/run/run_lock.hpp"
 #include "study/run/run_plan.hpp"
 
@@ -25,23 +26,28 @@ inline constexpr std::size_t kCellLimit_bytes = std::size_t{64} << 20;
 
 class RunFolder {
  public:
-  // Creates the folder, or opens it to resume its run. Takes the lock, then writes the manifest or
-  // compares it with `plan`. Throws Error{busy} if another process has the lock, Error{io},
-  // Error{bad_data} if the manifest is damaged, and Error{usage} if the folder holds other files
-  // or a run with another configuration; the message lists every difference.
-  RunFolder(const std::filesystem::path& path, const RunPlan& plan,
-            std::span<const std::string> command_line);
+  // Creates the folder, or opens it to resume its run. Follows no link below `root` (Folder::make).
+  // Takes the lock, then writes the manifest or compares it with `plan`. If the folder holds a run
+  // and its rights do not allow the lock for writing, takes the lock for reading. Throws
+  // Error{busy} if another process has the lock, Error{io}, Error{bad_data} if the manifest is
+  // damaged or a link is in the way, and Error{usage} if the folder holds other files or a run with
+  // another configuration; the message lists every difference.
+  RunFolder(const std::filesystem::path& path, const std::filesystem::path& root,
+            const RunPlan& plan, std::span<const std::string> command_line);
 
-  const std::filesystem::path& path() const { return path_; }
-  std::filesystem::path journal() const { return path_ / "journal"; }
-  std::filesystem::path log() const { return path_ / "optimizer.log"; }
-  std::filesystem::path result() const { return path_ / "result.json"; }
+  const Folder& folder() const { return folder_; }
+  const std::filesystem::path& path() const { return folder_.path(); }
+  std::filesystem::path journal() const { return path() / "journal"; }
+  std::filesystem::path log() const { return path() / "optimizer.log"; }
+  // Throws Error{io} if this process may only read the folder.
+  void check_writable() const;
   // Returns the differences between the recorded build and this one (version, compiler, CPU), which
   // may keep a resumed run from replaying. Empty if there are none.
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
-  std::filesystem::path path_;
+  Folder folder_;
+  std::string obstacle_;  // to writing; empty if there is none
   RunLock lock_;
   std::vector<std::string> warnings_;
 };

@@ -74,7 +74,7 @@ class JournalSurveyor {
  public:
   JournalSurveyor(const std::filesystem::path& file,
                   const std::function<void(const EvaluationRecord&)>& look)
-      : file_(open_journal(file)), window_(file_.get(), file), look_(look) {}
+      : file_(open_to_read(file)), window_(file_.get(), file), look_(look) {}
 
   JournalSurvey run() {
     survey_.bytes = window_.size();
@@ -194,7 +194,7 @@ JournalSurvey survey_journal(const std::filesystem::path& file,
 JournalRepair repair_journal(const std::filesystem::path& file, const JournalSurvey& survey,
                              int target) {
   constexpr std::size_t kBuffer_bytes = std::size_t{1} << 20;
-  const FileDescriptor source = open_journal(file);
+  const FileDescriptor source = open_to_read(file);
   JournalWindow window(source.get(), file);
   JournalRepair repair;
   std::string buffer(kMagic);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <functional>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "base/error.hpp"
 #include "base/file.hpp"
@@ -21,7 +20,8 @@ namespace {
 
 using nlohmann::json;
 
-// Returns the fault that `check` finds in a file, or the error that prevents the check.
+// Returns the fault that `check` finds in a file, or the error that prevents the check. Rights that
+// forbid to read the file are no fault of it: then this function throws Error{io}.
 std::string find_fault(const std::filesystem::path& file,
                        const std::function<std::string()>& check) {
   std::error_code error;
@@ -29,6 +29,7 @@ std::string find_fault(const std::filesystem::path& file,
     return error ? fmt::format("it cannot be read: {}", error.message())
                  : "it is not a regular file";
   }
+  check_readable(file);
   try {
     return check();
   } catch (const Error& failure) {
@@ -284,11 +285,8 @@ class RunSurveyor {
   }
 
   void check_leftovers() {
-    std::set<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
-      names.insert(entry.path().filename().string());
-    }
-    for (const std::string& name : names) {
+    for (const auto& entry : list_folder(folder_)) {
+      const std::string name = entry.filename().string();
       if (name.ends_with(".new")) {
         if (survey_.writer.empty()) {
           add(Finding::Kind::note, name,

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "base/error.hpp"
+#include "base/folder.hpp"
 #include "base/text.hpp"
 #include "study/run/run_lock.hpp"
 #include "study/survey/folder_copy.hpp"
@@ -34,6 +35,12 @@ fs::path choose_aside(const fs::path& folder, const fs::path& name) {
 bool is_left_behind(const fs::path& name) {
   const std::string text = name.filename().string();
   return text == "lock" || text.ends_with(".new");
+}
+
+// Returns whether it is a folder, and no link to one.
+bool is_folder_itself(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(fs::symlink_status(path, ignored));
 }
 
 class Repair {
@@ -69,17 +76,13 @@ class Repair {
       copy_.make_folder(to);
     }
     RunRepair done;
-    std::vector<fs::path> entries;
-    for (const auto& entry : fs::directory_iterator(survey_.folder / name)) {
-      entries.push_back(entry.path().filename());
-    }
-    std::ranges::sort(entries);
-    for (const fs::path& entry : entries) {
+    for (const fs::path& path : list_folder(survey_.folder / name)) {
+      const fs::path entry = path.filename();
       const fs::path from = (name / entry).lexically_normal();
       if (is_left_behind(entry)) {
         continue;
       }
-      if (fs::is_directory(fs::symlink_status(survey_.folder / from))) {
+      if (is_folder_itself(path)) {
         copy_folder(from, from);
       } else if (run != nullptr) {
         copy_of_run(*run, from, entry.string(), done);
@@ -129,12 +132,12 @@ class Repair {
 
   void copy_as_it_is(const fs::path& name, const fs::path& to) {
     copy_.make_folder(to);
-    for (const auto& entry : fs::directory_iterator(survey_.folder / name)) {
-      const fs::path inside = entry.path().filename();
+    for (const fs::path& path : list_folder(survey_.folder / name)) {
+      const fs::path inside = path.filename();
       if (is_left_behind(inside)) {
         continue;
       }
-      if (fs::is_directory(entry.symlink_status())) {
+      if (is_folder_itself(path)) {
         copy_as_it_is(name / inside, to / inside);
       } else {
         add(name / inside, to / inside);
@@ -176,7 +179,7 @@ std::optional<StoreRepair> repair_store(const fs::path& folder, const fs::path& 
                                         StopSignal& stop) {
   // Held from before the survey until the copy is complete.
   std::optional<RunLock> lock;
-  if (fs::is_directory(folder)) {
+  if (folder_exists(folder)) {
     lock.emplace(RunLock::for_reading(folder));
     check_target(folder, target);
   }

@@ -7,6 +7,7 @@
 
 #include "base/config.hpp"
 #include "base/error.hpp"
+#include "base/file.hpp"
 #include "base/text.hpp"
 #include "study/compare/study_plan.hpp"
 #include "study/run/run_lock.hpp"
@@ -28,13 +29,13 @@ bool is_folder(const std::filesystem::path& path) {
 // Returns the folders in it, sorted, without links and without folders that a repair set aside.
 std::vector<std::filesystem::path> list_folders(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> folders;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (!entry.is_symlink() && entry.is_directory() &&
-        !entry.path().filename().string().ends_with(".damaged")) {
-      folders.push_back(entry.path());
+  for (const auto& path : list_folder(folder)) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(std::filesystem::symlink_status(path, ignored)) &&
+        !path.filename().string().ends_with(".damaged")) {
+      folders.push_back(path);
     }
   }
-  std::ranges::sort(folders);
   return folders;
 }
 
@@ -120,6 +121,7 @@ class StoreSurveyor {
     if (!std::filesystem::is_regular_file(file, ignored)) {
       return is_there(file) ? "it is not a regular file" : "it is missing";
     }
+    check_readable(file);
     try {
       return find(file);
     } catch (const std::exception& error) {
@@ -174,9 +176,8 @@ class StoreSurveyor {
       if (!is_folder(survey_.folder / part)) {
         continue;
       }
-      for (const auto& entry :
-           std::filesystem::recursive_directory_iterator(survey_.folder / part)) {
-        const auto name = entry.path().lexically_relative(survey_.folder);
+      for (const auto& path : list_tree(survey_.folder / part)) {
+        const auto name = path.lexically_relative(survey_.folder);
         if (name.extension() == ".json") {
           check(name, find_json_fault);
         } else if (name.extension() == ".csv") {
