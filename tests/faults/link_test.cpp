@@ -57,8 +57,8 @@ TEST_F(Links, InAStudyAreReplacedByItsNewFiles) {
         cell + "result.json.new", cell + "winner.toml.new"}) {
     plant(name);
   }
-  for (const std::string& name : {cell + "cell.json", cell + "result.json",
-                                  std::string("study/final/q1-complex/ga.json")}) {
+  for (const std::string& name :
+       {cell + "cell.json", cell + "result.json", std::string("study/final/q1-complex/ga.json")}) {
     fs::remove(folder_ / name);
   }
   const Outcome outcome = compare();

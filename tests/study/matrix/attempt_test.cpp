@@ -154,7 +154,7 @@ TEST_F(AttemptTest, IsStoppedByANewerOneAndPublishesNothing) {
         : attempts_(std::move(attempts)), ends_(ends) {}
     void on_progress(const Progress& progress) override {
       if (progress.done >= 20 && !newer_) {
-        newer_.emplace(attempts_, study_, 0);
+        newer_.emplace(attempts_, attempts_, 0);
         while (!ends_.requested()) {
           std::this_thread::sleep_for(std::chrono::milliseconds(5));
         }

@@ -60,7 +60,7 @@ TEST_F(StudyStatusTest, TellsWhatBecomesOfEveryCell) {
 TEST_F(StudyStatusTest, SeesALocalComparison) {
   const StudyFolder held(study_, plan_);
   std::filesystem::create_directories(place(cell("2")));
-  const RunLock lock(place(cell("2")));
+  const RunLock lock{Folder(place(cell("2")))};
   const StudyStatus status = read();
   EXPECT_THAT(status.writer, HasSubstr("process "));
   EXPECT_EQ(status.count(CellState::running), 1U);

@@ -70,8 +70,8 @@ TEST_F(RunLinks, InPlaceOfFilesThatAreKeptAreRefusedByName) {
       fs::remove(file);
       is_hard ? fs::create_hard_link(victim_, file) : fs::create_symlink(victim_, file);
       EXPECT_THAT(error_of(ErrorKind::bad_data, [&] { run(make_small_plan(), folder); }),
-                  StartsWith(file.string() + (is_hard ? ": has 2 names (hard links)"
-                                                      : ": is a symbolic link")));
+                  StartsWith(file.string() +
+                             (is_hard ? ": has 2 names (hard links)" : ": is a symbolic link")));
       expect_unharmed();
     }
   }

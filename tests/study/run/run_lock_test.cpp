@@ -43,7 +43,7 @@ TEST(RunLock, EndsWithItsScopeAndConcernsOneFolder) {
   const TemporaryFolder other;
   const RunLock elsewhere{Folder(other.path())};
   for (int i = 0; i < 2; ++i) {
-    EXPECT_NO_THROW(const RunLock lock(folder.path()));
+    EXPECT_NO_THROW(const RunLock lock(Folder(folder.path())));
   }
 }
 
@@ -95,7 +95,7 @@ TEST(RunLock, IsNotInheritedByPrograms) {
   char sign = 0;
   ASSERT_EQ(::read(output[0], &sign, 1), 1);  // the program runs, so exec has happened
   lock.reset();
-  EXPECT_NO_THROW(lock.emplace(folder.path()));
+  EXPECT_NO_THROW(lock.emplace(Folder(folder.path())));
   ASSERT_EQ(::write(input[1], "\n", 1), 1);
   int status = 0;
   ASSERT_EQ(::waitpid(child, &status, 0), child);
