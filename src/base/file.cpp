@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/read_limit.hpp"
 
 namespace armwright {
 namespace {
@@ -45,6 +46,7 @@ std::string read_file(const std::filesystem::path& path, std::size_t limit_bytes
       return content;
     }
     content.append(buffer, static_cast<std::size_t>(got));
+    check_reading();
     if (content.size() > limit_bytes) {
       throw Error(ErrorKind::bad_data,
                   fmt::format("{}: is larger than the limit of {} bytes for such a file",

@@ -5,7 +5,9 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <thread>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -54,6 +56,29 @@ double parse_duration_s(std::string_view flag, std::string_view text) {
   return *value * unit_s;
 }
 
+ReadLimit parse_read_limit(std::string_view text) {
+  constexpr const char* kFlag = "--read-limit (ARMWRIGHT_READ_LIMIT)";
+  constexpr double kMost_bytes = 1e18;
+  constexpr std::pair<std::string_view, double> kUnits[] = {
+      {"KiB", 1024.0}, {"MiB", 1024.0 * 1024}, {"GiB", 1024.0 * 1024 * 1024}};
+  ReadLimit limit;
+  for (const std::string& part : split(text, ',')) {
+    const auto unit =
+        std::ranges::find_if(kUnits, [&](const auto& one) { return part.ends_with(one.first); });
+    if (unit == std::end(kUnits)) {
+      limit.time_s = parse_duration_s(kFlag, part);
+      continue;
+    }
+    const auto number =
+        parse_finite(std::string_view(part).substr(0, part.size() - unit->first.size()));
+    if (!number || *number <= 0 || *number * unit->second > kMost_bytes) {
+      refuse(kFlag, part, "a memory above 0 with its unit: 512MiB or 4GiB");
+    }
+    limit.memory_bytes = static_cast<std::uint64_t>(*number * unit->second);
+  }
+  return limit;
+}
+
 Schedule parse_schedule(std::string_view text) {
   const auto schedule = read_schedule(text);
   if (!schedule) {
@@ -76,6 +101,13 @@ CLI::App* add_command(CLI::App& parent, Session& session, const std::string& nam
   command->add_option("--color", session.color, "When to use colour: auto, always or never")
       ->type_name("WHEN")
       ->group("Output");
+  command
+      ->add_option("--read-limit", session.read_limit,
+                   "Processor time and memory that reading a problem, a study, a design or test\n"
+                   "cases may take (default: " +
+                       to_string(ReadLimit{}) + "); give one of them or both")
+      ->type_name("TIME,MEMORY")
+      ->envname("ARMWRIGHT_READ_LIMIT");
   command->footer(examples + std::string(kSeeExitCodes));
   return command;
 }

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/read_limit.hpp"
 #include "problems/config/problem_loader.hpp"
 
 namespace CLI {
@@ -26,6 +27,9 @@ std::int64_t parse_count(std::string_view flag, std::string_view text, std::int6
 // Returns the seconds that "90", "90s", "10m" or "1.5h" stand for. Throws Error{usage} unless they
 // are above 0.
 double parse_duration_s(std::string_view flag, std::string_view text);
+// Reads "60s,4GiB", "60s" or "4GiB", the value of --read-limit. What the text leaves out keeps its
+// default. Throws Error{usage}.
+ReadLimit parse_read_limit(std::string_view text);
 // Reads "fresh:K", "fixed:K" or "coevolution:K", the value of --schedule. Throws Error{usage}.
 Schedule parse_schedule(std::string_view text);
 // Reads the value of --racing. Throws Error{usage}.

@@ -6,6 +6,7 @@
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/hash.hpp"
+#include "base/read_limit.hpp"
 #include "base/text.hpp"
 #include "optimizers/plugins/host_optimizer.hpp"
 #include "optimizers/table/optimizer_table.hpp"
@@ -343,6 +344,7 @@ void keep_plain_functions(const std::filesystem::path& recorded, StudyPlan& plan
 }
 
 StudyPlan make_study_plan(const StudyRequest& request) {
+  const ReadStep step(fmt::format("the study '{}'", sanitize(request.file)));
   StudyPlan plan;
   RawPlan raw;
   if (!request.file.empty()) {

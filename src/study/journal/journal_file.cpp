@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <string>
 
@@ -14,10 +15,21 @@
 namespace armwright {
 namespace {
 
+// Copies the bytes behind `offset`. Holes stay holes.
 void copy_from(int source, std::uint64_t offset, int target,
                const std::filesystem::path& source_name, const std::filesystem::path& target_name) {
+  struct stat status {};
+  if (::fstat(source, &status) != 0) {
+    fail_io(source_name, "read its torn end", errno);
+  }
+  const std::uint64_t begin = offset;
+  const auto size = static_cast<std::uint64_t>(status.st_size);
+  if (::ftruncate(target, static_cast<off_t>(size - begin)) != 0) {
+    fail_io(target_name, "save the torn end of the journal in it", errno);
+  }
   std::string chunk(1 << 20, '\0');
-  while (true) {
+  while ((offset = find_data(source, offset, size)) < size) {
+    ::lseek(target, static_cast<off_t>(offset - begin), SEEK_SET);
     const ssize_t got = ::pread(source, chunk.data(), chunk.size(), static_cast<off_t>(offset));
     if (got < 0 && errno == EINTR) {
       continue;
@@ -91,6 +103,14 @@ void sync_folder_of(const std::filesystem::path& file) {
   if (descriptor.is_open()) {
     ::fsync(descriptor.get());
   }
+}
+
+std::uint64_t find_data(int fd, std::uint64_t offset, std::uint64_t size) {
+  const off_t data = ::lseek(fd, static_cast<off_t>(offset), SEEK_DATA);
+  if (data < 0) {
+    return errno == ENXIO ? size : offset;  // ENXIO: there are no data behind the offset
+  }
+  return std::min(static_cast<std::uint64_t>(data), size);
 }
 
 bool is_deleted(int fd) {

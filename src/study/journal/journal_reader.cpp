@@ -16,6 +16,7 @@
 #include "base/file.hpp"
 #include "base/hash.hpp"
 #include "base/text.hpp"
+#include "study/journal/journal_file.hpp"
 
 namespace armwright {
 
@@ -56,6 +57,10 @@ std::string_view JournalWindow::view(std::uint64_t offset, std::size_t length) {
     fill(offset, length);
   }
   return std::string_view(buffer_).substr(offset - begin_, length);
+}
+
+std::uint64_t JournalWindow::skip_hole(std::uint64_t offset) const {
+  return std::max(offset, find_data(fd_, offset, size_));
 }
 
 void JournalWindow::fill(std::uint64_t offset, std::size_t length) {
@@ -125,8 +130,17 @@ RecordAttempt read_record(JournalWindow& window, std::uint64_t offset) {
 }
 
 std::optional<std::uint64_t> find_intact_record(JournalWindow& window, std::uint64_t offset) {
+  // File systems make holes of whole pages.
+  constexpr std::uint64_t kPageBytes = 4096;
   while (!window.has_given_up() && ++offset < window.size() &&
          window.bytes_from(offset) >= kFrameBytes + kProbeBytes) {
+    if (offset % kPageBytes == 0) {
+      // The frame of a record may begin with zeros in the hole before it.
+      offset = std::max(offset, window.skip_hole(offset) - kFrameBytes);
+      if (window.bytes_from(offset) < kFrameBytes + kProbeBytes) {
+        break;
+      }
+    }
     if (read_record(window, offset).record) {
       return offset;
     }
