@@ -13,6 +13,7 @@
 #include "base/file.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
+#include "sim/tracking/engine_support.hpp"
 #include "study/journal/journal.hpp"
 #include "study/run/run_plan.hpp"
 
@@ -87,6 +88,16 @@ class FieldSearch {
 };
 
 // Compares fields in the order of cause and effect.
+// Returns the reason in the words of this version: version 1.0 wrote "it is at -nan rad and moves at
+// inf rad/s" where it is `now`.
+std::string use_present_words(const std::string& recorded, const std::string& now) {
+  const std::string_view place = std::string_view(now).substr(0, now.find(kNotFinite));
+  const bool is_old =
+      place.size() < now.size() && recorded.starts_with(place) &&
+      (recorded.find("nan ") != std::string::npos || recorded.find("inf ") != std::string::npos);
+  return is_old ? now : recorded;
+}
+
 std::optional<CellDifference> compare_records(const EvaluationRecord& a, const EvaluationRecord& b,
                                               std::string where) {
   FieldSearch search;
@@ -102,7 +113,7 @@ std::optional<CellDifference> compare_records(const EvaluationRecord& a, const E
   const Evaluation& after = b.evaluation;
   search.meet("case_errors", before.case_errors, after.case_errors);
   search.meet("status", before.status, after.status);
-  search.meet("reason", before.reason, after.reason);
+  search.meet("reason", use_present_words(before.reason, after.reason), after.reason);
   search.meet("failed_cases", before.failed_cases, after.failed_cases);
   search.meet("objectives", before.objectives, after.objectives);
   search.meet("constraint_values", before.constraint_values, after.constraint_values);
