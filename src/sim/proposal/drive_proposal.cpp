@@ -21,12 +21,12 @@ constexpr double kSpeedShare = 0.6;
 constexpr double kEffortShare = 0.6;
 constexpr double kSlower = 0.8;
 constexpr int kSlowdowns = 20;
-// Below 1 / kSlowdownOfSteps of the first speed, moves have longer control periods instead of more:
-// 400 for the longest move, since it takes 1 s at first, and a period 10 ms. The efforts are nearly
-// those at rest then. Joint speeds are computed from the periods of the task, because the proposed
-// speed depends on them to the last bit; the second bound is far below the speed of any arm.
+// Below 1 / kSlowdownOfSteps of the first speed, efforts are computed for longer control periods
+// instead of more: 400 for the longest move, since it takes 1 s at first, and a period 10 ms. The
+// efforts are nearly those at rest then. The proposed speed depends on the joints' speeds to the
+// last bit, so they keep the task's periods down to 1 / kSlowdownOfSpeeds.
 constexpr double kSlowdownOfSteps = 4;
-constexpr double kSlowdownOfSpeeds = 1000;
+constexpr double kSlowdownOfSpeeds = 30;
 
 constexpr double kBandwidth_rad_per_s = 10;
 constexpr double kDampingRatio = 0.7;
