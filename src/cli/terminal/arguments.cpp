@@ -117,6 +117,16 @@ void apply_time_limit(std::string_view time_limit, StopSignal& stop) {
   }
 }
 
+void add_trust_flag(CLI::App& command, bool& trust) {
+  command.add_flag("--trust", trust,
+                   "Run the plugins that the study names, although you did not start it on this\n"
+                   "machine; a plugin has all rights that you have");
+}
+
+std::function<bool(const std::string& question)> make_asker(bool trust) {
+  return [trust](const std::string& question) { return trust || ask_on_terminal(question); };
+}
+
 void FolderOptions::add_to(CLI::App& command, const std::string& what,
                            const std::string& fallback) {
   command.add_option("--out", out, fmt::format("The {}'s folder (default: {})", what, fallback))

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -54,6 +55,12 @@ unsigned parse_jobs_or_one(std::string_view text);
 void add_time_limit_flag(CLI::App& command, std::string& time_limit);
 // Sets the deadline of `stop` to now plus the time limit, if there is one. Throws Error{usage}.
 void apply_time_limit(std::string_view time_limit, StopSignal& stop);
+
+// Adds --trust. `trust` must live as long as the parser.
+void add_trust_flag(CLI::App& command, bool& trust);
+// Returns what answers questions about plugins: yes with --trust, otherwise what the user says on
+// the terminal, and no without a terminal.
+std::function<bool(const std::string& question)> make_asker(bool trust);
 
 // The flags --out and --new, which choose the folder of a run, study or reproduction.
 struct FolderOptions {

@@ -14,6 +14,7 @@
 #include "study/compare/optimizer_labels.hpp"
 #include "study/compare/optimizer_streams.hpp"
 #include "study/compare/study_plan.hpp"
+#include "study/compare/study_reader.hpp"
 
 namespace armwright {
 namespace {
@@ -134,6 +135,24 @@ std::string make_body(const StudyPlan& plan) {
   return text + make_targets(plan);
 }
 
+StudyRequest make_folder_request(const std::filesystem::path& folder, PluginUse plugins) {
+  check_study_folder(folder);
+  StudyRequest request;
+  request.file = (folder / kPlanFile).string();
+  request.plugins = plugins;
+  return request;
+}
+
+// Takes the description from every plugin of which the recorded plan has none.
+void adopt_descriptions(const std::filesystem::path& recorded, StudyPlan& plan) {
+  for (const NamedOptimizer& known : read_recorded_optimizers(recorded)) {
+    const auto same = std::ranges::find(plan.optimizers, known.label, &StudyOptimizer::label);
+    if (same != plan.optimizers.end() && known.description.empty()) {
+      same->row.description.clear();
+    }
+  }
+}
+
 json index_by_label(const json& list, const char* ignored_key) {
   json by_label = json::object();
   for (json entry : list) {
@@ -190,6 +209,7 @@ void adopt_recorded(const std::filesystem::path& folder, StudyPlan& plan) {
   keep_selection(folder / kPlanFile, plan);
   keep_plain_functions(folder / kPlanFile, plan);
   adopt_streams(folder / kPlanFile, plan);
+  adopt_descriptions(folder / kPlanFile, plan);
 }
 
 bool is_study_folder(const std::filesystem::path& path) {
@@ -212,9 +232,12 @@ void check_study_folder(const std::filesystem::path& folder) {
 }
 
 StudyPlan load_study_plan(const std::filesystem::path& folder) {
-  check_study_folder(folder);
-  StudyRequest request;
-  request.file = (folder / kPlanFile).string();
+  return make_study_plan(make_folder_request(folder, PluginUse::read));
+}
+
+StudyPlan load_study_plan(const std::filesystem::path& folder, const AskUser& ask) {
+  StudyRequest request = make_folder_request(folder, PluginUse::run);
+  request.ask = ask;
   return make_study_plan(request);
 }
 

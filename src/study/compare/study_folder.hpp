@@ -52,10 +52,14 @@ void check_study_folder(const std::filesystem::path& folder);
 // Adds to `plan` the baselines that the folder's recorded plan has, and keeps its rules: the
 // candidates that are judged (keep_selection()), the plain form of functions where version 1.0
 // recorded it (keep_plain_functions()), and the random streams of the optimizers
-// (adopt_streams()). Does nothing if the folder is not a study's. To be called before the
+// (adopt_streams()). Descriptions of plugins stay absent where version 1.0 recorded none. Does nothing if the folder is not a study's. To be called before the
 // constructor of StudyFolder.
 void adopt_recorded(const std::filesystem::path& folder, StudyPlan& plan);
-// Returns the plan that a study's folder records. Throws Error{usage} or Error{bad_data}.
+// Returns the plan that a study's folder records, to be read. Starts no plugin and opens none, so
+// the plugins need not exist; their cells cannot run. Throws Error{usage} or Error{bad_data}.
 StudyPlan load_study_plan(const std::filesystem::path& folder);
+// The same for a plan whose cells shall run. The plugins need consent
+// (study/compare/plugin_consent.hpp).
+StudyPlan load_study_plan(const std::filesystem::path& folder, const AskUser& ask);
 
 }  // namespace armwright
