@@ -105,7 +105,7 @@ class StudyTest(FolderTest):
         with self.expect_error(armwright.UsageError, "would run, with all of your rights: exec:sh -c 'echo > PWNED'", "trust=True"):
             armwright.compare(study="theirs/study.toml")
         self.assertFalse(pathlib.Path("PWNED").exists())
-        with self.expect_error(armwright.DataError, "before it described itself"):
+        with self.expect_error(armwright.BadDataError, "before it described itself"):
             armwright.compare(study="theirs/study.toml", trust=True)
         self.assertTrue(pathlib.Path("PWNED").exists())
 

@@ -11,6 +11,7 @@
 #include "base/text.hpp"
 #include "base/toml_text.hpp"
 #include "cli/terminal/session.hpp"
+#include "cli/terminal/terminal.hpp"
 #include "problems/config/config_files.hpp"
 #include "sim/engines/engine_table.hpp"
 #include "sim/tracking/physics_engine.hpp"

@@ -35,7 +35,8 @@ std::string make_description(const OptimizerRow& row);
 // Error{bad_data} if the text is no description.
 OptimizerRow read_plugin_row(const std::string& name, const std::string& description);
 // Makes the row of a plugin of which only the KEY=VALUE texts of its options are known, as version
-// 1.0 recorded it. Every option is a text, and no schedule is refused.
+// 1.0 recorded it. Every option is a text. Generations and local search count as
+// declared, so that no schedule is refused and no baseline is missing.
 OptimizerRow make_undescribed_row(const std::string& name, std::span<const std::string> options);
 
 }  // namespace armwright
