@@ -37,13 +37,15 @@ class CliTrust : public testing::Test {
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   }
 
-  // Replaces a text in the plan and gives the plan a valid hash, as anybody can.
+  // Replaces a text in the plan and gives the plan a valid hash, as anybody can. Checksums of the
+  // study go away, as anybody can remove them.
   void edit_plan(const std::string& what, const std::string& by) {
     const auto file = folder_ / "study/study.toml";
     std::string text = read_text(file);
     ASSERT_NE(text.find(what), std::string::npos) << text;
     text.replace(text.find(what), what.size(), by);
     const std::string body = text.substr(text.find('\n') + 1);
+    std::filesystem::remove(folder_ / "study/SHA256SUMS");
     std::ofstream(file) << "plan_sha256 = \"" << calc_sha256_hex(body) << "\"\n" << body;
   }
 
