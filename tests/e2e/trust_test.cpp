@@ -201,9 +201,11 @@ TEST_F(CliTrust, AStudyIsReadWhenItsPluginsAreGone) {
 
 // Returns whether strace may watch a program here.
 bool can_trace(const std::filesystem::path& folder) {
-  return run_program(folder, {"--version"},
-                     {.variables = {}, .out_file = "", .launcher = {"sh", "-c",
-                      "strace -f -qq -o trace \"$@\" >/dev/null 2>&1", "sh"}})
+  return run_program(
+             folder, {"--version"},
+             {.variables = {},
+              .out_file = "",
+              .launcher = {"sh", "-c", "strace -f -qq -o trace \"$@\" >/dev/null 2>&1", "sh"}})
              .exit_code == 0;
 }
 

@@ -146,9 +146,8 @@ OptimizerRow make_undescribed_row(const std::string& name, std::span<const std::
   row.capabilities.generations = true;
   row.capabilities.local = true;
   for (const std::string& option : options) {
-    OptionSpec spec{.name = option.substr(0, option.find('=')),
-                    .description = "",
-                    .fallback = std::string()};
+    OptionSpec spec{
+        .name = option.substr(0, option.find('=')), .description = "", .fallback = std::string()};
     if (std::ranges::count(row.options, spec.name, &OptionSpec::name) == 0) {
       row.options.push_back(std::move(spec));
     }

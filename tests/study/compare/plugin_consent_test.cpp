@@ -40,8 +40,8 @@ class PluginConsent : public StudyTest {
   }
   // The optimizer `ga` becomes a program that leaves a file behind. It describes nothing.
   void plant_program(const std::string& word = "") const {
-    replace_in_plan("name = \"ga\"", R"(name = "exec:sh -c 'echo > )" + (temporary_ / "PWNED").string() +
-                                         "' " + word + "\"");
+    replace_in_plan("name = \"ga\"", R"(name = "exec:sh -c 'echo > )" +
+                                         (temporary_ / "PWNED").string() + "' " + word + "\"");
   }
   bool has_run() const { return std::filesystem::exists(temporary_ / "PWNED"); }
 
@@ -134,7 +134,8 @@ TEST_F(PluginConsent, TheMemoryIsPrivateAndMayBeMissing) {
   ASSERT_EQ(::stat((temporary_ / "state/armwright/studies").c_str(), &status), 0);
   EXPECT_EQ(status.st_mode & 0777U, 0700U);
   std::size_t files = 0;
-  for (const auto& file : std::filesystem::directory_iterator(temporary_ / "state/armwright/studies")) {
+  for (const auto& file :
+       std::filesystem::directory_iterator(temporary_ / "state/armwright/studies")) {
     ASSERT_EQ(::stat(file.path().c_str(), &status), 0);
     EXPECT_EQ(status.st_mode & 0777U, 0600U);
     ++files;
