@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "cli/commands/commands.hpp"
@@ -52,7 +53,7 @@ UnfinishedRun read_unfinished(const std::filesystem::path& folder) {
   const auto file = folder / "manifest.json";
   UnfinishedRun run;
   try {
-    const json manifest = json::parse(read_json_file(file, kLimit_bytes));
+    const json manifest = json::parse(read_checked_json(file, kLimit_bytes));
     run.command_line = manifest.at("command_line").get<std::vector<std::string>>();
     run.budget = whole_from_json<std::int64_t>(manifest.at("configuration").at("run").at("budget"));
   } catch (const json::exception& error) {

@@ -6,6 +6,7 @@
 
 #include "base/build_info.hpp"
 #include "base/error.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "problems/config/config_files.hpp"
@@ -125,7 +126,7 @@ void read_manifest(RecordedRun& run) {
                             sanitize(run.folder.string())));
   }
   try {
-    const json manifest = json::parse(read_json_file(file, kManifestLimit_bytes));
+    const json manifest = json::parse(read_checked_json(file, kManifestLimit_bytes));
     run.configuration = manifest.at("configuration");
     run.build = manifest.at("build").get<std::map<std::string, std::string>>();
     run.command_line = manifest.at("command_line").get<std::vector<std::string>>();
@@ -154,7 +155,7 @@ void read_name(RecordedRun& run) {
   }
   const auto cell = run.folder / "cell.json";
   if (fs::exists(cell)) {
-    const json content = json::parse(read_json_file(cell, kCellLimit_bytes), nullptr, false);
+    const json content = json::parse(read_checked_json(cell, kCellLimit_bytes), nullptr, false);
     if (content.is_object() && content.contains("problem") && content["problem"].is_string()) {
       run.problem_name = content["problem"].get<std::string>();
       return;

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "base/file.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/text.hpp"
 #include "report/formats/export_files.hpp"
 #include "report/formats/formats.hpp"
@@ -97,7 +97,7 @@ void write_csv(const CollectedRuns& collected, const std::filesystem::path& fold
                           designs.add(fmt::format("{}-{}-{}", escape_file_name(run.problem),
                                                   escape_file_name(run.label), run.replicate)));
           write_output_file(folder / design,
-                            read_file(run.folder / "winner.toml", kDesignLimit_bytes));
+                            read_checked_file(run.folder / "winner.toml", kDesignLimit_bytes));
         }
         runs.write(make_run_row(trace, design));
       }

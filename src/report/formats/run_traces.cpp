@@ -9,6 +9,7 @@
 
 #include "base/config.hpp"
 #include "base/error.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "study/journal/journal.hpp"
@@ -38,7 +39,7 @@ RunEntry read_cell(const fs::path& folder) {
   RunEntry run;
   run.folder = folder;
   try {
-    const json cell = json::parse(read_json_file(file, kCellLimit_bytes));
+    const json cell = json::parse(read_checked_json(file, kCellLimit_bytes));
     run.problem = cell.at("problem").get<std::string>();
     run.label = cell.at("label").get<std::string>();
     run.optimizer = cell.at("optimizer").get<std::string>();
@@ -64,6 +65,7 @@ std::vector<std::string> read_problem_order(const fs::path& study) {
   if (!fs::exists(file)) {
     return labels;
   }
+  FolderChecksums(study).check("study.toml");
   try {
     const json plan = json::parse(ConfigTable::load(file).to_json());
     for (const json& problem : plan.at("problem")) {
@@ -81,11 +83,13 @@ auto make_key(const RunEntry& run) {
 }
 
 FoundRuns find_cells(const fs::path& folder) {
+  const FolderChecksums checksums(folder);
   FoundRuns found;
   for (const fs::path& problem : list_folders(folder / "cells")) {
     for (const fs::path& label : list_folders(problem)) {
       for (const fs::path& replicate : list_folders(label)) {
         if (fs::exists(replicate / "cell.json")) {
+          checksums.check((replicate.lexically_relative(folder) / kChecksumFile).string());
           found.runs.push_back(read_cell(replicate));
         } else {
           ++found.unfinished;

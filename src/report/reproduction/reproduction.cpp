@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "base/folder_checksums.hpp"
 
 namespace armwright {
 namespace {
@@ -106,6 +107,7 @@ class Executor {
     if (!execute(*run, folder)) {
       return std::nullopt;
     }
+    FolderChecksums(folder).check("winner.toml");
     return load_design((folder / "winner.toml").string()).design;
   }
 

@@ -1,5 +1,6 @@
 // Computes a reproduction and keeps its results in a folder: reproduction.json (every computed part
-// and the hash of its inputs), runs/NAME (ordinary runs) and lock. An interrupted reproduction
+// and the hash of its inputs), runs/NAME (ordinary runs), SHA256SUMS (the checksums of the record
+// and of the SHA256SUMS of each run) and lock. An interrupted reproduction
 // continues: it computes only the parts that are missing, and it never mixes different settings.
 // reproduction.json has the same bytes after any number of interruptions.
 #pragma once

@@ -10,6 +10,7 @@
 #include "base/build_info.hpp"
 #include "base/error.hpp"
 #include "base/file.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/hash.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
@@ -147,7 +148,8 @@ std::filesystem::path claim_folder(const std::filesystem::path& path) {
   }
   for (const auto& entry : std::filesystem::directory_iterator(path)) {
     const std::string name = entry.path().filename().string();
-    if (name != "lock" && !name.ends_with(".new")) {  // a program that is killed early leaves these
+    // A program that is killed early leaves these.
+    if (name != "lock" && name != kChecksumFile && !name.ends_with(".new")) {
       throw Error(ErrorKind::usage,
                   fmt::format("{}: holds '{}' but no {}, so it is not the folder of a "
                               "reproduction; choose another with --out, or --new",
@@ -181,7 +183,7 @@ ReproductionRecord load_reproduction(const std::filesystem::path& folder) {
                                               "{})",
                                               folder.string(), kRecordFile));
   }
-  const std::string text = read_json_file(file, kRecordLimit_bytes);
+  const std::string text = read_checked_json(file, kRecordLimit_bytes);
   const auto refuse = [&](const std::string& why) {
     return Error(ErrorKind::bad_data,
                  fmt::format("{}: is not what armwright wrote ({}); choose another folder with "
@@ -234,7 +236,8 @@ ReproductionFolder::ReproductionFolder(const std::filesystem::path& path,
   std::ranges::sort(record_.planned);
   const auto doubled = std::ranges::unique(record_.planned);
   record_.planned.erase(doubled.begin(), doubled.end());
-  if (before != record_.planned || !is_reproduction_folder(path)) {
+  if (before != record_.planned || !is_reproduction_folder(path) ||
+      !std::filesystem::exists(path / kChecksumFile)) {
     write();
   }
 }
@@ -280,9 +283,18 @@ void ReproductionFolder::add(PartResult result) {
 }
 
 void ReproductionFolder::write() const {
-  write_file_atomically(
-      path_ / kRecordFile,
+  const std::pair<std::string, std::string> file(
+      kRecordFile,
       record_to_json(record_).dump(1, ' ', false, json::error_handler_t::replace) + "\n");
+  FolderChecksums checksums(path_);
+  checksums.write({&file, 1});
+  for (const auto& [label, result] : record_.results) {
+    const std::string& run = result.part.run;
+    if (!run.empty()) {
+      checksums.cover((get_run_folder(run) / kChecksumFile).lexically_relative(path_).string());
+    }
+  }
+  checksums.save();
 }
 
 }  // namespace armwright

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/file.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/text.hpp"
 #include "study/compare/choices.hpp"
 #include "study/compare/incumbents.hpp"
@@ -160,7 +161,7 @@ std::optional<std::uint64_t> count_judged(const std::filesystem::path& folder) {
   if (!std::filesystem::exists(file)) {
     return std::nullopt;
   }
-  return parse_result(read_file(file, kResultLimit_bytes), file).judged.size();
+  return parse_result(read_checked_file(file, kResultLimit_bytes), file).judged.size();
 }
 
 std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
@@ -204,7 +205,10 @@ std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
   if (!test_progress(plan, cell, request.plan, *result, where, stop, outcome)) {
     return std::nullopt;
   }
-  write_file_atomically(request.folder / "cell.json", to_json(outcome));
+  const std::string name = "cell.json";
+  FolderChecksums(request.folder).drop({&name, 1});
+  write_file_atomically(request.folder / name, to_json(outcome));
+  cover_run(request.folder, outcome.failure.empty());
   // One process may run cells of many problems; each problem would keep its cases in memory.
   request.plan.problem.problem->forget_cases();
   return outcome;
@@ -216,7 +220,7 @@ std::optional<CellOutcome> load_cell(const StudyPlan& plan, const Cell& cell,
   if (!std::filesystem::exists(file)) {
     return std::nullopt;
   }
-  CellOutcome outcome = parse_cell(read_file(file, kCellLimit_bytes), file);
+  CellOutcome outcome = parse_cell(read_checked_file(file, kCellLimit_bytes), file);
   const StudyProblem& problem = plan.problems[cell.problem];
   if (outcome.problem != problem.label ||
       outcome.optimizer != plan.optimizers[cell.optimizer].label ||

@@ -10,7 +10,7 @@
 
 #include "base/bits.hpp"
 #include "base/error.hpp"
-#include "base/file.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "study/journal/journal.hpp"
@@ -221,8 +221,8 @@ void compare_file(const std::filesystem::path& recorded, const std::filesystem::
   if (!was_there) {
     return;  // winner.toml is missing if there is no winner or no arm
   }
-  const std::string before = read_file(recorded / file, kFileLimit_bytes);
-  std::string after = read_file(now / file, kFileLimit_bytes);
+  const std::string before = read_checked_file(recorded / file, kFileLimit_bytes);
+  std::string after = read_checked_file(now / file, kFileLimit_bytes);
   if (before == after) {
     comparison.files.push_back(file);
     return;
@@ -253,7 +253,7 @@ void compare_file(const std::filesystem::path& recorded, const std::filesystem::
 json read_manifest(const std::filesystem::path& folder) {
   const auto file = folder / "manifest.json";
   try {
-    json manifest = json::parse(read_json_file(file, kFileLimit_bytes));
+    json manifest = json::parse(read_checked_json(file, kFileLimit_bytes));
     for (const char* part : {"configuration", "build"}) {
       manifest.at(part).get<std::map<std::string, json>>();  // throws unless both are objects
     }

@@ -3,7 +3,8 @@
 //   study.toml                    the resolved plan with its hash, written before any cell runs
 //   problems/LABEL.json           the whole configuration of each problem
 //   cells/PROBLEM/OPTIMIZER/rNN   the runs
-//   result.json, verdict.txt, tables/   derived from the files above
+//   result.json, verdict.txt, tables/, final/   derived from the files above
+//   SHA256SUMS                    the checksums of all these files; of a run, that of its SHA256SUMS
 //
 // A plan may grow by replicates, problems and optimizers. Recorded problems and optimizers must not
 // be changed or left out, so that all cells stay comparable. Title, targets, reference and value
@@ -12,9 +13,11 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "base/folder_checksums.hpp"
 #include "study/compare/study_plan.hpp"
 #include "study/run/run_lock.hpp"
 
@@ -33,7 +36,7 @@ class StudyFolder {
   const std::vector<std::string>& additions() const { return additions_; }
 
  private:
-  void extend(const StudyPlan& plan, const std::string& text);
+  void extend(const StudyPlan& plan, const std::string& text, FolderChecksums& checksums);
 
   std::filesystem::path path_;
   RunLock lock_;
@@ -44,6 +47,17 @@ class StudyFolder {
 // SHA-256 of the text after it.
 std::string to_toml(const StudyPlan& plan);
 std::string calc_plan_hash(const StudyPlan& plan);
+
+// Covers all files of the study with checksums. To be called when its tables are written. Throws
+// Error{io}.
+void cover_study(const StudyPlan& plan, const std::filesystem::path& study);
+// Returns the names of the files, relative to the study, that its checksums cover, apart from its
+// cells. Throws Error{io} or std::filesystem::filesystem_error if the folder cannot be read.
+std::vector<std::string> list_study_files(const std::filesystem::path& study);
+// Removes from the study's checksums those cells of the plan that have not ended, because they are
+// going to change. The caller holds the study's lock.
+void uncover_unfinished(const StudyPlan& plan, std::span<const Cell> cells,
+                        const std::filesystem::path& study);
 
 // Returns whether the folder is a study's.
 bool is_study_folder(const std::filesystem::path& path);

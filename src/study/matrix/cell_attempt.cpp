@@ -11,8 +11,11 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/folder_checksums.hpp"
 #include "study/compare/cell.hpp"
+#include "study/compare/study_folder.hpp"
 #include "study/matrix/attempt.hpp"
+#include "study/run/run_lock.hpp"
 
 namespace armwright {
 namespace {
@@ -90,6 +93,16 @@ class Watcher {
   std::thread thread_;  // declared last: it uses all other members
 };
 
+// Removes the cell from the study's checksums if they cover an earlier state of it. The lock keeps
+// other processes from changing the checksums meanwhile.
+void uncover_cell(const StudyPlan& plan, const Cell& cell, const std::filesystem::path& study) {
+  const std::string name = (make_cell_path(plan, cell) / kChecksumFile).string();
+  if (FolderChecksums(study).covers(name)) {
+    const RunLock lock(study);
+    uncover_unfinished(plan, {&cell, 1}, study);
+  }
+}
+
 CellAttempt superseded(const Attempt& attempt) {
   attempt.end_in_order();
   return {CellAttempt::End::superseded, attempt.find_successor(), false};
@@ -111,6 +124,7 @@ CellAttempt attempt_cell(const StudyPlan& plan, const Cell& cell, const CellAtte
       attempt.end_in_order();
       return {};
     }
+    uncover_cell(plan, cell, request.study);
     copy_furthest_state(plan, cell, request.study, attempt.run(), observer);
     CountingObserver counting(observer);
     std::optional<CellOutcome> outcome;

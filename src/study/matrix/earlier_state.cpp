@@ -10,6 +10,7 @@
 
 #include "base/error.hpp"
 #include "base/file.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/text.hpp"
 #include "study/compare/cell.hpp"
 #include "study/journal/journal.hpp"
@@ -89,8 +90,12 @@ void copy_furthest_state(const StudyPlan& plan, const Cell& cell,
         continue;
       }
       read_journal(run / "journal");
-      write_file_atomically(run / "manifest.json",
-                            read_file(earlier.folder / "manifest.json", kManifestLimit_bytes));
+      const std::string name = "manifest.json";
+      const std::string manifest = read_checked_file(earlier.folder / name, kManifestLimit_bytes);
+      FolderChecksums checksums(run);
+      checksums.cover(name, manifest);
+      checksums.save();
+      write_file_atomically(run / name, manifest);
       return;
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::bad_data) {

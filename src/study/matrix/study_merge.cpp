@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/file.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "study/compare/cell.hpp"
@@ -29,7 +30,7 @@ std::string find_other_settings(const StudyPlan& plan, const Cell& cell,
                                 const std::filesystem::path& folder) {
   const auto file = folder / "manifest.json";
   try {
-    const json manifest = json::parse(read_json_file(file, kManifestLimit_bytes));
+    const json manifest = json::parse(read_checked_json(file, kManifestLimit_bytes));
     const auto differences = describe_differences(manifest.at("configuration").dump(),
                                                   to_json(make_run_plan(plan, cell)));
     return differences.empty() ? "" : differences.front();
@@ -76,14 +77,14 @@ class CellImport {
     std::filesystem::path first;
     if (load_cell(plan_, cell, study_)) {
       first = study_ / path;
-      text = read_file(first / "cell.json", kCellLimit_bytes);
+      text = read_checked_file(first / "cell.json", kCellLimit_bytes);
     }
     for (const auto& other : others_) {
       const auto folder = other / path;
       if (!load_cell(plan_, cell, other)) {
         continue;
       }
-      const std::string one = read_file(folder / "cell.json", kCellLimit_bytes);
+      const std::string one = read_checked_file(folder / "cell.json", kCellLimit_bytes);
       const std::string difference = find_other_settings(plan_, cell, folder);
       if (!difference.empty()) {
         refuse(cell,

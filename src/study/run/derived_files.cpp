@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "base/bits.hpp"
 #include "base/file.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/text.hpp"
 #include "problems/config/design_file.hpp"
 #include "study/run/run.hpp"
@@ -135,7 +137,12 @@ std::vector<EvaluationRecord> select_judgements(const JournalContent& journal,
       continue;
     }
     record.index = is_test ? 0 : place;
-    selected.push_back(std::move(record));
+    const bool is_doubled = std::ranges::any_of(selected, [&](const EvaluationRecord& one) {
+      return one.cases.role == record.cases.role && one.index == record.index;
+    });
+    if (!is_doubled) {  // the first record counts, as in a resumed run
+      selected.push_back(std::move(record));
+    }
   }
   // The journal has them in the order of completion; the tables must not depend on threads.
   std::ranges::stable_sort(selected, {}, [](const EvaluationRecord& record) {
@@ -166,12 +173,18 @@ std::string make_trajectory_csv(const TrackingProblem& problem, const TrackingRe
   return csv;
 }
 
-bool are_derived_files_there(const std::filesystem::path& folder, DerivedFiles derived) {
-  const auto is_there = [&](const char* name) { return std::filesystem::exists(folder / name); };
+bool are_derived_files_there(const RunFolder& folder, DerivedFiles derived) {
+  const auto is_there = [&](const char* name) {
+    return std::filesystem::exists(folder.path() / name);
+  };
   if (!is_there("result.json")) {
     return false;
   }
-  const RunResult result = load_result(folder);
+  const FolderChecksums checksums(folder.path());
+  if ((folder.has_checksums() || checksums.is_there()) && !checksums.covers("result.json")) {
+    return false;  // a kill or the user has removed checksums
+  }
+  const RunResult result = load_result(folder.path());
   if (!result.failure.empty()) {
     return false;
   }
@@ -192,6 +205,9 @@ void write_derived_files(const RunFolder& folder, const RunPlan& plan, const Run
                          JournalContent journal, DerivedFiles derived) {
   const auto& path = folder.path();
   const bool all = derived == DerivedFiles::all;
+  std::vector<std::string> changing = derived_file_names();
+  changing.emplace_back("journal");
+  FolderChecksums(path).drop(changing);
   if (all) {
     write_convergence_csv(path / "convergence.csv", plan.problem.problem->description(),
                           journal.training);
@@ -213,6 +229,7 @@ void write_derived_files(const RunFolder& folder, const RunPlan& plan, const Run
     }
   }
   write_file_atomically(folder.result(), to_json(result));
+  cover_run(path, result.failure.empty());
 }
 
 }  // namespace armwright

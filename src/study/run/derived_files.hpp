@@ -22,11 +22,11 @@ enum class DerivedFiles {
 std::string make_trajectory_csv(const TrackingProblem& problem, const TrackingResult& result);
 
 // Returns whether the folder has a result and all files that write_derived_files() would write for
-// it. Throws Error{bad_data} if result.json is damaged.
-bool are_derived_files_there(const std::filesystem::path& folder, DerivedFiles derived);
+// it, and their checksums if the run has begun with them. Throws Error{bad_data} if result.json is damaged.
+bool are_derived_files_there(const RunFolder& folder, DerivedFiles derived);
 
-// Writes the derived files, and result.json last: where it exists, all others exist. Throws
-// Error{io}.
+// Writes the derived files, and result.json last: where it exists, all others exist. Then covers
+// all files of the run with checksums. Throws Error{io}.
 void write_derived_files(const RunFolder& folder, const RunPlan& plan, const RunResult& result,
                          JournalContent journal, DerivedFiles derived);
 

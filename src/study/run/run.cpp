@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "base/file.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/text.hpp"
 #include "process/output_log.hpp"
 #include "study/journal/journal_format.hpp"
@@ -132,7 +132,7 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
     plan.selection.most = 0;
   }
   const RunFolder folder(request.folder, plan, request.command_line);
-  if (are_derived_files_there(folder.path(), request.derived)) {
+  if (are_derived_files_there(folder, request.derived)) {
     RunResult result = load_result(folder.path());
     if (request.derived == DerivedFiles::all) {  // a comparison's user did not ask for this cell
       observer.on_message(fmt::format("{}: this run is complete; use --new for another one",
@@ -204,7 +204,7 @@ RunResult load_result(const std::filesystem::path& folder) {
                     "to resume it",
                     folder.string()));
   }
-  return parse_result(read_file(file, kResultLimit_bytes), file);
+  return parse_result(read_checked_file(file, kResultLimit_bytes), file);
 }
 
 }  // namespace armwright

@@ -12,6 +12,7 @@
 #include "base/build_info.hpp"
 #include "base/error.hpp"
 #include "base/file.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "sim/simd/simd_level.hpp"
@@ -30,7 +31,8 @@ std::filesystem::path claim_folder(const std::filesystem::path& path) {
   }
   for (const auto& entry : std::filesystem::directory_iterator(path)) {
     const std::string name = entry.path().filename().string();
-    if (name != "lock" && name != "manifest.json.new") {  // a kill at the very start leaves these
+    // A kill at the very start leaves these.
+    if (name != "lock" && name != "manifest.json.new" && !name.starts_with(kChecksumFile)) {
       throw Error(
           ErrorKind::usage,
           fmt::format("{}: holds '{}' but no manifest.json, so it is not the folder of a run; "
@@ -49,6 +51,7 @@ json make_manifest(const RunPlan& plan, std::span<const std::string> command_lin
   const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
   return {{"format", kManifestFormat},
           {"configuration", json::parse(to_json(plan))},
+          {"has_checksums", true},  // SHA256SUMS exists since before the manifest
           {"build", describe_build()},
           {"command_line", words},
           {"started", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now))}};
@@ -56,7 +59,7 @@ json make_manifest(const RunPlan& plan, std::span<const std::string> command_lin
 
 json read_manifest(const std::filesystem::path& file) {
   try {
-    json manifest = json::parse(read_json_file(file, kManifestLimit_bytes));
+    json manifest = json::parse(read_checked_json(file, kManifestLimit_bytes));
     if (manifest.at("format") != kManifestFormat) {
       throw std::runtime_error(
           fmt::format("its format is {}, and this version of armwright reads format {}; resume the "
@@ -66,6 +69,7 @@ json read_manifest(const std::filesystem::path& file) {
     }
     manifest.at("configuration");
     manifest.at("build").get<std::map<std::string, std::string>>();
+    manifest["has_checksums"] = manifest.value("has_checksums", false);
     return manifest;
   } catch (const json::exception& error) {
     throw Error(
@@ -184,10 +188,15 @@ RunFolder::RunFolder(const std::filesystem::path& path, const RunPlan& plan,
     : path_(claim_folder(path)), lock_(path) {
   const auto file = path / "manifest.json";
   if (!std::filesystem::exists(file)) {
-    write_file_atomically(file, make_manifest(plan, command_line).dump(2) + "\n");
+    const std::string text = make_manifest(plan, command_line).dump(2) + "\n";
+    FolderChecksums checksums(path);
+    checksums.cover(file.filename().string(), text);
+    checksums.save();
+    write_file_atomically(file, text);
     return;
   }
   const json manifest = read_manifest(file);
+  has_checksums_ = manifest["has_checksums"].get<bool>();
   const json& recorded = manifest["configuration"];
   const json now = json::parse(to_json(plan));
   const std::vector<std::string> changes = list_changes(recorded, now);
@@ -201,6 +210,25 @@ RunFolder::RunFolder(const std::filesystem::path& path, const RunPlan& plan,
   }
   warnings_ =
       describe_build_changes(manifest["build"].get<std::map<std::string, std::string>>(), "run");
+}
+
+const std::vector<std::string>& derived_file_names() {
+  static const std::vector<std::string> names = {
+      "result.json",           "winner.toml",    "front.csv", "convergence.csv",
+      "winner-trajectory.csv", "results.sqlite", "cell.json"};
+  return names;
+}
+
+void cover_run(const std::filesystem::path& folder, bool has_ended) {
+  FolderChecksums checksums(folder);
+  checksums.cover("manifest.json");
+  if (has_ended) {
+    checksums.cover("journal");
+  }
+  for (const std::string& name : derived_file_names()) {
+    checksums.cover(name);
+  }
+  checksums.save();
 }
 
 bool has_first_selection(const std::filesystem::path& folder) {

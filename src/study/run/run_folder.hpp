@@ -1,7 +1,8 @@
 // The folder of a run. It holds manifest.json (the configuration and the build), journal (every
 // evaluation), lock, optimizer.log (the output of plugins), and the files derived from the journal:
-// result.json, winner.toml, convergence.csv, results.sqlite, winner-trajectory.csv. No run
-// overwrites the folder of another one, and two processes never write the same folder.
+// result.json, winner.toml, convergence.csv, results.sqlite, winner-trajectory.csv. SHA256SUMS has
+// the checksums of these files (base/folder_checksums.hpp). No run overwrites the folder of another
+// one, and two processes never write the same folder.
 #pragma once
 
 #include <cstddef>
@@ -36,6 +37,8 @@ class RunFolder {
   std::filesystem::path journal() const { return path_ / "journal"; }
   std::filesystem::path log() const { return path_ / "optimizer.log"; }
   std::filesystem::path result() const { return path_ / "result.json"; }
+  // Returns whether the run has begun with checksums, as all runs since version 2.0 have.
+  bool has_checksums() const { return has_checksums_; }
   // Returns the differences between the recorded build and this one (version, compiler, CPU), which
   // may keep a resumed run from replaying. Empty if there are none.
   const std::vector<std::string>& warnings() const { return warnings_; }
@@ -43,8 +46,17 @@ class RunFolder {
  private:
   std::filesystem::path path_;
   RunLock lock_;
+  bool has_checksums_ = true;
   std::vector<std::string> warnings_;
 };
+
+// Returns the names of the files that a run derives from its journal, and a comparison from its
+// cell.
+const std::vector<std::string>& derived_file_names();
+
+// Covers all files of a run that are complete: the manifest, the derived files and, if the run has
+// ended, the journal. Throws Error{io}.
+void cover_run(const std::filesystem::path& folder, bool has_ended);
 
 // Returns whether the folder holds a run whose recorded plan has no Selection::most. Version 1.0
 // began such a run, which keeps the rule of that version. Throws Error{bad_data} if the manifest is
