@@ -141,17 +141,16 @@ TEST_F(Checksums, AChangedValueOfACellIsRefusedAndFound) {
 TEST_F(Checksums, AChangedValueOfACellOfVersionOneIsFoundByItsRecords) {
   make_study();
   remove_checksums(folder_ / "study");
-  for (const char* cell : kCells) {
-    replace(std::string("study/cells/") + cell + "/manifest.json", "\"has_checksums\": true",
-            "\"has_checksums\": false");
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_ / "study/cells")) {
+    if (entry.path().filename() == "manifest.json") {
+      replace(entry.path().lexically_relative(folder_.path()).string(), "\"has_checksums\": true",
+              "\"has_checksums\": false");
+    }
   }
+  EXPECT_EQ(run({"doctor", "study"}).exit_code, 0);
   change_values();
-  const Outcome found = run({"doctor", "study"});
-  EXPECT_EQ(found.exit_code, 4);
-  for (const char* cell : kCells) {
-    EXPECT_THAT(found.out, HasSubstr(std::string("cells/") + cell + "/cell.json"));
-  }
-  EXPECT_THAT(found.out, HasSubstr("its value is not that of the run's winner"));
+  const std::string once = "its value is not that of the run's winner\n";
+  EXPECT_EQ(find_damage("study", "cell.json"), once + once + once + once);
 }
 
 TEST_F(Checksums, ACellWithOtherChecksumsIsFoundByTheStudy) {
