@@ -73,7 +73,7 @@ RunPlan make_plan(const std::string& optimizer, const std::vector<std::string>& 
 // The objects that execute_run() has while an optimizer works.
 struct Run {
   Run(const RunPlan& plan, unsigned jobs)
-      : run_folder(folder.path(), plan, {}),
+      : run_folder(folder.path(), folder.path(), plan, {}),
         journal(run_folder.journal(), recorded),
         executor(jobs),
         evaluator(plan, executor, stop, journal, recorded, observer) {}

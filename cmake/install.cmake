@@ -10,7 +10,7 @@ list(REMOVE_ITEM ARMWRIGHT_PACKAGE_ROOMS cli)
 # The pkg-config modules that the libraries need.
 set(ARMWRIGHT_PACKAGE_MODULES ode tomlplusplus tinyxml2)
 if(ARMWRIGHT_WITH_PAGE)
-  list(APPEND ARMWRIGHT_PACKAGE_MODULES duktape cpp-httplib)
+  list(APPEND ARMWRIGHT_PACKAGE_MODULES duktape)
 endif()
 if(ARMWRIGHT_WITH_MPI)
   list(APPEND ARMWRIGHT_PACKAGE_MODULES ompi-c)

@@ -41,7 +41,7 @@ the gains of the winner for ROS 2.")
 set(dev_packages libeigen3-dev libfmt-dev nlohmann-json3-dev libssl-dev zlib1g-dev libsqlite3-dev pkg-config libode-dev
                  libtomlplusplus-dev libtinyxml2-dev)
 foreach(option_and_packages IN ITEMS "PAGMO:libpagmo-dev" "CERES:libceres-dev" "NLOPT:libnlopt-cxx-dev" "PAGE:duktape-dev"
-                                     "PAGE:libcpp-httplib-dev" "MPI:libopenmpi-dev" "MUJOCO:libmujoco-dev" "ASSIMP:libassimp-dev")
+                                     "MPI:libopenmpi-dev" "MUJOCO:libmujoco-dev" "ASSIMP:libassimp-dev")
   string(REGEX MATCH "(.*):(.*)" unused ${option_and_packages})
   if(ARMWRIGHT_WITH_${CMAKE_MATCH_1})
     list(APPEND dev_packages ${CMAKE_MATCH_2})

@@ -17,7 +17,6 @@ if(node_version VERSION_LESS "v18")
   message(FATAL_ERROR "${NODE_PROGRAM} is ${node_version}; the page needs Node 18 or newer")
 endif()
 pkg_check_modules(DUKTAPE REQUIRED IMPORTED_TARGET duktape)
-pkg_check_modules(CPP_HTTPLIB REQUIRED IMPORTED_TARGET cpp-httplib)
 
 set(web ${PROJECT_SOURCE_DIR}/web)
 set(page ${PROJECT_BINARY_DIR}/page)

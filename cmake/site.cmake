@@ -9,7 +9,7 @@ file(GLOB_RECURSE site_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/docs/*.md
 add_custom_command(
   OUTPUT ${site}/index.html
   COMMAND ${NODE_PROGRAM} site/build.mjs ${site}
-  DEPENDS ${page}/packages ${site_sources} ${PROJECT_SOURCE_DIR}/docs/site.json ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md
+  DEPENDS ${page}/packages ${site_sources} ${PROJECT_SOURCE_DIR}/docs/site.json ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/SECURITY.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md
   WORKING_DIRECTORY ${web}
   COMMENT "Building the site of the documentation"
   VERBATIM)

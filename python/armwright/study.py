@@ -158,6 +158,7 @@ def compare(
     schedule: Optional[str] = None,
     seed: Optional[int] = None,
     baselines: bool = True,
+    trust: bool = False,
     out: Union[None, str, Path] = None,
     new: bool = False,
     jobs: Optional[int] = None,
@@ -194,6 +195,9 @@ def compare(
         The seed of the study. It draws starts, training cases and the seeds of the optimizers (default: 1).
     baselines : bool
         Whether the baselines take part. If they do not, the verdict says so.
+    trust : bool
+        Whether to run the plugins that a recorded study names, although you did not start it on this machine. A plugin has all rights that
+        you have. Plugins that `optimizers` names run without it.
     out, new, jobs, time_limit_s, progress : optional
         As in optimize(). The default folder is results/NAME.
     """
@@ -210,7 +214,7 @@ def compare(
         try:
             folder, text = _armwright.compare(
                 "" if study is None else str(study), [str(problem) for problem in problems or []], rows, to_settings(set), replicates, budget,
-                schedule, None if seed is None else to_whole("seed", seed, 2**63 - 1), baselines, None if out is None else str(out), new,
+                schedule, None if seed is None else to_whole("seed", seed, 2**63 - 1), baselines, trust, None if out is None else str(out), new,
                 to_jobs(jobs), time_limit_s, listener)
         except KeyboardInterrupt:
             raise KeyboardInterrupt("interrupted; all evaluations so far are recorded, and the same call of armwright.compare() goes on from "

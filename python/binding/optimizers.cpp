@@ -13,7 +13,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "host.hpp"
-#include "optimizers/plugins/host_optimizer.hpp"
+#include "optimizers/plugins/recorded_optimizer.hpp"
 #include "optimizers/table/optimizer_table.hpp"
 #include "parts.hpp"
 #include "study/contract/contract.hpp"

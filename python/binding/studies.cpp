@@ -7,9 +7,11 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "host.hpp"
+#include "optimizers/plugins/recorded_optimizer.hpp"
 #include "parts.hpp"
 #include "study/analysis/final_check.hpp"
 #include "study/analysis/study_tables.hpp"
+#include "study/compare/plugin_consent.hpp"
 #include "study/compare/study_folder.hpp"
 #include "study/compare/study_plan.hpp"
 #include "study/compare/study_runner.hpp"
@@ -22,7 +24,7 @@ namespace {
 using nlohmann::json;
 
 bool is_of_python(const StudyPlan& plan, const Cell& cell) {
-  return !plan.optimizers[cell.optimizer].row.description.empty();
+  return is_host_name(plan.optimizers[cell.optimizer].row.name);
 }
 
 // Reports a cell's progress as progress of the whole study.
@@ -123,6 +125,7 @@ py::tuple compare(StudyRequest request, const py::list& optimizers, const Place&
   const auto path = place.choose(escape_name(plan.name));
   adopt_recorded(path, plan);
   const StudyFolder folder(path, plan);
+  remember_study(path);
   for (const std::string& addition : folder.additions()) {
     host.on_message("new in the plan: " + addition);
   }
@@ -159,8 +162,8 @@ void add_studies(py::module_& module) {
                 const py::list& optimizers, std::vector<std::string> settings,
                 std::optional<std::int64_t> replicates, std::optional<std::int64_t> budget,
                 const std::optional<std::string>& schedule, std::optional<std::uint64_t> seed,
-                bool baselines, std::optional<std::string> out, bool another, unsigned jobs,
-                std::optional<double> time_limit_s, const py::object& listener) {
+                bool baselines, bool trust, std::optional<std::string> out, bool another,
+                unsigned jobs, std::optional<double> time_limit_s, const py::object& listener) {
                StudyRequest request;
                request.file = file;
                request.problems = std::move(problems);
@@ -183,6 +186,7 @@ void add_studies(py::module_& module) {
                }
                request.seed = seed;
                request.baselines = baselines;
+               request.ask = [trust](const std::string&) { return trust; };
                return compare(std::move(request), optimizers,
                               {std::move(out), another, jobs, time_limit_s}, listener);
              });

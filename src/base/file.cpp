@@ -10,27 +10,13 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/read_limit.hpp"
 
 namespace armwright {
 namespace {
 
-FileDescriptor open_file(const std::filesystem::path& path, int flags, std::string_view doing) {
-  const int fd = ::open(path.c_str(), flags | O_CLOEXEC, 0644);
-  if (fd < 0) {
-    fail_io(path, doing, errno);
-  }
-  return FileDescriptor(fd);
-}
-
-}  // namespace
-
-void fail_io(const std::filesystem::path& path, std::string_view doing, int error) {
-  throw Error(ErrorKind::io,
-              fmt::format("{}: cannot {}: {}", path.string(), doing, std::strerror(error)));
-}
-
-std::string read_file(const std::filesystem::path& path, std::size_t limit_bytes) {
-  const FileDescriptor file = open_file(path, O_RDONLY, "open it");
+std::string read_all(const FileDescriptor& file, const std::filesystem::path& path,
+                     std::size_t limit_bytes) {
   std::string content;
   char buffer[1 << 16];
   while (true) {
@@ -45,6 +31,7 @@ std::string read_file(const std::filesystem::path& path, std::size_t limit_bytes
       return content;
     }
     content.append(buffer, static_cast<std::size_t>(got));
+    check_reading();
     if (content.size() > limit_bytes) {
       throw Error(ErrorKind::bad_data,
                   fmt::format("{}: is larger than the limit of {} bytes for such a file",
@@ -53,14 +40,54 @@ std::string read_file(const std::filesystem::path& path, std::size_t limit_bytes
   }
 }
 
-AtomicFile::AtomicFile(const std::filesystem::path& path)
-    : path_(path),
-      new_path_(path.string() + ".new"),
-      file_(open_file(new_path_, O_WRONLY | O_CREAT | O_TRUNC, "write it")) {}
+}  // namespace
+
+void fail_io(const std::filesystem::path& path, std::string_view doing, int error) {
+  throw Error(ErrorKind::io,
+              fmt::format("{}: cannot {}: {}", path.string(), doing, std::strerror(error)));
+}
+
+FileDescriptor open_to_read(const std::filesystem::path& path) {
+  FileDescriptor file(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  struct stat status {};
+  if (!file.is_open() || ::fstat(file.get(), &status) != 0) {
+    fail_io(path, "open it", errno);
+  }
+  if (S_ISDIR(status.st_mode)) {
+    fail_io(path, "read it", EISDIR);
+  }
+  if (!S_ISREG(status.st_mode)) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("{}: is {}; it must be a regular file", path.string(),
+                            describe_file_type(status.st_mode)));
+  }
+  return file;
+}
+
+std::string read_file(const std::filesystem::path& path, std::size_t limit_bytes) {
+  return read_all(open_to_read(path), path, limit_bytes);
+}
+
+std::string read_input(const std::filesystem::path& path, std::size_t limit_bytes) {
+  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!file.is_open()) {
+    fail_io(path, "open it", errno);
+  }
+  return read_all(file, path, limit_bytes);
+}
+
+void check_readable(const std::filesystem::path& path) {
+  if (::faccessat(AT_FDCWD, path.c_str(), R_OK, AT_EACCESS) != 0 && errno == EACCES) {
+    fail_io(path, "read it", errno);
+  }
+}
+
+AtomicFile::AtomicFile(const Folder& folder, const std::string& name)
+    : folder_(folder), name_(name), new_name_(name + ".new"), file_(folder.create(new_name_)) {}
 
 AtomicFile::~AtomicFile() {
-  if (!new_path_.empty()) {
-    ::unlink(new_path_.c_str());
+  if (!new_name_.empty()) {
+    folder_.remove(new_name_);
   }
 }
 
@@ -80,7 +107,7 @@ void AtomicFile::write_buffer() {
       continue;
     }
     if (put < 0) {
-      fail_io(new_path_, "write it", errno);
+      fail_io(folder_.path() / new_name_, "write it", errno);
     }
     content.remove_prefix(static_cast<std::size_t>(put));
   }
@@ -89,43 +116,19 @@ void AtomicFile::write_buffer() {
 
 void AtomicFile::commit() {
   write_buffer();
-  if (file_.close() != 0) {
-    fail_io(new_path_, "close it", errno);
-  }
-  put_in_place(new_path_, path_);
-  new_path_.clear();
+  folder_.put_in_place(file_, new_name_, name_);
+  new_name_.clear();
 }
 
-void put_in_place(const std::filesystem::path& file, const std::filesystem::path& path) {
-  {
-    const FileDescriptor descriptor = open_file(file, O_RDONLY, "open it");
-    // Some file systems cannot sync and return one of these errors; the file is still written.
-    if (::fsync(descriptor.get()) != 0 && errno != EINVAL && errno != EROFS) {
-      fail_io(file, "sync it to the disk", errno);
-    }
-  }
-  if (::rename(file.c_str(), path.c_str()) != 0) {
-    fail_io(path, "put it in place", errno);
-  }
-  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-  const FileDescriptor directory = open_file(folder, O_RDONLY | O_DIRECTORY, "open its folder");
-  // Errors are ignored: some file systems cannot sync a folder, and the rename has succeeded.
-  ::fsync(directory.get());
-}
-
-void write_file_atomically(const std::filesystem::path& path, std::string_view content) {
-  AtomicFile file(path);
+void write_file_atomically(const Folder& folder, const std::string& name,
+                           std::string_view content) {
+  AtomicFile file(folder, name);
   file.write(content);
   file.commit();
 }
 
-void make_folder(const std::filesystem::path& path) {
-  std::error_code error;
-  std::filesystem::create_directories(path, error);
-  std::error_code unknown;
-  if (error || !std::filesystem::is_directory(path, unknown)) {
-    fail_io(path, "create this folder", error ? error.value() : ENOTDIR);
-  }
+void write_file_atomically(const std::filesystem::path& path, std::string_view content) {
+  write_file_atomically(Folder(path.parent_path()), path.filename().string(), content);
 }
 
 }  // namespace armwright

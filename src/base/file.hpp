@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "base/file_descriptor.hpp"
+#include "base/folder.hpp"
 
 namespace armwright {
 
@@ -16,38 +17,46 @@ namespace armwright {
 // `error`.
 [[noreturn]] void fail_io(const std::filesystem::path& path, std::string_view doing, int error);
 
-// Returns the content. Throws Error{bad_data} if the file is larger than `limit_bytes`.
-std::string read_file(const std::filesystem::path& path, std::size_t limit_bytes);
+// Opens a regular file for reading, at once: a named pipe without a writer would block the caller.
+// Throws Error{bad_data} for a pipe or a device, and Error{io}.
+FileDescriptor open_to_read(const std::filesystem::path& path);
 
-// A file that is written in pieces and appears at its path only when it is complete. Until commit()
-// it has the name "PATH.new"; without commit() the destructor removes it.
+// Returns the content of a regular file. Throws Error{bad_data} if the file is larger than
+// `limit_bytes` or no regular file.
+std::string read_file(const std::filesystem::path& path, std::size_t limit_bytes);
+// Does the same for an input that the user named, which may be a pipe, such as /dev/stdin. Blocks
+// until the pipe has its end.
+std::string read_input(const std::filesystem::path& path, std::size_t limit_bytes);
+
+// Throws Error{io} if the rights of the file or of its folders forbid this process to read it.
+void check_readable(const std::filesystem::path& path);
+
+// A file that is written in pieces and appears in its folder only when it is complete. Until
+// commit() it has the name "NAME.new"; without commit() the destructor removes it.
 class AtomicFile {
  public:
-  explicit AtomicFile(const std::filesystem::path& path);
+  AtomicFile(const Folder& folder, const std::string& name);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   void write(std::string_view content);
-  void commit();  // syncs it and moves it to its path
+  void commit();  // syncs it and moves it to its name
 
  private:
   void write_buffer();
 
-  std::filesystem::path path_;
-  std::filesystem::path new_path_;  // empty once it has been renamed
+  Folder folder_;
+  std::string name_;
+  std::string new_name_;  // empty once it has been renamed
   FileDescriptor file_;
   std::string buffer_;
 };
 
-// Syncs the file, renames it over `path` and syncs the folder.
-void put_in_place(const std::filesystem::path& file, const std::filesystem::path& path);
-
 // Writes an AtomicFile with this content and commits it.
+void write_file_atomically(const Folder& folder, const std::string& name, std::string_view content);
+// Does the same in the folder of `path`. Follows links on the way to this folder, so that it must
+// be one that the user named.
 void write_file_atomically(const std::filesystem::path& path, std::string_view content);
-
-// Makes a folder and its parents, like mkdir -p. Throws Error{io} that says which folder could not
-// be made and why.
-void make_folder(const std::filesystem::path& path);
 
 }  // namespace armwright

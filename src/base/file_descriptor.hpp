@@ -20,6 +20,8 @@ class FileDescriptor {
     close();
     fd_ = fd;
   }
+  // Gives the descriptor to the caller, who closes it.
+  int release() { return std::exchange(fd_, -1); }
   // Closes it, like close(2). Returns 0, or -1 with errno set; 0 if nothing was open.
   int close() { return is_open() ? ::close(std::exchange(fd_, -1)) : 0; }
 

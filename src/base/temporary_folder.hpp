@@ -10,15 +10,21 @@
 #include <system_error>
 #include <vector>
 
+#include "base/file.hpp"
+
 namespace armwright {
 
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "armwright-XXXXXX").string();
+    std::error_code error;
+    const auto parent = std::filesystem::temp_directory_path(error);
+    if (error) {
+      fail_io("the folder for temporary files (TMPDIR)", "find it", error.value());
+    }
+    std::string name = (parent / "armwright-XXXXXX").string();
     if (mkdtemp(name.data()) == nullptr) {
-      throw std::filesystem::filesystem_error("cannot make a temporary folder", name,
-                                              std::error_code(errno, std::generic_category()));
+      fail_io(name, "create this folder", errno);
     }
     path_ = name;
   }

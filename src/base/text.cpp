@@ -160,6 +160,16 @@ std::string format_exact(double value) {
   return fmt::format("{}", value);
 }
 
+std::string describe_number(double value, std::string_view unit, int digits) {
+  if (std::isnan(value)) {
+    return "not a number";
+  }
+  if (std::isinf(value)) {
+    return value > 0 ? "infinite" : "minus infinite";
+  }
+  return fmt::format("{:.{}g}{}{}", value, digits, unit.empty() ? "" : " ", unit);
+}
+
 bool is_utf8(std::string_view text) {
   while (!text.empty()) {
     const std::size_t length = utf8_length(text);

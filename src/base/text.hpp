@@ -31,6 +31,10 @@ std::string join(std::span<const std::string> parts, std::string_view separator)
 // Returns the shortest decimal text that reads back as exactly the same double.
 std::string format_exact(double value);
 
+// Returns the value with `digits` significant digits and its unit, for messages: "3.14 rad". A value
+// that is no finite number has words in place of both: "not a number", "infinite", "minus infinite".
+std::string describe_number(double value, std::string_view unit, int digits = 4);
+
 // Returns whether a spreadsheet would take the text for a formula, or whether it begins with the
 // apostrophe that quote_csv() adds to prevent this.
 bool begins_as_formula(std::string_view text);

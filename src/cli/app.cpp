@@ -8,14 +8,20 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
 #include <new>
+#include <string_view>
 #include <system_error>
 
 #include "base/build_info.hpp"
 #include "base/error.hpp"
 #include "base/file_descriptor.hpp"
+#include "base/read_limit.hpp"
 #include "base/text.hpp"
 #include "cli/commands/commands.hpp"
+#include "cli/terminal/arguments.hpp"
 #include "cli/terminal/session.hpp"
 #include "cli/terminal/terminal.hpp"
 #include "cli/terminal/typed_flags.hpp"
@@ -52,15 +58,15 @@ Exit codes:
   0    done
   2    wrong usage or configuration
   3    done, but something failed (a case without a number, nothing feasible found, a design that does not hold)
-  4    an input file (robot, path, test cases, a recorded run) cannot be used
+  4    an input file (robot, path, design, test cases, a recorded run) cannot be used, or exceeds --read-limit
   5    another process writes this folder, or has taken over this cell
-  74   reading or writing failed
+  74   reading or writing failed, or no memory is left
   75   stopped by a time limit or SIGTERM; the same command resumes
   130  interrupted (Ctrl-C); the same command resumes
-  1    a bug in armwright, or no memory left
+  1    a bug in armwright
 
-Environment: ARMWRIGHT_JOBS and ARMWRIGHT_SEED are used if --jobs and --seed are not given. ARMWRIGHT_CONFIGS names the
-folder of the shipped configuration. ARMWRIGHT_SIMD limits the instruction set that is chosen without --simd.)";
+Environment: ARMWRIGHT_JOBS, ARMWRIGHT_SEED and ARMWRIGHT_READ_LIMIT are used if --jobs, --seed and --read-limit are not
+given. ARMWRIGHT_CONFIGS names the folder of the shipped configuration. ARMWRIGHT_SIMD limits the instruction set that is chosen without --simd.)";
 
 // Returns what --version prints: version, commit, compiler, processor, SIMD levels and libraries.
 std::string describe_version() {
@@ -152,6 +158,17 @@ std::string describe_mistake(const CLI::App& app, const CLI::ParseError& error) 
   return what + see;
 }
 
+// Limits what this process reads, and also the jobs and ranks that it starts: they inherit the
+// environment.
+void apply_read_limit(Session& session) {
+  ReadLimit limit;
+  if (!session.read_limit.empty()) {
+    limit = parse_read_limit(session.read_limit);
+    ::setenv("ARMWRIGHT_READ_LIMIT", session.read_limit.c_str(), 1);
+  }
+  set_read_limit(limit, session.stop, write_message);
+}
+
 int parse_and_run(CLI::App& app, Session& session, int argc, char** argv) {
   try {
     app.parse(argc, argv);
@@ -168,6 +185,7 @@ int parse_and_run(CLI::App& app, Session& session, int argc, char** argv) {
   if (std::find(choices.begin(), choices.end(), session.color) == choices.end()) {
     throw Error(ErrorKind::usage, describe_unknown("--color", session.color, choices));
   }
+  apply_read_limit(session);
   const auto place = find_rank_place();
   if (place && !session.shares_work) {
     if (place->rank > 0) {
@@ -205,6 +223,40 @@ int get_exit_code(ErrorKind kind) {
   return exit_code::kIo;
 }
 
+// Tells the user that no memory is left. Does not allocate.
+void report_no_memory() {
+  constexpr std::string_view kMessage =
+      "armwright: error: no memory left; use fewer --jobs or a smaller problem, or raise the limit "
+      "of memory (ulimit -v)\n";
+  [[maybe_unused]] const ssize_t put = ::write(STDERR_FILENO, kMessage.data(), kMessage.size());
+}
+
+// What ends the program by default: it prints the exception and aborts.
+std::terminate_handler g_end_of_library = nullptr;
+
+// Ends the program if an exception leaves a thread, a function that must not throw, or the
+// initialization of a library.
+[[noreturn]] void end_uncaught() {
+  if (const auto exception = std::current_exception()) {
+    try {
+      std::rethrow_exception(exception);
+    } catch (const std::bad_alloc&) {
+      report_no_memory();
+      ::_exit(exit_code::kIo);
+    } catch (...) {
+    }
+  }
+  g_end_of_library();
+  std::abort();
+}
+
+// Runs before the initialization of shared libraries, of which some allocate: only the executable's
+// own .preinit_array comes before them. The address sanitizer is not ready then.
+[[gnu::no_sanitize_address]] void watch_uncaught() {
+  g_end_of_library = std::set_terminate(end_uncaught);
+}
+[[gnu::section(".preinit_array"), gnu::used]] void (*g_before_libraries)() = watch_uncaught;
+
 // The other ranks parse the same words and read the same files as rank 0, so they would print the
 // same messages.
 void silence_worker_ranks() {
@@ -229,12 +281,18 @@ int run_command(Session& session, int argc, char** argv) {
   } catch (const Error& error) {
     write_message("error: " + name_typed_flags(error.what(), session.command_line));
     return get_exit_code(error.kind());
-  } catch (const std::system_error& error) {  // of std::filesystem, or if no thread can start
+  } catch (const std::filesystem::filesystem_error& error) {
+    write_message(fmt::format("error: {}: the system refuses access: {}", error.path1().string(),
+                              error.code().message()));
+    return exit_code::kIo;
+  } catch (const std::system_error& error) {  // for example, no thread can start
     write_message(std::string("error: ") + error.what());
     return exit_code::kIo;
+  } catch (const WorkStopped&) {
+    write_message(describe_stop(session.stop.reason()));
+    return get_stop_code(session.stop.reason());
   } catch (const std::bad_alloc&) {
-    write_message("error: no memory left; use fewer --jobs or a smaller problem");
-    return exit_code::kInternal;
+    throw;  // run_app() ends without allocating
   } catch (const std::exception& error) {
     write_message(std::string("error: a bug in armwright, please report it: ") + error.what());
     return exit_code::kInternal;
@@ -283,7 +341,12 @@ int run_app(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   Session session;
-  const int code = run_command(session, argc, argv);
+  int code = exit_code::kIo;
+  try {
+    code = run_command(session, argc, argv);
+  } catch (const std::bad_alloc&) {
+    report_no_memory();
+  }
   if (session.must_abort_ranks) {
     std::fflush(nullptr);
     abort_mpi(code);

@@ -15,7 +15,8 @@
 
 namespace armwright {
 
-OutputLog::OutputLog(std::filesystem::path file, Begin begin) : file_(std::move(file)) {
+OutputLog::OutputLog(std::filesystem::path file, Begin begin)
+    : file_(std::move(file)), begin_(begin) {
   if (file_.empty()) {
     return;
   }
@@ -43,7 +44,13 @@ OutputLog::~OutputLog() {
 }
 
 void OutputLog::open() {
-  descriptor_.reset(::open(file_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644));
+  constexpr int kFlags = O_WRONLY | O_CREAT | O_APPEND;
+  if (begin_ == Begin::anew) {
+    const Folder folder(file_.parent_path());
+    descriptor_.reset(folder.open(file_.filename().string(), kFlags).release());
+    return;
+  }
+  descriptor_.reset(::open(file_.c_str(), kFlags | O_CLOEXEC, 0644));
   if (!descriptor_.is_open()) {
     fail_io(file_, "write", errno);
   }

@@ -22,7 +22,8 @@ class OutputLog {
   // Keeps only the last lines, for messages, without a file.
   OutputLog() = default;
   // Writes to `file`; an empty name means no file. With `anew`, removes the file of an earlier run
-  // and makes a file with the first output. Throws Error{io}.
+  // and makes a file with the first output; that file is never a link. With `behind_what_is_there`,
+  // the user named the file, which may be a link or a device. Throws Error{io}.
   OutputLog(std::filesystem::path file, Begin begin);
   ~OutputLog();  // writes the end of the output, after a line that says how much is left out
   OutputLog(const OutputLog&) = delete;
@@ -37,6 +38,7 @@ class OutputLog {
   void write(std::string_view text);
 
   std::filesystem::path file_;
+  Begin begin_ = Begin::anew;
   FileDescriptor descriptor_;
   std::size_t head_bytes_ = 0;
   std::size_t later_bytes_ = 0;  // printed after the head was full

@@ -56,7 +56,7 @@ TEST(File, NamesAMissingFolder) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "missing" / "a.txt";
   EXPECT_EQ(error_of(ErrorKind::io, [&] { write_file_atomically(path, "text"); }),
-            path.string() + ".new: cannot write it: No such file or directory");
+            path.parent_path().string() + ": cannot open this folder: No such file or directory");
   EXPECT_EQ(error_of(ErrorKind::io, [&] { read_file(path, 10); }),
             path.string() + ": cannot open it: No such file or directory");
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 namespace armwright {
@@ -114,6 +115,14 @@ TEST(Text, SanitizesControlCharactersAndInvalidBytes) {
   EXPECT_EQ(sanitize("\xc2\x9b"
                      "31m"),
             "??31m");  // the one-character form of escape [
+}
+
+TEST(DescribeNumber, HasWordsForWhatIsNoFiniteNumber) {
+  EXPECT_EQ(describe_number(3.14159, "rad"), "3.142 rad");
+  EXPECT_EQ(describe_number(2, "", 3), "2");
+  EXPECT_EQ(describe_number(-std::nan(""), "rad"), "not a number");
+  EXPECT_EQ(describe_number(INFINITY, "mm"), "infinite");
+  EXPECT_EQ(describe_number(-INFINITY, "mm"), "minus infinite");
 }
 
 }  // namespace

@@ -29,15 +29,17 @@ void check(int error, const char* doing) {
   }
 }
 
-std::vector<std::string> make_environment(const Environment& environment) {
-  std::vector<std::string> variables;
+std::vector<std::string> make_environment(const std::filesystem::path& folder,
+                                          const Environment& environment) {
+  // Studies that a test starts are not remembered as the user's own.
+  std::vector<std::string> variables = {"XDG_STATE_HOME=" + (folder / ".state").string()};
   for (char** variable = environ; *variable != nullptr; ++variable) {
     const std::string_view text = *variable;
     const bool is_replaced = std::ranges::any_of(environment.variables, [&](const auto& one) {
       return text.substr(0, text.find('=')) == one.first;
     });
-    if (!is_replaced && !text.starts_with("ARMWRIGHT_") && !text.starts_with("NO_COLOR=") &&
-        !text.starts_with("TERM=")) {
+    if (!is_replaced && !text.starts_with("XDG_STATE_HOME=") && !text.starts_with("ARMWRIGHT_") &&
+        !text.starts_with("NO_COLOR=") && !text.starts_with("TERM=")) {
       variables.emplace_back(text);
     }
   }
@@ -103,7 +105,7 @@ class Spawn {
     words.emplace_back(direct ? "armwright" : ARMWRIGHT_BINARY);
     words.insert(words.end(), arguments.begin(), arguments.end());
     const std::string program = direct ? ARMWRIGHT_BINARY : words.front();
-    std::vector<std::string> variables = make_environment(environment);
+    std::vector<std::string> variables = make_environment(folder, environment);
     int pid = -1;
     check(posix_spawnp(&pid, program.c_str(), &actions_, &attributes_, make_pointers(words).data(),
                        make_pointers(variables).data()),
@@ -175,7 +177,8 @@ Outcome run_program(const std::filesystem::path& folder, const std::vector<std::
 
 std::string run_on_terminal(const std::filesystem::path& folder,
                             const std::vector<std::string>& arguments,
-                            const Environment& environment, unsigned short columns) {
+                            const Environment& environment, unsigned short columns,
+                            const std::string& typed) {
   int ours = -1;
   int theirs = -1;
   winsize size{};
@@ -188,6 +191,7 @@ std::string run_on_terminal(const std::filesystem::path& folder,
   }
   const int pid = spawn.start(folder, arguments, environment);
   ::close(theirs);
+  check(::write(ours, typed.data(), typed.size()) < 0 ? errno : 0, "write");
   std::string shown;
   char buffer[4096];
   // A terminal whose last program has gone answers with EIO.

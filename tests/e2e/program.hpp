@@ -51,10 +51,12 @@ class Program {
 Outcome run_program(const std::filesystem::path& folder, const std::vector<std::string>& arguments,
                     const Environment& environment = {});
 
-// The same on a terminal: what it shows there (stdout and stderr together).
+// The same on a terminal: what it shows there (stdout and stderr together). `typed` is what a user
+// types ahead.
 std::string run_on_terminal(const std::filesystem::path& folder,
                             const std::vector<std::string>& arguments,
-                            const Environment& environment = {}, unsigned short columns = 100);
+                            const Environment& environment = {}, unsigned short columns = 100,
+                            const std::string& typed = "");
 
 std::string read_text(const std::filesystem::path& file);
 

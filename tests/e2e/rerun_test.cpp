@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "base/remove_checksums.hpp"
 #include "base/temporary_folder.hpp"
 #include "e2e/program.hpp"
 
@@ -71,6 +72,10 @@ TEST_F(CliRerun, FindsACellThatWasTamperedWith) {
   ASSERT_NE(text.find(what), std::string::npos);
   text.replace(text.find(what), what.size(), "\"evaluations\": 13");
   std::ofstream(file) << text;
+  const Outcome refused = rerun({"q1-complex/ga/r01", "--quiet"});
+  EXPECT_EQ(refused.exit_code, 4);
+  EXPECT_THAT(refused.err, HasSubstr("r01/cell.json: was changed after it was written"));
+  remove_checksums(folder_ / "study");
   const Outcome outcome = rerun({"q1-complex/ga/r01", "--quiet"});
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_THAT(outcome.out, HasSubstr("different: cell.json, evaluations: recorded 13, now 12"));

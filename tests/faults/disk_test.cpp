@@ -28,7 +28,8 @@ void PrintTo(const Way& way, std::ostream* out) {
 // The system's reason, or SQLite's text for it.
 auto gives_the_reason(int error) {
   return AnyOf(HasSubstr(std::strerror(error)), HasSubstr("disk I/O error"),
-               HasSubstr("database or disk is full"), HasSubstr("unable to open database file"));
+               HasSubstr("database or disk is full"), HasSubstr("unable to open database file"),
+               HasSubstr("attempt to write a readonly database"));
 }
 
 class FailingDisk : public testing::TestWithParam<Way> {

@@ -190,6 +190,34 @@ int ftruncate(int fd, off_t size) {
 int ftruncate64(int fd, off64_t size) {
   return descriptor_fails("ftruncate", fd) ? -1 : (int)syscall(SYS_ftruncate, fd, size);
 }
+// Opens in a folder that is open already count like those with a whole path.
+static bool place_fails(const char* call, int folder, const char* path) {
+  if (folder == AT_FDCWD || path[0] == '/') {
+    return path_fails(call, path);
+  }
+  return descriptor_fails(call, folder);
+}
+int openat(int folder, const char* path, int flags, ...) {
+  va_list arguments;
+  va_start(arguments, flags);
+  const mode_t mode = take_mode(flags, arguments);
+  va_end(arguments);
+  return place_fails("open", folder, path) ? -1
+                                           : (int)syscall(SYS_openat, folder, path, flags, mode);
+}
+int openat64(int folder, const char* path, int flags, ...) {
+  va_list arguments;
+  va_start(arguments, flags);
+  const mode_t mode = take_mode(flags, arguments);
+  va_end(arguments);
+  return place_fails("open", folder, path) ? -1
+                                           : (int)syscall(SYS_openat, folder, path, flags, mode);
+}
+int renameat(int from_folder, const char* from, int to_folder, const char* to) {
+  return place_fails("rename", to_folder, to)
+             ? -1
+             : (int)syscall(SYS_renameat, from_folder, from, to_folder, to);
+}
 int rename(const char* from, const char* to) {
   return path_fails("rename", to) ? -1 : (int)syscall(SYS_renameat, AT_FDCWD, from, AT_FDCWD, to);
 }

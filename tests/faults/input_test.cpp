@@ -1,10 +1,9 @@
 // Tests inputs that change during a run, cannot be used or are hostile. They are refused within a
 // second, the message names the difference or the line, and no file is written.
-#include <sys/resource.h>
-#include <sys/wait.h>
 
 #include <algorithm>
 
+#include "base/remove_checksums.hpp"
 #include "faults/support.hpp"
 
 namespace armwright::faults {
@@ -139,6 +138,7 @@ TEST_F(ChangedInputs, AnotherBuildIsWarnedOf) {
   ASSERT_EQ(run(make({})).exit_code, 0);
   const std::string result = read_text(folder_ / "run/result.json");
   fs::remove(folder_ / "run/result.json");
+  remove_checksums(folder_ / "run");
   std::string manifest = read_text(folder_ / "run/manifest.json");
   const std::size_t at = manifest.find("\"version\": \"");
   ASSERT_NE(at, std::string::npos);
@@ -163,21 +163,6 @@ TEST_F(ChangedInputs, AByteOfAStudysProblem) {
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("study holds a study whose cells could not be compared"),
                                  HasSubstr("recorded")));
   EXPECT_EQ(read_all(folder_ / "study"), before);
-}
-
-// Returns the processor time of the program in seconds.
-double measure_cpu_s(const std::function<void()>& action) {
-  const auto now_s = [] {
-    rusage usage{};
-    ::getrusage(RUSAGE_CHILDREN, &usage);
-    const auto to_s = [](const timeval& time) {
-      return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-    };
-    return to_s(usage.ru_utime) + to_s(usage.ru_stime);
-  };
-  const double before_s = now_s();
-  action();
-  return now_s() - before_s;
 }
 
 struct BadInput {
@@ -227,7 +212,7 @@ TEST_P(BadInputs, AreRefusedWithTheLineInASecond) {
     command = {"evaluate", "table-a5", "--problem", "q1-complex", "--test-cases", bad.file};
   }
   Outcome outcome;
-  const double cpu_s = measure_cpu_s([&] { outcome = run(command); });
+  const double cpu_s = measure_children_s([&] { outcome = run(command); });
   EXPECT_THAT(outcome.exit_code, AnyOf(2, 4)) << outcome.err;
   EXPECT_THAT(outcome.err,
               AllOf(StartsWith("armwright: error: "), HasSubstr(bad.file), HasSubstr(bad.message)));

@@ -34,12 +34,48 @@ TEST_F(Kill, AtEveryWriteAndEveryRenameOfARun) {
       }
       ASSERT_EQ(killed.exit_code, -SIGKILL) << killed.err;
       ++kills;
+      // A kill looks like no damage: without a manifest it is no run yet.
+      const bool is_run = std::filesystem::exists(folder_ / out / "manifest.json");
+      EXPECT_EQ(run({"doctor", out}).exit_code, is_run ? 0 : 2) << run({"doctor", out}).out;
       const Outcome resumed = run(make_run(out));
       ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
       expect_same_run(folder_ / "runs/whole", folder_ / out);
+      EXPECT_THAT(run({"doctor", out}).out, Not(HasSubstr("nothing covers")));
     }
     // manifest.json and five derived files; SQLite renames its own file with the same call.
     EXPECT_GE(kills, 5) << call;
+  }
+}
+
+// Kills the comparison or its worker at every rename. No kill looks like damage, neither after it nor
+// after the comparison has gone on.
+TEST_F(Kill, AtEveryRenameOfAComparison) {
+  std::filesystem::create_directory(folder_ / "runs");
+  const auto make = [](const std::string& out) {
+    return Words{"compare", "--problems", "sphere", "--optimizers",   "ga",     "--replicates",
+                 "2",       "--budget",   "40",     "--no-baselines", "--jobs", "1",
+                 "--out",   out,          "--quiet"};
+  };
+  ASSERT_EQ(run(make("runs/whole")).exit_code, 0);
+  FailingFiles files(folder_ / "runs", "rename");
+  for (std::uint64_t at = 1;; ++at) {
+    SCOPED_TRACE(at);
+    const std::string out = "runs/" + std::to_string(at);
+    run(make(out), files.make_environment(Fault::kill, at, 0));
+    if (files.count() < at) {
+      EXPECT_GT(at, 20u);
+      break;
+    }
+    const bool is_study = std::filesystem::exists(folder_ / out / "study.toml");
+    const Outcome after = run({"doctor", out});
+    ASSERT_EQ(after.exit_code, is_study ? 0 : 2) << after.out;
+    // Made again from the cells that are there: a study that has grown since.
+    Words more = make(out);
+    more[6] = "3";
+    ASSERT_EQ(run(at % 2 == 0 ? more : make(out)).exit_code, 0);
+    const Outcome last = run({"doctor", out});
+    ASSERT_EQ(last.exit_code, 0) << last.out;
+    EXPECT_THAT(last.out, Not(HasSubstr("nothing covers")));
   }
 }
 
@@ -118,8 +154,9 @@ TEST_P(KillAHundredTimes, AndResumeEachTime) {
     const bool during_work = count_records(journal) > before;
     kills_during_work += during_work ? 1 : 0;
     // The writes before are the lock and the torn end of the previous life; in the first life the
-    // lock, the manifest and the beginning of the journal.
-    EXPECT_TRUE(during_work || !at_a_write || at < 5) << "kill " << kill << " at write " << at;
+    // lock, the checksum of the manifest, the manifest and the beginning of the journal.
+    EXPECT_TRUE(during_work || !at_a_write || at < (kill == 0 ? 6 : 5))
+        << "kill " << kill << " at write " << at;
   }
   EXPECT_GE(kills_during_work, 40);
   EXPECT_LT(count_records(journal), count_records(folder / "whole/journal"))

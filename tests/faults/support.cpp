@@ -1,5 +1,6 @@
 #include "faults/support.hpp"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -35,6 +36,20 @@ void expect_part(const std::vector<EvaluationRecord>& part,
 }
 
 }  // namespace
+
+double measure_children_s(const std::function<void()>& action) {
+  const auto now_s = [] {
+    rusage usage{};
+    ::getrusage(RUSAGE_CHILDREN, &usage);
+    const auto to_s = [](const timeval& time) {
+      return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+    };
+    return to_s(usage.ru_utime) + to_s(usage.ru_stime);
+  };
+  const double before_s = now_s();
+  action();
+  return now_s() - before_s;
+}
 
 std::uintmax_t get_size(const std::filesystem::path& file) {
   std::error_code error;

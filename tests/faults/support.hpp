@@ -53,6 +53,9 @@ inline Environment after_shell(const std::string& commands) {
   return environment;
 }
 
+// Returns the processor time in seconds of the programs that `action` runs.
+double measure_children_s(const std::function<void()>& action);
+
 // Returns the words that run the program as another user, because root is exempt from rights and
 // limits. Empty if this process is not root.
 Words become_ordinary_user();

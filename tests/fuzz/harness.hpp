@@ -57,5 +57,6 @@ void fuzz_records(std::string_view input);
 void fuzz_manifest(std::string_view input);
 void fuzz_export_csv(std::string_view input);
 void fuzz_export_json(std::string_view input);
+void fuzz_http_request(std::string_view input);
 
 }  // namespace armwright::fuzz

@@ -36,7 +36,7 @@ void open_folder(std::string_view manifest) {
                                                   ",\"build\":" + std::string(manifest.substr(1)) +
                                                   "}"
                                             : std::string(manifest));
-  const RunFolder folder(path, plan, {});
+  const RunFolder folder(path, path, plan, {});
   for (const std::string& warning : folder.warnings()) {
     check_message(warning);
   }

@@ -1,4 +1,6 @@
-// result.json, cell.json and attempt.json: what is read is the same written and read again.
+// result.json, cell.json, attempt.json and SHA256SUMS: what is read is the same written and read
+// again.
+#include "base/folder_checksums.hpp"
 #include "fuzz/harness.hpp"
 #include "study/compare/cell.hpp"
 #include "study/matrix/attempt.hpp"
@@ -42,9 +44,19 @@ void check_result(const RunResult& result) {
   check_sizes(result, result.test);
 }
 
+void check_checksums(std::string_view input) {
+  const auto& folder = get_scratch_folder("checksums");
+  write_scratch(folder / kChecksumFile, input);
+  is_read([&] {
+    require(format_checksums(FolderChecksums(folder).lines()) == input,
+            "other checksums are written than were read");
+  });
+}
+
 }  // namespace
 
 void fuzz_records(std::string_view input) {
+  check_checksums(input);
   is_read([&] { check_result(parse_result(std::string(input), "result.json")); });
   check(input, "result.json", parse_result);
   check(input, "cell.json", parse_cell);

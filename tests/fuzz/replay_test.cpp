@@ -34,6 +34,7 @@ constexpr HarnessRow kHarnesses[] = {
     {"export_csv", fuzz_export_csv},
     {"export_json", fuzz_export_json},
     {"path", fuzz_path},
+    {"http_request", fuzz_http_request},
 };
 
 constexpr std::size_t kLargestInput_bytes = std::size_t{16} << 20;

@@ -28,7 +28,7 @@ before(async () => {
     server.stdout.once('data', (data) => resolve(String(data)));
     server.once('exit', (code) => reject(new Error(`watch ended with ${code}`)));
   });
-  address = said.match(/http:\/\/127\.0\.0\.1:\d+\//)[0];
+  address = said.match(/http:\/\/127\.0\.0\.1:\d+\/[0-9a-f]{32}\//)[0];
 });
 after(async () => {
   server.removeAllListeners('exit');
@@ -73,8 +73,15 @@ test('data that have not changed are not sent again', async () => {
 
 test('other hosts, methods and paths are refused', async () => {
   assert.equal((await ask({ headers: { Host: 'evil.example' } })).status, 403);
-  assert.equal((await ask({ method: 'POST' })).status, 404);
-  assert.equal((await ask({ method: 'DELETE' }, '/data.json')).status, 404);
+  assert.equal((await ask({ method: 'POST' })).status, 405);
+  assert.equal((await ask({ method: 'DELETE' }, '/data.json')).status, 405);
   assert.equal((await ask({}, '/../../../../etc/passwd')).status, 404);
   assert.equal((await ask({}, '/study.toml')).status, 404);
+});
+
+test('another user, who does not know the token, gets nothing', async () => {
+  const origin = new URL(address).origin;
+  for (const path of ['/', '/data.json', '/00000000000000000000000000000000/data.json']) {
+    assert.equal((await fetch(origin + path)).status, 404);
+  }
 });

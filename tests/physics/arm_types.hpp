@@ -73,6 +73,7 @@ struct ArmTraits<OdeArm> {
   // The message about an arm that diverged. It names a joint unless the library itself stopped.
   static constexpr const char* kBlownUp =
       "joint [0-9]+ \\([a-z]+\\): its link is .* m from the base and turns at .* rad/s|"
+      "joint [0-9]+ \\([a-z]+\\): its position or speed is not a finite number|"
       "ODE stopped \\(message .*";
 };
 
@@ -101,7 +102,8 @@ struct ReducedArmTraits {
   static constexpr bool kMovesAlongTangents = false;
   static constexpr double kFarthestSlide_m = 714;
   static constexpr const char* kBlownUp =
-      "joint [0-9]+ \\([a-z]+\\): its link is .* m from the base and turns at .* rad/s";
+      "joint [0-9]+ \\([a-z]+\\): its link is .* m from the base and turns at .* rad/s|"
+      "joint [0-9]+ \\([a-z]+\\): its position or speed is not a finite number";
 };
 
 // It diverges once the positions (rad or m) and rates of all joints add up to a million.
@@ -110,7 +112,8 @@ struct ArmTraits<ArticulatedArm> : ReducedArmTraits {
   static constexpr const char* kName = "ArticulatedArm";
   static constexpr double kFarthestSlide_m = 1e6 / 1.1;  // in a step of 10 s
   static constexpr const char* kBlownUp =
-      "joint [0-9]+ \\([a-z]+\\): it is at .* (rad|m) and moves at .* (rad|m)/s";
+      "joint [0-9]+ \\([a-z]+\\): it is at .* (rad|m) and moves at .* (rad|m)/s|"
+      "joint [0-9]+ \\([a-z]+\\): its position or speed is not a finite number";
 };
 
 #ifdef ARMWRIGHT_WITH_MUJOCO

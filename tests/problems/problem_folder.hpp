@@ -49,7 +49,7 @@ class ProblemFolder {
   }
   std::string refusal_of_design(const std::string& text) const {
     write("d.toml", text);
-    return shorten(usage_error_of([&] { load_design(path("d.toml")); }));
+    return shorten(error_of(ErrorKind::bad_data, [&] { load_design(path("d.toml")); }));
   }
 
   std::string shorten(std::string message) const {

@@ -266,6 +266,7 @@ class RunTest(FolderTest):
         from armwright.optimizer import read_optimizer
         manifest["configuration"]["inputs"].update(read_optimizer(Stubborn).hashes)
         (self.folder / "stubborn/manifest.json").write_text(json.dumps(manifest))
+        (self.folder / "stubborn/SHA256SUMS").unlink()  # else the changed manifest is refused
         (self.folder / "stubborn/result.json").unlink()
         with self.expect_error(armwright.BadDataError, "evaluation 0 of the journal is not what optimizer 'python:stubborn' asks for now"):
             armwright.optimize("sphere", Stubborn, budget=5, set=SMALL, out="stubborn")

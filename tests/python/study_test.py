@@ -97,6 +97,18 @@ class StudyTest(FolderTest):
             with self.subTest(pieces), self.expect_error(armwright.UsageError, *pieces):
                 call()
 
+    def test_plugins_of_a_recorded_study_need_trust(self):
+        pathlib.Path("theirs").mkdir()
+        pathlib.Path("theirs/study.toml").write_text('problems = ["sphere"]\nreplicates = 2\nbudget = 30\n'
+                                                     'optimizers = ["ga", "exec:sh -c \'echo > PWNED\'"]\n')
+        self.assertFalse(armwright.load_study("theirs").finished)
+        with self.expect_error(armwright.UsageError, "would run, with all of your rights: exec:sh -c 'echo > PWNED'", "trust=True"):
+            armwright.compare(study="theirs/study.toml")
+        self.assertFalse(pathlib.Path("PWNED").exists())
+        with self.expect_error(armwright.BadDataError, "before it described itself"):
+            armwright.compare(study="theirs/study.toml", trust=True)
+        self.assertTrue(pathlib.Path("PWNED").exists())
+
     def test_interrupted_and_gone_on_with(self):
         whole = compare(problems=["sphere"], optimizers=[Steps, "ga"], out="whole", budget=400)
         text = ("import armwright, time\nfrom support import Steps\nprint('begun', flush=True)\n"

@@ -42,6 +42,7 @@ struct CellOptions {
   std::vector<std::string> cells;
   std::string jobs;
   std::string time_limit;
+  bool trust = false;
   bool quiet = false;
 };
 
@@ -80,7 +81,7 @@ class CellCommand {
   CellCommand(const CellOptions& options, Session& session)
       : options_(options),
         session_(session),
-        study_(load_recorded_study(options.plan)),
+        study_(load_recorded_study(options.plan, make_asker(options.trust))),
         jobs_(parse_jobs_or_one(options.jobs)) {}
 
   int run() {
@@ -191,6 +192,7 @@ void add_cell(CLI::App& app, Session& session) {
       ->required();
   add_jobs_flag(*command, options->jobs, "1");
   add_time_limit_flag(*command, options->time_limit);
+  add_trust_flag(*command, options->trust);
   command->add_flag("--quiet,-q", options->quiet, "Show no progress")->group("Output");
   command->callback([options, &session] {
     session.action = [options, &session] {

@@ -18,6 +18,7 @@
 #include "cli/terminal/terminal.hpp"
 #include "cli/views/study_view.hpp"
 #include "problems/config/path_survey.hpp"
+#include "study/compare/plugin_consent.hpp"
 #include "study/compare/study_plan.hpp"
 #include "study/compare/study_runner.hpp"
 #include "study/matrix/cell_attempt.hpp"
@@ -60,13 +61,16 @@ struct CompareOptions {
   std::string time_limit;
   FolderOptions folder;
   ExecutorOptions executor;
+  bool trust = false;
   bool dry_run = false;
   bool json = false;
   bool quiet = false;
 };
 
-StudyRequest make_request(const CompareOptions& options) {
+StudyRequest make_request(const CompareOptions& options, PluginUse plugins) {
   StudyRequest request;
+  request.plugins = plugins;
+  request.ask = make_asker(options.trust);
   if (!options.file.empty() && !options.preset.empty()) {
     throw Error(ErrorKind::usage, "a study file and --preset are given; choose one of them");
   }
@@ -145,14 +149,16 @@ int run_compare(const CompareOptions& options, Session& session) {
   if (job.is_worker()) {
     job.serve(
         [&] {
-          plan = make_study_plan(make_request(options));
+          // Only rank 0 runs plugins, once the user has agreed.
+          plan = make_study_plan(make_request(options, PluginUse::read));
           adopt_recorded(options.folder.choose(escape_name(plan.name)), plan);
           return list_problems(plan);
         },
         jobs);
   }
   apply_time_limit(options.time_limit, session.stop);
-  plan = make_study_plan(make_request(options));
+  plan =
+      make_study_plan(make_request(options, options.dry_run ? PluginUse::preview : PluginUse::run));
   const auto path = options.folder.choose(escape_name(plan.name));
   adopt_recorded(path, plan);
   std::vector<std::string> notes;
@@ -173,6 +179,7 @@ int run_compare(const CompareOptions& options, Session& session) {
     return exit_code::kDone;
   }
   const StudyFolder folder(path, plan);
+  remember_study(path);
   for (const std::string& addition : folder.additions()) {
     write_message("new in the plan: " + addition);
   }
@@ -241,6 +248,7 @@ void add_compare(CLI::App& app, Session& session) {
   add_jobs_flag(*command, options->jobs);
   add_time_limit_flag(*command, options->time_limit);
   options->executor.add_to(*command);
+  add_trust_flag(*command, options->trust);
   command->add_flag("--dry-run", options->dry_run,
                     "Run nothing; print the plan and its cost. With --executor slurm or script,\n"
                     "print the chunks and the command that submits them");

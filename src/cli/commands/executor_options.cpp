@@ -12,6 +12,7 @@
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/terminal.hpp"
 #include "study/compare/cell.hpp"
+#include "study/compare/plugin_consent.hpp"
 #include "study/compare/study_folder.hpp"
 #include "study/executor/mpi_transport.hpp"
 #include "study/matrix/chunks.hpp"
@@ -178,6 +179,7 @@ int hand_over_cells(const ExecutorOptions& options, const StudyPlan& plan,
   }
   {
     const StudyFolder folder(path, plan);
+    remember_study(path);
     for (const std::string& addition : folder.additions()) {
       write_message("new in the plan: " + addition);
     }

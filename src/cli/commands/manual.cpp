@@ -58,7 +58,7 @@ std::vector<ManualPage> make_all_pages(const CommandDefinition& program) {
 int write_pages(const CommandDefinition& program, const ManualOptions& options) {
   constexpr int kFileWidth = 80;  // lines of a text file
   const std::filesystem::path folder = options.out;
-  std::filesystem::create_directories(folder);
+  make_folder(folder);
   const std::vector<ManualPage> pages = make_all_pages(program);
   std::string names;
   const auto write = [&](const std::string& name, const std::string& text) {

@@ -67,7 +67,8 @@ int run_new_plugin(const NewPluginOptions& options) {
     throw Error(ErrorKind::usage, describe_unknown("--language", options.language, languages));
   }
   const std::filesystem::path folder = options.name;
-  if (std::filesystem::exists(std::filesystem::symlink_status(folder))) {
+  std::error_code ignored;
+  if (std::filesystem::exists(std::filesystem::symlink_status(folder, ignored))) {
     throw Error(ErrorKind::usage,
                 fmt::format("'{}' exists already and is not overwritten; choose another name, or "
                             "move it away",
@@ -80,8 +81,12 @@ int run_new_plugin(const NewPluginOptions& options) {
     write_file_atomically(path, file.content);
     if (file.is_program) {
       using std::filesystem::perms;
+      std::error_code error;
       std::filesystem::permissions(path, perms::owner_exec | perms::group_exec | perms::others_exec,
-                                   std::filesystem::perm_options::add);
+                                   std::filesystem::perm_options::add, error);
+      if (error) {
+        fail_io(path, "make it a program", error.value());
+      }
     }
     text += path.string() + "\n";
   }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/folder.hpp"
 #include "base/text.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/commands/mpi_job.hpp"
@@ -150,7 +151,7 @@ std::vector<std::string> make_command(const OptimizeOptions& options, const Sess
 
 void announce(const RunRequest& request, const std::string& ranks) {
   const RunPlan& plan = request.plan;
-  const bool known = std::filesystem::exists(request.folder / "manifest.json");
+  const bool known = path_exists(request.folder / "manifest.json");
   write_message(fmt::format("{}: {}", plan.problem.name, plan.problem.title));
   write_message(fmt::format(
       "optimizer {}, seed {}, budget {}, schedule {}{}, {}{}", plan.optimizer.name, plan.seed,
@@ -178,7 +179,7 @@ std::string find_log(const RunRequest& request) {
   if (log.empty()) {
     log = request.folder / "optimizer.log";
   }
-  return std::filesystem::exists(log) ? log.string() : "";
+  return path_exists(log) ? log.string() : "";
 }
 
 // Returns what the user can do about an optimizer that has failed.
@@ -222,7 +223,7 @@ std::string describe_next(const OptimizeOptions& options, const std::string& pro
                           const std::filesystem::path& folder, const Style& style) {
   const auto winner = folder / "winner.toml";
   std::string text = "\n" + style.bold("Next") + "\n";
-  if (std::filesystem::exists(winner)) {
+  if (path_exists(winner)) {
     std::vector<std::string> words = {program, "evaluate", winner.string(), "--problem",
                                       options.get_problem()};
     for (const std::string& change : options.overrides.get()) {

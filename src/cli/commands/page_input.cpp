@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "base/error.hpp"
+#include "base/folder.hpp"
 #include "cli/terminal/progress_bar.hpp"
 #include "cli/terminal/session.hpp"
 #include "report/page/page_data.hpp"
@@ -28,7 +29,7 @@ void PageInput::add_to(CLI::App& command) {
 }
 
 std::optional<std::string> PageInput::make_data(Session& session) const {
-  if (std::filesystem::is_regular_file(source)) {
+  if (regular_file_exists(source)) {
     if (!cases.empty()) {
       throw Error(
           ErrorKind::usage,

@@ -145,7 +145,7 @@ std::filesystem::path choose_folder(const PlotOptions& options) {
     return options.out;
   }
   const std::filesystem::path source = options.input.source;
-  return (std::filesystem::is_regular_file(source) ? source.parent_path() : source) / "figures";
+  return (regular_file_exists(source) ? source.parent_path() : source) / "figures";
 }
 
 int run_plot(const PlotOptions& options, Session& session) {
@@ -175,20 +175,19 @@ int run_plot(const PlotOptions& options, Session& session) {
                                 : plotter.draw(entry.id, format, picks) + "\n");
     return exit_code::kDone;
   }
-  const std::filesystem::path folder = choose_folder(options);
-  make_folder(folder);
+  const std::filesystem::path path = choose_folder(options);
+  const Folder folder = Folder::make(path, options.out.empty() ? path.parent_path() : path);
   std::size_t drawn = 0;
   for (const PlotEntry& entry : entries) {
     const Plotter::Picks its = get_picks(entry, picks);
     if (!entry.is_table) {
-      write_file_atomically(folder / (entry.id + ".svg"),
-                            plotter.draw(entry.id, format, its) + "\n");
+      write_file_atomically(folder, entry.id + ".svg", plotter.draw(entry.id, format, its) + "\n");
       ++drawn;
     }
-    write_file_atomically(folder / (entry.id + ".csv"), plotter.make_csv(entry.id, its));
+    write_file_atomically(folder, entry.id + ".csv", plotter.make_csv(entry.id, its));
   }
   write_stdout(fmt::format("{} as SVG and {} as CSV in {}\n", format_count(drawn, "figure"),
-                           format_count(entries.size(), "table"), sanitize(folder.string())));
+                           format_count(entries.size(), "table"), sanitize(path.string())));
   return exit_code::kDone;
 }
 

@@ -34,7 +34,7 @@ struct ReportOptions {
 
 // Throws Error{usage} if the file exists and is not a page. A newer page may replace an older one.
 void check_target(const std::filesystem::path& file) {
-  if (std::filesystem::exists(file) && !is_page_file(file)) {
+  if (path_exists(file) && !(regular_file_exists(file) && is_page_file(file))) {
     throw Error(ErrorKind::usage, fmt::format("{}: exists and is not a page of armwright; choose "
                                               "another name with --out",
                                               file.string()));
@@ -46,7 +46,7 @@ int run_report(const ReportOptions& options, Session& session) {
   if (!options.json) {
     get_page_assets();  // throws before anything is computed if this build has no page
     if (file.empty()) {
-      if (std::filesystem::is_regular_file(options.input.source)) {
+      if (regular_file_exists(options.input.source)) {
         throw Error(ErrorKind::usage,
                     fmt::format("{}: name the new page with --out", options.input.source));
       }

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
+#include "base/folder.hpp"
 #include "base/text.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/terminal/format.hpp"
@@ -202,7 +203,7 @@ void announce(const ReproduceOptions& options, const ReproductionPlan& plan,
   expected_s += static_cast<double>(cases) / (kCasesPerJobAndSecond * jobs);
   std::size_t runs = 0;
   for (const RunPlan& run : plan.runs) {
-    if (!std::filesystem::exists(folder->get_run_folder(run.problem.name) / "result.json")) {
+    if (!path_exists(folder->get_run_folder(run.problem.name) / "result.json")) {
       expected_s += static_cast<double>(run.budget) / (kRunCasesPerJobAndSecond * jobs);
       ++runs;
     }

@@ -37,6 +37,7 @@ struct RerunOptions {
   std::string jobs;
   std::string time_limit;
   std::string out;
+  bool trust = false;
   bool json = false;
   bool quiet = false;
 };
@@ -129,20 +130,24 @@ std::string format_text(const std::filesystem::path& recorded, const std::filesy
 int run_rerun(const RerunOptions& options, Session& session) {
   const unsigned jobs = parse_jobs(options.jobs);
   apply_time_limit(options.time_limit, session.stop);
-  const StudyPlan plan = load_study_plan(options.study);
+  const StudyPlan plan = load_study_plan(options.study, make_asker(options.trust));
   const Cell cell = find_cell(plan, options.cell);
   check_recorded(options, plan, cell, session.command_line.front());
   const auto folder = choose_folder(options, plan, cell);
   if (!options.quiet) {
     write_message(describe_cell(plan, cell));
     write_message(fmt::format("folder {} ({})", sanitize(folder.string()),
-                              std::filesystem::exists(folder) ? "found" : "new"));
+                              path_exists(folder) ? "found" : "new"));
   }
   catch_signals(session.stop);
   ProgressBar bar(
       options.quiet,
       get_scalar_quantity(plan.problems[cell.problem].loaded.problem->description().objectives));
-  const CellRequest where{.folder = folder, .jobs = jobs, .command_line = session.command_line};
+  const CellRequest where{
+      .folder = folder,
+      .root = options.out.empty() ? std::filesystem::path(options.study) : folder,
+      .jobs = jobs,
+      .command_line = session.command_line};
   const auto outcome = run_cell(plan, cell, where, session.stop, bar);
   bar.clear();
   if (!outcome) {
@@ -170,6 +175,7 @@ void add_rerun(CLI::App& app, Session& session) {
   command->add_option("CELL", options->cell, "The run: PROBLEM/OPTIMIZER/rNN")->required();
   add_jobs_flag(*command, options->jobs);
   add_time_limit_flag(*command, options->time_limit);
+  add_trust_flag(*command, options->trust);
   command
       ->add_option(
           "--out", options->out,

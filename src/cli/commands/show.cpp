@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
+#include "base/folder.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "cli/commands/commands.hpp"
@@ -52,14 +54,14 @@ UnfinishedRun read_unfinished(const std::filesystem::path& folder) {
   const auto file = folder / "manifest.json";
   UnfinishedRun run;
   try {
-    const json manifest = json::parse(read_json_file(file, kLimit_bytes));
+    const json manifest = json::parse(read_checked_json(file, kLimit_bytes));
     run.command_line = manifest.at("command_line").get<std::vector<std::string>>();
     run.budget = whole_from_json<std::int64_t>(manifest.at("configuration").at("run").at("budget"));
   } catch (const json::exception& error) {
     throw Error(ErrorKind::bad_data, fmt::format("{}: is not a manifest that armwright wrote ({})",
                                                  file.string(), describe_json_error(error.what())));
   }
-  if (std::filesystem::exists(folder / "journal")) {
+  if (path_exists(folder / "journal")) {
     const JournalContent journal = read_journal(folder / "journal");
     run.evaluations = journal.training.size();
     run.judgements = journal.judgements.size();
@@ -97,15 +99,15 @@ int run_show(const ShowOptions& options, const Session& session) {
   if (is_study_folder(folder)) {
     return show_study(options, session);
   }
-  if (!std::filesystem::exists(folder / "manifest.json")) {
-    const bool is_there = std::filesystem::exists(folder);
+  if (!path_exists(folder / "manifest.json")) {
+    const bool is_there = path_exists(folder);
     throw Error(ErrorKind::usage,
                 sanitize(folder.string()) +
                     (is_there ? ": is not the folder of a run (it has no manifest.json) or of a "
                                 "study (it has no study.toml)"
                               : ": there is no such folder"));
   }
-  if (std::filesystem::exists(folder / "result.json")) {
+  if (path_exists(folder / "result.json")) {
     const RunResult result = load_result(folder);
     if (options.json) {
       write_stdout(to_json(result));

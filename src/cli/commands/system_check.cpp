@@ -92,10 +92,9 @@ void check_page(Checks& checks) {
     get_page_assets();
     checks.push_back({"reports", "page and figures", CheckState::good, "built in"});
   } catch (const Error&) {
-    checks.push_back(
-        {"reports", "page and figures", CheckState::lacking,
-         "not in this build: report, plot and watch do not work",
-         advise_build("nodejs npm duktape-dev libcpp-httplib-dev", "ARMWRIGHT_WITH_PAGE")});
+    checks.push_back({"reports", "page and figures", CheckState::lacking,
+                      "not in this build: report, plot and watch do not work",
+                      advise_build("nodejs npm duktape-dev", "ARMWRIGHT_WITH_PAGE")});
   }
   if (can_read_meshes()) {
     checks.push_back({"reports", "meshes of robots", CheckState::good, "Assimp is built in"});

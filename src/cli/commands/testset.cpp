@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "base/error.hpp"
+#include "base/folder.hpp"
 #include "base/text.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/terminal/arguments.hpp"
@@ -130,7 +131,7 @@ int run_import(const TestsetOptions& options) {
 }
 
 int run_hash(const TestsetOptions& options) {
-  const bool a_file = std::filesystem::is_regular_file(options.name);
+  const bool a_file = regular_file_exists(options.name);
   if (a_file && !options.cases.empty()) {
     throw Error(ErrorKind::usage,
                 "--cases works with generated sets only; a file is hashed as a whole");

@@ -5,7 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "base/error.hpp"
+#include "base/stop_signal.hpp"
 #include "base/text.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/terminal/arguments.hpp"
@@ -23,8 +23,9 @@ constexpr const char* kWatchExamples = R"(Examples:
   armwright watch results/q1                       # print an address; Ctrl-C ends the command
   armwright watch results/q1 --port 8642
 
-The command only reads, and it answers only this machine (127.0.0.1); over ssh, forward the port with ssh -L. The page
-leaves out figures that need simulations (the motion in 3D, curves on the test set); 'armwright report' makes them.)";
+The command only reads, and it answers only this machine (127.0.0.1); over ssh, forward the port with ssh -L. The address
+has a random part, without which other users of the machine get nothing: pass it on only to people who may see the
+page. The page leaves out figures that need simulations (the motion in 3D, curves on the test set); 'armwright report' makes them.)";
 
 struct WatchOptions {
   std::string folder;
@@ -47,15 +48,19 @@ int run_watch(const WatchOptions& options, Session& session) {
     SilentObserver observer;
     const auto data = make_page_data(options.folder, page, session.stop, observer);
     if (!data) {
-      throw Error(ErrorKind::io, "the program is ending");
+      throw WorkStopped{};
     }
     return *data;
   };
-  const std::string first = make_data();  // throws now if there is nothing to show
-  PageServer server(port, get_page_title(first), make_data);
-  write_stdout(fmt::format("http://127.0.0.1:{}/ shows {}; Ctrl-C ends it\n", server.port(),
-                           sanitize(options.folder)));
-  server.serve(session.stop);
+  try {
+    const std::string first = make_data();  // throws now if there is nothing to show
+    PageServer server(port, get_page_title(first), make_data);
+    write_stdout(
+        fmt::format("{} shows {}; Ctrl-C ends it\n", server.url(), sanitize(options.folder)));
+    server.serve(session.stop);
+  } catch (const WorkStopped&) {
+    // The stop came while a page was made.
+  }
   return session.stop.reason() == StopReason::interrupted ? exit_code::kDone
                                                           : get_stop_code(session.stop.reason());
 }

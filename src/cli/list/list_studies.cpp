@@ -17,6 +17,7 @@ using nlohmann::json;
 StudyPlan load_study(const std::string& name) {
   StudyRequest request;
   request.file = name;
+  request.plugins = PluginUse::read;
   return make_study_plan(request);
 }
 

@@ -118,7 +118,7 @@ std::vector<SourceRow> make_value_rows() {
   };
   for (const char* name :
        {"N", "ID", "KEY", "KEY=VALUE", "NAME=VALUE", "NUMBERS", "DURATION", "CASES", "KIND",
-        "KIND:K", "LABEL", "LINK", "SET:NUMBER", "WIDTHxHEIGHT", "WORD"}) {
+        "KIND:K", "LABEL", "LINK", "SET:NUMBER", "TIME,MEMORY", "WIDTHxHEIGHT", "WORD"}) {
     rows.push_back({"", name, kFree});
   }
   return rows;

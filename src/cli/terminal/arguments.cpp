@@ -5,12 +5,15 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <thread>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "base/toml_text.hpp"
 #include "cli/terminal/session.hpp"
+#include "cli/terminal/terminal.hpp"
 #include "problems/config/config_files.hpp"
 #include "sim/engines/engine_table.hpp"
 #include "sim/tracking/physics_engine.hpp"
@@ -54,6 +57,29 @@ double parse_duration_s(std::string_view flag, std::string_view text) {
   return *value * unit_s;
 }
 
+ReadLimit parse_read_limit(std::string_view text) {
+  constexpr const char* kFlag = "--read-limit (ARMWRIGHT_READ_LIMIT)";
+  constexpr double kMost_bytes = 1e18;
+  constexpr std::pair<std::string_view, double> kUnits[] = {
+      {"KiB", 1024.0}, {"MiB", 1024.0 * 1024}, {"GiB", 1024.0 * 1024 * 1024}};
+  ReadLimit limit;
+  for (const std::string& part : split(text, ',')) {
+    const auto unit =
+        std::ranges::find_if(kUnits, [&](const auto& one) { return part.ends_with(one.first); });
+    if (unit == std::end(kUnits)) {
+      limit.time_s = parse_duration_s(kFlag, part);
+      continue;
+    }
+    const auto number =
+        parse_finite(std::string_view(part).substr(0, part.size() - unit->first.size()));
+    if (!number || *number <= 0 || *number * unit->second > kMost_bytes) {
+      refuse(kFlag, part, "a memory above 0 with its unit: 512MiB or 4GiB");
+    }
+    limit.memory_bytes = static_cast<std::uint64_t>(*number * unit->second);
+  }
+  return limit;
+}
+
 Schedule parse_schedule(std::string_view text) {
   const auto schedule = read_schedule(text);
   if (!schedule) {
@@ -76,6 +102,13 @@ CLI::App* add_command(CLI::App& parent, Session& session, const std::string& nam
   command->add_option("--color", session.color, "When to use colour: auto, always or never")
       ->type_name("WHEN")
       ->group("Output");
+  command
+      ->add_option("--read-limit", session.read_limit,
+                   "Processor time and memory that reading a problem, a study, a design or test\n"
+                   "cases may take (default: " +
+                       to_string(ReadLimit{}) + "); give one of them or both")
+      ->type_name("TIME,MEMORY")
+      ->envname("ARMWRIGHT_READ_LIMIT");
   command->footer(examples + std::string(kSeeExitCodes));
   return command;
 }
@@ -115,6 +148,16 @@ void apply_time_limit(std::string_view time_limit, StopSignal& stop) {
     stop.set_deadline(StopSignal::Clock::now() +
                       std::chrono::duration_cast<StopSignal::Clock::duration>(limit));
   }
+}
+
+void add_trust_flag(CLI::App& command, bool& trust) {
+  command.add_flag("--trust", trust,
+                   "Run the plugins that the study names, although you did not start it on this\n"
+                   "machine; a plugin has all rights that you have");
+}
+
+std::function<bool(const std::string& question)> make_asker(bool trust) {
+  return [trust](const std::string& question) { return trust || ask_on_terminal(question); };
 }
 
 void FolderOptions::add_to(CLI::App& command, const std::string& what,

@@ -5,10 +5,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "base/read_limit.hpp"
 #include "problems/config/problem_loader.hpp"
 
 namespace CLI {
@@ -26,6 +28,9 @@ std::int64_t parse_count(std::string_view flag, std::string_view text, std::int6
 // Returns the seconds that "90", "90s", "10m" or "1.5h" stand for. Throws Error{usage} unless they
 // are above 0.
 double parse_duration_s(std::string_view flag, std::string_view text);
+// Reads "60s,4GiB", "60s" or "4GiB", the value of --read-limit. What the text leaves out keeps its
+// default. Throws Error{usage}.
+ReadLimit parse_read_limit(std::string_view text);
 // Reads "fresh:K", "fixed:K" or "coevolution:K", the value of --schedule. Throws Error{usage}.
 Schedule parse_schedule(std::string_view text);
 // Reads the value of --racing. Throws Error{usage}.
@@ -54,6 +59,12 @@ unsigned parse_jobs_or_one(std::string_view text);
 void add_time_limit_flag(CLI::App& command, std::string& time_limit);
 // Sets the deadline of `stop` to now plus the time limit, if there is one. Throws Error{usage}.
 void apply_time_limit(std::string_view time_limit, StopSignal& stop);
+
+// Adds --trust. `trust` must live as long as the parser.
+void add_trust_flag(CLI::App& command, bool& trust);
+// Returns what answers questions about plugins: yes with --trust, otherwise what the user says on
+// the terminal, and no without a terminal.
+std::function<bool(const std::string& question)> make_asker(bool trust);
 
 // The flags --out and --new, which choose the folder of a run, study or reproduction.
 struct FolderOptions {

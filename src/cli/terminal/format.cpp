@@ -12,6 +12,9 @@ namespace armwright {
 
 std::string format_significant(double value, int digits) {
   const double size = std::abs(value);
+  if (!std::isfinite(value)) {
+    return describe_number(value, "");
+  }
   if (size == 0) {
     return "0";
   }
@@ -31,6 +34,9 @@ nlohmann::json to_json_value(std::optional<double> value) {
 }
 
 std::string format_quantity(double value, std::string_view unit) {
+  if (!std::isfinite(value)) {
+    return describe_number(value, unit);
+  }
   if (unit == "m") {
     return format_mm(value) + " mm";
   }

@@ -13,12 +13,12 @@ namespace armwright {
 // The exit codes that 'armwright --help' documents.
 namespace exit_code {
 inline constexpr int kDone = 0;
-inline constexpr int kInternal = 1;  // a bug of armwright, or no memory left
+inline constexpr int kInternal = 1;  // a bug of armwright
 inline constexpr int kUsage = 2;
 inline constexpr int kFailed = 3;  // the command finished, but something failed
 inline constexpr int kBadData = 4;
 inline constexpr int kBusy = 5;
-inline constexpr int kIo = 74;
+inline constexpr int kIo = 74;  // reading or writing failed, or no memory is left
 inline constexpr int kStopped = 75;
 inline constexpr int kInterrupted = 130;
 }  // namespace exit_code
@@ -27,6 +27,7 @@ inline constexpr int kInterrupted = 130;
 struct Session {
   std::vector<std::string> command_line;  // as typed, including the program's name
   std::string color = "auto";
+  std::string read_limit;  // as typed; empty stands for the default
   StopSignal stop;
   std::function<int()> action;    // the work of the chosen subcommand; it returns the exit code
   bool shares_work = false;       // whether the chosen subcommand uses all MPI ranks

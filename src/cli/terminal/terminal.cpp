@@ -96,6 +96,20 @@ void write_message(std::string_view text) {
   write_stderr(lines);
 }
 
+bool ask_on_terminal(std::string_view question) {
+  if (!is_terminal(Stream::in) || !is_terminal(Stream::error)) {
+    return false;
+  }
+  write_stderr(fmt::format("armwright: {} [y/N] ", sanitize(question)));
+  constexpr std::size_t kLongest = 80;
+  std::string answer;
+  char letter = 0;
+  while (answer.size() < kLongest && ::read(STDIN_FILENO, &letter, 1) == 1 && letter != '\n') {
+    answer += letter;
+  }
+  return answer == "y" || answer == "Y" || answer == "yes";
+}
+
 void write_output(const std::string& file, std::string_view text) {
   if (file == "-") {
     write_stdout(text);

@@ -7,7 +7,7 @@
 
 namespace armwright {
 
-enum class Stream { out = 1, error = 2 };
+enum class Stream { in = 0, out = 1, error = 2 };
 
 // Returns whether the stream is a terminal that can redraw a line. Returns false under mpirun and
 // for TERM=dumb.
@@ -46,6 +46,10 @@ void write_stderr(std::string_view text);
 // Writes "armwright: TEXT" to stderr. Control characters are replaced, so that no escape code
 // reaches the terminal.
 void write_message(std::string_view text);
+
+// Writes the question to stderr and reads the answer from stdin. Returns true for "y" or "yes".
+// Returns false without asking if stdin or stderr is no terminal.
+bool ask_on_terminal(std::string_view question);
 
 // Writes the text to a file, whole or not at all; "-" is stdout. Devices and pipes are written to
 // directly. Throws Error{io}, and BrokenPipe for "-".

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/text.hpp"
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/terminal.hpp"
@@ -53,12 +54,29 @@ LoadedProblem load_problem_of_design(const DesignFile& design, const std::string
   return load_problem(published.problem, overrides);
 }
 
+namespace {
+
+// Warns if the design is a winner.toml that is not as its run wrote it.
+void warn_of_change(const std::filesystem::path& design) {
+  if (design.filename() != "winner.toml") {
+    return;
+  }
+  try {
+    FolderChecksums(design.has_parent_path() ? design.parent_path() : ".").check("winner.toml");
+  } catch (const Error& change) {
+    write_message(fmt::format("warning: {}", change.what()));
+  }
+}
+
+}  // namespace
+
 std::pair<DesignFile, LoadedProblem> load_design_and_problem(const std::string& design,
                                                              const std::string& problem,
                                                              std::vector<std::string> overrides,
                                                              bool quiet) {
   if (design != kStartDesign) {
     DesignFile file = load_design(design);
+    warn_of_change(design);
     LoadedProblem loaded = load_problem_of_design(file, problem, std::move(overrides), quiet);
     return {std::move(file), std::move(loaded)};
   }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/folder.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/text.hpp"
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/session.hpp"
@@ -63,8 +65,11 @@ std::string format_winner(const RunResult& result, const std::filesystem::path& 
       style.bold("Winner") + fmt::format(" ({}; the best of {} judged on the validation set)\n",
                                          origin, format_count(result.judged.size(), "design"));
   const auto file = folder / "winner.toml";
-  return title + (std::filesystem::exists(file) ? format_design(load_design(file.string()), style)
-                                                : format_vector(result, winner.x, style));
+  if (!path_exists(file)) {
+    return title + format_vector(result, winner.x, style);
+  }
+  FolderChecksums(folder).check("winner.toml");
+  return title + format_design(load_design(file.string()), style);
 }
 
 void add_target(const RunResult& result, Table& table) {
@@ -285,7 +290,7 @@ std::string describe_result(const RunResult& result, const std::filesystem::path
   }
   Table files({{"", false}, {"", false}});
   for (const RunFile& file : kRunFiles) {
-    if (std::filesystem::exists(folder / file.name)) {
+    if (path_exists(folder / file.name)) {
       files.add_row({file.name, file.what});
     }
   }

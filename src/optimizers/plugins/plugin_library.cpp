@@ -15,6 +15,7 @@
 #include "base/text.hpp"
 #include "optimizers/plugins/plugin_call.hpp"
 #include "optimizers/plugins/plugin_description.hpp"
+#include "optimizers/plugins/recorded_optimizer.hpp"
 #include "process/child_process.hpp"
 #include "process/output_log.hpp"
 #include "process/packet.hpp"
@@ -231,21 +232,24 @@ OptimizerRow load_library_plugin(const std::filesystem::path& file, const std::s
                   .file = std::filesystem::absolute(file),
                   .hash = calc_file_hash(file)};
   try {
-    PluginDescription description = describe(library.file, loading);
+    const PluginDescription description = describe(library.file, loading);
     library.keeps_bounds = (description.capabilities & ARMWRIGHT_BOUNDS) != 0;
-    std::ranges::move(make_own_options(), std::back_inserter(description.options));
-    return {.name = library.name,
-            .summary = description.summary,
-            .source = description.source,
-            .capabilities = make_capabilities(description.capabilities),
-            .options = description.options,
-            .make = [library](const Options& options) -> std::unique_ptr<Optimizer> {
-              return std::make_unique<LibraryOptimizer>(library, options);
-            },
-            .requirements = description.requirements,
-            .isolated = "with isolate=true",
-            .input_hashes = {{file.filename().string(), library.hash}},
-            .short_name = name.empty() ? description.name : ""};
+    OptimizerRow row{.name = "",
+                     .summary = description.summary,
+                     .source = description.source,
+                     .capabilities = make_capabilities(description.capabilities),
+                     .options = description.options,
+                     .make = [library](const Options& options) -> std::unique_ptr<Optimizer> {
+                       return std::make_unique<LibraryOptimizer>(library, options);
+                     },
+                     .requirements = description.requirements,
+                     .isolated = "with isolate=true",
+                     .input_hashes = {{file.filename().string(), library.hash}},
+                     .short_name = name.empty() ? description.name : ""};
+    row.description = make_description(row);
+    row.name = library.name;
+    std::ranges::move(make_own_options(), std::back_inserter(row.options));
+    return row;
   } catch (const PluginRefusal& refusal) {
     throw Error(ErrorKind::bad_data, fmt::format("{}: {}", shown, refusal.what()));
   }

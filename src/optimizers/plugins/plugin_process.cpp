@@ -16,6 +16,7 @@
 #include "base/text.hpp"
 #include "optimizers/interface/isolation.hpp"
 #include "optimizers/plugins/plugin_messages.hpp"
+#include "optimizers/plugins/recorded_optimizer.hpp"
 #include "process/command_words.hpp"
 #include "process/line_process.hpp"
 #include "process/output_log.hpp"
@@ -229,15 +230,11 @@ class ProcessPlugin : public Optimizer {
   std::unique_ptr<OutputLog> log_;  // from the first minimize() on, or log_to()
 };
 
-// Hashes the files that decide the behaviour: the program and the script.
-std::map<std::string, std::string> hash_files(const std::vector<std::string>& words) {
+std::map<std::string, std::string> hash_files(const std::vector<std::string>& files) {
   constexpr std::size_t kLargestFile = std::size_t{1} << 30;
   std::map<std::string, std::string> hashes;
-  for (const std::string& word : words) {
-    std::error_code ignored;
-    if (std::filesystem::is_regular_file(word, ignored)) {
-      hashes[word] = calc_sha256_hex(read_file(word, kLargestFile));
-    }
+  for (const std::string& file : files) {
+    hashes[file] = calc_sha256_hex(read_file(file, kLargestFile));
   }
   return hashes;
 }
@@ -254,6 +251,15 @@ void check_option_names(const OptimizerRow& row) {
 
 }  // namespace
 
+std::vector<std::string> list_program_files(std::string_view command) {
+  std::vector<std::string> files = split_command(command);
+  std::erase_if(files, [](const std::string& word) {
+    std::error_code ignored;
+    return !std::filesystem::is_regular_file(word, ignored);
+  });
+  return files;
+}
+
 OptimizerRow load_process_plugin(std::string_view command, double loading_s) {
   const std::vector<std::string> words = split_command(command);
   OutputLog log;
@@ -262,11 +268,12 @@ OptimizerRow load_process_plugin(std::string_view command, double loading_s) {
     const json description = ask_for_description(child, loading_s, [] { return false; }).value();
     OptimizerRow row = read_description(description);
     check_option_names(row);
+    row.description = make_description(row);
     child.send(make_quit(), kFarewell_s);
     child.finish(kFarewell_s);
     std::ranges::move(make_isolation_options(), std::back_inserter(row.options));
     row.isolated = "always";
-    row.input_hashes = hash_files(words);
+    row.input_hashes = hash_files(list_program_files(command));
     row.make = [=, name = row.name, capabilities = row.capabilities](
                    const Options& options) -> std::unique_ptr<Optimizer> {
       return std::make_unique<ProcessPlugin>(name, words, description, loading_s, capabilities,

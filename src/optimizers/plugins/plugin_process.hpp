@@ -2,7 +2,9 @@
 // standard input and output, by the protocol of docs/plugin-protocol.md.
 #pragma once
 
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "optimizers/interface/optimizer.hpp"
 
@@ -17,5 +19,9 @@ inline constexpr int kPluginProtocol = 1;
 // interpreters and their libraries load slowly. Throws Error{usage} if there is no such program,
 // and Error{bad_data} if its description breaks the protocol.
 OptimizerRow load_process_plugin(std::string_view command, double loading_s = 60);
+
+// Returns the words of a command that are files, which decide what the program does: the program
+// and its script. Starts nothing. Throws Error{usage} if the command cannot be split.
+std::vector<std::string> list_program_files(std::string_view command);
 
 }  // namespace armwright

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -13,12 +14,50 @@
 #include "optimizers/cma/cma_search.hpp"
 #include "optimizers/nlopt/nlopt_algorithms.hpp"
 #include "optimizers/pagmo/pagmo_backend.hpp"
-#include "optimizers/plugins/host_optimizer.hpp"
 #include "optimizers/plugins/plugin_library.hpp"
 #include "optimizers/plugins/plugin_process.hpp"
+#include "optimizers/plugins/recorded_optimizer.hpp"
 #include "optimizers/table/multistart.hpp"
 
 namespace armwright {
+namespace {
+
+constexpr std::string_view kMultistart = "multistart:";
+constexpr std::string_view kProcess = "exec:";
+
+std::string_view remove_multistart(std::string_view name) {
+  while (name.starts_with(kMultistart)) {
+    name.remove_prefix(kMultistart.size());
+  }
+  return name;
+}
+
+// Throws Error{usage} for a name that cannot appear in results and reports, which are UTF-8.
+void check_printable(std::string_view name) {
+  if (sanitize(name) != name) {
+    throw Error(ErrorKind::usage,
+                fmt::format("optimizer '{}': this name is not printable UTF-8; rename the file",
+                            sanitize(name)));
+  }
+}
+
+// Returns the name behind "multistart:". Throws Error{usage} if that is a multistart again.
+std::string_view get_restarted(std::string_view name) {
+  const std::string_view inner = name.substr(kMultistart.size());
+  if (inner.starts_with(kMultistart)) {
+    constexpr std::size_t kShown = 80;
+    throw Error(ErrorKind::usage,
+                fmt::format("optimizer '{}': 'multistart:' is given twice; give it once",
+                            sanitize(name.substr(0, kShown))));
+  }
+  return inner;
+}
+
+bool is_in_table(std::string_view name) {
+  return std::ranges::count(optimizer_table(), name, &OptimizerRow::name) > 0;
+}
+
+}  // namespace
 
 const std::vector<OptimizerRow>& optimizer_table() {
   static const std::vector<OptimizerRow> table = [] {
@@ -48,20 +87,13 @@ const OptimizerRow& find_optimizer(std::string_view name) {
 }
 
 OptimizerRow load_optimizer(std::string_view name) {
-  // The name appears in results and reports, which are UTF-8.
-  if (sanitize(name) != name) {
-    throw Error(ErrorKind::usage,
-                fmt::format("optimizer '{}': this name is not printable UTF-8; rename the file",
-                            sanitize(name)));
-  }
-  constexpr std::string_view kMultistart = "multistart:";
+  check_printable(name);
   if (name.starts_with(kMultistart)) {
-    return make_multistart_row(load_optimizer(name.substr(kMultistart.size())));
+    return make_multistart_row(load_optimizer(get_restarted(name)));
   }
-  constexpr std::string_view kProcess = "exec:";
   if (name.starts_with(kProcess)) {
     OptimizerRow row = load_process_plugin(name.substr(kProcess.size()));
-    if (std::ranges::count(optimizer_table(), row.name, &OptimizerRow::name) > 0) {
+    if (is_in_table(row.name)) {
       throw Error(
           ErrorKind::bad_data,
           fmt::format("optimizer '{}': it calls itself '{}', which is the name of an optimizer "
@@ -76,7 +108,7 @@ OptimizerRow load_optimizer(std::string_view name) {
   if (is_library_name(name)) {
     return load_library_plugin(name);
   }
-  if (std::ranges::count(optimizer_table(), name, &OptimizerRow::name) == 0) {
+  if (!is_in_table(name)) {
     if (const auto file = find_library_plugin(name)) {
       return load_library_plugin(*file, std::string(name));
     }
@@ -87,6 +119,36 @@ OptimizerRow load_optimizer(std::string_view name) {
                 fmt::format("optimizer '{}' is not available: {}", row.name, row.unavailable));
   }
   return row;
+}
+
+bool is_plugin(std::string_view name) {
+  name = remove_multistart(name);
+  return name.starts_with(kProcess) || (!is_host_name(name) && !is_in_table(name) &&
+                                        (is_library_name(name) || find_library_plugin(name)));
+}
+
+std::vector<std::string> list_plugin_files(std::string_view name) {
+  name = remove_multistart(name);
+  if (name.starts_with(kProcess)) {
+    return list_program_files(name.substr(kProcess.size()));
+  }
+  const std::filesystem::path file =
+      is_library_name(name) ? std::filesystem::path(name)
+                            : find_library_plugin(name).value_or(std::filesystem::path(name));
+  return {std::filesystem::absolute(file).string()};
+}
+
+OptimizerRow read_recorded_plugin(const std::string& name, const std::string& description,
+                                  std::span<const std::string> options) {
+  check_printable(name);
+  if (description.empty()) {
+    return make_undescribed_row(name, options);
+  }
+  if (name.starts_with(kMultistart)) {
+    return make_multistart_row(
+        read_recorded_plugin(std::string(get_restarted(name)), description, options));
+  }
+  return read_plugin_row(name, description);
 }
 
 std::string explain_unsuitable(const OptimizerRow& row, const ProblemDescription& problem) {

@@ -2,6 +2,7 @@
 // optimizer.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,5 +25,18 @@ const OptimizerRow& find_optimizer(std::string_view name);
 // shared library (./libmine.so, or its name on the plugin path) or a program (exec:COMMAND). Throws
 // Error{usage} if there is none of that name, and Error{bad_data} if a plugin cannot be used.
 OptimizerRow load_optimizer(std::string_view name);
+
+// Returns whether load_optimizer() would start a program or open a library. Starts and opens
+// nothing.
+bool is_plugin(std::string_view name);
+// Returns the files that decide what a plugin does: its library, or the words of its command that
+// are files. Starts and opens nothing. Throws Error{usage} if the command cannot be split.
+std::vector<std::string> list_plugin_files(std::string_view name);
+// Makes the row of a plugin from what a study recorded: its description, which version 1.0 did not
+// record, and the KEY=VALUE texts of its options. Starts and opens nothing. Its optimizer throws
+// Error{usage} in minimize(). Throws Error{bad_data} if the description is none, and
+// Error{usage} if the name is not printable.
+OptimizerRow read_recorded_plugin(const std::string& name, const std::string& description,
+                                  std::span<const std::string> options);
 
 }  // namespace armwright

@@ -8,6 +8,7 @@
 #include <cstdlib>
 
 #include "base/error.hpp"
+#include "base/folder.hpp"
 #include "base/text.hpp"
 
 namespace armwright {
@@ -71,7 +72,7 @@ std::filesystem::path find_beside(const std::filesystem::path& library) {
   for (int level = 1;; ++level) {
     folder = folder.parent_path();
     const auto configs = folder / "share" / "armwright" / "configs";
-    if (level == kMostLevels || std::filesystem::is_directory(configs / "problems")) {
+    if (level == kMostLevels || folder_exists(configs / "problems")) {
       return configs;
     }
   }
@@ -81,7 +82,7 @@ std::filesystem::path find_beside(const std::filesystem::path& library) {
 
 std::filesystem::path find_config_folder() {
   if (const char* folder = std::getenv("ARMWRIGHT_CONFIGS"); folder != nullptr && *folder != '\0') {
-    if (std::filesystem::is_directory(std::filesystem::path(folder) / "problems")) {
+    if (folder_exists(std::filesystem::path(folder) / "problems")) {
       return folder;
     }
     throw Error(ErrorKind::usage,
@@ -95,7 +96,7 @@ std::filesystem::path find_config_folder() {
   const auto folder = library.empty()
                           ? program.parent_path().parent_path() / "share" / "armwright" / "configs"
                           : find_beside(library);
-  if (!std::filesystem::is_directory(folder / "problems")) {
+  if (!folder_exists(folder / "problems")) {
     throw Error(ErrorKind::usage,
                 fmt::format("the shipped configuration was not found in {}; reinstall armwright or "
                             "set ARMWRIGHT_CONFIGS to the folder that holds problems/",
@@ -133,11 +134,10 @@ std::filesystem::path resolve_config(std::string_view kind, std::string_view nam
 std::vector<std::string> list_configs(std::string_view kind) {
   std::vector<std::string> names;
   const auto folder = find_config_folder() / kind;
-  if (!std::filesystem::is_directory(folder)) {
+  if (!folder_exists(folder)) {
     return names;
   }
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    const auto& path = entry.path();
+  for (const auto& path : list_folder(folder)) {
     if (path.extension() == get_extension(kind) && path.stem().string().front() != '_') {
       names.push_back(path.stem().string());
     }

@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "base/config.hpp"
+#include "base/error.hpp"
+#include "base/read_limit.hpp"
 #include "base/text.hpp"
 #include "problems/config/config_files.hpp"
 
@@ -161,8 +163,9 @@ const SettingTable& design_settings() {
   return settings;
 }
 
-DesignFile load_design(std::string_view name_or_path) {
-  const auto path = resolve_config("designs", name_or_path);
+namespace {
+
+DesignFile read_design(const std::filesystem::path& path) {
   const ConfigTable table = ConfigTable::load(design_settings(), path);
   DesignFile file;
   file.name = table.get_or(kDesignName, path.stem().string());
@@ -183,6 +186,20 @@ DesignFile load_design(std::string_view name_or_path) {
   }
   table.refuse_unknown();
   return file;
+}
+
+}  // namespace
+
+DesignFile load_design(std::string_view name_or_path) {
+  const ReadStep step(fmt::format("the design '{}'", sanitize(name_or_path)));
+  const auto path = resolve_config("designs", name_or_path);
+  try {
+    return read_design(path);
+  } catch (const Error& error) {
+    // A design is an input like a robot, not a part of the configuration.
+    throw Error(error.kind() == ErrorKind::usage ? ErrorKind::bad_data : error.kind(),
+                error.what());
+  }
 }
 
 std::string to_toml(const DesignFile& file) {

@@ -34,8 +34,9 @@ struct DesignFile {
   std::vector<PublishedResult> published;
 };
 
-// Reads a shipped design by name, or a file by path. Throws Error{usage} that names file, line,
-// field, value and what is allowed, Error{io} for a file that cannot be read.
+// Reads a shipped design by name, or a file by path. Throws Error{bad_data} that names file, line,
+// field, value and what is allowed, Error{usage} for an unknown name, Error{io} for a file that
+// cannot be read.
 DesignFile load_design(std::string_view name_or_path);
 
 // Returns the design as a file that load_design() reads back bit for bit, without what was

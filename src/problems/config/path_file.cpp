@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/read_limit.hpp"
 #include "base/text.hpp"
 #include "problems/config/problem_readers.hpp"
 
@@ -16,6 +17,8 @@ namespace armwright {
 namespace {
 
 constexpr double kShortestQuaternion = 0.5;  // rounding does not shorten a unit quaternion so far
+
+constexpr int kLinesBetweenLooks = 256;  // at the limit of reading
 
 struct Row {
   double time_s = 0;
@@ -153,7 +156,9 @@ std::vector<Row> read_rows(std::string_view text, const std::string& name, Colum
     const std::size_t end = std::min(text.find('\n'), text.size());
     const std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
-    ++line_number;
+    if (++line_number % kLinesBetweenLooks == 0) {
+      check_reading();
+    }
     if (line.find_first_not_of(" \t\r") == std::string_view::npos) {
       continue;
     }

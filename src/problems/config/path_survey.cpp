@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/read_limit.hpp"
 #include "base/text.hpp"
 #include "sim/tracking/path_check.hpp"
 
@@ -51,6 +52,7 @@ std::vector<std::string> check_paths(const LoadedProblem& problem) {
   if (problem.tracking() == nullptr) {
     return {};
   }
+  const ReadStep step(fmt::format("the paths of problem '{}'", sanitize(problem.name)));
   const TrackingSetup& setup = problem.tracking()->setup();
   std::vector<std::string> lines;
   for (const std::string& note : setup.robot().notes) {

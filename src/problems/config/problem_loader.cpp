@@ -5,6 +5,7 @@
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/hash.hpp"
+#include "base/read_limit.hpp"
 #include "base/text.hpp"
 #include "problems/analytic/analytic.hpp"
 #include "problems/config/config_files.hpp"
@@ -314,6 +315,7 @@ LoadedProblem read_problem(const ConfigTable& table, const std::filesystem::path
 
 LoadedProblem load_problem(std::string_view name_or_path, std::span<const std::string> overrides,
                            std::span<const EngineRow> engines) {
+  const ReadStep step(fmt::format("the problem '{}'", sanitize(name_or_path)));
   const auto path = resolve_config("problems", name_or_path);
   return read_problem(
       ConfigTable::load(problem_settings(), path, overrides, find_config_folder() / "problems"),

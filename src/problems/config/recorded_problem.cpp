@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/json_text.hpp"
+#include "base/read_limit.hpp"
 #include "base/text.hpp"
 #include "base/toml_text.hpp"
 #include "problems/config/problem_readers.hpp"
@@ -47,6 +48,7 @@ void rename_old_keys(nlohmann::json& resolved) {
 
 LoadedProblem load_recorded_problem(const std::string& resolved_json, const std::string& name,
                                     const std::filesystem::path& beside) {
+  const ReadStep step(fmt::format("the recorded problem {}", sanitize(name)));
   check_json_depth(resolved_json, name);
   nlohmann::json resolved;
   std::string toml;

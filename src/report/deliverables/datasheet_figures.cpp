@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "base/file.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/text.hpp"
 #include "report/deliverables/datasheet_parts.hpp"
 #include "report/formats/csv_reader.hpp"
@@ -68,10 +68,10 @@ LineFigure make_first_case(const FinishedArm& arm) {
   constexpr std::size_t kTrajectoryLimit_bytes = std::size_t{1} << 28;
   LineFigure figure{"tip error in the first test case", "time in s", "mm", {}};
   const auto file = arm.run.folder / "winner-trajectory.csv";
-  if (!std::filesystem::exists(file)) {
+  if (!path_exists(file)) {
     return figure;
   }
-  const std::string text = read_file(file, kTrajectoryLimit_bytes);
+  const std::string text = read_checked_file(file, kTrajectoryLimit_bytes);
   CsvReader reader(text);
   std::vector<std::string> fields;
   reader.read_row(fields);

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 }
 
 void refuse_study(const fs::path& folder, std::string_view format) {
-  if (fs::exists(folder / "manifest.json") || !fs::exists(folder / "cells")) {
+  if (path_exists(folder / "manifest.json") || !path_exists(folder / "cells")) {
     return;
   }
   const FoundRuns found = find_runs(folder);

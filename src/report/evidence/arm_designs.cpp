@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "base/folder.hpp"
 #include "base/text.hpp"
 #include "problems/config/config_files.hpp"
 #include "report/evidence/arm_evidence.hpp"
@@ -75,7 +76,7 @@ std::vector<ShownDesign> list_designs(const RecordedRun& run, std::vector<std::s
     ShownDesign& winner = designs.emplace_back();
     winner.named = {"winner", run.result ? "winner" : "best so far", tracking.make_design(best)};
     const auto file = run.folder / "winner.toml";
-    winner.argument = run.result && std::filesystem::exists(file) ? file.string() : "";
+    winner.argument = run.result && path_exists(file) ? file.string() : "";
   }
   const auto& variables = run.configuration.at("problem").at("variables");
   const auto start = variables.at("start").get<std::string>();

@@ -6,6 +6,8 @@
 
 #include "base/build_info.hpp"
 #include "base/error.hpp"
+#include "base/folder.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "problems/config/config_files.hpp"
@@ -119,13 +121,13 @@ std::vector<std::string> find_problem_arguments(const NamedProblem& named, const
 
 void read_manifest(RecordedRun& run) {
   const auto file = run.folder / "manifest.json";
-  if (!fs::exists(file)) {
+  if (!path_exists(file)) {
     throw Error(ErrorKind::usage,
                 fmt::format("{}: is not the folder of a run (it has no manifest.json)",
                             sanitize(run.folder.string())));
   }
   try {
-    const json manifest = json::parse(read_json_file(file, kManifestLimit_bytes));
+    const json manifest = json::parse(read_checked_json(file, kManifestLimit_bytes));
     run.configuration = manifest.at("configuration");
     run.build = manifest.at("build").get<std::map<std::string, std::string>>();
     run.command_line = manifest.at("command_line").get<std::vector<std::string>>();
@@ -153,8 +155,8 @@ void read_name(RecordedRun& run) {
     return;
   }
   const auto cell = run.folder / "cell.json";
-  if (fs::exists(cell)) {
-    const json content = json::parse(read_json_file(cell, kCellLimit_bytes), nullptr, false);
+  if (path_exists(cell)) {
+    const json content = json::parse(read_checked_json(cell, kCellLimit_bytes), nullptr, false);
     if (content.is_object() && content.contains("problem") && content["problem"].is_string()) {
       run.problem_name = content["problem"].get<std::string>();
       return;
@@ -292,10 +294,10 @@ RecordedRun read_recorded_run(const fs::path& folder) {
   read_manifest(run);
   // Reads the result before the journal: then the journal holds at least every evaluation that the
   // result counts.
-  if (fs::exists(folder / "result.json")) {
+  if (path_exists(folder / "result.json")) {
     run.result = load_result(folder);
   }
-  if (fs::exists(folder / "journal")) {
+  if (path_exists(folder / "journal")) {
     run.journal = read_journal(folder / "journal");
   }
   read_name(run);

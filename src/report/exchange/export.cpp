@@ -30,10 +30,9 @@ void export_arm(const std::filesystem::path& folder, const ExportFormat& format,
   format.write_arm(arm, target.path());
   put_in_place(target);
   summary.winner = arm.describe();
-  for (const auto& entry : std::filesystem::directory_iterator(summary.folder)) {
-    summary.files.push_back(entry.path().filename().string());
+  for (const auto& entry : list_folder(summary.folder)) {
+    summary.files.push_back(entry.filename().string());
   }
-  std::ranges::sort(summary.files);
 }
 
 }  // namespace

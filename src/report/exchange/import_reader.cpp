@@ -131,12 +131,11 @@ void read_csv(const fs::path& file, std::vector<ImportedRun>& runs) {
 
 void read_csv_folder(const fs::path& folder, std::vector<ImportedRun>& runs) {
   std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder / kEvaluationsFolder)) {
-    if (entry.path().extension() == ".csv") {
-      files.push_back(entry.path());
+  for (const auto& entry : list_folder(folder / kEvaluationsFolder)) {
+    if (entry.extension() == ".csv") {
+      files.push_back(entry);
     }
   }
-  std::sort(files.begin(), files.end());
   for (const fs::path& file : files) {
     read_csv(file, runs);
   }
@@ -215,13 +214,11 @@ std::vector<fs::path> find_ioh_files(const fs::path& folder) {
   const auto is_index = [](const fs::path& file) {
     return file.extension() == ".json" && file.filename().string().starts_with("IOHprofiler_f");
   };
-  for (auto entry = fs::recursive_directory_iterator(folder);
-       entry != fs::recursive_directory_iterator(); ++entry) {
-    if (entry.depth() > 0 && entry->is_directory()) {
-      entry.disable_recursion_pending();
-    }
-    if (is_index(entry->path())) {
-      files.push_back(entry->path());
+  for (const fs::path& entry : list_folder(folder)) {
+    for (const fs::path& file : folder_exists(entry) ? list_folder(entry) : std::vector{entry}) {
+      if (is_index(file)) {
+        files.push_back(file);
+      }
     }
   }
   std::sort(files.begin(), files.end());
@@ -232,14 +229,14 @@ std::vector<fs::path> find_ioh_files(const fs::path& folder) {
 
 std::vector<ImportedRun> read_export(const fs::path& folder) {
   std::vector<ImportedRun> runs;
-  if (!fs::is_directory(folder)) {
+  if (!folder_exists(folder)) {
     throw Error(ErrorKind::usage,
                 fmt::format("{}: is not a folder; name the folder that armwright export wrote",
                             folder.string()));
   }
-  if (fs::exists(folder / kRunsCsv)) {
+  if (path_exists(folder / kRunsCsv)) {
     read_csv_folder(folder, runs);
-  } else if (fs::exists(folder / kRunsJson)) {
+  } else if (path_exists(folder / kRunsJson)) {
     read_json(folder / kRunsJson, runs);
   } else {
     const auto files = find_ioh_files(folder);

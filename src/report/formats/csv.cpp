@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "base/file.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/text.hpp"
 #include "report/formats/export_files.hpp"
 #include "report/formats/formats.hpp"
@@ -91,13 +91,13 @@ void write_csv(const CollectedRuns& collected, const std::filesystem::path& fold
         const RunTrace trace = read_trace(run);
         write_evaluations(evaluations, problem, trace);
         std::string design;
-        if (std::filesystem::exists(run.folder / "winner.toml")) {
+        if (path_exists(run.folder / "winner.toml")) {
           design =
               fmt::format("designs/{}.toml",
                           designs.add(fmt::format("{}-{}-{}", escape_file_name(run.problem),
                                                   escape_file_name(run.label), run.replicate)));
           write_output_file(folder / design,
-                            read_file(run.folder / "winner.toml", kDesignLimit_bytes));
+                            read_checked_file(run.folder / "winner.toml", kDesignLimit_bytes));
         }
         runs.write(make_run_row(trace, design));
       }

@@ -41,7 +41,7 @@ std::filesystem::path check_export_folder(const std::filesystem::path& target) {
   const auto folder = normalize_folder(std::filesystem::absolute(target));
   std::error_code ignored;
   if (std::filesystem::exists(std::filesystem::symlink_status(folder, ignored)) &&
-      !(std::filesystem::is_directory(folder) && std::filesystem::is_empty(folder))) {
+      !(folder_exists(folder) && list_folder(folder).empty())) {
     throw Error(ErrorKind::usage, fmt::format("{}: exists already, and an export never overwrites "
                                               "anything; choose another folder with --out",
                                               target.string()));

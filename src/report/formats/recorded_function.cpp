@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "problems/config/problem_loader.hpp"
@@ -46,7 +47,7 @@ RecordedFunction read_function(const std::filesystem::path& folder, const RunRes
   const auto file = folder / "manifest.json";
   std::string resolved;
   try {
-    const json manifest = json::parse(read_json_file(file, kManifestLimit_bytes));
+    const json manifest = json::parse(read_checked_json(file, kManifestLimit_bytes));
     resolved = manifest.at("configuration").at("problem").dump();
   } catch (const json::exception& error) {
     throw Error(ErrorKind::bad_data, fmt::format("{}: is not a manifest that armwright wrote ({})",

@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <tuple>
 
 #include "base/config.hpp"
 #include "base/error.hpp"
+#include "base/folder.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "study/journal/journal.hpp"
@@ -24,12 +27,7 @@ namespace fs = std::filesystem;
 
 std::vector<fs::path> list_folders(const fs::path& parent) {
   std::vector<fs::path> folders;
-  for (const auto& entry : fs::directory_iterator(parent)) {
-    if (entry.is_directory()) {
-      folders.push_back(entry.path());
-    }
-  }
-  std::sort(folders.begin(), folders.end());
+  std::ranges::copy_if(list_folder(parent), std::back_inserter(folders), folder_exists);
   return folders;
 }
 
@@ -38,7 +36,7 @@ RunEntry read_cell(const fs::path& folder) {
   RunEntry run;
   run.folder = folder;
   try {
-    const json cell = json::parse(read_json_file(file, kCellLimit_bytes));
+    const json cell = json::parse(read_checked_json(file, kCellLimit_bytes));
     run.problem = cell.at("problem").get<std::string>();
     run.label = cell.at("label").get<std::string>();
     run.optimizer = cell.at("optimizer").get<std::string>();
@@ -61,9 +59,10 @@ RunEntry read_cell(const fs::path& folder) {
 std::vector<std::string> read_problem_order(const fs::path& study) {
   std::vector<std::string> labels;
   const auto file = study / "study.toml";
-  if (!fs::exists(file)) {
+  if (!path_exists(file)) {
     return labels;
   }
+  FolderChecksums(study).check("study.toml");
   try {
     const json plan = json::parse(ConfigTable::load(file).to_json());
     for (const json& problem : plan.at("problem")) {
@@ -81,11 +80,13 @@ auto make_key(const RunEntry& run) {
 }
 
 FoundRuns find_cells(const fs::path& folder) {
+  const FolderChecksums checksums(folder);
   FoundRuns found;
   for (const fs::path& problem : list_folders(folder / "cells")) {
     for (const fs::path& label : list_folders(problem)) {
       for (const fs::path& replicate : list_folders(label)) {
-        if (fs::exists(replicate / "cell.json")) {
+        if (path_exists(replicate / "cell.json")) {
+          checksums.check((replicate.lexically_relative(folder) / kChecksumFile).string());
           found.runs.push_back(read_cell(replicate));
         } else {
           ++found.unfinished;
@@ -178,10 +179,10 @@ void include_trace(ProblemRuns& problem, const RunTrace& trace) {
 }  // namespace
 
 FoundRuns find_runs(const fs::path& folder) {
-  if (fs::is_directory(folder / "cells")) {
+  if (folder_exists(folder / "cells")) {
     return find_cells(folder);
   }
-  if (!fs::exists(folder / "manifest.json")) {
+  if (!path_exists(folder / "manifest.json")) {
     throw Error(ErrorKind::usage,
                 fmt::format("{}: is neither the folder of a run (it has no manifest.json) nor that "
                             "of a study (it has no folder cells)",

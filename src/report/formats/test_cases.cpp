@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/error.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "report/formats/export_files.hpp"
@@ -22,7 +23,7 @@ std::optional<WorkspaceSphere> read_workspace(const std::filesystem::path& run) 
   const auto file = run / "manifest.json";
   WorkspaceSphere sphere;
   try {
-    const auto manifest = nlohmann::json::parse(read_json_file(file, kCaseFileLimit_bytes));
+    const auto manifest = nlohmann::json::parse(read_checked_json(file, kCaseFileLimit_bytes));
     const auto& problem = manifest.at("configuration").at("problem");
     if (problem.contains("path") && problem.at("path").contains("kind")) {
       return std::nullopt;

@@ -32,8 +32,7 @@ PageAssets get_page_assets() {
   throw Error(
       ErrorKind::usage,
       "this build has no page: it was configured with -DARMWRIGHT_WITH_PAGE=OFF; install the "
-      "Debian packages nodejs, npm, duktape-dev and libcpp-httplib-dev and configure it with "
-      "ON");
+      "Debian packages nodejs, npm and duktape-dev and configure it with ON");
 }
 
 }  // namespace armwright

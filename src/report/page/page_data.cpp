@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
+#include "base/folder.hpp"
 #include "report/reproduction/reproduction.hpp"
 #include "study/compare/study_folder.hpp"
 
@@ -13,7 +14,7 @@ namespace armwright {
 std::optional<std::string> make_page_data(const std::filesystem::path& folder,
                                           const PageOptions& options, StopSignal& stop,
                                           RunObserver& observer) {
-  if (!std::filesystem::exists(folder)) {
+  if (!path_exists(folder)) {
     throw Error(ErrorKind::usage, fmt::format("{}: there is no such folder", folder.string()));
   }
   if (is_study_folder(folder)) {
@@ -22,7 +23,7 @@ std::optional<std::string> make_page_data(const std::filesystem::path& folder,
   if (is_reproduction_folder(folder)) {
     return make_reproduction_page(folder, options, stop, observer);
   }
-  if (std::filesystem::exists(folder / "manifest.json")) {
+  if (path_exists(folder / "manifest.json")) {
     return make_run_page(folder, options, stop, observer);
   }
   throw Error(ErrorKind::usage,

@@ -1,8 +1,7 @@
 #include "report/page/page_file.hpp"
 
 #include <fmt/format.h>
-
-#include <fstream>
+#include <unistd.h>
 
 #include "base/base64.hpp"
 #include "base/error.hpp"
@@ -68,10 +67,10 @@ std::string make_page_html(std::string_view title, std::string_view data,
 }
 
 bool is_page_file(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
+  const FileDescriptor descriptor = open_to_read(file);
   std::string beginning(1024, '\0');
-  stream.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
-  beginning.resize(static_cast<std::size_t>(stream.gcount()));
+  const ssize_t got = ::pread(descriptor.get(), beginning.data(), beginning.size(), 0);
+  beginning.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
   return beginning.find(kPageMark) != std::string::npos;
 }
 

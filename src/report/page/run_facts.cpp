@@ -17,10 +17,9 @@ using nlohmann::json;
 
 std::string format_value(double value, const std::string& unit) {
   if (unit == "m") {
-    return fmt::format("{:.4g} mm", 1000 * value);
+    return describe_number(1000 * value, "mm");
   }
-  return unit.empty() || unit == "1" ? fmt::format("{:.6g}", value)
-                                     : fmt::format("{:.6g} {}", value, unit);
+  return describe_number(value, unit == "1" ? "" : unit, 6);
 }
 
 class Facts {

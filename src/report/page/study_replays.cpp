@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "base/folder.hpp"
 #include "base/text.hpp"
 #include "problems/config/config_files.hpp"
 #include "report/evidence/motions.hpp"
@@ -71,9 +72,8 @@ std::vector<ReplayRequest> choose_cases(const StudyPlan& plan, const StudyProble
                      static_cast<std::size_t>(optimizer - plan.optimizers.begin()), cell.replicate};
     const auto run = folder / make_cell_path(plan, where);
     // A study needs only cell.json, so the user may have removed the run's result.
-    const auto errors = std::filesystem::exists(run / "result.json")
-                            ? load_result(run).test.case_errors
-                            : std::vector<double>{};
+    const auto errors = path_exists(run / "result.json") ? load_result(run).test.case_errors
+                                                         : std::vector<double>{};
     if (!errors.empty()) {
       replays.add(
           sets.test, find_worst_case(errors),
@@ -90,7 +90,7 @@ std::filesystem::path find_urdf_folder(const StudyProblem& problem) {
   const json resolved = json::parse(problem.loaded.resolved_json);
   const auto urdf = resolved.at("robot").at("urdf").get<std::string>();
   const auto problem_folder = std::filesystem::path(problem.name).parent_path();
-  if (std::filesystem::exists(problem_folder / urdf)) {
+  if (path_exists(problem_folder / urdf)) {
     return (problem_folder / urdf).parent_path();
   }
   try {

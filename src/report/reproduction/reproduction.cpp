@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "base/folder_checksums.hpp"
 
 namespace armwright {
 namespace {
@@ -106,17 +107,19 @@ class Executor {
     if (!execute(*run, folder)) {
       return std::nullopt;
     }
+    FolderChecksums(folder).check("winner.toml");
     return load_design((folder / "winner.toml").string()).design;
   }
 
   // Makes or continues a run. Returns false if it was stopped.
   bool execute(const RunPlan& run, const std::filesystem::path& folder) {
-    if (std::filesystem::exists(folder / "result.json")) {
+    if (path_exists(folder / "result.json")) {
       return true;
     }
     RunRequest request;
     request.plan = run;
     request.folder = folder;
+    request.root = folder_->path();
     request.jobs = jobs_;
     request.command_line = make_run_command(program_, run, folder);
     RunMessages messages(run.problem.name, observer_);

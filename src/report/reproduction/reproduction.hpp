@@ -1,5 +1,6 @@
 // Computes a reproduction and keeps its results in a folder: reproduction.json (every computed part
-// and the hash of its inputs), runs/NAME (ordinary runs) and lock. An interrupted reproduction
+// and the hash of its inputs), runs/NAME (ordinary runs), SHA256SUMS (the checksums of the record
+// and of the SHA256SUMS of each run) and lock. An interrupted reproduction
 // continues: it computes only the parts that are missing, and it never mixes different settings.
 // reproduction.json has the same bytes after any number of interruptions.
 #pragma once
@@ -10,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "base/folder.hpp"
 #include "report/evidence/distance_response.hpp"
 #include "report/reproduction/reproduction_plan.hpp"
 #include "study/run/design_evaluation.hpp"
@@ -63,9 +65,9 @@ class ReproductionFolder {
   // settings.
   ReproductionFolder(const std::filesystem::path& path, const ReproductionPlan& plan);
 
-  const std::filesystem::path& path() const { return path_; }
+  const std::filesystem::path& path() const { return folder_.path(); }
   std::filesystem::path get_run_folder(const std::string& run) const {
-    return path_ / "runs" / run;
+    return path() / "runs" / run;
   }
   // Returns how the program differs from the one that started the reproduction; empty if it does
   // not differ.
@@ -79,7 +81,7 @@ class ReproductionFolder {
   void check(const ReproductionPlan& plan) const;
   void write() const;
 
-  std::filesystem::path path_;
+  Folder folder_;
   RunLock lock_;
   ReproductionRecord record_;
   std::vector<std::string> warnings_;

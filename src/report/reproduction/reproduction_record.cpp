@@ -10,6 +10,7 @@
 #include "base/build_info.hpp"
 #include "base/error.hpp"
 #include "base/file.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/hash.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
@@ -140,21 +141,22 @@ std::string describe_settings(const std::optional<std::uint64_t>& cases,
 }
 
 // Creates the folder, or accepts one that holds a reproduction or nothing.
-std::filesystem::path claim_folder(const std::filesystem::path& path) {
-  make_folder(path);
+Folder claim_folder(const std::filesystem::path& path) {
+  Folder folder = Folder::make(path, path);
   if (is_reproduction_folder(path)) {
-    return path;
+    return folder;
   }
-  for (const auto& entry : std::filesystem::directory_iterator(path)) {
-    const std::string name = entry.path().filename().string();
-    if (name != "lock" && !name.ends_with(".new")) {  // a program that is killed early leaves these
+  for (const auto& entry : list_folder(path)) {
+    const std::string name = entry.filename().string();
+    // A program that is killed early leaves these.
+    if (name != "lock" && name != kChecksumFile && !name.ends_with(".new")) {
       throw Error(ErrorKind::usage,
                   fmt::format("{}: holds '{}' but no {}, so it is not the folder of a "
                               "reproduction; choose another with --out, or --new",
                               path.string(), sanitize(name), kRecordFile));
     }
   }
-  return path;
+  return folder;
 }
 
 }  // namespace
@@ -181,7 +183,7 @@ ReproductionRecord load_reproduction(const std::filesystem::path& folder) {
                                               "{})",
                                               folder.string(), kRecordFile));
   }
-  const std::string text = read_json_file(file, kRecordLimit_bytes);
+  const std::string text = read_checked_json(file, kRecordLimit_bytes);
   const auto refuse = [&](const std::string& why) {
     return Error(ErrorKind::bad_data,
                  fmt::format("{}: is not what armwright wrote ({}); choose another folder with "
@@ -216,7 +218,7 @@ std::string calc_inputs_hash(const ReproductionPlan& plan, const PlannedPart& pa
 
 ReproductionFolder::ReproductionFolder(const std::filesystem::path& path,
                                        const ReproductionPlan& plan)
-    : path_(claim_folder(path)), lock_(path) {
+    : folder_(claim_folder(path)), lock_(folder_) {
   if (is_reproduction_folder(path)) {
     record_ = load_reproduction(path);
     check(plan);
@@ -234,7 +236,8 @@ ReproductionFolder::ReproductionFolder(const std::filesystem::path& path,
   std::ranges::sort(record_.planned);
   const auto doubled = std::ranges::unique(record_.planned);
   record_.planned.erase(doubled.begin(), doubled.end());
-  if (before != record_.planned || !is_reproduction_folder(path)) {
+  if (before != record_.planned || !is_reproduction_folder(path) ||
+      !std::filesystem::exists(path / kChecksumFile)) {
     write();
   }
 }
@@ -247,14 +250,14 @@ void ReproductionFolder::check(const ReproductionPlan& plan) const {
         ErrorKind::usage,
         fmt::format("{} holds a reproduction with other settings: recorded {}, now {}. Continue "
                     "with the recorded ones, or use --new or --out for another folder",
-                    path_.string(), sanitize(recorded), now));
+                    path().string(), sanitize(recorded), now));
   }
   if (record_.config != plan.request.config) {
     throw Error(
         ErrorKind::usage,
         fmt::format("{} holds a reproduction of '{}', not of '{}'; use --new or --out for "
                     "another folder",
-                    path_.string(), sanitize(record_.config), sanitize(plan.request.config)));
+                    path().string(), sanitize(record_.config), sanitize(plan.request.config)));
   }
   for (const PlannedPart& part : plan.parts) {
     const PartResult* result = find(part.part.label);
@@ -263,7 +266,7 @@ void ReproductionFolder::check(const ReproductionPlan& plan) const {
                   fmt::format("{} holds a result '{}' that was computed from another problem, "
                               "design or SIMD level than there is now; use --new or --out for "
                               "another folder",
-                              path_.string(), sanitize(part.part.label)));
+                              path().string(), sanitize(part.part.label)));
     }
   }
 }
@@ -280,9 +283,18 @@ void ReproductionFolder::add(PartResult result) {
 }
 
 void ReproductionFolder::write() const {
-  write_file_atomically(
-      path_ / kRecordFile,
+  const std::pair<std::string, std::string> file(
+      kRecordFile,
       record_to_json(record_).dump(1, ' ', false, json::error_handler_t::replace) + "\n");
+  FolderChecksums checksums(folder_);
+  checksums.write({&file, 1});
+  for (const auto& [label, result] : record_.results) {
+    const std::string& run = result.part.run;
+    if (!run.empty()) {
+      checksums.cover((get_run_folder(run) / kChecksumFile).lexically_relative(path()).string());
+    }
+  }
+  checksums.save();
 }
 
 }  // namespace armwright

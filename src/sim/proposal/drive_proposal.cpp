@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "base/read_limit.hpp"
 #include "base/text.hpp"
 #include "sim/engines/articulated/articulated_arm.hpp"
 #include "sim/proposal/workspace_proposal.hpp"
@@ -20,6 +21,12 @@ constexpr double kSpeedShare = 0.6;
 constexpr double kEffortShare = 0.6;
 constexpr double kSlower = 0.8;
 constexpr int kSlowdowns = 20;
+// Below 1 / kSlowdownOfSteps of the first speed, efforts are computed for longer control periods
+// instead of more: 400 for the longest move, since it takes 1 s at first, and a period 10 ms. The
+// efforts are nearly those at rest then. The proposed speed depends on the joints' speeds to the
+// last bit, so they keep the task's periods down to 1 / kSlowdownOfSpeeds.
+constexpr double kSlowdownOfSteps = 4;
+constexpr double kSlowdownOfSpeeds = 30;
 
 constexpr double kBandwidth_rad_per_s = 10;
 constexpr double kDampingRatio = 0.7;
@@ -46,6 +53,9 @@ Demand calc_demand(const TrackingSetup& setup, const std::vector<TargetTable>& t
   const std::vector<double> rest(n, 0);
   for (const TargetTable& table : tables) {
     for (int step = 0; step < table.steps; ++step) {
+      if (step % kStepsBetween == 0) {
+        check_reading();
+      }
       const auto efforts = table.feed_forward(step);
       for (std::size_t i = 0; i < n; ++i) {
         demand.efforts[i] = std::max(demand.efforts[i], std::abs(efforts[i]));
@@ -69,6 +79,7 @@ std::vector<TargetTable> make_tables(const RobotModel& robot, const TrackingSetu
                                      const std::vector<TestCase>& cases) {
   std::vector<TargetTable> tables;
   for (const TestCase& its : cases) {
+    check_reading();
     tables.push_back(setup.make_targets(its));
     if (!tables.back().unreachable.empty()) {
       refuse_proposal(robot,
@@ -95,26 +106,34 @@ std::pair<std::size_t, double> find_busiest(std::size_t joints, const GetShare& 
 
 double propose_speed(const RobotModel& robot, TrackingTask task,
                      const std::vector<TestCase>& cases) {
+  const ReadStep step(fmt::format("proposing a speed for robot '{}'", sanitize(robot.name)));
   if (task.limits == LimitPolicy::enforce) {
     task.limits = LimitPolicy::warn;  // this function itself finds the speed that the limits allow
   }
   coarsen(task);
   task.feed_forward = FeedForward::inverse_dynamics;
-  task.speed_m_per_s = task.distance_limit_m / kProposedMove_s;
+  const double first_speed = task.distance_limit_m / kProposedMove_s;
+  const double first_period_s = task.control_period_s;
+  task.speed_m_per_s = first_speed;
+  bool has_speed = false;  // whether the joints' speed limits allow the speed
   const std::size_t n = robot.joint_count();
   for (int round = 0;; ++round) {
+    const double slowdown = first_speed / task.speed_m_per_s;
+    task.control_period_s =
+        first_period_s *
+        std::max(1.0, slowdown / (has_speed ? kSlowdownOfSteps : kSlowdownOfSpeeds));
     const TrackingSetup setup(robot, task);
     const std::vector<TargetTable> tables = make_tables(robot, setup, cases);
     std::vector<double> speeds(n, 0);
     for (const TargetTable& table : tables) {
       std::span<const double> before = table.start_positions;
-      for (int step = 0; step < table.steps; ++step) {
+      for (int at = 0; at < table.steps; ++at) {
         for (std::size_t i = 0; i < n; ++i) {
           const double way =
-              calc_displacement(robot.joints[i].kind, before[i], table.positions(step)[i]);
+              calc_displacement(robot.joints[i].kind, before[i], table.positions(at)[i]);
           speeds[i] = std::max(speeds[i], std::abs(way) / task.control_period_s);
         }
-        before = table.positions(step);
+        before = table.positions(at);
       }
     }
     const double fastest = find_busiest(n, [&](std::size_t i) {
@@ -146,11 +165,13 @@ double propose_speed(const RobotModel& robot, TrackingTask task,
                       robot.joints[joint].effort_limit));
     }
     task.speed_m_per_s *= kSlower;
+    has_speed = true;
   }
 }
 
 ArmDesign propose_design(const RobotModel& robot, TrackingTask task,
                          const std::vector<TestCase>& cases) {
+  const ReadStep step(fmt::format("proposing controllers for robot '{}'", sanitize(robot.name)));
   if (task.limits == LimitPolicy::enforce) {
     task.limits = LimitPolicy::warn;
   }

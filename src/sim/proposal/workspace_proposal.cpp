@@ -10,6 +10,7 @@
 
 #include "base/error.hpp"
 #include "base/random.hpp"
+#include "base/read_limit.hpp"
 #include "base/text.hpp"
 #include "sim/tracking/path_check.hpp"
 
@@ -182,6 +183,7 @@ bool has_good_tables(const RobotModel& robot, TrackingTask task, const Workspace
   const TrackingSetup setup(robot, task);
   const auto kinematics = setup.get_kinematics();
   for (const TestCase& its : make_proposal_cases(place.sphere)) {
+    check_reading();
     const TargetTable table = setup.make_targets(its);
     if (!table.unreachable.empty()) {
       return false;
@@ -229,6 +231,7 @@ ToolOrientation propose_orientation(const RobotModel& robot, const ToolTask& too
 
 WorkspaceProposal propose_workspace(const RobotModel& robot, const TrackingTask& task,
                                     WorkspaceSphere sphere) {
+  const ReadStep step(fmt::format("proposing a workspace for robot '{}'", sanitize(robot.name)));
   const ToolTask& tool = task.tool;
   const NumericKinematics kinematics(robot, tool, {}, true);
   kinematics.check_task(robot);
@@ -245,6 +248,7 @@ WorkspaceProposal propose_workspace(const RobotModel& robot, const TrackingTask&
         std::min(kLargestRadius * length_m, (centre.position_m - first_m).norm() / kKeepOff);
     const NumericKinematics from_home(robot, tool, home, true);
     for (double radius_m = most_m; radius_m >= least_m; radius_m *= kRadiusStep) {
+      check_reading();
       set_radius(sphere, radius_m);
       if (can_follow(from_home, robot, sphere, centre.turn, home)) {
         best = WorkspaceProposal{home, centre, sphere};

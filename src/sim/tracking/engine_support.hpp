@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "sim/tracking/simulation.hpp"
 
@@ -14,6 +15,9 @@ class DivergenceError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+// What the reason of a divergence says of a joint whose state is not finite.
+inline constexpr std::string_view kNotFinite = "its position or speed is not a finite number";
 
 // Throws Error{usage} if the job's controller needs feed-forward efforts and the target table of a
 // case that can be simulated has none.

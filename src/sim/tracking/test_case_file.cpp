@@ -11,6 +11,7 @@
 
 #include "base/error.hpp"
 #include "base/file.hpp"
+#include "base/read_limit.hpp"
 #include "base/text.hpp"
 #include "sim/tracking/test_case.hpp"
 
@@ -19,6 +20,7 @@ namespace {
 
 constexpr std::size_t kLargestFile_bytes = std::size_t{256} << 20;
 constexpr std::size_t kDeepestNesting = 8;  // the cases need 4, the rest is for ignored keys
+constexpr int kLinesBetweenLooks = 256;     // at the limit of reading
 constexpr double kFarthest_m = 100;         // coordinates beyond it are probably in millimetres
 constexpr std::string_view kHeader = "case,point,x_m,y_m,z_m";
 
@@ -268,6 +270,9 @@ std::vector<TestCase> parse_csv(const std::string& name, std::string_view text) 
     }
   };
   while (!text.empty()) {
+    if (line_number % kLinesBetweenLooks == 0) {
+      check_reading();
+    }
     const std::string where = fmt::format("{}:{}", name, ++line_number);
     const CsvRow row = parse_row(where, cut_line(text));
     const auto current = static_cast<long long>(cases.size()) - 1;
@@ -334,7 +339,8 @@ std::vector<TestCase> parse_test_cases(std::string_view text, const std::string&
 }
 
 std::vector<TestCase> read_test_cases(const std::filesystem::path& file) {
-  return parse_test_cases(read_file(file, kLargestFile_bytes), sanitize(file.string()));
+  const ReadStep step(fmt::format("the test cases {}", sanitize(file.string())));
+  return parse_test_cases(read_input(file, kLargestFile_bytes), sanitize(file.string()));
 }
 
 }  // namespace armwright

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/read_limit.hpp"
 #include "sim/dynamics/chain_model.hpp"
 #include "sim/simd/simd_level.hpp"
 #include "sim/tracking/path_check.hpp"
@@ -38,6 +39,8 @@ constexpr int kJoints = 4;  // of an arm that the closed form can solve
 // The rate at which joints move towards the middle of their ranges if the task leaves them free. It
 // is slow compared with moves, which take about a second.
 constexpr double kCentringRate_hz = 0.5;
+// The steps between two looks at the limit of reading.
+constexpr int kStepsBetweenLooks = 256;
 
 // Copies the row before `begin` into all rows from `begin` to `end`.
 void repeat_row(double* begin, const double* end) {
@@ -238,6 +241,7 @@ void TrackingSetup::solve_numerically(const TestCase& test_case, TargetTable& ta
   table.joint_positions.resize(static_cast<std::size_t>(table.steps) * n);
   std::vector<double> before = q;  // a step earlier
   std::vector<double> wish(n);
+  const double centring = std::min(1.0, kCentringRate_hz * task_.control_period_s);
   for (std::size_t k = 0; k < table.segments.size(); ++k) {
     const Segment& segment = table.segments[k];
     const int distinct = count_distinct_steps(segment);
@@ -248,11 +252,13 @@ void TrackingSetup::solve_numerically(const TestCase& test_case, TargetTable& ta
         // The search starts where the joints would be at their present speed, so it needs only one
         // or two iterations. Motion that the task leaves free goes towards the middle of the
         // ranges.
+        if (step % kStepsBetweenLooks == 0) {
+          check_reading();
+        }
         for (std::size_t i = 0; i < n; ++i) {
           const double carried = q[i] - before[i];
-          const double drawn = numeric_->has_middle(i) ? kCentringRate_hz * task_.control_period_s *
-                                                             (numeric_->get_middle(i) - q[i])
-                                                       : 0;
+          const double drawn =
+              numeric_->has_middle(i) ? centring * (numeric_->get_middle(i) - q[i]) : 0;
           before[i] = q[i];
           q[i] += carried;
           wish[i] = drawn - carried;

@@ -9,6 +9,7 @@
 #include "base/bits.hpp"
 #include "base/error.hpp"
 #include "base/file.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "study/compare/study_plan.hpp"
@@ -22,13 +23,22 @@ using nlohmann::json;
 
 constexpr std::size_t kCheckLimit_bytes = std::size_t{1} << 20;
 
-std::optional<FinalCheck> load_check(const std::filesystem::path& file, const StudyPlan& plan,
-                                     const CellOutcome& cell) {
-  if (!std::filesystem::exists(file)) {
+// Returns the name of a check's file in the study's folder.
+std::string make_check_name(const StudyProblem& problem, const std::string& optimizer) {
+  return fmt::format("final/{}/{}.json", escape_name(problem.label), escape_name(optimizer));
+}
+
+std::optional<FinalCheck> load_check(const FolderChecksums& checksums,
+                                     const std::filesystem::path& study, const std::string& name,
+                                     const StudyPlan& plan, const CellOutcome& cell) {
+  const auto file = study / name;
+  if (!path_exists(file)) {
     return std::nullopt;
   }
+  const std::string text = checksums.read(name, kCheckLimit_bytes);
+  check_json_depth(text, file.string());
   try {
-    const json j = json::parse(read_json_file(file, kCheckLimit_bytes));
+    const json j = json::parse(text);
     if (j.at("engine") != plan.final_engine ||
         !same_bits(j.at("x").get<std::vector<double>>(), cell.x)) {
       return std::nullopt;  // another design or engine, from an earlier plan
@@ -43,15 +53,17 @@ std::optional<FinalCheck> load_check(const std::filesystem::path& file, const St
   }
 }
 
-void save_check(const std::filesystem::path& file, const FinalCheck& check,
-                const CellOutcome& cell) {
-  make_folder(file.parent_path());
+// Its checksum is written with those of the study's tables (cover_study()).
+void save_check(const std::filesystem::path& study, const std::string& name,
+                const FinalCheck& check, const CellOutcome& cell) {
   const json j = {{"engine", check.engine},
                   {"replicate", check.replicate},
                   {"x", cell.x},
                   {"value", value_to_json(check.value)},
                   {"test", summary_to_json(check.errors)}};
-  write_file_atomically(file, j.dump(1) + "\n");
+  FolderChecksums(study).drop({&name, 1});
+  const Folder folder = Folder::make((study / name).parent_path(), study);
+  write_file_atomically(folder, std::filesystem::path(name).filename().string(), j.dump(1) + "\n");
 }
 
 // Loads the problem with the settings of the optimizer, but with the final engine.
@@ -81,9 +93,10 @@ FinalCheck as_compared(const StudyPlan& plan, FinalCheck check) {
 }
 
 // Adds the recorded checks. For each of the others, calls `on_missing` with the cell, its outcome,
-// the file, and the place for the check.
+// the file's name, and the place for the check.
 void visit_checks(const StudyPlan& plan, const std::filesystem::path& study, StudyResult& result,
                   const auto& on_missing) {
+  const FolderChecksums checksums(study);
   for (std::size_t p = 0; p < plan.problems.size() && !plan.final_engine.empty(); ++p) {
     const StudyProblem& problem = plan.problems[p];
     for (std::size_t o = 0; o < plan.optimizers.size() && problem.loaded.tracking(); ++o) {
@@ -92,10 +105,9 @@ void visit_checks(const StudyPlan& plan, const std::filesystem::path& study, Stu
       if (best == nullptr) {
         continue;
       }
-      const auto file =
-          study / "final" / escape_name(problem.label) / (escape_name(optimizer) + ".json");
+      const std::string file = make_check_name(problem, optimizer);
       auto& check = result.problems[p].optimizers[o].final_check;
-      check = load_check(file, plan, *best);
+      check = load_check(checksums, study, file, plan, *best);
       if (check) {
         check = as_compared(plan, *check);
       } else {
@@ -129,7 +141,7 @@ bool add_final_checks(const StudyPlan& plan, const std::filesystem::path& study,
   struct Missing {
     Cell cell;
     const CellOutcome* best;
-    std::filesystem::path file;
+    std::string file;
     std::optional<FinalCheck>* check;
   };
   std::vector<Missing> missing;
@@ -163,7 +175,7 @@ bool add_final_checks(const StudyPlan& plan, const std::filesystem::path& study,
         one.best->replicate, plan.final_engine,
         calc_test_value(judged.problem->description(), evaluation, plan.constraint_tolerance),
         summarize(evaluation.case_errors, kFailureError_m)};
-    save_check(one.file, check, *one.best);
+    save_check(study, one.file, check, *one.best);
     *one.check = as_compared(plan, check);
   }
   return true;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "base/folder_checksums.hpp"
 #include "study/analysis/study_result.hpp"
 #include "study/statistics/running_time.hpp"
 #include "study/statistics/values.hpp"
@@ -169,6 +170,7 @@ OverallResult analyze_complete(const StudyPlan& plan, const StudyResult& result)
 
 StudyResult analyze_study(const StudyPlan& plan, const std::filesystem::path& study,
                           MissingCells missing) {
+  const FolderChecksums checksums(study);
   StudyResult result;
   result.missing_left_out = missing == MissingCells::left_out;
   for (std::size_t p = 0; p < plan.problems.size(); ++p) {
@@ -184,6 +186,7 @@ StudyResult analyze_study(const StudyPlan& plan, const std::filesystem::path& st
           }
           outcome = make_missing(plan, cell);
         } else {
+          checksums.check((make_cell_path(plan, cell) / kChecksumFile).string());
           outcome->judged = count_judged(study / make_cell_path(plan, cell));
         }
         if (plan.value == StudyValue::failures) {

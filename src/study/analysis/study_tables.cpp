@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/file.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/text.hpp"
 #include "study/analysis/final_check.hpp"
 #include "study/analysis/method_facts.hpp"
@@ -428,10 +429,9 @@ std::string to_json(const StudyPlan& plan, const StudyResult& result) {
 
 void write_study_tables(const StudyPlan& plan, const StudyResult& result,
                         const std::filesystem::path& study) {
-  const auto tables = study / "tables";
-  make_folder(tables);
-  const auto write = [&](const char* file, const std::string& text) {
-    write_file_atomically(tables / file, text);
+  std::vector<std::pair<std::string, std::string>> files;
+  const auto write = [&](const std::string& file, std::string text) {
+    files.emplace_back("tables/" + file, std::move(text));
   };
   write("cells.csv", make_cells(result));
   write("metrics.csv", make_metrics(plan, result.cells));
@@ -463,8 +463,12 @@ void write_study_tables(const StudyPlan& plan, const StudyResult& result,
     write("attainment.csv", make_attainment(plan, result));
   }
   const auto verdict = describe_verdict(plan, result);
-  write_file_atomically(study / "verdict.txt", join(verdict, "\n") + "\n");
-  write_file_atomically(study / "result.json", to_json(plan, result));
+  files.emplace_back("verdict.txt", join(verdict, "\n") + "\n");
+  files.emplace_back("result.json", to_json(plan, result));
+  FolderChecksums checksums(study);
+  checksums.write(files);
+  checksums.save();
+  cover_study(plan, study);
 }
 
 }  // namespace armwright

@@ -31,7 +31,7 @@
 namespace armwright {
 
 // Writes all files. Writes result.json last, so its presence shows that the others are complete.
-// Throws Error{io}.
+// Then covers all files of the study with checksums. Throws Error{io}.
 void write_study_tables(const StudyPlan& plan, const StudyResult& result,
                         const std::filesystem::path& study);
 

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/file.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/text.hpp"
 #include "study/compare/choices.hpp"
 #include "study/compare/incumbents.hpp"
@@ -157,16 +158,16 @@ double calc_test_value(const ProblemDescription& problem, const Evaluation& eval
 
 std::optional<std::uint64_t> count_judged(const std::filesystem::path& folder) {
   const auto file = folder / "result.json";
-  if (!std::filesystem::exists(file)) {
+  if (!path_exists(file)) {
     return std::nullopt;
   }
-  return parse_result(read_file(file, kResultLimit_bytes), file).judged.size();
+  return parse_result(read_checked_file(file, kResultLimit_bytes), file).judged.size();
 }
 
 std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
                                     const std::filesystem::path& study, StopSignal& stop,
                                     RunObserver& observer) {
-  const CellRequest where{.folder = study / make_cell_path(plan, cell)};
+  const CellRequest where{.folder = study / make_cell_path(plan, cell), .root = study};
   return run_cell(plan, cell, where, stop, observer);
 }
 
@@ -176,6 +177,7 @@ std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
   RunRequest request;
   request.plan = make_run_plan(plan, cell);
   request.folder = where.folder;
+  request.root = where.root;
   request.jobs = where.jobs;
   request.executor = where.executor;
   request.command_line = where.command_line;
@@ -204,7 +206,11 @@ std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
   if (!test_progress(plan, cell, request.plan, *result, where, stop, outcome)) {
     return std::nullopt;
   }
-  write_file_atomically(request.folder / "cell.json", to_json(outcome));
+  const std::string name = "cell.json";
+  const Folder folder = Folder::make(where.folder, where.root);
+  FolderChecksums(folder).drop({&name, 1});
+  write_file_atomically(folder, name, to_json(outcome));
+  cover_run(folder, outcome.failure.empty());
   // One process may run cells of many problems; each problem would keep its cases in memory.
   request.plan.problem.problem->forget_cases();
   return outcome;
@@ -213,10 +219,10 @@ std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
 std::optional<CellOutcome> load_cell(const StudyPlan& plan, const Cell& cell,
                                      const std::filesystem::path& study) {
   const auto file = study / make_cell_path(plan, cell) / "cell.json";
-  if (!std::filesystem::exists(file)) {
+  if (!path_exists(file)) {
     return std::nullopt;
   }
-  CellOutcome outcome = parse_cell(read_file(file, kCellLimit_bytes), file);
+  CellOutcome outcome = parse_cell(read_checked_file(file, kCellLimit_bytes), file);
   const StudyProblem& problem = plan.problems[cell.problem];
   if (outcome.problem != problem.label ||
       outcome.optimizer != plan.optimizers[cell.optimizer].label ||

@@ -91,7 +91,8 @@ std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
 // Where and how to run a cell. None of this changes the outcome.
 struct CellRequest {
   std::filesystem::path folder;
-  unsigned jobs = 1;                           // threads
+  std::filesystem::path root = {};  // that the user named and that holds `folder`; empty: `folder`
+  unsigned jobs = 1;                // threads
   std::vector<std::string> command_line = {};  // for the manifest
   CaseExecutor* executor = nullptr;  // used instead of `jobs` threads; not owned; may be null
 };

@@ -10,9 +10,10 @@
 
 #include "base/bits.hpp"
 #include "base/error.hpp"
-#include "base/file.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
+#include "sim/tracking/engine_support.hpp"
 #include "study/journal/journal.hpp"
 #include "study/run/run_plan.hpp"
 
@@ -87,6 +88,16 @@ class FieldSearch {
 };
 
 // Compares fields in the order of cause and effect.
+// Returns the reason in the words of this version: version 1.0 wrote "it is at -nan rad and moves at
+// inf rad/s" where it is `now`.
+std::string use_present_words(const std::string& recorded, const std::string& now) {
+  const std::string_view place = std::string_view(now).substr(0, now.find(kNotFinite));
+  const bool is_old =
+      place.size() < now.size() && recorded.starts_with(place) &&
+      (recorded.find("nan ") != std::string::npos || recorded.find("inf ") != std::string::npos);
+  return is_old ? now : recorded;
+}
+
 std::optional<CellDifference> compare_records(const EvaluationRecord& a, const EvaluationRecord& b,
                                               std::string where) {
   FieldSearch search;
@@ -102,7 +113,7 @@ std::optional<CellDifference> compare_records(const EvaluationRecord& a, const E
   const Evaluation& after = b.evaluation;
   search.meet("case_errors", before.case_errors, after.case_errors);
   search.meet("status", before.status, after.status);
-  search.meet("reason", before.reason, after.reason);
+  search.meet("reason", use_present_words(before.reason, after.reason), after.reason);
   search.meet("failed_cases", before.failed_cases, after.failed_cases);
   search.meet("objectives", before.objectives, after.objectives);
   search.meet("constraint_values", before.constraint_values, after.constraint_values);
@@ -211,8 +222,8 @@ CellDifference compare_lines(const std::string& recorded, const std::string& now
 
 void compare_file(const std::filesystem::path& recorded, const std::filesystem::path& now,
                   const std::string& file, CellComparison& comparison) {
-  const bool was_there = std::filesystem::exists(recorded / file);
-  const bool is_there = std::filesystem::exists(now / file);
+  const bool was_there = path_exists(recorded / file);
+  const bool is_there = path_exists(now / file);
   if (was_there != is_there) {
     comparison.difference = CellDifference{file, "the file", was_there ? "there" : kAbsent,
                                            is_there ? "there" : kAbsent};
@@ -221,8 +232,8 @@ void compare_file(const std::filesystem::path& recorded, const std::filesystem::
   if (!was_there) {
     return;  // winner.toml is missing if there is no winner or no arm
   }
-  const std::string before = read_file(recorded / file, kFileLimit_bytes);
-  std::string after = read_file(now / file, kFileLimit_bytes);
+  const std::string before = read_checked_file(recorded / file, kFileLimit_bytes);
+  std::string after = read_checked_file(now / file, kFileLimit_bytes);
   if (before == after) {
     comparison.files.push_back(file);
     return;
@@ -253,7 +264,7 @@ void compare_file(const std::filesystem::path& recorded, const std::filesystem::
 json read_manifest(const std::filesystem::path& folder) {
   const auto file = folder / "manifest.json";
   try {
-    json manifest = json::parse(read_json_file(file, kFileLimit_bytes));
+    json manifest = json::parse(read_checked_json(file, kFileLimit_bytes));
     for (const char* part : {"configuration", "build"}) {
       manifest.at(part).get<std::map<std::string, json>>();  // throws unless both are objects
     }

@@ -143,6 +143,7 @@ void work_on_cells(const StudyPlan& plan, std::span<const Cell> cells,
       const auto& function = get_problem(plan, cells[number]).function;
       const bool is_instance = function && function->instance_per_replicate;
       const CellRequest where{.folder = study / make_cell_path(plan, cells[number]),
+                              .root = study,
                               .executor = parent_simulates && !is_instance ? &executor : nullptr};
       run_when_free(plan, cells[number], where, stop, reporter);
       if (stop.requested()) {

@@ -124,7 +124,7 @@ std::filesystem::path choose_rerun_folder(const std::filesystem::path& study, co
 }
 
 bool has_ended(const std::filesystem::path& folder) {
-  return std::filesystem::exists(folder / "cell.json");
+  return path_exists(folder / "cell.json");
 }
 
 }  // namespace armwright

@@ -6,14 +6,16 @@
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/hash.hpp"
+#include "base/read_limit.hpp"
 #include "base/text.hpp"
-#include "optimizers/plugins/host_optimizer.hpp"
+#include "optimizers/plugins/recorded_optimizer.hpp"
 #include "optimizers/table/optimizer_table.hpp"
 #include "problems/config/config_files.hpp"
 #include "sim/simd/simd_level.hpp"
 #include "study/compare/case_sets.hpp"
 #include "study/compare/optimizer_labels.hpp"
 #include "study/compare/optimizer_streams.hpp"
+#include "study/compare/plugin_consent.hpp"
 #include "study/compare/study_methods.hpp"
 #include "study/compare/study_plan.hpp"
 #include "study/compare/study_reader.hpp"
@@ -178,24 +180,53 @@ void load_problems(const RawPlan& raw, StudyPlan& plan) {
   refuse_repeated("problem", labels);
 }
 
-OptimizerRow find_row(const NamedOptimizer& named, std::span<const OptimizerRow> rows) {
+// Returns whether only the file says what the optimizer is: it belongs to a program in Python, or it
+// is a plugin that must not be started. A plugin that is gone is recognised by its recorded files.
+bool is_known_by_record(const NamedOptimizer& named, bool reads_plugins) {
+  if (is_host_name(named.name)) {
+    return !named.description.empty();
+  }
+  const bool is_shipped = std::ranges::count(optimizer_names(), named.name) > 0;
+  return reads_plugins && (is_plugin(named.name) || (!named.inputs.empty() && !is_shipped));
+}
+
+// Makes the row from the file alone.
+OptimizerRow read_row(const NamedOptimizer& named) {
+  OptimizerRow row = is_host_name(named.name)
+                         ? read_host_row(named.name, named.description)
+                         : read_recorded_plugin(named.name, named.description, named.options);
+  if (named.description.empty() && !named.label.empty()) {
+    row.name = named.label;  // a program's own name is not recorded, but it is the label
+  }
+  for (const std::string& input : named.inputs) {
+    const std::size_t blank = std::min(input.rfind(' '), input.size());
+    row.input_hashes[input.substr(0, blank)] = input.substr(std::min(blank + 1, input.size()));
+  }
+  return row;
+}
+
+OptimizerRow find_row(const NamedOptimizer& named, std::span<const OptimizerRow> rows,
+                      bool reads_plugins) {
   const auto row = std::ranges::find(rows, named.name, &OptimizerRow::name);
   if (row != rows.end()) {
     return *row;
   }
-  if (named.description.empty()) {
-    return load_optimizer(named.name);  // loading it also finds its inputs
+  if (is_known_by_record(named, reads_plugins)) {
+    return read_row(named);
   }
-  OptimizerRow recorded = read_host_row(named.name, named.description);
-  for (const std::string& input : named.inputs) {
-    const std::size_t blank = std::min(input.rfind(' '), input.size());
-    recorded.input_hashes[input.substr(0, blank)] = input.substr(std::min(blank + 1, input.size()));
+  OptimizerRow loaded = load_optimizer(named.name);
+  if (!named.description.empty() && loaded.description.empty()) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("optimizer '{}': its description is not needed; only that of a plugin "
+                            "or of an optimizer in Python is recorded",
+                            sanitize(named.name)));
   }
-  return recorded;
+  return loaded;
 }
 
 StudyOptimizer load_study_optimizer(const NamedOptimizer& named,
-                                    std::span<const OptimizerRow> rows = {}) {
+                                    std::span<const OptimizerRow> rows = {},
+                                    bool reads_plugins = false) {
   StudyOptimizer optimizer;
   optimizer.name = named.name;
   optimizer.label = named.label;
@@ -203,7 +234,7 @@ StudyOptimizer load_study_optimizer(const NamedOptimizer& named,
   optimizer.options = named.options;
   optimizer.baseline = named.baseline;
   try {
-    optimizer.row = find_row(named, rows);
+    optimizer.row = find_row(named, rows, reads_plugins);
     optimizer.parsed = Options::parse(optimizer.row.name, optimizer.row.options, named.options);
   } catch (const Error& error) {
     throw add_place(named.place, error);
@@ -215,7 +246,8 @@ StudyOptimizer load_study_optimizer(const NamedOptimizer& named,
   return optimizer;
 }
 
-void load_optimizers(const RawPlan& raw, std::span<const OptimizerRow> rows, StudyPlan& plan) {
+void load_optimizers(const RawPlan& raw, std::span<const OptimizerRow> rows, bool reads_plugins,
+                     StudyPlan& plan) {
   if (raw.optimizers.empty()) {
     throw Error(ErrorKind::usage,
                 "the study names no optimizer; give --optimizers A,B, or in its file "
@@ -223,8 +255,11 @@ void load_optimizers(const RawPlan& raw, std::span<const OptimizerRow> rows, Stu
   }
   bool has_random = false, has_local = false;
   for (const NamedOptimizer& named : raw.optimizers) {
-    plan.optimizers.push_back(load_study_optimizer(named, rows));
-    const OptimizerRow& row = plan.optimizers.back().row;
+    plan.optimizers.push_back(load_study_optimizer(named, rows, reads_plugins));
+    OptimizerRow& row = plan.optimizers.back().row;
+    if (raw.is_recorded && named.description.empty()) {
+      row.description.clear();  // version 1.0 recorded none of plugins
+    }
     has_random = has_random || row.name == kRandomBaseline;
     has_local = has_local || row.capabilities.local;
   }
@@ -240,10 +275,12 @@ void load_optimizers(const RawPlan& raw, std::span<const OptimizerRow> rows, Stu
                               error.what()));
     }
   };
-  if (plan.baselines && !has_random) {
+  // A recorded plan lists its baselines. What a plugin is may not be recorded.
+  const bool lists_baselines = raw.is_recorded && reads_plugins;
+  if (plan.baselines && !lists_baselines && !has_random) {
     add(kRandomBaseline);
   }
-  if (plan.baselines && !has_local) {
+  if (plan.baselines && !lists_baselines && !has_local) {
     add(kLocalBaseline);
   }
   choose_labels(plan);
@@ -320,8 +357,9 @@ void check_plan_hash(const std::filesystem::path& path) {
 
 void keep_baselines(const std::filesystem::path& recorded, StudyPlan& plan) {
   for (const NamedOptimizer& optimizer : read_recorded_optimizers(recorded)) {
-    if (optimizer.baseline && std::ranges::find(plan.optimizers, optimizer.label,
-                                                &StudyOptimizer::label) == plan.optimizers.end()) {
+    if (optimizer.baseline && !needs_consent(optimizer) &&
+        std::ranges::find(plan.optimizers, optimizer.label, &StudyOptimizer::label) ==
+            plan.optimizers.end()) {
       plan.optimizers.push_back(load_study_optimizer(optimizer));
     }
   }
@@ -343,12 +381,24 @@ void keep_plain_functions(const std::filesystem::path& recorded, StudyPlan& plan
 }
 
 StudyPlan make_study_plan(const StudyRequest& request) {
+  const ReadStep step(fmt::format("the study '{}'", sanitize(request.file)));
   StudyPlan plan;
   RawPlan raw;
+  bool reads_plugins = request.plugins == PluginUse::read;
   if (!request.file.empty()) {
     const auto path = resolve_config("studies", request.file);
     raw = read_study_file(path, plan);
     check_plan_hash(path);
+    // Plugins that the user names in `optimizers` need no consent. A file of the user's own is run
+    // as a script is.
+    const bool is_of_record = raw.is_recorded || path.filename() == "study.toml";
+    if (is_of_record && request.optimizers.empty()) {
+      reads_plugins = request.plugins != PluginUse::run;
+      if (request.plugins == PluginUse::run) {
+        require_consent(path.has_parent_path() ? path.parent_path() : ".", raw.optimizers,
+                        request.ask);
+      }
+    }
     if (plan.name.empty()) {
       plan.name = path.stem().string();
     }
@@ -361,6 +411,7 @@ StudyPlan make_study_plan(const StudyRequest& request) {
   }
   if (!request.optimizers.empty()) {
     raw.optimizers.clear();
+    raw.is_recorded = false;
     for (const std::string& name : request.optimizers) {
       raw.optimizers.push_back({.name = name});
     }
@@ -380,7 +431,7 @@ StudyPlan make_study_plan(const StudyRequest& request) {
                 "the study names no budget; give --budget CASES or budget = CASES: how many "
                 "training cases every optimizer may simulate on a problem");
   }
-  load_optimizers(raw, request.rows, plan);
+  load_optimizers(raw, request.rows, reads_plugins, plan);
   if (raw.has_label_streams) {
     name_streams_by_labels(plan);
   } else {

@@ -8,12 +8,15 @@
 #include "base/config.hpp"
 #include "base/error.hpp"
 #include "base/file.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/hash.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
+#include "study/compare/cell.hpp"
 #include "study/compare/optimizer_labels.hpp"
 #include "study/compare/optimizer_streams.hpp"
 #include "study/compare/study_plan.hpp"
+#include "study/compare/study_reader.hpp"
 
 namespace armwright {
 namespace {
@@ -134,6 +137,25 @@ std::string make_body(const StudyPlan& plan) {
   return text + make_targets(plan);
 }
 
+StudyRequest make_folder_request(const std::filesystem::path& folder, PluginUse plugins) {
+  check_study_folder(folder);
+  FolderChecksums(folder).check(kPlanFile);
+  StudyRequest request;
+  request.file = (folder / kPlanFile).string();
+  request.plugins = plugins;
+  return request;
+}
+
+// Takes the description from every plugin of which the recorded plan has none.
+void adopt_descriptions(const std::filesystem::path& recorded, StudyPlan& plan) {
+  for (const NamedOptimizer& known : read_recorded_optimizers(recorded)) {
+    const auto same = std::ranges::find(plan.optimizers, known.label, &StudyOptimizer::label);
+    if (same != plan.optimizers.end() && known.description.empty()) {
+      same->row.description.clear();
+    }
+  }
+}
+
 json index_by_label(const json& list, const char* ignored_key) {
   json by_label = json::object();
   for (json entry : list) {
@@ -143,21 +165,23 @@ json index_by_label(const json& list, const char* ignored_key) {
   return by_label;
 }
 
-std::filesystem::path get_problem_file(const std::filesystem::path& folder,
-                                       const std::string& label) {
-  return folder / "problems" / (escape_name(label) + ".json");
+std::string make_problem_name(const std::string& label) {
+  return "problems/" + escape_name(label) + ".json";
 }
 
 // Returns the differences between a problem's recorded configuration and the present one.
 std::vector<std::string> describe_problem_change(const std::filesystem::path& folder,
+                                                 const FolderChecksums& checksums,
                                                  const StudyProblem& problem) {
-  const auto file = get_problem_file(folder, problem.label);
-  if (!std::filesystem::exists(file)) {
+  const std::string name = make_problem_name(problem.label);
+  const auto file = folder / name;
+  if (!path_exists(file)) {
     return {};
   }
+  const std::string recorded = checksums.read(name, kPlanLimit_bytes);
+  check_json_depth(recorded, file.string());
   try {
-    return describe_differences(read_json_file(file, kPlanLimit_bytes),
-                                problem.loaded.resolved_json);
+    return describe_differences(recorded, problem.loaded.resolved_json);
   } catch (const json::exception& error) {
     throw Error(
         ErrorKind::bad_data,
@@ -183,6 +207,7 @@ void adopt_recorded(const std::filesystem::path& folder, StudyPlan& plan) {
   if (!is_study_folder(folder)) {
     return;
   }
+  FolderChecksums(folder).check(kPlanFile);
   adopt_labels(folder / kPlanFile, plan);
   if (plan.baselines) {
     keep_baselines(folder / kPlanFile, plan);
@@ -190,6 +215,7 @@ void adopt_recorded(const std::filesystem::path& folder, StudyPlan& plan) {
   keep_selection(folder / kPlanFile, plan);
   keep_plain_functions(folder / kPlanFile, plan);
   adopt_streams(folder / kPlanFile, plan);
+  adopt_descriptions(folder / kPlanFile, plan);
 }
 
 bool is_study_folder(const std::filesystem::path& path) {
@@ -212,46 +238,58 @@ void check_study_folder(const std::filesystem::path& folder) {
 }
 
 StudyPlan load_study_plan(const std::filesystem::path& folder) {
-  check_study_folder(folder);
-  StudyRequest request;
-  request.file = (folder / kPlanFile).string();
+  return make_study_plan(make_folder_request(folder, PluginUse::read));
+}
+
+StudyPlan load_study_plan(const std::filesystem::path& folder, const AskUser& ask) {
+  StudyRequest request = make_folder_request(folder, PluginUse::run);
+  request.ask = ask;
   return make_study_plan(request);
 }
 
 StudyFolder::StudyFolder(const std::filesystem::path& path, const StudyPlan& plan)
-    : path_(path), lock_((make_folder(path), path)) {
+    : folder_(Folder::make(path, path)), lock_(folder_) {
   const std::string text = to_toml(plan);
   if (!is_study_folder(path)) {
-    for (const auto& entry : std::filesystem::directory_iterator(path)) {
-      const std::string name = entry.path().filename().string();
-      if (name != "lock" && name != "problems" && !name.ends_with(".new")) {
+    for (const auto& entry : list_folder(path)) {
+      const std::string name = entry.filename().string();
+      if (name != "lock" && name != "problems" && name != kChecksumFile &&
+          !name.ends_with(".new")) {
         throw Error(ErrorKind::usage,
                     fmt::format("{}: holds '{}' but no {}, so it is not the folder of a study; "
                                 "choose another with --out, or --new",
                                 path.string(), sanitize(name), kPlanFile));
       }
     }
-  } else {
-    extend(plan, text);
   }
-  make_folder(path / "problems");
+  FolderChecksums checksums(folder_);
+  if (is_study_folder(path)) {
+    extend(plan, text, checksums);
+  }
+  std::vector<std::pair<std::string, std::string>> files;
   for (const StudyProblem& problem : plan.problems) {
-    write_file_atomically(get_problem_file(path, problem.label),
-                          json::parse(problem.loaded.resolved_json).dump(2) + "\n");
+    files.emplace_back(make_problem_name(problem.label),
+                       json::parse(problem.loaded.resolved_json).dump(2) + "\n");
   }
   if (!is_study_folder(path) || !additions_.empty()) {
-    write_file_atomically(path / kPlanFile, text);
+    files.emplace_back(kPlanFile, text);
   }
+  checksums.write(files);
+  checksums.cover(kPlanFile);
+  checksums.save();
+  uncover_unfinished(plan, list_cells(plan), path);
 }
 
-void StudyFolder::extend(const StudyPlan& plan, const std::string& text) {
-  const auto file = path_ / kPlanFile;
+void StudyFolder::extend(const StudyPlan& plan, const std::string& text,
+                         FolderChecksums& checksums) {
+  const auto file = path() / kPlanFile;
+  checksums.check(kPlanFile);
   if (!ConfigTable::load(file).has("plan_sha256")) {
     throw Error(ErrorKind::bad_data,
                 fmt::format("{}: cannot be read as a recorded plan (damaged, or edited): it has no "
                             "plan_sha256. Check the study with 'armwright doctor {}', or choose "
                             "another folder with --out or --new",
-                            file.string(), path_.string()));
+                            file.string(), path().string()));
   }
   check_plan_hash(file);
   json recorded = json::parse(ConfigTable::load(file).to_json());
@@ -285,7 +323,7 @@ void StudyFolder::extend(const StudyPlan& plan, const std::string& text) {
     now.erase(key);
   }
   for (const StudyProblem& problem : plan.problems) {
-    for (const std::string& difference : describe_problem_change(path_, problem)) {
+    for (const std::string& difference : describe_problem_change(path(), checksums, problem)) {
       differences.push_back(fmt::format("problem {}: {}", problem.label, difference));
     }
   }
@@ -318,16 +356,68 @@ void StudyFolder::extend(const StudyPlan& plan, const std::string& text) {
                     "this plan:\n  {}\nReplicates, problems and optimizers can only be added. To "
                     "continue the recorded study: armwright compare {} --out {}. For another one: "
                     "--new, or another folder with --out",
-                    path_.string(), join(differences, "\n  "), file.string(), path_.string()));
+                    path().string(), join(differences, "\n  "), file.string(), path().string()));
   }
   if (!additions_.empty()) {
     int number = 1;
-    while (std::filesystem::exists(path_ / fmt::format("study-{:03}.toml", number))) {
+    while (path_exists(path() / fmt::format("study-{:03}.toml", number))) {
       ++number;
     }
-    write_file_atomically(path_ / fmt::format("study-{:03}.toml", number),
-                          read_file(file, kPlanLimit_bytes));
+    const std::pair<std::string, std::string> before(fmt::format("study-{:03}.toml", number),
+                                                     checksums.read(kPlanFile, kPlanLimit_bytes));
+    checksums.write({&before, 1});
+    checksums.save();
   }
+}
+
+void cover_study(const StudyPlan& plan, const std::filesystem::path& study) {
+  FolderChecksums checksums(study);
+  for (const Cell& cell : list_cells(plan)) {
+    const auto folder = make_cell_path(plan, cell);
+    if (std::filesystem::exists(study / folder / "cell.json")) {
+      checksums.cover((folder / kChecksumFile).string());
+    }
+  }
+  for (const std::string& name : list_study_files(study)) {
+    checksums.cover(name);
+  }
+  checksums.save();
+}
+
+std::vector<std::string> list_study_files(const std::filesystem::path& study) {
+  std::vector<std::string> names;
+  const auto add = [&](const std::filesystem::directory_entry& entry, bool is_wanted) {
+    if (is_wanted && !entry.is_symlink() && entry.is_regular_file()) {
+      names.push_back(entry.path().lexically_relative(study).string());
+    }
+  };
+  for (const auto& entry : std::filesystem::directory_iterator(study)) {
+    const std::string name = entry.path().filename().string();
+    add(entry, name == kPlanFile || name == "result.json" || name == "verdict.txt" ||
+                   (name.starts_with("study-") && name.ends_with(".toml")));
+  }
+  for (const char* part : {"problems", "final", "tables"}) {
+    std::error_code missing;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(study / part, missing)) {
+      const auto extension = entry.path().extension();
+      add(entry, extension == ".json" || extension == ".csv");
+    }
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+void uncover_unfinished(const StudyPlan& plan, std::span<const Cell> cells,
+                        const std::filesystem::path& study) {
+  FolderChecksums checksums(study);
+  std::vector<std::string> unfinished;
+  for (const Cell& cell : cells) {
+    const std::string name = (make_cell_path(plan, cell) / kChecksumFile).string();
+    if (checksums.covers(name) && !load_cell(plan, cell, study)) {
+      unfinished.push_back(name);
+    }
+  }
+  checksums.drop(unfinished);
 }
 
 }  // namespace armwright

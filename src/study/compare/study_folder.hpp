@@ -3,7 +3,8 @@
 //   study.toml                    the resolved plan with its hash, written before any cell runs
 //   problems/LABEL.json           the whole configuration of each problem
 //   cells/PROBLEM/OPTIMIZER/rNN   the runs
-//   result.json, verdict.txt, tables/   derived from the files above
+//   result.json, verdict.txt, tables/, final/   derived from the files above
+//   SHA256SUMS                    the checksums of all these files; of a run, that of its SHA256SUMS
 //
 // A plan may grow by replicates, problems and optimizers. Recorded problems and optimizers must not
 // be changed or left out, so that all cells stay comparable. Title, targets, reference and value
@@ -12,9 +13,12 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "base/folder.hpp"
+#include "base/folder_checksums.hpp"
 #include "study/compare/study_plan.hpp"
 #include "study/run/run_lock.hpp"
 
@@ -28,14 +32,14 @@ class StudyFolder {
   // Throws Error{usage} with every difference that would make recorded cells incomparable.
   StudyFolder(const std::filesystem::path& path, const StudyPlan& plan);
 
-  const std::filesystem::path& path() const { return path_; }
+  const std::filesystem::path& path() const { return folder_.path(); }
   // Returns one text per part of the plan that the recorded plan did not have; empty if it has all.
   const std::vector<std::string>& additions() const { return additions_; }
 
  private:
-  void extend(const StudyPlan& plan, const std::string& text);
+  void extend(const StudyPlan& plan, const std::string& text, FolderChecksums& checksums);
 
-  std::filesystem::path path_;
+  Folder folder_;
   RunLock lock_;
   std::vector<std::string> additions_;
 };
@@ -45,6 +49,17 @@ class StudyFolder {
 std::string to_toml(const StudyPlan& plan);
 std::string calc_plan_hash(const StudyPlan& plan);
 
+// Covers all files of the study with checksums. To be called when its tables are written. Throws
+// Error{io}.
+void cover_study(const StudyPlan& plan, const std::filesystem::path& study);
+// Returns the names of the files, relative to the study, that its checksums cover, apart from its
+// cells. Throws Error{io} or std::filesystem::filesystem_error if the folder cannot be read.
+std::vector<std::string> list_study_files(const std::filesystem::path& study);
+// Removes from the study's checksums those cells of the plan that have not ended, because they are
+// going to change. The caller holds the study's lock.
+void uncover_unfinished(const StudyPlan& plan, std::span<const Cell> cells,
+                        const std::filesystem::path& study);
+
 // Returns whether the folder is a study's.
 bool is_study_folder(const std::filesystem::path& path);
 // Throws Error{usage} if the folder does not exist or is not a study's.
@@ -52,10 +67,14 @@ void check_study_folder(const std::filesystem::path& folder);
 // Adds to `plan` the baselines that the folder's recorded plan has, and keeps its rules: the
 // candidates that are judged (keep_selection()), the plain form of functions where version 1.0
 // recorded it (keep_plain_functions()), and the random streams of the optimizers
-// (adopt_streams()). Does nothing if the folder is not a study's. To be called before the
+// (adopt_streams()). Descriptions of plugins stay absent where version 1.0 recorded none. Does nothing if the folder is not a study's. To be called before the
 // constructor of StudyFolder.
 void adopt_recorded(const std::filesystem::path& folder, StudyPlan& plan);
-// Returns the plan that a study's folder records. Throws Error{usage} or Error{bad_data}.
+// Returns the plan that a study's folder records, to be read. Starts no plugin and opens none, so
+// the plugins need not exist; their cells cannot run. Throws Error{usage} or Error{bad_data}.
 StudyPlan load_study_plan(const std::filesystem::path& folder);
+// The same for a plan whose cells shall run. The plugins need consent
+// (study/compare/plugin_consent.hpp).
+StudyPlan load_study_plan(const std::filesystem::path& folder, const AskUser& ask);
 
 }  // namespace armwright

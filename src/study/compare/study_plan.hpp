@@ -17,6 +17,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -110,6 +111,20 @@ struct StudyPlan {
 inline constexpr std::string_view kRandomBaseline = "random";
 inline constexpr std::string_view kLocalBaseline = "nlopt:neldermead";
 
+// What make_study_plan() does with plugins.
+enum class PluginUse : std::uint8_t {
+  // Starts or opens them, so that the plan can run. Those of a recorded plan need consent
+  // (plugin_consent.hpp).
+  run,
+  // Takes those of a recorded plan from the record. Starts or opens the others.
+  preview,
+  // Starts and opens none. The plan can be read, but cells of plugins cannot run.
+  read
+};
+
+// Asks the user a question. Returns true for yes. An empty one stands for no.
+using AskUser = std::function<bool(const std::string& question)>;
+
 // The input of make_study_plan(): a file, flags, or both. Flags override the file.
 struct StudyRequest {
   std::string file;  // a path, or the name of a shipped study; empty: only flags
@@ -122,11 +137,14 @@ struct StudyRequest {
   std::optional<std::uint64_t> seed;
   bool baselines = true;
   // Optimizers that the calling program implements itself, by name
-  // (optimizers/plugins/host_optimizer.hpp).
+  // (optimizers/plugins/recorded_optimizer.hpp).
   std::vector<OptimizerRow> rows = {};
+  PluginUse plugins = PluginUse::run;
+  AskUser ask = {};  // whether plugins of a recorded plan may run
 };
 
-// Reads, completes and checks the whole plan. Throws Error{usage} or Error{bad_data}.
+// Reads, completes and checks the whole plan. Throws Error{usage} or Error{bad_data}; Error{usage}
+// too if plugins of a recorded plan need consent and the user does not give it.
 StudyPlan make_study_plan(const StudyRequest& request);
 
 // Returns the SHA-256 of a problem's resolved configuration and of the hashes of the files that it
@@ -139,8 +157,9 @@ void check_plan_hash(const std::filesystem::path& path);
 
 // Adds to `plan` every baseline of the recorded plan that `plan` lacks. Example: the recorded plan
 // has the baseline nlopt:neldermead; if the user adds another local search to the study,
-// make_study_plan() adds no local baseline, but the recorded cells need it. Throws Error{usage} or
-// Error{bad_data} if the file or a baseline cannot be loaded, Error{io} if a file cannot be read.
+// make_study_plan() adds no local baseline, but the recorded cells need it. Ignores a baseline that
+// is a plugin: armwright adds only its own optimizers. Throws Error{usage} or Error{bad_data} if the
+// file or a baseline cannot be loaded, Error{io} if a file cannot be read.
 void keep_baselines(const std::filesystem::path& recorded, StudyPlan& plan);
 
 // Gives `plan` the rule of version 1.0 for the candidates that are judged (Selection::most = 0) if

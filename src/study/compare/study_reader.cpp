@@ -135,7 +135,7 @@ const Setting<std::vector<std::string>> kOptimizerEntrySet{
 const Setting<bool> kOptimizerEntryBaseline{
     "baseline", false, "in a resolved plan: the optimizer was added as a baseline"};
 const Setting<std::string> kOptimizerEntryDescription{
-    "description", "", "in a resolved plan: description of an optimizer in Python"};
+    "description", "", "in a resolved plan: description of a plugin or of an optimizer in Python"};
 const Setting<std::vector<std::string>> kOptimizerEntryInputs{
     "inputs", kNoDefault, "in a resolved plan: hashes of a plugin's files"};
 const Setting<std::string> kOptimizerEntryOwnSchedule{
@@ -286,7 +286,7 @@ RawPlan read_study_file(const std::filesystem::path& file, StudyPlan& plan) {
   table.get(kStudyDescription);
   plan.name = table.get(kStudyName);
   // check_plan_hash() compares it with the text.
-  const bool is_recorded = !table.get(kStudyPlanHash).empty();
+  raw.is_recorded = !table.get(kStudyPlanHash).empty();
   plan.seed = static_cast<std::uint64_t>(table.get(kStudySeed));
   plan.replicates = table.get(kStudyReplicates);
   plan.budget = table.get(kStudyBudget);
@@ -316,7 +316,7 @@ RawPlan read_study_file(const std::filesystem::path& file, StudyPlan& plan) {
   for (const ConfigTable& optimizer : table.get_tables_or_empty(kOptimizerEntrySettings)) {
     raw.optimizers.push_back(read_optimizer_entry(optimizer));
   }
-  raw.has_label_streams = is_recorded && has_label_streams(raw.optimizers);
+  raw.has_label_streams = raw.is_recorded && has_label_streams(raw.optimizers);
   table.refuse_unknown();
   return raw;
 }

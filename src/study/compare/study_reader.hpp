@@ -20,7 +20,8 @@ struct NamedOptimizer {
   bool baseline = false;  // true only in resolved plans
   std::optional<Schedule> schedule = {};
   std::vector<std::string> settings = {};
-  // A resolved plan has these two for an optimizer of the program that made it.
+  // A resolved plan has these two for a plugin and for an optimizer of the program that made it.
+  // Version 1.0 recorded no description of plugins.
   std::string description = {};
   std::vector<std::string> inputs = {};  // "NAME HASH"
   // A resolved plan has these two; plans of version 1.0 do not.
@@ -45,6 +46,7 @@ struct RawPlan {
   std::vector<std::string> settings;  // of every problem; a problem's own settings replace them
   std::vector<std::string> last_settings;  // of every problem; they replace all others
   std::optional<StudySchedule> schedule;
+  bool is_recorded = false;        // the file is a resolved plan: it has a plan_sha256
   bool has_label_streams = false;  // the file is a plan that version 1.0 recorded
 };
 

@@ -48,15 +48,13 @@ FileDescriptor duplicate(const FileDescriptor& fd, const std::filesystem::path& 
 // operating system meanwhile.
 class Journal::Writer {
  public:
-  Writer(const std::filesystem::path& file, JournalContent& content)
-      : file_(file),
-        fd_(::open(file.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC | O_NONBLOCK, 0644)) {
-    if (!fd_.is_open()) {
-      fail_io(file_, "open it for appending", errno);
-    }
+  Writer(const Folder& folder, const std::string& name, JournalContent& content)
+      : folder_(folder),
+        file_(folder.path() / name),
+        fd_(folder.open(name, O_RDWR | O_CREAT | O_APPEND)) {
     JournalContent found = scan_journal(duplicate(fd_, file_), file_);
     if (found.torn_bytes != 0) {
-      cut_torn_end(fd_.get(), found.intact_bytes, file_);
+      cut_torn_end(fd_.get(), found.intact_bytes, folder_, name);
       unsynced_ = true;
     }
     intact_bytes_ = found.intact_bytes;
@@ -119,7 +117,7 @@ class Journal::Writer {
     }
     intact_bytes_ = journal_format::kMagic.size();
     unsynced_ = true;
-    sync_folder_of(file_);
+    folder_.sync();
   }
 
   // If the system grants no more threads, add() writes every record at once instead. Returns when
@@ -264,6 +262,7 @@ class Journal::Writer {
     }
   }
 
+  const Folder folder_;
   const std::filesystem::path file_;
   FileDescriptor fd_;
   std::mutex mutex_;  // guards all that follows
@@ -285,8 +284,11 @@ class Journal::Writer {
   std::thread sync_thread_;
 };
 
+Journal::Journal(const Folder& folder, const std::string& name, JournalContent& content)
+    : writer_(std::make_unique<Writer>(folder, name, content)) {}
+
 Journal::Journal(const std::filesystem::path& file, JournalContent& content)
-    : writer_(std::make_unique<Writer>(file, content)) {}
+    : Journal(Folder(file.parent_path()), file.filename().string(), content) {}
 
 Journal::~Journal() {
   try {

@@ -26,6 +26,7 @@
 #include <string>
 #include <vector>
 
+#include "base/folder.hpp"
 #include "study/journal/recorded_evaluations.hpp"
 
 namespace armwright {
@@ -59,10 +60,12 @@ struct JournalContent {
 // thread-safe. close() and the destructor must not run while another thread uses the journal.
 class Journal {
  public:
-  // Opens the file for appending, and creates it if it does not exist. Stores its records in
-  // `content`. Cuts off a torn end. The caller must hold the run's lock (run_lock.hpp). Throws
-  // Error{io} if the file cannot be read or written, and Error{bad_data} if it is damaged or is no
-  // journal. The messages name the file.
+  // Opens the file `name` of the folder for appending, and creates it if it does not exist. Stores
+  // its records in `content`. Cuts off a torn end. The caller must hold the run's lock
+  // (run_lock.hpp). Throws Error{io} if the file cannot be read or written, and Error{bad_data} if
+  // it is damaged, no journal, no regular file, or has a second name. The messages name the file.
+  Journal(const Folder& folder, const std::string& name, JournalContent& content);
+  // Does the same. Follows links on the way to the file's folder.
   Journal(const std::filesystem::path& file, JournalContent& content);
   ~Journal();  // closes the file; ignores errors, which close() would throw
   Journal(const Journal&) = delete;

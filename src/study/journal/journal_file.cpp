@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <string>
 
@@ -14,10 +15,21 @@
 namespace armwright {
 namespace {
 
+// Copies the bytes behind `offset`. Holes stay holes.
 void copy_from(int source, std::uint64_t offset, int target,
                const std::filesystem::path& source_name, const std::filesystem::path& target_name) {
+  struct stat status {};
+  if (::fstat(source, &status) != 0) {
+    fail_io(source_name, "read its torn end", errno);
+  }
+  const std::uint64_t begin = offset;
+  const auto size = static_cast<std::uint64_t>(status.st_size);
+  if (::ftruncate(target, static_cast<off_t>(size - begin)) != 0) {
+    fail_io(target_name, "save the torn end of the journal in it", errno);
+  }
   std::string chunk(1 << 20, '\0');
-  while (true) {
+  while ((offset = find_data(source, offset, size)) < size) {
+    ::lseek(target, static_cast<off_t>(offset - begin), SEEK_SET);
     const ssize_t got = ::pread(source, chunk.data(), chunk.size(), static_cast<off_t>(offset));
     if (got < 0 && errno == EINTR) {
       continue;
@@ -39,24 +51,26 @@ void copy_from(int source, std::uint64_t offset, int target,
   }
 }
 
-// Saves the bytes behind `offset` in the first free "<file>.torn-N".
-void save_torn_end(int fd, std::uint64_t offset, const std::filesystem::path& file) {
+// Saves the bytes behind `offset` in the first free "<journal>.torn-N".
+void save_torn_end(int fd, std::uint64_t offset, const Folder& folder, const std::string& journal) {
   for (int n = 1;; ++n) {
-    const std::filesystem::path name = fmt::format("{}.torn-{}", file.string(), n);
-    FileDescriptor target(::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644));
+    const std::string name = fmt::format("{}.torn-{}", journal, n);
+    FileDescriptor target(::openat(folder.get(), name.c_str(),
+                                   O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0644));
     if (!target.is_open() && errno == EEXIST) {
       continue;
     }
+    const auto file = folder.path() / name;
     if (!target.is_open()) {
-      fail_io(name, "save the torn end of the journal in it", errno);
+      fail_io(file, "save the torn end of the journal in it", errno);
     }
     try {
-      copy_from(fd, offset, target.get(), file, name);
+      copy_from(fd, offset, target.get(), folder.path() / journal, file);
       if (target.close() != 0) {
-        fail_io(name, "close it", errno);
+        fail_io(file, "close it", errno);
       }
     } catch (...) {
-      ::unlink(name.c_str());  // the journal is still complete, so half a copy is removed
+      folder.remove(name);  // the journal is still complete, so half a copy is removed
       throw;
     }
     return;
@@ -93,16 +107,24 @@ void sync_folder_of(const std::filesystem::path& file) {
   }
 }
 
+std::uint64_t find_data(int fd, std::uint64_t offset, std::uint64_t size) {
+  const off_t data = ::lseek(fd, static_cast<off_t>(offset), SEEK_DATA);
+  if (data < 0) {
+    return errno == ENXIO ? size : offset;  // ENXIO: there are no data behind the offset
+  }
+  return std::min(static_cast<std::uint64_t>(data), size);
+}
+
 bool is_deleted(int fd) {
   struct stat status {};
   return ::fstat(fd, &status) == 0 && status.st_nlink == 0;
 }
 
-void cut_torn_end(int fd, std::uint64_t offset, const std::filesystem::path& file) {
-  save_torn_end(fd, offset, file);
-  sync_folder_of(file);
+void cut_torn_end(int fd, std::uint64_t offset, const Folder& folder, const std::string& name) {
+  save_torn_end(fd, offset, folder, name);
+  folder.sync();
   if (::ftruncate(fd, static_cast<off_t>(offset)) != 0) {
-    fail_io(file, "cut off its torn end", errno);
+    fail_io(folder.path() / name, "cut off its torn end", errno);
   }
 }
 

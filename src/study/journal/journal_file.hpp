@@ -4,7 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <string_view>
+
+#include "base/folder.hpp"
 
 namespace armwright {
 
@@ -25,9 +28,14 @@ void sync_folder_of(const std::filesystem::path& file);
 // Returns whether the file has no name any more.
 bool is_deleted(int fd);
 
-// Cuts the file off at `offset`, after saving the bytes behind it in the first free "<file>.torn-N"
-// and syncing that to the disk. `fd` must be open for reading and writing. Throws Error{io}, which
-// names the file at fault.
-void cut_torn_end(int fd, std::uint64_t offset, const std::filesystem::path& file);
+// Returns the first offset in [offset, size) at which the file may hold data, or `size` if a hole
+// reaches to it. A hole reads as zeros and takes no space, so that a file of a few KiB can be a TiB
+// long. A file system without holes returns `offset`.
+std::uint64_t find_data(int fd, std::uint64_t offset, std::uint64_t size);
+
+// Cuts the file `name` of the folder off at `offset`, after saving the bytes behind it in the first
+// free "<name>.torn-N" and syncing that to the disk. `fd` must be open for reading and writing.
+// Throws Error{io}, which names the file at fault.
+void cut_torn_end(int fd, std::uint64_t offset, const Folder& folder, const std::string& name);
 
 }  // namespace armwright

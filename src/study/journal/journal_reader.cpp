@@ -1,6 +1,5 @@
 #include "study/journal/journal_reader.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -16,6 +15,7 @@
 #include "base/file.hpp"
 #include "base/hash.hpp"
 #include "base/text.hpp"
+#include "study/journal/journal_file.hpp"
 
 namespace armwright {
 
@@ -25,23 +25,10 @@ using journal_format::kMagic;
 using journal_format::kMaxPayloadBytes;
 using journal_format::kProbeBytes;
 
-FileDescriptor open_journal(const std::filesystem::path& file) {
-  // Without O_NONBLOCK, opening a named pipe would block forever before it could be refused.
-  FileDescriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  if (!descriptor.is_open()) {
-    fail_io(file, "open it", errno);
-  }
-  return descriptor;
-}
-
 JournalWindow::JournalWindow(int fd, std::filesystem::path file) : fd_(fd), file_(std::move(file)) {
   struct stat status {};
   if (::fstat(fd, &status) != 0) {
     fail_io(file_, "read it", errno);
-  }
-  if (!S_ISREG(status.st_mode)) {
-    throw Error(ErrorKind::io,
-                fmt::format("{}: is not a regular file; a journal must be one", file_.string()));
   }
   size_ = static_cast<std::uint64_t>(status.st_size);
 }
@@ -56,6 +43,10 @@ std::string_view JournalWindow::view(std::uint64_t offset, std::size_t length) {
     fill(offset, length);
   }
   return std::string_view(buffer_).substr(offset - begin_, length);
+}
+
+std::uint64_t JournalWindow::skip_hole(std::uint64_t offset) const {
+  return std::max(offset, find_data(fd_, offset, size_));
 }
 
 void JournalWindow::fill(std::uint64_t offset, std::size_t length) {
@@ -125,8 +116,17 @@ RecordAttempt read_record(JournalWindow& window, std::uint64_t offset) {
 }
 
 std::optional<std::uint64_t> find_intact_record(JournalWindow& window, std::uint64_t offset) {
+  // File systems make holes of whole pages.
+  constexpr std::uint64_t kPageBytes = 4096;
   while (!window.has_given_up() && ++offset < window.size() &&
          window.bytes_from(offset) >= kFrameBytes + kProbeBytes) {
+    if (offset % kPageBytes == 0) {
+      // The frame of a record may begin with zeros in the hole before it.
+      offset = std::max(offset, window.skip_hole(offset) - kFrameBytes);
+      if (window.bytes_from(offset) < kFrameBytes + kProbeBytes) {
+        break;
+      }
+    }
     if (read_record(window, offset).record) {
       return offset;
     }
@@ -203,7 +203,7 @@ JournalContent scan_journal(FileDescriptor descriptor, const std::filesystem::pa
 }
 
 JournalContent read_journal(const std::filesystem::path& file) {
-  return scan_journal(open_journal(file), file);
+  return scan_journal(open_to_read(file), file);
 }
 
 }  // namespace armwright

@@ -14,9 +14,6 @@
 
 namespace armwright {
 
-// Opens a journal for reading. Throws Error{io}.
-FileDescriptor open_journal(const std::filesystem::path& file);
-
 // A window onto the bytes of a journal. Not thread-safe.
 class JournalWindow {
  public:
@@ -29,6 +26,9 @@ class JournalWindow {
   // Treats `offset` as the end of the file from now on: the caller may cut off a torn end.
   void end_at(std::uint64_t offset);
   std::uint64_t bytes_from(std::uint64_t offset) const { return size_ - offset; }
+  // Returns the first offset from `offset` on that does not lie in a hole of the file; the size if
+  // there is none.
+  std::uint64_t skip_hole(std::uint64_t offset) const;
   // Returns bytes that must lie within the file. They are valid until the next call. Throws
   // Error{io} if they cannot be read.
   std::string_view view(std::uint64_t offset, std::size_t length);

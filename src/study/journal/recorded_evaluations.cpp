@@ -26,7 +26,7 @@ EvaluationRecord read_evaluation(JournalWindow& window, const RecordedEvaluation
   return std::move(*record);
 }
 
-bool same_bits(const EvaluationRecord& a, const EvaluationRecord& b) {
+bool has_same_content(const EvaluationRecord& a, const EvaluationRecord& b) {
   std::string bytes_a;
   std::string bytes_b;
   journal_format::encode(a, bytes_a);
@@ -44,7 +44,7 @@ void sort_places(std::deque<RecordedEvaluations::Place>& places, JournalWindow& 
     if (first.index != second.index) {
       return false;
     }
-    if (!same_bits(read_evaluation(window, first), read_evaluation(window, second))) {
+    if (!has_same_content(read_evaluation(window, first), read_evaluation(window, second))) {
       throw Error(
           ErrorKind::bad_data,
           fmt::format("{}: evaluation {} is recorded twice with different content; two "

@@ -143,24 +143,25 @@ AttemptRecord parse_attempt(const std::string& text, const std::filesystem::path
   }
 }
 
-Attempt::Attempt(const std::filesystem::path& attempts, std::int64_t process_begun_s)
-    : attempts_(attempts) {
-  make_folder(attempts);
+Attempt::Attempt(const std::filesystem::path& attempts, const std::filesystem::path& study,
+                 std::int64_t process_begun_s)
+    : attempts_(attempts), folder_(Folder::make(attempts, study)) {
   const std::vector<int> tokens = list_tokens(attempts);
   token_ = tokens.empty() ? 1 : tokens.back() + 1;
   while (true) {
-    path_ = make_token_path(attempts, token_);
-    if (::mkdir(path_.c_str(), 0777) == 0) {
+    const auto path = make_token_path(attempts, token_);
+    if (::mkdirat(folder_.get(), path.filename().c_str(), 0777) == 0) {
+      folder_ = Folder::make(path, attempts);
       break;
     }
     // A network file system may create the folder and still report EEXIST. Its number is lost then.
     if (errno != EEXIST) {
-      fail_io(path_, "create this folder", errno);
+      fail_io(path, "create this folder", errno);
     }
     ++token_;
   }
   record_ = to_json(describe_this_process(process_begun_s));
-  write_file_atomically(path_ / kAttemptRecord, record_);
+  write_file_atomically(folder_, kAttemptRecord, record_);
   tell_alive(0);
 }
 
@@ -170,23 +171,22 @@ std::string Attempt::find_successor() const {
     return describe_successor(tokens.back());
   }
   // A token that was removed can be taken by another process, so the record is compared.
-  const auto record = read_if_there(path_ / kAttemptRecord);
+  const auto record = read_if_there(folder_.path() / kAttemptRecord);
   const bool is_ours =
       std::ranges::binary_search(tokens, token_) && (!record || *record == record_);
   return is_ours ? "" : "superseded: its folder is gone; perhaps another attempt ended the cell";
 }
 
 void Attempt::tell_alive(std::uint64_t cases) const {
-  write_file_atomically(path_ / kSignOfLife, json{{"cases", cases}}.dump() + "\n");
+  write_file_atomically(folder_, kSignOfLife, json{{"cases", cases}}.dump() + "\n");
 }
 
 void Attempt::end_in_order() const {
-  std::error_code ignored;
-  std::filesystem::remove(path_ / kSignOfLife, ignored);
+  folder_.remove(kSignOfLife);
 }
 
 void Attempt::record_error(const std::string& error) const {
-  write_file_atomically(path_ / kErrorRecord, sanitize(error) + "\n");
+  write_file_atomically(folder_, kErrorRecord, sanitize(error) + "\n");
 }
 
 AttemptState read_attempt(const std::filesystem::path& attempts, int token) {

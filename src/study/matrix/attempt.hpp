@@ -22,6 +22,7 @@
 #include <string>
 #include <vector>
 
+#include "base/folder.hpp"
 #include "study/compare/study_plan.hpp"
 
 namespace armwright {
@@ -51,12 +52,14 @@ AttemptRecord parse_attempt(const std::string& text, const std::filesystem::path
 // An attempt of this process.
 class Attempt {
  public:
-  // Takes the next free token and writes attempt.json. Throws Error{io}.
-  Attempt(const std::filesystem::path& attempts, std::int64_t process_begun_s);
+  // Takes the next free token in `attempts`, which lies in the folder of a study, and writes
+  // attempt.json. Throws Error{io}, and Error{bad_data} if a link is in the way (Folder::make).
+  Attempt(const std::filesystem::path& attempts, const std::filesystem::path& study,
+          std::int64_t process_begun_s);
 
   int token() const { return token_; }
-  std::filesystem::path run() const { return path_ / "run"; }
-  std::filesystem::path aside() const { return path_ / "aside"; }
+  std::filesystem::path run() const { return folder_.path() / "run"; }
+  std::filesystem::path aside() const { return folder_.path() / "aside"; }
 
   // Returns "superseded by attempt 3", or an empty text while this attempt is the newest.
   std::string find_successor() const;
@@ -70,7 +73,7 @@ class Attempt {
  private:
   std::filesystem::path attempts_;
   int token_ = 0;
-  std::filesystem::path path_;
+  Folder folder_;
   std::string record_;  // text of attempt.json
 };
 

@@ -11,8 +11,11 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/folder_checksums.hpp"
 #include "study/compare/cell.hpp"
+#include "study/compare/study_folder.hpp"
 #include "study/matrix/attempt.hpp"
+#include "study/run/run_lock.hpp"
 
 namespace armwright {
 namespace {
@@ -90,6 +93,16 @@ class Watcher {
   std::thread thread_;  // declared last: it uses all other members
 };
 
+// Removes the cell from the study's checksums if they cover an earlier state of it. The lock keeps
+// other processes from changing the checksums meanwhile.
+void uncover_cell(const StudyPlan& plan, const Cell& cell, const std::filesystem::path& study) {
+  const std::string name = (make_cell_path(plan, cell) / kChecksumFile).string();
+  if (FolderChecksums(study).covers(name)) {
+    const RunLock lock{Folder(study)};
+    uncover_unfinished(plan, {&cell, 1}, study);
+  }
+}
+
 CellAttempt superseded(const Attempt& attempt) {
   attempt.end_in_order();
   return {CellAttempt::End::superseded, attempt.find_successor(), false};
@@ -104,23 +117,25 @@ CellAttempt attempt_cell(const StudyPlan& plan, const Cell& cell, const CellAtte
       !successor.empty()) {
     return {CellAttempt::End::superseded, std::move(successor), false};
   }
-  const Attempt attempt(attempts, request.process_begun_s);
+  const Attempt attempt(attempts, request.study, request.process_begun_s);
   try {
     // An earlier attempt may have published the cell before it could see this one.
     if (load_cell(plan, cell, request.study)) {
       attempt.end_in_order();
       return {};
     }
+    uncover_cell(plan, cell, request.study);
     copy_furthest_state(plan, cell, request.study, attempt.run(), observer);
     CountingObserver counting(observer);
     std::optional<CellOutcome> outcome;
     {
       const Watcher watcher(attempt, counting, stop);
-      outcome = run_cell(
-          plan, cell,
-          CellRequest{
-              .folder = attempt.run(), .jobs = request.jobs, .command_line = request.command_line},
-          stop, counting);
+      outcome = run_cell(plan, cell,
+                         CellRequest{.folder = attempt.run(),
+                                     .root = request.study,
+                                     .jobs = request.jobs,
+                                     .command_line = request.command_line},
+                         stop, counting);
       if (!outcome && !watcher.has_stopped_it()) {
         attempt.end_in_order();
         return {CellAttempt::End::stopped, "", false};

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/text.hpp"
+#include "optimizers/table/optimizer_table.hpp"
 #include "study/compare/study_folder.hpp"
 #include "study/matrix/cell_selection.hpp"
 #include "study/matrix/chunks.hpp"
@@ -30,7 +33,7 @@ cd {folder} || exit 74
 study={study}
 chunks={chunks}
 
-run_cells() {{ "$armwright" cell --jobs {jobs} "$study" "$@"; }}
+run_cells() {{ "$armwright" cell --jobs {jobs}{trust} "$study" "$@"; }}
 
 run_chunk() {{
   case "$1" in
@@ -47,7 +50,7 @@ constexpr const char* kScriptTail = R"(    *)
 chunk=${1:-${SLURM_ARRAY_TASK_ID:-${PBS_ARRAY_INDEX:-${PBS_ARRAYID:-${SGE_TASK_ID:-}}}}}
 if [[ -n "$chunk" && "$chunk" != undefined ]]; then
   # In this process's place: signals of the batch system reach the program itself.
-  run_cells() { exec "$armwright" cell --jobs @JOBS@ "$study" "$@"; }
+  run_cells() { exec "$armwright" cell --jobs @JOBS@@TRUST@ "$study" "$@"; }
   run_chunk "$chunk"
   exit
 fi
@@ -103,13 +106,18 @@ std::string make_cell_script(const StudyPlan& plan, std::span<const Chunk> chunk
   const std::string configs =
       request.configs ? fmt::format("export ARMWRIGHT_CONFIGS={}\n", quote_word(*request.configs))
                       : "";
+  // The jobs inherit the consent to run plugins.
+  const bool has_plugins = std::ranges::any_of(
+      plan.optimizers, [](const StudyOptimizer& one) { return is_plugin(one.name); });
+  const std::string trust = has_plugins ? " --trust" : "";
   // Texts in comments and messages must not end them.
   std::string text = fmt::format(
       fmt::runtime(kScriptHead), fmt::arg("cells", cells), fmt::arg("name", sanitize(plan.name)),
       fmt::arg("hash", calc_plan_hash(plan).substr(0, 16)), fmt::arg("chunks", chunks.size()),
       fmt::arg("merge", sanitize(merge)), fmt::arg("folder", quote_word(request.folder.string())),
       fmt::arg("configs", configs), fmt::arg("program", quote_word(request.program.string())),
-      fmt::arg("study", quote_word(request.study.string())), fmt::arg("jobs", request.jobs));
+      fmt::arg("study", quote_word(request.study.string())), fmt::arg("jobs", request.jobs),
+      fmt::arg("trust", trust));
   for (std::size_t number = 0; number < chunks.size(); ++number) {
     text += fmt::format("    {}) run_cells", number + 1);
     for (const Cell& cell : chunks[number].cells) {
@@ -120,6 +128,7 @@ std::string make_cell_script(const StudyPlan& plan, std::span<const Chunk> chunk
   }
   std::string tail = kScriptTail;
   replace_word(tail, "@JOBS@", std::to_string(request.jobs));
+  replace_word(tail, "@TRUST@", trust);
   replace_word(tail, "@MERGE@", escape_for_echo(sanitize(merge)));
   return text + tail;
 }

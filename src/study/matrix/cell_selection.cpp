@@ -7,6 +7,7 @@
 
 #include "base/config.hpp"
 #include "base/error.hpp"
+#include "base/folder.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "study/compare/rerun.hpp"
@@ -19,7 +20,7 @@ std::filesystem::path find_study_folder(const std::filesystem::path& name) {
   if (is_study_folder(name)) {
     return name;
   }
-  if (name.filename() == "study.toml" && std::filesystem::is_regular_file(name)) {
+  if (name.filename() == "study.toml" && regular_file_exists(name)) {
     return name.has_parent_path() ? name.parent_path() : std::filesystem::path(".");
   }
   throw Error(ErrorKind::usage,
@@ -40,12 +41,9 @@ std::size_t parse_cell_number(std::string_view text, std::string_view word, std:
   return static_cast<std::size_t>(*number);
 }
 
-}  // namespace
-
-RecordedStudy load_recorded_study(const std::filesystem::path& name) {
-  RecordedStudy study{find_study_folder(name), {}};
+// Returns the study if its recorded plan is resolved to the same plan here.
+RecordedStudy check_same(RecordedStudy study) {
   const auto file = study.folder / "study.toml";
-  study.plan = load_study_plan(study.folder);
   const ConfigTable recorded = ConfigTable::load(file);
   const ConfigTable now = ConfigTable::parse(to_toml(study.plan), file.string());
   const auto differences = describe_differences(recorded.to_json(), now.to_json());
@@ -56,6 +54,18 @@ RecordedStudy load_recorded_study(const std::filesystem::path& name) {
                             sanitize(file.string()), join(differences, "\n  ")));
   }
   return study;
+}
+
+}  // namespace
+
+RecordedStudy load_recorded_study(const std::filesystem::path& name) {
+  const auto folder = find_study_folder(name);
+  return check_same({folder, load_study_plan(folder)});
+}
+
+RecordedStudy load_recorded_study(const std::filesystem::path& name, const AskUser& ask) {
+  const auto folder = find_study_folder(name);
+  return check_same({folder, load_study_plan(folder, ask)});
 }
 
 std::vector<Cell> select_cells(const StudyPlan& plan, std::span<const std::string> words) {

@@ -18,8 +18,12 @@ struct RecordedStudy {
 
 // Loads the study of the folder `name`, or of the file `name` if that is a study.toml. Throws
 // Error{usage} for any other path. Also throws Error{usage} if the recorded plan is resolved to
-// another plan here, because an optimizer, a plugin or armwright has another version.
+// another plan here, because an optimizer or armwright has another version. Starts no plugin and
+// opens none, so the cells of plugins cannot run.
 RecordedStudy load_recorded_study(const std::filesystem::path& name);
+// The same for a study whose cells shall run. The plugins need consent
+// (study/compare/plugin_consent.hpp).
+RecordedStudy load_recorded_study(const std::filesystem::path& name, const AskUser& ask);
 
 // Returns the cells that the words name, in the order given, each once. A word is one of
 //   "3"                  the number of a cell, from 0, in the order of list_cells()

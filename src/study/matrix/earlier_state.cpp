@@ -1,15 +1,20 @@
 // Copies what an earlier attempt at a cell has left, so that a new attempt continues from it.
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <ctime>
 #include <functional>
+#include <string>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
 #include "base/error.hpp"
 #include "base/file.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/text.hpp"
 #include "study/compare/cell.hpp"
 #include "study/journal/journal.hpp"
@@ -53,19 +58,27 @@ std::vector<EarlierRun> find_earlier_runs(const StudyPlan& plan, const Cell& cel
   return runs;
 }
 
-// Returns false if another process has published or removed the source in the meantime.
-bool copy_bytes_of(const std::filesystem::path& source, const std::filesystem::path& target) {
-  std::error_code error;
-  std::filesystem::copy_file(source, target, std::filesystem::copy_options::overwrite_existing,
-                             error);
-  if (!error) {
-    return true;
-  }
+// Copies the file into the folder. Returns false if another process has published or removed it in
+// the meantime.
+bool copy_file_into(const Folder& folder, const std::filesystem::path& source) {
   std::error_code ignored;
   if (!std::filesystem::exists(source, ignored)) {
     return false;
   }
-  fail_io(source, "copy it to " + target.string(), error.value());
+  const FileDescriptor from = open_to_read(source);
+  AtomicFile to(folder, source.filename().string());
+  std::string chunk(1 << 20, '\0');
+  while (true) {
+    const ssize_t got = ::read(from.get(), chunk.data(), chunk.size());
+    if (got < 0 && errno != EINTR) {
+      fail_io(source, "read it", errno);
+    }
+    if (got == 0) {
+      to.commit();
+      return true;
+    }
+    to.write(std::string_view(chunk).substr(0, got > 0 ? static_cast<std::size_t>(got) : 0));
+  }
 }
 
 void move_folder_if_there(const std::filesystem::path& from, const std::filesystem::path& to) {
@@ -82,15 +95,19 @@ void copy_furthest_state(const StudyPlan& plan, const Cell& cell,
                          const std::filesystem::path& study, const std::filesystem::path& run,
                          RunObserver& observer) {
   for (const EarlierRun& earlier : find_earlier_runs(plan, cell, study)) {
-    make_folder(run);
+    const Folder folder = Folder::make(run, study);
     try {
       // Another process may still write the journal, so the last record of the copy may be torn.
-      if (!copy_bytes_of(earlier.folder / "journal", run / "journal")) {
+      if (!copy_file_into(folder, earlier.folder / "journal")) {
         continue;
       }
       read_journal(run / "journal");
-      write_file_atomically(run / "manifest.json",
-                            read_file(earlier.folder / "manifest.json", kManifestLimit_bytes));
+      const std::string name = "manifest.json";
+      const std::string manifest = read_checked_file(earlier.folder / name, kManifestLimit_bytes);
+      FolderChecksums checksums(folder);
+      checksums.cover(name, manifest);
+      checksums.save();
+      write_file_atomically(folder, name, manifest);
       return;
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::bad_data) {
@@ -108,7 +125,7 @@ void copy_furthest_state(const StudyPlan& plan, const Cell& cell,
 
 void adopt_attempts(const StudyPlan& plan, const std::filesystem::path& study,
                     RunObserver& observer) {
-  if (!std::filesystem::exists(study / kAttemptsFolder)) {
+  if (!path_exists(study / kAttemptsFolder)) {
     return;
   }
   for (const Cell& cell : list_cells(plan)) {
@@ -116,12 +133,12 @@ void adopt_attempts(const StudyPlan& plan, const std::filesystem::path& study,
     if (list_tokens(attempts).empty() || load_cell(plan, cell, study)) {
       continue;
     }
-    const Attempt attempt(attempts, std::time(nullptr));
+    const Attempt attempt(attempts, study, std::time(nullptr));
     copy_furthest_state(plan, cell, study, attempt.run(), observer);
     const auto target = study / make_cell_path(plan, cell);
-    if (std::filesystem::exists(attempt.run())) {
+    if (path_exists(attempt.run())) {
       move_folder_if_there(target, attempt.aside());
-      make_folder(target.parent_path());
+      Folder::make(target.parent_path(), study);
       move_folder_if_there(attempt.run(), target);
     }
     attempt.end_in_order();

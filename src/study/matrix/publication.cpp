@@ -1,5 +1,6 @@
 // Publishes a finished cell: one rename moves it from its attempt into the study.
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <stdio.h>
 
@@ -25,10 +26,10 @@ void move_aside(const std::filesystem::path& target, const std::filesystem::path
                             sanitize(target.string()), writer));
   }
   std::filesystem::path free = aside;
-  for (int number = 2; std::filesystem::exists(free); ++number) {
+  for (int number = 2; path_exists(free); ++number) {
     free = fmt::format("{}-{}", aside.string(), number);
   }
-  const bool had_record = std::filesystem::exists(target / "cell.json");
+  const bool had_record = path_exists(target / "cell.json");
   if (::rename(target.c_str(), free.c_str()) != 0) {
     if (errno != ENOENT) {  // ENOENT: another process has moved it at the same moment
       fail_io(target, "move it aside to " + free.string(), errno);
@@ -37,7 +38,7 @@ void move_aside(const std::filesystem::path& target, const std::filesystem::path
   }
   // Another process may have put a finished cell there just before the rename. Move it back, unless
   // a further one is in its place already.
-  if (!had_record && std::filesystem::exists(free / "cell.json") &&
+  if (!had_record && path_exists(free / "cell.json") &&
       ::rename(free.c_str(), target.c_str()) != 0 && errno != ENOTEMPTY && errno != EEXIST) {
     fail_io(free, "move it back to " + target.string(), errno);
   }
@@ -48,7 +49,7 @@ void move_aside(const std::filesystem::path& target, const std::filesystem::path
 bool publish_cell(const StudyPlan& plan, const Cell& cell, const std::filesystem::path& study,
                   const std::filesystem::path& run, const std::filesystem::path& aside) {
   const auto target = study / make_cell_path(plan, cell);
-  make_folder(target.parent_path());
+  const Folder parent = Folder::make(target.parent_path(), study);
   // In each round this or another process moves the unfinished cell aside. There are at most as
   // many rounds as processes that run this cell.
   constexpr int kMostRounds = 1000;
@@ -56,8 +57,8 @@ bool publish_cell(const StudyPlan& plan, const Cell& cell, const std::filesystem
     if (load_cell(plan, cell, study)) {
       return false;
     }
-    if (::rename(run.c_str(), target.c_str()) == 0) {
-      sync_folder_of(target);
+    if (::renameat(AT_FDCWD, run.c_str(), parent.get(), target.filename().c_str()) == 0) {
+      parent.sync();
       return true;
     }
     const int error = errno;

@@ -92,13 +92,17 @@ std::filesystem::path get_submissions(const std::filesystem::path& study) {
   return std::filesystem::absolute(study).lexically_normal() / "submissions";
 }
 
+Folder make_submissions(const std::filesystem::path& study) {
+  const auto submissions = get_submissions(study);
+  return Folder::make(submissions, submissions.parent_path());
+}
+
 // Creates a folder that no other process uses, even if another one submits at the same time.
-std::filesystem::path claim_submission_folder(const std::filesystem::path& study) {
-  make_folder(get_submissions(study));
+Folder claim_submission_folder(const Folder& submissions, const std::filesystem::path& study) {
   while (true) {
     const auto folder = choose_submission_folder(study);
-    if (::mkdir(folder.c_str(), 0777) == 0) {
-      return folder;
+    if (::mkdirat(submissions.get(), folder.filename().c_str(), 0777) == 0) {
+      return Folder::make(folder, submissions.path());
     }
     if (errno != EEXIST) {
       fail_io(folder, "create this folder", errno);
@@ -107,10 +111,9 @@ std::filesystem::path claim_submission_folder(const std::filesystem::path& study
 }
 
 // Records the job, or cancels it if that fails: an unrecorded job would be submitted again.
-void record_submission(const std::filesystem::path& folder, const std::string& job,
-                       const std::string& record) {
+void record_submission(const Folder& folder, const std::string& job, const std::string& record) {
   try {
-    write_file_atomically(folder / kSubmissionRecord, record);
+    write_file_atomically(folder, kSubmissionRecord, record);
   } catch (const Error&) {
     run_command(std::vector<std::string>{"scancel", job});
     throw;
@@ -125,7 +128,7 @@ std::optional<std::string> find_queued_job(const std::filesystem::path& study) {
   std::vector<std::filesystem::path> records;
   for (std::filesystem::directory_iterator entry(get_submissions(study), error), end;
        !error && entry != end; entry.increment(error)) {
-    if (std::filesystem::exists(entry->path() / kSubmissionRecord)) {
+    if (path_exists(entry->path() / kSubmissionRecord)) {
       records.push_back(entry->path() / kSubmissionRecord);
     }
   }
@@ -154,7 +157,7 @@ std::filesystem::path choose_submission_folder(const std::filesystem::path& stud
   const auto submissions = get_submissions(study);
   for (int number = 1;; ++number) {
     const auto folder = submissions / fmt::format("{:03}", number);
-    if (!std::filesystem::exists(folder)) {
+    if (!path_exists(folder)) {
       return folder;
     }
   }
@@ -194,18 +197,18 @@ std::vector<std::string> make_sbatch_words(const StudyPlan& plan, std::span<cons
 
 std::string submit_to_slurm(const StudyPlan& plan, std::span<const Chunk> chunks,
                             const SlurmRequest& request, const std::string& script) {
-  make_folder(get_submissions(request.study));
-  const RunLock lock(get_submissions(request.study));
+  const Folder submissions = make_submissions(request.study);
+  const RunLock lock(submissions);
   if (const auto job = find_queued_job(request.study)) {
     throw Error(ErrorKind::busy,
                 fmt::format("job {0} of this study is still in the queue (squeue -j {0}); wait for "
                             "it, or end it with: scancel {0}",
                             *job));
   }
-  const auto folder = claim_submission_folder(request.study);
-  const auto words = make_sbatch_words(plan, chunks, request, folder);
+  const Folder folder = claim_submission_folder(submissions, request.study);
+  const auto words = make_sbatch_words(plan, chunks, request, folder.path());
   try {
-    write_file_atomically(folder / "run.sh", script);
+    write_file_atomically(folder, "run.sh", script);
     const CommandOutput output = run_command(words);
     if (output.exit_code != 0) {
       throw Error(ErrorKind::usage,
@@ -217,7 +220,7 @@ std::string submit_to_slurm(const StudyPlan& plan, std::span<const Chunk> chunks
     return job;
   } catch (const Error&) {
     std::error_code ignored;
-    std::filesystem::remove_all(folder, ignored);
+    std::filesystem::remove_all(folder.path(), ignored);
     throw;
   }
 }

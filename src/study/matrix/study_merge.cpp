@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/file.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "study/compare/cell.hpp"
@@ -29,7 +30,7 @@ std::string find_other_settings(const StudyPlan& plan, const Cell& cell,
                                 const std::filesystem::path& folder) {
   const auto file = folder / "manifest.json";
   try {
-    const json manifest = json::parse(read_json_file(file, kManifestLimit_bytes));
+    const json manifest = json::parse(read_checked_json(file, kManifestLimit_bytes));
     const auto differences = describe_differences(manifest.at("configuration").dump(),
                                                   to_json(make_run_plan(plan, cell)));
     return differences.empty() ? "" : differences.front();
@@ -76,14 +77,14 @@ class CellImport {
     std::filesystem::path first;
     if (load_cell(plan_, cell, study_)) {
       first = study_ / path;
-      text = read_file(first / "cell.json", kCellLimit_bytes);
+      text = read_checked_file(first / "cell.json", kCellLimit_bytes);
     }
     for (const auto& other : others_) {
       const auto folder = other / path;
       if (!load_cell(plan_, cell, other)) {
         continue;
       }
-      const std::string one = read_file(folder / "cell.json", kCellLimit_bytes);
+      const std::string one = read_checked_file(folder / "cell.json", kCellLimit_bytes);
       const std::string difference = find_other_settings(plan_, cell, folder);
       if (!difference.empty()) {
         refuse(cell,
@@ -110,15 +111,28 @@ class CellImport {
   std::vector<std::string> refusals_;
 };
 
+// Throws Error{bad_data} for a link, which FolderCopy would copy. What it leads to is no part of the
+// cell.
+void check_not_link(const std::filesystem::path& file) {
+  std::error_code ignored;  // FolderCopy reports it
+  if (std::filesystem::is_symlink(std::filesystem::symlink_status(file, ignored))) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("{}: is a symbolic link, and a cell holds only files; put the file in "
+                            "its place, or remove the link",
+                            file.string()));
+  }
+}
+
 // Copies the cell by an attempt of its own, which also supersedes other attempts at the cell.
 void copy_cell(const StudyPlan& plan, const FoundCell& found, const std::filesystem::path& study,
                StopSignal& stop) {
-  const Attempt attempt(make_attempts_path(plan, found.cell, study), std::time(nullptr));
+  const Attempt attempt(make_attempts_path(plan, found.cell, study), study, std::time(nullptr));
   FolderCopy copy(attempt.run(), stop);
-  for (const auto& entry : std::filesystem::directory_iterator(found.folder)) {
-    const auto name = entry.path().filename();
+  for (const auto& entry : list_folder(found.folder)) {
+    const auto name = entry.filename();
     if (name != "lock" && name.extension() != ".new") {
-      copy.add(entry.path(), name);
+      check_not_link(entry);
+      copy.add(entry, name);
     }
   }
   copy.put_in_place();
@@ -144,7 +158,7 @@ std::size_t import_cells(const StudyPlan& plan, const std::filesystem::path& stu
 }
 
 void remove_spent_attempts(const StudyPlan& plan, const std::filesystem::path& study) {
-  if (!std::filesystem::exists(study / kAttemptsFolder)) {
+  if (!path_exists(study / kAttemptsFolder)) {
     return;
   }
   // A superseded process may still write there; the next call removes its files.
@@ -152,6 +166,7 @@ void remove_spent_attempts(const StudyPlan& plan, const std::filesystem::path& s
   for (const Cell& cell : list_cells(plan)) {
     const auto attempts = make_attempts_path(plan, cell, study);
     if (std::filesystem::exists(attempts, ignored) && load_cell(plan, cell, study)) {
+      Folder::make(attempts, study);  // throws if a link is on the way, which could lead anywhere
       std::filesystem::remove_all(attempts, ignored);
       // remove() removes these folders only if they are empty.
       std::filesystem::remove(attempts.parent_path(), ignored);

@@ -26,11 +26,15 @@ constexpr const char* kSchema = R"(
                           PRIMARY KEY(role, number, case_number)) WITHOUT ROWID;
 )";
 
+// An existing file that SQLite fills.
 class Database {
  public:
-  explicit Database(const std::filesystem::path& file) : file_(file) {
+  // SQLite takes a path, not an open folder. It must lead to the file without links, so that
+  // SQLite can refuse every link. `file` is the name for messages.
+  Database(const std::filesystem::path& path, std::filesystem::path file) : file_(std::move(file)) {
     sqlite3* handle = nullptr;
-    const int code = sqlite3_open(file.c_str(), &handle);
+    const int code = sqlite3_open_v2(path.c_str(), &handle,
+                                     SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOFOLLOW, nullptr);
     handle_.reset(handle);
     check(code);
   }
@@ -123,9 +127,8 @@ void insert_records(Database& database, const ProblemDescription& problem, const
   }
 }
 
-void fill_database(const std::filesystem::path& file, const ProblemDescription& problem,
+void fill_database(Database& database, const ProblemDescription& problem,
                    const JournalContent& journal) {
-  Database database(file);
   // The whole file is synced at the end; no other process uses it before that.
   database.execute("PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF; BEGIN");
   database.execute(kSchema);
@@ -148,18 +151,28 @@ void fill_database(const std::filesystem::path& file, const ProblemDescription& 
   database.close();
 }
 
+// Returns the path of an open file, without links.
+std::filesystem::path find_place(const FileDescriptor& file, const std::filesystem::path& name) {
+  std::error_code error;
+  auto place = std::filesystem::read_symlink(fmt::format("/proc/self/fd/{}", file.get()), error);
+  if (error) {
+    fail_io(name, "find its place", error.value());
+  }
+  return place;
+}
+
 }  // namespace
 
-void write_database(const std::filesystem::path& file, const ProblemDescription& problem,
-                    const JournalContent& journal) {
-  const std::filesystem::path temporary = file.string() + ".new";
-  std::filesystem::remove(temporary);
+void write_database(const Folder& folder, const std::string& name,
+                    const ProblemDescription& problem, const JournalContent& journal) {
+  const std::string temporary = name + ".new";
+  FileDescriptor file = folder.create(temporary);
   try {
-    fill_database(temporary, problem, journal);
-    put_in_place(temporary, file);
+    Database database(find_place(file, folder.path() / temporary), folder.path() / temporary);
+    fill_database(database, problem, journal);
+    folder.put_in_place(file, temporary, name);
   } catch (...) {
-    std::error_code ignored;  // the first error is the one to report
-    std::filesystem::remove(temporary, ignored);
+    folder.remove(temporary);
     throw;
   }
 }

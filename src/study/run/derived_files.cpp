@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "base/bits.hpp"
 #include "base/file.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/text.hpp"
 #include "problems/config/design_file.hpp"
 #include "study/run/run.hpp"
@@ -17,13 +19,13 @@ namespace {
 
 // Writes one row per generation or, for optimizers without generations, one row per improvement.
 // Only feasible evaluations count.
-void write_convergence_csv(const std::filesystem::path& path, const ProblemDescription& problem,
+void write_convergence_csv(const Folder& folder, const ProblemDescription& problem,
                            const RecordedEvaluations& training) {
   struct Row {
     std::uint64_t evaluations = 0, cases = 0, generation = 0, counted = 0;
     double best = 0, sum = 0;
   };
-  AtomicFile file(path);
+  AtomicFile file(folder, "convergence.csv");
   file.write("evaluations,cases,generation,best_objective,mean_objective\n");
   std::optional<Row> row;
   const auto write_row = [&] {
@@ -135,7 +137,12 @@ std::vector<EvaluationRecord> select_judgements(const JournalContent& journal,
       continue;
     }
     record.index = is_test ? 0 : place;
-    selected.push_back(std::move(record));
+    const bool is_doubled = std::ranges::any_of(selected, [&](const EvaluationRecord& one) {
+      return one.cases.role == record.cases.role && one.index == record.index;
+    });
+    if (!is_doubled) {  // the first record counts, as in a resumed run
+      selected.push_back(std::move(record));
+    }
   }
   // The journal has them in the order of completion; the tables must not depend on threads.
   std::ranges::stable_sort(selected, {}, [](const EvaluationRecord& record) {
@@ -166,12 +173,16 @@ std::string make_trajectory_csv(const TrackingProblem& problem, const TrackingRe
   return csv;
 }
 
-bool are_derived_files_there(const std::filesystem::path& folder, DerivedFiles derived) {
-  const auto is_there = [&](const char* name) { return std::filesystem::exists(folder / name); };
+bool are_derived_files_there(const RunFolder& folder, DerivedFiles derived) {
+  const auto is_there = [&](const char* name) { return path_exists(folder.path() / name); };
   if (!is_there("result.json")) {
     return false;
   }
-  const RunResult result = load_result(folder);
+  const FolderChecksums checksums(folder.path());
+  if ((folder.has_checksums() || checksums.is_there()) && !checksums.covers("result.json")) {
+    return false;  // a kill or the user has removed checksums
+  }
+  const RunResult result = load_result(folder.path());
   if (!result.failure.empty()) {
     return false;
   }
@@ -190,29 +201,32 @@ bool are_derived_files_there(const std::filesystem::path& folder, DerivedFiles d
 
 void write_derived_files(const RunFolder& folder, const RunPlan& plan, const RunResult& result,
                          JournalContent journal, DerivedFiles derived) {
-  const auto& path = folder.path();
+  const Folder& files = folder.folder();
   const bool all = derived == DerivedFiles::all;
+  std::vector<std::string> changing = derived_file_names();
+  changing.emplace_back("journal");
+  FolderChecksums(files).drop(changing);
   if (all) {
-    write_convergence_csv(path / "convergence.csv", plan.problem.problem->description(),
-                          journal.training);
+    write_convergence_csv(files, plan.problem.problem->description(), journal.training);
     journal.judgements = select_judgements(journal, result);
-    write_database(path / "results.sqlite", plan.problem.problem->description(), journal);
+    write_database(files, "results.sqlite", plan.problem.problem->description(), journal);
   }
   if (all && result.objectives.size() > 1) {
-    write_file_atomically(path / "front.csv", make_front_csv(result));
+    write_file_atomically(files, "front.csv", make_front_csv(result));
   }
   if (result.winner && plan.problem.tracking()) {
     const TrackingProblem& tracking = *plan.problem.tracking();
     const auto& x = result.judged[*result.winner].candidate.x;
-    write_file_atomically(path / "winner.toml", make_winner_toml(plan, result, x));
+    write_file_atomically(files, "winner.toml", make_winner_toml(plan, result, x));
     if (all) {
       const TrackingResult motion =
           tracking.track(tracking.make_design(x), tracking.get_set(plan.problem.sets.test), 0,
                          {.error_series = false, .trajectory = true});
-      write_file_atomically(path / "winner-trajectory.csv", make_trajectory_csv(tracking, motion));
+      write_file_atomically(files, "winner-trajectory.csv", make_trajectory_csv(tracking, motion));
     }
   }
-  write_file_atomically(folder.result(), to_json(result));
+  write_file_atomically(files, "result.json", to_json(result));
+  cover_run(files, result.failure.empty());
 }
 
 }  // namespace armwright

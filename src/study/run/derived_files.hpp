@@ -22,11 +22,11 @@ enum class DerivedFiles {
 std::string make_trajectory_csv(const TrackingProblem& problem, const TrackingResult& result);
 
 // Returns whether the folder has a result and all files that write_derived_files() would write for
-// it. Throws Error{bad_data} if result.json is damaged.
-bool are_derived_files_there(const std::filesystem::path& folder, DerivedFiles derived);
+// it, and their checksums if the run has begun with them. Throws Error{bad_data} if result.json is damaged.
+bool are_derived_files_there(const RunFolder& folder, DerivedFiles derived);
 
-// Writes the derived files, and result.json last: where it exists, all others exist. Throws
-// Error{io}.
+// Writes the derived files, and result.json last: where it exists, all others exist. Then covers
+// all files of the run with checksums. Throws Error{io}.
 void write_derived_files(const RunFolder& folder, const RunPlan& plan, const RunResult& result,
                          JournalContent journal, DerivedFiles derived);
 
@@ -38,8 +38,9 @@ void write_derived_files(const RunFolder& folder, const RunPlan& plan, const Run
 //     role: training, validation or test; objective: of several, the weighted sum;
 //     x and metrics: JSON arrays in the order of the tables variable and metric
 //   case_error(role, number, case_number, error)     error is NULL if the simulation yielded none
-// Replaces `file` in one step. Throws Error{io} with SQLite's reason if it cannot be written.
-void write_database(const std::filesystem::path& file, const ProblemDescription& problem,
-                    const JournalContent& journal);
+// Replaces the file `name` in one step. Throws Error{io} with SQLite's reason if it cannot be
+// written.
+void write_database(const Folder& folder, const std::string& name,
+                    const ProblemDescription& problem, const JournalContent& journal);
 
 }  // namespace armwright

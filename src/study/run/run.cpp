@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "base/file.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/text.hpp"
 #include "process/output_log.hpp"
 #include "study/journal/journal_format.hpp"
@@ -20,7 +20,8 @@ namespace {
 // noticed at the end of the run.
 void check_path(const std::filesystem::path& folder) {
   constexpr std::size_t kLongestPath_bytes = 480;
-  const std::size_t size = std::filesystem::absolute(folder).native().size();
+  std::error_code error;  // without links, as SQLite resolves them
+  const std::size_t size = std::filesystem::weakly_canonical(folder, error).native().size();
   if (size > kLongestPath_bytes) {
     throw Error(ErrorKind::usage,
                 fmt::format("{}... is too long a path for a run: {} bytes, and {} are possible; "
@@ -131,8 +132,8 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   if (has_first_selection(request.folder)) {
     plan.selection.most = 0;
   }
-  const RunFolder folder(request.folder, plan, request.command_line);
-  if (are_derived_files_there(folder.path(), request.derived)) {
+  const RunFolder folder(request.folder, request.root, plan, request.command_line);
+  if (are_derived_files_there(folder, request.derived)) {
     RunResult result = load_result(folder.path());
     if (request.derived == DerivedFiles::all) {  // a comparison's user did not ask for this cell
       observer.on_message(fmt::format("{}: this run is complete; use --new for another one",
@@ -142,8 +143,9 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
     return result;
   }
 
+  folder.check_writable();
   JournalContent recorded;
-  Journal journal(folder.journal(), recorded);
+  Journal journal(folder.folder(), folder.journal().filename().string(), recorded);
   describe_start(folder, recorded, observer);
   std::optional<ThreadExecutor> threads;
   if (request.executor == nullptr) {
@@ -192,19 +194,19 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
 
 RunResult load_result(const std::filesystem::path& folder) {
   const auto file = folder / "result.json";
-  if (!std::filesystem::exists(folder / "manifest.json")) {
+  if (!path_exists(folder / "manifest.json")) {
     throw Error(
         ErrorKind::usage,
         fmt::format("{}: is not the folder of a run (it has no manifest.json)", folder.string()));
   }
-  if (!std::filesystem::exists(file)) {
+  if (!path_exists(file)) {
     throw Error(
         ErrorKind::usage,
         fmt::format("{}: this run has not come to its end; start it again with the same command "
                     "to resume it",
                     folder.string()));
   }
-  return parse_result(read_file(file, kResultLimit_bytes), file);
+  return parse_result(read_checked_file(file, kResultLimit_bytes), file);
 }
 
 }  // namespace armwright

@@ -24,13 +24,14 @@ struct RunRequest {
   std::vector<std::string> command_line;  // for the manifest
   DerivedFiles derived = DerivedFiles::all;
   CaseExecutor* executor = nullptr;  // used instead of `jobs` threads of its own, if set
+  std::filesystem::path root = {};   // that the user named and that holds `folder`; empty: `folder`
 };
 
 // Returns the result, or nothing if `stop` ended the run early; all finished evaluations are in the
 // journal then. For a run that has ended already, returns its recorded result. Throws Error{usage}
 // for a plan that is not possible or differs from the recorded one, Error{busy} if another process
 // writes the folder, Error{io}, and Error{bad_data} if the journal or the result is damaged or does
-// not replay. A failure of the optimizer is not thrown: it is part of the result.
+// not replay, or if a file or a folder below `root` is a link. A failure of the optimizer is not thrown: it is part of the result.
 std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop,
                                      RunObserver& observer);
 

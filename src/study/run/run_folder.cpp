@@ -1,9 +1,12 @@
 #include "study/run/run_folder.hpp"
 
+#include <fcntl.h>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <iterator>
 #include <map>
@@ -12,6 +15,7 @@
 #include "base/build_info.hpp"
 #include "base/error.hpp"
 #include "base/file.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "sim/simd/simd_level.hpp"
@@ -23,14 +27,15 @@ using nlohmann::json;
 
 // Creates the folder, or accepts one that is empty or holds a run. Refuses others, because the
 // run's files must not replace the user's own files of the same names.
-std::filesystem::path claim_folder(const std::filesystem::path& path) {
-  make_folder(path);
-  if (std::filesystem::exists(path / "manifest.json")) {
-    return path;
+Folder claim_folder(const std::filesystem::path& path, const std::filesystem::path& root) {
+  Folder folder = Folder::make(path, root);
+  if (path_exists(path / "manifest.json")) {
+    return folder;
   }
-  for (const auto& entry : std::filesystem::directory_iterator(path)) {
-    const std::string name = entry.path().filename().string();
-    if (name != "lock" && name != "manifest.json.new") {  // a kill at the very start leaves these
+  for (const auto& entry : list_folder(path)) {
+    const std::string name = entry.filename().string();
+    // A kill at the very start leaves these.
+    if (name != "lock" && name != "manifest.json.new" && !name.starts_with(kChecksumFile)) {
       throw Error(
           ErrorKind::usage,
           fmt::format("{}: holds '{}' but no manifest.json, so it is not the folder of a run; "
@@ -38,7 +43,33 @@ std::filesystem::path claim_folder(const std::filesystem::path& path) {
                       path.string(), sanitize(name)));
     }
   }
-  return path;
+  return folder;
+}
+
+// Returns whether the rights of the lock, or of the folder without one, forbid to write.
+bool is_read_only(const Folder& folder) {
+  if (::faccessat(folder.get(), "lock", W_OK, AT_EACCESS) == 0) {
+    return false;
+  }
+  if (errno == ENOENT) {
+    return ::faccessat(folder.get(), ".", W_OK, AT_EACCESS) != 0;
+  }
+  return errno == EACCES || errno == EPERM || errno == EROFS;
+}
+
+// Takes the lock for writing. Where the rights do not allow that, a recorded run can still be
+// shown: then it takes the lock for reading and stores the reason in `obstacle`.
+RunLock take_lock(const Folder& folder, std::string& obstacle) {
+  try {
+    return RunLock(folder);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::io || !is_read_only(folder) ||
+        !path_exists(folder.path() / "manifest.json")) {
+      throw;
+    }
+    obstacle = error.what();
+    return RunLock::for_reading(folder.path());
+  }
 }
 
 json make_manifest(const RunPlan& plan, std::span<const std::string> command_line) {
@@ -49,6 +80,7 @@ json make_manifest(const RunPlan& plan, std::span<const std::string> command_lin
   const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
   return {{"format", kManifestFormat},
           {"configuration", json::parse(to_json(plan))},
+          {"has_checksums", true},  // SHA256SUMS exists since before the manifest
           {"build", describe_build()},
           {"command_line", words},
           {"started", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now))}};
@@ -56,7 +88,7 @@ json make_manifest(const RunPlan& plan, std::span<const std::string> command_lin
 
 json read_manifest(const std::filesystem::path& file) {
   try {
-    json manifest = json::parse(read_json_file(file, kManifestLimit_bytes));
+    json manifest = json::parse(read_checked_json(file, kManifestLimit_bytes));
     if (manifest.at("format") != kManifestFormat) {
       throw std::runtime_error(
           fmt::format("its format is {}, and this version of armwright reads format {}; resume the "
@@ -66,6 +98,7 @@ json read_manifest(const std::filesystem::path& file) {
     }
     manifest.at("configuration");
     manifest.at("build").get<std::map<std::string, std::string>>();
+    manifest["has_checksums"] = manifest.value("has_checksums", false);
     return manifest;
   } catch (const json::exception& error) {
     throw Error(
@@ -179,15 +212,20 @@ std::string explain_instance(const json& recorded, const json& now) {
 
 }  // namespace
 
-RunFolder::RunFolder(const std::filesystem::path& path, const RunPlan& plan,
-                     std::span<const std::string> command_line)
-    : path_(claim_folder(path)), lock_(path) {
+RunFolder::RunFolder(const std::filesystem::path& path, const std::filesystem::path& root,
+                     const RunPlan& plan, std::span<const std::string> command_line)
+    : folder_(claim_folder(path, root)), lock_(take_lock(folder_, obstacle_)) {
   const auto file = path / "manifest.json";
-  if (!std::filesystem::exists(file)) {
-    write_file_atomically(file, make_manifest(plan, command_line).dump(2) + "\n");
+  if (!path_exists(file)) {
+    const std::string text = make_manifest(plan, command_line).dump(2) + "\n";
+    FolderChecksums checksums(folder_);
+    checksums.cover(file.filename().string(), text);
+    checksums.save();
+    write_file_atomically(folder_, file.filename().string(), text);
     return;
   }
   const json manifest = read_manifest(file);
+  has_checksums_ = manifest["has_checksums"].get<bool>();
   const json& recorded = manifest["configuration"];
   const json now = json::parse(to_json(plan));
   const std::vector<std::string> changes = list_changes(recorded, now);
@@ -203,9 +241,34 @@ RunFolder::RunFolder(const std::filesystem::path& path, const RunPlan& plan,
       describe_build_changes(manifest["build"].get<std::map<std::string, std::string>>(), "run");
 }
 
+void RunFolder::check_writable() const {
+  if (!obstacle_.empty()) {
+    throw Error(ErrorKind::io, obstacle_);
+  }
+}
+
+const std::vector<std::string>& derived_file_names() {
+  static const std::vector<std::string> names = {
+      "result.json",           "winner.toml",    "front.csv", "convergence.csv",
+      "winner-trajectory.csv", "results.sqlite", "cell.json"};
+  return names;
+}
+
+void cover_run(const Folder& folder, bool has_ended) {
+  FolderChecksums checksums(folder);
+  checksums.cover("manifest.json");
+  if (has_ended) {
+    checksums.cover("journal");
+  }
+  for (const std::string& name : derived_file_names()) {
+    checksums.cover(name);
+  }
+  checksums.save();
+}
+
 bool has_first_selection(const std::filesystem::path& folder) {
   const auto file = folder / "manifest.json";
-  if (!std::filesystem::exists(file)) {
+  if (!path_exists(file)) {
     return false;
   }
   const json manifest = read_manifest(file);
@@ -232,7 +295,7 @@ bool needs_plain_form(const std::filesystem::path& folder, const LoadedProblem& 
 std::filesystem::path choose_run_folder(const std::filesystem::path& parent,
                                         const std::string& name, bool fresh) {
   std::filesystem::path folder = parent / name;
-  for (int number = 2; fresh && std::filesystem::exists(folder); ++number) {
+  for (int number = 2; fresh && path_exists(folder); ++number) {
     folder = parent / fmt::format("{}-{:03}", name, number);
   }
   return folder;

@@ -1,7 +1,8 @@
 // The folder of a run. It holds manifest.json (the configuration and the build), journal (every
 // evaluation), lock, optimizer.log (the output of plugins), and the files derived from the journal:
-// result.json, winner.toml, convergence.csv, results.sqlite, winner-trajectory.csv. No run
-// overwrites the folder of another one, and two processes never write the same folder.
+// result.json, winner.toml, convergence.csv, results.sqlite, winner-trajectory.csv. SHA256SUMS has
+// the checksums of these files (base/folder_checksums.hpp). No run overwrites the folder of another
+// one, and two processes never write the same folder.
 #pragma once
 
 #include <cstddef>
@@ -10,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "base/folder.hpp"
 #include "study/run/run_lock.hpp"
 #include "study/run/run_plan.hpp"
 
@@ -25,26 +27,42 @@ inline constexpr std::size_t kCellLimit_bytes = std::size_t{64} << 20;
 
 class RunFolder {
  public:
-  // Creates the folder, or opens it to resume its run. Takes the lock, then writes the manifest or
-  // compares it with `plan`. Throws Error{busy} if another process has the lock, Error{io},
-  // Error{bad_data} if the manifest is damaged, and Error{usage} if the folder holds other files
-  // or a run with another configuration; the message lists every difference.
-  RunFolder(const std::filesystem::path& path, const RunPlan& plan,
-            std::span<const std::string> command_line);
+  // Creates the folder, or opens it to resume its run. Follows no link below `root` (Folder::make).
+  // Takes the lock, then writes the manifest or compares it with `plan`. If the folder holds a run
+  // and its rights do not allow the lock for writing, takes the lock for reading. Throws
+  // Error{busy} if another process has the lock, Error{io}, Error{bad_data} if the manifest is
+  // damaged or a link is in the way, and Error{usage} if the folder holds other files or a run with
+  // another configuration; the message lists every difference.
+  RunFolder(const std::filesystem::path& path, const std::filesystem::path& root,
+            const RunPlan& plan, std::span<const std::string> command_line);
 
-  const std::filesystem::path& path() const { return path_; }
-  std::filesystem::path journal() const { return path_ / "journal"; }
-  std::filesystem::path log() const { return path_ / "optimizer.log"; }
-  std::filesystem::path result() const { return path_ / "result.json"; }
+  const Folder& folder() const { return folder_; }
+  const std::filesystem::path& path() const { return folder_.path(); }
+  std::filesystem::path journal() const { return path() / "journal"; }
+  std::filesystem::path log() const { return path() / "optimizer.log"; }
+  // Throws Error{io} if this process may only read the folder.
+  void check_writable() const;
+  // Returns whether the run has begun with checksums, as all runs since version 2.0 have.
+  bool has_checksums() const { return has_checksums_; }
   // Returns the differences between the recorded build and this one (version, compiler, CPU), which
   // may keep a resumed run from replaying. Empty if there are none.
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
-  std::filesystem::path path_;
+  Folder folder_;
+  std::string obstacle_;  // to writing; empty if there is none
   RunLock lock_;
+  bool has_checksums_ = true;
   std::vector<std::string> warnings_;
 };
+
+// Returns the names of the files that a run derives from its journal, and a comparison from its
+// cell.
+const std::vector<std::string>& derived_file_names();
+
+// Covers all files of a run that are complete: the manifest, the derived files and, if the run has
+// ended, the journal. Throws Error{io}.
+void cover_run(const Folder& folder, bool has_ended);
 
 // Returns whether the folder holds a run whose recorded plan has no Selection::most. Version 1.0
 // began such a run, which keeps the rule of that version. Throws Error{bad_data} if the manifest is

@@ -64,12 +64,8 @@ std::string get_host_name() {
   return name.data();
 }
 
-RunLock::RunLock(const std::filesystem::path& folder)
-    : fd_(::open((folder / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644)) {
-  const auto file = folder / "lock";
-  if (!fd_.is_open()) {
-    fail_io(file, "open it", errno);
-  }
+RunLock::RunLock(const Folder& folder) : fd_(folder.open("lock", O_RDWR | O_CREAT)) {
+  const auto file = folder.path() / "lock";
   // find_writer() holds the lock for an instant, so a busy lock is tried again.
   constexpr int kTries = 5;
   constexpr std::chrono::milliseconds kPause{2};
@@ -85,7 +81,7 @@ RunLock::RunLock(const std::filesystem::path& folder)
     if (error == EWOULDBLOCK) {
       throw Error(ErrorKind::busy, fmt::format("{} is in use by {}; wait for it, stop it, or use "
                                                "--out/--new for another folder",
-                                               folder.string(), read_holder(fd_.get())));
+                                               folder.path().string(), read_holder(fd_.get())));
     }
     fail_io(file, "lock it (a folder on a local disk always can; choose one with --out)", error);
   }

@@ -8,15 +8,17 @@
 #include <utility>
 
 #include "base/file_descriptor.hpp"
+#include "base/folder.hpp"
 
 namespace armwright {
 
 // A RunLock holds the lock of one folder as long as it lives.
 class RunLock {
  public:
-  // Takes the lock for writing. Throws Error{busy}, which names the process that has the lock, and
-  // Error{io} if the file system or the rights of the folder do not allow a lock.
-  explicit RunLock(const std::filesystem::path& folder);
+  // Takes the lock for writing. Throws Error{busy}, which names the process that has the lock,
+  // Error{io} if the file system or the rights of the folder do not allow a lock, and
+  // Error{bad_data} if the lock is a link or another file that this program must not write.
+  explicit RunLock(const Folder& folder);
   // Returns a lock that keeps writers out, and creates no file. If the
   // folder has no lock file, no process has ever written it; the returned lock then locks nothing.
   // Throws Error{busy}, which names the process that

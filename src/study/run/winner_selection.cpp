@@ -60,8 +60,10 @@ class JournalledEvaluation {
       throw Error(
           ErrorKind::bad_data,
           fmt::format("the recorded run has ended, but judged other designs than those that "
-                      "would be judged now ({} on {} is missing). It was made by another "
-                      "version; resume it there, or start a new run with --new",
+                      "would be judged now ({} on {} is missing). Its journal has lost records, or "
+                      "it was made by another version. 'armwright doctor FOLDER' checks the run, "
+                      "and --repair makes a copy that can be resumed; or resume it with the other "
+                      "version, or start a new run with --new",
                       missing.size() == 1 ? "one judgement" : "judgements", block.set));
     }
     Progress progress;

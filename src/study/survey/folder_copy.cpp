@@ -59,9 +59,15 @@ void FolderCopy::make_folder(const std::filesystem::path& name) {
 
 bool FolderCopy::add(const std::filesystem::path& source, const std::filesystem::path& name) {
   check_stop();
-  const auto status = std::filesystem::symlink_status(source);
+  std::error_code error;
+  const auto status = std::filesystem::symlink_status(source, error);
   if (std::filesystem::is_symlink(status)) {
-    std::filesystem::copy_symlink(source, folder_.path() / name);
+    std::filesystem::copy_symlink(source, folder_.path() / name, error);
+  }
+  if (error) {
+    fail_io(source, "copy it", error.value());
+  }
+  if (std::filesystem::is_symlink(status)) {
     return true;
   }
   if (!std::filesystem::is_regular_file(status)) {
@@ -122,9 +128,10 @@ void FolderCopy::copy_bytes(int source, std::uint64_t offset, std::uint64_t byte
 
 void FolderCopy::put_in_place() {
   check_stop();
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_.path())) {
-    if (entry.is_directory() && !entry.is_symlink()) {
-      sync_folder(entry.path());
+  for (const auto& path : list_tree(folder_.path())) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(std::filesystem::symlink_status(path, ignored))) {
+      sync_folder(path);
     }
   }
   sync_folder(folder_.path());

@@ -12,6 +12,7 @@
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/file_descriptor.hpp"
+#include "base/hash.hpp"
 #include "study/journal/journal_file.hpp"
 #include "study/journal/journal_format.hpp"
 #include "study/journal/journal_reader.hpp"
@@ -74,7 +75,7 @@ class JournalSurveyor {
  public:
   JournalSurveyor(const std::filesystem::path& file,
                   const std::function<void(const EvaluationRecord&)>& look)
-      : file_(open_journal(file)), window_(file_.get(), file), look_(look) {}
+      : file_(open_to_read(file)), window_(file_.get(), file), look_(look) {}
 
   JournalSurvey run() {
     survey_.bytes = window_.size();
@@ -113,7 +114,7 @@ class JournalSurveyor {
     }
     const auto& evaluation = std::get<EvaluationRecord>(record);
     if (evaluation.cases.role != CaseRole::training) {
-      ++survey_.judgements;
+      add_judgement(evaluation);
     } else if (survey_.evaluations.insert(evaluation.index)) {
       survey_.counts.add(evaluation);
     } else {
@@ -122,6 +123,26 @@ class JournalSurveyor {
     }
     if (look_) {
       look_(evaluation);
+    }
+  }
+
+  void add_judgement(const EvaluationRecord& judgement) {
+    ++survey_.judgements;
+    const bool is_test = judgement.cases.role == CaseRole::test;
+    survey_.has_test = survey_.has_test || is_test;
+    survey_.has_validation =
+        survey_.has_validation || (!is_test && !judgement.evaluation.objectives.empty());
+    std::string content;
+    journal_format::encode(judgement, content);
+    const std::string request = encode_request(judgement);
+    const auto [first, is_new] = judgements_.emplace(request, calc_sha256_hex(content));
+    if (is_new) {
+      return;
+    }
+    if (first->second == calc_sha256_hex(content)) {
+      ++survey_.repeated_judgements;
+    } else {
+      survey_.contradictory_judgements.insert(request);
     }
   }
 
@@ -164,6 +185,7 @@ class JournalSurveyor {
   JournalWindow window_;
   const std::function<void(const EvaluationRecord&)>& look_;
   JournalSurvey survey_;
+  std::map<std::string, std::string> judgements_;         // request -> SHA-256 of its first record
   std::map<std::uint64_t, std::vector<Place>> repeated_;  // by evaluation, without its first record
 };
 
@@ -182,8 +204,17 @@ std::vector<IndexRange> JournalSurvey::list_gaps() const {
 }
 
 bool JournalSurvey::is_damaged() const {
-  return !damage.empty() || !contradictory.empty() || records_behind_end > 0 ||
-         (end && !list_lost().empty());
+  return !damage.empty() || !contradictory.empty() || !contradictory_judgements.empty() ||
+         records_behind_end > 0 || lacks_test() || (end && !list_lost().empty());
+}
+
+std::string encode_request(const EvaluationRecord& judgement) {
+  EvaluationRecord request;
+  request.x = judgement.x;
+  request.cases = judgement.cases;
+  std::string bytes;
+  journal_format::encode(request, bytes);
+  return bytes;
 }
 
 JournalSurvey survey_journal(const std::filesystem::path& file,
@@ -194,7 +225,7 @@ JournalSurvey survey_journal(const std::filesystem::path& file,
 JournalRepair repair_journal(const std::filesystem::path& file, const JournalSurvey& survey,
                              int target) {
   constexpr std::size_t kBuffer_bytes = std::size_t{1} << 20;
-  const FileDescriptor source = open_journal(file);
+  const FileDescriptor source = open_to_read(file);
   JournalWindow window(source.get(), file);
   JournalRepair repair;
   std::string buffer(kMagic);
@@ -214,8 +245,9 @@ JournalRepair repair_journal(const std::filesystem::path& file, const JournalSur
         const bool is_kept =
             std::holds_alternative<LateRecommendations>(record) ||
             (evaluation != nullptr &&
-             (evaluation->cases.role != CaseRole::training ||
-              !std::ranges::binary_search(survey.contradictory, evaluation->index)));
+             (evaluation->cases.role != CaseRole::training
+                  ? !survey.contradictory_judgements.contains(encode_request(*evaluation))
+                  : !std::ranges::binary_search(survey.contradictory, evaluation->index)));
         if (!is_kept) {
           ++repair.records_dropped;
           return;

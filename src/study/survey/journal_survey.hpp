@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,13 @@ struct JournalSurvey {
   IndexSet evaluations;  // indices of the training evaluations
   RunCounts counts;      // counts of the training evaluations, each counted once
   std::uint64_t judgements = 0;
+  std::uint64_t repeated_judgements = 0;  // judgements recorded again with the same content
+  // Requests of judgements (as encode_request() returns them) that are recorded with different
+  // contents. None of their records is used.
+  std::set<std::string> contradictory_judgements;
+  // Whether a validation has objectives, so that a run that has ended has a winner and its test.
+  bool has_validation = false;
+  bool has_test = false;
   std::uint64_t repeated = 0;  // evaluations recorded again with the same content
   // Evaluations that are recorded with different contents. None of their records is used.
   std::vector<std::uint64_t> contradictory;
@@ -46,9 +54,14 @@ struct JournalSurvey {
   std::vector<IndexRange> list_lost() const;
   // Returns the gaps that an interruption left: evaluations that were being simulated.
   std::vector<IndexRange> list_gaps() const;
+  // Returns whether the run has ended, and its winner's test is missing.
+  bool lacks_test() const { return end && has_validation && !has_test; }
   // Returns whether a run can use the journal only after a repair.
   bool is_damaged() const;
 };
+
+// Returns the design and the cases of a judgement as bytes.
+std::string encode_request(const EvaluationRecord& judgement);
 
 // Surveys the journal. Calls `look` once for each intact training or judgement record, in the order
 // of the file. Throws Error{io} if the file cannot be read or is not a regular file.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/bits.hpp"
+#include "study/run/winner_selection.hpp"
 #include "study/survey/derived_survey.hpp"
 
 namespace armwright {
@@ -19,8 +20,10 @@ bool same_errors(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 bool same_values(const Evaluation& a, const Evaluation& b) {
-  return a.status == b.status && a.failed_cases == b.failed_cases &&
-         same_bits(a.objectives, b.objectives) && same_errors(a.case_errors, b.case_errors);
+  return a.status == b.status && a.reason == b.reason && a.failed_cases == b.failed_cases &&
+         same_bits(a.objectives, b.objectives) &&
+         same_bits(a.constraint_values, b.constraint_values) && same_bits(a.metrics, b.metrics) &&
+         same_errors(a.case_errors, b.case_errors);
 }
 
 }  // namespace
@@ -33,11 +36,22 @@ ResultSurvey::ResultSurvey(RunResult result) : result_(std::move(result)) {
     }
     trained_.push_back(candidate.recommended);
   }
+  judged_.resize(result_.judged.size());
   validated_.resize(result_.judged.size());
 }
 
 void ResultSurvey::add(const EvaluationRecord& record) {
   if (record.cases.role == CaseRole::training) {
+    const Evaluation& evaluation = record.evaluation;
+    if (evaluation.objectives.empty() &&
+        (!first_failure_ || record.index < first_failure_->first)) {
+      first_failure_ = {record.index, evaluation.reason};
+    }
+    if (!evaluation.constraint_values.empty()) {
+      const double violation = calc_violation(evaluation.constraint_values);
+      least_violation_ = std::min(least_violation_.value_or(violation), violation);
+    }
+    most_generations_ = std::max(most_generations_, record.generation);
     if (is_feasible(record.evaluation)) {
       const std::pair here(calc_scalar(result_.objective_weights, record.evaluation.objectives),
                            record.index);
@@ -52,7 +66,8 @@ void ResultSurvey::add(const EvaluationRecord& record) {
     for (auto judged = begin; judged != end; ++judged) {
       const Candidate& candidate = result_.judged[judged->second].candidate;
       const auto& objectives = record.evaluation.objectives;
-      if (same_bits(candidate.x, record.x) && !objectives.empty() &&
+      if (same_bits(candidate.x, record.x) && candidate.generation == record.generation &&
+          !objectives.empty() &&
           calc_scalar(result_.objective_weights, objectives) == candidate.training_objective) {
         trained_[judged->second] = true;
       }
@@ -65,9 +80,12 @@ void ResultSurvey::add(const EvaluationRecord& record) {
       continue;
     }
     if (record.cases.role == CaseRole::validation) {
+      judged_[i] = true;
       validated_[i] = validated_[i] || same_values(record.evaluation, judged.validation);
     } else if (result_.winner == i) {
+      is_winner_judged_ = true;
       tested_ = tested_ || same_values(record.evaluation, result_.test);
+      test_set_ = record.cases.set;
     }
   }
 }
@@ -78,6 +96,14 @@ std::optional<std::uint64_t> ResultSurvey::calc_last_row() const {
     return std::nullopt;
   }
   return (has_generations_ ? *last_ : best_->second) + 1;
+}
+
+std::size_t ResultSurvey::count_lost_judgements() const {
+  std::size_t lost = result_.winner && !is_winner_judged_ ? 1 : 0;
+  for (std::size_t i = 0; i < result_.judged.size(); ++i) {
+    lost += trained_[i] && !judged_[i] ? 1 : 0;
+  }
+  return lost;
 }
 
 std::string ResultSurvey::find_difference(const JournalSurvey& journal) const {
@@ -100,6 +126,20 @@ std::string ResultSurvey::find_difference(const JournalSurvey& journal) const {
         return fmt::format("it counts {} {}, and the journal {}", here, what, there);
       }
     }
+    if (result_.counts.generations < most_generations_) {
+      return fmt::format("it counts {} generations, and the journal {}", result_.counts.generations,
+                         most_generations_);
+    }
+    if (journal.end && journal.end->reason != result_.end_reason) {
+      return fmt::format("its end_reason is '{}', and the journal's '{}'", result_.end_reason,
+                         journal.end->reason);
+    }
+    if (result_.first_failure != (first_failure_ ? first_failure_->second : "")) {
+      return "its first_failure is not that of the journal";
+    }
+    if (result_.least_violation && result_.least_violation != least_violation_) {
+      return "its least_violation is not that of the journal";
+    }
   }
   for (std::size_t i = 0; i < result_.judged.size(); ++i) {
     const char* who = result_.winner == i ? "the winner" : "a judged design";
@@ -113,6 +153,16 @@ std::string ResultSurvey::find_difference(const JournalSurvey& journal) const {
   }
   if (result_.winner && !tested_) {
     return "its values of the winner on the test set are not in the journal";
+  }
+  ProblemDescription problem;
+  problem.objectives = result_.objectives;
+  problem.objective_weights = result_.objective_weights;
+  if (choose_winner(problem, result_.judged) != result_.winner) {
+    return "its winner is not the best of the judged designs";
+  }
+  if (result_.winner && test_set_ != result_.test_set) {
+    return fmt::format("its test_set is {}, and the winner was tested on {}", result_.test_set,
+                       test_set_);
   }
   return "";
 }

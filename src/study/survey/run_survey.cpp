@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <functional>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "base/error.hpp"
 #include "base/file.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "study/compare/cell.hpp"
@@ -21,7 +21,8 @@ namespace {
 
 using nlohmann::json;
 
-// Returns the fault that `check` finds in a file, or the error that prevents the check.
+// Returns the fault that `check` finds in a file, or the error that prevents the check. Rights that
+// forbid to read the file are no fault of it: then this function throws Error{io}.
 std::string find_fault(const std::filesystem::path& file,
                        const std::function<std::string()>& check) {
   std::error_code error;
@@ -29,6 +30,7 @@ std::string find_fault(const std::filesystem::path& file,
     return error ? fmt::format("it cannot be read: {}", error.message())
                  : "it is not a regular file";
   }
+  check_readable(file);
   try {
     return check();
   } catch (const Error& failure) {
@@ -57,6 +59,7 @@ class RunSurveyor {
       }
       check_cell();
     }
+    check_checksums();
     return std::move(survey_);
   }
 
@@ -67,7 +70,9 @@ class RunSurveyor {
 
   void add_damaged_file(const std::string& file, std::string what) {
     add(Finding::Kind::damage, file, std::move(what));
-    survey_.damaged_files.push_back(file);
+    if (std::ranges::count(survey_.damaged_files, file) == 0) {
+      survey_.damaged_files.push_back(file);
+    }
   }
 
   void check_manifest() {
@@ -97,6 +102,10 @@ class RunSurveyor {
         return "it does not say what build began the run";
       }
       survey_.command_line = manifest.value("command_line", std::vector<std::string>());
+      survey_.has_checksums = manifest.value("has_checksums", false);
+      const json& run = manifest["configuration"]["run"];
+      recorded_optimizer_ = run.value("optimizer", std::string());
+      recorded_seed_ = run.value("seed", json());
     } catch (const json::exception& error) {
       return fmt::format("it is not one that armwright wrote ({})",
                          describe_json_error(error.what()));
@@ -110,12 +119,24 @@ class RunSurveyor {
       return;
     }
     const std::string fault = find_fault(file, [&] {
-      result_.emplace(parse_result(read_file(file, kResultLimit_bytes), file));
-      return "";
+      const std::string text = read_file(file, kResultLimit_bytes);
+      const RunResult& result = result_.emplace(parse_result(text, file)).result();
+      if (std::string difference = find_summary_difference(text, result); !difference.empty()) {
+        return difference;
+      }
+      if (!survey_.is_manifest_lost &&
+          (recorded_optimizer_ != result.optimizer || recorded_seed_ != result.seed)) {
+        return fmt::format("it is of optimizer {} with seed {}, and manifest.json is of {} with {}",
+                           result.optimizer, result.seed, recorded_optimizer_,
+                           recorded_seed_.dump());
+      }
+      return std::string();
     });
     if (!fault.empty()) {
       // The advice of parse_result() is for a user who has not run this check.
       add_damaged_file("result.json", fault.substr(0, fault.find(". To rebuild it")));
+    }
+    if (!result_) {
       return;
     }
     const RunResult& result = result_->result();
@@ -175,6 +196,23 @@ class RunSurveyor {
                       "of its records is used",
                       index));
     }
+    if (const std::size_t count = journal.contradictory_judgements.size(); count > 0) {
+      damage(
+          fmt::format("{} designs are judged more than once on the same cases with different "
+                      "results; none of these records is used",
+                      count));
+    }
+    const std::size_t lost_judgements = result_ ? result_->count_lost_judgements() : 0;
+    if (lost_judgements > 0) {
+      damage(fmt::format("lost: {} of the judgements that result.json has", lost_judgements));
+    } else if (journal.lacks_test()) {
+      damage("lost: the winner's test, though the run has ended");
+    }
+    if (journal.repeated_judgements > 0) {
+      add(Finding::Kind::note, "journal",
+          fmt::format("{} judgements are recorded more than once with equal content",
+                      journal.repeated_judgements));
+    }
     if (journal.records_behind_end > 0) {
       damage(
           fmt::format("{} records follow the one that ends the run", journal.records_behind_end));
@@ -227,6 +265,9 @@ class RunSurveyor {
     const std::uint64_t there = journal.evaluations.size() - journal.contradictory.size();
     survey_.lost = std::max(survey_.lost, all - std::min(all, there));
     const bool must_end = result_->result().failure.empty();
+    if (journal.end && result_->count_lost_judgements() > 0) {
+      return;  // described with the journal
+    }
     if (difference.empty() && (journal.end || !must_end || journal.is_damaged())) {
       return;
     }
@@ -270,25 +311,97 @@ class RunSurveyor {
     }
     const std::string fault = find_fault(file, [&]() -> std::string {
       const CellOutcome cell = parse_cell(read_file(file, kCellLimit_bytes), file);
-      if (result_ && (cell.evaluations != result_->result().counts.evaluations ||
-                      cell.cases != result_->result().counts.cases)) {
-        return fmt::format("it counts {} evaluations on {} cases, and result.json {} on {}",
-                           cell.evaluations, cell.cases, result_->result().counts.evaluations,
-                           result_->result().counts.cases);
-      }
-      return "";
+      return result_ ? find_cell_difference(cell, result_->result(), survey_.name) : "";
     });
     if (!fault.empty()) {
       add_damaged_file("cell.json", fault);
     }
   }
 
-  void check_leftovers() {
-    std::set<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
-      names.insert(entry.path().filename().string());
+  // Returns the files of the run that checksums should cover. A journal grows until its run ends.
+  std::vector<std::string> list_complete_files() const {
+    std::vector<std::string> names = {"manifest.json"};
+    if (survey_.journal && survey_.journal->end) {
+      names.emplace_back("journal");
     }
-    for (const std::string& name : names) {
+    names.insert(names.end(), derived_file_names().begin(), derived_file_names().end());
+    std::erase_if(names, [&](const std::string& name) { return !is_there(folder_ / name); });
+    return names;
+  }
+
+  void check_checksums() {
+    ChecksumSurvey found;
+    const auto file = folder_ / kChecksumFile;
+    const std::string fault = find_fault(is_there(file) ? file : folder_ / "manifest.json", [&] {
+      found = survey_checksums(folder_, list_complete_files());
+      return found.fault;
+    });
+    const bool has_manifest = is_there(folder_ / "manifest.json");
+    if (!fault.empty()) {
+      if (has_manifest) {
+        add_damaged_file(kChecksumFile, fault);
+      }
+      return;
+    }
+    if (!found.is_there && survey_.has_checksums) {
+      add_damaged_file(kChecksumFile,
+                       "it is missing; the command that began the run writes it again");
+    } else if (found.is_there && has_manifest && !found.lines.contains("manifest.json")) {
+      add_damaged_file(kChecksumFile, "it does not list manifest.json");
+    } else if (!found.uncovered.empty() && survey_.writer.empty()) {
+      add(Finding::Kind::note, kChecksumFile,
+          fmt::format("{}, so nothing covers {}",
+                      found.is_there ? "it has no line for some files"
+                                     : "there is none, as in runs of version 1.0",
+                      join(found.uncovered, ", ")));
+    }
+    add_changes(found);
+  }
+
+  // Does not name a file twice: what the other checks say of it is more than that it has changed.
+  void add_changes(const ChecksumSurvey& found) {
+    const auto is_named = [&](const std::string& name) {
+      return std::ranges::any_of(survey_.findings, [&](const Finding& finding) {
+        return finding.file == name && finding.kind != Finding::Kind::note;
+      });
+    };
+    for (const auto& [name, change] : found.changed) {
+      if (is_named(name)) {
+        continue;
+      }
+      if (name == "manifest.json") {
+        survey_.is_manifest_lost = true;
+        add(Finding::Kind::loss, name, change);
+      } else if (!survey_.writer.empty()) {
+        continue;  // the process may be replacing it
+      } else if (std::ranges::count(derived_file_names(), name) > 0) {
+        add_damaged_file(name, change);
+      } else {
+        add(Finding::Kind::damage, name, change);
+      }
+    }
+    for (const std::string& name : found.missing) {
+      if (std::ranges::count(survey_.findings, std::filesystem::path(name), &Finding::file) > 0) {
+        continue;
+      }
+      if (std::ranges::count(derived_file_names(), name) > 0) {
+        if (survey_.writer.empty()) {
+          add(Finding::Kind::note, name,
+              "it is missing; the command that began the run makes it again");
+        }
+      } else if (name == "journal" && !result_) {
+        survey_.is_journal_unreadable = true;
+        add(Finding::Kind::damage, name, "it is missing, and with it every evaluation");
+      } else if (name != "journal" && name != "manifest.json") {
+        add_damaged_file(kChecksumFile,
+                         fmt::format("it lists '{}', which no run has", sanitize(name)));
+      }
+    }
+  }
+
+  void check_leftovers() {
+    for (const auto& entry : list_folder(folder_)) {
+      const std::string name = entry.filename().string();
       if (name.ends_with(".new")) {
         if (survey_.writer.empty()) {
           add(Finding::Kind::note, name,
@@ -305,16 +418,11 @@ class RunSurveyor {
   std::filesystem::path folder_;
   RunSurvey survey_;
   std::optional<ResultSurvey> result_;
+  std::string recorded_optimizer_;  // in the manifest, with the seed
+  json recorded_seed_;
 };
 
 }  // namespace
-
-const std::vector<std::string>& derived_file_names() {
-  static const std::vector<std::string> names = {
-      "result.json",           "winner.toml",    "front.csv", "convergence.csv",
-      "winner-trajectory.csv", "results.sqlite", "cell.json"};
-  return names;
-}
 
 const char* to_string(RunSurvey::State state) {
   switch (state) {
@@ -331,6 +439,12 @@ const char* to_string(RunSurvey::State state) {
 bool RunSurvey::is_damaged() const {
   return std::ranges::any_of(
       findings, [](const Finding& finding) { return finding.kind != Finding::Kind::note; });
+}
+
+bool RunSurvey::is_journal_damaged() const {
+  return std::ranges::any_of(findings, [](const Finding& finding) {
+    return finding.kind != Finding::Kind::note && finding.file == "journal";
+  });
 }
 
 RunSurvey survey_run(const std::filesystem::path& folder, const std::filesystem::path& name) {

@@ -8,6 +8,7 @@
 #include <system_error>
 #include <vector>
 
+#include "study/run/run_folder.hpp"
 #include "study/survey/journal_survey.hpp"
 
 namespace armwright {
@@ -43,21 +44,20 @@ struct RunSurvey {
   std::string made_by;  // from result.json: "q1-complex --optimizer ga --seed 1"; may be empty
   std::vector<Finding> findings;         // with files relative to the run's folder
   bool is_manifest_lost = false;         // no repair can restore it
+  bool has_checksums = false;            // the run has begun with checksums
   std::optional<JournalSurvey> journal;  // empty if there is no journal that can be read
   bool is_journal_unreadable = false;
-  std::vector<std::string> damaged_files;  // only derived files, which can be derived again
+  std::vector<std::string> damaged_files;  // derived files and SHA256SUMS, which are made again
 
   // Number of evaluations that were recorded once and must be simulated again, as far as known.
   std::uint64_t lost = 0;
 
   bool is_damaged() const;
+  // Returns whether a copy needs a new journal.
+  bool is_journal_damaged() const;
 };
 // Returns "unfinished", "finished" or "failed".
 const char* to_string(RunSurvey::State state);
-
-// Returns the names of the files that a run derives from its journal, and a comparison from its
-// cell.
-const std::vector<std::string>& derived_file_names();
 
 // Surveys a run's folder; `name` becomes RunSurvey::name. Throws Error{io} only if the folder
 // itself cannot be read.

@@ -6,7 +6,12 @@
 #include <map>
 
 #include "base/error.hpp"
+#include "base/file.hpp"
+#include "base/folder.hpp"
+#include "base/folder_checksums.hpp"
+#include "base/hash.hpp"
 #include "base/text.hpp"
+#include "study/journal/journal_file.hpp"
 #include "study/run/run_lock.hpp"
 #include "study/survey/folder_copy.hpp"
 
@@ -34,6 +39,12 @@ fs::path choose_aside(const fs::path& folder, const fs::path& name) {
 bool is_left_behind(const fs::path& name) {
   const std::string text = name.filename().string();
   return text == "lock" || text.ends_with(".new");
+}
+
+// Returns whether it is a folder, and no link to one.
+bool is_folder_itself(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(fs::symlink_status(path, ignored));
 }
 
 class Repair {
@@ -69,17 +80,13 @@ class Repair {
       copy_.make_folder(to);
     }
     RunRepair done;
-    std::vector<fs::path> entries;
-    for (const auto& entry : fs::directory_iterator(survey_.folder / name)) {
-      entries.push_back(entry.path().filename());
-    }
-    std::ranges::sort(entries);
-    for (const fs::path& entry : entries) {
+    for (const fs::path& path : list_folder(survey_.folder / name)) {
+      const fs::path entry = path.filename();
       const fs::path from = (name / entry).lexically_normal();
-      if (is_left_behind(entry)) {
+      if (is_left_behind(entry) || (entry == kChecksumFile && has_new_checksums(name, run))) {
         continue;
       }
-      if (fs::is_directory(fs::symlink_status(survey_.folder / from))) {
+      if (is_folder_itself(path)) {
         copy_folder(from, from);
       } else if (run != nullptr) {
         copy_of_run(*run, from, entry.string(), done);
@@ -89,6 +96,9 @@ class Repair {
       } else {
         add(from, from);
       }
+    }
+    if (has_new_checksums(name, run)) {
+      add_checksums(name, run);
     }
     if (run != nullptr) {
       done.name = run->name;
@@ -101,6 +111,44 @@ class Repair {
     }
   }
 
+  // Returns whether the folder has checksums and loses files in the copy: a damaged run, or a
+  // damaged study or reproduction.
+  bool has_new_checksums(const fs::path& name, const RunSurvey* run) const {
+    if (run != nullptr) {
+      return run->has_checksums || is_there(survey_.folder / name / kChecksumFile);
+    }
+    const bool has_new_run = std::ranges::any_of(survey_.runs, &RunSurvey::has_checksums);
+    return name == "." && survey_.kind != StoreSurvey::Kind::run &&
+           (has_new_run || is_there(survey_.folder / kChecksumFile));
+  }
+
+  // Writes the checksums of what the copy keeps. A damaged run keeps its manifest. If the checksums
+  // themselves are damaged, only the record is covered; the command that resumes covers the rest.
+  void add_checksums(const fs::path& name, const RunSurvey* run) {
+    const fs::path folder = survey_.folder / name;
+    const bool is_study = survey_.kind == StoreSurvey::Kind::study;
+    const std::string record = run != nullptr ? "manifest.json"
+                               : is_study     ? "study.toml"
+                                              : "reproduction.json";
+    std::map<std::string, std::string> lines;
+    const auto& damaged = survey_.damaged_files;
+    if (run == nullptr && std::ranges::count(damaged, fs::path(kChecksumFile)) == 0) {
+      lines = FolderChecksums(folder).lines();
+      std::erase_if(lines, [&](const auto& line) {
+        return std::ranges::count(damaged, fs::path(line.first)) > 0 ||
+               damaged_runs_.contains(fs::path(line.first).parent_path());
+      });
+    }
+    constexpr std::size_t kRecordLimit_bytes = std::size_t{256} << 20;
+    lines[record] = calc_sha256_hex(read_file(folder / record, kRecordLimit_bytes));
+    const std::string text = format_checksums(lines);
+    copy_.add_file((name / kChecksumFile).lexically_normal(), [&](int fd) {
+      if (const int error = write_fully(fd, text).error; error != 0) {
+        fail_io(copy_.target(), "write a file of the copy", error);
+      }
+    });
+  }
+
   static std::uint64_t count_recorded(const RunSurvey& run) {
     return (run.journal ? run.journal->evaluations.size() : 0) + run.lost;
   }
@@ -109,8 +157,7 @@ class Repair {
                    RunRepair& done) {
     const bool is_derived = std::ranges::count(derived_file_names(), name) > 0;
     const bool is_damaged = std::ranges::count(run.damaged_files, name) > 0;
-    const bool is_journal = name == "journal" && (run.is_journal_unreadable ||
-                                                  (run.journal && run.journal->is_damaged()));
+    const bool is_journal = name == "journal" && run.is_journal_damaged();
     if (is_damaged || is_journal) {
       add(from, choose_aside(survey_.folder, from));
       done.kept_aside.push_back(name);
@@ -129,12 +176,12 @@ class Repair {
 
   void copy_as_it_is(const fs::path& name, const fs::path& to) {
     copy_.make_folder(to);
-    for (const auto& entry : fs::directory_iterator(survey_.folder / name)) {
-      const fs::path inside = entry.path().filename();
+    for (const fs::path& path : list_folder(survey_.folder / name)) {
+      const fs::path inside = path.filename();
       if (is_left_behind(inside)) {
         continue;
       }
-      if (fs::is_directory(entry.symlink_status())) {
+      if (is_folder_itself(path)) {
         copy_as_it_is(name / inside, to / inside);
       } else {
         add(name / inside, to / inside);
@@ -176,7 +223,7 @@ std::optional<StoreRepair> repair_store(const fs::path& folder, const fs::path& 
                                         StopSignal& stop) {
   // Held from before the survey until the copy is complete.
   std::optional<RunLock> lock;
-  if (fs::is_directory(folder)) {
+  if (folder_exists(folder)) {
     lock.emplace(RunLock::for_reading(folder));
     check_target(folder, target);
   }

@@ -7,7 +7,10 @@
 
 #include "base/config.hpp"
 #include "base/error.hpp"
+#include "base/file.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/text.hpp"
+#include "study/compare/study_folder.hpp"
 #include "study/compare/study_plan.hpp"
 #include "study/run/run_lock.hpp"
 #include "study/survey/derived_survey.hpp"
@@ -28,13 +31,13 @@ bool is_folder(const std::filesystem::path& path) {
 // Returns the folders in it, sorted, without links and without folders that a repair set aside.
 std::vector<std::filesystem::path> list_folders(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> folders;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (!entry.is_symlink() && entry.is_directory() &&
-        !entry.path().filename().string().ends_with(".damaged")) {
-      folders.push_back(entry.path());
+  for (const auto& path : list_folder(folder)) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(std::filesystem::symlink_status(path, ignored)) &&
+        !path.filename().string().ends_with(".damaged")) {
+      folders.push_back(path);
     }
   }
-  std::ranges::sort(folders);
   return folders;
 }
 
@@ -111,6 +114,10 @@ class StoreSurveyor {
         check_record(kReproductionRecord, find_json_fault);
         break;
     }
+    if (survey_.kind != StoreSurvey::Kind::run && survey_.writer.empty()) {
+      check_checksums();
+    }
+    std::ranges::stable_sort(survey_.findings, {}, &Finding::file);
     return std::move(survey_);
   }
 
@@ -120,6 +127,7 @@ class StoreSurveyor {
     if (!std::filesystem::is_regular_file(file, ignored)) {
       return is_there(file) ? "it is not a regular file" : "it is missing";
     }
+    check_readable(file);
     try {
       return find(file);
     } catch (const std::exception& error) {
@@ -174,9 +182,8 @@ class StoreSurveyor {
       if (!is_folder(survey_.folder / part)) {
         continue;
       }
-      for (const auto& entry :
-           std::filesystem::recursive_directory_iterator(survey_.folder / part)) {
-        const auto name = entry.path().lexically_relative(survey_.folder);
+      for (const auto& path : list_tree(survey_.folder / part)) {
+        const auto name = path.lexically_relative(survey_.folder);
         if (name.extension() == ".json") {
           check(name, find_json_fault);
         } else if (name.extension() == ".csv") {
@@ -196,7 +203,91 @@ class StoreSurveyor {
           {Finding::Kind::note, "result.json",
            "it is missing; the command that began the study makes it again"});
     }
-    std::ranges::sort(survey_.findings, {}, &Finding::file);
+  }
+
+  // Returns the runs that belong to the study or reproduction; STUDY/reruns does not.
+  static bool is_member(const RunSurvey& run) {
+    const std::string folder = run.name.begin()->string();
+    return folder == "cells" || folder == "runs";
+  }
+
+  void add_damage(const std::string& name, const std::string& what) {
+    survey_.findings.push_back({Finding::Kind::damage, name, what});
+    if (std::ranges::count(survey_.damaged_files, std::filesystem::path(name)) == 0) {
+      survey_.damaged_files.emplace_back(name);
+    }
+  }
+
+  RunSurvey* find_run(const std::string& checksums) {
+    const auto found = std::ranges::find(
+        survey_.runs, std::filesystem::path(checksums).parent_path(), &RunSurvey::name);
+    return std::filesystem::path(checksums).filename() == kChecksumFile &&
+                   found != survey_.runs.end()
+               ? &*found
+               : nullptr;
+  }
+
+  void check_checksums() {
+    const std::string record =
+        survey_.kind == StoreSurvey::Kind::study ? kStudyRecord : kReproductionRecord;
+    std::vector<std::string> expected = {record};
+    if (survey_.kind == StoreSurvey::Kind::study) {
+      expected = list_study_files(survey_.folder);
+    }
+    // A study covers its cells when its tables are written.
+    const bool has_tables = is_there(survey_.folder / "result.json");
+    bool has_new_run = false;
+    for (const RunSurvey& run : survey_.runs) {
+      has_new_run = has_new_run || (is_member(run) && run.has_checksums);
+      const bool is_complete = survey_.kind == StoreSurvey::Kind::study
+                                   ? has_tables && is_there(survey_.folder / run.name / "cell.json")
+                                   : run.state == RunSurvey::State::finished;
+      if (is_member(run) && is_complete && is_there(survey_.folder / run.name / kChecksumFile)) {
+        expected.push_back((run.name / kChecksumFile).string());
+      }
+    }
+    const ChecksumSurvey found = survey_checksums(survey_.folder, expected);
+    if (!found.fault.empty()) {
+      add_damage(kChecksumFile, found.fault);
+      return;
+    }
+    if (!found.is_there && has_new_run) {
+      add_damage(kChecksumFile, "it is missing; the command that began the " +
+                                    std::string(to_string(survey_.kind)) + " writes it again");
+    } else if (found.is_there && !found.lines.contains(record)) {
+      add_damage(kChecksumFile, "it does not list " + record);
+    } else if (!found.uncovered.empty()) {
+      survey_.findings.push_back(
+          {Finding::Kind::note, kChecksumFile,
+           fmt::format("{}, so nothing covers {}",
+                       found.is_there ? "it has no line for some files"
+                                      : "there is none, as in folders of version 1.0",
+                       join(found.uncovered, ", "))});
+    }
+    for (const auto& [name, change] : found.changed) {
+      if (std::ranges::count(survey_.findings, std::filesystem::path(name), &Finding::file) > 0) {
+        continue;  // the other checks say more of it
+      }
+      if (name == record) {
+        survey_.is_record_lost = true;
+        survey_.findings.push_back({Finding::Kind::loss, name, change});
+      } else if (RunSurvey* run = find_run(name)) {
+        run->findings.push_back({Finding::Kind::damage, kChecksumFile, change});
+        run->damaged_files.emplace_back(kChecksumFile);
+      } else {
+        add_damage(name, change);
+      }
+    }
+    for (const std::string& name : found.missing) {
+      const RunSurvey* run = find_run(name);
+      const bool is_named =
+          std::ranges::count(survey_.findings, std::filesystem::path(name), &Finding::file) > 0;
+      if (!is_named && (run == nullptr || !run->has_checksums)) {
+        survey_.findings.push_back({Finding::Kind::note, name,
+                                    "it is missing; the command that began the " +
+                                        std::string(to_string(survey_.kind)) + " makes it again"});
+      }
+    }
   }
 
   StoreSurvey survey_;

@@ -83,5 +83,17 @@ TEST(OverrideKey, IsWhatStandsBeforeTheEqualsSign) {
   EXPECT_EQ(get_override_key("  "), "");
 }
 
+TEST(ReadLimitFlag, TakesATimeAMemoryOrBoth) {
+  EXPECT_EQ(to_string(parse_read_limit("60s,4GiB")), "60s,4GiB");
+  EXPECT_EQ(to_string(parse_read_limit("512MiB,2m")), "120s,512MiB");
+  EXPECT_EQ(to_string(parse_read_limit("90")), "90s,1GiB");
+  EXPECT_EQ(to_string(parse_read_limit("1.5GiB")), "10s,1.5GiB");
+  for (const std::string wrong : {"", "-1s", "0GiB", "4GB", "1s;1GiB", "nanGiB"}) {
+    EXPECT_THAT(error_of(ErrorKind::usage, [&] { parse_read_limit(wrong); }),
+                HasSubstr("--read-limit (ARMWRIGHT_READ_LIMIT) is '"))
+        << wrong;
+  }
+}
+
 }  // namespace
 }  // namespace armwright

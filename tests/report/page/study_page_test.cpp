@@ -8,6 +8,7 @@
 #include <set>
 
 #include "base/expect_error.hpp"
+#include "base/remove_checksums.hpp"
 #include "base/text.hpp"
 #include "report/page/data_contract.hpp"
 #include "report/page/page_data.hpp"
@@ -34,6 +35,7 @@ class StudyPage : public StudyTest {
     return json::parse(make_text(name, options));
   }
   void record(const StudyPlan& plan, const Cell& cell, const CellOutcome& outcome) {
+    remove_checksums(temporary_ / "study");
     std::ofstream(temporary_ / "study" / make_cell_path(plan, cell) / "cell.json")
         << to_json(outcome);
   }

@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "base/expect_error.hpp"
+#include "base/remove_checksums.hpp"
 #include "study/analysis/study_result.hpp"
 #include "study/analysis/verdict.hpp"
 #include "study/compare/study_support.hpp"
@@ -184,6 +185,9 @@ TEST_F(StudyTest, ACellOfAnotherOptimizerIsRefused) {
   std::filesystem::copy_file(get_file(0), get_file(1),
                              std::filesystem::copy_options::overwrite_existing);
   EXPECT_THAT(error_of(ErrorKind::bad_data, [&] { analyze_study(plan, temporary_ / "study"); }),
+              HasSubstr(get_file(1).string() + ": was changed after it was written"));
+  remove_checksums(temporary_ / "study");
+  EXPECT_THAT(error_of(ErrorKind::bad_data, [&] { analyze_study(plan, temporary_ / "study"); }),
               HasSubstr("is of another cell (ga on sphere, replicate 1"));
 }
 
@@ -194,6 +198,9 @@ TEST_F(StudyTest, ARecordedPlanThatWasChangedIsRefused) {
   std::string text = read_file(file, 1 << 20);
   text.replace(text.find("population=35"), 13, "population=36");
   std::ofstream(file) << text;
+  EXPECT_THAT(error_of(ErrorKind::bad_data, [&] { StudyFolder(temporary_ / "study", plan); }),
+              HasSubstr("study.toml: was changed after it was written"));
+  remove_checksums(temporary_ / "study");
   EXPECT_THAT(error_of(ErrorKind::bad_data, [&] { StudyFolder(temporary_ / "study", plan); }),
               HasSubstr("a resolved plan that somebody has changed"));
 }

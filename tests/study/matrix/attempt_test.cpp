@@ -38,7 +38,7 @@ TEST_F(AttemptTest, TokensAreTakenOnceWhoeverIsAtIt) {
   for (int i = 0; i < kThreads; ++i) {
     threads.emplace_back([&] {
       for (int j = 0; j < kEach; ++j) {
-        const Attempt attempt(attempts_, 0);
+        const Attempt attempt(attempts_, study_, 0);
         const std::lock_guard lock(mutex);
         tokens.insert(attempt.token());
       }
@@ -54,17 +54,17 @@ TEST_F(AttemptTest, TokensAreTakenOnceWhoeverIsAtIt) {
 }
 
 TEST_F(AttemptTest, TheNewestIsValid) {
-  const Attempt first(attempts_, 0);
+  const Attempt first(attempts_, study_, 0);
   EXPECT_EQ(first.find_successor(), "");
   std::filesystem::create_directory(attempts_ / "notes");
-  const Attempt second(attempts_, 0);
+  const Attempt second(attempts_, study_, 0);
   EXPECT_EQ(first.find_successor(), "superseded by attempt 2");
   EXPECT_EQ(second.find_successor(), "");
   std::filesystem::create_directory(attempts_ / "1000");
-  EXPECT_EQ(Attempt(attempts_, 0).token(), 1001);
+  EXPECT_EQ(Attempt(attempts_, study_, 0).token(), 1001);
   std::filesystem::remove_all(attempts_);
   EXPECT_THAT(second.find_successor(), HasSubstr("its folder is gone"));
-  const Attempt again(attempts_, 5);
+  const Attempt again(attempts_, study_, 5);
   EXPECT_EQ(again.token(), 1);
   EXPECT_THAT(first.find_successor(), HasSubstr("its folder is gone"));
   EXPECT_EQ(again.find_successor(), "");
@@ -72,7 +72,7 @@ TEST_F(AttemptTest, TheNewestIsValid) {
 
 TEST_F(AttemptTest, AnOrphanBetweenTwoCellsBeginsNone) {
   ::setenv("PBS_JOBID", "7[2].head", 1);
-  const Attempt requeued(attempts_, 1000);
+  const Attempt requeued(attempts_, study_, 1000);
   EXPECT_EQ(find_later_life(attempts_, 900), "superseded by attempt 1");
   EXPECT_EQ(find_later_life(attempts_, 1000), "");
   EXPECT_EQ(find_later_life(attempts_, 1100), "");
@@ -154,7 +154,7 @@ TEST_F(AttemptTest, IsStoppedByANewerOneAndPublishesNothing) {
         : attempts_(std::move(attempts)), ends_(ends) {}
     void on_progress(const Progress& progress) override {
       if (progress.done >= 20 && !newer_) {
-        newer_.emplace(attempts_, 0);
+        newer_.emplace(attempts_, attempts_, 0);
         while (!ends_.requested()) {
           std::this_thread::sleep_for(std::chrono::milliseconds(5));
         }
@@ -224,7 +224,7 @@ TEST_F(AttemptTest, TheFirstOfManyThatFinishAtOnceIsPublished) {
 TEST_F(AttemptTest, WhatALocalComparisonWritesIsLeftToIt) {
   run_in(cell_, temporary_ / "whole");
   std::filesystem::create_directories(place(cell_));
-  const RunLock lock(place(cell_));
+  const RunLock lock{Folder(place(cell_))};
   EXPECT_THAT(
       error_of(
           ErrorKind::busy,

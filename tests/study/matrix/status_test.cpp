@@ -2,6 +2,7 @@
 #include <chrono>
 #include <thread>
 
+#include "base/remove_checksums.hpp"
 #include "study/matrix/matrix_support.hpp"
 #include "study/matrix/study_merge.hpp"
 #include "study/matrix/study_status.hpp"
@@ -26,16 +27,16 @@ class StudyStatusTest : public MatrixTest {
 
 TEST_F(StudyStatusTest, TellsWhatBecomesOfEveryCell) {
   run_in(cell("0"), place(cell("0")));
-  const Attempt alive(attempts(cell("1")), 0);
+  const Attempt alive(attempts(cell("1")), study_, 0);
   alive.tell_alive(17);
-  const Attempt dead(attempts(cell("2")), 0);
+  const Attempt dead(attempts(cell("2")), study_, 0);
   std::filesystem::last_write_time(
       attempts(cell("2")) / "001/alive",
       std::filesystem::file_time_type::clock::now() - std::chrono::minutes(5));
-  const Attempt broken(attempts(cell("3")), 0);
+  const Attempt broken(attempts(cell("3")), study_, 0);
   broken.record_error("a wheel came off");
   broken.end_in_order();
-  const Attempt ended(attempts(cell("4")), 0);
+  const Attempt ended(attempts(cell("4")), study_, 0);
   ended.end_in_order();
   std::filesystem::create_directories(place(cell("5")));
   std::ofstream(place(cell("5")) / "cell.json") << "{";
@@ -60,7 +61,7 @@ TEST_F(StudyStatusTest, TellsWhatBecomesOfEveryCell) {
 TEST_F(StudyStatusTest, SeesALocalComparison) {
   const StudyFolder held(study_, plan_);
   std::filesystem::create_directories(place(cell("2")));
-  const RunLock lock(place(cell("2")));
+  const RunLock lock{Folder(place(cell("2")))};
   const StudyStatus status = read();
   EXPECT_THAT(status.writer, HasSubstr("process "));
   EXPECT_EQ(status.count(CellState::running), 1U);
@@ -97,7 +98,7 @@ TEST_F(MergeTest, CopiesWhatIsFinishedElsewhereAndNothingTwice) {
   EXPECT_FALSE(std::filesystem::exists(place(cell("3"))));
   EXPECT_EQ(merge({other, third}), 0U);
 
-  const Attempt left(attempts(cell("4")), 0);
+  const Attempt left(attempts(cell("4")), study_, 0);
   remove_spent_attempts(plan_, study_);
   EXPECT_FALSE(std::filesystem::exists(attempts(cell("1"))));
   EXPECT_TRUE(std::filesystem::exists(attempts(cell("4")) / "001"));
@@ -116,6 +117,9 @@ TEST_F(MergeTest, RefusesByNameWhatDiffersAndCopiesNothing) {
   std::string text = read_file(file, 1 << 20);
   text.replace(text.find("\"evaluations\": 60"), 17, "\"evaluations\": 61");
   std::ofstream(file) << text;
+  EXPECT_THAT(error_of(ErrorKind::bad_data, [&] { merge({other}); }),
+              HasSubstr("cell.json: was changed after it was written"));
+  remove_checksums(other);
   EXPECT_THAT(error_of(ErrorKind::bad_data, [&] { merge({other}); }),
               HasSubstr("sphere/ga/r01: " + place(cell("0")).string()));
   EXPECT_FALSE(std::filesystem::exists(place(cell("1"))));

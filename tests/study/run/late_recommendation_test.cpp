@@ -5,6 +5,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "base/remove_checksums.hpp"
 #include "study/run/run.hpp"
 #include "study/run_support.hpp"
 
@@ -134,6 +135,7 @@ TEST_F(LateRecommendation, DoesNotCountInARunThatVersionOneBegan) {
   const auto manifest = temporary_ / "old" / "manifest.json";
   json content = json::parse(read_file(manifest, 1 << 20));
   ASSERT_EQ(content["configuration"]["run"]["selection"].erase("most"), 1u);
+  remove_checksums(temporary_ / "old");
   write_file_atomically(manifest, content.dump());
   std::filesystem::remove(temporary_ / "old" / "journal");
   std::filesystem::remove(temporary_ / "old" / "result.json");

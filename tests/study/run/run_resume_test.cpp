@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/expect_error.hpp"
+#include "base/remove_checksums.hpp"
 #include "problems/lanes_engine.hpp"
 #include "study/run/run.hpp"
 #include "study/run_support.hpp"
@@ -89,10 +90,18 @@ TEST_F(RunTest, ATornJournalIsMendedAndTheRunGoesOn) {
 
 TEST_F(RunTest, ADamagedManifestOrResultIsNamed) {
   run(make_small_plan(), "a");
+  const std::string result = read_result("a");
   std::ofstream(temporary_ / "a" / "result.json") << "{}";
   EXPECT_THAT(error_of(ErrorKind::bad_data, [&] { run(make_small_plan(), "a"); }),
-              HasSubstr("result.json: is not a result that armwright wrote"));
+              HasSubstr("result.json: was changed after it was written"));
+  // Without checksums the run is made again from its journal, so the result is not read.
+  remove_checksums(temporary_ / "a");
+  EXPECT_TRUE(run(make_small_plan(), "a"));
+  EXPECT_EQ(read_result("a"), result);
   std::ofstream(temporary_ / "a" / "manifest.json") << "{";
+  EXPECT_THAT(error_of(ErrorKind::bad_data, [&] { run(make_small_plan(), "a"); }),
+              HasSubstr("manifest.json: was changed after it was written"));
+  remove_checksums(temporary_ / "a");
   EXPECT_THAT(error_of(ErrorKind::bad_data, [&] { run(make_small_plan(), "a"); }),
               HasSubstr("manifest.json: is not a manifest that armwright wrote"));
 }
@@ -161,6 +170,7 @@ TEST_F(RunTest, ARefusalNamesTheCommandAndEachDifferenceOnce) {
   const auto manifest = temporary_ / "a" / "manifest.json";
   nlohmann::json content = nlohmann::json::parse(read_file(manifest, 1 << 24));
   content["command_line"] = {"armwright", "optimize", "my problem"};
+  remove_checksums(temporary_ / "a");
   std::ofstream(manifest, std::ios::binary) << content;
   EXPECT_THAT(
       usage_error_of([&] { run(make_plan("ode", "48"), "a"); }),
@@ -208,6 +218,7 @@ TEST_F(RunTest, AnotherSimdLevelIsRefusedWithWhatToDo) {
   const std::string recorded = "\"simd\": \"" + best + "\"";
   ASSERT_NE(text.find(recorded), std::string::npos);
   text.replace(text.find(recorded), recorded.size(), "\"simd\": \"avx8192\"");
+  remove_checksums(temporary_ / "a");
   std::ofstream(manifest, std::ios::binary) << text;
   EXPECT_THAT(usage_error_of([&] { run(make_plan("auto"), "a"); }),
               HasSubstr("this CPU lacks avx8192; resume the run on a machine that has it"));

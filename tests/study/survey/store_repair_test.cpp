@@ -222,7 +222,7 @@ TEST_F(StoreRepairTest, WhatIsIntactIsNotCopied) {
 TEST_F(StoreRepairTest, WhatIsBeingWrittenIsReadAndNotRepaired) {
   ASSERT_TRUE(run(make_small_plan(), "hurt"));
   damage_journal(temporary_ / "hurt");
-  const RunLock writer(temporary_ / "hurt");
+  const RunLock writer{Folder(temporary_ / "hurt")};
   const StoreSurvey survey = survey_store(temporary_ / "hurt");
   EXPECT_THAT(survey.writer, HasSubstr("process"));
   EXPECT_TRUE(survey.is_damaged());
@@ -246,7 +246,7 @@ TEST_F(StoreRepairTest, AskingWhoWritesKeepsNobodyFromWriting) {
   int refused = 0;
   for (int i = 0; i < 300; ++i) {
     try {
-      const RunLock lock(temporary_ / "run");
+      const RunLock lock{Folder(temporary_ / "run")};
     } catch (const Error&) {
       ++refused;
     }

@@ -75,6 +75,10 @@ struct ArticulatedArm::Chain {
     if (sum < kFarthest) {  // false for NaN too
       return;
     }
+    if (!std::isfinite(q[worst].v) || !std::isfinite(rate[worst].v)) {
+      throw DivergenceError(
+          fmt::format("joint {} ({}): {}", worst + 1, model.joints[worst].name, kNotFinite));
+    }
     throw DivergenceError(fmt::format("joint {} ({}): it is at {:.3g} {} and moves at {:.3g} {}",
                                       worst + 1, model.joints[worst].name, q[worst].v,
                                       turns(worst) ? "rad" : "m", rate[worst].v,

@@ -483,6 +483,9 @@ std::string LaneBlock<T>::describe_divergence(std::size_t job, const T* numbers)
   }
   const Joint& joint = setup_of(job).robot().joints[worst];
   const bool turns = joint.kind == JointKind::revolute;
+  if (!std::isfinite(farthest)) {
+    return fmt::format("joint {} ({}): {}", worst + 1, joint.name, kNotFinite);
+  }
   return fmt::format("joint {} ({}): it is at {:.3g} {} and moves at {:.3g} {}", worst + 1,
                      joint.name, get(kQ, worst), turns ? "rad" : "m", get(kRate, worst),
                      turns ? "rad/s" : "m/s");

@@ -235,6 +235,10 @@ void MujocoArm::check() const {
     if (distance < kFarthest_m && rate < kFastest_rad_per_s) {  // false for NaN too
       continue;
     }
+    if (!std::isfinite(distance) || !std::isfinite(rate)) {
+      throw DivergenceError(
+          fmt::format("joint {} ({}): {}", i + 1, w.robot->joints[i].name, kNotFinite));
+    }
     throw DivergenceError(
         fmt::format("joint {} ({}): its link is {:.3g} m from the base and turns at {:.3g} rad/s",
                     i + 1, w.robot->joints[i].name, distance, rate));

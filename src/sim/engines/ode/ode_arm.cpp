@@ -145,6 +145,10 @@ struct OdeArm::World {
       if (distance < kFarthest_m && rate < kFastest_rad_per_s) {  // false for NaN too
         continue;
       }
+      if (!std::isfinite(distance) || !std::isfinite(rate)) {
+        throw DivergenceError(
+            fmt::format("joint {} ({}): {}", i + 1, model->joints[i].name, kNotFinite));
+      }
       throw DivergenceError(
           fmt::format("joint {} ({}): its link is {:.3g} m from the base and turns at {:.3g} rad/s",
                       i + 1, model->joints[i].name, distance, rate));

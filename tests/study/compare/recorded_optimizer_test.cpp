@@ -1,6 +1,6 @@
 // Optimizers that a program outside of armwright implements. The program compares them with others;
 // their records can be read without the program.
-#include "optimizers/plugins/host_optimizer.hpp"
+#include "optimizers/plugins/recorded_optimizer.hpp"
 
 #include <gmock/gmock.h>
 

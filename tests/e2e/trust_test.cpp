@@ -1,0 +1,244 @@
+// Study folders that somebody else made: looking at them starts nothing, and running what they name
+// needs consent.
+#include <gmock/gmock.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "base/hash.hpp"
+#include "base/temporary_folder.hpp"
+#include "e2e/program.hpp"
+#include "wait_until.hpp"
+
+namespace armwright {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+using Words = std::vector<std::string>;
+
+constexpr const char* kProgram = R"(exec:sh -c "id > PWNED")";
+constexpr const char* kLibrary = "./study/evil.so";
+
+class CliTrust : public testing::Test {
+ protected:
+  Outcome run(const Words& words, const Environment& environment = {}) {
+    return run_program(folder_.path(), words, environment);
+  }
+
+  void make_study(const std::string& optimizers = "ga,cmaes") {
+    const Outcome outcome =
+        run({"compare", "--problems", "sphere", "--optimizers", optimizers, "--replicates", "5",
+             "--budget", "30", "--out", "study", "--quiet"});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  }
+
+  // Replaces a text in the plan and gives the plan a valid hash, as anybody can. Checksums of the
+  // study go away, as anybody can remove them.
+  void edit_plan(const std::string& what, const std::string& by) {
+    const auto file = folder_ / "study/study.toml";
+    std::string text = read_text(file);
+    ASSERT_NE(text.find(what), std::string::npos) << text;
+    text.replace(text.find(what), what.size(), by);
+    const std::string body = text.substr(text.find('\n') + 1);
+    std::filesystem::remove(folder_ / "study/SHA256SUMS");
+    std::ofstream(file) << "plan_sha256 = \"" << calc_sha256_hex(body) << "\"\n" << body;
+  }
+
+  // A finished study two optimizers of which have become plugins.
+  void make_hostile_study() {
+    make_study();
+    edit_plan("name = \"ga\"", "name = " + nlohmann::json(kProgram).dump());
+    edit_plan("name = \"cmaes\"", std::string("name = \"") + kLibrary + "\"");
+    std::filesystem::copy_file(std::string(ARMWRIGHT_TEST_PLUGINS) + "/libgood.so",
+                               folder_ / kLibrary);
+  }
+
+  // Commands that only read the study.
+  static std::vector<Words> list_readers() {
+    return {{"show", "study"},
+            {"show", "study", "--json"},
+            {"status", "study"},
+            {"report", "study", "--out", "report.html"},
+            {"plot", "study", "--out", "figures"},
+            {"export", "study", "--format", "csv", "--out", "export"},
+            {"doctor", "study"},
+            {"merge", "study", "--quiet"},
+            {"list", "studies", "study/study.toml"},
+            {"compare", "study/study.toml", "--out", "study", "--dry-run"},
+            {"show", "study/cells/sphere/ga/r01"},
+            {"report", "study/cells/sphere/ga/r01", "--out", "cell.html"}};
+  }
+
+  // Watches the study until its page is served.
+  void watch(Environment environment = {}) {
+    environment.own_group = true;
+    Program program(folder_.path(), {"watch", "study"}, environment);
+    EXPECT_TRUE(wait_until([&] {
+      return std::ranges::any_of(
+          std::filesystem::directory_iterator(folder_.path()), [](const auto& entry) {
+            return read_text(entry.path() / "out").find("http://") != std::string::npos;
+          });
+    }));
+    program.send_group(SIGINT);
+    EXPECT_EQ(program.wait().exit_code, 0);
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(CliTrust, LookingAtAStudyStartsNothing) {
+  make_hostile_study();
+  for (const Words& words : list_readers()) {
+    const Outcome outcome = run(words);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "PWNED")) << words[0];
+    EXPECT_TRUE(outcome.exit_code == 0 || words[0] == "doctor") << words[0] << outcome.err;
+    std::filesystem::remove_all(folder_ / "figures");
+  }
+  watch();
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "PWNED"));
+}
+
+TEST_F(CliTrust, RunningAForeignStudyNeedsTrust) {
+  make_hostile_study();
+  const std::vector<Words> runners = {
+      {"rerun", "study", "sphere/random/r01", "--out", "anew"},
+      {"cell", "study", "0"},
+      {"compare", "study/study.toml", "--out", "study"},
+      {"compare", "study/study.toml", "--out", "another", "--executor", "script"}};
+  for (const Words& words : runners) {
+    const Outcome outcome = run(words);
+    EXPECT_EQ(outcome.exit_code, 2) << words[0];
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr("the study in " + (folder_ / "study").string()),
+                                   HasSubstr("exec:sh -c \"id > PWNED\"; the library "),
+                                   HasSubstr("evil.so"), HasSubstr("--trust")));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "PWNED")) << words[0];
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "another")) << words[0];
+  }
+  for (const Words& words : runners) {
+    Words trusted = words;
+    trusted.push_back("--trust");
+    const Outcome outcome =
+        run(trusted, {.variables = {{"XDG_STATE_HOME", "/dev/null/none"}}, .out_file = ""});
+    EXPECT_EQ(outcome.exit_code, 4) << outcome.err;  // the program describes nothing
+    EXPECT_TRUE(std::filesystem::remove(folder_ / "PWNED")) << words[0];
+  }
+}
+
+TEST_F(CliTrust, OnATerminalTheUserIsAsked) {
+  make_hostile_study();
+  const Words words = {"rerun", "study", "sphere/random/r01", "--out", "anew"};
+  EXPECT_THAT(run_on_terminal(folder_.path(), words, {}, 100, "n\n"),
+              AllOf(HasSubstr("exec:sh -c \"id > PWNED\""), HasSubstr("Run it? [y/N]"),
+                    HasSubstr("--trust")));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "PWNED"));
+  run_on_terminal(folder_.path(), words, {}, 100, "y\n");
+  EXPECT_TRUE(std::filesystem::remove(folder_ / "PWNED"));
+  // The answer is remembered, until the study names something else.
+  EXPECT_EQ(run(words).exit_code, 4);
+  EXPECT_TRUE(std::filesystem::remove(folder_ / "PWNED"));
+  edit_plan("id > PWNED", "id -u > PWNED");
+  EXPECT_EQ(run(words).exit_code, 2);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "PWNED"));
+}
+
+TEST_F(CliTrust, WhoStartedAStudyIsNotAsked) {
+  const std::string library = std::string(ARMWRIGHT_TEST_PLUGINS) + "/libgood.so";
+  make_study("random," + library);
+  const Words rerun = {"rerun", "study", "sphere/pattern/r01", "--quiet"};
+  EXPECT_EQ(run(rerun).exit_code, 0);
+  EXPECT_EQ(run({"compare", "study/study.toml", "--out", "study", "--quiet"}).exit_code, 0);
+  const auto state = folder_ / ".state";
+  ASSERT_TRUE(std::filesystem::exists(state / "armwright/studies"));
+  std::filesystem::remove_all(state);
+  EXPECT_EQ(run(rerun).exit_code, 2);
+  EXPECT_EQ(run({"rerun", "study", "sphere/pattern/r01", "--quiet", "--trust"}).exit_code, 0);
+  EXPECT_EQ(run(rerun).exit_code, 0);
+}
+
+TEST_F(CliTrust, JobsInheritTheConsent) {
+  const std::string library = std::string(ARMWRIGHT_TEST_PLUGINS) + "/libgood.so";
+  const Outcome script =
+      run({"compare", "--problems", "sphere", "--optimizers", "random," + library, "--replicates",
+           "2", "--budget", "30", "--out", "study", "--executor", "script", "--quiet"});
+  ASSERT_EQ(script.exit_code, 0) << script.err;
+  EXPECT_THAT(script.out, HasSubstr("cell --jobs 1 --trust \"$study\""));
+  EXPECT_EQ(run({"cell", "study", "0-3", "--trust", "--quiet"},
+                {.variables = {{"XDG_STATE_HOME", "/dev/null/none"}}, .out_file = ""})
+                .exit_code,
+            0);
+  EXPECT_EQ(run({"merge", "study", "--quiet"}).exit_code, 0);
+}
+
+TEST_F(CliTrust, AStudyIsReadWhenItsPluginsAreGone) {
+  std::filesystem::copy_file(std::string(ARMWRIGHT_TEST_PLUGINS) + "/libgood.so",
+                             folder_ / "mine.so");
+  std::filesystem::copy_file(std::string(ARMWRIGHT_TEST_PLUGINS_SOURCE) + "/good.py",
+                             folder_ / "mine.py");
+  make_study("multistart:./mine.so,./mine.so,exec:python3 mine.py");
+  const std::string plan = read_text(folder_ / "study/study.toml");
+  const std::string shown = run({"show", "study"}).out;
+  const auto tables = read_study(folder_ / "study");
+  EXPECT_THAT(shown, AllOf(HasSubstr("pattern"), HasSubstr("lcg")));
+  std::filesystem::remove(folder_ / "mine.so");
+  std::filesystem::remove(folder_ / "mine.py");
+  EXPECT_EQ(run({"show", "study"}).out, shown);
+  for (const Words& words : list_readers()) {
+    if (words[1].find("cells") == std::string::npos) {
+      const Outcome outcome = run(words);
+      EXPECT_EQ(outcome.exit_code, 0) << words[0] << outcome.err;
+    }
+  }
+  EXPECT_EQ(read_study(folder_ / "study"), tables);
+  EXPECT_EQ(read_text(folder_ / "study/study.toml"), plan);
+  EXPECT_THAT(read_text(folder_ / "report.html"), HasSubstr("multistart:pattern"));
+  EXPECT_NE(run({"rerun", "study", "sphere/pattern/r01", "--trust"}).exit_code, 0);
+}
+
+// Returns whether strace may watch a program here.
+bool can_trace(const std::filesystem::path& folder) {
+  return run_program(
+             folder, {"--version"},
+             {.variables = {},
+              .out_file = "",
+              .launcher = {"sh", "-c", "strace -f -qq -o trace \"$@\" >/dev/null 2>&1", "sh"}})
+             .exit_code == 0;
+}
+
+TEST_F(CliTrust, NoReaderExecutesAProgramOrOpensALibraryOfTheStudy) {
+  if (!can_trace(folder_.path())) {
+    GTEST_SKIP() << "strace cannot watch a program here: it is not installed, or ptrace is not "
+                    "permitted";
+  }
+  make_hostile_study();
+  const Environment traced{.variables = {},
+                           .out_file = "",
+                           .launcher = {"strace", "-f", "-qq", "-e",
+                                        "trace=execve,execveat,open,openat", "-o", "trace"}};
+  const auto expect_harmless = [&](const std::string& command) {
+    std::ifstream trace(folder_ / "trace");
+    int executed = 0;
+    int opened = 0;
+    for (std::string line; std::getline(trace, line);) {
+      executed += line.find("execve") != std::string::npos ? 1 : 0;  // the command's own
+      opened += line.find("\"study") != std::string::npos ? 1 : 0;
+      EXPECT_THAT(line, Not(HasSubstr("evil.so"))) << command;
+    }
+    EXPECT_EQ(executed, 1) << command;
+    EXPECT_GT(opened, 0) << command;
+  };
+  for (const Words& words : list_readers()) {
+    run(words, traced);
+    expect_harmless(words[0]);
+    std::filesystem::remove_all(folder_ / "figures");
+  }
+  watch(traced);
+  expect_harmless("watch");
+}
+
+}  // namespace
+}  // namespace armwright
