@@ -132,8 +132,8 @@ struct OptimizerRow {
   std::string unavailable = {};  // why it cannot be used here; empty: it can
   // Of a plugin: file -> SHA-256, so that a resumed run recognises the plugin.
   std::map<std::string, std::string> input_hashes = {};
-  // Of a plugin and of an optimizer of a host program: its description, so that its recorded runs
-  // can be read without it (plugins/recorded_optimizer.hpp).
+  // Describes a plugin or an optimizer of a host program, so that its recorded runs can be read
+  // without it (plugins/recorded_optimizer.hpp). Empty for other optimizers.
   std::string description = {};
   // Of a plugin whose `name` is a path: the name that it gives itself, for tables.
   std::string short_name = {};

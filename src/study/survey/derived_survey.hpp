@@ -77,8 +77,8 @@ class ResultSurvey {
   bool is_winner_judged_ = false;  // the journal has any test of the winner
   bool tested_ = false;            // the journal has its test
   std::string test_set_;           // of that test
-  // Of the training evaluations: the first without objectives, the smallest violation, and the
-  // highest generation.
+  // The training evaluations determine these: the first one without objectives, the smallest
+  // violation, and the highest generation.
   std::optional<std::pair<std::uint64_t, std::string>> first_failure_;
   std::optional<double> least_violation_;
   std::uint64_t most_generations_ = 0;
