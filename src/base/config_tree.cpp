@@ -153,25 +153,13 @@ void merge(Value& base, Value over) {
   }
 }
 
-std::string read_config_file(const std::filesystem::path& file) {
-  try {
-    return read_file(file, kFileLimit_bytes);
-  } catch (const Error& error) {
-    if (error.kind() ==
-        ErrorKind::bad_data) {  // too large, which for a configuration is a usage error
-      throw Error(ErrorKind::usage, error.what());
-    }
-    throw;
-  }
-}
-
 class Loader {
  public:
   Loader(Document& document, const std::filesystem::path& shipped)
       : document_(document), shipped_(shipped) {}
 
   Value load(const std::filesystem::path& file) {
-    const std::string content = read_config_file(file);
+    const std::string content = read_file(file, kFileLimit_bytes, ErrorKind::usage);
     document_.files.push_back(file);
     chain_.push_back(file.filename().string());
     Value value = parse(file, content);

@@ -16,7 +16,7 @@ namespace armwright {
 namespace {
 
 std::string read_all(const FileDescriptor& file, const std::filesystem::path& path,
-                     std::size_t limit_bytes) {
+                     std::size_t limit_bytes, ErrorKind unfit) {
   std::string content;
   char buffer[1 << 16];
   while (true) {
@@ -33,9 +33,8 @@ std::string read_all(const FileDescriptor& file, const std::filesystem::path& pa
     content.append(buffer, static_cast<std::size_t>(got));
     check_reading();
     if (content.size() > limit_bytes) {
-      throw Error(ErrorKind::bad_data,
-                  fmt::format("{}: is larger than the limit of {} bytes for such a file",
-                              path.string(), limit_bytes));
+      throw Error(unfit, fmt::format("{}: is larger than the limit of {} bytes for such a file",
+                                     path.string(), limit_bytes));
     }
   }
 }
@@ -47,7 +46,7 @@ void fail_io(const std::filesystem::path& path, std::string_view doing, int erro
               fmt::format("{}: cannot {}: {}", path.string(), doing, std::strerror(error)));
 }
 
-FileDescriptor open_to_read(const std::filesystem::path& path) {
+FileDescriptor open_to_read(const std::filesystem::path& path, ErrorKind unfit) {
   FileDescriptor file(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
   struct stat status {};
   if (!file.is_open() || ::fstat(file.get(), &status) != 0) {
@@ -57,15 +56,14 @@ FileDescriptor open_to_read(const std::filesystem::path& path) {
     fail_io(path, "read it", EISDIR);
   }
   if (!S_ISREG(status.st_mode)) {
-    throw Error(ErrorKind::bad_data,
-                fmt::format("{}: is {}; it must be a regular file", path.string(),
-                            describe_file_type(status.st_mode)));
+    throw Error(unfit, fmt::format("{}: is {}; it must be a regular file", path.string(),
+                                   describe_file_type(status.st_mode)));
   }
   return file;
 }
 
-std::string read_file(const std::filesystem::path& path, std::size_t limit_bytes) {
-  return read_all(open_to_read(path), path, limit_bytes);
+std::string read_file(const std::filesystem::path& path, std::size_t limit_bytes, ErrorKind unfit) {
+  return read_all(open_to_read(path, unfit), path, limit_bytes, unfit);
 }
 
 std::string read_input(const std::filesystem::path& path, std::size_t limit_bytes) {
@@ -73,7 +71,7 @@ std::string read_input(const std::filesystem::path& path, std::size_t limit_byte
   if (!file.is_open()) {
     fail_io(path, "open it", errno);
   }
-  return read_all(file, path, limit_bytes);
+  return read_all(file, path, limit_bytes, ErrorKind::bad_data);
 }
 
 void check_readable(const std::filesystem::path& path) {

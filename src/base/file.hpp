@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/error.hpp"
 #include "base/file_descriptor.hpp"
 #include "base/folder.hpp"
 
@@ -18,12 +19,14 @@ namespace armwright {
 [[noreturn]] void fail_io(const std::filesystem::path& path, std::string_view doing, int error);
 
 // Opens a regular file for reading, at once: a named pipe without a writer would block the caller.
-// Throws Error{bad_data} for a pipe or a device, and Error{io}.
-FileDescriptor open_to_read(const std::filesystem::path& path);
+// Throws Error{unfit} for a pipe or a device, and Error{io}.
+FileDescriptor open_to_read(const std::filesystem::path& path,
+                            ErrorKind unfit = ErrorKind::bad_data);
 
-// Returns the content of a regular file. Throws Error{bad_data} if the file is larger than
-// `limit_bytes` or no regular file.
-std::string read_file(const std::filesystem::path& path, std::size_t limit_bytes);
+// Returns the content of a regular file. Throws Error{unfit} if the file is larger than
+// `limit_bytes` or no regular file, and Error{bad_data} if check_reading() does.
+std::string read_file(const std::filesystem::path& path, std::size_t limit_bytes,
+                      ErrorKind unfit = ErrorKind::bad_data);
 // Does the same for an input that the user named, which may be a pipe, such as /dev/stdin. Blocks
 // until the pipe has its end.
 std::string read_input(const std::filesystem::path& path, std::size_t limit_bytes);

@@ -99,8 +99,10 @@ TEST_F(RunLinks, OnTheWayFromTheStudyToTheRunAreRefused) {
 }
 
 // Another thread plants links while the run writes. The run ends well or names a file in its
-// folder.
+// folder. The folder has its manifest before: without one, a link makes it a folder of something
+// else, which every run refuses.
 TEST_F(RunLinks, PlantedDuringTheRunAreNotFollowed) {
+  begin("a");
   std::atomic<bool> ends = false;
   std::thread planter([&] {
     while (!ends) {
