@@ -12,6 +12,7 @@
 #include "base/hash.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
+#include "base/toml_text.hpp"
 #include "study/compare/cell.hpp"
 #include "study/compare/optimizer_labels.hpp"
 #include "study/compare/optimizer_streams.hpp"
@@ -26,9 +27,14 @@ using nlohmann::json;
 constexpr const char* kPlanFile = "study.toml";
 constexpr std::size_t kPlanLimit_bytes = std::size_t{16} << 20;
 
-// Returns the text as a JSON string, which is also a TOML string.
+// Writes what is not ASCII as JSON does (\u00e9), because the hash of a plan that 1.0 wrote depends
+// on it. TOML forbids JSON's forms of delete and of characters beyond U+FFFF, whose UTF-8 begins with
+// 0xf0; no plan of 1.0 with these could be read back.
 std::string quote(const std::string& text) {
-  return json(text).dump(-1, ' ', true, json::error_handler_t::replace);
+  const auto is_unfit = [](unsigned char c) { return c >= 0xf0 || c == 0x7f; };
+  return std::ranges::any_of(text, is_unfit)
+             ? quote_toml(text)
+             : json(text).dump(-1, ' ', true, json::error_handler_t::replace);
 }
 
 std::string quote_list(std::span<const std::string> texts) {
@@ -374,7 +380,7 @@ void cover_study(const StudyPlan& plan, const std::filesystem::path& study) {
   FolderChecksums checksums(study);
   for (const Cell& cell : list_cells(plan)) {
     const auto folder = make_cell_path(plan, cell);
-    if (std::filesystem::exists(study / folder / "cell.json")) {
+    if (path_exists(study / folder / "cell.json")) {
       checksums.cover((folder / kChecksumFile).string());
     }
   }
@@ -386,21 +392,21 @@ void cover_study(const StudyPlan& plan, const std::filesystem::path& study) {
 
 std::vector<std::string> list_study_files(const std::filesystem::path& study) {
   std::vector<std::string> names;
-  const auto add = [&](const std::filesystem::directory_entry& entry, bool is_wanted) {
-    if (is_wanted && !entry.is_symlink() && entry.is_regular_file()) {
-      names.push_back(entry.path().lexically_relative(study).string());
+  const auto add = [&](const std::filesystem::path& file, bool is_wanted) {
+    if (is_wanted && !std::filesystem::is_symlink(file) && regular_file_exists(file)) {
+      names.push_back(file.lexically_relative(study).string());
     }
   };
-  for (const auto& entry : std::filesystem::directory_iterator(study)) {
-    const std::string name = entry.path().filename().string();
-    add(entry, name == kPlanFile || name == "result.json" || name == "verdict.txt" ||
-                   (name.starts_with("study-") && name.ends_with(".toml")));
+  for (const auto& file : list_folder(study)) {
+    const std::string name = file.filename().string();
+    add(file, name == kPlanFile || name == "result.json" || name == "verdict.txt" ||
+                  (name.starts_with("study-") && name.ends_with(".toml")));
   }
   for (const char* part : {"problems", "final", "tables"}) {
-    std::error_code missing;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(study / part, missing)) {
-      const auto extension = entry.path().extension();
-      add(entry, extension == ".json" || extension == ".csv");
+    if (folder_exists(study / part)) {
+      for (const auto& file : list_tree(study / part)) {
+        add(file, file.extension() == ".json" || file.extension() == ".csv");
+      }
     }
   }
   std::ranges::sort(names);
