@@ -1,15 +1,10 @@
 #include "base/folder_checksums.hpp"
 
 #include <fmt/format.h>
-#include <openssl/evp.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
-#include <cstdint>
-#include <memory>
-#include <stdexcept>
 #include <vector>
 
 #include "base/error.hpp"
@@ -53,42 +48,19 @@ std::string find_line_fault(std::string_view line, const std::string& name_befor
 }
 
 // Reads the file piece by piece, because a journal may be larger than the memory.
-std::string calc_file_sha256(const std::filesystem::path& file) {
-  const FileDescriptor descriptor = open_to_read(file);
-  const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(),
-                                                                        &EVP_MD_CTX_free);
-  bool is_good = context != nullptr && EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr) == 1;
+std::string calc_file_sha256(const FileDescriptor& descriptor, const std::filesystem::path& file) {
   constexpr std::size_t kPiece_bytes = std::size_t{256} << 10;
   std::string piece(kPiece_bytes, '\0');
-  while (is_good) {
-    const ssize_t got = ::read(descriptor.get(), piece.data(), piece.size());
-    if (got < 0 && errno != EINTR) {
+  return calc_sha256_hex([&]() -> std::string_view {
+    ssize_t got = -1;
+    do {
+      got = ::read(descriptor.get(), piece.data(), piece.size());
+    } while (got < 0 && errno == EINTR);
+    if (got < 0) {
       fail_io(file, "read it", errno);
     }
-    if (got == 0) {
-      break;
-    }
-    is_good = got < 0 ||
-              EVP_DigestUpdate(context.get(), piece.data(), static_cast<std::size_t>(got)) == 1;
-  }
-  std::array<std::uint8_t, kDigits / 2> digest{};
-  if (!is_good || EVP_DigestFinal_ex(context.get(), digest.data(), nullptr) != 1) {
-    throw std::runtime_error("the system's SHA-256 failed");
-  }
-  std::string text;
-  for (const std::uint8_t byte : digest) {
-    text += fmt::format("{:02x}", byte);
-  }
-  return text;
-}
-
-// Returns the first byte of the file's first hole, or its size. A hole reads as zeros and takes no
-// space, so that reading a small file with holes can take hours.
-std::uint64_t find_hole(const std::filesystem::path& file) {
-  const FileDescriptor descriptor = open_to_read(file);
-  const off_t size = ::lseek(descriptor.get(), 0, SEEK_END);
-  const off_t hole = ::lseek(descriptor.get(), 0, SEEK_HOLE);
-  return static_cast<std::uint64_t>(hole < 0 ? size : hole);
+    return std::string_view(piece).substr(0, static_cast<std::size_t>(got));
+  });
 }
 
 std::filesystem::path get_folder(const std::filesystem::path& file) {
@@ -178,12 +150,17 @@ std::string FolderChecksums::find_change(const std::string& name) const {
     return "";
   }
   const auto file = folder_ / name;
-  const std::uint64_t hole = find_hole(file);
-  if (hole < std::filesystem::file_size(file)) {
+  const FileDescriptor descriptor = open_to_read(file);
+  // A hole reads as zeros and takes no space, so that reading a small file with holes can take
+  // hours. Behind the last byte is a hole, too.
+  const off_t size = ::lseek(descriptor.get(), 0, SEEK_END);
+  const off_t hole = ::lseek(descriptor.get(), 0, SEEK_HOLE);
+  if (hole >= 0 && hole < size) {
     return fmt::format(
         "was changed after it was written (it has a hole at byte {}; armwright writes none)", hole);
   }
-  return describe_change(name, calc_file_sha256(file));
+  ::lseek(descriptor.get(), 0, SEEK_SET);
+  return describe_change(name, calc_file_sha256(descriptor, file));
 }
 
 void FolderChecksums::drop(std::span<const std::string> names) {
@@ -231,7 +208,7 @@ void FolderChecksums::cover(const std::string& name, std::string_view content) {
 void FolderChecksums::cover(const std::string& name) {
   std::error_code ignored;
   if (!covers(name) && std::filesystem::is_regular_file(folder_ / name, ignored)) {
-    lines_[name] = calc_file_sha256(folder_ / name);
+    lines_[name] = calc_file_sha256(open_to_read(folder_ / name), folder_ / name);
     has_changed_ = true;
   }
 }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,6 +13,9 @@ namespace armwright {
 
 std::array<std::uint8_t, 32> calc_sha256(std::string_view bytes);
 std::string calc_sha256_hex(std::string_view bytes);
+// Return the hash of all pieces that `next` returns until it returns an empty one.
+std::array<std::uint8_t, 32> calc_sha256(const std::function<std::string_view()>& next);
+std::string calc_sha256_hex(const std::function<std::string_view()>& next);
 std::uint32_t calc_crc32(std::string_view bytes);
 
 }  // namespace armwright

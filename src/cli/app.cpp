@@ -158,15 +158,27 @@ std::string describe_mistake(const CLI::App& app, const CLI::ParseError& error) 
   return what + see;
 }
 
+// Returns whether the command that was given shows no progress.
+bool is_quiet(const CLI::App& app) {
+  const CLI::Option* quiet = app.get_option_no_throw("--quiet");
+  return (quiet != nullptr && quiet->count() > 0) ||
+         std::ranges::any_of(app.get_subcommands(),
+                             [](const CLI::App* command) { return is_quiet(*command); });
+}
+
 // Limits what this process reads, and also the jobs and ranks that it starts: they inherit the
 // environment.
-void apply_read_limit(Session& session) {
+void apply_read_limit(const CLI::App& app, Session& session) {
   ReadLimit limit;
   if (!session.read_limit.empty()) {
     limit = parse_read_limit(session.read_limit);
     ::setenv("ARMWRIGHT_READ_LIMIT", session.read_limit.c_str(), 1);
   }
-  set_read_limit(limit, session.stop, write_message);
+  set_read_limit(limit, session.stop, [quiet = is_quiet(app)](const std::string& progress) {
+    if (!quiet) {
+      write_message(progress);
+    }
+  });
 }
 
 int parse_and_run(CLI::App& app, Session& session, int argc, char** argv) {
@@ -185,7 +197,7 @@ int parse_and_run(CLI::App& app, Session& session, int argc, char** argv) {
   if (std::find(choices.begin(), choices.end(), session.color) == choices.end()) {
     throw Error(ErrorKind::usage, describe_unknown("--color", session.color, choices));
   }
-  apply_read_limit(session);
+  apply_read_limit(app, session);
   const auto place = find_rank_place();
   if (place && !session.shares_work) {
     if (place->rank > 0) {

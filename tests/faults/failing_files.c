@@ -205,14 +205,7 @@ int openat(int folder, const char* path, int flags, ...) {
   return place_fails("open", folder, path) ? -1
                                            : (int)syscall(SYS_openat, folder, path, flags, mode);
 }
-int openat64(int folder, const char* path, int flags, ...) {
-  va_list arguments;
-  va_start(arguments, flags);
-  const mode_t mode = take_mode(flags, arguments);
-  va_end(arguments);
-  return place_fails("open", folder, path) ? -1
-                                           : (int)syscall(SYS_openat, folder, path, flags, mode);
-}
+int openat64(int folder, const char* path, int flags, ...) __attribute__((alias("openat")));
 int renameat(int from_folder, const char* from, int to_folder, const char* to) {
   return place_fails("rename", to_folder, to)
              ? -1
