@@ -250,6 +250,29 @@ TEST_F(Mpi, ComparisonsHaveTheSameTables) {
   }
 }
 
+// The first rank asks for the consent, and no other runs a plugin.
+TEST_F(Mpi, APluginOfAForeignStudyNeedsConsentOnTheFirstRank) {
+  const std::string library = std::string(ARMWRIGHT_TEST_PLUGINS) + "/libgood.so";
+  std::vector<std::string> command = {"compare", "--problems",   "sphere", "--optimizers",
+                                      library,   "--replicates", "2",      "--budget",
+                                      "30",      "--out",        "one",    "--quiet"};
+  const Outcome one = run_program(folder_.path(), command);
+  ASSERT_EQ(one.exit_code, 0) << one.err;
+  std::filesystem::create_directory(folder_ / "study");
+  std::filesystem::copy_file(folder_ / "one/study.toml", folder_ / "study/study.toml");
+  command = {"compare", "study/study.toml", "--out", "study", "--quiet"};
+  Environment ranks = make_ranks(3, {});
+  ranks.variables.emplace_back("XDG_STATE_HOME", folder_ / "another-user");
+  const Outcome refused = run_program(folder_.path(), command, ranks);
+  EXPECT_EQ(refused.exit_code, 2) << refused.err;
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("libgood.so"), HasSubstr("--trust")));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "study/cells"));
+  command.emplace_back("--trust");
+  const Outcome trusted = run_program(folder_.path(), command, ranks);
+  EXPECT_EQ(trusted.exit_code, 0) << trusted.err;
+  EXPECT_EQ(read_study(folder_ / "study"), read_study(folder_ / "one"));
+}
+
 TEST_F(Mpi, WhatIsSaidIsSaidOnce) {
   const auto count = [](const std::string& text, const std::string& words) {
     std::size_t times = 0;
