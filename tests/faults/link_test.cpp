@@ -188,5 +188,23 @@ TEST_F(Links, AFinishedRunInAFolderThatCanOnlyBeReadIsShown) {
   fs::permissions(folder_ / "run", fs::perms::all);
 }
 
+TEST_F(Links, AStudyInAFolderThatCanOnlyBeReadNamesTheCommandThatShowsIt) {
+  open_to_all(folder_.path());
+  Environment user;
+  user.launcher = become_ordinary_user();
+  const Words compare = {"compare", "--problems", "sphere", "--optimizers", "ga",    "--replicates",
+                         "2",       "--budget",   "20",     "--out",        "study", "--quiet"};
+  ASSERT_EQ(run(compare, user).exit_code, 0);
+  fs::permissions(folder_ / "study/lock", fs::perms::owner_read);
+  for (const Words& words : {compare, Words{"merge", "study", "--quiet"}}) {
+    const Outcome outcome = run(words, user);
+    EXPECT_EQ(outcome.exit_code, 74);
+    EXPECT_THAT(outcome.err,
+                HasSubstr("study/lock: cannot open it: Permission denied; 'armwright show study' "
+                          "reads the study and writes nothing"));
+  }
+  EXPECT_EQ(run({"show", "study"}, user).exit_code, 0);
+}
+
 }  // namespace
 }  // namespace armwright::faults

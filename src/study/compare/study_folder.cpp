@@ -198,6 +198,20 @@ std::vector<std::string> describe_problem_change(const std::filesystem::path& fo
   }
 }
 
+// A study whose folder cannot be written can still be read.
+RunLock take_lock(const Folder& folder) {
+  try {
+    return RunLock(folder);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::io || !is_study_folder(folder.path())) {
+      throw;
+    }
+    throw Error(ErrorKind::io,
+                fmt::format("{}; 'armwright show {}' reads the study and writes nothing",
+                            error.what(), folder.path().string()));
+  }
+}
+
 }  // namespace
 
 std::string to_toml(const StudyPlan& plan) {
@@ -254,7 +268,7 @@ StudyPlan load_study_plan(const std::filesystem::path& folder, const AskUser& as
 }
 
 StudyFolder::StudyFolder(const std::filesystem::path& path, const StudyPlan& plan)
-    : folder_(Folder::make(path, path)), lock_(folder_) {
+    : folder_(Folder::make(path, path)), lock_(take_lock(folder_)) {
   const std::string text = to_toml(plan);
   if (!is_study_folder(path)) {
     for (const auto& entry : list_folder(path)) {
