@@ -9,10 +9,13 @@ import { make_figure_view } from './figure_view';
 import { make_table_view } from './table_view';
 import type { View } from './view';
 
+const kLongFact = 100; // characters; a longer value has all columns of the list
+
 function make_facts(facts: Fact[]): HTMLElement {
   const list = make('dl', { class: 'facts' });
   for (const fact of facts) {
-    list.append(make('div', {}, make('dt', {}, fact.label), make('dd', {}, fact.value)));
+    const shape = fact.value.length > kLongFact ? 'long' : 'short';
+    list.append(make('div', { class: shape }, make('dt', {}, fact.label), make('dd', {}, fact.value)));
   }
   return list;
 }
@@ -96,7 +99,7 @@ export function make_page_view(host: HTMLElement, first_look: Look, events: Page
       {},
       make('div', { class: 'titles' }, title, subtitle),
       state,
-      make_button('Light / dark', events.toggle_theme, { class: 'theme' }),
+      make_button('Light / dark', events.toggle_theme, { class: 'theme', 'aria-label': 'Light / dark' }),
     ),
     notes,
     list,
