@@ -1,6 +1,6 @@
 // The layout of the pages at the widths of a telephone, a tablet and two screens, in both themes. The
 // page does not scroll sideways, nothing leaves its card, no label is broken within a word, a box that
-// is cut shows that it is, and Play is in reach.
+// is cut shows that it is, Play is in reach, and the texts of charts are whole and apart.
 import assert from 'node:assert/strict';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -17,8 +17,13 @@ before(async () => {
 after(() => browser.close());
 
 // Charts draw again in the frame after a change of their size.
-function settle(page) {
-  return page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
+async function settle(page) {
+  await page.waitForFunction(() =>
+    Array.from(document.querySelectorAll('.plot')).every(
+      (plot) => plot.querySelector('svg')?.getAttribute('width') === String(plot.clientWidth),
+    ),
+  );
+  await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
 }
 
 // Returns one sentence per fault of the layout that is now on the screen. Runs in the page.
@@ -104,6 +109,47 @@ function find_faults() {
   const play = document.querySelector('.replay-play')?.getBoundingClientRect();
   if (stage !== undefined && (play.top - stage.bottom > 30 || play.top < stage.bottom || play.bottom - stage.top > innerHeight)) {
     faults.push(`Play begins ${(play.top - stage.bottom).toFixed(0)} px below the picture`);
+  }
+
+  // The texts of a chart are whole and cover no other texts. The tests of the figures look at rotated
+  // texts. Texts of which a legend shows a part, page by page, have a clip path.
+  for (const plot of document.querySelectorAll('.plot')) {
+    const figure = plot.closest('.card').dataset.figure;
+    const frame = plot.getBoundingClientRect();
+    const texts = Array.from(plot.querySelectorAll('svg text'), (text) => ({
+      words: text.textContent.trim(),
+      box: text.getBoundingClientRect(),
+      is_clipped: text.closest('[clip-path]') !== null,
+      is_level: Math.abs(text.getCTM().b) < 0.01,
+    })).filter((text) => text.words !== '' && !text.is_clipped);
+    for (const { words, box } of texts) {
+      const over = Math.max(frame.left - box.left, box.right - frame.right, frame.top - box.top, box.bottom - frame.bottom);
+      if (over > 2) {
+        faults.push(`"${words}" in ${figure} is cut by ${over.toFixed(0)} px`);
+      }
+      if (/(\.\.\.|…)$/.test(words)) {
+        faults.push(`"${words}" in ${figure} is shortened`);
+      }
+    }
+    const level = texts.filter((text) => text.is_level);
+    level.forEach((a, i) => {
+      for (const b of level.slice(0, i)) {
+        const across = Math.min(a.box.right, b.box.right) - Math.max(a.box.left, b.box.left);
+        const along = Math.min(a.box.bottom, b.box.bottom) - Math.max(a.box.top, b.box.top);
+        // The box of a line is higher than its letters.
+        if (across > 2 && along > 0.3 * Math.min(a.box.height, b.box.height)) {
+          faults.push(`"${a.words}" and "${b.words}" in ${figure} overlap by ${across.toFixed(0)} x ${along.toFixed(0)} px`);
+        }
+      }
+    });
+    // The curves of figures with one panel have most of the width.
+    if (/^(convergence|runtime-ecdf|data-profile|performance-profile|fitness|joint-)/.test(figure)) {
+      const lines = Array.from(plot.querySelectorAll('svg path[fill="none"], svg path[fill="transparent"]'));
+      const widest = Math.max(...lines.map((line) => line.getBoundingClientRect().width));
+      if (widest < 0.6 * frame.width) {
+        faults.push(`the curves of ${figure} have ${widest.toFixed(0)} px of ${frame.width.toFixed(0)} px`);
+      }
+    }
   }
 
   // A label has at most one line per word.

@@ -179,7 +179,7 @@ function draw_pairs(look: Look, scope: Scope, problem: StudyProblem): EChartsOpt
       itemHeight: 110,
       itemWidth: 12,
       text: ['A12 = 1\nrow better', 'column better\nA12 = 0'],
-      textStyle: { color: look.muted, fontFamily: look.font, fontSize: 10 },
+      textStyle: { color: look.muted, fontFamily: look.font, fontSize: 10, lineHeight: 13 },
       inRange: { color: [0, 0.25, 0.5, 0.75, 1].map((a12) => get_a12_color(look, a12)) },
     },
   });
