@@ -111,17 +111,26 @@ function find_faults() {
     faults.push(`Play begins ${(play.top - stage.bottom).toFixed(0)} px below the picture`);
   }
 
-  // The texts of a chart are whole and cover no other texts. The tests of the figures look at rotated
-  // texts. Texts of which a legend shows a part, page by page, have a clip path.
+  // The texts of a chart are whole and cover no other texts in the same direction. Texts of which a
+  // legend shows a part, page by page, have a clip path.
   for (const plot of document.querySelectorAll('.plot')) {
     const figure = plot.closest('.card').dataset.figure;
     const frame = plot.getBoundingClientRect();
-    const texts = Array.from(plot.querySelectorAll('svg text'), (text) => ({
-      words: text.textContent.trim(),
-      box: text.getBoundingClientRect(),
-      is_clipped: text.closest('[clip-path]') !== null,
-      is_level: Math.abs(text.getCTM().b) < 0.01,
-    })).filter((text) => text.words !== '' && !text.is_clipped);
+    const texts = Array.from(plot.querySelectorAll('svg text'))
+      .filter((text) => text.textContent.trim() !== '' && text.closest('[clip-path]') === null)
+      .map((text) => {
+        const { a, b, c, d, e, f } = text.getScreenCTM();
+        const { x, y, width, height } = text.getBBox();
+        const [u, v] = [x + width / 2, y + height / 2];
+        return {
+          words: text.textContent.trim(),
+          box: text.getBoundingClientRect(),
+          angle: Math.atan2(b, a),
+          centre: [a * u + c * v + e, b * u + d * v + f],
+          width,
+          height,
+        };
+      });
     for (const { words, box } of texts) {
       const over = Math.max(frame.left - box.left, box.right - frame.right, frame.top - box.top, box.bottom - frame.bottom);
       if (over > 2) {
@@ -131,14 +140,15 @@ function find_faults() {
         faults.push(`"${words}" in ${figure} is shortened`);
       }
     }
-    const level = texts.filter((text) => text.is_level);
-    level.forEach((a, i) => {
-      for (const b of level.slice(0, i)) {
-        const across = Math.min(a.box.right, b.box.right) - Math.max(a.box.left, b.box.left);
-        const along = Math.min(a.box.bottom, b.box.bottom) - Math.max(a.box.top, b.box.top);
+    texts.forEach((a, i) => {
+      const [cos, sin] = [Math.cos(a.angle), Math.sin(a.angle)];
+      for (const b of texts.slice(0, i).filter((one) => Math.abs(one.angle - a.angle) < 0.01)) {
+        const [x, y] = [b.centre[0] - a.centre[0], b.centre[1] - a.centre[1]];
+        const along = (a.width + b.width) / 2 - Math.abs(x * cos + y * sin);
+        const across = (a.height + b.height) / 2 - Math.abs(y * cos - x * sin);
         // The box of a line is higher than its letters.
-        if (across > 2 && along > 0.3 * Math.min(a.box.height, b.box.height)) {
-          faults.push(`"${a.words}" and "${b.words}" in ${figure} overlap by ${across.toFixed(0)} x ${along.toFixed(0)} px`);
+        if (along > 2 && across > 0.3 * Math.min(a.height, b.height)) {
+          faults.push(`"${a.words}" and "${b.words}" in ${figure} overlap by ${along.toFixed(0)} x ${across.toFixed(0)} px`);
         }
       }
     });
@@ -179,8 +189,11 @@ async function check_page(name) {
     await open_tab(page, tab);
     for (const width of kWidths) {
       await page.setViewportSize({ width, height: kHeight });
+      // The second theme of one width is the first of the next.
       for (let theme = 0; theme < 2; ++theme) {
-        await page.evaluate(() => document.querySelector('.theme').click());
+        if (theme > 0) {
+          await page.evaluate(() => document.querySelector('.theme').click());
+        }
         await settle(page);
         const where = `${name}, ${tab}, ${width} px, ${await page.getAttribute('html', 'data-theme')}: `;
         found.push(...(await page.evaluate(find_faults)).map((fault) => where + fault));
@@ -195,3 +208,39 @@ async function check_page(name) {
 for (const name of ['run', 'study', 'reproduction', 'front']) {
   test(`the layout of the page "${name}" fits every width`, () => check_page(name));
 }
+
+test('keys scroll a cut table, and at its end the shadow is on the other side', async () => {
+  const { page, expect_no_faults } = await open_page(browser, join(kFolder, 'run.html'));
+  await page.setViewportSize({ width: 390, height: kHeight });
+  await settle(page);
+  const box = page.getByRole('region', { name: 'Result' });
+  const list_shadows = () =>
+    box.evaluate((one) => Array.from(one.parentElement.querySelectorAll('.cut:not([hidden])'), (cut) => cut.className));
+  assert.deepEqual(await list_shadows(), ['cut cut-right']);
+  await box.focus();
+  await page.keyboard.press('ArrowRight');
+  await page.waitForFunction(() => document.activeElement.scrollLeft > 2);
+  await settle(page);
+  assert.ok((await list_shadows()).includes('cut cut-left'));
+  await box.evaluate((one) => (one.scrollLeft = one.scrollWidth));
+  await settle(page);
+  assert.deepEqual(await list_shadows(), ['cut cut-left']);
+  expect_no_faults();
+  await page.close();
+});
+
+test('the dialog with the numbers of a figure shows all of its parts on a narrow screen', async () => {
+  const { page, expect_no_faults } = await open_page(browser, join(kFolder, 'run.html'));
+  await page.setViewportSize({ width: 390, height: kHeight });
+  await open_tab(page, 'response');
+  await page.locator('[data-figure=distance-response]').getByRole('button', { name: 'Table' }).click();
+  await settle(page);
+  const dialog = await page.locator('dialog').boundingBox();
+  const hint = await page.locator('dialog .cut-hint').boundingBox();
+  assert.ok(
+    hint.y + hint.height <= dialog.y + dialog.height,
+    `the sentence ends at ${hint.y + hint.height}, the dialog at ${dialog.y + dialog.height}`,
+  );
+  expect_no_faults();
+  await page.close();
+});
