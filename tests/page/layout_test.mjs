@@ -162,6 +162,20 @@ function find_faults() {
     }
   }
 
+  // No line breaks a short unit, such as "(N m)".
+  for (const button of document.querySelectorAll('th button')) {
+    const text = button.firstChild;
+    const unit = text.textContent.match(/\(.{1,8}\)$/);
+    if (unit !== null && is_visible(button)) {
+      const range = document.createRange();
+      range.setStart(text, unit.index);
+      range.setEnd(text, text.length);
+      if (new Set(Array.from(range.getClientRects(), (rect) => Math.round(rect.bottom))).size > 1) {
+        faults.push(`the unit of ${name(button)} is broken`);
+      }
+    }
+  }
+
   // A label has at most one line per word.
   for (const label of document.querySelectorAll('h1, h3, dt, th, button, label > span, .thesis, .subtitle')) {
     if (!is_visible(label)) {

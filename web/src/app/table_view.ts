@@ -10,6 +10,7 @@ import type { View } from './view';
 
 // A table shows this many rows at a time, so that a table of 10 000 cells opens at once.
 const kPortion = 200;
+const kShortUnit = 8; // characters
 const kLong = 24; // characters of a text that needs a wide column
 
 // Compares numbers by size and texts by the alphabet. Missing values come last for both directions.
@@ -45,6 +46,12 @@ function make_cell(cell: Value | Cell, column: Column, details: HTMLElement): HT
     element.title = String(value);
   }
   return element;
+}
+
+// Returns the heading with a short unit, such as "N m", that no line breaks.
+function get_unbroken_heading(column: Column): string {
+  const { unit = '' } = column;
+  return get_heading(unit.length <= kShortUnit ? { ...column, unit: unit.replace(/ /g, '\u00a0') } : column);
 }
 
 // The order in which a table is sorted: the index of a column, and 1 for ascending or -1 for
@@ -86,7 +93,7 @@ function make_table(title: string, table: DataTable, details: HTMLElement, order
   table.columns.forEach((column, i) => {
     const heading = make('th', { scope: 'col', class: column.numeric ? 'number' : '' });
     heading.append(
-      make_button(get_heading(column), () => sort(i, order.column === i ? -order.direction : 1), {
+      make_button(get_unbroken_heading(column), () => sort(i, order.column === i ? -order.direction : 1), {
         class: 'sort',
         title: 'Sort by this column',
       }),
