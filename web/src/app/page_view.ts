@@ -6,6 +6,7 @@ import { make_replay, type ReplayView } from '../replay/replay';
 import { make_clock, type Clock } from './clock';
 import { make, make_button } from './dom';
 import { make_figure_view } from './figure_view';
+import { make_summary_view } from './summary_view';
 import { make_table_view } from './table_view';
 import type { View } from './view';
 
@@ -60,6 +61,8 @@ function make_view(page: Page, item: Item, look: Look, clock: Clock): View {
       return make_still(item.id, item.title, 'full', ...item.paragraphs.map((text) => make('p', {}, text)));
     case 'facts':
       return make_still(item.id, item.title, 'full', make_facts(item.facts));
+    case 'summary':
+      return make_summary_view(item);
     case 'replay':
       return make_replay_view(item.id, item.title, page, item, look, clock);
   }
