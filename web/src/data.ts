@@ -318,6 +318,7 @@ export interface StudyData extends PageBase {
   verdict: string[]; // paragraphs
   optimizers: { label: string; name: string }[]; // in the order of the plan; all lists with one item per optimizer have this order
   replicates: number;
+  fewest_replicates: number | null; // with fewer no pair of optimizers can be decided on a problem; null if there is no pair
   budget: number;
   reference: string; // times to fixed targets are divided by those of this optimizer; may be empty
   problems: StudyProblem[];
@@ -350,6 +351,7 @@ export interface StudyOptimizerResult {
   max: number | null;
   median_interval: [number | null, number | null];
   mean_rank: number | null; // null while cells of the problem are missing
+  median_rank: number | null; // of the median; equal medians share their ranks; null while cells are missing
   anytime_area: number | null;
   cases: number | null; // median
   running_times: { target: number; reached: number; expected: number | null; interval: [number | null, number | null] }[];

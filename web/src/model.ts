@@ -72,6 +72,7 @@ export interface TextItem {
   id: string;
   title: string;
   paragraphs: string[];
+  style?: 'headline' | 'folded'; // larger letters; or closed until the reader opens it or prints the page
 }
 
 export interface FactsItem {

@@ -7,6 +7,7 @@ import { make_clock, type Clock } from './clock';
 import { make, make_button } from './dom';
 import { make_figure_view } from './figure_view';
 import { make_table_view } from './table_view';
+import { make_text_view } from './text_view';
 import type { View } from './view';
 
 function make_facts(facts: Fact[]): HTMLElement {
@@ -57,7 +58,7 @@ function make_view(page: Page, item: Item, look: Look, clock: Clock): View {
     case 'table':
       return make_table_view(item);
     case 'text':
-      return make_still(item.id, item.title, 'full', ...item.paragraphs.map((text) => make('p', {}, text)));
+      return make_text_view(item);
     case 'facts':
       return make_still(item.id, item.title, 'full', make_facts(item.facts));
     case 'replay':
