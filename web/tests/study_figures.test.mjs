@@ -476,3 +476,36 @@ test('the verdict is folded away, whole', () => {
   assert.equal(verdict.style, 'folded');
   assert.deepEqual(verdict.paragraphs, ['One.', 'Two.']);
 });
+
+test('tables leave out columns that have no value', () => {
+  const data = study.make_study_data({ optimizers: 3, replicates: 4, problems: 2 });
+  const get_labels = (id) => find(study.make_study_tabs(data), id).table.columns.map((column) => column.label);
+  const overall = ['optimizer', 'mean rank', 'from', 'to', 'median, Q1 problem 1', 'median, Q1 problem 2'];
+  assert.deepEqual(get_labels('overall'), overall);
+  assert.ok(get_labels('cells-q1-problem-1').includes('time'));
+  assert.ok(get_labels('ranking-q1-problem-1').includes('checked on'));
+  data.overall.rank_intervals = null;
+  for (const problem of data.problems) {
+    for (const result of problem.results) {
+      result.final_check = null;
+      result.cells.forEach((cell) => Object.assign(cell, { seconds: null, failure: '', value: null }));
+    }
+  }
+  check_tabs(study.make_study_tabs(data));
+  assert.deepEqual(
+    get_labels('overall'),
+    overall.filter((label) => label !== 'from' && label !== 'to'),
+  );
+  assert.deepEqual(get_labels('cells-q1-problem-1'), [
+    'optimizer',
+    'replicate',
+    'value',
+    'cases',
+    'evaluations',
+    'failed test cases',
+    'folder',
+  ]);
+  const ranking = get_labels('ranking-q1-problem-1');
+  ['checked on', 'best design there', 'failures there'].forEach((label) => assert.ok(!ranking.includes(label), label));
+  assert.ok(ranking.includes('median') && ranking.includes('mean rank'));
+});

@@ -7,7 +7,7 @@ import type { EChartsOption } from '../charts/echarts';
 import type { Look } from '../charts/look';
 import { make_axis, make_chart, type Part } from '../charts/parts';
 import type { StudyProblem } from '../data';
-import type { Figure, Picked } from '../model';
+import type { Column, Figure, Picked, Value } from '../model';
 import { format_number } from '../numbers';
 import { find_pair } from './study_pairs';
 import { describe_size, end_title, get_problem, make_problem_choices, type Scope, sort_by } from './study_parts';
@@ -225,21 +225,17 @@ function make_figure(scope: Scope, id: string, title: string, caption: string, g
           .map((clique, k) => (clique.indexOf(i) >= 0 ? String(k + 1) : ''))
           .filter((text) => text !== '')
           .join(' ');
+      const bounds: Column[] = [
+        { label: 'lower', numeric: true },
+        { label: 'upper', numeric: true },
+      ];
+      const columns: Column[] = [{ label: 'optimizer' }, { label: 'mean rank', numeric: true }];
       return {
-        columns: [
-          { label: 'optimizer' },
-          { label: 'mean rank', numeric: true },
-          { label: 'lower', numeric: true },
-          { label: 'upper', numeric: true },
-          { label: 'bars' },
-        ],
-        rows: order.map((i) => [
-          scope.names[i],
-          isFinite(ranks[i]) ? ranks[i] : null,
-          intervals ? intervals[i][0] : null,
-          intervals ? intervals[i][1] : null,
-          groups(i),
-        ]),
+        columns: columns.concat(intervals ? bounds : [], [{ label: 'bars' }]),
+        rows: order.map((i): Value[] => {
+          const row: Value[] = [scope.names[i], isFinite(ranks[i]) ? ranks[i] : null];
+          return row.concat(intervals ? intervals[i] : [], [groups(i)]);
+        }),
       };
     },
   };
