@@ -111,19 +111,83 @@ test('several problems have a tab each, many a choice', () => {
   check_tabs(many);
 });
 
-test('forty optimizers with fifteen replicates draw, the best eight at first', () => {
+test('forty optimizers with fifteen replicates draw, the best twelve at first', () => {
   const tabs = study.make_study_tabs(study.make_study_data({ optimizers: 40, replicates: 15, problems: 1 }));
   check_tabs(tabs);
-  const option = find(tabs, 'convergence').draw(study.kLight, {});
-  assert.equal(option.legend.data.length, 40);
-  assert.equal(Object.values(option.legend.selected).filter(Boolean).length, 8);
-  const names = find(tabs, 'ranking')
-    .table.rows.slice(0, 8)
+  const best = find(tabs, 'ranking')
+    .table.rows.slice(0, 12)
     .map((row) => row[0]);
-  assert.deepEqual(
-    names.filter((name) => !option.legend.selected[name]),
-    [],
+  for (const id of ['convergence', 'runtime-ecdf', 'parallel']) {
+    const { legend } = find(tabs, id).draw(study.kLight, {});
+    assert.equal(legend.data.length, 40, id);
+    const drawn = Object.keys(legend.selected).filter((name) => legend.selected[name]);
+    assert.deepEqual(drawn.sort(), best.slice().sort(), id);
+  }
+  assert.match(
+    find(tabs, 'convergence').caption,
+    /Of the 40 optimizers, the best 12 are drawn at first\. The legend switches them on and off\.$/,
   );
+});
+
+test('up to twelve optimizers are all drawn at first', () => {
+  const tabs = study.make_study_tabs(study.make_study_data({ optimizers: 12, replicates: 6, problems: 1 }));
+  for (const id of ['convergence', 'runtime-ecdf', 'data-profile', 'performance-profile', 'parallel']) {
+    const { legend } = find(tabs, id).draw(study.kLight, {});
+    assert.ok(
+      Object.values(legend.selected).every((one) => one),
+      id,
+    );
+    assert.doesNotMatch(find(tabs, id).caption, /at first/);
+  }
+});
+
+test('sixteen optimizers differ in colour, dash or symbol', () => {
+  const tabs = study.make_study_tabs(study.make_study_data({ optimizers: 16, replicates: 6, problems: 1, infinite: 'none' }));
+  for (const look of [study.kLight, study.kDark]) {
+    for (const id of ['convergence', 'runtime-ecdf', 'data-profile', 'performance-profile', 'parallel']) {
+      const lines = find(tabs, id)
+        .draw(look, {})
+        .series.filter((one) => one.type === 'line' && one.name !== undefined);
+      assert.equal(lines.length, 16, id);
+      const describe = (line) => JSON.stringify([line.lineStyle.color, line.lineStyle.type, line.symbol, line.itemStyle.borderColor ?? '']);
+      assert.equal(new Set(lines.map(describe)).size, 16, id);
+      // The symbols alone distinguish the optimizers of a colour.
+      assert.equal(
+        new Set(lines.map((line) => JSON.stringify([line.lineStyle.color, line.symbol, line.itemStyle.borderColor ?? '']))).size,
+        16,
+        id,
+      );
+    }
+    const points = find(tabs, 'cost-quality')
+      .draw(look, study.get_initial_picks(find(tabs, 'cost-quality')))
+      .series.find((one) => one.type === 'scatter').data;
+    assert.equal(points.length, 16);
+    assert.equal(new Set(points.map((point) => JSON.stringify([point.symbol, point.itemStyle]))).size, 16);
+  }
+});
+
+test('a profile opens where something is seen', () => {
+  const data = study.make_study_data({ optimizers: 3, replicates: 4, problems: 2 });
+  const empty = data.optimizers.map(() => data.overall.kappas.map(() => 0));
+  // At the tolerance 1e-3 the first optimizer solves 15 % at the last three budgets, at 0.1 half.
+  const some = empty.map((shares, o) => shares.map((_, i) => (o === 0 && i > 37 ? 0.15 : 0)));
+  const half = empty.map((shares, o) => shares.map((_, i) => (o === 0 && i > 20 ? 0.5 : 0)));
+  data.overall.data_profiles = [half, some, empty].map((shares, i) => ({ tolerance: [0.1, 0.001, 0.00001][i], shares }));
+  const figure = find(study.make_study_tabs(data), 'data-profile');
+  assert.equal(figure.choices[0].initial, '0');
+  const get_axes = (tolerance) => {
+    const { xAxis, yAxis, series } = figure.draw(study.kLight, { tolerance });
+    const line = series.find((one) => one.name === data.optimizers[0].label);
+    return { left: xAxis.min, top: yAxis.max, points: line.data.length, first: line.data[0].value };
+  };
+  const [wide, narrow, none] = ['0', '1', '2'].map(get_axes);
+  assert.deepEqual([wide.top, narrow.top, none.top], [0.5, 0.2, 1]);
+  assert.deepEqual(narrow.first, [data.overall.kappas[37], 0]);
+  assert.equal(narrow.points, 4);
+  assert.ok(narrow.left <= data.overall.kappas[37] && narrow.left > data.overall.kappas[35]);
+  assert.deepEqual(wide.first, [data.overall.kappas[20], 0]);
+  assert.equal(none.points, 41);
+  assert.equal(figure.table({ tolerance: '1' }).rows.length, 3 * 41); // the table has all budgets
 });
 
 test('fronts draw with their reference point, in millimetres', () => {

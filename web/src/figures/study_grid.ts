@@ -249,7 +249,7 @@ export function make_standing_grid(scope: Scope): Figure | null {
     id: 'standing',
     title: 'Who is best where',
     caption:
-      'Each cell has the rank of the median on the test set; a darker cell is better. ' +
+      'Each cell has the rank of the median on the test set; a stronger colour is a better rank. ' +
       'The symbols are the verdict. The leader of a problem has the best mean rank over the replicates. It ranks best if it beats at least one other optimizer and none beats it. ' +
       'Medians may have another order, but only the tests decide. Optimizers that are not told apart need not be equal. ' +
       describe_size(scope),
