@@ -442,7 +442,7 @@ test('the headline claims nothing where the verdict decides nothing', () => {
   const half = make_decided(['-ww', 'www']);
   half.problems[1].missing = 3;
   half.problems[1].pairs = [];
-  assert.equal(get_headline(half), 'a ranks best on 1 of 2 problems; b cannot be told apart from it there; 1 is unfinished.');
+  assert.equal(get_headline(half), 'a ranks best on 1 of 2 problems; b cannot be told apart from it there; 1 problem is unfinished.');
   half.problems[0].missing = 1;
   assert.equal(get_headline(half), 'There is no verdict yet: runs on each of the 2 problems have not ended.');
   const one = study.make_study_data({ optimizers: 1, replicates: 5, problems: 1 });
@@ -494,7 +494,7 @@ test('the grid shows the rank of every median and what the tests decide', () => 
   const { legend, series } = grid.draw(study.kLight, {});
   assert.deepEqual(
     legend.data.map((entry) => entry.name),
-    ['ranks best', 'not told apart from the leader', 'worse than the leader', 'better than the leader', 'no verdict'],
+    ['ranks best', 'not told apart', 'worse', 'better', 'no verdict'],
   );
   assert.equal(new Set(legend.data.map((entry) => entry.icon)).size, 5);
   assert.equal(series[0].data.length, 12);
@@ -531,6 +531,21 @@ test('the grid has a name for every row, and its texts can be read on their cell
       assert.ok((both[1] + 0.05) / (both[0] + 0.05) >= 4.5, `${fill}: ${(both[1] + 0.05) / (both[0] + 0.05)}`);
     }
   }
+});
+
+test('the grid names the problems, or numbers them where they have no room', () => {
+  const find_grid = (problems) =>
+    find(study.make_study_tabs(study.make_study_data({ optimizers: 3, replicates: 8, problems })), 'standing');
+  const few = study.draw_svg(find_grid(3), study.kLight, {}, 300, 200);
+  const many = find_grid(8);
+  const narrow = study.draw_svg(many, study.kLight, {}, 300, 200);
+  const wide = study.draw_svg(many, study.kLight, {}, 1180, 200);
+  for (let p = 1; p <= 8; ++p) {
+    assert.ok(wide.includes('>Q1 problem ' + p + '<') && !narrow.includes('problem'), `${p}`);
+    assert.ok(narrow.includes('>' + p + '<'), `${p}`);
+  }
+  assert.ok(few.includes('>Q1 problem<') && !few.includes('>Q1 problem 1<'), 'broken into two lines');
+  assert.match(many.caption, /In a narrow window the problems have numbers/);
 });
 
 test('the verdict is folded away, whole', () => {

@@ -16,6 +16,8 @@ import { find_standing, order_by_standing, type ProblemStanding, type Standing }
 const kTop = 34; // pixels for the legend
 const kHeadLine = 13;
 const kMostHeadLines = 3; // of the name of a problem
+const kFewestLetters = 4; // in a line; with fewer the problems have numbers
+const kMostNamed = 4; // problems that have names in a narrow window, too
 const kWidestCell = 360;
 const kWidestName = 170;
 const kSize = 11; // of texts, in pixels
@@ -24,6 +26,7 @@ const kSize = 11; // of texts, in pixels
 interface Mark {
   standing: Standing;
   words: string;
+  key: string; // in the legend, which has to fit a narrow page
   points: [number, number][]; // of a polygon; empty for none
   hollow: boolean;
 }
@@ -46,11 +49,11 @@ function make_circle(radius: number): [number, number][] {
 }
 
 const kMarks: Mark[] = [
-  { standing: 'best', words: 'ranks best', points: make_star(), hollow: false },
-  { standing: 'undecided', words: 'not told apart from the leader', points: make_circle(3.8), hollow: true },
-  { standing: 'worse', words: 'worse than the leader', points: [[-4.4, -3], [4.4, -3], [0, 4.6]], hollow: false }, // prettier-ignore
-  { standing: 'better', words: 'better than the leader', points: [[-4.4, 3], [4.4, 3], [0, -4.6]], hollow: false }, // prettier-ignore
-  { standing: 'untested', words: 'no verdict', points: [[-3.5, -0.9], [3.5, -0.9], [3.5, 0.9], [-3.5, 0.9]], hollow: false }, // prettier-ignore
+  { standing: 'best', words: 'ranks best', key: 'ranks best', points: make_star(), hollow: false },
+  { standing: 'undecided', words: 'not told apart from the leader', key: 'not told apart', points: make_circle(3.8), hollow: true },
+  { standing: 'worse', words: 'worse than the leader', key: 'worse', points: [[-4.4, -3], [4.4, -3], [0, 4.6]], hollow: false }, // prettier-ignore
+  { standing: 'better', words: 'better than the leader', key: 'better', points: [[-4.4, 3], [4.4, 3], [0, -4.6]], hollow: false }, // prettier-ignore
+  { standing: 'untested', words: 'no verdict', key: 'no verdict', points: [[-3.5, -0.9], [3.5, -0.9], [3.5, 0.9], [-3.5, 0.9]], hollow: false }, // prettier-ignore
 ];
 
 function get_mark(standing: Standing): Mark {
@@ -172,9 +175,10 @@ function draw_grid(look: Look, scope: Scope, grid: Grid): EChartsOption {
     renderItem: (item: Item) => {
       const box = item.coordSys;
       const width = get_width(box);
-      const letters = Math.max(1, Math.floor((width - 6) / (0.62 * kSize)));
+      const letters = Math.floor((width - 6) / (0.62 * kSize));
+      const lines = count_head_lines(scope);
       const children = labels.map((label, p) =>
-        text(box.x + (p + 0.5) * width, box.y - 5, shorten(label, letters * count_head_lines(scope)), look.text, {
+        text(box.x + (p + 0.5) * width, box.y - 5, letters < kFewestLetters ? String(p + 1) : shorten(label, letters * lines), look.text, {
           textAlign: 'center',
           textVerticalAlign: 'bottom',
           width: width - 6,
@@ -197,7 +201,7 @@ function draw_grid(look: Look, scope: Scope, grid: Grid): EChartsOption {
   const shown = get_shown_marks(grid);
   const key: Part[] = shown.map((mark) => ({
     type: 'scatter',
-    name: mark.words,
+    name: mark.key,
     data: [],
     itemStyle: mark.hollow ? { color: 'transparent', borderColor: look.text, borderWidth: 1.5 } : { color: look.text },
   }));
@@ -210,9 +214,9 @@ function draw_grid(look: Look, scope: Scope, grid: Grid): EChartsOption {
       top: 4,
       itemWidth: 11,
       itemHeight: 11,
-      itemGap: 22,
+      itemGap: 16,
       selectedMode: false,
-      data: shown.map((mark) => ({ name: mark.words, icon: make_icon(mark) })),
+      data: shown.map((mark) => ({ name: mark.key, icon: make_icon(mark) })),
       textStyle: { color: look.text, fontFamily: look.font, fontSize: 12 },
       pageTextStyle: { color: look.muted },
       pageIconColor: look.accent,
@@ -225,11 +229,12 @@ function get_shown_marks({ standings }: Grid): Mark[] {
   return kMarks.filter((mark) => standings.some((one) => one.standings.indexOf(mark.standing) >= 0));
 }
 
-// Returns the number of lines that the names of problems need in the usual width of a page.
+// Returns the number of lines for the names of problems: as many as they need in the usual width of
+// a page, and two if they need more than one in a narrow page.
 function count_head_lines(scope: Scope): number {
-  const width = 900 / scope.problems.length;
   const longest = scope.problems.reduce((most, problem) => Math.max(most, estimate_width(shorten(problem.label), kSize)), 0);
-  return Math.min(kMostHeadLines, Math.ceil((longest + 1) / width));
+  const count = (width: number) => Math.ceil(((longest + 6) * scope.problems.length) / width);
+  return Math.min(kMostHeadLines, Math.max(count(900), Math.min(2, count(180))));
 }
 
 function get_head_height(scope: Scope): number {
@@ -250,8 +255,9 @@ export function make_standing_grid(scope: Scope): Figure | null {
     title: 'Who is best where',
     caption:
       'Each cell has the rank of the median on the test set; a stronger colour is a better rank. ' +
-      'The symbols are the verdict. The leader of a problem has the best mean rank over the replicates. It ranks best if it beats at least one other optimizer and none beats it. ' +
+      'The symbols are the verdict: they compare an optimizer with the leader of the problem, which has the best mean rank over the replicates. The leader ranks best if it beats at least one other optimizer and none beats it. ' +
       'Medians may have another order, but only the tests decide. Optimizers that are not told apart need not be equal. ' +
+      (scope.problems.length > kMostNamed ? 'In a narrow window the problems have numbers, in the order of the study. ' : '') +
       describe_size(scope),
     width: 'full',
     height: kTop + get_head_height(scope) + row_height * scope.names.length + 4,

@@ -59,7 +59,7 @@ function describe_others(scope: Scope, all: ProblemStanding[]): string[] {
     clauses.push('on ' + count('too_few') + ' no pair can be decided with ' + describe_replicates(scope));
   }
   if (count('unfinished') > 0) {
-    clauses.push(count('unfinished') + (count('unfinished') === 1 ? ' is' : ' are') + ' unfinished');
+    clauses.push(count('unfinished') + (count('unfinished') === 1 ? ' problem is' : ' problems are') + ' unfinished');
   }
   return clauses;
 }

@@ -63,8 +63,8 @@ function make_verdict_items(data: StudyData, all: Scope): Item[] {
   };
   return keep([
     headline,
-    make_unfinished(data),
     make_standing_grid(all),
+    make_unfinished(data),
     verdict,
     single ? make_problem_ranks(all, 'ranks') : make_overall_ranks(all),
     single ? make_ranking_table(all) : make_overall_table(all),
